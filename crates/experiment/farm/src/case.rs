@@ -1,0 +1,183 @@
+//! One study as plain data: what the case file says, in SI units.
+
+use serde::{Deserialize, Serialize};
+
+/// A study: one wind, one row of turbines, several runs to compare.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// Name of the study.
+    pub name: String,
+    /// What it is for, in one line.
+    pub description: Option<String>,
+    /// The wind that comes in.
+    pub wind: Wind,
+    /// How the air is solved.
+    pub flow: Flow,
+    /// Time.
+    pub time: Time,
+    /// The turbines, first upstream.
+    pub turbines: Vec<Placement>,
+    /// The runs, all in the same inflow.
+    pub runs: Vec<Run>,
+    /// What is kept.
+    pub output: Output,
+}
+
+/// The wind that comes in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Wind {
+    /// Mean speed at hub height of the first turbine (m/s).
+    pub speed: f64,
+    /// Turbulence intensity, standard deviation of the streamwise component over `speed` (–).
+    pub turbulence_intensity: f64,
+    /// Power-law exponent of the mean profile (–).
+    pub shear_exponent: f64,
+    /// Length scale of Mann's tensor (m).
+    pub length_scale: f64,
+    /// Anisotropy Γ of Mann's tensor (–).
+    pub anisotropy: f64,
+    /// Seed of the turbulence.
+    pub seed: u64,
+    /// Air density (kg/m³).
+    pub air_density: f64,
+    /// Kinematic viscosity of air (m²/s).
+    pub kinematic_viscosity: f64,
+}
+
+/// How the air is solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Flow {
+    /// Cells per diameter of the first turbine (–).
+    pub cells_per_diameter: f64,
+    /// Domain upstream of the first turbine (diameters of the first turbine).
+    pub upstream_diameters: f64,
+    /// Domain downstream of the last turbine (diameters).
+    pub downstream_diameters: f64,
+    /// Domain width (diameters), plus the lateral spread of the layout.
+    pub width_diameters: f64,
+    /// Domain height (diameters).
+    pub height_diameters: f64,
+    /// What the air meets at the ground.
+    pub ground: Ground,
+    /// What it meets at the sides.
+    pub sides: Sides,
+    /// Flow step (s); chosen from the tip speed and the Mach number when absent.
+    pub step: Option<f64>,
+    /// Threads; all cores when absent. The result does not depend on it.
+    pub threads: Option<usize>,
+}
+
+/// The ground.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Ground {
+    /// Air slips along it.
+    Slip,
+    /// Wall stress after the logarithmic law.
+    Rough {
+        /// Roughness length z₀ (m).
+        roughness_length: f64,
+    },
+}
+
+/// The lateral boundaries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Sides {
+    /// What leaves on one side enters on the other.
+    Periodic,
+    /// Air slips along them.
+    Slip,
+}
+
+/// Time of every run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Time {
+    /// Not analysed, wakes develop (s).
+    pub spin_up: f64,
+    /// In all, spin-up included (s).
+    pub duration: f64,
+}
+
+/// One turbine in the layout.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Placement {
+    /// Name, such as `T1`.
+    pub name: String,
+    /// Turbine model in the library, or a path to a turbine file.
+    pub model: String,
+    /// Position of the tower's foot, farm frame x and y (diameters of the first turbine).
+    pub position_diameters: [f64; 2],
+}
+
+/// One run: who does what.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// Name of the run.
+    pub name: String,
+    /// Run that its gains compare with; the first run when absent (the first compares with none).
+    pub compare_with: Option<String>,
+    /// What runs on each turbine, in the order of [`Case::turbines`].
+    pub control: Vec<Control>,
+}
+
+/// What runs on a turbine, on top of torque and collective pitch control.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Control {
+    /// Greedy: most power below rated, rated power above.
+    Baseline,
+    /// The helix: individual pitch that moves the thrust centre on a circle.
+    Helix(Helix),
+    /// The pulse: collective pitch, periodic.
+    Pulse(Pulse),
+}
+
+/// Which way the helix winds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Sense {
+    /// Clockwise: blades pitch at rotor minus excitation frequency.
+    Clockwise,
+    /// Counter-clockwise: blades pitch at rotor plus excitation frequency.
+    CounterClockwise,
+}
+
+/// Settings of the helix.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Helix {
+    /// Which way it winds.
+    pub sense: Sense,
+    /// Pitch amplitude (rad).
+    pub amplitude: f64,
+    /// Strouhal number f D / U with the case's wind speed and the turbine's diameter (–).
+    pub strouhal: f64,
+    /// Phase of the tilt command at time zero (rad).
+    pub phase: f64,
+    /// Azimuth offset of the inverse multi-blade transformation (rad).
+    pub azimuth_offset: f64,
+    /// Time at which it fades in (s).
+    pub start: f64,
+}
+
+/// Settings of the pulse.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pulse {
+    /// Pitch amplitude (rad).
+    pub amplitude: f64,
+    /// Strouhal number f D / U (–).
+    pub strouhal: f64,
+    /// Phase at time zero (rad).
+    pub phase: f64,
+    /// Time at which it fades in (s).
+    pub start: f64,
+}
+
+/// What is kept of a run, beside series and summary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Output {
+    /// Instantaneous hub-height and crosswind planes every so many seconds of the analysed time; none when absent.
+    pub plane_interval: Option<f64>,
+    /// Crosswind planes at these distances behind the first turbine (diameters).
+    pub crosswind_diameters: Vec<f64>,
+    /// Volume snapshots (VTK) every so many seconds; none when absent.
+    pub volume_interval: Option<f64>,
+    /// Checkpoint every so many seconds of wall time (s).
+    pub checkpoint_interval: f64,
+}

@@ -1,0 +1,3 @@
+//! Plant and controllers run together: layout, the loop, runs of a case, checkpoints.
+
+pub mod case;

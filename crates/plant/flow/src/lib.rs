@@ -1,0 +1,53 @@
+//! The air: prescribed inflow and solvers that feel forces.
+//!
+//! The air feels point forces, not rotors: nothing here knows what a turbine is.
+
+use basis::{PointForce, Vector3};
+use thiserror::Error;
+
+/// Somewhere the wind can be asked for.
+pub trait WindField {
+    /// Writes the wind (m/s, farm frame) at each of `positions` (m, farm frame) into `velocities`, of the same length.
+    fn sample(&self, positions: &[Vector3], velocities: &mut [Vector3]);
+}
+
+/// A wind field that moves on in time and feels the machines in it.
+pub trait FlowSolver: WindField {
+    /// Moves the air on by `duration` (s) under `forces`, which act throughout.
+    ///
+    /// # Errors
+    /// [`FlowError::Diverged`] when the field is no longer finite or leaves the speeds that the solver can carry.
+    fn advance(&mut self, duration: f64, forces: &[PointForce]) -> Result<(), FlowError>;
+
+    /// Whether sampled velocities already contain the rotors' induction.
+    fn resolves_induction(&self) -> bool;
+}
+
+/// Wind prescribed everywhere and for all time: what enters a solver's inlet, or blows where no air is solved.
+pub trait Inflow: Send + Sync {
+    /// Writes the wind (m/s) at `time` (s) at each of `positions` (m, farm frame) into `velocities`, of the same length.
+    fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]);
+}
+
+/// Why a solver could not go on.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum FlowError {
+    /// The field is no longer physical.
+    #[error("the flow diverged at {time:.2} s near x {x:.0} m, y {y:.0} m, z {z:.0} m (speed {speed} m/s)", x = position.x, y = position.y, z = position.z)]
+    Diverged {
+        /// Simulated time (s).
+        time: f64,
+        /// Where it was noticed first, farm frame (m).
+        position: Vector3,
+        /// Speed there (m/s), possibly not a number.
+        speed: f64,
+    },
+    /// The solver was asked for a duration that is not a whole number of its steps.
+    #[error("asked to advance {duration} s, which is not a whole number of steps of {step} s")]
+    FractionalStep {
+        /// Asked duration (s).
+        duration: f64,
+        /// Step (s).
+        step: f64,
+    },
+}

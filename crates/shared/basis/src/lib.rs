@@ -1,0 +1,28 @@
+//! What both sides of the wall speak: frames, angles, signals, point forces, records.
+//!
+//! Conventions, stated once:
+//!
+//! ```text
+//!        z up                    looking downwind (along +x), the rotor turns clockwise
+//!        |   x downwind
+//!        |  /                         blade 1 up: azimuth 0
+//!        | /                                |   ⟳ azimuth grows
+//!  y ----+        y left looking            |
+//!  origin on the ground below         y ----o---- -y   (azimuth 90° is blade 1 at −y)
+//!  the first turbine
+//! ```
+//!
+//! SI and radians everywhere; pitch is positive to feather.
+
+pub mod angle;
+pub mod blades;
+pub mod force;
+pub mod mbc;
+pub mod records;
+pub mod signals;
+
+pub use blades::PerBlade;
+pub use force::PointForce;
+pub use glam::{DMat3 as Matrix3, DVec3 as Vector3};
+pub use mbc::FixedFrame;
+pub use signals::{Commands, Measurements};

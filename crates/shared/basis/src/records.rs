@@ -1,0 +1,177 @@
+//! What a run leaves behind, as plain data that every desk can read.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Version of the layout of [`Summary`]; raised when a field changes its meaning.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// Mean of a quantity over the analysed time, with what is known of its uncertainty.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Statistic {
+    /// Mean, in the quantity's unit.
+    pub mean: f64,
+    /// Standard deviation of the samples, in the quantity's unit.
+    pub standard_deviation: f64,
+    /// Half width of the 95 % interval of the mean from block means; absent with fewer than two blocks.
+    pub half_width_95: Option<f64>,
+    /// Number of blocks behind the interval.
+    pub n_blocks: usize,
+}
+
+/// Blade pitch as the actuator delivered it, beside what was commanded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeliveredPitch {
+    /// Amplitude of the commanded excitation line (deg).
+    pub commanded_amplitude_deg: f64,
+    /// Amplitude of the strongest line of blade 1's pitch (deg).
+    pub delivered_amplitude_deg: f64,
+    /// Its frequency (Hz).
+    pub frequency_hz: f64,
+    /// Excitation frequency in the fixed frame recovered from the delivered pitch (Hz).
+    pub excitation_frequency_hz: f64,
+    /// Share of control instants at which a pitch limit held a command back (–).
+    pub clipped_share: f64,
+}
+
+/// One turbine over one run's analysed time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TurbineSummary {
+    /// Name in the case file.
+    pub name: String,
+    /// Turbine model.
+    pub model: String,
+    /// What ran on it, in words ("helix ccw 4.0° St 0.25").
+    pub control: String,
+    /// Electrical power (W).
+    pub power: Statistic,
+    /// Thrust (N).
+    pub thrust: Statistic,
+    /// Rotor speed (rad/s).
+    pub rotor_speed: Statistic,
+    /// Collective pitch (rad).
+    pub pitch: Statistic,
+    /// Delivered excitation; absent on a turbine without one.
+    pub delivered_pitch: Option<DeliveredPitch>,
+    /// Power relative to the same turbine in the compared run, minus one (–).
+    pub power_gain: Option<Statistic>,
+    /// Damage-equivalent loads by channel; empty until the turbine has a structure.
+    pub damage_equivalent_loads: BTreeMap<String, f64>,
+}
+
+/// What a run cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Wall time of the run (s).
+    pub wall_time: f64,
+    /// Cells of the flow grid (–).
+    pub n_cells: u64,
+    /// Flow steps (–).
+    pub n_steps: u64,
+    /// Cell updates per second, everything included (1/s).
+    pub updates_per_second: f64,
+    /// Threads (–).
+    pub n_threads: usize,
+    /// Memory of the flow field (bytes).
+    pub memory: u64,
+}
+
+/// The wind as asked for and as it arrived.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Conditions {
+    /// Asked free-stream speed at hub height of the first turbine (m/s).
+    pub wind_speed: f64,
+    /// Asked turbulence intensity (–).
+    pub turbulence_intensity: f64,
+    /// Mean speed measured at hub height upstream of the first turbine (m/s).
+    pub arriving_wind_speed: f64,
+    /// Turbulence intensity measured there (–).
+    pub arriving_turbulence_intensity: f64,
+    /// Power-law shear exponent (–).
+    pub shear_exponent: f64,
+    /// Seed of the turbulence.
+    pub seed: u64,
+    /// Rotor diameter of the first turbine (m).
+    pub rotor_diameter: f64,
+    /// Cells per diameter of the first turbine (–).
+    pub cells_per_diameter: f64,
+    /// Flow step (s).
+    pub interval: f64,
+    /// Time before the analysis starts (s).
+    pub spin_up: f64,
+    /// Total simulated time (s).
+    pub duration: f64,
+}
+
+/// One run in numbers; `summary.json` is this, written out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// [`SCHEMA_VERSION`] of the writer.
+    pub schema_version: u32,
+    /// Name of the case.
+    pub case: String,
+    /// Name of the run.
+    pub run: String,
+    /// Run that the gains compare with.
+    pub compare_with: Option<String>,
+    /// The wind.
+    pub conditions: Conditions,
+    /// The turbines, in the case file's order.
+    pub turbines: Vec<TurbineSummary>,
+    /// Electrical power of all turbines together (W).
+    pub array_power: Statistic,
+    /// Its gain over the compared run (–).
+    pub array_power_gain: Option<Statistic>,
+    /// What it cost.
+    pub cost: Cost,
+    /// Warnings that a reader of the numbers must see.
+    pub warnings: Vec<String>,
+}
+
+/// Equally spaced samples of many channels, as `series.csv` holds them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    /// Channel names; the first is `time_s`, the others `T1.power_w`, `T1.pitch_1_deg`, ….
+    pub names: Vec<String>,
+    /// One column per name, all of one length.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Series {
+    /// The samples of the channel called `name`.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.names.iter().position(|n| n == name).map(|index| self.columns[index].as_slice())
+    }
+}
+
+/// Which two farm axes a plane spans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PlaneAxes {
+    /// Horizontal: first axis x, second y.
+    Horizontal,
+    /// Vertical along the wind: first axis x, second z.
+    Streamwise,
+    /// Across the wind: first axis y, second z.
+    Crosswind,
+}
+
+/// Velocity on a regular plane, at one instant or averaged.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plane {
+    /// Name, such as `hub-height` or `T2-crosswind` or `2D`.
+    pub name: String,
+    /// Axes that it spans.
+    pub axes: PlaneAxes,
+    /// Position of its first point, farm frame (m).
+    pub origin: [f64; 3],
+    /// Distance of neighbouring points along the two axes (m).
+    pub spacing: [f64; 2],
+    /// Points along the two axes (–).
+    pub n_points: [usize; 2],
+    /// Instant (s), or the end of the averaging.
+    pub time: f64,
+    /// Averaged time before `time` (s); 0 for an instant.
+    pub averaged: f64,
+    /// Velocity components u, v, w (m/s), each `n_points[1] × n_points[0]`, first axis fastest.
+    pub velocity: [Vec<f32>; 3],
+}
