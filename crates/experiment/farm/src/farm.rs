@@ -1,0 +1,96 @@
+//! The loop: read, decide, sample, move rotors, move air.
+
+use basis::{Commands, Measurements, PointForce, Vector3};
+use control::{Controller, TurbineController};
+use flow::{FlowError, FlowSolver};
+use turbine::Turbine;
+
+/// Watches a run: files, statistics, live plots.
+pub trait Recorder {
+    /// Takes what turbine number `turbine` measured and was told at one control instant.
+    fn record(&mut self, turbine: usize, measurements: &Measurements, commands: &Commands);
+}
+
+/// One turbine with what runs on it.
+pub struct Machine {
+    /// The machine in the air.
+    pub turbine: Turbine,
+    /// What decides for it; sees only measurements.
+    pub controller: TurbineController,
+    winds: Vec<Vector3>,
+}
+
+impl Machine {
+    /// A turbine under `controller`.
+    pub fn new(turbine: Turbine, controller: TurbineController) -> Self {
+        let winds = vec![Vector3::ZERO; turbine.stations().len()];
+        Self { turbine, controller, winds }
+    }
+}
+
+/// Turbines in one body of air, all on one clock.
+pub struct Farm<Flow> {
+    machines: Vec<Machine>,
+    flow: Flow,
+    forces: Vec<PointForce>,
+    interval: f64,
+    step: u64,
+}
+
+impl<Flow: FlowSolver> Farm<Flow> {
+    /// A farm at rest in time: `step` steps of `interval` (s) have been made already (0, or those of a checkpoint).
+    pub fn new(machines: Vec<Machine>, flow: Flow, interval: f64, step: u64) -> Self {
+        let n_forces = machines.iter().map(|machine| machine.turbine.stations().len()).sum();
+        Self { machines, flow, forces: Vec::with_capacity(n_forces), interval, step }
+    }
+
+    /// Moves everything on by one control interval.
+    ///
+    /// # Errors
+    /// [`FlowError`] of the flow solver; the farm then stands where the flow broke down.
+    pub fn advance(&mut self, recorder: &mut impl Recorder) -> Result<(), FlowError> {
+        let time = self.time();
+        self.forces.clear();
+        for (index, machine) in self.machines.iter_mut().enumerate() {
+            let measurements = machine.turbine.measurements(time, self.interval);
+            let commands = machine.controller.update(&measurements);
+            recorder.record(index, &measurements, &commands);
+            self.flow.sample(machine.turbine.stations(), &mut machine.winds);
+            machine.turbine.advance(self.interval, &machine.winds, &commands);
+            self.forces.extend_from_slice(machine.turbine.forces());
+        }
+        self.flow.advance(self.interval, &self.forces)?;
+        self.step += 1;
+        Ok(())
+    }
+
+    /// Time since the start of the run (s): steps × interval, never a running sum.
+    pub fn time(&self) -> f64 {
+        self.step as f64 * self.interval
+    }
+
+    /// Steps made (–).
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// The air.
+    pub fn flow(&self) -> &Flow {
+        &self.flow
+    }
+
+    /// The air, to be restored from a checkpoint.
+    pub fn flow_mut(&mut self) -> &mut Flow {
+        &mut self.flow
+    }
+
+    /// The turbines and their controllers.
+    pub fn machines(&self) -> &[Machine] {
+        &self.machines
+    }
+
+    /// The turbines and their controllers, to be restored from a checkpoint.
+    pub fn machines_mut(&mut self) -> &mut [Machine] {
+        &mut self.machines
+    }
+}

@@ -1,0 +1,320 @@
+//! From layout to domain: cells, step, memory and cost, checked before anything runs.
+
+use crate::case::Case;
+use basis::Vector3;
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// Fastest free stream that the lattice carries without visible compressibility, in cells a step (Mach 0.2).
+pub const MAXIMUM_LATTICE_SPEED: f64 = 0.12;
+/// Fewest cells across a rotor on which an actuator line still means something.
+pub const MINIMUM_CELLS_PER_DIAMETER: f64 = 8.0;
+/// Margin of the tip speed over its rated value: gusts above rated push the rotor past it.
+const OVERSPEED: f64 = 1.1;
+/// Longest step between two control instants (s): pitch actuators and rotor speed are integrated on it.
+const LONGEST_STEP: f64 = 0.5;
+
+/// What the layout needs to know of a turbine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// Rotor diameter (m).
+    pub diameter: f64,
+    /// Hub height (m).
+    pub hub_height: f64,
+    /// Tip speed at rated rotor speed (m/s).
+    pub rated_tip_speed: f64,
+}
+
+/// The box of air and the steps that a case needs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Corner of the domain with the least coordinates, farm frame (m).
+    pub origin: Vector3,
+    /// Edge of a cell (m).
+    pub spacing: f64,
+    /// Cells along x, y, z (–).
+    pub n_cells: [usize; 3],
+    /// Flow step, which is the control interval (s).
+    pub interval: f64,
+    /// Steps of one run (–).
+    pub n_steps: u64,
+    /// Steps before the analysis starts (–).
+    pub n_spin_up_steps: u64,
+    /// Diameter that "diameters" in the case file means: the first turbine's (m).
+    pub diameter: f64,
+    /// Hub height of the first turbine (m).
+    pub hub_height: f64,
+    /// Foot of each turbine's tower, farm frame (m).
+    pub positions: Vec<Vector3>,
+    /// Share of the domain's cross-section that the largest rotor takes (–).
+    pub blockage: f64,
+    /// Free-stream speed in cells per step (–).
+    pub lattice_speed: f64,
+}
+
+/// Why a case cannot be run as it stands.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PlanError {
+    /// A rotor reaches outside the air.
+    #[error("turbine {name} reaches outside the domain: its rotor spans {axis} = {low:.0} to {high:.0} m, the domain {domain_low:.0} to {domain_high:.0} m; {fix}")]
+    OutsideDomain {
+        /// Turbine.
+        name: String,
+        /// Axis, in words.
+        axis: &'static str,
+        /// Lowest coordinate of the rotor (m).
+        low: f64,
+        /// Highest coordinate of the rotor (m).
+        high: f64,
+        /// Lowest coordinate of the domain (m).
+        domain_low: f64,
+        /// Highest coordinate of the domain (m).
+        domain_high: f64,
+        /// Key to raise.
+        fix: &'static str,
+    },
+    /// Rotors that touch each other.
+    #[error("turbines {first} and {second} overlap: their towers are {distance:.0} m apart, their rotors need {needed:.0} m; move one of them (turbine.position_diameters)")]
+    Overlap {
+        /// One turbine.
+        first: String,
+        /// The other.
+        second: String,
+        /// Distance of their towers (m).
+        distance: f64,
+        /// Least distance (m).
+        needed: f64,
+    },
+    /// The grid is too coarse.
+    #[error("turbine {name} has only {cells:.1} cells across its rotor, {MINIMUM_CELLS_PER_DIAMETER} are the least; raise flow.cells_per_diameter to at least {needed:.0}")]
+    TooCoarse {
+        /// Turbine.
+        name: String,
+        /// Cells across its rotor (–).
+        cells: f64,
+        /// Least `cells_per_diameter` (–).
+        needed: f64,
+    },
+    /// A tip crosses more than a cell a step.
+    #[error("flow.step = {step} s is too long: the tip of {name} moves {cells:.2} cells a step at {tip_speed:.0} m/s; at most {longest:.4} s, or leave the key out")]
+    TipOutruns {
+        /// Turbine.
+        name: String,
+        /// Asked step (s).
+        step: f64,
+        /// Cells a step (–).
+        cells: f64,
+        /// Tip speed (m/s).
+        tip_speed: f64,
+        /// Longest step (s).
+        longest: f64,
+    },
+    /// The free stream moves too many cells a step.
+    #[error("flow.step = {step} s is too long: the wind moves {cells:.2} cells a step, {MAXIMUM_LATTICE_SPEED} are the most; at most {longest:.4} s, or leave the key out")]
+    TooFast {
+        /// Asked step (s).
+        step: f64,
+        /// Cells a step (–).
+        cells: f64,
+        /// Longest step (s).
+        longest: f64,
+    },
+    /// A turbine without its model.
+    #[error("turbine {name} asks for the model `{model}`, which was not loaded")]
+    UnknownModel {
+        /// Turbine.
+        name: String,
+        /// Model.
+        model: String,
+    },
+}
+
+/// Sizes domain and step for `case`; `footprints` holds one entry per model that the case names.
+///
+/// The step is the longest one that keeps rated tips within a cell a step and the free stream within
+/// [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole number of steps.
+///
+/// # Errors
+/// [`PlanError`] names what does not fit and the key that mends it.
+pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Plan, PlanError> {
+    let mut machines = Vec::with_capacity(case.turbines.len());
+    for placement in &case.turbines {
+        let footprint = footprints.get(&placement.model).ok_or_else(|| {
+            PlanError::UnknownModel { name: placement.name.clone(), model: placement.model.clone() }
+        })?;
+        machines.push((placement, *footprint));
+    }
+    let diameter = machines[0].1.diameter;
+    let spacing = diameter / case.flow.cells_per_diameter;
+    let positions: Vec<Vector3> = machines
+        .iter()
+        .map(|(p, _)| {
+            Vector3::new(p.position_diameters[0] * diameter, p.position_diameters[1] * diameter, 0.0)
+        })
+        .collect();
+    check_distances(&machines, &positions)?;
+    check_resolution(&machines, spacing, case.flow.cells_per_diameter)?;
+
+    let (origin, n_cells) = domain(case, &positions, diameter, spacing);
+    let plan_without_step = |interval: f64| {
+        let area = n_cells[1] as f64 * n_cells[2] as f64 * spacing * spacing;
+        let widest = machines.iter().map(|(_, f)| f.diameter).fold(0.0, f64::max);
+        Plan {
+            origin,
+            spacing,
+            n_cells,
+            interval,
+            n_steps: (case.time.duration / interval).round() as u64,
+            n_spin_up_steps: (case.time.spin_up / interval).round() as u64,
+            diameter,
+            hub_height: machines[0].1.hub_height,
+            positions: positions.clone(),
+            blockage: std::f64::consts::PI / 4.0 * widest * widest / area,
+            lattice_speed: case.wind.speed * interval / spacing,
+        }
+    };
+    let plan = plan_without_step(step(case, &machines, spacing)?);
+    check_extent(&machines, &plan)?;
+    Ok(plan)
+}
+
+fn check_distances(
+    machines: &[(&crate::case::Placement, Footprint)],
+    positions: &[Vector3],
+) -> Result<(), PlanError> {
+    for second in 1..machines.len() {
+        for first in 0..second {
+            let distance = (positions[first] - positions[second]).length();
+            let needed = 0.5 * (machines[first].1.diameter + machines[second].1.diameter);
+            if distance < needed {
+                return Err(PlanError::Overlap {
+                    first: machines[first].0.name.clone(),
+                    second: machines[second].0.name.clone(),
+                    distance,
+                    needed,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_resolution(
+    machines: &[(&crate::case::Placement, Footprint)],
+    spacing: f64,
+    cells_per_diameter: f64,
+) -> Result<(), PlanError> {
+    for (placement, footprint) in machines {
+        let cells = footprint.diameter / spacing;
+        if cells < MINIMUM_CELLS_PER_DIAMETER {
+            return Err(PlanError::TooCoarse {
+                name: placement.name.clone(),
+                cells,
+                needed: (MINIMUM_CELLS_PER_DIAMETER * cells_per_diameter / cells).ceil(),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn domain(
+    case: &Case,
+    positions: &[Vector3],
+    diameter: f64,
+    spacing: f64,
+) -> (Vector3, [usize; 3]) {
+    let low = positions.iter().copied().reduce(Vector3::min).unwrap_or_default();
+    let high = positions.iter().copied().reduce(Vector3::max).unwrap_or_default();
+    let flow = &case.flow;
+    let cells = |length: f64| (length / spacing).round().max(1.0) as usize;
+    let length = high.x - low.x + (flow.upstream_diameters + flow.downstream_diameters) * diameter;
+    let width = high.y - low.y + flow.width_diameters * diameter;
+    let height = flow.height_diameters * diameter;
+    let n_cells = [cells(length), cells(width), cells(height)];
+    // Whole cells: the width is centred on the layout again after rounding.
+    let y_low = 0.5 * (low.y + high.y) - 0.5 * n_cells[1] as f64 * spacing;
+    (Vector3::new(low.x - flow.upstream_diameters * diameter, y_low, 0.0), n_cells)
+}
+
+fn step(
+    case: &Case,
+    machines: &[(&crate::case::Placement, Footprint)],
+    spacing: f64,
+) -> Result<f64, PlanError> {
+    let (fastest, tip_speed) = machines
+        .iter()
+        .map(|(placement, footprint)| (placement, OVERSPEED * footprint.rated_tip_speed))
+        .reduce(|a, b| if b.1 > a.1 { b } else { a })
+        .map_or(("", 0.0), |(placement, speed)| (placement.name.as_str(), speed));
+    let tip_limit = spacing / tip_speed;
+    let speed_limit = MAXIMUM_LATTICE_SPEED * spacing / case.wind.speed;
+    match case.flow.step {
+        Some(step) if step > tip_limit => Err(PlanError::TipOutruns {
+            name: fastest.to_owned(),
+            step,
+            cells: step / tip_limit,
+            tip_speed,
+            longest: tip_limit,
+        }),
+        Some(step) if step > speed_limit => Err(PlanError::TooFast {
+            step,
+            cells: case.wind.speed * step / spacing,
+            longest: speed_limit,
+        }),
+        Some(step) => Ok(step),
+        None => {
+            let longest = tip_limit.min(speed_limit).min(LONGEST_STEP);
+            Ok(60.0 / (60.0 / longest).ceil())
+        }
+    }
+}
+
+fn check_extent(
+    machines: &[(&crate::case::Placement, Footprint)],
+    plan: &Plan,
+) -> Result<(), PlanError> {
+    let low = plan.origin;
+    let extent = Vector3::new(
+        plan.n_cells[0] as f64 * plan.spacing,
+        plan.n_cells[1] as f64 * plan.spacing,
+        plan.n_cells[2] as f64 * plan.spacing,
+    );
+    let high = low + extent;
+    for ((placement, footprint), position) in machines.iter().zip(&plan.positions) {
+        let radius = 0.5 * footprint.diameter;
+        let spans = [
+            ("x", position.x - radius, position.x + radius, low.x, high.x,
+             "raise flow.upstream_diameters or flow.downstream_diameters"),
+            ("y", position.y - radius, position.y + radius, low.y, high.y,
+             "raise flow.width_diameters"),
+            ("z", footprint.hub_height - radius, footprint.hub_height + radius, low.z, high.z,
+             "raise flow.height_diameters, or check hub height and rotor diameter"),
+        ];
+        for (axis, span_low, span_high, domain_low, domain_high, fix) in spans {
+            if span_low < domain_low || span_high > domain_high {
+                return Err(PlanError::OutsideDomain {
+                    name: placement.name.clone(),
+                    axis,
+                    low: span_low,
+                    high: span_high,
+                    domain_low,
+                    domain_high,
+                    fix,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Plan {
+    /// Cells in all (–).
+    pub fn cells(&self) -> usize {
+        self.n_cells.iter().product()
+    }
+
+    /// Cell updates of one run (–).
+    pub fn updates(&self) -> f64 {
+        self.cells() as f64 * self.n_steps as f64
+    }
+}

@@ -1,0 +1,1 @@
+//! A study from case file to report: every run of a case, with its files.
