@@ -1,1 +1,3 @@
-//! x
+//! Decisions: what a turbine is told, from its measurements alone.
+
+pub mod baseline;
