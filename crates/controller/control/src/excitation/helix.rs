@@ -1,0 +1,87 @@
+//! The helix: tilt and yaw commands a quarter period apart, through the inverse multi-blade transformation.
+
+use super::{excitation_rate, fade_in};
+use basis::mbc::to_blades;
+use basis::{FixedFrame, PerBlade};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+use std::fmt;
+
+/// Which way the helix winds, told by the frequency in the blade's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Sense {
+    /// Clockwise: blades pitch at rotor minus excitation frequency.
+    Clockwise,
+    /// Counter-clockwise: blades pitch at rotor plus excitation frequency.
+    CounterClockwise,
+}
+
+impl Sense {
+    /// Lead of the yaw command over the tilt command (rad): π/2 for ccw, −π/2 for cw.
+    pub fn yaw_lead(self) -> f64 {
+        match self {
+            Self::Clockwise => -FRAC_PI_2,
+            Self::CounterClockwise => FRAC_PI_2,
+        }
+    }
+}
+
+impl fmt::Display for Sense {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Clockwise => "cw",
+            Self::CounterClockwise => "ccw",
+        })
+    }
+}
+
+/// The helix as it runs on one turbine; it has no state, its phase follows from time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Helix {
+    /// Which way it winds.
+    pub sense: Sense,
+    /// Pitch amplitude (rad).
+    pub amplitude: f64,
+    /// Strouhal number that `rate` was made from (–).
+    pub strouhal: f64,
+    /// Excitation rate in the fixed frame (rad/s).
+    pub rate: f64,
+    /// Phase of the tilt command at time zero (rad).
+    pub phase: f64,
+    /// Azimuth offset ψ_o of the inverse multi-blade transformation (rad).
+    pub azimuth_offset: f64,
+    /// Time at which it fades in, over one excitation period (s).
+    pub start: f64,
+}
+
+impl Helix {
+    /// A helix of `amplitude` (rad) at `strouhal` (–) of the free-stream `wind_speed` (m/s) past a rotor of
+    /// `diameter` (m), with phase, azimuth offset and start zero.
+    pub fn new(
+        sense: Sense,
+        amplitude: f64,
+        strouhal: f64,
+        wind_speed: f64,
+        diameter: f64,
+    ) -> Self {
+        let rate = excitation_rate(strouhal, wind_speed, diameter);
+        Self { sense, amplitude, strouhal, rate, phase: 0.0, azimuth_offset: 0.0, start: 0.0 }
+    }
+
+    /// Tilt and yaw commands (rad) at `time` (s); the average is zero. Seed document 000, Eq. 2.
+    pub fn commands(&self, time: f64) -> FixedFrame {
+        let amplitude = self.amplitude * fade_in(time, self.start, self.rate);
+        let angle = self.rate * time + self.phase;
+        FixedFrame {
+            average: 0.0,
+            tilt: amplitude * angle.sin(),
+            yaw: amplitude * (angle + self.sense.yaw_lead()).sin(),
+        }
+    }
+
+    /// What is added to each of `n_blades` blades (rad) at `time` (s), blade 1 at `azimuth` (rad).
+    /// Seed document 000, Eqs. 1 and 5.
+    pub fn pitch(&self, time: f64, azimuth: f64, n_blades: usize) -> PerBlade<f64> {
+        to_blades(azimuth + self.azimuth_offset, self.commands(time), n_blades)
+    }
+}
