@@ -1,2 +1,58 @@
-//! The command line.
-fn main() {}
+//! The command line: words in, words out; the work is done in the rooms behind it.
+
+mod commands;
+
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Wind-farm wake mixing, from wind to report.
+#[derive(Parser)]
+#[command(name = "wakemix", version, about, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a study: prints the cost, simulates every run of the case, leaves tables, records and a report
+    Run(commands::run::RunArguments),
+    /// Rebuild report.html and its figures from the records of a study
+    Report {
+        /// Folder that `wakemix run` wrote
+        directory: PathBuf,
+    },
+    /// The turbine library: list, show, import, steady coefficients
+    #[command(subcommand)]
+    Turbine(commands::turbine::TurbineCommand),
+    /// Turbulent inflow: generate, inspect, convert boxes
+    #[command(subcommand)]
+    Inflow(commands::inflow::InflowCommand),
+    /// Repeat recorded validations and print measured against expected
+    Validate(commands::validate::ValidateArguments),
+    /// Print the JSON Schema of the case file, for editors
+    Schema,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let done = match arguments.command {
+        Command::Run(run) => return commands::run::run(&run),
+        Command::Report { directory } => commands::report::run(&directory),
+        Command::Turbine(command) => commands::turbine::run(command),
+        Command::Inflow(command) => commands::inflow::run(command),
+        Command::Validate(arguments) => return commands::validate::run(&arguments),
+        Command::Schema => {
+            println!("{}", wakemix::formats::case::schema());
+            Ok(())
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(report) => {
+            eprintln!("{report:?}");
+            ExitCode::from(commands::BAD_INPUT)
+        }
+    }
+}

@@ -1,5 +1,7 @@
 //! One study as plain data: what the case file says, in SI units.
 
+pub use control::Sense;
+
 use serde::{Deserialize, Serialize};
 
 /// A study: one wind, one row of turbines, several runs to compare.
@@ -128,15 +130,6 @@ pub enum Control {
     Helix(Helix),
     /// The pulse: collective pitch, periodic.
     Pulse(Pulse),
-}
-
-/// Which way the helix winds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Sense {
-    /// Clockwise: blades pitch at rotor minus excitation frequency.
-    Clockwise,
-    /// Counter-clockwise: blades pitch at rotor plus excitation frequency.
-    CounterClockwise,
 }
 
 /// Settings of the helix.

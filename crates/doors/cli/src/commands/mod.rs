@@ -1,0 +1,15 @@
+//! One module per command.
+
+pub(crate) mod inflow;
+pub(crate) mod report;
+pub(crate) mod run;
+pub(crate) mod table;
+pub(crate) mod turbine;
+pub(crate) mod validate;
+
+/// Exit code of input that cannot be used.
+pub(crate) const BAD_INPUT: u8 = 2;
+/// Exit code of a simulation that diverged.
+pub(crate) const DIVERGED: u8 = 3;
+/// Exit code of a run that was interrupted and can be resumed.
+pub(crate) const INTERRUPTED: u8 = 130;

@@ -1,0 +1,196 @@
+//! `wakemix run`: one study from case file to report.
+
+use super::{BAD_INPUT, DIVERGED, INTERRUPTED};
+use crate::commands::table;
+use clap::Args;
+use indicatif::{HumanBytes, HumanDuration, ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use wakemix::basis::records::Summary;
+use wakemix::farm::self_check::{SelfCheck, TOLERANCE};
+use wakemix::study::{self, Estimate, Options, Outcome, Progress, StudyError, Watcher};
+
+/// Arguments of `wakemix run`.
+#[derive(Args)]
+pub(crate) struct RunArguments {
+    /// Case file (TOML)
+    case: PathBuf,
+    /// Folder for the results; `runs/NAME-OF-THE-CASE` when left out
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// Only this run of the case (may be repeated)
+    #[arg(long = "run", value_name = "NAME")]
+    runs: Vec<String>,
+    /// Override a key of the case, as in `--set wind.speed=8` (may be repeated)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    overrides: Vec<String>,
+    /// Take up where an interrupted or killed run stopped; the result has the same bits
+    #[arg(long)]
+    resume: bool,
+    /// Print what the study would cost, and stop
+    #[arg(long)]
+    dry_run: bool,
+    /// Print the summaries as JSON on stdout instead of the table
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the study; exit code 0 done, 2 bad input, 3 diverged, 130 interrupted.
+pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let installed = ctrlc::set_handler(move || {
+        // A second Ctrl-C means now; the last checkpoint stands.
+        if flag.swap(true, Ordering::SeqCst) {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+        eprintln!("\nstopping at the next step; once more to stop at once");
+    });
+    if let Err(error) = installed {
+        eprintln!("warning: Ctrl-C will not leave a fresh checkpoint: {error}");
+    }
+    let options = Options {
+        case: arguments.case.clone(),
+        output: arguments.output.clone(),
+        runs: arguments.runs.clone(),
+        overrides: arguments.overrides.clone(),
+        resume: arguments.resume,
+        dry_run: arguments.dry_run,
+    };
+    let mut screen = Screen::new();
+    let outcome = study::run(&options, &stop, &mut screen);
+    screen.bar.finish_and_clear();
+    match outcome {
+        Ok(Outcome::Done { summaries, report }) => {
+            if arguments.json {
+                match serde_json::to_string_pretty(&summaries) {
+                    Ok(text) => println!("{text}"),
+                    Err(error) => eprintln!("error: the summaries cannot be printed: {error}"),
+                }
+            } else {
+                print!("{}", table::render(&summaries));
+            }
+            eprintln!("report: {}", report.display());
+            ExitCode::SUCCESS
+        }
+        Ok(Outcome::Estimated) => ExitCode::SUCCESS,
+        Ok(Outcome::Interrupted { directory }) => {
+            eprintln!(
+                "interrupted; go on with: wakemix run {} -o {} --resume",
+                arguments.case.display(),
+                directory.display()
+            );
+            ExitCode::from(INTERRUPTED)
+        }
+        Err(error) => {
+            let code = match &error {
+                StudyError::Diverged { .. } => DIVERGED,
+                _ => BAD_INPUT,
+            };
+            eprintln!("{:?}", miette::Report::new(error));
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// Progress and remarks on stderr.
+struct Screen {
+    bar: ProgressBar,
+    last: Option<String>,
+}
+
+impl Screen {
+    fn new() -> Self {
+        let bar = ProgressBar::new(1);
+        if let Ok(style) =
+            ProgressStyle::with_template("{prefix:>24} [{bar:32}] {percent:>3} %  {msg}")
+        {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        Self { bar, last: None }
+    }
+
+    fn say(&self, line: &str) {
+        self.bar.suspend(|| eprintln!("{line}"));
+    }
+}
+
+impl Watcher for Screen {
+    fn estimated(&mut self, estimate: &Estimate) {
+        let [n_x, n_y, n_z] = estimate.n_cells;
+        match (estimate.updates_per_second, estimate.wall_time()) {
+            (Some(speed), Some(wall_time)) => self.say(&format!(
+                "cost: about {} for {} run{} at {:.0} million cell updates a second",
+                HumanDuration(Duration::from_secs_f64(wall_time.max(1.0))),
+                estimate.n_runs,
+                if estimate.n_runs == 1 { "" } else { "s" },
+                speed / 1e6
+            )),
+            _ => self.say(&format!(
+                "grid: {n_x} × {n_y} × {n_z} = {:.2} million cells of {:.1} m, {} steps of {:.4} s a run; \
+                 memory {}, disk up to {} a run; blockage {:.1} %, wind {:.3} cells a step",
+                (n_x * n_y * n_z) as f64 / 1e6,
+                estimate.spacing,
+                estimate.n_steps,
+                estimate.interval,
+                HumanBytes(estimate.memory),
+                HumanBytes(estimate.disk),
+                100.0 * estimate.blockage,
+                estimate.lattice_speed,
+            )),
+        }
+    }
+
+    fn preparing(&mut self, what: &str, share: f64) {
+        if self.last.as_deref() != Some(what) {
+            self.last = Some(what.to_owned());
+            self.bar.set_prefix(what.to_owned());
+            self.bar.set_message("");
+        }
+        self.bar.set_length(1000);
+        self.bar.set_position((1000.0 * share) as u64);
+    }
+
+    fn checked(&mut self, check: &SelfCheck) {
+        self.say(&format!(
+            "check: {} in steady {:.1} m/s: power {:+.1} %, thrust {:+.1} % of blade-element momentum{}",
+            check.model,
+            check.wind_speed,
+            100.0 * check.power_error(),
+            100.0 * check.thrust_error(),
+            if check.passes() { String::new() } else { format!("  (beyond {:.0} %)", 100.0 * TOLERANCE) },
+        ));
+    }
+
+    fn advanced(&mut self, progress: &Progress) {
+        self.last = None;
+        self.bar.set_prefix(format!(
+            "{} ({}/{})",
+            progress.run,
+            progress.run_index + 1,
+            progress.n_runs
+        ));
+        self.bar.set_length(progress.n_steps);
+        self.bar.set_position(progress.step);
+        self.bar.set_message(format!(
+            "{:.0} Mups, {} left in all",
+            progress.updates_per_second / 1e6,
+            HumanDuration(Duration::from_secs_f64(progress.time_left.max(0.0)))
+        ));
+    }
+
+    fn finished(&mut self, summary: &Summary) {
+        self.say(&format!(
+            "done: {} in {}",
+            summary.run,
+            HumanDuration(Duration::from_secs_f64(summary.cost.wall_time.max(1.0)))
+        ));
+    }
+
+    fn warned(&mut self, warning: &str) {
+        self.say(&format!("warning: {warning}"));
+    }
+}

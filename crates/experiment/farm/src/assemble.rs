@@ -1,0 +1,123 @@
+//! From case to farm: turbines, controllers and air put together.
+
+use crate::case::{Case, Control, Ground, Run, Sides};
+use crate::plan::{Footprint, Plan};
+use crate::{Farm, Machine};
+use control::baseline::{Baseline, Constants};
+use control::{Excitation, Helix, Pulse, TurbineController};
+use flow::Inflow;
+use flow::lattice::{self, Lattice};
+use std::sync::Arc;
+use turbine::{Definition, Turbine};
+
+/// A turbine model with the constants of its controller.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The machine.
+    pub definition: Arc<Definition>,
+    /// Torque and collective pitch.
+    pub constants: Constants,
+}
+
+impl Model {
+    /// What the layout needs to know.
+    pub fn footprint(&self) -> Footprint {
+        Footprint {
+            diameter: self.definition.rotor_diameter(),
+            hub_height: self.definition.hub_height,
+            rated_tip_speed: self.constants.rated_rotor_speed * 0.5 * self.definition.rotor_diameter(),
+        }
+    }
+
+    /// Rotor speed (rad/s) at which the turbine settles in a steady wind of `wind_speed` (m/s), below rated.
+    pub fn rotor_speed(&self, wind_speed: f64) -> f64 {
+        let radius = 0.5 * self.definition.rotor_diameter();
+        (self.constants.optimal_tip_speed_ratio * wind_speed / radius)
+            .clamp(self.constants.minimum_rotor_speed, self.constants.rated_rotor_speed)
+    }
+}
+
+/// Gaussian width over cell size (–): two cells is the least that the lattice carries without ringing.
+pub const SMEARING_CELLS: f64 = 2.0;
+
+/// Settings of the air for `plan`.
+pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
+    let mut settings = lattice::Settings::new(
+        plan.origin,
+        plan.spacing,
+        plan.n_cells,
+        plan.interval,
+        case.wind.speed,
+    );
+    settings.air_density = case.wind.air_density;
+    settings.kinematic_viscosity = case.wind.kinematic_viscosity;
+    settings.sides = match case.flow.sides {
+        Sides::Periodic => lattice::Sides::Periodic,
+        Sides::Slip => lattice::Sides::Slip,
+    };
+    settings.ground = match case.flow.ground {
+        Ground::Slip => lattice::Ground::Slip,
+        Ground::Rough { roughness_length } => lattice::Ground::WallStress { roughness_length },
+    };
+    settings.threads = case.flow.threads;
+    settings
+}
+
+/// What runs on a turbine of `model`; Strouhal numbers are taken with the case's wind speed and the
+/// first turbine's diameter (`diameter`, m).
+pub fn controller(
+    control: &Control,
+    model: &Model,
+    wind_speed: f64,
+    diameter: f64,
+) -> TurbineController {
+    let excitation = match control {
+        Control::Baseline => Excitation::None,
+        Control::Helix(asked) => {
+            let mut helix =
+                Helix::new(asked.sense, asked.amplitude, asked.strouhal, wind_speed, diameter);
+            helix.phase = asked.phase;
+            helix.azimuth_offset = asked.azimuth_offset;
+            helix.start = asked.start;
+            Excitation::Helix(helix)
+        }
+        Control::Pulse(asked) => {
+            let mut pulse = Pulse::new(asked.amplitude, asked.strouhal, wind_speed, diameter);
+            pulse.phase = asked.phase;
+            pulse.start = asked.start;
+            Excitation::Pulse(pulse)
+        }
+    };
+    TurbineController::new(Baseline::new(model.constants.clone()), excitation)
+}
+
+/// The farm of one run, at time zero. `models` holds one entry per turbine of the case, in its order.
+///
+/// # Errors
+/// [`lattice::SettingsError`] when the air cannot be solved as planned.
+pub fn farm(
+    case: &Case,
+    run: &Run,
+    plan: &Plan,
+    models: &[Model],
+    inflow: Arc<dyn Inflow>,
+) -> Result<Farm<Lattice>, lattice::SettingsError> {
+    let air = Lattice::new(lattice_settings(case, plan), inflow)?;
+    let machines = models
+        .iter()
+        .zip(&plan.positions)
+        .zip(&run.control)
+        .map(|((model, &position), control)| {
+            let settings = turbine::Settings {
+                smearing_length: SMEARING_CELLS * plan.spacing,
+                air_density: case.wind.air_density,
+                rotor_speed: model.rotor_speed(case.wind.speed),
+                azimuth: 0.0,
+                pitch: model.constants.fine_pitch,
+            };
+            let turbine = Turbine::new(Arc::clone(&model.definition), position, settings);
+            Machine::new(turbine, controller(control, model, case.wind.speed, plan.diameter))
+        })
+        .collect();
+    Ok(Farm::new(machines, air, plan.interval, 0))
+}

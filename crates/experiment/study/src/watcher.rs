@@ -1,0 +1,72 @@
+//! Watching a study: what it will cost, how far it is, what it found.
+
+use basis::records::Summary;
+use farm::self_check::SelfCheck;
+
+/// What a study will cost, known before it starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Runs still to be made (–).
+    pub n_runs: usize,
+    /// Cells along x, y, z (–).
+    pub n_cells: [usize; 3],
+    /// Edge of a cell (m).
+    pub spacing: f64,
+    /// Flow step (s).
+    pub interval: f64,
+    /// Steps of one run (–).
+    pub n_steps: u64,
+    /// Memory of flow field and turbulence (bytes).
+    pub memory: u64,
+    /// Files that one run leaves at most, checkpoint included (bytes).
+    pub disk: u64,
+    /// Cell updates a second, measured on this machine in the self-check; absent before it (1/s).
+    pub updates_per_second: Option<f64>,
+    /// Share of the domain's cross-section that a rotor takes (–).
+    pub blockage: f64,
+    /// Free-stream speed in cells per step (–).
+    pub lattice_speed: f64,
+}
+
+impl Estimate {
+    /// Wall time of all runs together (s), once the machine's speed is known.
+    pub fn wall_time(&self) -> Option<f64> {
+        let updates = self.n_cells.iter().product::<usize>() as f64 * self.n_steps as f64;
+        self.updates_per_second.map(|speed| self.n_runs as f64 * updates / speed)
+    }
+}
+
+/// How far a run is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress<'a> {
+    /// Name of the run.
+    pub run: &'a str,
+    /// Its place among the runs to be made, from 0.
+    pub run_index: usize,
+    /// Runs to be made (–).
+    pub n_runs: usize,
+    /// Steps made (–).
+    pub step: u64,
+    /// Steps of the run (–).
+    pub n_steps: u64,
+    /// Cell updates a second since this process took the run up (1/s).
+    pub updates_per_second: f64,
+    /// Wall time left for all runs to be made (s).
+    pub time_left: f64,
+}
+
+/// Watches a study; every method may be left out.
+pub trait Watcher {
+    /// The cost, before the first step.
+    fn estimated(&mut self, _estimate: &Estimate) {}
+    /// Something is being prepared: `share` (–) of it is done.
+    fn preparing(&mut self, _what: &str, _share: f64) {}
+    /// A rotor was checked against blade-element momentum.
+    fn checked(&mut self, _check: &SelfCheck) {}
+    /// A run moved on.
+    fn advanced(&mut self, _progress: &Progress) {}
+    /// A run is complete.
+    fn finished(&mut self, _summary: &Summary) {}
+    /// Something that a reader of the numbers must know.
+    fn warned(&mut self, _warning: &str) {}
+}
