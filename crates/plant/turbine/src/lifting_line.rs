@@ -1,0 +1,371 @@
+//! The induction that a smeared actuator line misses, from the helical wake that its blades trail.
+//!
+//! Spreading a blade's force over a Gaussian of width ε convolves its whole wake with that Gaussian: to first order in
+//! the disturbance, the flow around the actuator line is the thin wake's flow, smeared. What the blade should feel and
+//! does not is thus known,
+//!
+//! ```text
+//! missing(x) = Σ_filaments  γ/4π ∫ [q(d/ε_core) − q(d/ε)]  dl × d / |d|³,        d = x − filament point,
+//! q(s) = erf(s) − 2 s exp(−s²)/√π,
+//! ```
+//!
+//! with q the share of a vortex element's circulation within the distance s of a Gaussian blob. The bracket dies out as
+//! exp(−d²/ε²): only the wake within some 3 ε of the blade counts, its helical shape included, as do the filaments of
+//! the other blades and earlier turns that pass within reach. The flow solves the rest. With ε at the core ε_core, the
+//! optimal width of a quarter chord, nothing is missing and nothing is added.
+//!
+//! Sources: the Gaussian-smeared line as a lifting line with a viscous core, [MartinezTossas2019] and
+//! [MeyerForsting2019]; ε_core = c/4, [MartinezTossas2017]; q is the radial integral of the Gaussian blob
+//! exp(−r²/ε²)/(ε³ π^{3/2}) that `basis::PointForce` defines.
+//! Limits: the near wake is a helix of constant radius and of one pitch for the whole rotor; circulation changes slowly
+//! against the passage of a few ε; blades are straight and lie in the rotor plane (precone is neglected here).
+
+use std::f64::consts::{PI, TAU};
+
+/// Optimal Gaussian width over chord (–), [MartinezTossas2017].
+pub const OPTIMAL_WIDTH_OVER_CHORD: f64 = 0.25;
+/// Helix pitches, advance per radian over rotor radius, for which influences are tabulated: the first of them, …
+const FIRST_PITCH: f64 = 0.03;
+/// … the ratio of one to the one before, …
+const PITCH_RATIO: f64 = 1.35;
+/// … and how many there are: up to 0.45, a tip-speed ratio of 2.2 without induction.
+const N_PITCHES: usize = 10;
+/// Beyond this many smearing lengths a smeared vortex is a thin one to 1e-6.
+const REACH: f64 = 4.0;
+
+/// Where lifting-line elements lie along a blade, the same on every blade.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Span {
+    /// Radii of the elements' borders, root to tip (m): one more than elements.
+    pub borders: Vec<f64>,
+    /// Radii of the elements' control points (m).
+    pub centres: Vec<f64>,
+    /// Widths of the cores that the trailing vortices at `borders` should have (m).
+    pub cores: Vec<f64>,
+}
+
+/// Velocities that smearing hides from the blades, linear in their circulations.
+#[derive(Clone, Debug)]
+pub struct SmearingCorrection {
+    n_blades: usize,
+    n_stations: usize,
+    radius: f64,
+    /// Axial and tangential influence, `N_PITCHES × n_blades × n_stations × n_stations`: of one unit of circulation
+    /// on an element (last index) of the blade so many ahead (second) on a control point (third) (1/m).
+    axial: Vec<f64>,
+    tangential: Vec<f64>,
+}
+
+/// Two neighbouring tabulated helices and the share of the second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HelixShare {
+    index: usize,
+    share: f64,
+}
+
+impl SmearingCorrection {
+    /// Tabulates the influences between the blades of a rotor whose forces are smeared over `smearing_length` (m).
+    ///
+    /// The rotor's radius is the last border of `span`. Takes a fraction of a second.
+    pub fn new(n_blades: usize, span: &Span, smearing_length: f64) -> Self {
+        let n_stations = span.centres.len();
+        let radius = span.borders[n_stations];
+        let size = N_PITCHES * n_blades * n_stations * n_stations;
+        let mut correction =
+            Self { n_blades, n_stations, radius, axial: vec![0.0; size], tangential: vec![0.0; size] };
+        let mut slot = 0;
+        for pitch_index in 0..N_PITCHES {
+            let advance = radius * FIRST_PITCH * PITCH_RATIO.powi(pitch_index as i32);
+            for ahead in 0..n_blades {
+                let lead = TAU * ahead as f64 / n_blades as f64;
+                for &centre in &span.centres {
+                    for (border, (&trailing, &core)) in span.borders.iter().zip(&span.cores).enumerate() {
+                        let helix = Helix { radius: trailing, advance, lead };
+                        let (axial, tangential) = helix.missing_influence(centre, core, smearing_length);
+                        // A border trails what the inner element's circulation exceeds the outer's.
+                        if border > 0 {
+                            correction.axial[slot + border - 1] += axial;
+                            correction.tangential[slot + border - 1] += tangential;
+                        }
+                        if border < n_stations {
+                            correction.axial[slot + border] -= axial;
+                            correction.tangential[slot + border] -= tangential;
+                        }
+                    }
+                    slot += n_stations;
+                }
+            }
+        }
+        correction
+    }
+
+    /// The tabulated helices around one that advances by `advance` (m/rad), clamped to the table.
+    pub fn helix(&self, advance: f64) -> HelixShare {
+        let position = (advance / (self.radius * FIRST_PITCH)).max(1.0).ln() / PITCH_RATIO.ln();
+        let position = position.min((N_PITCHES - 1) as f64);
+        let index = (position as usize).min(N_PITCHES - 2);
+        HelixShare { index, share: position - index as f64 }
+    }
+
+    /// Axial (downwind) and tangential (along the rotation) velocity (m/s) missing at element `station` of `blade`.
+    ///
+    /// `circulations` (m²/s) holds `n_blades × n_stations` values, positive where the lift drives the rotor and pushes
+    /// it downwind.
+    pub fn missing_velocity(
+        &self,
+        helix: HelixShare,
+        blade: usize,
+        station: usize,
+        circulations: &[f64],
+    ) -> (f64, f64) {
+        let n = self.n_stations;
+        let (mut axial, mut tangential) = (0.0, 0.0);
+        for ahead in 0..self.n_blades {
+            let other = (blade + ahead) % self.n_blades;
+            let circulation = &circulations[other * n..(other + 1) * n];
+            for (index, share) in [(helix.index, 1.0 - helix.share), (helix.index + 1, helix.share)] {
+                let start = ((index * self.n_blades + ahead) * n + station) * n;
+                axial += share * dot(&self.axial[start..start + n], circulation);
+                tangential += share * dot(&self.tangential[start..start + n], circulation);
+            }
+        }
+        (axial, tangential)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// A trailing vortex: a helix of `radius` (m) behind a blade `lead` (rad) ahead, downwind by `advance` (m) per radian.
+struct Helix {
+    radius: f64,
+    advance: f64,
+    lead: f64,
+}
+
+impl Helix {
+    /// Axial and tangential velocity (1/m, per unit circulation) at radius `r` (m) of the blade at azimuth zero that
+    /// smearing over `smearing_length` (m) instead of `core` (m) hides.
+    fn missing_influence(&self, r: f64, core: f64, smearing_length: f64) -> (f64, f64) {
+        let mut total = (0.0, 0.0);
+        let reach = REACH * smearing_length;
+        // The filament passes the blade's azimuth once a turn; each passage is integrated on either side, the points
+        // gathered where it is nearest.
+        let mut passage = self.lead;
+        while self.advance * (passage - PI) < reach {
+            let nearest = (self.advance * passage).hypot(r - self.radius).max(1e-3 * core);
+            let width = nearest / (self.radius * r).sqrt().max(nearest);
+            for (from, to) in [(passage - PI, passage), (passage, passage + PI)] {
+                let from = ((from.max(0.0) - passage) / width).asinh();
+                let to = ((to - passage) / width).asinh();
+                let (axial, tangential) = integral(from, to, |u| {
+                    let stretch = width * u.cosh();
+                    let (axial, tangential) = self.element(r, passage + width * u.sinh(), core, smearing_length);
+                    (stretch * axial, stretch * tangential)
+                });
+                total.0 += axial;
+                total.1 += tangential;
+            }
+            passage += TAU;
+        }
+        total
+    }
+
+    /// Integrand of [`Self::missing_influence`] at `theta` (rad) of wake age.
+    fn element(&self, r: f64, theta: f64, core: f64, smearing_length: f64) -> (f64, f64) {
+        // Symbols: axes are downwind, radial of the felt blade, tangential along the rotation, right-handed.
+        // Filament point (h θ, ρ cos α, ρ sin α) with α = lead − θ; d from it to (0, r, 0); l its derivative to θ.
+        let (rho, h) = (self.radius, self.advance);
+        let (sine, cosine) = (self.lead - theta).sin_cos();
+        let distance_squared =
+            (h * theta).powi(2) + (r - rho * cosine).powi(2) + (rho * sine).powi(2);
+        let d = distance_squared.sqrt();
+        if d > REACH * smearing_length {
+            return (0.0, 0.0);
+        }
+        let hidden = blob_share(d / core) - blob_share(d / smearing_length);
+        let scale = hidden / (4.0 * PI * distance_squared * d);
+        // l × d = axial ρ (r cos α − ρ), tangential h (r − ρ cos α) + h θ ρ sin α.
+        (scale * rho * (r * cosine - rho), scale * h * (r - rho * cosine + theta * rho * sine))
+    }
+}
+
+/// Share of a Gaussian blob's vorticity within `s` widths (–): erf(s) − 2 s exp(−s²)/√π.
+pub(crate) fn blob_share(s: f64) -> f64 {
+    if s > 5.0 {
+        return 1.0;
+    }
+    // 2/√π exp(−s²) Σ_{n≥1} 2ⁿ s^{2n+1} / (2n+1)!!, all terms positive: exact for small s, where erf would cancel.
+    let square = s * s;
+    let mut term = 2.0 / PI.sqrt() * (-square).exp() * s;
+    let mut sum = 0.0;
+    let mut n = 1.0;
+    loop {
+        term *= 2.0 * square / (2.0 * n + 1.0);
+        sum += term;
+        n += 1.0;
+        if term <= 1e-14 * sum || sum == 0.0 {
+            return sum;
+        }
+    }
+}
+
+/// Nodes and weights of 6-point Gauss-Legendre quadrature on −1..1, by symmetry.
+const GAUSS: [(f64, f64); 3] = [
+    (0.238_619_186_083_196_9, 0.467_913_934_572_691),
+    (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+    (0.932_469_514_203_152, 0.171_324_492_379_170_35),
+];
+/// Longest panel of the quadrature, in the stretched coordinate.
+const LONGEST_PANEL: f64 = 0.75;
+
+/// Integral of a two-component `integrand` over `from..to`, in Gauss-Legendre panels.
+fn integral(from: f64, to: f64, integrand: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
+    let mut sum = (0.0, 0.0);
+    let n_panels = ((to - from) / LONGEST_PANEL).ceil().max(0.0) as usize;
+    let half = 0.5 * (to - from) / n_panels.max(1) as f64;
+    for panel in 0..n_panels {
+        let middle = from + half * (2 * panel + 1) as f64;
+        for (node, weight) in GAUSS {
+            for at in [middle - half * node, middle + half * node] {
+                let (first, second) = integrand(at);
+                sum.0 += half * weight * first;
+                sum.1 += half * weight * second;
+            }
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One straight wing, as a one-bladed rotor of so large a radius that its trailing vortices are straight.
+    fn wing(half_span: f64, n: usize, core: f64) -> Span {
+        let middle = 1000.0 * half_span;
+        // Cosine spacing; control points midway in the angle, which makes the midpoint rule exact for the ellipse.
+        let at = |angle: f64| middle - half_span * angle.cos();
+        Span {
+            borders: (0..=n).map(|i| at(PI * i as f64 / n as f64)).collect(),
+            centres: (0..n).map(|i| at(PI * (i as f64 + 0.5) / n as f64)).collect(),
+            cores: vec![core; n + 1],
+        }
+    }
+
+    fn ellipse(span: &Span, half_span: f64) -> Vec<f64> {
+        let middle = 1000.0 * half_span;
+        span.centres.iter().map(|r| (1.0 - ((r - middle) / half_span).powi(2)).sqrt()).collect()
+    }
+
+    /// Missing downwash at each station, by direct integration of a helix so slow that it passes only once.
+    fn missing(span: &Span, circulation: &[f64], core: f64, smearing_length: f64) -> Vec<f64> {
+        let n = circulation.len();
+        let advance = 10.0 * smearing_length;
+        span.centres
+            .iter()
+            .map(|&r| {
+                (0..=n)
+                    .map(|border| {
+                        let inner = if border > 0 { circulation[border - 1] } else { 0.0 };
+                        let outer = if border < n { circulation[border] } else { 0.0 };
+                        let helix = Helix { radius: span.borders[border], advance, lead: 0.0 };
+                        (inner - outer) * helix.missing_influence(r, core, smearing_length).0
+                    })
+                    .sum()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn blob_share_has_its_limits() {
+        assert!((blob_share(0.01) / (4.0 / (3.0 * PI.sqrt()) * 1e-6) - 1.0).abs() < 1e-3);
+        // erf(1) = 0.842700792949715.
+        assert!((blob_share(1.0) - (0.842_700_792_949_715 - 2.0 / PI.sqrt() * (-1.0_f64).exp())).abs() < 1e-14);
+        assert!((blob_share(6.0) - 1.0).abs() < 1e-12 && (blob_share(4.999) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_straight_trailing_vortex_misses_what_lamb_and_oseen_say() {
+        // Half an infinite vortex smeared by a Gaussian: 1/(4πy) (1 − exp(−y²/ε²)).
+        let (core, width) = (1e-3, 1.0);
+        for y in [0.05, 0.3, 1.0, 2.5] {
+            let helix = Helix { radius: 1e4 + y, advance: 10.0, lead: 0.0 };
+            let exact = -(-(y * y) / (width * width)).exp() / (4.0 * PI * y);
+            let (axial, _) = helix.missing_influence(1e4, core, width);
+            assert!((axial / exact - 1.0).abs() < 2e-3, "{axial} against {exact} at {y}");
+        }
+    }
+
+    #[test]
+    fn elliptic_wing_recovers_prandtls_constant_downwash() {
+        // Γ = Γ₀ √(1 − (y/s)²) has the downwash Γ₀ / (4 s) everywhere; a coarse line sees only its smeared part.
+        let half_span = 1.0;
+        let span = wing(half_span, 60, 1e-4);
+        let circulation = ellipse(&span, half_span);
+        let n = circulation.len();
+        for smearing_length in [0.05, 0.25, 0.6] {
+            let hidden = missing(&span, &circulation, 1e-4, smearing_length);
+            for (station, r) in span.centres.iter().enumerate() {
+                let seen: f64 = (0..=n)
+                    .map(|border| {
+                        let inner = if border > 0 { circulation[border - 1] } else { 0.0 };
+                        let outer = if border < n { circulation[border] } else { 0.0 };
+                        let y = span.borders[border] - r;
+                        let smeared = 1.0 - (-(y / smearing_length).powi(2)).exp();
+                        -(inner - outer) * smeared / (4.0 * PI * y)
+                    })
+                    .sum();
+                let downwash = seen + hidden[station];
+                assert!((downwash / -0.25 - 1.0).abs() < 0.01, "{downwash} at {r}, ε {smearing_length}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_missing_at_the_optimal_width() {
+        let span = Span { borders: vec![1.0, 5.0, 10.0], centres: vec![3.0, 7.5], cores: vec![0.5; 3] };
+        let correction = SmearingCorrection::new(3, &span, 0.5);
+        assert!(correction.axial.iter().chain(&correction.tangential).all(|v| *v == 0.0));
+    }
+
+    #[test]
+    fn equal_blades_miss_the_same_and_tips_miss_downwash() {
+        let borders: Vec<f64> = (0..=16).map(|i| 3.0 + f64::from(i) * 57.0 / 16.0).collect();
+        let centres = borders.windows(2).map(|b| 0.5 * (b[0] + b[1])).collect();
+        let span = Span { borders, centres, cores: vec![0.5; 17] };
+        let correction = SmearingCorrection::new(3, &span, 15.0);
+        let helix = correction.helix(60.0 * 0.08);
+        let circulations = vec![50.0; 48];
+        let tips: Vec<_> = (0..3).map(|b| correction.missing_velocity(helix, b, 15, &circulations)).collect();
+        for tip in &tips {
+            assert!(tip.0 < 0.0 && tip.1 < 0.0, "upwind and against the rotation: {tip:?}");
+            assert!((tip.0 - tips[0].0).abs() < 1e-12);
+        }
+        let middle = correction.missing_velocity(helix, 0, 7, &circulations);
+        assert!(middle.0.abs() < 0.2 * tips[0].0.abs());
+    }
+
+    #[test]
+    fn the_table_interpolates_the_helix() {
+        let borders: Vec<f64> = (0..=8).map(|i| 3.0 + f64::from(i) * 57.0 / 8.0).collect();
+        let centres: Vec<f64> = borders.windows(2).map(|b| 0.5 * (b[0] + b[1])).collect();
+        let span = Span { borders: borders.clone(), centres: centres.clone(), cores: vec![0.5; 9] };
+        let correction = SmearingCorrection::new(3, &span, 15.0);
+        let advance = 60.0 * 0.0776;
+        let circulations = vec![50.0; 24];
+        let (axial, tangential) = correction.missing_velocity(correction.helix(advance), 1, 7, &circulations);
+        let mut exact = (0.0, 0.0);
+        for ahead in 0..3 {
+            for (radius, sign) in [(borders[0], -1.0), (borders[8], 1.0)] {
+                let helix = Helix { radius, advance, lead: TAU * f64::from(ahead) / 3.0 };
+                let influence = helix.missing_influence(centres[7], 0.5, 15.0);
+                exact.0 += sign * 50.0 * influence.0;
+                exact.1 += sign * 50.0 * influence.1;
+            }
+        }
+        assert!((axial / exact.0 - 1.0).abs() < 0.01, "{axial} against {}", exact.0);
+        assert!((tangential / exact.1 - 1.0).abs() < 0.02, "{tangential} against {}", exact.1);
+    }
+}
