@@ -19,6 +19,12 @@ use torque::Torque;
 /// faster than gusts as large as the rotor.
 const WIND_SPEED_FILTER_CORNER: f64 = 0.2;
 
+/// Least distance of torque control's speed reference below pitch control's, relative to rated speed (–).
+///
+/// With one reference for both, the two loops can share the work at a pitch above the least one and a torque below
+/// rated, for ever and at a loss of power; apart, only one of them can stand still at its reference.
+const REFERENCE_DISTANCE: f64 = 0.005;
+
 /// Greedy control: k ω² torque below rated, collective pitch above.
 ///
 /// Starts without a bump from the first measurements it sees, and holds for any interval up to about 0.3 s.
@@ -69,7 +75,8 @@ impl Controller for Baseline {
 
         let shift = state.reference_shift(least_pitch, constants);
         let shift = constants.rated_rotor_speed * state.shift.update(interval, shift);
-        let torque_reference = constants.rated_rotor_speed - shift.max(0.0);
+        let distance = REFERENCE_DISTANCE * constants.rated_rotor_speed;
+        let torque_reference = constants.rated_rotor_speed - shift.max(0.0) - distance;
         let pitch_reference = constants.rated_rotor_speed - shift.min(0.0);
 
         let generator_torque =

@@ -15,9 +15,11 @@ impl LowPass {
         Self { corner, value }
     }
 
-    /// The filter's output after `interval` (s) of `input`.
+    /// The filter's output after `interval` (s) of `input`; an input that is no number leaves it as it was.
     pub(crate) fn update(&mut self, interval: f64, input: f64) -> f64 {
-        self.value += -(-self.corner * interval).exp_m1() * (input - self.value);
+        if input.is_finite() {
+            self.value += -(-self.corner * interval).exp_m1() * (input - self.value);
+        }
         self.value
     }
 

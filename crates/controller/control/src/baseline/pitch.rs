@@ -20,8 +20,8 @@ impl Pitch {
 
     /// Collective pitch (rad) for the filtered `rotor_speed` (rad/s) over `interval` (s), at least `least` (rad).
     ///
-    /// PI control with gains scheduled by the last command. Whatever a limit on pitch or pitch rate holds back
-    /// is taken off the integral part, so that it never winds up.
+    /// PI control with gains scheduled by the last command. The integral part stays within the limits on pitch and
+    /// stands still while the limit on pitch rate holds it back, so that it never winds up.
     pub(super) fn update(
         &mut self,
         interval: f64,
@@ -34,12 +34,12 @@ impl Pitch {
         let gains = scheduled(&constants.pitch_gains, self.command);
         let error = rotor_speed - speed_reference;
         let change = constants.maximum_pitch_rate * interval;
-        self.integral = bounded(self.integral + gains.integral * error * interval, least, most);
-        let wanted = bounded(gains.proportional * error + self.integral, least, most);
+        let step = gains.integral * error * interval;
+        let integral = bounded(self.integral + step, least, most);
+        let wanted = bounded(gains.proportional * error + integral, least, most);
         let given = bounded(wanted, self.command - change, self.command + change);
-        if given != wanted {
-            self.integral = bounded(given - gains.proportional * error, least, most);
-        }
+        let held_back = (wanted - given) * step > 0.0;
+        self.integral = if held_back { bounded(self.integral, least, most) } else { integral };
         self.command = given;
         given
     }
