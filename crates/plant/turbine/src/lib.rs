@@ -1,8 +1,18 @@
 //! One machine: its definition, the aerodynamics of its blades, its drive train and actuators.
 
+pub mod actuator_line;
 pub mod actuators;
 pub mod aero;
+pub mod blockage;
+pub mod bodies;
 pub mod definition;
+pub mod drivetrain;
+pub mod lifting_line;
+pub mod rotor;
+pub mod steady;
+mod turbine;
 
 pub use aero::polar::Polar;
 pub use definition::Definition;
+pub use rotor::Frame;
+pub use turbine::{N_ELEMENTS, Settings, State, Turbine};
