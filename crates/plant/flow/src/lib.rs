@@ -2,6 +2,8 @@
 //!
 //! The air feels point forces, not rotors: nothing here knows what a turbine is.
 
+pub mod lattice;
+
 use basis::{PointForce, Vector3};
 use thiserror::Error;
 

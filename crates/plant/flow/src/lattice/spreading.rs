@@ -107,6 +107,11 @@ impl Spreader {
         }
     }
 
+    /// The boxes of the last [`Spreader::spread`]; none before the first.
+    pub fn blocks(&self) -> &[ForceBlock] {
+        &self.blocks[..self.boxes.len()]
+    }
+
     /// On return `boxes` holds disjoint boxes that cover every reach.
     fn group(&mut self) {
         self.boxes.clear();

@@ -1,0 +1,81 @@
+//! The compiled loops: one entry per velocity set and instruction set, picked once when a lattice is built.
+
+use super::probe::{self, RowState, View};
+use super::settings::Stencil as Set;
+use super::simd::{Backend, Portable};
+use super::stencil::D3Q19;
+use super::sweep::{self, Share, Step};
+
+/// Loops for one velocity set, compiled for one instruction set.
+#[derive(Clone, Copy)]
+pub(crate) struct Kernel {
+    /// Populations of a cell (–).
+    pub(crate) n_populations: usize,
+    sweep: unsafe fn(&Step<'_>, &mut Share),
+    read_row: unsafe fn(&View<'_>, usize, &mut RowState),
+    read_cells: unsafe fn(&View<'_>, &[[usize; 3]; 8]) -> [[f32; 8]; 4],
+    write_row: unsafe fn(&View<'_>, usize, &RowState),
+}
+
+macro_rules! kernel {
+    ($vector:ty, $stencil:ty, $n:literal $(, $features:literal)?) => {{
+        $(#[target_feature(enable = $features)])?
+        unsafe fn sweep(step: &Step<'_>, share: &mut Share) {
+            // SAFETY: handed through.
+            unsafe { sweep::rows::<$vector, $stencil, $n>(step, share) }
+        }
+        $(#[target_feature(enable = $features)])?
+        unsafe fn read_row(view: &View<'_>, row: usize, state: &mut RowState) {
+            // SAFETY: handed through.
+            unsafe { probe::read_row::<$vector, $stencil, $n>(view, row, state) }
+        }
+        $(#[target_feature(enable = $features)])?
+        unsafe fn read_cells(view: &View<'_>, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4] {
+            // SAFETY: handed through.
+            unsafe { probe::read_cells::<$vector, $stencil, $n>(view, cells) }
+        }
+        $(#[target_feature(enable = $features)])?
+        unsafe fn write_row(view: &View<'_>, row: usize, state: &RowState) {
+            // SAFETY: handed through.
+            unsafe { probe::write_row::<$vector, $stencil, $n>(view, row, state) }
+        }
+        Kernel { n_populations: $n, sweep, read_row, read_cells, write_row }
+    }};
+}
+
+impl Kernel {
+    /// The loops for `set` on `backend`, whose instructions the caller has found on this machine.
+    pub(crate) fn new(set: Set, backend: Backend) -> Self {
+        match (set, backend) {
+            #[cfg(target_arch = "x86_64")]
+            (Set::D3Q19, Backend::Avx512) => kernel!(super::simd::Avx512, D3Q19, 19, "avx512f,fma"),
+            #[cfg(target_arch = "x86_64")]
+            (Set::D3Q19, Backend::Avx2) => kernel!(super::simd::Avx2, D3Q19, 19, "avx2,fma"),
+            (Set::D3Q19, _) => kernel!(Portable, D3Q19, 19),
+        }
+    }
+
+    /// Moves the rows of `share` on by a step.
+    pub(crate) fn sweep(&self, step: &Step<'_>, share: &mut Share) {
+        // SAFETY: shares of one step have disjoint rows, and the back-end was checked.
+        unsafe { (self.sweep)(step, share) }
+    }
+
+    /// Density and velocity of row number `row`.
+    pub(crate) fn read_row(&self, view: &View<'_>, row: usize, state: &mut RowState) {
+        // SAFETY: a view exists between steps only, and the back-end was checked.
+        unsafe { (self.read_row)(view, row, state) }
+    }
+
+    /// Density less one and velocity components of eight cells of the grid.
+    pub(crate) fn read_cells(&self, view: &View<'_>, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4] {
+        // SAFETY: as above; callers clamp the cells to the grid.
+        unsafe { (self.read_cells)(view, cells) }
+    }
+
+    /// Gives row number `row` the populations of `state` in equilibrium.
+    pub(crate) fn write_row(&self, view: &View<'_>, row: usize, state: &RowState) {
+        // SAFETY: as above; a row is written by one thread.
+        unsafe { (self.write_row)(view, row, state) }
+    }
+}

@@ -1,0 +1,190 @@
+//! Where a population lies in memory: slots, rows, padding, and what the sides do to addresses.
+//!
+//! One array holds slot after slot, each slot all cells, x fastest. Streaming is in place (AA pattern: Bailey,
+//! Myre, Walsh, Lilja, Saar 2009, ICPP, 550): an even step reads and writes the cell itself, an odd step its
+//! neighbours, and each address belongs to exactly one cell in either. A row's addresses are `Q` offsets, so that
+//! periodic and slip sides are nothing but other offsets: a mirrored direction is a mirrored slot.
+//!
+//! | step | population f_q before the collision | population f_q after it |
+//! | --- | --- | --- |
+//! | even | slot q of the cell | slot q̄ of the cell |
+//! | odd | slot q̄ of the neighbour against q | slot q of the neighbour along q |
+
+use super::stencil::{Stencil, mirrored, opposite};
+
+/// Values per cache line (–).
+const LINE: usize = 16;
+/// Values that each slot's start is shifted by against the page grid, so that nineteen streams do not fall into one cache set.
+const SKEW: usize = 3 * LINE;
+/// Values per page (–).
+const PAGE: usize = 1024;
+
+/// What a row meets beyond the first or last along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Edge {
+    /// The row at the other end.
+    Periodic,
+    /// Itself, mirrored.
+    Slip,
+}
+
+/// Which of the two kinds of step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Parity {
+    /// Populations lie in their own cells.
+    Even,
+    /// Populations lie in the neighbours.
+    Odd,
+}
+
+impl Parity {
+    /// Parity of step number `step`.
+    pub(crate) fn of(step: u64) -> Self {
+        if step % 2 == 0 { Self::Even } else { Self::Odd }
+    }
+}
+
+/// Sizes and strides, in values.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Layout {
+    /// Cells along x, y, z.
+    pub(crate) n_cells: [usize; 3],
+    /// From a row to the next in y.
+    pub(crate) row_stride: usize,
+    /// From a row to the next in z.
+    plane_stride: usize,
+    /// From a slot to the next.
+    slot_stride: usize,
+    n_slots: usize,
+    sides: Edge,
+    levels: Edge,
+}
+
+impl Layout {
+    /// `n_slots` slots of `n_cells` cells; `sides` beyond y, `levels` beyond z.
+    pub(crate) fn new(n_cells: [usize; 3], n_slots: usize, sides: Edge, levels: Edge) -> Self {
+        // One halo cell at each end of a row; the one before x = 0 is the last value of the row before.
+        let row_stride = (n_cells[0] + 2).next_multiple_of(LINE);
+        let plane_stride = row_stride * n_cells[1];
+        let slot_stride = (plane_stride * n_cells[2] + LINE).next_multiple_of(PAGE) + SKEW;
+        Self { n_cells, row_stride, plane_stride, slot_stride, n_slots, sides, levels }
+    }
+
+    /// Values of the whole array.
+    pub(crate) fn n_values(&self) -> usize {
+        // A line before the first row for its halo, two after the last for whole-vector reads.
+        self.slot_stride * self.n_slots + 3 * LINE
+    }
+
+    /// Rows along x.
+    pub(crate) fn n_rows(&self) -> usize {
+        self.n_cells[1] * self.n_cells[2]
+    }
+
+    /// y and z of row number `row`.
+    pub(crate) fn place(&self, row: usize) -> [usize; 2] {
+        [row % self.n_cells[1], row / self.n_cells[1]]
+    }
+
+    /// Offset of x = 0 in slot `slot` of row (`y`, `z`).
+    pub(crate) fn row(&self, slot: usize, y: usize, z: usize) -> usize {
+        LINE + slot * self.slot_stride + z * self.plane_stride + y * self.row_stride
+    }
+
+    /// The `Q` offsets that a row's populations are read from and written to at x = 0; x is added to all of them.
+    #[inline(always)]
+    pub(crate) fn addresses<L: Stencil<Q>, const Q: usize>(
+        &self,
+        parity: Parity,
+        row: usize,
+    ) -> [usize; Q] {
+        let [y, z] = self.place(row);
+        let mut offsets = [0; Q];
+        if parity == Parity::Even {
+            for (slot, offset) in offsets.iter_mut().enumerate() {
+                *offset = self.row(slot, y, z);
+            }
+            return offsets;
+        }
+        for q in 0..Q {
+            let [ex, ey, ez] = L::DIRECTIONS[q];
+            let (y_there, mirror_y) = step(y, ey, self.n_cells[1], self.sides);
+            let (z_there, mirror_z) = step(z, ez, self.n_cells[2], self.levels);
+            let mut slot = q;
+            if mirror_y {
+                slot = mirrored(&L::DIRECTIONS, slot, 1);
+            }
+            if mirror_z {
+                slot = mirrored(&L::DIRECTIONS, slot, 2);
+            }
+            offsets[q] = self.row(slot, y_there, z_there).wrapping_add_signed(isize::from(ex));
+        }
+        offsets
+    }
+}
+
+/// From `place` one step along `direction` on an axis of `n` rows: where it ends, and whether it was mirrored.
+#[inline(always)]
+fn step(place: usize, direction: i8, n: usize, edge: Edge) -> (usize, bool) {
+    match direction {
+        1 if place + 1 == n => match edge {
+            Edge::Periodic => (0, false),
+            Edge::Slip => (place, true),
+        },
+        -1 if place == 0 => match edge {
+            Edge::Periodic => (n - 1, false),
+            Edge::Slip => (place, true),
+        },
+        _ => (place.wrapping_add_signed(isize::from(direction)), false),
+    }
+}
+
+/// Direction of the population that address number `slot` holds before the collision.
+#[inline(always)]
+pub(crate) const fn read_direction(parity: Parity, slot: usize) -> usize {
+    match parity {
+        Parity::Even => slot,
+        Parity::Odd => opposite(slot),
+    }
+}
+
+/// Direction of the population that address number `slot` holds after the collision.
+#[inline(always)]
+pub(crate) const fn write_direction(parity: Parity, slot: usize) -> usize {
+    match parity {
+        Parity::Even => opposite(slot),
+        Parity::Odd => slot,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::stencil::D3Q19;
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_address_belongs_to_one_cell() {
+        for (sides, levels) in
+            [(Edge::Periodic, Edge::Slip), (Edge::Slip, Edge::Slip), (Edge::Slip, Edge::Periodic)]
+        {
+            for n_cells in [[5, 4, 3], [4, 1, 2], [4, 2, 1]] {
+                let layout = Layout::new(n_cells, 19, sides, levels);
+                for parity in [Parity::Even, Parity::Odd] {
+                    let mut seen = BTreeSet::new();
+                    for row in 0..layout.n_rows() {
+                        for offset in layout.addresses::<D3Q19, 19>(parity, row) {
+                            for x in 0..n_cells[0] {
+                                assert!(offset + x < layout.n_values());
+                                assert!(
+                                    seen.insert(offset + x),
+                                    "{parity:?} {n_cells:?} row {row} x {x}"
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

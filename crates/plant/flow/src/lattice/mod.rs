@@ -1,0 +1,36 @@
+//! Lattice-Boltzmann large-eddy simulation: one box of air on one grid.
+//!
+//! A step is one pass over the cells, in place: read the populations, [collide](collision), write them back where the
+//! next step finds them. Periodic and slip sides are a matter of [addresses](layout), inlet and outlet of a
+//! [halo](ends) cell at either end of a row, the ground's stress of a [force](wall). The pass is written once, generic
+//! over the [velocity set](stencil) and the [vector](simd), and compiled for each instruction set.
+//!
+//! Reading order: `settings`, `scaling`, `solver`; then `layout`, `stencil`, `collision`, `sweep`.
+
+mod collision;
+mod ends;
+mod forces;
+mod inlet;
+mod kernel;
+mod layout;
+mod memory;
+mod pool;
+mod probe;
+mod sampling;
+mod scaling;
+mod settings;
+mod simd;
+mod solver;
+pub mod spreading;
+mod stencil;
+mod sweep;
+#[cfg(test)]
+mod tests;
+mod wall;
+
+pub use forces::ForceBlock;
+pub use scaling::Scaling;
+pub use settings::{DEFAULT_SMAGORINSKY, Ends, Ground, Settings, SettingsError, Sides, Stencil};
+pub use simd::Backend;
+pub use solver::Lattice;
+pub use wall::VON_KARMAN;

@@ -1,0 +1,104 @@
+//! AVX-512 and AVX2 vectors. Made only inside functions that a run-time check of the machine guards.
+
+use super::Simd;
+use std::arch::x86_64::*;
+use std::ops::{Add, Mul, Sub};
+
+macro_rules! vector {
+    ($(#[$doc:meta])* $name:ident, $register:ty, $lanes:expr, $load:ident, $store:ident, $splat:ident, $add:ident,
+     $sub:ident, $mul:ident, $fmadd:ident, $fnmadd:ident, $div:ident, $sqrt:ident, $max:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy)]
+        pub(crate) struct $name($register);
+
+        impl Simd for $name {
+            const LANES: usize = $lanes;
+
+            #[inline(always)]
+            unsafe fn load(source: *const f32) -> Self {
+                // SAFETY: the caller promises readable values and the instructions.
+                Self(unsafe { $load(source) })
+            }
+
+            #[inline(always)]
+            unsafe fn store(self, target: *mut f32) {
+                // SAFETY: the caller promises writable values and the instructions.
+                unsafe { $store(target, self.0) }
+            }
+
+            #[inline(always)]
+            fn splat(value: f32) -> Self {
+                // SAFETY: vectors are made only where the instructions were found.
+                Self(unsafe { $splat(value) })
+            }
+
+            #[inline(always)]
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
+                // SAFETY: as above; the operands exist.
+                Self(unsafe { $fmadd(self.0, factor.0, addend.0) })
+            }
+
+            #[inline(always)]
+            fn sub_from(self, factor: Self, minuend: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $fnmadd(self.0, factor.0, minuend.0) })
+            }
+
+            #[inline(always)]
+            fn divide(self, divisor: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $div(self.0, divisor.0) })
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $sqrt(self.0) })
+            }
+
+            #[inline(always)]
+            fn maximum(self, other: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $max(self.0, other.0) })
+            }
+        }
+
+        impl Add for $name {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $add(self.0, other.0) })
+            }
+        }
+
+        impl Sub for $name {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $sub(self.0, other.0) })
+            }
+        }
+
+        impl Mul for $name {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $mul(self.0, other.0) })
+            }
+        }
+    };
+}
+
+vector!(
+    /// Sixteen lanes.
+    Avx512, __m512, 16, _mm512_loadu_ps, _mm512_storeu_ps, _mm512_set1_ps, _mm512_add_ps, _mm512_sub_ps,
+    _mm512_mul_ps, _mm512_fmadd_ps, _mm512_fnmadd_ps, _mm512_div_ps, _mm512_sqrt_ps, _mm512_max_ps
+);
+vector!(
+    /// Eight lanes.
+    Avx2, __m256, 8, _mm256_loadu_ps, _mm256_storeu_ps, _mm256_set1_ps, _mm256_add_ps, _mm256_sub_ps,
+    _mm256_mul_ps, _mm256_fmadd_ps, _mm256_fnmadd_ps, _mm256_div_ps, _mm256_sqrt_ps, _mm256_max_ps
+);

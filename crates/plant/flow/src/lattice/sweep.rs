@@ -1,0 +1,211 @@
+//! One pass over rows of cells: read, collide, write back in place.
+//!
+//! # Safety
+//! The sweep writes through a raw pointer that all threads share. It is sound because each address belongs to
+//! exactly one cell in a step of either parity (a test of [`Layout`] shows it), a halo value to exactly one row's
+//! end, and each row to exactly one thread.
+
+use super::collision::{Relaxation, collide};
+use super::ends::{self, RowEnds};
+use super::forces::ForceBlock;
+use super::layout::{Layout, Parity, read_direction, write_direction};
+use super::simd::{MAXIMUM_LANES, Simd};
+use super::stencil::Stencil;
+use std::ops::Range;
+
+/// What all rows of a step share, in lattice units.
+pub(crate) struct Step<'a> {
+    /// The populations.
+    pub(crate) air: *mut f32,
+    pub(crate) layout: &'a Layout,
+    pub(crate) parity: Parity,
+    /// Relaxation time of the air's own viscosity at each x, padded to whole vectors.
+    pub(crate) relaxation_times: &'a [f32],
+    /// Smagorinsky's factor at each z.
+    pub(crate) subgrid: &'a [f32],
+    /// Force density on every cell.
+    pub(crate) acceleration: [f32; 3],
+    /// Force density on some cells.
+    pub(crate) blocks: &'a [ForceBlock],
+    /// How the outlet pulls its pressure back to that of undisturbed air.
+    pub(crate) outlet_stiffness: f32,
+}
+
+// SAFETY: see the module; everything but `air` is read only.
+unsafe impl Sync for Step<'_> {}
+
+/// What one thread owns of a step: its rows, what enters and leaves at their ends, and room to work in.
+pub(crate) struct Share {
+    /// Rows, y fastest.
+    pub(crate) rows: Range<usize>,
+    /// State at the rows' ends.
+    pub(crate) ends: RowEnds,
+    /// Force density of the wall on the rows at the ground among `rows`: x and y components, `row_stride` values a row.
+    pub(crate) wall: [Vec<f32>; 2],
+    /// Force density on one row, padded to whole vectors.
+    pub(crate) force: [Vec<f32>; 3],
+}
+
+/// Moves the rows of `share` on by a step.
+///
+/// # Safety
+/// As the module says; `S`'s instructions are there; buffers are padded as their docs say.
+#[inline(always)]
+pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
+    step: &Step<'_>,
+    share: &mut Share,
+) {
+    let first = share.rows.start;
+    let mut start = first;
+    while start < share.rows.end {
+        let n = (share.rows.end - start).min(S::LANES);
+        let mut addresses = [[0; Q]; MAXIMUM_LANES];
+        for (index, address) in addresses[..n].iter_mut().enumerate() {
+            let row = start + index;
+            *address = step.layout.addresses::<L, Q>(step.parity, row);
+            let forced = gather_forces(step, &share.wall, &mut share.force, first, row);
+            let [_, z] = step.layout.place(row);
+            // SAFETY: handed through.
+            unsafe {
+                match step.parity {
+                    Parity::Even => row_of::<S, L, Q, false>(
+                        step,
+                        address,
+                        step.subgrid[z],
+                        &share.force,
+                        forced,
+                    ),
+                    Parity::Odd => row_of::<S, L, Q, true>(
+                        step,
+                        address,
+                        step.subgrid[z],
+                        &share.force,
+                        forced,
+                    ),
+                }
+            }
+        }
+        // SAFETY: handed through; these rows' cells are done.
+        unsafe { ends::close::<S, L, Q>(step, &addresses[..n], start - first, &mut share.ends) };
+        start += n;
+    }
+}
+
+/// On return `force` holds the force density on the cells of `row` in the range that is given back, and perhaps around it.
+#[inline(always)]
+fn gather_forces(
+    step: &Step<'_>,
+    wall: &[Vec<f32>; 2],
+    force: &mut [Vec<f32>; 3],
+    first: usize,
+    row: usize,
+) -> Range<usize> {
+    let n = step.layout.n_cells[0];
+    let [y, z] = step.layout.place(row);
+    let at_wall = z == 0 && !wall[0].is_empty();
+    let everywhere = at_wall || step.acceleration != [0.0; 3];
+    let mut range = if everywhere { 0..n } else { n..0 };
+    for block in step.blocks {
+        if block.row(y, z).is_some() {
+            range.start = range.start.min(block.origin[0]);
+            range.end = range.end.max(block.origin[0] + block.size[0]);
+        }
+    }
+    if range.is_empty() {
+        return 0..0;
+    }
+    // Whole vectors, whichever back-end runs.
+    range.start -= range.start % MAXIMUM_LANES;
+    range.end = range.end.next_multiple_of(MAXIMUM_LANES);
+    for (component, value) in force.iter_mut().zip(step.acceleration) {
+        component[range.clone()].fill(value);
+    }
+    if at_wall {
+        let start = (row - first) * step.layout.row_stride;
+        for (component, wall) in force.iter_mut().zip(wall) {
+            for (value, wall) in component[..n].iter_mut().zip(&wall[start..start + n]) {
+                *value += wall;
+            }
+        }
+    }
+    for block in step.blocks {
+        if let Some(cells) = block.row(y, z) {
+            for (component, source) in force.iter_mut().zip(&block.force) {
+                for (value, source) in
+                    component[block.origin[0]..].iter_mut().zip(&source[cells.clone()])
+                {
+                    *value += source;
+                }
+            }
+        }
+    }
+    range.start..range.end.min(n)
+}
+
+#[inline(always)]
+unsafe fn row_of<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool>(
+    step: &Step<'_>,
+    addresses: &[usize; Q],
+    subgrid: f32,
+    force: &[Vec<f32>; 3],
+    forced: Range<usize>,
+) {
+    let n = step.layout.n_cells[0];
+    // SAFETY: handed through.
+    unsafe {
+        if forced.is_empty() {
+            cells::<S, L, Q, ODD, false>(step, addresses, subgrid, force, 0..n);
+        } else {
+            cells::<S, L, Q, ODD, false>(step, addresses, subgrid, force, 0..forced.start);
+            cells::<S, L, Q, ODD, true>(step, addresses, subgrid, force, forced.clone());
+            cells::<S, L, Q, ODD, false>(step, addresses, subgrid, force, forced.end..n);
+        }
+    }
+}
+
+#[inline(always)]
+unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const FORCED: bool>(
+    step: &Step<'_>,
+    addresses: &[usize; Q],
+    subgrid: f32,
+    force: &[Vec<f32>; 3],
+    range: Range<usize>,
+) {
+    let parity = if ODD { Parity::Odd } else { Parity::Even };
+    let subgrid = S::splat(subgrid);
+    let times = step.relaxation_times.as_ptr();
+    let force = [force[0].as_ptr(), force[1].as_ptr(), force[2].as_ptr()];
+    let mut x = range.start;
+    while x < range.end {
+        // SAFETY: `x` lies in the row; the row's padding makes whole vectors readable, and a last vector that is not
+        // whole is written through a buffer, cell by cell.
+        unsafe {
+            let mut populations = [S::splat(0.0); Q];
+            for slot in 0..Q {
+                populations[read_direction(parity, slot)] =
+                    S::load(step.air.add(addresses[slot] + x));
+            }
+            let relaxation = Relaxation { time: S::load(times.add(x)), subgrid };
+            let force = if FORCED {
+                Some([S::load(force[0].add(x)), S::load(force[1].add(x)), S::load(force[2].add(x))])
+            } else {
+                None
+            };
+            let after = L::populations(&collide(&L::moments(&populations), &relaxation, force));
+            if x + S::LANES <= range.end {
+                for slot in 0..Q {
+                    after[write_direction(parity, slot)].store(step.air.add(addresses[slot] + x));
+                }
+            } else {
+                for slot in 0..Q {
+                    let mut lanes = [0.0; MAXIMUM_LANES];
+                    after[write_direction(parity, slot)].store(lanes.as_mut_ptr());
+                    for (lane, value) in lanes[..range.end - x].iter().enumerate() {
+                        *step.air.add(addresses[slot] + x + lane) = *value;
+                    }
+                }
+            }
+        }
+        x += S::LANES;
+    }
+}

@@ -1,0 +1,40 @@
+//! The lattice against closed forms and invariants, each test on every back-end that it concerns.
+
+mod closed_forms;
+mod invariants;
+
+use super::*;
+use crate::Inflow;
+use basis::Vector3;
+use std::sync::Arc;
+
+/// Wind given by a function of time and position.
+struct Wind<F>(F);
+
+impl<F: Fn(f64, Vector3) -> Vector3 + Send + Sync> Inflow for Wind<F> {
+    fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]) {
+        for (position, velocity) in positions.iter().zip(velocities) {
+            *velocity = self.0(time, *position);
+        }
+    }
+}
+
+/// A box on all sides periodic, of cells one metre wide, steps of a second: lattice units are SI units.
+fn periodic_box(n_cells: [usize; 3], viscosity: f64) -> Settings {
+    let mut settings = Settings::new(Vector3::splat(-0.5), 1.0, n_cells, 1.0, 0.1);
+    settings.air_density = 1.0;
+    settings.kinematic_viscosity = viscosity;
+    settings.ends = Ends::Periodic;
+    settings.sides = Sides::Periodic;
+    settings.ground = Ground::Periodic;
+    settings.smagorinsky = 0.0;
+    settings.threads = Some(2);
+    settings
+}
+
+fn lattice(
+    settings: Settings,
+    wind: impl Fn(f64, Vector3) -> Vector3 + Send + Sync + 'static,
+) -> Lattice {
+    Lattice::new(settings, Arc::new(Wind(wind))).expect("sound settings")
+}

@@ -1,0 +1,151 @@
+//! What must hold to rounding.
+
+use super::*;
+use crate::{FlowSolver, WindField};
+use basis::PointForce;
+
+/// A sheared, gusty wind in a small open box with a rough ground, and a force in it.
+fn gusty(threads: usize, backend: Backend) -> (Lattice, [PointForce; 2]) {
+    let mut settings = Settings::new(Vector3::new(-40.0, -60.0, 0.0), 10.0, [37, 12, 9], 0.1, 10.0);
+    settings.threads = Some(threads);
+    settings.backend = Some(backend);
+    settings.ground = Ground::WallStress { roughness_length: 0.05 };
+    let air = lattice(settings, |time, x| {
+        let phase = 0.05 * (x.x - 10.0 * time);
+        Vector3::new(
+            10.0 + 0.02 * x.z + phase.sin(),
+            0.5 * (phase + 0.1 * x.z).cos(),
+            0.3 * (phase + 0.2 * x.y).sin(),
+        )
+    });
+    let force = |y| PointForce {
+        position: Vector3::new(60.0, y, 45.0),
+        force: Vector3::new(-3e4, 2e3, 1e3),
+        smearing_length: 20.0,
+    };
+    (air, [force(-20.0), force(20.0)])
+}
+
+/// The wind at many points, as bits.
+fn fingerprint(air: &Lattice) -> Vec<[u64; 3]> {
+    let positions: Vec<Vector3> = (0..300)
+        .map(|i| {
+            Vector3::new(
+                -40.0 + f64::from(i),
+                -60.0 + f64::from(i * 7 % 120),
+                f64::from(i * 13 % 90),
+            )
+        })
+        .collect();
+    let mut velocities = vec![Vector3::ZERO; positions.len()];
+    air.sample(&positions, &mut velocities);
+    velocities.iter().map(|v| v.to_array().map(f64::to_bits)).collect()
+}
+
+#[test]
+fn a_free_stream_stays_one() {
+    for (ends, sides) in [(Ends::InletOutlet, Sides::Slip), (Ends::InletOutlet, Sides::Periodic)] {
+        let mut settings = Settings::new(Vector3::ZERO, 10.0, [37, 12, 9], 0.1, 10.0);
+        settings.threads = Some(2);
+        (settings.ends, settings.sides) = (ends, sides);
+        let wind = Vector3::new(10.0, 0.0, 0.0);
+        let mut air = lattice(settings, move |_, _| wind);
+        air.advance(200.0, &[]).expect("no divergence");
+        let positions = [
+            Vector3::new(5.0, 60.0, 40.0),
+            Vector3::new(200.0, 5.0, 5.0),
+            Vector3::new(365.0, 115.0, 85.0),
+        ];
+        let mut velocities = [Vector3::ZERO; 3];
+        air.sample(&positions, &mut velocities);
+        for velocity in velocities {
+            assert!((velocity - wind).length() < 1e-5 * wind.length(), "{velocity}");
+        }
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
+        let run = |threads| {
+            let (mut air, forces) = gusty(threads, backend);
+            air.advance(2.3, &forces).expect("no divergence");
+            air.advance(1.4, &forces[..1]).expect("no divergence");
+            fingerprint(&air)
+        };
+        let one = run(1);
+        for threads in [2, 3, 7] {
+            assert!(run(threads) == one, "{backend:?} on {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn back_ends_agree_to_rounding() {
+    let run = |backend| {
+        let (mut air, forces) = gusty(2, backend);
+        air.advance(5.0, &forces).expect("no divergence");
+        fingerprint(&air)
+    };
+    let portable = run(Backend::Portable);
+    for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
+        for (value, expected) in run(backend).as_flattened().iter().zip(portable.as_flattened()) {
+            let difference = f64::from_bits(*value) - f64::from_bits(*expected);
+            // Single precision carries 10 m/s in steps of 1e-6; fifty steps of a gusty wind double it a few times.
+            assert!(difference.abs() < 1e-4, "{backend:?} is {difference} m/s off");
+        }
+    }
+}
+
+#[test]
+fn mass_stays() {
+    let mut settings = periodic_box([16, 16, 16], 1e-8);
+    settings.smagorinsky = DEFAULT_SMAGORINSKY;
+    let k = std::f64::consts::TAU / 16.0;
+    let mut air = lattice(settings, move |_, x| {
+        Vector3::new(0.05 + 0.04 * (k * x.y).sin(), 0.04 * (k * x.z).sin(), 0.04 * (k * x.x).sin())
+    });
+    let before = air.mass();
+    air.advance(10_000.0, &[]).expect("no divergence");
+    let drift = air.mass() / before - 1.0;
+    println!("{drift:e}");
+    assert!(drift.abs() < 1e-6, "mass drifted by {drift:e}");
+}
+
+#[test]
+fn forces_become_momentum() {
+    let mut air = lattice(periodic_box([24, 20, 18], 1e-3), |_, _| Vector3::new(0.05, 0.0, 0.0));
+    let before = air.momentum();
+    let force = PointForce {
+        position: Vector3::new(10.3, 9.7, 8.1),
+        force: Vector3::new(-0.02, 0.01, 0.005),
+        smearing_length: 2.0,
+    };
+    air.advance(200.0, &[force]).expect("no divergence");
+    let gained = air.momentum() - before;
+    let applied = force.force * 200.0;
+    println!("{gained} {applied}");
+    assert!(
+        (gained - applied).length() < 1e-4 * applied.length(),
+        "gained {gained}, applied {applied}"
+    );
+}
+
+#[test]
+fn steps_are_whole() {
+    let (mut air, _) = gusty(1, Backend::Portable);
+    assert!(matches!(air.advance(0.15, &[]), Err(crate::FlowError::FractionalStep { .. })));
+    assert!(matches!(air.advance(f64::NAN, &[]), Err(crate::FlowError::FractionalStep { .. })));
+    assert!(air.advance(0.3, &[]).is_ok());
+    assert_eq!(air.n_steps(), 3);
+}
+
+#[test]
+fn a_blow_up_is_noticed_with_its_place() {
+    let (mut air, mut forces) = gusty(2, Backend::detect());
+    forces[0].force *= 1e4;
+    let error = air.advance(60.0, &forces).expect_err("no air withstands that");
+    let crate::FlowError::Diverged { time, position, .. } = error else { panic!("{error}") };
+    assert!(time > 0.0 && time < 60.0);
+    assert!(position.x > -40.0 && position.x < 330.0 && position.z > 0.0 && position.z < 90.0);
+}
