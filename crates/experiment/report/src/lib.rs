@@ -1,1 +1,117 @@
-//! x
+//! The report of a study: one self-contained page and its figures, made from records alone.
+
+mod draw;
+mod figures;
+mod page;
+mod sentence;
+mod study;
+mod trace;
+mod words;
+
+use basis::records::{Plane, Series, Summary};
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Everything that a report tells of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyRecords {
+    /// Name of the case.
+    pub case_name: String,
+    /// What the study is for, in one line.
+    pub description: Option<String>,
+    /// The case file as run (TOML).
+    pub case_text: String,
+    /// The runs, in the case file's order.
+    pub runs: Vec<RunRecords>,
+    /// Version of the program that ran it.
+    pub version: String,
+}
+
+/// What one run left behind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunRecords {
+    /// The run in numbers.
+    pub summary: Summary,
+    /// Channels over time; empty where none were kept.
+    pub series: Series,
+    /// Averaged planes: `hub-height`, `streamwise` and crosswind planes.
+    pub mean_planes: Vec<Plane>,
+    /// The same planes at single instants.
+    pub instant_planes: Vec<Plane>,
+}
+
+/// Why a report could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// There is nothing to report on.
+    #[error("the study `{case}` has no finished run to report on")]
+    NoRuns {
+        /// Name of the case.
+        case: String,
+    },
+    /// A file could not be written.
+    #[error("cannot write {}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A picture could not be encoded.
+    #[error("cannot draw the figure `{figure}` as pixels")]
+    Picture {
+        /// Name of the figure.
+        figure: String,
+        /// What the encoder said.
+        source: png::EncodingError,
+    },
+    /// The page could not be put together.
+    #[error("cannot put the page together")]
+    Page(#[from] minijinja::Error),
+}
+
+/// Writes `report.html` and `figures/*.svg`, `figures/*.png` of `study` into `directory`.
+///
+/// The page needs nothing beside it. Every file is made in memory first and appears whole or not
+/// at all; the page comes last. The same records give the same bytes.
+///
+/// # Errors
+/// [`ReportError::NoRuns`] for a study without runs, [`ReportError::Write`] when the disk says no.
+pub fn write(study: &StudyRecords, directory: &Path) -> Result<(), ReportError> {
+    let digest = study::Study::new(study)?;
+    let figures = figures::all(&digest);
+    let page = page::render(&digest, &figures)?;
+    let mut files = Vec::with_capacity(2 * figures.len());
+    for figure in &figures {
+        let failed = |source| ReportError::Picture { figure: figure.name.clone(), source };
+        files.push((format!("{}.svg", figure.name), draw::svg::document(figure).map_err(failed)?));
+        files.push((format!("{}.png", figure.name), draw::raster::png(figure).map_err(failed)?));
+    }
+    let folder = directory.join("figures");
+    fs::create_dir_all(&folder)
+        .map_err(|source| ReportError::Write { path: folder.clone(), source })?;
+    for (name, bytes) in &files {
+        write_whole(&folder.join(name), bytes)?;
+    }
+    write_whole(&directory.join("report.html"), page.as_bytes())
+}
+
+/// Writes `bytes` beside `path`, brings them to the disk, then puts them in place.
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
+    let mut unfinished = path.as_os_str().to_owned();
+    unfinished.push(".partial");
+    let unfinished = PathBuf::from(unfinished);
+    let attempt = || {
+        let mut file = File::create(&unfinished)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        drop(file);
+        fs::rename(&unfinished, path)
+    };
+    attempt().map_err(|source| {
+        // What is left of the attempt is of no use; the error that matters is the first one.
+        let _ = fs::remove_file(&unfinished);
+        ReportError::Write { path: path.to_owned(), source }
+    })
+}

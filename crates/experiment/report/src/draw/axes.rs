@@ -1,0 +1,273 @@
+//! Pairs of axes: where a value lies on the sheet, ticks at round numbers, grids, labels.
+
+use super::colour::Ink;
+use super::font::Face;
+use super::{Look, Role, Setting, Shape, polyline, rectangle, segment, text};
+use crate::words;
+
+/// Size of tick labels.
+pub(crate) const SMALL: f64 = 11.5;
+/// Size of axis labels.
+pub(crate) const MEDIUM: f64 = 12.5;
+/// Size of panel titles.
+pub(crate) const LARGE: f64 = 13.5;
+
+/// Values along one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scale {
+    /// Value at the left or lower end; the larger one where an axis runs backwards.
+    pub(crate) low: f64,
+    /// Value at the other end.
+    pub(crate) high: f64,
+    /// Whether equal steps are equal ratios.
+    pub(crate) logarithmic: bool,
+}
+
+impl Scale {
+    /// From `low` to `high` in equal steps.
+    pub(crate) fn linear(low: f64, high: f64) -> Self {
+        Self { low, high, logarithmic: false }
+    }
+
+    /// Around all finite `values`, with a margin of `margin` of their spread; never empty.
+    pub(crate) fn around(values: impl IntoIterator<Item = f64>, margin: f64) -> Self {
+        let finite = values.into_iter().filter(|value| value.is_finite());
+        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        if low > high {
+            return Self::linear(0.0, 1.0);
+        }
+        let least = 1e-3 * low.abs().max(high.abs()).max(1e-9);
+        let spread = (high - low).max(least);
+        let middle = 0.5 * (low + high);
+        Self::linear(middle - (0.5 + margin) * spread, middle + (0.5 + margin) * spread)
+    }
+
+    /// Where `value` lies between the ends (0 to 1 within).
+    fn share(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            (value.max(f64::MIN_POSITIVE) / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        }
+    }
+
+    /// Round values between the ends, about `n_wanted` of them, and their decimals.
+    pub(crate) fn ticks(&self, n_wanted: usize) -> (Vec<f64>, usize) {
+        let (low, high) = (self.low.min(self.high), self.low.max(self.high));
+        if self.logarithmic {
+            let first = low.log10().ceil() as i32;
+            let last = high.log10().floor() as i32;
+            return ((first..=last).map(|power| 10f64.powi(power)).collect(), 0);
+        }
+        let rough = (high - low) / n_wanted.max(1) as f64;
+        if !(rough.is_finite() && rough > 0.0) {
+            return (Vec::new(), 0);
+        }
+        let power = rough.log10().floor();
+        let factor = rough / 10f64.powf(power);
+        let (factor, power) = match factor {
+            f if f < 1.5 => (1.0, power),
+            f if f < 3.5 => (2.0, power),
+            f if f < 7.5 => (5.0, power),
+            _ => (1.0, power + 1.0),
+        };
+        let step = factor * 10f64.powf(power);
+        let first = (low / step - 1e-6).ceil() as i64;
+        let last = (high / step + 1e-6).floor() as i64;
+        ((first..=last).map(|index| index as f64 * step).collect(), (-power).max(0.0) as usize)
+    }
+}
+
+/// What a pointer can read off a panel.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Readout {
+    /// Left, top, width, height of the frame.
+    pub(crate) frame: [f64; 4],
+    /// Values at the left, right, lower and upper end.
+    pub(crate) range: [f64; 4],
+    /// Whether the vertical axis is logarithmic.
+    pub(crate) logarithmic: bool,
+    /// Unit of the horizontal axis.
+    pub(crate) x_unit: String,
+    /// Unit of the vertical axis.
+    pub(crate) y_unit: String,
+}
+
+/// A rectangle on the sheet with a scale on each side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Frame {
+    /// Left, top, width, height.
+    pub(crate) area: [f64; 4],
+    /// Horizontal values.
+    pub(crate) x: Scale,
+    /// Vertical values, upwards.
+    pub(crate) y: Scale,
+}
+
+impl Frame {
+    /// Where the values (x, y) lie on the sheet.
+    pub(crate) fn point(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [left, top, width, height] = self.area;
+        [left + width * self.x.share(x), top + height * (1.0 - self.y.share(y))]
+    }
+
+    /// Where all `values` lie on the sheet.
+    pub(crate) fn points(&self, values: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        values
+            .iter()
+            .filter(|value| value[0].is_finite() && value[1].is_finite())
+            .map(|value| self.point(*value))
+            .collect()
+    }
+
+    /// A line through `values` that a pointer can read.
+    pub(crate) fn line(&self, values: &[[f64; 2]], look: Look) -> Shape {
+        polyline(self.points(values), Look { readable: true, ..look })
+    }
+
+    /// The rectangle on the sheet that spans two corners in values.
+    pub(crate) fn rectangle(&self, from: [f64; 2], to: [f64; 2]) -> [f64; 4] {
+        let (from, to) = (self.point(from), self.point(to));
+        let (left, top) = (from[0].min(to[0]), from[1].min(to[1]));
+        [left, top, (to[0] - from[0]).abs(), (to[1] - from[1]).abs()]
+    }
+
+    /// Horizontal grid lines with their values at the left.
+    pub(crate) fn rows(&self, n_wanted: usize, shapes: &mut Vec<Shape>) {
+        let [left, _, width, _] = self.area;
+        let (ticks, decimals) = self.y.ticks(n_wanted);
+        for tick in ticks {
+            let [_, y] = self.point([self.x.low, tick]);
+            shapes.push(segment([left, y], [left + width, y], Look::line(Ink::Grid, 1.0)));
+            let label =
+                if self.y.logarithmic { power(tick) } else { words::number(tick, decimals) };
+            let setting = Setting::plain(Ink::Muted, SMALL).anchored(1.0);
+            shapes.push(text([left - 7.0, y + 4.0], label, setting));
+        }
+    }
+
+    /// Ticks below, with their values where `labelled`, and the line that carries them.
+    pub(crate) fn columns(&self, n_wanted: usize, labelled: bool, shapes: &mut Vec<Shape>) {
+        let [left, top, width, height] = self.area;
+        let base = top + height;
+        shapes.push(segment([left, base], [left + width, base], Look::line(Ink::Axis, 1.0)));
+        let (ticks, decimals) = self.x.ticks(n_wanted);
+        for tick in ticks {
+            let [x, _] = self.point([tick, self.y.low]);
+            shapes.push(segment([x, base], [x, base + 4.0], Look::line(Ink::Axis, 1.0)));
+            if labelled {
+                let setting = Setting::plain(Ink::Muted, SMALL).anchored(0.5);
+                shapes.push(text([x, base + 17.0], words::number(tick, decimals), setting));
+            }
+        }
+    }
+
+    /// A title above the frame at its left.
+    pub(crate) fn title(&self, content: &str, shapes: &mut Vec<Shape>) {
+        let [left, top, ..] = self.area;
+        shapes.push(text([left, top - 9.0], content, Setting::plain(Ink::Text, LARGE).bold()));
+    }
+
+    /// The label of the horizontal axis.
+    pub(crate) fn x_label(&self, content: &str, shapes: &mut Vec<Shape>) {
+        let [left, top, width, height] = self.area;
+        let setting = Setting::plain(Ink::Muted, MEDIUM).anchored(0.5);
+        shapes.push(text([left + 0.5 * width, top + height + 36.0], content, setting));
+    }
+
+    /// The label of the vertical axis, reading upwards, `distance` left of the frame.
+    pub(crate) fn y_label(&self, content: &str, distance: f64, shapes: &mut Vec<Shape>) {
+        let [left, top, _, height] = self.area;
+        let setting = Setting::plain(Ink::Muted, MEDIUM).anchored(0.5).upwards();
+        shapes.push(text([left - distance, top + 0.5 * height], content, setting));
+    }
+
+    /// A pale band over the whole height between two horizontal values.
+    pub(crate) fn band(&self, from: f64, to: f64, shapes: &mut Vec<Shape>) {
+        let area = self.rectangle([from, self.y.low], [to, self.y.high]);
+        shapes.push(rectangle(area, Look::fill(Ink::Band)));
+    }
+
+    /// The lines of this frame as one group, cut at its edges, whose values can be read off.
+    pub(crate) fn panel(&self, lines: Vec<Shape>, units: [&str; 2]) -> Shape {
+        let readout = Readout {
+            frame: self.area,
+            range: [self.x.low, self.x.high, self.y.low, self.y.high],
+            logarithmic: self.y.logarithmic,
+            x_unit: units[0].to_owned(),
+            y_unit: units[1].to_owned(),
+        };
+        Shape::Group { role: Role::Panel(readout), clip: Some(self.area), shapes: lines }
+    }
+}
+
+/// Colours and names of runs in rows from (`left`, `base`) to the right; gives the height used.
+pub(crate) fn legend(
+    [left, base]: [f64; 2],
+    width: f64,
+    runs: &[(usize, &str)],
+    shapes: &mut Vec<Shape>,
+) -> f64 {
+    const LINE: f64 = 20.0;
+    let face = Face::new(false);
+    let (mut x, mut y) = (left, base);
+    for &(run, name) in runs {
+        let length = 32.0 + face.width(name, MEDIUM) * 1.06 + 22.0;
+        if x > left && x + length > left + width {
+            (x, y) = (left, y + LINE);
+        }
+        let look = Look::line(Ink::Run(run), 3.0).dashed(super::colour::run_dash(run));
+        let setting = Setting::plain(Ink::Text, MEDIUM);
+        let sample = segment([x, y - 4.0], [x + 24.0, y - 4.0], look);
+        let label = text([x + 32.0, y], name, setting);
+        shapes.push(Shape::Group { role: Role::Run(run), clip: None, shapes: vec![sample, label] });
+        x += length;
+    }
+    y - base + LINE
+}
+
+/// A power of ten in words that a reader of axes knows.
+fn power(value: f64) -> String {
+    let exponent = value.log10().round() as i32;
+    if exponent >= -3 { format!("{value}") } else { format!("1e−{}", -exponent) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        assert_eq!(Scale::linear(0.0, 10.0).ticks(5), (vec![0.0, 2.0, 4.0, 6.0, 8.0, 10.0], 0));
+        let (ticks, decimals) = Scale::linear(0.31, 1.09).ticks(4);
+        assert_eq!(decimals, 1);
+        assert_eq!(ticks.len(), 4);
+        assert!(ticks.iter().zip([0.4, 0.6, 0.8, 1.0]).all(|(a, b)| (a - b).abs() < 1e-12));
+        assert_eq!(Scale::linear(2.0, -2.0).ticks(4).0.len(), 5);
+        let logarithmic = Scale { low: 1e-3, high: 10.0, logarithmic: true };
+        assert_eq!(logarithmic.ticks(4).0.len(), 5);
+        assert!(Scale::linear(1.0, 1.0).ticks(4).0.is_empty());
+    }
+
+    #[test]
+    fn a_frame_turns_values_over() {
+        let frame = Frame {
+            area: [10.0, 20.0, 100.0, 50.0],
+            x: Scale::linear(2.0, -2.0),
+            y: Scale { low: 0.1, high: 10.0, logarithmic: true },
+        };
+        assert_eq!(frame.point([2.0, 0.1]), [10.0, 70.0]);
+        let middle = frame.point([0.0, 1.0]);
+        assert!((middle[0] - 60.0).abs() < 1e-12 && (middle[1] - 45.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_scale_is_never_empty() {
+        for values in [vec![], vec![f64::NAN], vec![0.0, 0.0], vec![5.0]] {
+            let scale = Scale::around(values, 0.1);
+            assert!(scale.high > scale.low);
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! Power and rotor speed over time.
+
+use super::WIDTH;
+use crate::draw::axes::{Frame, Scale, legend};
+use crate::draw::colour::{Ink, run_dash};
+use crate::draw::{Figure, Look, Role, Setting, Shape, segment, text};
+use crate::sentence;
+use crate::study::Study;
+use crate::trace::{envelope, moving_mean, thinned};
+use basis::records::Statistic;
+use std::f64::consts::TAU;
+
+/// Averaging of the thick lines (s).
+const SMOOTHING: f64 = 30.0;
+/// Above so many runs the unsmoothed lines would hide everything.
+const MOST_RAW_RUNS: usize = 4;
+const PANEL_HEIGHT: f64 = 165.0;
+
+/// A quantity of every turbine over time.
+struct Quantity {
+    name: &'static str,
+    title: &'static str,
+    channel: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    /// SI value of one unit of the axis.
+    scale: f64,
+    statistic: fn(&basis::records::TurbineSummary) -> Statistic,
+}
+
+/// Electrical power over time, a panel for each turbine, runs overlaid.
+pub(crate) fn power(study: &Study) -> Option<Figure> {
+    over_time(
+        study,
+        &Quantity {
+            name: "power",
+            title: "Power over time",
+            channel: "power_w",
+            label: "power (MW)",
+            unit: "MW",
+            scale: 1e6,
+            statistic: |turbine| turbine.power,
+        },
+    )
+}
+
+/// Rotor speed over time.
+pub(crate) fn rotor_speed(study: &Study) -> Option<Figure> {
+    over_time(
+        study,
+        &Quantity {
+            name: "rotor-speed",
+            title: "Rotor speed over time",
+            channel: "rotor_speed_rad_s",
+            label: "rotor speed (rpm)",
+            unit: "rpm",
+            scale: TAU / 60.0,
+            statistic: |turbine| turbine.rotor_speed,
+        },
+    )
+}
+
+fn over_time(study: &Study, quantity: &Quantity) -> Option<Figure> {
+    let first = &study.runs()[0].summary;
+    let names: Vec<&str> = first
+        .turbines
+        .iter()
+        .map(|turbine| turbine.name.as_str())
+        .filter(|name| study.runs().iter().any(|run| channel(run, name, quantity).is_some()))
+        .collect();
+    let end = study
+        .runs()
+        .iter()
+        .filter_map(|run| run.series.column("time_s")?.last().copied())
+        .fold(0.0, f64::max);
+    if names.is_empty() || end <= 0.0 {
+        return None;
+    }
+    let mut shapes = Vec::new();
+    let top = 22.0 + legend([64.0, 22.0], WIDTH - 90.0, &study.names(), &mut shapes);
+    let mut frame_top = top + 16.0;
+    for (index, name) in names.iter().enumerate() {
+        let area = [64.0, frame_top, WIDTH - 64.0 - 62.0, PANEL_HEIGHT];
+        let is_last = index + 1 == names.len();
+        panel(study, quantity, name, area, end, is_last, &mut shapes);
+        frame_top += PANEL_HEIGHT + 40.0;
+    }
+    let raw =
+        if study.runs().len() <= MOST_RAW_RUNS { ", over the thin unsmoothed one" } else { "" };
+    Some(Figure {
+        name: quantity.name.to_owned(),
+        title: quantity.title.to_owned(),
+        caption: format!(
+            "Thick: {SMOOTHING:.0} s moving mean{raw}. Grey: spin-up, not analysed. Marks at the \
+             right: mean over the analysed time with its 95 % interval. {}.",
+            sentence::conditions_line(study, None)
+        ),
+        width: WIDTH,
+        height: frame_top + 14.0,
+        shapes,
+    })
+}
+
+fn channel<'r>(
+    run: &'r crate::RunRecords,
+    turbine: &str,
+    quantity: &Quantity,
+) -> Option<(&'r [f64], &'r [f64])> {
+    let times = run.series.column("time_s")?;
+    let values = run.series.column(&format!("{turbine}.{}", quantity.channel))?;
+    (times.len() > 1 && values.len() == times.len()).then_some((times, values))
+}
+
+fn panel(
+    study: &Study,
+    quantity: &Quantity,
+    turbine: &str,
+    area: [f64; 4],
+    end: f64,
+    is_last: bool,
+    shapes: &mut Vec<Shape>,
+) {
+    let conditions = &study.runs()[0].summary.conditions;
+    let with_raw = study.runs().len() <= MOST_RAW_RUNS;
+    let mut raw_lines = Vec::new();
+    let mut lines = Vec::new();
+    for (run, &colour) in study.runs().iter().zip(&study.colours) {
+        let Some((times, values)) = channel(run, turbine, quantity) else { continue };
+        let values: Vec<f64> = values.iter().map(|value| value / quantity.scale).collect();
+        let interval = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+        let window = (SMOOTHING / interval).round().max(1.0) as usize;
+        lines.push((colour, thinned(times, &moving_mean(&values, window), 480)));
+        if with_raw {
+            raw_lines.push((colour, envelope(times, &values, 420)));
+        }
+    }
+    let shown = raw_lines.iter().chain(&lines).flat_map(|(_, line)| line);
+    // The start of the spin-up may overshoot far beyond what matters.
+    let settled = shown.filter(|point| point[0] > 0.5 * conditions.spin_up).map(|point| point[1]);
+    let scale = Scale::around(settled, 0.08);
+    let frame = Frame { area, x: Scale::linear(0.0, end), y: scale };
+    if conditions.spin_up > 0.0 {
+        frame.band(0.0, conditions.spin_up.min(end), shapes);
+        if is_last {
+            let [x, _] = frame.point([0.5 * conditions.spin_up, scale.low]);
+            let setting = Setting::plain(Ink::Muted, 11.5).anchored(0.5);
+            shapes.push(text([x, area[1] + area[3] - 8.0], "spin-up", setting));
+        }
+    }
+    frame.rows(4, shapes);
+    frame.columns(10, is_last, shapes);
+    frame.title(turbine, shapes);
+    frame.y_label(quantity.label, 46.0, shapes);
+    if is_last {
+        frame.x_label("time (s)", shapes);
+    }
+    let groups = raw_lines
+        .iter()
+        .map(|(colour, line)| {
+            let look = Look::line(Ink::Run(*colour), 1.0).opacity(0.28);
+            run_group(*colour, vec![crate::draw::polyline(frame.points(line), look)])
+        })
+        .chain(lines.iter().map(|(colour, line)| {
+            let look = Look::line(Ink::Run(*colour), 2.2).dashed(run_dash(*colour));
+            run_group(*colour, vec![frame.line(line, look)])
+        }))
+        .collect();
+    shapes.push(frame.panel(groups, ["s", quantity.unit]));
+    means(study, quantity, turbine, &frame, shapes);
+}
+
+/// Means of the runs with their intervals, right of the frame.
+fn means(
+    study: &Study,
+    quantity: &Quantity,
+    turbine: &str,
+    frame: &Frame,
+    shapes: &mut Vec<Shape>,
+) {
+    let [left, top, width, height] = frame.area;
+    let step = (44.0 / study.runs().len() as f64).min(13.0);
+    let clamped = |y: f64| y.clamp(top, top + height);
+    for (index, (run, &colour)) in study.runs().iter().zip(&study.colours).enumerate() {
+        let Some(summary) = run.summary.turbines.iter().find(|summary| summary.name == turbine)
+        else {
+            continue;
+        };
+        let statistic = (quantity.statistic)(summary);
+        let mean = statistic.mean / quantity.scale;
+        if !mean.is_finite() {
+            continue;
+        }
+        let x = left + width + 12.0 + step * index as f64;
+        let y = |value: f64| clamped(frame.point([0.0, value])[1]);
+        let mut marks = Vec::new();
+        if let Some(half) = statistic.half_width_95.map(|half| half / quantity.scale) {
+            let look = Look::line(Ink::Run(colour), 1.6);
+            marks.push(segment([x, y(mean - half)], [x, y(mean + half)], look));
+        }
+        let center = [x, y(mean)];
+        marks.push(Shape::Circle { center, radius: 3.4, look: Look::fill(Ink::Run(colour)) });
+        shapes.push(run_group(colour, marks));
+    }
+}
+
+/// Shapes that vanish with their run.
+fn run_group(colour: usize, shapes: Vec<Shape>) -> Shape {
+    Shape::Group { role: Role::Run(colour), clip: None, shapes }
+}

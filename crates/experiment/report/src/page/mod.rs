@@ -1,0 +1,191 @@
+//! The page: one HTML file with style, script, figures and case file inside.
+
+mod tables;
+
+use crate::ReportError;
+use crate::draw::colour::{Ink, hex};
+use crate::draw::{Figure, svg};
+use crate::sentence;
+use crate::study::Study;
+use crate::words;
+use minijinja::{Environment, Value, context};
+use std::fmt::Write;
+
+const TEMPLATE: &str = include_str!("report.html");
+const STYLE: &str = include_str!("style.css");
+const SCRIPT: &str = include_str!("script.js");
+
+/// The page of `study` with `figures`.
+pub(crate) fn render(study: &Study, figures: &[Figure]) -> Result<String, ReportError> {
+    let records = study.records;
+    let best = study.best();
+    let mut environment = Environment::new();
+    // The name's ending turns escaping on.
+    environment.add_template("report.html", TEMPLATE)?;
+    let warnings = warnings(study);
+    let sentences: Vec<Vec<String>> = study
+        .runs()
+        .iter()
+        .filter(|run| best.is_some_and(|best| best.summary.run != run.summary.run))
+        .filter_map(|run| Some(vec![run.summary.run.clone(), sentence::short_gain(study, run)?]))
+        .collect();
+    let page = environment.get_template("report.html")?.render(context! {
+        title => records.case_name.clone(),
+        description => records.description.clone(),
+        version => records.version.clone(),
+        style => Value::from_safe_string(format!("{}{STYLE}", inks())),
+        script => Value::from_safe_string(SCRIPT.to_owned()),
+        headline => sentence::headline(study),
+        confidence => sentence::confidence(study),
+        headline_conditions => sentence::conditions_line(study, best),
+        compared_with => best.and_then(|run| run.summary.compare_with.clone()),
+        other_results => sentences,
+        warnings => warnings,
+        chips => chips(study),
+        conditions => tables::conditions(study),
+        excitations => tables::excitations(study),
+        rows => tables::results(study),
+        has_gains => best.is_some(),
+        has_loads => tables::has_loads(study),
+        loads => tables::loads(study),
+        conditions_line => sentence::conditions_line(study, None),
+        small_print => small_print(study),
+        parts => parts(figures)?,
+        costs => tables::costs(study),
+        case_text => records.case_text.clone(),
+    })?;
+    Ok(page + "\n")
+}
+
+/// The colours of every ink as variables, for light and dark pages, and the classes that use them.
+fn inks() -> String {
+    let list = |dark: bool| -> String {
+        Ink::all().map(|ink| format!("--{}:{};", ink.name(), hex(ink.rgb(dark)))).collect()
+    };
+    let mut css = format!(":root{{{}}}", list(false));
+    let _ = write!(css, "@media (prefers-color-scheme:dark){{:root{{{}}}}}", list(true));
+    let _ = write!(css, "@media print{{:root{{{}}}}}", list(false));
+    for name in Ink::all().map(Ink::name) {
+        let _ = write!(css, ".f-{name}{{fill:var(--{name})}}.s-{name}{{stroke:var(--{name})}}");
+    }
+    css
+}
+
+fn chips(study: &Study) -> Vec<Value> {
+    study
+        .runs()
+        .iter()
+        .zip(&study.colours)
+        .map(|(run, &colour)| {
+            let mut controls: Vec<String> = sentence::excitation_conditions(study, run);
+            if controls.is_empty() {
+                controls = run.summary.turbines.iter().map(|t| t.control.clone()).collect();
+                controls.dedup();
+            }
+            context! {
+                colour,
+                ink => Ink::Run(colour).name(),
+                name => run.summary.run.clone(),
+                control => controls.join("; "),
+            }
+        })
+        .collect()
+}
+
+/// Every warning once, with the runs that it came from.
+fn warnings(study: &Study) -> Vec<Vec<String>> {
+    let mut found: Vec<(&str, Vec<String>)> = Vec::new();
+    for run in study.runs() {
+        for warning in &run.summary.warnings {
+            match found.iter_mut().find(|(known, _)| known == warning) {
+                Some((_, runs)) => runs.push(run.summary.run.clone()),
+                None => found.push((warning, vec![run.summary.run.clone()])),
+            }
+        }
+    }
+    found
+        .into_iter()
+        .map(|(warning, runs)| {
+            let all = runs.len() == study.runs().len() && runs.len() > 1;
+            let origin = if all { "all runs".to_owned() } else { words::list(&runs) };
+            vec![words::capitalised(warning), origin]
+        })
+        .collect()
+}
+
+/// What a careful reader must know of the method and its coarseness.
+fn small_print(study: &Study) -> Vec<String> {
+    let summary = &study.runs()[0].summary;
+    let conditions = &summary.conditions;
+    let cells = conditions.cells_per_diameter;
+    let mut items = vec![
+        "Large-eddy simulation with actuator lines: blades are lines of force from tabulated \
+         aerofoil data; rotor speed follows torque and inertia; blades and tower are rigid."
+            .to_owned(),
+    ];
+    if cells < 24.0 {
+        items.push(format!(
+            "{} cells per diameter are coarse: the near wake and the tip vortices are blurred, small \
+             turbulence is modelled rather than resolved. Differences between runs are more \
+             trustworthy than absolute values; repeat at 24 to 32 cells before relying on either.",
+            words::number(cells, 0)
+        ));
+    }
+    let n_blocks = summary.array_power.n_blocks;
+    if n_blocks < 6 {
+        items.push(format!(
+            "Intervals rest on {} {} of one realisation of the turbulence (seed {}). They cover \
+             sampling error, not errors of the model; longer runs or more seeds narrow them.",
+            words::small_count(n_blocks),
+            if n_blocks == 1 { "block" } else { "blocks" },
+            conditions.seed
+        ));
+    }
+    items.push(
+        "Gains are ratios of mean power to the compared run in the same inflow, minus one; their \
+         intervals come from paired blocks. Counter-clockwise means that the blades pitch at rotor \
+         frequency plus excitation frequency."
+            .to_owned(),
+    );
+    items
+}
+
+/// The figures in the order and under the headings of the page.
+fn parts(figures: &[Figure]) -> Result<Vec<Value>, ReportError> {
+    const PARTS: [(&str, &str, &[&str]); 3] = [
+        ("Power", "", &["gains", "gain-over-amplitude", "power"]),
+        (
+            "The wake",
+            "Velocities are relative to the free stream asked for at hub height; lengths to the \
+             first turbine's rotor diameter D.",
+            &[
+                "mean-hub-height",
+                "difference-hub-height",
+                "instant-hub-height",
+                "mean-streamwise",
+                "mean-crosswind",
+                "profiles",
+                "recovery",
+            ],
+        ),
+        ("Blades and rotor", "", &["pitch", "rotor-speed"]),
+    ];
+    let mut parts = Vec::new();
+    for (title, lead, names) in PARTS {
+        let mut drawings = Vec::new();
+        for figure in figures.iter().filter(|figure| names.contains(&figure.name.as_str())) {
+            let drawn = svg::inline(figure)
+                .map_err(|source| ReportError::Picture { figure: figure.name.clone(), source })?;
+            drawings.push(context! {
+                name => figure.name.clone(),
+                title => figure.title.clone(),
+                caption => figure.caption.clone(),
+                svg => Value::from_safe_string(drawn),
+            });
+        }
+        if !drawings.is_empty() {
+            parts.push(context! { title, lead, figures => drawings });
+        }
+    }
+    Ok(parts)
+}

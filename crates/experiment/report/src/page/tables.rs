@@ -1,0 +1,219 @@
+//! The tables of the page, as rows of ready text.
+
+use crate::draw::colour::Ink;
+use crate::sentence;
+use crate::study::{Kind, Study};
+use crate::words::{self, SPACE, number, percent, three_figures};
+use basis::records::Statistic;
+use minijinja::{Value, context};
+use std::f64::consts::TAU;
+
+/// The conditions that all runs share.
+pub(crate) fn conditions(study: &Study) -> Vec<Value> {
+    let summary = &study.runs()[0].summary;
+    let conditions = &summary.conditions;
+    let analysed = conditions.duration - conditions.spin_up;
+    let fact = |label: &str, value: String, remark: String| context! { label, value, remark };
+    let mut facts = vec![
+        fact(
+            "Wind speed at hub height",
+            format!("{}{SPACE}m/s", number(conditions.wind_speed, 1)),
+            format!("{}{SPACE}m/s arrived", number(conditions.arriving_wind_speed, 2)),
+        ),
+        fact(
+            "Turbulence intensity",
+            percent(conditions.turbulence_intensity),
+            format!(
+                "{} arrived upstream of {}",
+                percent(conditions.arriving_turbulence_intensity),
+                summary.turbines.first().map_or("the row", |turbine| turbine.name.as_str())
+            ),
+        ),
+        fact(
+            "Shear exponent",
+            number(conditions.shear_exponent, 2),
+            format!("turbulence seed {}", conditions.seed),
+        ),
+    ];
+    let mut models: Vec<String> = summary.turbines.iter().map(|t| t.model.clone()).collect();
+    models.dedup();
+    facts.push(fact(
+        "Turbines",
+        format!("{} × {}", summary.turbines.len(), models.join(", ")),
+        format!("rotor diameter D = {}{SPACE}m", number(conditions.rotor_diameter, 1)),
+    ));
+    if let Some(spacing) = sentence::spacing(study) {
+        let meters: Vec<String> = study
+            .spacings()
+            .iter()
+            .map(|spacing| number(spacing * conditions.rotor_diameter, 0))
+            .collect();
+        facts.push(fact("Spacing", spacing, format!("{}{SPACE}m", meters.join(", "))));
+    }
+    let blocks = sentence::length(&summary.array_power, analysed);
+    facts.push(fact(
+        "Length",
+        format!("{}{SPACE}s", number(conditions.duration, 0)),
+        format!("{}{SPACE}s spin-up, {blocks}", number(conditions.spin_up, 0)),
+    ));
+    facts.push(fact(
+        "Grid",
+        format!("{} cells per D", number(conditions.cells_per_diameter, 0)),
+        format!(
+            "{}{SPACE}m cells, {}{SPACE}s flow step",
+            number(conditions.rotor_diameter / conditions.cells_per_diameter, 1),
+            number(conditions.interval, 3)
+        ),
+    ));
+    facts
+}
+
+/// Every excited turbine.
+pub(crate) fn excitations(study: &Study) -> Vec<Value> {
+    let mut rows = Vec::new();
+    for (run, &colour) in study.runs().iter().zip(&study.colours) {
+        for excitation in study.excitations(run) {
+            let pitch = &excitation.pitch;
+            let kind = match excitation.kind {
+                Kind::CounterClockwise => "helix, counter-clockwise".to_owned(),
+                Kind::Clockwise => "helix, clockwise".to_owned(),
+                Kind::Pulse => "pulse".to_owned(),
+                Kind::Other => excitation.turbine.control.clone(),
+            };
+            rows.push(context! {
+                run => run.summary.run.clone(),
+                colour,
+                turbine => excitation.turbine.name.clone(),
+                kind,
+                strouhal => number(excitation.strouhal, 3),
+                asked => number(pitch.commanded_amplitude_deg, 2),
+                delivered => number(pitch.delivered_amplitude_deg, 2),
+                frequency => number(pitch.frequency_hz, 4),
+                excitation_period => number(1.0 / pitch.excitation_frequency_hz.abs(), 1),
+                clipped => percent(pitch.clipped_share),
+            });
+        }
+    }
+    rows
+}
+
+/// One row for each turbine of each run, and one for all together.
+pub(crate) fn results(study: &Study) -> Vec<Value> {
+    let mut rows = Vec::new();
+    for (run, &colour) in study.runs().iter().zip(&study.colours) {
+        let summary = &run.summary;
+        let has_total = summary.turbines.len() > 1;
+        let span = summary.turbines.len() + usize::from(has_total);
+        for (index, turbine) in summary.turbines.iter().enumerate() {
+            let excited = turbine.delivered_pitch.filter(|p| p.commanded_amplitude_deg > 0.0);
+            let pitch = excited.map_or_else(String::new, |pitch| {
+                format!(
+                    "{}° at {}{SPACE}Hz",
+                    number(pitch.delivered_amplitude_deg, 2),
+                    number(pitch.frequency_hz, 3)
+                )
+            });
+            rows.push(context! {
+                run => summary.run.clone(),
+                colour,
+                ink => Ink::Run(colour).name(),
+                span => if index == 0 { span } else { 0 },
+                turbine => turbine.name.clone(),
+                control => turbine.control.clone(),
+                is_total => false,
+                power => quantity(&turbine.power, 1e6),
+                gain => gain(turbine.power_gain.as_ref()),
+                thrust => quantity(&turbine.thrust, 1e3),
+                rotor_speed => quantity(&turbine.rotor_speed, TAU / 60.0),
+                pitch,
+            });
+        }
+        if has_total {
+            rows.push(context! {
+                run => summary.run.clone(),
+                colour,
+                ink => Ink::Run(colour).name(),
+                span => if summary.turbines.is_empty() { 1 } else { 0 },
+                turbine => "All".to_owned(),
+                control => String::new(),
+                is_total => true,
+                power => quantity(&summary.array_power, 1e6),
+                gain => gain(summary.array_power_gain.as_ref()),
+                thrust => Vec::<String>::new(),
+                rotor_speed => Vec::<String>::new(),
+                pitch => String::new(),
+            });
+        }
+    }
+    rows
+}
+
+/// Mean and "± half width" in units of `scale`.
+fn quantity(statistic: &Statistic, scale: f64) -> Vec<String> {
+    let decimals = three_figures(statistic.mean / scale);
+    let interval = match statistic.half_width_95 {
+        Some(_) => words::interval(statistic, scale, decimals),
+        None => String::new(),
+    };
+    vec![number(statistic.mean / scale, decimals), interval]
+}
+
+fn gain(statistic: Option<&Statistic>) -> Vec<String> {
+    let Some(statistic) = statistic else { return Vec::new() };
+    let interval = match statistic.half_width_95 {
+        Some(_) => words::interval(statistic, 0.01, 1),
+        None => "no interval".to_owned(),
+    };
+    vec![words::signed(100.0 * statistic.mean, 1), interval]
+}
+
+/// Whether any turbine has damage-equivalent loads.
+pub(crate) fn has_loads(study: &Study) -> bool {
+    study
+        .runs()
+        .iter()
+        .any(|run| run.summary.turbines.iter().any(|t| !t.damage_equivalent_loads.is_empty()))
+}
+
+/// Damage-equivalent loads of all turbines in all runs.
+pub(crate) fn loads(study: &Study) -> Vec<Value> {
+    study
+        .runs()
+        .iter()
+        .flat_map(|run| run.summary.turbines.iter().map(move |turbine| (run, turbine)))
+        .flat_map(|(run, turbine)| {
+            turbine.damage_equivalent_loads.iter().map(move |(channel, load)| {
+                context! {
+                    run => run.summary.run.clone(),
+                    turbine => turbine.name.clone(),
+                    channel => channel.clone(),
+                    load => format!("{load:.4e}"),
+                }
+            })
+        })
+        .collect()
+}
+
+/// What every run cost.
+pub(crate) fn costs(study: &Study) -> Vec<Value> {
+    study
+        .runs()
+        .iter()
+        .zip(&study.colours)
+        .map(|(run, &colour)| {
+            let cost = &run.summary.cost;
+            let ratio = cost.wall_time / run.summary.conditions.duration;
+            context! {
+                run => run.summary.run.clone(),
+                colour,
+                wall_time => words::duration(cost.wall_time),
+                ratio => number(ratio, three_figures(ratio).min(2)),
+                cells => words::count(cost.n_cells),
+                steps => words::count(cost.n_steps),
+                updates => number(cost.updates_per_second / 1e6, three_figures(cost.updates_per_second / 1e6)),
+                threads => cost.n_threads,
+                memory => words::memory(cost.memory),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,245 @@
+//! A study seen as its reader sees it: which run is the measure, what was done, where things stand.
+
+use crate::{ReportError, RunRecords, StudyRecords};
+use basis::records::{DeliveredPitch, Plane, PlaneAxes, TurbineSummary};
+use std::f64::consts::TAU;
+
+/// How a turbine was excited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Helix, blades pitch at rotor minus excitation frequency.
+    Clockwise,
+    /// Helix, blades pitch at rotor plus excitation frequency.
+    CounterClockwise,
+    /// Collective pitch.
+    Pulse,
+    /// Known only by the words of the summary.
+    Other,
+}
+
+/// One excited turbine of a run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Excitation<'a> {
+    /// The turbine.
+    pub(crate) turbine: &'a TurbineSummary,
+    /// How it was excited.
+    pub(crate) kind: Kind,
+    /// What arrived at the blades.
+    pub(crate) pitch: DeliveredPitch,
+    /// f D / U with the speed asked for and the first turbine's diameter (–).
+    pub(crate) strouhal: f64,
+}
+
+/// The study, digested.
+pub(crate) struct Study<'a> {
+    /// The records behind it.
+    pub(crate) records: &'a StudyRecords,
+    /// Position of each turbine (diameters); empty when the case file does not tell.
+    pub(crate) layout: Vec<[f64; 2]>,
+    /// Colour index of each run: 0 is kept for the run that others compare with.
+    pub(crate) colours: Vec<usize>,
+}
+
+impl<'a> Study<'a> {
+    /// Looks at `records`.
+    ///
+    /// # Errors
+    /// [`ReportError::NoRuns`] when there are none.
+    pub(crate) fn new(records: &'a StudyRecords) -> Result<Self, ReportError> {
+        if records.runs.is_empty() {
+            return Err(ReportError::NoRuns { case: records.case_name.clone() });
+        }
+        let reference = records
+            .runs
+            .iter()
+            .find_map(|run| run.summary.compare_with.as_deref())
+            .and_then(|name| records.runs.iter().position(|run| run.summary.run == name))
+            .unwrap_or(0);
+        let colours = (0..records.runs.len())
+            .map(|run| match run {
+                run if run == reference => 0,
+                run if run < reference => run + 1,
+                run => run,
+            })
+            .collect();
+        Ok(Self { records, layout: layout_of(&records.case_text), colours })
+    }
+
+    /// The runs.
+    pub(crate) fn runs(&self) -> &'a [RunRecords] {
+        &self.records.runs
+    }
+
+    /// Runs with their colours and names, for legends.
+    pub(crate) fn names(&self) -> Vec<(usize, &'a str)> {
+        let names = self.runs().iter().map(|run| run.summary.run.as_str());
+        self.colours.iter().copied().zip(names).collect()
+    }
+
+    /// Diameter of the first turbine's rotor (m).
+    pub(crate) fn diameter(&self) -> f64 {
+        let diameter = self.runs()[0].summary.conditions.rotor_diameter;
+        if diameter > 0.0 { diameter } else { 1.0 }
+    }
+
+    /// Speed that velocities are shown relative to: the one asked for at hub height (m/s).
+    pub(crate) fn free_stream(&self) -> f64 {
+        let speed = self.runs()[0].summary.conditions.wind_speed;
+        if speed > 0.0 { speed } else { 1.0 }
+    }
+
+    /// Hub height, from the hub-height plane (m).
+    pub(crate) fn hub_height(&self) -> Option<f64> {
+        self.runs().iter().find_map(|run| {
+            let planes = run.mean_planes.iter().chain(&run.instant_planes);
+            let mut horizontal = planes.filter(|plane| plane.axes == PlaneAxes::Horizontal);
+            horizontal.next().map(|plane| plane.origin[2])
+        })
+    }
+
+    /// Run with the largest gain of the array.
+    pub(crate) fn best(&self) -> Option<&'a RunRecords> {
+        self.runs()
+            .iter()
+            .filter_map(|run| Some((run, gain_of(run)?)))
+            .max_by(|(_, a), (_, b)| a.total_cmp(b))
+            .map(|(run, _)| run)
+    }
+
+    /// The excited turbines of `run`.
+    pub(crate) fn excitations(&self, run: &'a RunRecords) -> Vec<Excitation<'a>> {
+        let conditions = &run.summary.conditions;
+        run.summary
+            .turbines
+            .iter()
+            .filter_map(|turbine| {
+                let pitch = turbine.delivered_pitch?;
+                let strouhal = pitch.excitation_frequency_hz.abs() * conditions.rotor_diameter
+                    / conditions.wind_speed;
+                Some(Excitation { turbine, kind: kind_of(turbine, &pitch), pitch, strouhal })
+            })
+            .filter(|excitation| excitation.pitch.commanded_amplitude_deg > 0.0)
+            .collect()
+    }
+
+    /// Distances between neighbours along the row (diameters).
+    pub(crate) fn spacings(&self) -> Vec<f64> {
+        self.layout
+            .windows(2)
+            .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
+            .collect()
+    }
+}
+
+/// The plane called `name`.
+pub(crate) fn plane<'p>(planes: &'p [Plane], name: &str) -> Option<&'p Plane> {
+    planes.iter().find(|plane| plane.name == name && is_whole(plane))
+}
+
+/// Whether a plane holds as many values as it says, and more than a line of them.
+pub(crate) fn is_whole(plane: &Plane) -> bool {
+    let [n_first, n_second] = plane.n_points;
+    n_first > 1
+        && n_second > 1
+        && plane.spacing.iter().all(|spacing| *spacing > 0.0)
+        && plane.velocity[0].len() == n_first * n_second
+}
+
+/// Streamwise velocity at (`first`, `second`) along the plane's axes (farm frame, m), between its
+/// points linear; absent outside.
+pub(crate) fn sample(plane: &Plane, first: f64, second: f64) -> Option<f64> {
+    let start = match plane.axes {
+        PlaneAxes::Horizontal => [plane.origin[0], plane.origin[1]],
+        PlaneAxes::Streamwise => [plane.origin[0], plane.origin[2]],
+        PlaneAxes::Crosswind => [plane.origin[1], plane.origin[2]],
+    };
+    let mut cell = [0; 2];
+    let mut share = [0.0; 2];
+    for (axis, value) in [first, second].into_iter().enumerate() {
+        let index = (value - start[axis]) / plane.spacing[axis];
+        let last = (plane.n_points[axis] - 1) as f64;
+        if !(-1e-6..=last + 1e-6).contains(&index) {
+            return None;
+        }
+        cell[axis] = (index.max(0.0) as usize).min(plane.n_points[axis] - 2);
+        share[axis] = (index - cell[axis] as f64).clamp(0.0, 1.0);
+    }
+    let at = |i: usize, j: usize| {
+        f64::from(plane.velocity[0][(cell[1] + j) * plane.n_points[0] + cell[0] + i])
+    };
+    let lower = at(0, 0) + share[0] * (at(1, 0) - at(0, 0));
+    let upper = at(0, 1) + share[0] * (at(1, 1) - at(0, 1));
+    Some(lower + share[1] * (upper - lower))
+}
+
+/// Gain of the array in a run.
+pub(crate) fn gain_of(run: &RunRecords) -> Option<f64> {
+    run.summary.array_power_gain.map(|gain| gain.mean).filter(|gain| gain.is_finite())
+}
+
+/// What the words of the summary, or else the frequency of the pitch, say of the excitation.
+fn kind_of(turbine: &TurbineSummary, pitch: &DeliveredPitch) -> Kind {
+    let control = turbine.control.to_lowercase();
+    let says = |words: &[&str]| words.iter().any(|word| control.contains(word));
+    let rotor_frequency = turbine.rotor_speed.mean / TAU;
+    if says(&["pulse", "collective"]) {
+        Kind::Pulse
+    } else if says(&["ccw", "counter"]) {
+        Kind::CounterClockwise
+    } else if says(&["cw", "clockwise"]) {
+        Kind::Clockwise
+    } else if !says(&["helix"]) {
+        Kind::Other
+    } else if pitch.frequency_hz > rotor_frequency {
+        Kind::CounterClockwise
+    } else {
+        Kind::Clockwise
+    }
+}
+
+/// Positions of the turbines (diameters) that the case file gives; empty when it gives none.
+fn layout_of(case_text: &str) -> Vec<[f64; 2]> {
+    let Ok(case) = case_text.parse::<toml::Table>() else { return Vec::new() };
+    let turbines = case.get("turbine").and_then(toml::Value::as_array);
+    let position = |turbine: &toml::Value| {
+        let pair = turbine.get("position_diameters")?.as_array()?;
+        let value = |index: usize| {
+            let value: &toml::Value = pair.get(index)?;
+            value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64))
+        };
+        Some([value(0)?, value(1)?])
+    };
+    turbines
+        .and_then(|turbines| turbines.iter().map(position).collect::<Option<Vec<_>>>())
+        .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_layout_comes_from_the_case_file() {
+        let text = "[[turbine]]\nposition_diameters = [0, 0.0]\n[[turbine]]\nposition_diameters = [5.0, -1]\n";
+        assert_eq!(layout_of(text), [[0.0, 0.0], [5.0, -1.0]]);
+        assert!(layout_of("name = 3").is_empty() && layout_of("not toml at all [").is_empty());
+        assert!(layout_of("[[turbine]]\nposition_diameters = [1]\n").is_empty());
+    }
+
+    #[test]
+    fn a_plane_is_linear_between_its_points() {
+        let plane = Plane {
+            name: "hub-height".into(),
+            axes: PlaneAxes::Horizontal,
+            origin: [-10.0, -4.0, 90.0],
+            spacing: [5.0, 2.0],
+            n_points: [3, 2],
+            time: 0.0,
+            averaged: 0.0,
+            velocity: [vec![0.0, 1.0, 2.0, 10.0, 11.0, 12.0], vec![0.0; 6], vec![0.0; 6]],
+        };
+        assert_eq!(sample(&plane, -7.5, -3.0), Some(5.5));
+        assert_eq!(sample(&plane, 0.0, -2.0), Some(12.0));
+        assert_eq!(sample(&plane, 0.1, -2.0), None);
+    }
+}

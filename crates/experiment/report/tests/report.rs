@@ -1,0 +1,192 @@
+//! The page of a study in closed form: what it says, that it stands alone, that it always stands.
+
+mod synthetic;
+
+use report::{ReportError, StudyRecords};
+use std::fs;
+use std::path::Path;
+
+fn page(study: &StudyRecords) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    report::write(study, folder.path()).expect("a report");
+    read(folder.path())
+}
+
+fn read(folder: &Path) -> String {
+    fs::read_to_string(folder.join("report.html")).expect("a page").replace('\u{a0}', " ")
+}
+
+#[test]
+fn the_page_says_what_the_numbers_say_and_under_which_conditions() {
+    let page = page(&synthetic::two_runs());
+    for expected in [
+        "<h1>quickstart</h1>",
+        "A counter-clockwise helix of 4.0° on T1 cost T1 2.1 % of its power and gave T2 14.2 % more: \
+         +5.3 % ± 1.2 % for the two together.",
+        "TI 5.0 % asked, 4.6 % arrived",
+        "spacing 5.0 D",
+        "ccw helix on T1, 4.0° asked, 3.9° delivered, St 0.25",
+        "2100 s analysed in 3 ten-minute blocks",
+        "16 cells per diameter",
+        "compared with “baseline” in the same inflow",
+        "Power of T1 differs from blade-element momentum by 6.1 % (limit 5 %)",
+        "<td class=\"n\">8.91</td><td class=\"pm\">± 0.18</td>",
+        "1 258 291",
+        "wakemix 0.1.0",
+    ] {
+        assert!(page.contains(expected), "`{expected}` is missing");
+    }
+}
+
+#[test]
+fn the_page_stands_alone_and_its_elements_close() {
+    let page = page(&synthetic::two_runs());
+    for attribute in ["src=", "href="] {
+        for (at, _) in page.match_indices(attribute) {
+            let value = &page[at + attribute.len()..];
+            assert!(value.starts_with("\"data:"), "{}", &value[..60]);
+        }
+    }
+    for outside in ["@import", "http://", "https://", "fetch(", "<link", "<iframe"] {
+        let allowed = page.matches("http://www.w3.org/2000/svg").count();
+        let n_found = page.matches(outside).count();
+        let n_allowed = if outside == "http://" { allowed } else { 0 };
+        assert_eq!(n_found, n_allowed, "{outside}");
+    }
+    // What a case file says is shown, not obeyed.
+    assert!(page.contains("&lt;script&gt;alert(1)"));
+    assert_eq!(page.matches("<script").count(), 1);
+    assert_well_formed(&page);
+}
+
+/// Walks through the tags and checks that each closes the one that was opened last.
+fn assert_well_formed(page: &str) {
+    let is_void = |name: &str| matches!(name, "meta" | "br" | "link" | "!doctype");
+    let mut open: Vec<&str> = Vec::new();
+    let mut ids = Vec::new();
+    let mut rest = page;
+    while let Some(start) = rest.find('<') {
+        rest = &rest[start + 1..];
+        let end = rest.find('>').expect("a tag ends");
+        let tag = &rest[..end];
+        let name =
+            tag.trim_start_matches('/').split(|c: char| c.is_whitespace() || c == '/').next();
+        let name = name.expect("a tag has a name");
+        if let Some(id) = tag.split(" id=\"").nth(1).and_then(|value| value.split('"').next()) {
+            assert!(!ids.contains(&id), "two elements are called {id}");
+            ids.push(id);
+        }
+        rest = &rest[end + 1..];
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name), "<{tag}> closes nothing");
+        } else if !tag.ends_with('/') && !is_void(name) {
+            open.push(name);
+            if name == "script" || name == "style" {
+                let close = rest.find("</").expect("it ends");
+                rest = &rest[close..];
+            }
+        }
+    }
+    assert!(open.is_empty(), "{open:?} stay open");
+}
+
+#[test]
+fn figures_lie_beside_the_page_in_both_forms_and_nothing_else_does() {
+    let folder = tempfile::tempdir().expect("a folder");
+    report::write(&synthetic::two_runs(), folder.path()).expect("a report");
+    let mut names: Vec<String> = fs::read_dir(folder.path().join("figures"))
+        .expect("figures")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    for name in ["power", "gains", "mean-hub-height", "mean-crosswind", "pitch", "recovery"] {
+        assert!(names.contains(&format!("{name}.svg")) && names.contains(&format!("{name}.png")));
+    }
+    assert!(names.iter().all(|name| name.ends_with(".svg") || name.ends_with(".png")), "{names:?}");
+    assert_eq!(fs::read_dir(folder.path()).expect("the folder").count(), 2);
+    let png = fs::read(folder.path().join("figures/power.png")).expect("a picture");
+    let header = png::Decoder::new(std::io::Cursor::new(png));
+    assert_eq!(header.read_info().expect("a picture").info().width, 2000);
+}
+
+#[test]
+fn the_same_records_give_the_same_bytes() {
+    let study = synthetic::two_runs();
+    assert_eq!(page(&study), page(&study));
+}
+
+#[test]
+fn a_second_report_replaces_the_first() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut study = synthetic::two_runs();
+    report::write(&study, folder.path()).expect("a report");
+    study.case_name = "renamed".into();
+    report::write(&study, folder.path()).expect("a report");
+    assert!(read(folder.path()).contains("<h1>renamed</h1>"));
+}
+
+#[test]
+fn what_is_missing_is_left_out() {
+    let mut study = synthetic::two_runs();
+    study.runs.truncate(1);
+    study.description = None;
+    study.case_text = "not a case file".into();
+    let only = &mut study.runs[0];
+    only.series = Default::default();
+    only.mean_planes.clear();
+    only.instant_planes.clear();
+    only.summary.array_power.half_width_95 = None;
+    let page = page(&study);
+    assert!(page.contains("T1 and T2 made 13.4 MW together in the run “baseline”."));
+    for absent in ["<figure", "Gain (%)", "spacing", "NaN", ">inf", "None", "undefined"] {
+        let text = page.split("<script").next().expect("a body").split("</style>").nth(1);
+        assert!(!text.expect("a body").contains(absent), "`{absent}` is on the page");
+    }
+    assert_well_formed(&page);
+}
+
+#[test]
+fn a_gain_without_certainty_says_so() {
+    let mut study = synthetic::two_runs();
+    let gain = study.runs[1].summary.array_power_gain.as_mut().expect("a gain");
+    gain.half_width_95 = Some(0.09);
+    assert!(page(&study).contains("The interval includes zero"));
+    study.runs[1].summary.array_power_gain.as_mut().expect("a gain").half_width_95 = None;
+    assert!(page(&study).contains("There is no interval"));
+}
+
+#[test]
+fn broken_records_still_make_a_page() {
+    let mut study = synthetic::two_runs();
+    for run in &mut study.runs {
+        run.summary.turbines[0].power.mean = f64::NAN;
+        run.summary.conditions.wind_speed = 0.0;
+        run.series.columns[1].truncate(3);
+        run.mean_planes[0].velocity[0].pop();
+        for value in &mut run.mean_planes[1].velocity[0] {
+            *value = f32::NAN;
+        }
+    }
+    assert_well_formed(&page(&study));
+}
+
+#[test]
+fn many_runs_make_a_curve_over_amplitude_and_keep_their_colours() {
+    let page = page(&synthetic::nine_runs());
+    assert!(page.contains("id=\"gain-over-amplitude\""));
+    assert!(page.contains("A counter-clockwise helix of 5.0° on T1"));
+    assert_well_formed(&page);
+}
+
+#[test]
+fn a_study_without_runs_and_a_folder_that_is_a_file_are_refused() {
+    let mut study = synthetic::two_runs();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("file");
+    fs::write(&file, "").expect("a file");
+    assert!(matches!(report::write(&study, &file), Err(ReportError::Write { .. })));
+    study.runs.clear();
+    let refusal = report::write(&study, folder.path()).expect_err("nothing to report");
+    assert!(matches!(refusal, ReportError::NoRuns { .. }));
+    assert!(!folder.path().join("report.html").exists());
+}
