@@ -1,1 +1,67 @@
-//! x
+//! What an engineer reads from records: means with their uncertainty, spectra, delivered pitch, wakes.
+
+pub mod line;
+pub mod pitch;
+pub mod spectra;
+pub mod statistics;
+pub mod wake;
+
+use thiserror::Error;
+
+/// Why a record cannot be analysed.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum AnalysisError {
+    /// The record has too few samples.
+    #[error("{n_samples} samples are too few, {needed} are needed")]
+    TooShort {
+        /// Samples given (–).
+        n_samples: usize,
+        /// Fewest samples that would do (–).
+        needed: usize,
+    },
+    /// Two records that belong together differ in length.
+    #[error("records of {first} and {second} samples do not belong together")]
+    UnequalLengths {
+        /// Samples of one (–).
+        first: usize,
+        /// Samples of the other (–).
+        second: usize,
+    },
+    /// A length of time that does not hold one sample.
+    #[error("{quantity} must be positive, not {value} s")]
+    NotPositive {
+        /// What it is, in words.
+        quantity: &'static str,
+        /// What was given (s).
+        value: f64,
+    },
+    /// A ratio to a mean of zero.
+    #[error("the compared record has a mean of zero")]
+    ZeroMean,
+    /// A rotor whose blades do not make a fixed frame.
+    #[error("a rotor of {n_blades} blades has no tilt and yaw, 3 are needed")]
+    TooFewBlades {
+        /// Blades (–).
+        n_blades: usize,
+    },
+    /// A plane with the wrong axes.
+    #[error("plane {name} spans {found:?}, {needed} is needed")]
+    WrongPlane {
+        /// Name of the plane.
+        name: String,
+        /// Axes that it spans.
+        found: basis::records::PlaneAxes,
+        /// Axes that are needed, in words.
+        needed: &'static str,
+    },
+    /// A place that the plane does not reach.
+    #[error("plane {name} does not reach ({first:.1}, {second:.1}) m")]
+    OutsidePlane {
+        /// Name of the plane.
+        name: String,
+        /// Coordinate along its first axis (m).
+        first: f64,
+        /// Coordinate along its second axis (m).
+        second: f64,
+    },
+}

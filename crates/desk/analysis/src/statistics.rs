@@ -1,0 +1,140 @@
+//! Means, gains and the intervals that go with them.
+
+mod student;
+
+use crate::AnalysisError;
+use basis::records::Statistic;
+pub use student::student_97_5;
+
+/// Length of the blocks whose means are taken as independent (s): ten minutes, the field's averaging time.
+pub const BLOCK_LENGTH: f64 = 600.0;
+
+/// Mean of `samples` (any unit, every `interval` s), standard deviation, and the half width of the 95 % interval
+/// of the mean from blocks of `block_length` (s).
+///
+/// The half width is t s / √n with the standard deviation s of the n block means and Student's t for n − 1
+/// degrees of freedom; with fewer than two whole blocks there is none. Samples after the last whole block count
+/// for mean and standard deviation, not for the interval.
+///
+/// Source: Law, "Simulation Modeling and Analysis", 5th ed., 2015, §9.5.3 (batch means).
+/// Limits: right as far as block means are independent; blocks must be long against the slowest motion of the wake.
+///
+/// # Errors
+/// [`AnalysisError::TooShort`] without samples; [`AnalysisError::NotPositive`] for a block that holds no sample.
+///
+/// ```
+/// // 1 in the first block, 3 in the second: t(0.975, 1) = 12.706, s / √2 = 1
+/// let samples = [[1.0; 600], [3.0; 600]].concat();
+/// let statistic = analysis::statistics::statistic(&samples, 1.0, 600.0)?;
+/// assert_eq!(statistic.mean, 2.0);
+/// assert!((statistic.half_width_95.unwrap() - 12.706).abs() < 1e-3);
+/// # Ok::<(), analysis::AnalysisError>(())
+/// ```
+pub fn statistic(
+    samples: &[f64],
+    interval: f64,
+    block_length: f64,
+) -> Result<Statistic, AnalysisError> {
+    let blocks = block_means(samples, interval, block_length)?;
+    let mean = mean(samples);
+    let variance = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples.len() as f64;
+    Ok(Statistic {
+        mean,
+        standard_deviation: variance.sqrt(),
+        half_width_95: half_width_95(&blocks),
+        n_blocks: blocks.len(),
+    })
+}
+
+/// Gain of `samples` over `compared` (same unit, same instants, every `interval` s): ratio of the two means minus
+/// one (–), with its interval from paired blocks of `block_length` (s).
+///
+/// Both runs met the same wind, so what the wind does to a block cancels within the pair. With block means
+/// yᵢ and xᵢ, ratio r and mean x̄, the half width is t s / √n with the standard deviation s of
+/// (yᵢ − r xᵢ) / x̄; `standard_deviation` of the result is this s (zero with fewer than two blocks).
+///
+/// Source: Cochran, "Sampling Techniques", 3rd ed., 1977, §6.3-6.4 (ratio estimate and its variance).
+///
+/// # Errors
+/// [`AnalysisError::UnequalLengths`], [`AnalysisError::ZeroMean`], and those of [`statistic`].
+pub fn gain(
+    samples: &[f64],
+    compared: &[f64],
+    interval: f64,
+    block_length: f64,
+) -> Result<Statistic, AnalysisError> {
+    if samples.len() != compared.len() {
+        return Err(AnalysisError::UnequalLengths { first: samples.len(), second: compared.len() });
+    }
+    let blocks = block_means(samples, interval, block_length)?;
+    let compared_blocks = block_means(compared, interval, block_length)?;
+    let reference = mean(compared);
+    if reference == 0.0 {
+        return Err(AnalysisError::ZeroMean);
+    }
+    let ratio = mean(samples) / reference;
+    let residuals: Vec<f64> =
+        blocks.iter().zip(&compared_blocks).map(|(y, x)| (y - ratio * x) / reference).collect();
+    Ok(Statistic {
+        mean: ratio - 1.0,
+        standard_deviation: sample_deviation(&residuals).unwrap_or(0.0),
+        half_width_95: half_width_95(&residuals),
+        n_blocks: residuals.len(),
+    })
+}
+
+/// Turbulence intensity (–): standard deviation of the streamwise velocity `samples` (m/s) over their mean.
+///
+/// # Errors
+/// [`AnalysisError::TooShort`] without samples, [`AnalysisError::ZeroMean`] in still air.
+pub fn turbulence_intensity(samples: &[f64]) -> Result<f64, AnalysisError> {
+    let whole = statistic(samples, 1.0, f64::MAX)?;
+    if whole.mean == 0.0 {
+        return Err(AnalysisError::ZeroMean);
+    }
+    Ok(whole.standard_deviation / whole.mean)
+}
+
+/// Mean of each whole block of `block_length` (s) in `samples`, taken every `interval` (s).
+///
+/// # Errors
+/// [`AnalysisError::TooShort`] without samples; [`AnalysisError::NotPositive`] for a block that holds no sample.
+pub fn block_means(
+    samples: &[f64],
+    interval: f64,
+    block_length: f64,
+) -> Result<Vec<f64>, AnalysisError> {
+    if samples.is_empty() {
+        return Err(AnalysisError::TooShort { n_samples: 0, needed: 1 });
+    }
+    let positive = |quantity, value: f64| {
+        if value > 0.0 { Ok(()) } else { Err(AnalysisError::NotPositive { quantity, value }) }
+    };
+    positive("the sampling interval", interval)?;
+    positive("the block length", block_length)?;
+    let n_samples = (block_length / interval).round().max(1.0) as usize;
+    Ok(samples.chunks_exact(n_samples).map(mean).collect())
+}
+
+/// Half width of the 95 % interval of the mean of `blocks`; none with fewer than two.
+fn half_width_95(blocks: &[f64]) -> Option<f64> {
+    let deviation = sample_deviation(blocks)?;
+    Some(student_97_5(blocks.len() - 1) * deviation / (blocks.len() as f64).sqrt())
+}
+
+/// Standard deviation with n − 1 in the denominator; none with fewer than two values.
+fn sample_deviation(values: &[f64]) -> Option<f64> {
+    if values.len() < 2 {
+        return None;
+    }
+    let mean = mean(values);
+    let sum = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
+    Some((sum / (values.len() - 1) as f64).sqrt())
+}
+
+pub(crate) fn mean(samples: &[f64]) -> f64 {
+    samples.iter().sum::<f64>() / samples.len() as f64
+}
+
+#[cfg(test)]
+mod tests;
