@@ -24,7 +24,7 @@ impl Model {
     pub fn footprint(&self) -> Footprint {
         Footprint {
             diameter: self.definition.rotor_diameter(),
-            hub_height: self.definition.hub_height,
+            hub_height: self.definition.rotor.hub_height,
             rated_tip_speed: self.constants.rated_rotor_speed * 0.5 * self.definition.rotor_diameter(),
         }
     }
@@ -72,7 +72,7 @@ pub fn controller(
     diameter: f64,
 ) -> TurbineController {
     let excitation = match control {
-        Control::Baseline => Excitation::None,
+        Control::Baseline | Control::Absent => Excitation::None,
         Control::Helix(asked) => {
             let mut helix =
                 Helix::new(asked.sense, asked.amplitude, asked.strouhal, wind_speed, diameter);
@@ -91,7 +91,8 @@ pub fn controller(
     TurbineController::new(Baseline::new(model.constants.clone()), excitation)
 }
 
-/// The farm of one run, at time zero. `models` holds one entry per turbine of the case, in its order.
+/// The farm of one run, at time zero. `models` holds one entry per turbine of the case, in its order;
+/// the farm's machines are those of [`Run::present`].
 ///
 /// # Errors
 /// [`lattice::SettingsError`] when the air cannot be solved as planned.
@@ -107,9 +108,11 @@ pub fn farm(
         .iter()
         .zip(&plan.positions)
         .zip(&run.control)
+        .filter(|(_, control)| **control != Control::Absent)
         .map(|((model, &position), control)| {
             let settings = turbine::Settings {
                 smearing_length: SMEARING_CELLS * plan.spacing,
+                sample_spacing: plan.spacing,
                 air_density: case.wind.air_density,
                 rotor_speed: model.rotor_speed(case.wind.speed),
                 azimuth: 0.0,

@@ -121,6 +121,16 @@ pub struct Run {
     pub control: Vec<Control>,
 }
 
+impl Run {
+    /// Places in [`Case::turbines`] of the turbines that are there in this run, in order: the farm's machines.
+    pub fn present(&self) -> impl Iterator<Item = usize> + '_ {
+        let is_there = |(index, control): (usize, &Control)| {
+            (*control != Control::Absent).then_some(index)
+        };
+        self.control.iter().enumerate().filter_map(is_there)
+    }
+}
+
 /// What runs on a turbine, on top of torque and collective pitch control.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Control {
@@ -130,6 +140,8 @@ pub enum Control {
     Helix(Helix),
     /// The pulse: collective pitch, periodic.
     Pulse(Pulse),
+    /// The turbine is not there in this run.
+    Absent,
 }
 
 /// Settings of the helix.
