@@ -14,6 +14,7 @@ mod inlet;
 mod kernel;
 mod layout;
 mod memory;
+mod planes;
 mod pool;
 mod probe;
 mod sampling;
@@ -22,6 +23,7 @@ mod settings;
 mod simd;
 mod solver;
 pub mod spreading;
+mod state;
 mod stencil;
 mod sweep;
 #[cfg(test)]
@@ -29,6 +31,7 @@ mod tests;
 mod wall;
 
 pub use forces::ForceBlock;
+pub use planes::{PlaneAverage, PlaneAverageState, PlaneSizeError, Volume};
 pub use scaling::Scaling;
 pub use settings::{DEFAULT_SMAGORINSKY, Ends, Ground, Settings, SettingsError, Sides, Stencil};
 pub use simd::Backend;

@@ -18,6 +18,7 @@ pub(crate) struct View<'a> {
 unsafe impl Sync for View<'_> {}
 
 /// Density less one and velocity, forces aside, of one row of cells; padded to whole vectors.
+#[derive(Clone, Debug)]
 pub(crate) struct RowState {
     /// Density less one, cell by cell.
     pub(crate) density_excess: Vec<f32>,

@@ -113,11 +113,15 @@ impl Lattice {
     }
 
     fn cube_velocities(&self, low: [usize; 3], high: [usize; 3]) -> [[f32; 8]; 3] {
-        let cells: [[usize; 3]; 8] = std::array::from_fn(|corner| {
+        self.cell_velocities(&std::array::from_fn(|corner| {
             std::array::from_fn(|axis| if corner >> axis & 1 == 1 { high[axis] } else { low[axis] })
-        });
-        let [excess, mut u, mut v, mut w] = self.kernel.read_cells(&self.view(), &cells);
-        for (corner, [x, y, z]) in cells.into_iter().enumerate() {
+        }))
+    }
+
+    /// Physical velocities of eight cells, component by component, in lattice units.
+    pub(super) fn cell_velocities(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 3] {
+        let [excess, mut u, mut v, mut w] = self.kernel.read_cells(&self.view(), cells);
+        for (corner, [x, y, z]) in cells.iter().copied().enumerate() {
             let half = 0.5 / (1.0 + excess[corner]);
             let mut force = self.acceleration;
             if let Some(block) = self.spreader.blocks().iter().find_map(|block| block.at(x, y, z)) {

@@ -3,7 +3,7 @@
 use basis::Vector3;
 
 /// Square of the lattice speed of sound, in cells² per step².
-pub const SOUND_SPEED_SQUARED: f64 = 1.0 / 3.0;
+const SOUND_SPEED_SQUARED: f64 = 1.0 / 3.0;
 
 /// Turns SI quantities of the farm frame into lattice units and back.
 ///

@@ -149,3 +149,90 @@ fn a_blow_up_is_noticed_with_its_place() {
     assert!(time > 0.0 && time < 60.0);
     assert!(position.x > -40.0 && position.x < 330.0 && position.z > 0.0 && position.z < 90.0);
 }
+
+#[test]
+fn a_state_read_back_goes_on_with_the_same_bits() {
+    for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
+        for steps in [17.0, 22.0] {
+            let (mut air, forces) = gusty(2, backend);
+            air.advance(0.1 * steps, &forces).expect("no divergence");
+            let mut bytes = Vec::new();
+            air.write_state(&mut bytes).expect("memory takes it");
+            let (mut other, _) = gusty(3, backend);
+            other.advance(0.4, &[]).expect("no divergence");
+            other.read_state(&mut bytes.as_slice()).expect("a state");
+            assert_eq!(other.n_steps(), air.n_steps());
+            assert!(fingerprint(&other) == fingerprint(&air), "{backend:?}: on reading");
+            for (forces, duration) in [(&forces[1..], 0.7), (&forces[..], 0.8)] {
+                air.advance(duration, forces).expect("no divergence");
+                other.advance(duration, forces).expect("no divergence");
+            }
+            assert!(fingerprint(&other) == fingerprint(&air), "{backend:?}: later on");
+        }
+    }
+}
+
+#[test]
+fn a_foreign_state_is_refused() {
+    let (mut air, _) = gusty(1, Backend::Portable);
+    assert!(air.read_state(&mut &b"not a state at all"[..]).is_err());
+    let mut bytes = Vec::new();
+    lattice(periodic_box([8, 8, 8], 0.01), |_, _| Vector3::ZERO)
+        .write_state(&mut bytes)
+        .expect("memory takes it");
+    let error = air.read_state(&mut bytes.as_slice()).expect_err("another grid");
+    assert!(error.to_string().contains("cells along x 8"), "{error}");
+    let mut whole = Vec::new();
+    air.write_state(&mut whole).expect("memory takes it");
+    assert!(air.read_state(&mut &whole[..whole.len() - 1]).is_err());
+}
+
+#[test]
+fn planes_and_volumes_show_what_sampling_gives() {
+    use basis::records::PlaneAxes;
+    let (mut air, forces) = gusty(2, Backend::detect());
+    for duration in [2.0, 0.1] {
+        air.advance(duration, &forces).expect("no divergence");
+        for (axes, position) in [
+            (PlaneAxes::Horizontal, 41.0),
+            (PlaneAxes::Streamwise, -7.0),
+            (PlaneAxes::Crosswind, 66.0),
+        ] {
+            let plane = air.plane("p", axes, position);
+            let mut average = PlaneAverage::new(&air, "p", axes, position);
+            average.add(&air);
+            assert_eq!(average.mean().velocity, plane.velocity);
+            for index in 0..plane.velocity[0].len() {
+                let [a, b] = [index % plane.n_points[0], index / plane.n_points[0]]
+                    .iter()
+                    .zip(plane.spacing)
+                    .map(|(count, spacing)| *count as f64 * spacing)
+                    .collect::<Vec<_>>()[..]
+                else {
+                    unreachable!()
+                };
+                let offset = match axes {
+                    PlaneAxes::Horizontal => Vector3::new(a, b, 0.0),
+                    PlaneAxes::Streamwise => Vector3::new(a, 0.0, b),
+                    PlaneAxes::Crosswind => Vector3::new(0.0, a, b),
+                };
+                let mut velocity = [Vector3::ZERO];
+                air.sample(&[Vector3::from_array(plane.origin) + offset], &mut velocity);
+                let shown =
+                    Vector3::from_array(plane.velocity.each_ref().map(|c| f64::from(c[index])));
+                assert!(
+                    (shown - velocity[0]).length() < 1e-4,
+                    "{axes:?} {index}: {shown} {}",
+                    velocity[0]
+                );
+            }
+        }
+        let volume = air.volume(3);
+        assert_eq!(volume.n_points, [13, 4, 3]);
+        let mut velocity = [Vector3::ZERO];
+        air.sample(&[volume.origin + volume.spacing * Vector3::new(5.0, 2.0, 1.0)], &mut velocity);
+        let index = 5 + 13 * (2 + 4);
+        let shown = Vector3::from_array(volume.velocity.each_ref().map(|c| f64::from(c[index])));
+        assert!((shown - velocity[0]).length() < 1e-4);
+    }
+}
