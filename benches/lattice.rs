@@ -1,0 +1,127 @@
+//! Speed of the lattice against the limit that memory sets: `cargo bench -p wakemix-benches --bench lattice`.
+//!
+//! A cell update reads and writes each population once. The limit is the rate at which the same threads read and
+//! write back an array in place, measured in the same run; on a loaded machine both are disturbed, so each is
+//! repeated, turn about, and the best counts. Options after `--`: `quick` for a small box, a number for the repeats.
+
+use basis::{PointForce, Vector3};
+use benches::in_place_bandwidth;
+use flow::lattice::{Backend, Ends, Ground, Lattice, Settings};
+use flow::{FlowSolver, Inflow};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Bytes that a cell update moves (D3Q19 in f32, in and out).
+const BYTES_PER_UPDATE: f64 = 2.0 * 19.0 * 4.0;
+const STEPS: f64 = 20.0;
+
+struct Shear;
+
+impl Inflow for Shear {
+    fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]) {
+        for (position, velocity) in positions.iter().zip(velocities) {
+            let gust = (0.05 * (position.x - 10.0 * time)).sin();
+            *velocity = Vector3::new(9.0 + 0.005 * position.z + 0.3 * gust, 0.3 * gust, 0.0);
+        }
+    }
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let quick = arguments.iter().any(|argument| argument == "quick");
+    let n_repeats = arguments.iter().find_map(|argument| argument.parse().ok()).unwrap_or(5);
+    let n_cells = if quick { [192, 64, 64] } else { [288, 96, 96] };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut counts = vec![1, cores];
+    counts.dedup();
+    println!("cells {n_cells:?}, {} M; best of {n_repeats}", n_cells.iter().product::<usize>() as f64 / 1e6);
+    for n_threads in counts {
+        let mut bandwidth: f64 = 0.0;
+        let mut names = Vec::new();
+        let mut speeds: Vec<f64> = Vec::new();
+        for repeat in 0..n_repeats {
+            bandwidth = bandwidth.max(in_place_bandwidth(n_threads, 512, 3));
+            for (index, (name, backend, everything)) in cases().into_iter().enumerate() {
+                let speed = updates_per_second(n_cells, n_threads, backend, everything);
+                if repeat == 0 {
+                    names.push(name);
+                    speeds.push(speed);
+                } else {
+                    speeds[index] = speeds[index].max(speed);
+                }
+            }
+        }
+        println!("{n_threads} threads: in-place read and write {:.1} GB/s", bandwidth / 1e9);
+        for (name, speed) in names.iter().zip(&speeds) {
+            let share = speed * BYTES_PER_UPDATE / bandwidth;
+            println!("  {name:<28} {:>6.0} M updates/s  {:>5.1} % of the limit", speed / 1e6, 100.0 * share);
+        }
+    }
+    let air = lattice(n_cells, 1, Backend::detect(), true);
+    let cells = n_cells.iter().product::<usize>() as f64;
+    println!("memory {:.1} bytes a cell", air.memory() as f64 / cells);
+}
+
+/// Name, back-end, and whether everything is on.
+fn cases() -> Vec<(String, Backend, bool)> {
+    Backend::ALL
+        .into_iter()
+        .filter(|backend| backend.is_available())
+        .flat_map(|backend| [(format!("{backend:?} bare"), backend, false), (format!("{backend:?} everything"), backend, true)])
+        .collect()
+}
+
+fn lattice(n_cells: [usize; 3], n_threads: usize, backend: Backend, everything: bool) -> Lattice {
+    let mut settings = Settings::new(Vector3::ZERO, 10.0, n_cells, 0.08, 10.0);
+    settings.threads = Some(n_threads);
+    settings.backend = Some(backend);
+    if everything {
+        settings.ground = Ground::WallStress { roughness_length: 0.05 };
+    } else {
+        settings.ends = Ends::Periodic;
+    }
+    match Lattice::new(settings, Arc::new(Shear)) {
+        Ok(air) => air,
+        Err(error) => panic!("the bench's own settings: {error}"),
+    }
+}
+
+/// Best of three runs; `everything` means inlet, outlet, wall and two rotors' forces.
+fn updates_per_second(n_cells: [usize; 3], n_threads: usize, backend: Backend, everything: bool) -> f64 {
+    let mut air = lattice(n_cells, n_threads, backend, everything);
+    let forces = if everything { rotors(&air) } else { Vec::new() };
+    let interval = air.settings().interval;
+    let mut best = f64::INFINITY;
+    for _ in 0..3 {
+        let start = Instant::now();
+        for _ in 0..STEPS as usize {
+            if let Err(error) = air.advance(interval, &forces) {
+                panic!("{error}");
+            }
+        }
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    n_cells.iter().product::<usize>() as f64 * STEPS / best
+}
+
+/// Two rotors, a quarter of the box wide, of three blades of forty stations.
+fn rotors(air: &Lattice) -> Vec<PointForce> {
+    let spacing = air.settings().spacing;
+    let [n_x, n_y, n_z] = air.n_cells().map(|n| n as f64 * spacing);
+    let mut forces = Vec::new();
+    for rotor in [0.2, 0.6] {
+        for blade in 0..3 {
+            let (sine, cosine) = (f64::from(blade) * std::f64::consts::TAU / 3.0).sin_cos();
+            for station in 0..40 {
+                let radius = 0.125 * n_z * (f64::from(station) + 0.5) / 40.0;
+                let hub = Vector3::new(rotor * n_x, 0.5 * n_y, 0.5 * n_z);
+                forces.push(PointForce {
+                    position: hub + Vector3::new(0.0, -sine, cosine) * radius,
+                    force: Vector3::new(-1.0e4, 0.0, 0.0),
+                    smearing_length: 2.0 * spacing,
+                });
+            }
+        }
+    }
+    forces
+}
