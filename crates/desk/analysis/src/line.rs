@@ -12,7 +12,7 @@ pub const FEWEST_SAMPLES: usize = 16;
 /// One frequency of a record, `amplitude` cos(2π `frequency` t + `phase`) with t from the first sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// Amplitude, in the unit of the record (–).
+    /// Amplitude, (unit of the record).
     pub amplitude: f64,
     /// Frequency (Hz); negative for a vector that turns the negative way.
     pub frequency: f64,
