@@ -72,10 +72,7 @@ impl PitchActuator {
         } else {
             (angle.cos(), angle.sin() / angle * step)
         };
-        [
-            [decay * (c + zeta * w * k), decay * k],
-            [-decay * w * w * k, decay * (c - zeta * w * k)],
-        ]
+        [[decay * (c + zeta * w * k), decay * k], [-decay * w * w * k, decay * (c - zeta * w * k)]]
     }
 }
 
@@ -103,7 +100,9 @@ mod tests {
                 assert!(!UNLIMITED.advance(&mut state, interval, 0.1));
                 let t = interval * f64::from(step);
                 let exact = 0.1
-                    * (1.0 - (-z * w * t).exp() * ((damped * t).cos() + z * w / damped * (damped * t).sin()));
+                    * (1.0
+                        - (-z * w * t).exp()
+                            * ((damped * t).cos() + z * w / damped * (damped * t).sin()));
                 assert!((state.pitch - exact).abs() < 1e-12, "{} at {t}", state.pitch);
             }
         }
@@ -115,9 +114,13 @@ mod tests {
             let actuator = PitchActuator { damping_ratio: z, ..UNLIMITED };
             let (mut coarse, mut fine) = (PitchState::default(), PitchState::default());
             actuator.advance(&mut coarse, 0.3, 0.1);
-            (0..3).for_each(|_| drop(actuator.advance(&mut fine, 0.1, 0.1)));
+            for _ in 0..3 {
+                actuator.advance(&mut fine, 0.1, 0.1);
+            }
             assert!((coarse.pitch - fine.pitch).abs() < 1e-12);
-            (0..100).for_each(|_| drop(actuator.advance(&mut fine, 0.3, 0.1)));
+            for _ in 0..100 {
+                actuator.advance(&mut fine, 0.3, 0.1);
+            }
             assert!((fine.pitch - 0.1).abs() < 1e-9);
         }
     }
@@ -132,7 +135,10 @@ mod tests {
             before = state.pitch;
         }
         for _ in 0..200 {
-            assert!(ACTUATOR.advance(&mut state, 0.1, -0.2), "a command below the least pitch is held back");
+            assert!(
+                ACTUATOR.advance(&mut state, 0.1, -0.2),
+                "a command below the least pitch is held back"
+            );
             assert!(state.pitch >= -0.05);
         }
         assert!((state.pitch + 0.05).abs() < 1e-6);
@@ -160,7 +166,10 @@ mod tests {
         }
         let (w, z) = (ACTUATOR.natural_frequency, ACTUATOR.damping_ratio);
         let denominator = (w * w - rate * rate).powi(2) + (2.0 * z * w * rate).powi(2);
-        let exact = (w * w * (w * w - rate * rate) / denominator, -w * w * 2.0 * z * w * rate / denominator);
+        let exact = (
+            w * w * (w * w - rate * rate) / denominator,
+            -w * w * 2.0 * z * w * rate / denominator,
+        );
         assert!((real / f64::from(n) / amplitude - exact.0).abs() < 2e-3);
         assert!((imaginary / f64::from(n) / amplitude - exact.1).abs() < 2e-3);
     }

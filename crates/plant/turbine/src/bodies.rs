@@ -1,7 +1,15 @@
 //! Bluff bodies in the air: tower segments and the nacelle with its hub, as drag at points.
 
+use crate::definition::{Definition, TowerProfile};
+use crate::rotor::Frame;
 use basis::{PointForce, Vector3};
 use std::f64::consts::PI;
+
+/// Drag coefficient of hub and nacelle on the hub's frontal area (–): a blunt cylinder along the flow, one to two
+/// diameters long. Source: Hoerner, Fluid-Dynamic Drag (1965), ch. III.
+const NACELLE_DRAG_COEFFICIENT: f64 = 0.85;
+/// Tower segments are no longer than this share of the smearing length, so that their Gaussians blend.
+const LONGEST_SEGMENT: f64 = 0.75;
 
 /// A body that holds the air back along the wind.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +22,49 @@ pub struct Body {
     self_induction: f64,
     /// Direction that the body extends along and feels no drag in; zero for a compact one.
     axis: Vector3,
+}
+
+/// The bodies of a turbine of `definition` with its tower's foot at `position` (m): tower from the bottom up, then nacelle.
+pub fn of(
+    definition: &Definition,
+    position: Vector3,
+    frame: &Frame,
+    smearing_length: f64,
+) -> Vec<Body> {
+    let profile = &definition.tower.profile;
+    let mut bodies = Vec::new();
+    if let [bottom, .., top] = profile.as_slice() {
+        let (low, high) = (bottom.height.max(0.0), top.height);
+        let n_segments = ((high - low) / (LONGEST_SEGMENT * smearing_length)).ceil().max(1.0);
+        let height = (high - low) / n_segments;
+        for segment in 0..n_segments as usize {
+            let middle = low + (segment as f64 + 0.5) * height;
+            let (diameter, drag_coefficient) = tower_at(profile, middle);
+            let at = position + Vector3::Z * middle;
+            bodies.push(Body::tower_segment(
+                at,
+                height,
+                diameter,
+                drag_coefficient,
+                smearing_length,
+            ));
+        }
+    }
+    let frontal_area = PI * definition.rotor.hub_radius.powi(2);
+    bodies.push(Body::compact(frame.hub, NACELLE_DRAG_COEFFICIENT * frontal_area, smearing_length));
+    bodies
+}
+
+/// Diameter (m) and drag coefficient (–) of a tower at `height` (m), linear in between.
+fn tower_at(profile: &[TowerProfile], height: f64) -> (f64, f64) {
+    let next =
+        profile.partition_point(|section| section.height <= height).clamp(1, profile.len() - 1);
+    let (low, high) = (&profile[next - 1], &profile[next]);
+    let share = (height - low.height) / (high.height - low.height);
+    (
+        low.diameter + share * (high.diameter - low.diameter),
+        low.drag_coefficient + share * (high.drag_coefficient - low.drag_coefficient),
+    )
 }
 
 impl Body {

@@ -24,10 +24,17 @@ impl Drivetrain {
     /// `rotor` after `interval` (s) under torques (N m) that are held meanwhile: exact, J Ω′ = Q_air − Q_generator.
     ///
     /// A rotor that would turn backwards stands still: the generator does not drive it.
-    pub fn after(&self, rotor: RotorState, interval: f64, aerodynamic_torque: f64, generator_torque: f64) -> RotorState {
+    pub fn after(
+        &self,
+        rotor: RotorState,
+        interval: f64,
+        aerodynamic_torque: f64,
+        generator_torque: f64,
+    ) -> RotorState {
         let acceleration = (aerodynamic_torque - generator_torque) / self.inertia;
         let speed = (rotor.speed + acceleration * interval).max(0.0);
-        let azimuth = basis::angle::wrap_to_turn(rotor.azimuth + 0.5 * (rotor.speed + speed) * interval);
+        let azimuth =
+            basis::angle::wrap_to_turn(rotor.azimuth + 0.5 * (rotor.speed + speed) * interval);
         RotorState { azimuth, speed }
     }
 

@@ -71,17 +71,25 @@ impl SmearingCorrection {
         let n_stations = span.centres.len();
         let radius = span.borders[n_stations];
         let size = N_PITCHES * n_blades * n_stations * n_stations;
-        let mut correction =
-            Self { n_blades, n_stations, radius, axial: vec![0.0; size], tangential: vec![0.0; size] };
+        let mut correction = Self {
+            n_blades,
+            n_stations,
+            radius,
+            axial: vec![0.0; size],
+            tangential: vec![0.0; size],
+        };
         let mut slot = 0;
         for pitch_index in 0..N_PITCHES {
             let advance = radius * FIRST_PITCH * PITCH_RATIO.powi(pitch_index as i32);
             for ahead in 0..n_blades {
                 let lead = TAU * ahead as f64 / n_blades as f64;
                 for &centre in &span.centres {
-                    for (border, (&trailing, &core)) in span.borders.iter().zip(&span.cores).enumerate() {
+                    for (border, (&trailing, &core)) in
+                        span.borders.iter().zip(&span.cores).enumerate()
+                    {
                         let helix = Helix { radius: trailing, advance, lead };
-                        let (axial, tangential) = helix.missing_influence(centre, core, smearing_length);
+                        let (axial, tangential) =
+                            helix.missing_influence(centre, core, smearing_length);
                         // A border trails what the inner element's circulation exceeds the outer's.
                         if border > 0 {
                             correction.axial[slot + border - 1] += axial;
@@ -123,7 +131,8 @@ impl SmearingCorrection {
         for ahead in 0..self.n_blades {
             let other = (blade + ahead) % self.n_blades;
             let circulation = &circulations[other * n..(other + 1) * n];
-            for (index, share) in [(helix.index, 1.0 - helix.share), (helix.index + 1, helix.share)] {
+            for (index, share) in [(helix.index, 1.0 - helix.share), (helix.index + 1, helix.share)]
+            {
                 let start = ((index * self.n_blades + ahead) * n + station) * n;
                 axial += share * dot(&self.axial[start..start + n], circulation);
                 tangential += share * dot(&self.tangential[start..start + n], circulation);
@@ -161,7 +170,8 @@ impl Helix {
                 let to = ((to - passage) / width).asinh();
                 let (axial, tangential) = integral(from, to, |u| {
                     let stretch = width * u.cosh();
-                    let (axial, tangential) = self.element(r, passage + width * u.sinh(), core, smearing_length);
+                    let (axial, tangential) =
+                        self.element(r, passage + width * u.sinh(), core, smearing_length);
                     (stretch * axial, stretch * tangential)
                 });
                 total.0 += axial;
@@ -282,7 +292,10 @@ mod tests {
     fn blob_share_has_its_limits() {
         assert!((blob_share(0.01) / (4.0 / (3.0 * PI.sqrt()) * 1e-6) - 1.0).abs() < 1e-3);
         // erf(1) = 0.842700792949715.
-        assert!((blob_share(1.0) - (0.842_700_792_949_715 - 2.0 / PI.sqrt() * (-1.0_f64).exp())).abs() < 1e-14);
+        assert!(
+            (blob_share(1.0) - (0.842_700_792_949_715 - 2.0 / PI.sqrt() * (-1.0_f64).exp())).abs()
+                < 1e-14
+        );
         assert!((blob_share(6.0) - 1.0).abs() < 1e-12 && (blob_share(4.999) - 1.0).abs() < 1e-9);
     }
 
@@ -318,14 +331,18 @@ mod tests {
                     })
                     .sum();
                 let downwash = seen + hidden[station];
-                assert!((downwash / -0.25 - 1.0).abs() < 0.01, "{downwash} at {r}, ε {smearing_length}");
+                assert!(
+                    (downwash / -0.25 - 1.0).abs() < 0.01,
+                    "{downwash} at {r}, ε {smearing_length}"
+                );
             }
         }
     }
 
     #[test]
     fn nothing_is_missing_at_the_optimal_width() {
-        let span = Span { borders: vec![1.0, 5.0, 10.0], centres: vec![3.0, 7.5], cores: vec![0.5; 3] };
+        let span =
+            Span { borders: vec![1.0, 5.0, 10.0], centres: vec![3.0, 7.5], cores: vec![0.5; 3] };
         let correction = SmearingCorrection::new(3, &span, 0.5);
         assert!(correction.axial.iter().chain(&correction.tangential).all(|v| *v == 0.0));
     }
@@ -338,7 +355,8 @@ mod tests {
         let correction = SmearingCorrection::new(3, &span, 15.0);
         let helix = correction.helix(60.0 * 0.08);
         let circulations = vec![50.0; 48];
-        let tips: Vec<_> = (0..3).map(|b| correction.missing_velocity(helix, b, 15, &circulations)).collect();
+        let tips: Vec<_> =
+            (0..3).map(|b| correction.missing_velocity(helix, b, 15, &circulations)).collect();
         for tip in &tips {
             assert!(tip.0 < 0.0 && tip.1 < 0.0, "upwind and against the rotation: {tip:?}");
             assert!((tip.0 - tips[0].0).abs() < 1e-12);
@@ -355,7 +373,8 @@ mod tests {
         let correction = SmearingCorrection::new(3, &span, 15.0);
         let advance = 60.0 * 0.0776;
         let circulations = vec![50.0; 24];
-        let (axial, tangential) = correction.missing_velocity(correction.helix(advance), 1, 7, &circulations);
+        let (axial, tangential) =
+            correction.missing_velocity(correction.helix(advance), 1, 7, &circulations);
         let mut exact = (0.0, 0.0);
         for ahead in 0..3 {
             for (radius, sign) in [(borders[0], -1.0), (borders[8], 1.0)] {

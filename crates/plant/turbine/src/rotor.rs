@@ -75,7 +75,10 @@ mod tests {
         for azimuth in [0.0, 2.0, 4.0] {
             let blade = Frame::new(Vector3::ZERO, 0.0).blade(azimuth, 0.05);
             assert!(blade.span.x < 0.0);
-            assert!((blade.normal.cross(blade.span) - blade.tangent).length() < 1e-15, "right-handed");
+            assert!(
+                (blade.normal.cross(blade.span) - blade.tangent).length() < 1e-15,
+                "right-handed"
+            );
         }
     }
 }

@@ -1,0 +1,236 @@
+//! Blades as lines of elements in wind that already contains the rotor's own, smeared induction.
+
+use crate::definition::{BladeStation, Definition};
+use crate::lifting_line::{OPTIMAL_WIDTH_OVER_CHORD, SmearingCorrection, Span};
+use crate::rotor::Frame;
+use basis::Vector3;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Sweeps of the lifting-line fixed point per step; what they reach carries over to the next, so that few suffice.
+const N_SWEEPS: usize = 4;
+/// Relaxation of a sweep at an element whose circulation does not react to what it induces (–).
+const RELAXATION: f64 = 0.6;
+/// Share of uniform spacing among the elements' borders (–); the rest is cosine spacing, finer at root and tip.
+const UNIFORM_SHARE: f64 = 0.5;
+
+/// The blades of a rotor, all alike; parameters only.
+#[derive(Clone, Debug)]
+pub struct ActuatorLine {
+    air_density: f64,
+    elements: Vec<Element>,
+    correction: SmearingCorrection,
+    definition: Arc<Definition>,
+}
+
+/// One element of a blade.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element {
+    /// Distance of its middle from the rotor apex along the pitch axis (m).
+    pub span: f64,
+    /// Distance of its middle from the pitch axis, upwind (m).
+    pub prebend: f64,
+    /// Distance of its middle from the shaft's axis (m).
+    pub radius: f64,
+    /// Angle of the blade's line out of the rotor plane here, tips upwind: precone and prebend (rad).
+    pub cone: f64,
+    /// Length along the blade's line (m).
+    pub width: f64,
+    /// Chord (m).
+    pub chord: f64,
+    /// Twist, positive to feather (rad).
+    pub twist: f64,
+    /// Polars of the definition's stations on either side, and the share of the second (–).
+    polars: [usize; 2],
+    share: f64,
+    /// Relaxation of its missing velocity (–).
+    relaxation: f64,
+}
+
+/// Wind at an element, in the blade's frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Onset {
+    /// Out of the surface that the blade sweeps, downwind (m/s).
+    pub normal: f64,
+    /// Against the rotation, the blade's own motion included (m/s).
+    pub tangential: f64,
+}
+
+/// Load of an element: force on the blade per metre of span, and the circulation behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Load {
+    /// Downwind, out of the swept surface (N/m).
+    pub normal: f64,
+    /// Along the rotation (N/m).
+    pub tangential: f64,
+    /// Circulation, positive where lift drives the rotor (m²/s).
+    pub circulation: f64,
+}
+
+impl ActuatorLine {
+    /// The blades of `definition` in `n_elements` each, forces smeared over `smearing_length` (m).
+    ///
+    /// Wind samples that a flow interpolates linearly between points `sample_spacing` (m) apart are smeared a little
+    /// more: a hat of that half-width has the variance `sample_spacing`²/6 where a Gaussian of width ε has ε²/2.
+    pub fn new(
+        definition: Arc<Definition>,
+        n_elements: usize,
+        air_density: f64,
+        smearing_length: f64,
+        sample_spacing: f64,
+    ) -> Self {
+        let geometry = &definition.rotor;
+        let at = |share: f64| {
+            let cosine = 0.5 * (1.0 - (PI * share).cos());
+            (UNIFORM_SHARE * share + (1.0 - UNIFORM_SHARE) * cosine) * definition.blade_length()
+        };
+        let radius = |station: &BladeStation| {
+            definition.distance_from_shaft(geometry.hub_radius + station.span, station.prebend)
+        };
+        let section = |index: f64| section(&definition.blade, at(index / n_elements as f64));
+        let borders: Vec<BladeStation> = (0..=n_elements).map(|i| section(i as f64).0).collect();
+        let mut elements: Vec<Element> = borders
+            .windows(2)
+            .enumerate()
+            .map(|(i, ends)| {
+                let (middle, polars, share) = section(i as f64 + 0.5);
+                let (length, bend) =
+                    (ends[1].span - ends[0].span, ends[1].prebend - ends[0].prebend);
+                Element {
+                    span: geometry.hub_radius + middle.span,
+                    prebend: middle.prebend,
+                    radius: radius(&middle),
+                    cone: geometry.precone + bend.atan2(length),
+                    width: length.hypot(bend),
+                    chord: middle.chord,
+                    twist: middle.twist,
+                    polars,
+                    share,
+                    relaxation: 0.0,
+                }
+            })
+            .collect();
+        for element in &mut elements {
+            // Γ reacts to an upwash with π c (thin aerofoil), the upwash to Γ with 1/(π Δr) (its own border vortices).
+            element.relaxation = RELAXATION / (1.0 + element.chord / element.width);
+        }
+        let core = |station: &BladeStation| {
+            (OPTIMAL_WIDTH_OVER_CHORD * station.chord)
+                .clamp(1e-4 * definition.rotor_radius(), smearing_length)
+        };
+        let span = Span {
+            borders: borders.iter().map(radius).collect(),
+            centres: elements.iter().map(|element| element.radius).collect(),
+            cores: borders.iter().map(core).collect(),
+        };
+        let seen_width = smearing_length.hypot(sample_spacing / 3.0_f64.sqrt());
+        let correction = SmearingCorrection::new(definition.n_blades, &span, seen_width);
+        Self { air_density, elements, correction, definition }
+    }
+
+    /// Elements of each blade, root to tip.
+    pub fn elements(&self) -> &[Element] {
+        &self.elements
+    }
+
+    /// Loads of all elements in the winds `onsets`, blades pitched by `pitch` (rad), with the smearing correction.
+    ///
+    /// `onsets`, `missing` and `loads` hold `n_blades × n_elements` values, blade after blade. `missing` is the state of
+    /// the correction, the velocity that smearing hides, axial and along the rotation (m/s); on return it has moved on
+    /// towards what belongs to `loads`. `rotor_speed` (rad/s) sets the pitch of the helical wake together with the mean
+    /// wind through the rotor.
+    pub fn loads(
+        &self,
+        onsets: &[Onset],
+        rotor_speed: f64,
+        pitch: &[f64],
+        missing: &mut [[f64; 2]],
+        loads: &mut [Load],
+        circulations: &mut [f64],
+    ) {
+        let n = self.elements.len();
+        let advance = self.mean_wind(onsets) / rotor_speed.max(1e-3);
+        let helix = self.correction.helix(advance);
+        for sweep in 0..=N_SWEEPS {
+            for (index, (load, onset)) in loads.iter_mut().zip(onsets).enumerate() {
+                let element = &self.elements[index % n];
+                let [axial, tangential] = missing[index];
+                let felt = Onset {
+                    normal: onset.normal + axial,
+                    tangential: onset.tangential - tangential,
+                };
+                *load = self.load(element, felt, pitch[index / n]);
+                circulations[index] = load.circulation;
+            }
+            if sweep == N_SWEEPS {
+                break;
+            }
+            for (index, missing) in missing.iter_mut().enumerate() {
+                let (axial, tangential) =
+                    self.correction.missing_velocity(helix, index / n, index % n, circulations);
+                let relaxation = self.elements[index % n].relaxation;
+                missing[0] += relaxation * (axial - missing[0]);
+                missing[1] += relaxation * (tangential - missing[1]);
+            }
+        }
+    }
+
+    /// Wind out of the swept surface (m/s), averaged over the swept area.
+    pub fn mean_wind(&self, onsets: &[Onset]) -> f64 {
+        let (mut sum, mut area) = (0.0, 0.0);
+        for (onset, element) in onsets.iter().zip(self.elements.iter().cycle()) {
+            let ring = element.radius * element.width;
+            sum += ring * onset.normal;
+            area += ring;
+        }
+        sum / area
+    }
+
+    /// Load of `element` in the wind `onset` at a blade pitch of `pitch` (rad).
+    fn load(&self, element: &Element, onset: Onset, pitch: f64) -> Load {
+        let speed = onset.normal.hypot(onset.tangential);
+        if speed == 0.0 {
+            return Load::default();
+        }
+        let (sine, cosine) = (onset.normal / speed, onset.tangential / speed);
+        let inflow_angle = onset.normal.atan2(onset.tangential);
+        let angle_of_attack = inflow_angle - element.twist - pitch;
+        let [inner, outer] =
+            element.polars.map(|polar| self.definition.polars[polar].at(angle_of_attack));
+        let lift_coefficient = inner.lift + element.share * (outer.lift - inner.lift);
+        let drag_coefficient = inner.drag + element.share * (outer.drag - inner.drag);
+        let scale = 0.5 * self.air_density * speed * speed * element.chord;
+        let (lift, drag) = (scale * lift_coefficient, scale * drag_coefficient);
+        Load {
+            normal: lift * cosine + drag * sine,
+            tangential: lift * sine - drag * cosine,
+            circulation: 0.5 * speed * element.chord * lift_coefficient,
+        }
+    }
+}
+
+impl Element {
+    /// Its middle, farm frame (m), on a blade at `azimuth` (rad) whose pitch axis is coned by `precone` (rad).
+    pub fn position(&self, frame: &Frame, azimuth: f64, precone: f64) -> Vector3 {
+        let axes = frame.blade(azimuth, precone);
+        frame.hub + axes.span * self.span - axes.normal * self.prebend
+    }
+}
+
+/// The blade at `span` (m) from its root, linear between `stations`; their two polars, and the share of the second (–).
+fn section(stations: &[BladeStation], span: f64) -> (BladeStation, [usize; 2], f64) {
+    let next =
+        stations.partition_point(|station| station.span <= span).clamp(1, stations.len() - 1);
+    let (low, high) = (&stations[next - 1], &stations[next]);
+    let share = (span - low.span) / (high.span - low.span);
+    let between = |from: f64, to: f64| from + share * (to - from);
+    let station = BladeStation {
+        span,
+        chord: between(low.chord, high.chord),
+        twist: between(low.twist, high.twist),
+        prebend: between(low.prebend, high.prebend),
+        sweep: between(low.sweep, high.sweep),
+        polar: low.polar,
+    };
+    (station, [low.polar, high.polar], share)
+}
