@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     const ACTUATOR: PitchActuator = PitchActuator {
-        natural_frequency: 3.14,
+        natural_frequency: 3.0,
         damping_ratio: 0.707,
         maximum_rate: 0.035,
         minimum_pitch: -0.05,
