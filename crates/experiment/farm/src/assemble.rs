@@ -91,7 +91,7 @@ pub fn controller(
     TurbineController::new(Baseline::new(model.constants.clone()), excitation)
 }
 
-/// The farm of one run, at time zero. `models` holds one entry per turbine of the case, in its order;
+/// The farm of one run, at time zero: the turbines that are there in it, in the case's order. `models` holds one entry per turbine of the case, in its order;
 /// the farm's machines are those of [`Run::present`].
 ///
 /// # Errors
@@ -104,12 +104,10 @@ pub fn farm(
     inflow: Arc<dyn Inflow>,
 ) -> Result<Farm<Lattice>, lattice::SettingsError> {
     let air = Lattice::new(lattice_settings(case, plan), inflow)?;
-    let machines = models
-        .iter()
-        .zip(&plan.positions)
-        .zip(&run.control)
-        .filter(|(_, control)| **control != Control::Absent)
-        .map(|((model, &position), control)| {
+    let machines = run
+        .present()
+        .map(|index| {
+            let (model, position) = (&models[index], plan.positions[index]);
             let settings = turbine::Settings {
                 smearing_length: SMEARING_CELLS * plan.spacing,
                 sample_spacing: plan.spacing,
@@ -119,8 +117,9 @@ pub fn farm(
                 pitch: model.constants.fine_pitch,
             };
             let turbine = Turbine::new(Arc::clone(&model.definition), position, settings);
+            let control = &run.control[index];
             Machine::new(turbine, controller(control, model, case.wind.speed, plan.diameter))
         })
         .collect();
-    Ok(Farm::new(machines, air, plan.interval, 0))
+    Ok(Farm::new(machines, air, plan.interval))
 }

@@ -3,5 +3,6 @@
 //! Files appear whole or not at all ([`atomic`]); an error names the file, what was being done, and the fix.
 
 pub mod atomic;
+pub mod case;
 
 pub use atomic::FileError;

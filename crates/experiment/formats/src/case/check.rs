@@ -1,0 +1,282 @@
+//! From checked tables to a [`Case`], and the checks that need more than one key.
+
+use super::document::{Entry, Node, Sources, Value};
+use super::error::{Problem, ProblemKind};
+use super::keys::{self, CONTROLS};
+use super::section::{Findings, Section, list, nearest};
+use farm::case::{
+    Case, Control, Flow, Ground, Helix, Output, Placement, Pulse, Run, Sense, Sides, Time, Wind,
+};
+
+/// The case that `entries` describe.
+///
+/// # Errors
+/// Everything that is wrong, from top to bottom of the file.
+pub(super) fn check(
+    entries: &[Entry],
+    length: usize,
+    sources: &Sources,
+) -> Result<Case, Vec<Problem>> {
+    let findings = Findings::new(sources);
+    let case = {
+        // What is missing at the top is told at the end of the file, where it can be added.
+        let end = length.saturating_sub(1)..length;
+        case_of(&Section::open(&keys::ROOT, entries, end, String::new(), &findings))
+    };
+    let problems = findings.into_problems();
+    if problems.is_empty() { Ok(case) } else { Err(problems) }
+}
+
+fn case_of(root: &Section) -> Case {
+    let name = root.text("name");
+    let description = root.optional_text("description");
+    let wind = wind_of(&root.section_or_missing("wind", &keys::WIND));
+    let flow = flow_of(&root.section("flow", &keys::FLOW));
+    let time = time_of(&root.section_or_missing("time", &keys::TIME));
+    let turbines = turbines_of(root);
+    let runs = runs_of(root, &turbines, time);
+    let output = output_of(&root.section("output", &keys::OUTPUT));
+    Case { name, description, wind, flow, time, turbines, runs, output }
+}
+
+impl<'a> Section<'a> {
+    /// The section of a required table; when it is missing, only that is noted, not each of its keys.
+    fn section_or_missing(&self, key: &str, table: &'static keys::Table) -> Option<Section<'a>> {
+        let is_table = matches!(self.entry(key)?.node.value, Value::Table(_));
+        let section = self.section(key, table);
+        is_table.then_some(section)
+    }
+}
+
+fn wind_of(section: &Option<Section>) -> Wind {
+    let number = |key| section.as_ref().map_or(f64::NAN, |section| section.number(key));
+    Wind {
+        speed: number("speed"),
+        turbulence_intensity: number("turbulence_intensity"),
+        shear_exponent: number("shear_exponent"),
+        length_scale: number("length_scale"),
+        anisotropy: number("anisotropy"),
+        seed: section.as_ref().map_or(1, |section| section.whole("seed")),
+        air_density: number("air_density"),
+        kinematic_viscosity: number("kinematic_viscosity"),
+    }
+}
+
+fn flow_of(section: &Section) -> Flow {
+    // The one solver that exists: reading the key refuses all others.
+    section.choice("solver");
+    Flow {
+        cells_per_diameter: section.number("cells_per_diameter"),
+        upstream_diameters: section.number("upstream_diameters"),
+        downstream_diameters: section.number("downstream_diameters"),
+        width_diameters: section.number("width_diameters"),
+        height_diameters: section.number("height_diameters"),
+        ground: ground_of(section),
+        sides: if section.choice("sides") == "slip" { Sides::Slip } else { Sides::Periodic },
+        step: section.optional_number("step"),
+        threads: section.optional_whole("threads").and_then(|count| usize::try_from(count).ok()),
+    }
+}
+
+fn ground_of(section: &Section) -> Ground {
+    match section.entry("ground").map(|entry| &entry.node) {
+        None => Ground::Slip,
+        Some(Node { value: Value::Text(text), .. }) if text == "slip" => Ground::Slip,
+        Some(Node { value: Value::Table(_), .. }) => {
+            let rough = section.section("ground", &keys::GROUND);
+            Ground::Rough { roughness_length: rough.number("roughness_length") }
+        }
+        Some(node) => {
+            section.wrong_type("ground", node, "\"slip\" or { roughness_length = 0.001 }");
+            Ground::Slip
+        }
+    }
+}
+
+fn time_of(section: &Option<Section>) -> Time {
+    let Some(section) = section else { return Time { spin_up: f64::NAN, duration: f64::NAN } };
+    let (spin_up, duration) = (section.number("spin_up"), section.number("duration"));
+    if duration <= spin_up {
+        let kind = ProblemKind::NothingAnalysed { duration, spin_up };
+        let fix = "raise `duration`; it counts from the start of the run, spin-up included";
+        section.findings().note(section.span_of("duration"), kind, Some(fix.into()));
+    }
+    Time { spin_up, duration }
+}
+
+fn turbines_of(root: &Section) -> Vec<Placement> {
+    let sections = root.sections("turbine", &keys::TURBINE);
+    let mut turbines: Vec<Placement> = Vec::with_capacity(sections.len());
+    for section in &sections {
+        let placement = Placement {
+            name: section.text("name"),
+            model: section.text("model"),
+            position_diameters: section.pair("position_diameters"),
+        };
+        if section.has("name") && turbines.iter().any(|other| other.name == placement.name) {
+            note_duplicate(section, "turbine", &placement.name);
+        }
+        for other in &turbines {
+            let [x, y] = placement.position_diameters;
+            let distance = (x - other.position_diameters[0]).hypot(y - other.position_diameters[1]);
+            if distance < 1.0 {
+                let (first, second) = (other.name.clone(), placement.name.clone());
+                let kind = ProblemKind::Overlap { first, second, distance };
+                let fix = "move one of them; positions are in diameters of the first turbine";
+                let span = section.span_of("position_diameters");
+                section.findings().note(span, kind, Some(fix.into()));
+                break;
+            }
+        }
+        turbines.push(placement);
+    }
+    turbines
+}
+
+fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
+    let sections = root.sections("run", &keys::RUN);
+    let mut runs: Vec<Run> = Vec::with_capacity(sections.len());
+    for section in &sections {
+        let name = section.text("name");
+        // Folders of file systems that do not tell capitals apart would collide.
+        if section.has("name") && runs.iter().any(|other| other.name.eq_ignore_ascii_case(&name)) {
+            note_duplicate(section, "run", &name);
+        }
+        let compare_with = section.optional_text("compare_with");
+        let control = controls_of(section, turbines, time);
+        if !control.is_empty() && control.iter().all(|control| *control == Control::Absent) {
+            let kind = ProblemKind::NobodyThere { name: name.clone() };
+            section.findings().note(section.span_of("control"), kind, None);
+        }
+        runs.push(Run { name, compare_with, control });
+    }
+    for (section, run) in sections.iter().zip(&runs) {
+        let Some(other) = &run.compare_with else { continue };
+        if *other == run.name {
+            let kind = ProblemKind::ComparedWithItself { name: run.name.clone() };
+            let fix = "name another run, or leave `compare_with` out";
+            section.findings().note(section.span_of("compare_with"), kind, Some(fix.into()));
+        } else if !runs.iter().any(|run| run.name == *other) {
+            let names = || runs.iter().map(|run| run.name.as_str());
+            let kind = ProblemKind::UnknownName {
+                key: section.key_path("compare_with"),
+                what: "run",
+                name: other.clone(),
+                known: list(names()),
+            };
+            let fix = nearest(other, names()).map(|name| format!("did you mean \"{name}\"?"));
+            section.findings().note(section.span_of("compare_with"), kind, fix);
+        }
+    }
+    runs
+}
+
+fn controls_of(run: &Section, turbines: &[Placement], time: Time) -> Vec<Control> {
+    let mut controls = vec![Control::Baseline; turbines.len()];
+    let Some(entry) = run.entry("control") else { return controls };
+    let Value::Table(entries) = &entry.node.value else {
+        run.wrong_type(
+            "control",
+            &entry.node,
+            "a table, such as control.T1 = { kind = \"helix\", … }",
+        );
+        return controls;
+    };
+    for entry in entries {
+        let path = format!("{}.{}", run.key_path("control"), entry.key);
+        let Some(index) = turbines.iter().position(|turbine| turbine.name == entry.key) else {
+            let names = || turbines.iter().map(|turbine| turbine.name.as_str());
+            let kind = ProblemKind::UnknownName {
+                key: path,
+                what: "turbine",
+                name: entry.key.clone(),
+                known: list(names()),
+            };
+            let fix = nearest(&entry.key, names()).map(|name| format!("did you mean `{name}`?"));
+            run.findings().note(entry.key_span.clone(), kind, fix);
+            continue;
+        };
+        match &entry.node.value {
+            Value::Table(inner) => {
+                controls[index] = control_of(run.findings(), inner, &entry.node, path, time);
+            }
+            _ => {
+                let kind = ProblemKind::WrongType {
+                    key: path,
+                    expected: "a table, such as { kind = \"baseline\" }".into(),
+                    found: entry.node.kind().into(),
+                };
+                run.findings().note(entry.node.span.clone(), kind, None);
+            }
+        }
+    }
+    controls
+}
+
+fn control_of(
+    findings: &Findings,
+    entries: &[Entry],
+    node: &Node,
+    path: String,
+    time: Time,
+) -> Control {
+    let kind = entries.iter().find(|entry| entry.key == "kind").map(|entry| &entry.node.value);
+    let known = match kind {
+        Some(Value::Text(kind)) => CONTROLS.iter().find(|(name, _)| name == kind),
+        _ => None,
+    };
+    let Some((name, table)) = known else {
+        // Without a kind no other key can be judged.
+        let only_kind: Vec<Entry> =
+            entries.iter().filter(|entry| entry.key == "kind").cloned().collect();
+        Section::open(&keys::BASELINE, &only_kind, node.span.clone(), path, findings)
+            .choice("kind");
+        return Control::Baseline;
+    };
+    let section = Section::open(table, entries, node.span.clone(), path, findings);
+    let start = || {
+        let start = section.number("start");
+        if start >= time.duration {
+            let key = section.key_path("start");
+            let kind = ProblemKind::StartsTooLate { key, start, duration: time.duration };
+            section.findings().note(section.span_of("start"), kind, None);
+        }
+        start
+    };
+    match *name {
+        "helix" => Control::Helix(Helix {
+            sense: if section.choice("sense") == "cw" {
+                Sense::Clockwise
+            } else {
+                Sense::CounterClockwise
+            },
+            amplitude: section.number("amplitude_deg").to_radians(),
+            strouhal: section.number("strouhal"),
+            phase: section.number("phase_deg").to_radians(),
+            azimuth_offset: section.number("azimuth_offset_deg").to_radians(),
+            start: start(),
+        }),
+        "pulse" => Control::Pulse(Pulse {
+            amplitude: section.number("amplitude_deg").to_radians(),
+            strouhal: section.number("strouhal"),
+            phase: section.number("phase_deg").to_radians(),
+            start: start(),
+        }),
+        "absent" => Control::Absent,
+        _ => Control::Baseline,
+    }
+}
+
+fn output_of(section: &Section) -> Output {
+    Output {
+        plane_interval: section.optional_number("plane_interval"),
+        crosswind_diameters: section.numbers("crosswind_diameters"),
+        volume_interval: section.optional_number("volume_interval"),
+        checkpoint_interval: section.number("checkpoint_interval"),
+    }
+}
+
+fn note_duplicate(section: &Section, what: &'static str, name: &str) {
+    let kind = ProblemKind::Duplicate { what, name: name.to_owned() };
+    section.findings().note(section.span_of("name"), kind, Some("choose another name".into()));
+}

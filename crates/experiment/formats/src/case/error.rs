@@ -1,0 +1,267 @@
+//! What is wrong with a case file: where, what, and the fix.
+
+use super::document::Sources;
+use crate::FileError;
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::fmt::{Display, Write};
+use std::ops::Range;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// Why a case file cannot be run.
+#[derive(Debug, Error, Diagnostic)]
+pub enum CaseError {
+    /// It could not be read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] FileError),
+    /// It was read, but something in it is wrong.
+    #[error("{name} cannot be run: {} of its entries {}", problems.len(), if problems.len() == 1 { "is wrong" } else { "are wrong" })]
+    #[diagnostic(code(wakemix::case))]
+    Invalid {
+        /// The file.
+        name: String,
+        /// Everything that is wrong, from top to bottom.
+        #[related]
+        problems: Vec<Problem>,
+    },
+}
+
+impl CaseError {
+    /// Everything that is wrong; empty when the file could not be read.
+    pub fn problems(&self) -> &[Problem] {
+        match self {
+            Self::File(_) => &[],
+            Self::Invalid { problems, .. } => problems,
+        }
+    }
+
+    /// Without arrows: a line `file:line: problem; fix` for each problem.
+    pub fn to_lines(&self) -> String {
+        let mut lines = String::new();
+        match self {
+            Self::File(error) => {
+                let _ = writeln!(lines, "{error}");
+            }
+            Self::Invalid { problems, .. } => {
+                for problem in problems {
+                    let _ = write!(lines, "{}:{}: {problem}", problem.file(), problem.line());
+                    let _ = match problem.help() {
+                        Some(help) => writeln!(lines, "; {help}"),
+                        None => writeln!(lines),
+                    };
+                }
+            }
+        }
+        lines
+    }
+}
+
+/// One thing that is wrong, with its place.
+#[derive(Debug, Error)]
+#[error("{kind}")]
+pub struct Problem {
+    /// What is wrong.
+    pub kind: ProblemKind,
+    text: Arc<NamedSource<String>>,
+    span: Range<usize>,
+    fix: Option<String>,
+}
+
+impl Problem {
+    pub(super) fn new(sources: &Sources, span: Range<usize>, kind: ProblemKind) -> Self {
+        let (text, span) = sources.locate(span);
+        Self { kind, text, span, fix: None }
+    }
+
+    pub(super) fn with_fix(mut self, fix: Option<String>) -> Self {
+        self.fix = fix;
+        self
+    }
+
+    /// Line in the file, from 1.
+    pub fn line(&self) -> usize {
+        let before = &self.text.inner().as_bytes()[..self.span.start];
+        1 + before.iter().filter(|byte| **byte == b'\n').count()
+    }
+
+    /// The file, or `--set` for an override.
+    pub fn file(&self) -> &str {
+        self.text.name()
+    }
+}
+
+impl Diagnostic for Problem {
+    fn code(&self) -> Option<Box<dyn Display + '_>> {
+        None
+    }
+
+    fn help(&self) -> Option<Box<dyn Display + '_>> {
+        self.fix.as_ref().map(|fix| Box::new(fix) as Box<dyn Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.text)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = LabeledSpan::new_with_span(Some(self.kind.label()), self.span.clone());
+        Some(Box::new(std::iter::once(label)))
+    }
+}
+
+/// What is wrong with one entry of a case file.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ProblemKind {
+    /// It is not TOML.
+    #[error("this is not TOML: {message}")]
+    Syntax {
+        /// What the parser says.
+        message: String,
+    },
+    /// No such key.
+    #[error("there is no key `{key}`")]
+    UnknownKey {
+        /// Where it stands, dotted.
+        key: String,
+    },
+    /// A key that must be there is not.
+    #[error("`{key}` is missing")]
+    Missing {
+        /// The key, dotted.
+        key: String,
+    },
+    /// A value of another type.
+    #[error("`{key}` must be {expected}, found {found}")]
+    WrongType {
+        /// The key, dotted.
+        key: String,
+        /// What it must be.
+        expected: String,
+        /// What it is.
+        found: String,
+    },
+    /// A number outside its range.
+    #[error("`{key}` = {value} is out of range: {range}")]
+    OutOfRange {
+        /// The key, dotted.
+        key: String,
+        /// The value as written.
+        value: String,
+        /// The range with its unit.
+        range: String,
+    },
+    /// None of the words that may stand here.
+    #[error("`{key}` = \"{value}\" does not exist; what exists is {known}")]
+    UnknownChoice {
+        /// The key, dotted.
+        key: String,
+        /// The word.
+        value: String,
+        /// The words that exist.
+        known: String,
+    },
+    /// A name of nothing in the file.
+    #[error("`{key}` names the {what} `{name}`, which the file does not have; it has {known}")]
+    UnknownName {
+        /// The key, dotted.
+        key: String,
+        /// `turbine` or `run`.
+        what: &'static str,
+        /// The name.
+        name: String,
+        /// The names that the file has.
+        known: String,
+    },
+    /// A name that cannot name a folder, a channel or a key.
+    #[error("`{key}` = \"{name}\" is not a name: 1 to 64 letters, digits, `-` and `_` make one")]
+    BadName {
+        /// The key, dotted.
+        key: String,
+        /// What stands there.
+        name: String,
+    },
+    /// A name given twice.
+    #[error("the {what} name `{name}` is taken already")]
+    Duplicate {
+        /// `turbine` or `run`.
+        what: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// Turbines in each other's way.
+    #[error(
+        "turbines {first} and {second} overlap: they stand {distance:.2} diameters apart, 1 is the least"
+    )]
+    Overlap {
+        /// One turbine.
+        first: String,
+        /// The other, at which the arrow points.
+        second: String,
+        /// Distance of their towers (diameters of the first turbine).
+        distance: f64,
+    },
+    /// Nothing is left to analyse.
+    #[error(
+        "`time.duration` = {duration} s is not longer than `time.spin_up` = {spin_up} s: nothing is left to analyse"
+    )]
+    NothingAnalysed {
+        /// Time in all (s).
+        duration: f64,
+        /// Time not analysed (s).
+        spin_up: f64,
+    },
+    /// Control that would start after the end.
+    #[error("`{key}` = {start} s is not before the end of the run, `time.duration` = {duration} s")]
+    StartsTooLate {
+        /// The key, dotted.
+        key: String,
+        /// Start (s).
+        start: f64,
+        /// End (s).
+        duration: f64,
+    },
+    /// A run compared with itself.
+    #[error("run `{name}` is compared with itself")]
+    ComparedWithItself {
+        /// The run.
+        name: String,
+    },
+    /// Nobody is there.
+    #[error("run `{name}` has no turbine left: every one is absent")]
+    NobodyThere {
+        /// The run.
+        name: String,
+    },
+    /// An override that cannot be applied.
+    #[error("the override `{text}` cannot be applied: {why}")]
+    Override {
+        /// The override.
+        text: String,
+        /// Why.
+        why: String,
+    },
+}
+
+impl ProblemKind {
+    fn label(&self) -> String {
+        let words = match self {
+            Self::Syntax { .. } => "here",
+            Self::UnknownKey { .. } => "no such key",
+            Self::Missing { .. } => "should stand in here",
+            Self::WrongType { expected, .. } => return format!("must be {expected}"),
+            Self::OutOfRange { range, .. } => range,
+            Self::UnknownChoice { .. } => "no such choice",
+            Self::UnknownName { what, .. } => return format!("no such {what}"),
+            Self::BadName { .. } => "not a name",
+            Self::Duplicate { .. } => "taken already",
+            Self::Overlap { .. } => "too close",
+            Self::NothingAnalysed { .. } => "too short",
+            Self::StartsTooLate { .. } => "too late",
+            Self::ComparedWithItself { .. } => "itself",
+            Self::NobodyThere { .. } => "nobody there",
+            Self::Override { .. } => "this override",
+        };
+        words.to_owned()
+    }
+}

@@ -1,0 +1,481 @@
+//! The one table of keys: what the reader accepts, what the reference prints, what the schema says.
+
+/// One table of the case file.
+#[derive(Debug)]
+pub(super) struct Table {
+    /// Heading in the file, such as `[wind]`.
+    pub(super) heading: &'static str,
+    /// What it is about, in a sentence.
+    pub(super) about: &'static str,
+    /// Its keys, in the order in which they are written.
+    pub(super) keys: &'static [Key],
+}
+
+/// One key.
+#[derive(Debug)]
+pub(super) struct Key {
+    /// Name in the file.
+    pub(super) name: &'static str,
+    /// What it may hold.
+    pub(super) kind: Kind,
+    /// Unit of a number, `–` without one.
+    pub(super) unit: &'static str,
+    /// What holds without it.
+    pub(super) default: Default,
+    /// What it means.
+    pub(super) about: &'static str,
+    /// Units that people mistake for the right one, with the factor to the right one.
+    pub(super) slips: &'static [Slip],
+}
+
+/// What a key may hold.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    /// Any text.
+    Text,
+    /// Letters, digits, `-` and `_`: it names folders, channels and keys.
+    Name,
+    /// A turbine of the library, or a file.
+    Model,
+    /// A number in a range.
+    Number(Range),
+    /// A whole number in a range, ends included.
+    Whole {
+        /// Least.
+        least: u64,
+        /// Greatest.
+        most: u64,
+    },
+    /// One of some words.
+    Choice(&'static [&'static str]),
+    /// Two numbers in a range.
+    Pair(Range),
+    /// Any count of numbers in a range.
+    Numbers(Range),
+    /// `"slip"` or a table with a roughness length.
+    Ground(&'static Table),
+    /// One table.
+    Table(&'static Table),
+    /// One table or more under the same heading.
+    Tables(&'static Table),
+    /// A table for each turbine that does more than baseline, by the turbine's name.
+    Control,
+}
+
+/// Numbers from `low` to `high`, `high` included, `low` only when not `open`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range {
+    /// Lower end.
+    pub(super) low: f64,
+    /// Whether the lower end itself is out.
+    pub(super) open: bool,
+    /// Upper end.
+    pub(super) high: f64,
+}
+
+impl Range {
+    /// Whether `value` is in it; what is not a number never is.
+    pub(super) fn contains(&self, value: f64) -> bool {
+        value <= self.high && if self.open { value > self.low } else { value >= self.low }
+    }
+
+    /// In words, such as `0 < speed <= 40 m/s`.
+    pub(super) fn describe(&self, name: &str, unit: &str) -> String {
+        let sign = if self.open { "<" } else { "<=" };
+        let unit = if unit == "–" { String::new() } else { format!(" {unit}") };
+        format!("{} {sign} {name} <= {}{unit}", self.low, self.high)
+    }
+}
+
+/// What holds when a key is left out.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Default {
+    /// It cannot be left out.
+    Required,
+    /// This value, as it would stand in the file.
+    Value(&'static str),
+    /// This happens.
+    Otherwise(&'static str),
+}
+
+/// A mistaken unit.
+#[derive(Debug)]
+pub(super) struct Slip {
+    /// The mistaken unit.
+    pub(super) unit: &'static str,
+    /// Factor to the right one.
+    pub(super) factor: f64,
+}
+
+const fn above(low: f64, high: f64) -> Kind {
+    Kind::Number(Range { low, open: true, high })
+}
+
+const fn from(low: f64, high: f64) -> Kind {
+    Kind::Number(Range { low, open: false, high })
+}
+
+const fn key(
+    name: &'static str,
+    kind: Kind,
+    unit: &'static str,
+    default: Default,
+    about: &'static str,
+) -> Key {
+    Key { name, kind, unit, default, about, slips: &[] }
+}
+
+impl Key {
+    const fn mistaken(mut self, slips: &'static [Slip]) -> Self {
+        self.slips = slips;
+        self
+    }
+}
+
+use self::Default::{Otherwise, Required, Value};
+
+/// The whole file.
+pub(super) static ROOT: Table = Table {
+    heading: "(top of the file)",
+    about: "What the study is called. One file is one study: one wind, one layout, several runs to compare.",
+    keys: &[
+        key("name", Kind::Name, "", Required, "Name of the study: letters, digits, `-` and `_`."),
+        key(
+            "description",
+            Kind::Text,
+            "",
+            Otherwise("no description"),
+            "What it is for, in one line; the report shows it.",
+        ),
+        key("wind", Kind::Table(&WIND), "", Required, "The wind that comes in."),
+        key("flow", Kind::Table(&FLOW), "", Otherwise("all defaults"), "How the air is solved."),
+        key("time", Kind::Table(&TIME), "", Required, "How long every run lasts."),
+        key(
+            "turbine",
+            Kind::Tables(&TURBINE),
+            "",
+            Required,
+            "The turbines; the order is free, the first one's diameter and hub height are the measure of all lengths in diameters.",
+        ),
+        key("run", Kind::Tables(&RUN), "", Required, "The runs, all in the same inflow."),
+        key(
+            "output",
+            Kind::Table(&OUTPUT),
+            "",
+            Otherwise("all defaults"),
+            "What is kept beside series and summary.",
+        ),
+    ],
+};
+
+/// `[wind]`.
+pub(super) static WIND: Table = Table {
+    heading: "[wind]",
+    about: "The wind that comes in: a mean profile with Mann's turbulence on it, the same for every run.",
+    keys: &[
+        key("speed", above(0.0, 40.0), "m/s", Required, "Mean speed at hub height of the first turbine.")
+            .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }, Slip { unit: "cm/s", factor: 0.01 }]),
+        key("turbulence_intensity", from(0.0, 0.5), "–", Required, "Standard deviation of the streamwise component over `speed`, at hub height; 0 switches the turbulence off.")
+            .mistaken(&[Slip { unit: "percent", factor: 0.01 }]),
+        key("shear_exponent", from(-0.5, 1.0), "–", Value("0.1"), "Power-law exponent of the mean profile."),
+        key("length_scale", above(0.0, 1000.0), "m", Value("33.6"), "Length scale of Mann's tensor. The default is 0.8 Λ₁ of IEC 61400-1 with Λ₁ = 42 m, for hubs at 60 m and higher."),
+        key("anisotropy", from(0.0, 10.0), "–", Value("3.9"), "Anisotropy Γ of Mann's tensor; 0 is isotropic. The default is that of IEC 61400-1."),
+        key("seed", Kind::Whole { least: 0, most: SEED_MOST }, "–", Value("1"), "Seed of the turbulence; another seed is another hour of the same climate."),
+        key("air_density", above(0.0, 5.0), "kg/m³", Value("1.225"), "Air density.")
+            .mistaken(&[Slip { unit: "g/m³", factor: 0.001 }]),
+        key("kinematic_viscosity", above(0.0, 1e-3), "m²/s", Value("1.46e-5"), "Kinematic viscosity of air; the default is air at 15 °C at sea level.")
+            .mistaken(&[Slip { unit: "mm²/s", factor: 1e-6 }]),
+    ],
+};
+
+/// Greatest seed: TOML's integers are signed.
+const SEED_MOST: u64 = i64::MAX as u64;
+
+/// `[flow]`.
+pub(super) static FLOW: Table = Table {
+    heading: "[flow]",
+    about: "How the air is solved. The domain is sized from the layout; lengths are in diameters of the first turbine.",
+    keys: &[
+        key(
+            "solver",
+            Kind::Choice(&["lattice"]),
+            "",
+            Value("\"lattice\""),
+            "`lattice` is a lattice Boltzmann large-eddy simulation with actuator lines, the one solver that exists today.",
+        ),
+        key(
+            "cells_per_diameter",
+            from(8.0, 200.0),
+            "–",
+            Value("16"),
+            "Cells across the first rotor: the one figure that trades time for detail. Time grows with its fourth power.",
+        ),
+        key(
+            "upstream_diameters",
+            from(1.0, 50.0),
+            "D",
+            Value("3"),
+            "Air upstream of the foremost turbine.",
+        ),
+        key(
+            "downstream_diameters",
+            from(1.0, 100.0),
+            "D",
+            Value("4"),
+            "Air downstream of the last turbine.",
+        ),
+        key(
+            "width_diameters",
+            from(2.0, 100.0),
+            "D",
+            Value("6"),
+            "Width of the domain, on top of the lateral spread of the layout. Narrow domains block the flow.",
+        ),
+        key("height_diameters", from(1.0, 50.0), "D", Value("4"), "Height of the domain."),
+        key(
+            "ground",
+            Kind::Ground(&GROUND),
+            "",
+            Value("\"slip\""),
+            "`\"slip\"`: the air slips along the ground. `{ roughness_length = 0.001 }`: wall stress after the logarithmic law.",
+        ),
+        key(
+            "sides",
+            Kind::Choice(&["periodic", "slip"]),
+            "",
+            Value("\"periodic\""),
+            "`periodic`: what leaves on one side enters on the other. `slip`: the air slips along them.",
+        ),
+        key(
+            "step",
+            above(0.0, 10.0),
+            "s",
+            Otherwise("chosen from tip speed and wind speed"),
+            "Flow step, which is the control interval too.",
+        )
+        .mistaken(&[Slip { unit: "ms", factor: 0.001 }]),
+        key(
+            "threads",
+            Kind::Whole { least: 1, most: 1024 },
+            "–",
+            Otherwise("all cores"),
+            "Threads. The result does not depend on it.",
+        ),
+    ],
+};
+
+/// `flow.ground` of a rough ground.
+pub(super) static GROUND: Table = Table {
+    heading: "flow.ground = { … }",
+    about: "A rough ground.",
+    keys: &[key(
+        "roughness_length",
+        above(0.0, 5.0),
+        "m",
+        Required,
+        "Roughness length z₀: about 0.0002 on calm sea, 0.001 on open sea, 0.03 on farmland.",
+    )
+    .mistaken(&[Slip { unit: "mm", factor: 0.001 }])],
+};
+
+/// `[time]`.
+pub(super) static TIME: Table = Table {
+    heading: "[time]",
+    about: "How long every run lasts.",
+    keys: &[
+        key(
+            "spin_up",
+            from(0.0, 1e6),
+            "s",
+            Required,
+            "Time at the start that is not analysed: wakes develop and wash through the row.",
+        ),
+        key(
+            "duration",
+            above(0.0, 1e6),
+            "s",
+            Required,
+            "Time in all, spin-up included; longer than `spin_up`. Intervals need at least two blocks of 10 minutes after it.",
+        ),
+    ],
+};
+
+/// `[[turbine]]`.
+pub(super) static TURBINE: Table = Table {
+    heading: "[[turbine]]",
+    about: "One turbine of the layout.",
+    keys: &[
+        key(
+            "name",
+            Kind::Name,
+            "",
+            Required,
+            "Its name, such as `T1`: letters, digits, `-` and `_`.",
+        ),
+        key(
+            "model",
+            Kind::Model,
+            "",
+            Required,
+            "Turbine model of the library (`wakemix turbine list`), or the path of a turbine file, relative to this file.",
+        ),
+        key(
+            "position_diameters",
+            Kind::Pair(Range { low: -500.0, open: false, high: 500.0 }),
+            "D",
+            Required,
+            "Foot of the tower, x downwind and y to the left looking downwind, in diameters of the first turbine. At least 1 D from every other turbine.",
+        ),
+    ],
+};
+
+/// `[[run]]`.
+pub(super) static RUN: Table = Table {
+    heading: "[[run]]",
+    about: "One run: who does what.",
+    keys: &[
+        key(
+            "name",
+            Kind::Name,
+            "",
+            Required,
+            "Its name, and that of the folder it leaves: letters, digits, `-` and `_`.",
+        ),
+        key(
+            "compare_with",
+            Kind::Name,
+            "",
+            Otherwise("the first run; the first compares with none"),
+            "Run that its gains compare with.",
+        ),
+        key(
+            "control",
+            Kind::Control,
+            "",
+            Otherwise("baseline on every turbine"),
+            "What runs on each turbine, by the turbine's name: `control.T1 = { kind = \"helix\", … }`. Turbines not named run baseline.",
+        ),
+    ],
+};
+
+/// Kinds of control, with the keys of each.
+pub(super) static CONTROLS: &[(&str, &Table)] =
+    &[("baseline", &BASELINE), ("helix", &HELIX), ("pulse", &PULSE), ("absent", &ABSENT)];
+
+/// Names of [`CONTROLS`].
+pub(super) const CONTROL_KINDS: &[&str] = &["baseline", "helix", "pulse", "absent"];
+
+const KIND: Key =
+    key("kind", Kind::Choice(CONTROL_KINDS), "", Required, "What runs on the turbine.");
+const AMPLITUDE: Key = key(
+    "amplitude_deg",
+    from(0.0, 10.0),
+    "deg",
+    Required,
+    "Pitch amplitude of a blade; 0 is the baseline, bit for bit.",
+);
+const STROUHAL: Key = key(
+    "strouhal",
+    above(0.0, 2.0),
+    "–",
+    Required,
+    "Strouhal number f D / U of the excitation, with `wind.speed` and the diameter of the first turbine.",
+);
+const START: Key = key(
+    "start",
+    from(0.0, 1e6),
+    "s",
+    Value("0"),
+    "Time at which it fades in; before `time.duration`.",
+);
+const PHASE_RANGE: Kind = from(-360.0, 360.0);
+
+/// `kind = "baseline"`.
+pub(super) static BASELINE: Table = Table {
+    heading: "control.T1 = { kind = \"baseline\" }",
+    about: "Most power below rated, rated power above.",
+    keys: &[KIND],
+};
+
+/// `kind = "absent"`.
+pub(super) static ABSENT: Table = Table {
+    heading: "control.T1 = { kind = \"absent\" }",
+    about: "The turbine is not there in this run: the wake of the others, undisturbed.",
+    keys: &[KIND],
+};
+
+/// `kind = "helix"`.
+pub(super) static HELIX: Table = Table {
+    heading: "control.T1 = { kind = \"helix\", … }",
+    about: "Individual pitch that moves the thrust centre on a circle, on top of baseline.",
+    keys: &[
+        KIND,
+        key(
+            "sense",
+            Kind::Choice(&["cw", "ccw"]),
+            "",
+            Required,
+            "`ccw`: blades pitch at rotor plus excitation frequency. `cw`: at rotor minus excitation frequency.",
+        ),
+        AMPLITUDE,
+        STROUHAL,
+        key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero."),
+        key(
+            "azimuth_offset_deg",
+            PHASE_RANGE,
+            "deg",
+            Value("0"),
+            "Azimuth offset of the inverse multi-blade transformation.",
+        ),
+        START,
+    ],
+};
+
+/// `kind = "pulse"`.
+pub(super) static PULSE: Table = Table {
+    heading: "control.T1 = { kind = \"pulse\", … }",
+    about: "Collective pitch, periodic, on top of baseline.",
+    keys: &[
+        KIND,
+        AMPLITUDE,
+        STROUHAL,
+        key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase at time zero."),
+        START,
+    ],
+};
+
+/// `[output]`.
+pub(super) static OUTPUT: Table = Table {
+    heading: "[output]",
+    about: "What is kept of a run, beside series, summary and mean planes.",
+    keys: &[
+        key(
+            "plane_interval",
+            above(0.0, 1e6),
+            "s",
+            Otherwise("no instantaneous planes"),
+            "Instantaneous planes every so many seconds of the analysed time.",
+        ),
+        key(
+            "crosswind_diameters",
+            Kind::Numbers(Range { low: -50.0, open: false, high: 500.0 }),
+            "D",
+            Value("[]"),
+            "Crosswind planes at these distances behind the first turbine.",
+        ),
+        key(
+            "volume_interval",
+            above(0.0, 1e6),
+            "s",
+            Otherwise("no volumes"),
+            "Volume snapshots (VTK) every so many seconds; large.",
+        ),
+        key(
+            "checkpoint_interval",
+            from(1.0, 1e6),
+            "s",
+            Value("300"),
+            "Checkpoint every so many seconds of wall time.",
+        ),
+    ],
+};

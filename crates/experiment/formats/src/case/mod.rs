@@ -1,0 +1,67 @@
+//! The case file: TOML in, a checked [`Case`] out, and an arrow at everything that is wrong.
+//!
+//! Every key stands once, in the table of `keys`: the reader checks against it, [`reference()`] prints
+//! it and [`schema`] hands it to editors. Keys and overrides are documented in docs/case-file.md.
+
+mod check;
+mod document;
+mod error;
+mod keys;
+mod reference;
+mod section;
+mod write;
+
+pub use error::{CaseError, Problem, ProblemKind};
+pub use reference::{reference, schema};
+pub use write::write;
+
+use crate::atomic;
+use farm::case::Case;
+use std::path::{Path, PathBuf};
+
+/// A case with the file that it came from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseFile {
+    /// The case, overrides applied.
+    pub case: Case,
+    /// The file's text, without overrides.
+    pub text: String,
+    /// Overrides that were applied, in order.
+    pub overrides: Vec<String>,
+    /// The file.
+    pub path: PathBuf,
+}
+
+impl CaseFile {
+    /// Folder that paths in the case are relative to.
+    pub fn folder(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new(""))
+    }
+}
+
+/// Reads the case file at `path` and applies `overrides`, each `key.path=value` such as `wind.speed=8`.
+///
+/// Tables under one heading are picked by number from 0 or by name: `turbine.0.model=iea-22mw`,
+/// `run.helix.control.T1.amplitude_deg=3`. Text needs no quotes.
+///
+/// # Errors
+/// [`CaseError::File`] when the file cannot be read, [`CaseError::Invalid`] with everything that is wrong in it.
+pub fn read(path: &Path, overrides: &[String]) -> Result<CaseFile, CaseError> {
+    let text = atomic::read_text(path, "the case file")?;
+    let case = parse(&path.display().to_string(), &text, overrides)?;
+    Ok(CaseFile { case, text, overrides: overrides.to_vec(), path: path.to_owned() })
+}
+
+/// Reads the case file in `text`; errors call it `name`.
+///
+/// # Errors
+/// [`CaseError::Invalid`] with everything that is wrong in it.
+pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, CaseError> {
+    let (sources, document) = document::parse(name, text, overrides);
+    document
+        .and_then(|entries| check::check(&entries, text.len(), &sources))
+        .map_err(|problems| CaseError::Invalid { name: name.to_owned(), problems })
+}
+
+#[cfg(test)]
+mod tests;

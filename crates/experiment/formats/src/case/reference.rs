@@ -1,0 +1,141 @@
+//! The table of keys as a page for people and as a schema for editors.
+
+use super::keys::{
+    CONTROLS, Default, FLOW, GROUND, Key, Kind, OUTPUT, ROOT, RUN, TIME, TURBINE, Table, WIND,
+};
+use serde_json::{Map, Value, json};
+use std::fmt::Write;
+
+/// What the page says around the tables of keys.
+const PREFACE: &str = include_str!("preface.md");
+
+/// The page docs/case-file.md: how a case file is read, and every key with unit, range and default.
+pub fn reference() -> String {
+    let mut page = PREFACE.to_owned();
+    let tables = [&ROOT, &WIND, &FLOW, &GROUND, &TIME, &TURBINE, &RUN];
+    let controls = CONTROLS.iter().map(|(_, table)| *table);
+    for table in tables.into_iter().chain(controls).chain([&OUTPUT]) {
+        // Writing to a string cannot fail.
+        let _ = write_table(&mut page, table);
+    }
+    page
+}
+
+fn write_table(page: &mut String, table: &Table) -> std::fmt::Result {
+    writeln!(page, "\n## `{}`\n\n{}\n", table.heading, table.about)?;
+    writeln!(page, "| key | holds | unit | default | meaning |\n| --- | --- | --- | --- | --- |")?;
+    for key in table.keys {
+        let default = match key.default {
+            Default::Required => "required".to_owned(),
+            Default::Value(value) => format!("`{value}`"),
+            Default::Otherwise(words) => words.to_owned(),
+        };
+        let unit = key.unit;
+        writeln!(page, "| `{}` | {} | {unit} | {default} | {} |", key.name, holds(key), key.about)?;
+    }
+    Ok(())
+}
+
+fn holds(key: &Key) -> String {
+    match key.kind {
+        Kind::Text => "text".into(),
+        Kind::Name => "name".into(),
+        Kind::Model => "model or path".into(),
+        Kind::Number(range) => range.describe("x", "–"),
+        Kind::Whole { least, most } if most > 1 << 32 => format!("whole, {least} or more"),
+        Kind::Whole { least, most } => format!("whole, {least} to {most}"),
+        Kind::Choice(words) => {
+            words.iter().map(|w| format!("`\"{w}\"`")).collect::<Vec<_>>().join(", ")
+        }
+        Kind::Pair(range) => format!("`[x, y]`, {} to {}", range.low, range.high),
+        Kind::Numbers(range) => format!("list, each {} to {}", range.low, range.high),
+        Kind::Ground(_) => "`\"slip\"` or a table".into(),
+        Kind::Table(_) => "table".into(),
+        Kind::Tables(_) => "one table or more".into(),
+        Kind::Control => "tables by turbine".into(),
+    }
+}
+
+/// JSON Schema (draft 2020-12) of the case file, for editors that complete and check TOML.
+pub fn schema() -> String {
+    let mut root = schema_of(&ROOT);
+    root.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
+    root.insert("title".into(), json!("wakemix case file"));
+    // A map of plain values always has a text.
+    let text = serde_json::to_string_pretty(&Value::Object(root)).unwrap_or_default();
+    text + "\n"
+}
+
+fn schema_of(table: &Table) -> Map<String, Value> {
+    let properties: Map<String, Value> =
+        table.keys.iter().map(|key| (key.name.to_owned(), schema_of_key(key))).collect();
+    let required: Vec<&str> = table
+        .keys
+        .iter()
+        .filter(|key| matches!(key.default, Default::Required))
+        .map(|key| key.name)
+        .collect();
+    let mut schema = Map::new();
+    schema.insert("type".into(), json!("object"));
+    schema.insert("description".into(), json!(table.about));
+    schema.insert("properties".into(), Value::Object(properties));
+    schema.insert("required".into(), json!(required));
+    schema.insert("additionalProperties".into(), json!(false));
+    schema
+}
+
+fn schema_of_key(key: &Key) -> Value {
+    let number = |range: super::keys::Range| {
+        let low = if range.open { "exclusiveMinimum" } else { "minimum" };
+        json!({ "type": "number", low: range.low, "maximum": range.high })
+    };
+    let mut schema = match key.kind {
+        Kind::Text | Kind::Model => json!({ "type": "string" }),
+        Kind::Name => json!({ "type": "string", "pattern": "^[A-Za-z0-9_-]{1,64}$" }),
+        Kind::Number(range) => number(range),
+        Kind::Whole { least, most } => {
+            json!({ "type": "integer", "minimum": least, "maximum": most })
+        }
+        Kind::Choice(words) => json!({ "enum": words }),
+        Kind::Pair(range) => {
+            json!({ "type": "array", "items": number(range), "minItems": 2, "maxItems": 2 })
+        }
+        Kind::Numbers(range) => json!({ "type": "array", "items": number(range) }),
+        Kind::Ground(table) => {
+            json!({ "anyOf": [{ "const": "slip" }, Value::Object(schema_of(table))] })
+        }
+        Kind::Table(table) => Value::Object(schema_of(table)),
+        Kind::Tables(table) => {
+            json!({ "type": "array", "minItems": 1, "items": Value::Object(schema_of(table)) })
+        }
+        Kind::Control => {
+            json!({ "type": "object", "additionalProperties": { "oneOf": control_schemas() } })
+        }
+    };
+    if let Value::Object(schema) = &mut schema {
+        let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
+        schema.insert("description".into(), json!(format!("{}{unit}", key.about)));
+        if let Default::Value(text) = key.default
+            && let Some(value) = default_of(text)
+        {
+            schema.insert("default".into(), value);
+        }
+    }
+    schema
+}
+
+fn control_schemas() -> Vec<Value> {
+    let one = |(name, table): &(&str, &'static Table)| {
+        let mut schema = schema_of(table);
+        if let Some(kind) = schema.get_mut("properties").and_then(|keys| keys.get_mut("kind")) {
+            *kind = json!({ "const": name });
+        }
+        Value::Object(schema)
+    };
+    CONTROLS.iter().map(one).collect()
+}
+
+/// A default as written in TOML, which for these plain values is JSON too.
+fn default_of(text: &str) -> Option<Value> {
+    serde_json::from_str(text).ok()
+}

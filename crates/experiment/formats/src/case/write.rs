@@ -1,0 +1,117 @@
+//! A case as text: every key written out, defaults included.
+
+use farm::case::{Case, Control, Ground, Sense, Sides};
+use std::fmt::Write;
+
+/// The case file that reads back as `case`, with every default written out.
+pub fn write(case: &Case) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_to(&mut text, case);
+    text
+}
+
+fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
+    writeln!(text, "name = {}", quoted(&case.name))?;
+    if let Some(description) = &case.description {
+        writeln!(text, "description = {}", quoted(description))?;
+    }
+    let wind = &case.wind;
+    writeln!(text, "\n[wind]")?;
+    writeln!(text, "speed = {:?}", wind.speed)?;
+    writeln!(text, "turbulence_intensity = {:?}", wind.turbulence_intensity)?;
+    writeln!(text, "shear_exponent = {:?}", wind.shear_exponent)?;
+    writeln!(text, "length_scale = {:?}", wind.length_scale)?;
+    writeln!(text, "anisotropy = {:?}", wind.anisotropy)?;
+    writeln!(text, "seed = {}", wind.seed)?;
+    writeln!(text, "air_density = {:?}", wind.air_density)?;
+    writeln!(text, "kinematic_viscosity = {:?}", wind.kinematic_viscosity)?;
+
+    let flow = &case.flow;
+    writeln!(text, "\n[flow]\nsolver = \"lattice\"")?;
+    writeln!(text, "cells_per_diameter = {:?}", flow.cells_per_diameter)?;
+    writeln!(text, "upstream_diameters = {:?}", flow.upstream_diameters)?;
+    writeln!(text, "downstream_diameters = {:?}", flow.downstream_diameters)?;
+    writeln!(text, "width_diameters = {:?}", flow.width_diameters)?;
+    writeln!(text, "height_diameters = {:?}", flow.height_diameters)?;
+    match flow.ground {
+        Ground::Slip => writeln!(text, "ground = \"slip\"")?,
+        Ground::Rough { roughness_length } => {
+            writeln!(text, "ground = {{ roughness_length = {roughness_length:?} }}")?;
+        }
+    }
+    let sides = if flow.sides == Sides::Slip { "slip" } else { "periodic" };
+    writeln!(text, "sides = \"{sides}\"")?;
+    if let Some(step) = flow.step {
+        writeln!(text, "step = {step:?}")?;
+    }
+    if let Some(threads) = flow.threads {
+        writeln!(text, "threads = {threads}")?;
+    }
+
+    writeln!(text, "\n[time]")?;
+    writeln!(text, "spin_up = {:?}\nduration = {:?}", case.time.spin_up, case.time.duration)?;
+    for turbine in &case.turbines {
+        let [x, y] = turbine.position_diameters;
+        writeln!(text, "\n[[turbine]]\nname = {}", quoted(&turbine.name))?;
+        writeln!(text, "model = {}\nposition_diameters = [{x:?}, {y:?}]", quoted(&turbine.model))?;
+    }
+    for run in &case.runs {
+        writeln!(text, "\n[[run]]\nname = {}", quoted(&run.name))?;
+        if let Some(other) = &run.compare_with {
+            writeln!(text, "compare_with = {}", quoted(other))?;
+        }
+        for (turbine, control) in case.turbines.iter().zip(&run.control) {
+            writeln!(text, "control.{} = {}", turbine.name, control_text(control))?;
+        }
+    }
+    let output = &case.output;
+    writeln!(text, "\n[output]")?;
+    if let Some(interval) = output.plane_interval {
+        writeln!(text, "plane_interval = {interval:?}")?;
+    }
+    writeln!(text, "crosswind_diameters = {:?}", output.crosswind_diameters)?;
+    if let Some(interval) = output.volume_interval {
+        writeln!(text, "volume_interval = {interval:?}")?;
+    }
+    writeln!(text, "checkpoint_interval = {:?}", output.checkpoint_interval)
+}
+
+fn control_text(control: &Control) -> String {
+    match control {
+        Control::Baseline => "{ kind = \"baseline\" }".to_owned(),
+        Control::Absent => "{ kind = \"absent\" }".to_owned(),
+        Control::Helix(helix) => {
+            let sense = if helix.sense == Sense::Clockwise { "cw" } else { "ccw" };
+            format!(
+                "{{ kind = \"helix\", sense = \"{sense}\", amplitude_deg = {:?}, strouhal = {:?}, phase_deg = {:?}, azimuth_offset_deg = {:?}, start = {:?} }}",
+                degrees(helix.amplitude),
+                helix.strouhal,
+                degrees(helix.phase),
+                degrees(helix.azimuth_offset),
+                helix.start,
+            )
+        }
+        Control::Pulse(pulse) => format!(
+            "{{ kind = \"pulse\", amplitude_deg = {:?}, strouhal = {:?}, phase_deg = {:?}, start = {:?} }}",
+            degrees(pulse.amplitude),
+            pulse.strouhal,
+            degrees(pulse.phase),
+            pulse.start,
+        ),
+    }
+}
+
+/// The degrees with the fewest digits that give `angle` (rad) back, bit for bit where any do.
+fn degrees(angle: f64) -> f64 {
+    let exact = angle.to_degrees();
+    (0..17)
+        .filter_map(|digits| format!("{exact:.digits$e}").parse::<f64>().ok())
+        .chain([exact, exact.next_up(), exact.next_down()])
+        .find(|degrees| degrees.to_radians() == angle)
+        .unwrap_or(exact)
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
