@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 pub struct Spectrum {
     /// Distance of neighbouring frequencies (Hz).
     pub frequency_step: f64,
-    /// One value per frequency.
+    /// One value per frequency, in the unit that the function which made it names.
     pub values: Vec<f64>,
 }
 

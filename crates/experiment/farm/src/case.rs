@@ -177,11 +177,11 @@ pub struct Pulse {
 /// What is kept of a run, beside series and summary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
-    /// Instantaneous hub-height and crosswind planes every so many seconds of the analysed time; none when absent.
+    /// Time between instantaneous hub-height and crosswind planes (s); none when absent.
     pub plane_interval: Option<f64>,
     /// Crosswind planes at these distances behind the first turbine (diameters).
     pub crosswind_diameters: Vec<f64>,
-    /// Volume snapshots (VTK) every so many seconds; none when absent.
+    /// Time between volume snapshots, VTK (s); none when absent.
     pub volume_interval: Option<f64>,
     /// Checkpoint every so many seconds of wall time (s).
     pub checkpoint_interval: f64,

@@ -10,11 +10,11 @@ use std::f64::consts::TAU;
 /// the right half looking downwind. Source: seed document 000, Eq. 4 and its Fig. 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FixedFrame {
-    /// Mean over the blades (collective).
+    /// Mean over the blades, collective (unit of the blades' quantity).
     pub average: f64,
-    /// Cosine component.
+    /// Cosine component (unit of the blades' quantity).
     pub tilt: f64,
-    /// Sine component.
+    /// Sine component (unit of the blades' quantity).
     pub yaw: f64,
 }
 

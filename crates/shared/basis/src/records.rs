@@ -13,7 +13,7 @@ pub struct Statistic {
     pub mean: f64,
     /// Standard deviation of the samples, in the quantity's unit.
     pub standard_deviation: f64,
-    /// Half width of the 95 % interval of the mean from block means; absent with fewer than two blocks.
+    /// Half width of the 95 % interval of the mean from block means, in the quantity's unit; absent with fewer than two blocks.
     pub half_width_95: Option<f64>,
     /// Number of blocks behind the interval.
     pub n_blocks: usize,

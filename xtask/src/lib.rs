@@ -1,0 +1,3 @@
+//! Chores of the repository.
+
+pub mod tidy;

@@ -1,0 +1,71 @@
+//! The rules of the house that a compiler does not know, checked against the files themselves.
+
+mod architecture;
+mod text;
+
+use std::fmt;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// One breach of a rule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// File, relative to the root.
+    pub file: PathBuf,
+    /// Line, from one; none where the whole file is meant.
+    pub line: Option<usize>,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}:", self.file.display())?;
+        if let Some(line) = self.line {
+            write!(formatter, "{line}:")?;
+        }
+        write!(formatter, " {}", self.message)
+    }
+}
+
+/// Every breach in the repository at `root`; none in a tidy one.
+///
+/// # Errors
+/// When a file or folder cannot be read.
+pub fn findings(root: &Path) -> io::Result<Vec<Finding>> {
+    let mut findings = Vec::new();
+    let rules = architecture::check(root, &mut findings)?;
+    let mut files = Vec::new();
+    collect(root, Path::new(""), &mut files)?;
+    for file in files {
+        // What is not text, such as a picture, has no lines to check.
+        if let Ok(text) = String::from_utf8(fs::read(root.join(&file))?) {
+            text::check(&file, &text, &rules, &mut findings);
+        }
+    }
+    Ok(findings)
+}
+
+/// Files below `folder`, without what git ignores and without what is not ours to word.
+fn collect(root: &Path, folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {
+    let mut entries: Vec<_> = fs::read_dir(root.join(folder))?.collect::<io::Result<_>>()?;
+    entries.sort_by_key(fs::DirEntry::file_name);
+    for entry in entries {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let path = folder.join(&name);
+        let kind = entry.file_type()?;
+        let ignored = [".git", ".venv", "runs", "Cargo.lock"].contains(&name.as_str())
+            || name.starts_with("target")
+            || name.starts_with("LICENSE");
+        if ignored || kind.is_symlink() {
+            continue;
+        }
+        if kind.is_dir() {
+            collect(root, &path, files)?;
+        } else {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
