@@ -34,7 +34,10 @@ fn main() {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let mut counts = vec![1, cores];
     counts.dedup();
-    println!("cells {n_cells:?}, {} M; best of {n_repeats}", n_cells.iter().product::<usize>() as f64 / 1e6);
+    println!(
+        "cells {n_cells:?}, {} M; best of {n_repeats}",
+        n_cells.iter().product::<usize>() as f64 / 1e6
+    );
     for n_threads in counts {
         let mut bandwidth: f64 = 0.0;
         let mut names = Vec::new();
@@ -54,7 +57,11 @@ fn main() {
         println!("{n_threads} threads: in-place read and write {:.1} GB/s", bandwidth / 1e9);
         for (name, speed) in names.iter().zip(&speeds) {
             let share = speed * BYTES_PER_UPDATE / bandwidth;
-            println!("  {name:<28} {:>6.0} M updates/s  {:>5.1} % of the limit", speed / 1e6, 100.0 * share);
+            println!(
+                "  {name:<28} {:>6.0} M updates/s  {:>5.1} % of the limit",
+                speed / 1e6,
+                100.0 * share
+            );
         }
     }
     let air = lattice(n_cells, 1, Backend::detect(), true);
@@ -67,7 +74,12 @@ fn cases() -> Vec<(String, Backend, bool)> {
     Backend::ALL
         .into_iter()
         .filter(|backend| backend.is_available())
-        .flat_map(|backend| [(format!("{backend:?} bare"), backend, false), (format!("{backend:?} everything"), backend, true)])
+        .flat_map(|backend| {
+            [
+                (format!("{backend:?} bare"), backend, false),
+                (format!("{backend:?} everything"), backend, true),
+            ]
+        })
         .collect()
 }
 
@@ -87,7 +99,12 @@ fn lattice(n_cells: [usize; 3], n_threads: usize, backend: Backend, everything: 
 }
 
 /// Best of three runs; `everything` means inlet, outlet, wall and two rotors' forces.
-fn updates_per_second(n_cells: [usize; 3], n_threads: usize, backend: Backend, everything: bool) -> f64 {
+fn updates_per_second(
+    n_cells: [usize; 3],
+    n_threads: usize,
+    backend: Backend,
+    everything: bool,
+) -> f64 {
     let mut air = lattice(n_cells, n_threads, backend, everything);
     let forces = if everything { rotors(&air) } else { Vec::new() };
     let interval = air.settings().interval;

@@ -7,32 +7,37 @@ use std::time::Instant;
 ///
 /// `mebibytes` is the array's size, many times that of the caches; `n_repeats` runs are made and the best one counts.
 pub fn in_place_bandwidth(n_threads: usize, mebibytes: usize, n_repeats: usize) -> f64 {
-    let n = mebibytes * (1 << 20) / size_of::<f32>();
+    let n = (mebibytes * (1 << 20) / size_of::<f32>()).next_multiple_of(n_threads);
     let mut array = HugeArray::new(n);
-    let share = n.div_ceil(n_threads);
-    let barrier = Barrier::new(n_threads + 1);
-    let mut best = f64::INFINITY;
+    let share = n / n_threads;
+    let barrier = Barrier::new(n_threads);
+    let origin = Instant::now();
+    // Start and end of each thread's part of each repeat (s).
+    let mut spans = vec![vec![(0.0, 0.0); n_repeats]; n_threads];
     std::thread::scope(|scope| {
-        for chunk in array.values().chunks_mut(share) {
+        for (chunk, spans) in array.values().chunks_mut(share).zip(&mut spans) {
             let barrier = &barrier;
             scope.spawn(move || {
                 chunk.fill(1.0);
-                for _ in 0..n_repeats {
+                for span in spans {
                     barrier.wait();
+                    span.0 = origin.elapsed().as_secs_f64();
                     for value in chunk.iter_mut() {
                         *value = *value * 0.999 + 0.001;
                     }
-                    barrier.wait();
+                    span.1 = origin.elapsed().as_secs_f64();
                 }
             });
         }
-        for _ in 0..n_repeats {
-            barrier.wait();
-            let start = Instant::now();
-            barrier.wait();
-            best = best.min(start.elapsed().as_secs_f64());
-        }
     });
+    let best = (0..n_repeats)
+        .map(|repeat| {
+            let spans = spans.iter().map(|spans| spans[repeat]);
+            let (start, end) =
+                spans.fold((f64::INFINITY, 0.0_f64), |(s, e), (a, b)| (s.min(a), e.max(b)));
+            end - start
+        })
+        .fold(f64::INFINITY, f64::min);
     2.0 * (n * size_of::<f32>()) as f64 / best
 }
 

@@ -37,14 +37,14 @@ pub(crate) fn collide<S: Simd>(
     let one = S::splat(1.0);
     let half = S::splat(0.5);
     let third = S::splat(1.0 / 3.0);
-    let rho = one + before.density_excess;
+    let per_density = before.per_density;
 
     let t = (sxx + syy + szz) * third;
     let (dxx, dyy, dzz) = (sxx - t, syy - t, szz - t);
     let shear = sxy.mul_add(sxy, sxz.mul_add(sxz, syz * syz));
     let q = S::splat(2.0).mul_add(shear, dxx.mul_add(dxx, dyy.mul_add(dyy, dzz * dzz))).sqrt();
     let tau = (relaxation.time
-        + relaxation.time.mul_add(relaxation.time, relaxation.subgrid * q.divide(rho)).sqrt())
+        + relaxation.time.mul_add(relaxation.time, relaxation.subgrid * (q * per_density)).sqrt())
         * half;
     let omega = one.divide(tau);
     let kept = one - omega;
@@ -62,13 +62,13 @@ pub(crate) fn collide<S: Simd>(
         Some([fx, fy, fz]) => {
             let [jx, jy, jz] = before.momentum;
             let [jx, jy, jz] = [jx + fx, jy + fy, jz + fz];
-            let per_density = one.divide(rho);
             ([jx, jy, jz], [jx * per_density, jy * per_density, jz * per_density])
         }
         None => (before.momentum, before.velocity),
     };
     Moments {
         density_excess: before.density_excess,
+        per_density,
         momentum,
         velocity,
         stress: [

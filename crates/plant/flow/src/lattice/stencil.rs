@@ -7,6 +7,8 @@ use super::simd::Simd;
 pub(crate) struct Moments<S> {
     /// Density less one.
     pub(crate) density_excess: S,
+    /// One over density.
+    pub(crate) per_density: S,
     /// Momentum per cell: kept beside the velocity so that a collision conserves it without a rounding to and fro.
     pub(crate) momentum: [S; 3],
     /// Momentum over density.
@@ -21,7 +23,14 @@ impl<S: Simd> Moments<S> {
     pub(crate) fn new(density_excess: S, velocity: [S; 3], stress: [S; 6]) -> Self {
         let rho = S::splat(1.0) + density_excess;
         let [ux, uy, uz] = velocity;
-        Self { density_excess, momentum: [rho * ux, rho * uy, rho * uz], velocity, stress }
+        let per_density = S::splat(1.0).divide(rho);
+        Self {
+            density_excess,
+            per_density,
+            momentum: [rho * ux, rho * uy, rho * uz],
+            velocity,
+            stress,
+        }
     }
 }
 
@@ -123,6 +132,7 @@ impl Stencil<19> for D3Q19 {
         let third = density_excess * S::splat(1.0 / 3.0);
         Moments {
             density_excess,
+            per_density,
             momentum: [jx, jy, jz],
             velocity: [ux, uy, uz],
             stress: [
@@ -148,7 +158,7 @@ impl Stencil<19> for D3Q19 {
         let quarter = S::splat(0.25);
         let two = S::splat(2.0);
         let rho = S::splat(1.0) + excess;
-        let per_density = S::splat(1.0).divide(rho);
+        let per_density = moments.per_density;
         let third = excess * one_third;
         // Second raw moments, and second central ones with the background of air at rest.
         let m_xx = jx.mul_add(ux, third + sxx);

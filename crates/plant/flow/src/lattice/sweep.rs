@@ -171,41 +171,67 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
     force: &[Vec<f32>; 3],
     range: Range<usize>,
 ) {
-    let parity = if ODD { Parity::Odd } else { Parity::Even };
+    let mut places = [step.air; Q];
+    for (place, address) in places.iter_mut().zip(addresses) {
+        // SAFETY: a row's addresses lie in the array.
+        *place = unsafe { step.air.add(*address) };
+    }
     let subgrid = S::splat(subgrid);
     let times = step.relaxation_times.as_ptr();
     let force = [force[0].as_ptr(), force[1].as_ptr(), force[2].as_ptr()];
     let mut x = range.start;
-    while x < range.end {
-        // SAFETY: `x` lies in the row; the row's padding makes whole vectors readable, and a last vector that is not
-        // whole is written through a buffer, cell by cell.
+    while x + S::LANES <= range.end {
+        // SAFETY: a whole vector of cells of the row.
         unsafe {
-            let mut populations = [S::splat(0.0); Q];
+            let after = vector::<S, L, Q, ODD, FORCED>(&places, x, times, subgrid, &force);
             for slot in 0..Q {
-                populations[read_direction(parity, slot)] =
-                    S::load(step.air.add(addresses[slot] + x));
-            }
-            let relaxation = Relaxation { time: S::load(times.add(x)), subgrid };
-            let force = if FORCED {
-                Some([S::load(force[0].add(x)), S::load(force[1].add(x)), S::load(force[2].add(x))])
-            } else {
-                None
-            };
-            let after = L::populations(&collide(&L::moments(&populations), &relaxation, force));
-            if x + S::LANES <= range.end {
-                for slot in 0..Q {
-                    after[write_direction(parity, slot)].store(step.air.add(addresses[slot] + x));
-                }
-            } else {
-                for slot in 0..Q {
-                    let mut lanes = [0.0; MAXIMUM_LANES];
-                    after[write_direction(parity, slot)].store(lanes.as_mut_ptr());
-                    for (lane, value) in lanes[..range.end - x].iter().enumerate() {
-                        *step.air.add(addresses[slot] + x + lane) = *value;
-                    }
-                }
+                after[write_direction(parity::<ODD>(), slot)].store(places[slot].add(x));
             }
         }
         x += S::LANES;
     }
+    if x < range.end {
+        // SAFETY: the row's padding makes a whole vector readable; only cells of the row are written.
+        unsafe {
+            let after = vector::<S, L, Q, ODD, FORCED>(&places, x, times, subgrid, &force);
+            for slot in 0..Q {
+                let mut lanes = [0.0; MAXIMUM_LANES];
+                after[write_direction(parity::<ODD>(), slot)].store(lanes.as_mut_ptr());
+                for (lane, value) in lanes[..range.end - x].iter().enumerate() {
+                    *places[slot].add(x + lane) = *value;
+                }
+            }
+        }
+    }
+}
+
+/// Populations after the collision of the cells from `x`.
+#[inline(always)]
+unsafe fn vector<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const FORCED: bool>(
+    places: &[*mut f32; Q],
+    x: usize,
+    times: *const f32,
+    subgrid: S,
+    force: &[*const f32; 3],
+) -> [S; Q] {
+    // SAFETY: the caller promises whole readable vectors.
+    unsafe {
+        let mut populations = [S::splat(0.0); Q];
+        for slot in 0..Q {
+            populations[read_direction(parity::<ODD>(), slot)] = S::load(places[slot].add(x));
+        }
+        let relaxation = Relaxation { time: S::load(times.add(x)), subgrid };
+        let force = if FORCED {
+            let [fx, fy, fz] = *force;
+            Some([S::load(fx.add(x)), S::load(fy.add(x)), S::load(fz.add(x))])
+        } else {
+            None
+        };
+        L::populations(&collide(&L::moments(&populations), &relaxation, force))
+    }
+}
+
+#[inline(always)]
+const fn parity<const ODD: bool>() -> Parity {
+    if ODD { Parity::Odd } else { Parity::Even }
 }
