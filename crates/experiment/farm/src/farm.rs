@@ -38,10 +38,16 @@ pub struct Farm<Flow> {
 }
 
 impl<Flow: FlowSolver> Farm<Flow> {
-    /// A farm at rest in time: `step` steps of `interval` (s) have been made already (0, or those of a checkpoint).
-    pub fn new(machines: Vec<Machine>, flow: Flow, interval: f64, step: u64) -> Self {
+    /// A farm at time zero that moves on in steps of `interval` (s).
+    pub fn new(machines: Vec<Machine>, flow: Flow, interval: f64) -> Self {
         let n_forces = machines.iter().map(|machine| machine.turbine.stations().len()).sum();
-        Self { machines, flow, forces: Vec::with_capacity(n_forces), interval, step }
+        Self { machines, flow, forces: Vec::with_capacity(n_forces), interval, step: 0 }
+    }
+
+    /// The same farm after `step` steps, as a checkpoint is taken up; its states are restored one by one.
+    pub fn at_step(mut self, step: u64) -> Self {
+        self.step = step;
+        self
     }
 
     /// Moves everything on by one control interval.

@@ -4,7 +4,6 @@ pub mod assemble;
 pub mod case;
 pub mod farm;
 pub mod plan;
-pub mod planes;
 pub mod self_check;
 
 pub use farm::{Farm, Machine, Recorder};

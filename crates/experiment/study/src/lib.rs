@@ -1,4 +1,177 @@
 //! A study from case file to report: every run of a case, with its files.
+//!
+//! Reading order: [`run`], then `prepare` (what all runs share), `simulate` (one run), `summarise` (its numbers).
 
-pub mod channels;
-pub mod watcher;
+mod channels;
+mod error;
+mod prepare;
+mod simulate;
+mod summarise;
+mod watcher;
+
+pub use error::StudyError;
+pub use prepare::Setup;
+pub use watcher::{Estimate, Progress, Watcher};
+
+use basis::records::{Series, Summary};
+use farm::case::Run;
+use formats::records::{self, RunFolder};
+use simulate::{Ending, simulate};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+/// What to run, and where the results go.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Case file.
+    pub case: PathBuf,
+    /// Folder for the results; `runs/NAME-OF-THE-CASE` when absent.
+    pub output: Option<PathBuf>,
+    /// Runs to make; all when empty.
+    pub runs: Vec<String>,
+    /// Overrides of the case's keys, `key.path=value`.
+    pub overrides: Vec<String>,
+    /// Go on with what is there.
+    pub resume: bool,
+    /// Say what it would cost, and stop.
+    pub dry_run: bool,
+}
+
+/// How a study ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// All asked runs are complete.
+    Done {
+        /// Their summaries, and those of runs that were complete before.
+        summaries: Vec<Summary>,
+        /// The report.
+        report: PathBuf,
+    },
+    /// The cost was told, nothing was run.
+    Estimated,
+    /// Stopped on request; it can be resumed.
+    Interrupted {
+        /// Folder of the results.
+        directory: PathBuf,
+    },
+}
+
+/// Runs the study that `options` name; `stop` asks it to leave a checkpoint and return.
+///
+/// # Errors
+/// [`StudyError`]; files of runs that were complete before stay whole.
+pub fn run(
+    options: &Options,
+    stop: &AtomicBool,
+    watcher: &mut dyn Watcher,
+) -> Result<Outcome, StudyError> {
+    let mut setup = Setup::read(&options.case, &options.overrides)?;
+    let wanted = wanted_runs(&setup, &options.runs)?;
+    let directory = options
+        .output
+        .clone()
+        .unwrap_or_else(|| Path::new("runs").join(file_name(&setup.case.name)));
+    let folders: Vec<RunFolder> =
+        setup.case.runs.iter().map(|run| RunFolder::new(&directory, &run.name)).collect();
+    let open: Vec<usize> = wanted
+        .iter()
+        .copied()
+        .filter(|&index| !(options.resume && folders[index].is_complete()))
+        .collect();
+    if !options.resume && !options.dry_run && open.iter().any(|&index| folders[index].exists()) {
+        return Err(StudyError::OutputExists { directory });
+    }
+    let mut estimate = setup.estimate(open.len());
+    watcher.estimated(&estimate);
+    setup.check_memory(&estimate)?;
+    for warning in &setup.warnings {
+        watcher.warned(warning);
+    }
+    if !open.is_empty() {
+        estimate.updates_per_second = setup.self_check(watcher)?;
+        watcher.estimated(&estimate);
+    }
+    if options.dry_run {
+        return Ok(Outcome::Estimated);
+    }
+    if !open.is_empty() {
+        setup.make_turbulence(watcher)?;
+        records::begin_study(&directory, &setup.case_text)?;
+    }
+    for (place, &index) in open.iter().enumerate() {
+        let run = &setup.case.runs[index];
+        let folder = &folders[index];
+        folder.create()?;
+        let started = records::now();
+        let place = (place, open.len());
+        match simulate(&setup, run, folder, options.resume, place, stop, watcher)? {
+            Ending::Interrupted => return Ok(Outcome::Interrupted { directory }),
+            Ending::Complete { cost, clipped_shares } => {
+                let series = records::read_series(&folder.series_path())?;
+                let compared = compared_run(&setup, index, &folders)?;
+                let compared = compared.as_ref().map(|(run, series)| (*run, series));
+                let summary =
+                    summarise::summarise(&setup, run, &series, compared, &clipped_shares, cost)?;
+                for warning in &summary.warnings[setup.warnings.len()..] {
+                    watcher.warned(warning);
+                }
+                folder.complete(&summary, &setup.case_text, &started)?;
+                watcher.finished(&summary);
+            }
+        }
+    }
+    let report = self::report(&directory)?;
+    let summaries = records::read_summaries(&directory)?;
+    Ok(Outcome::Done { summaries, report })
+}
+
+/// Rebuilds the report of the study in `directory` from its records, and gives its path.
+///
+/// # Errors
+/// [`StudyError::File`] for records that cannot be read, [`StudyError::Report`] for a report that cannot be written.
+pub fn report(directory: &Path) -> Result<PathBuf, StudyError> {
+    let study = records::read_study(directory)?;
+    report::write(&study, directory)?;
+    Ok(directory.join("report.html"))
+}
+
+fn wanted_runs(setup: &Setup, names: &[String]) -> Result<Vec<usize>, StudyError> {
+    let runs = &setup.case.runs;
+    if names.is_empty() {
+        return Ok((0..runs.len()).collect());
+    }
+    names
+        .iter()
+        .map(|name| {
+            runs.iter().position(|run| run.name == *name).ok_or_else(|| StudyError::UnknownRun {
+                name: name.clone(),
+                known: runs.iter().map(|run| run.name.clone()).collect(),
+            })
+        })
+        .collect()
+}
+
+/// The run that `index` compares with, when its series is there.
+fn compared_run<'a>(
+    setup: &'a Setup,
+    index: usize,
+    folders: &[RunFolder],
+) -> Result<Option<(&'a Run, Series)>, StudyError> {
+    let runs = &setup.case.runs;
+    let other = match &runs[index].compare_with {
+        Some(name) => runs.iter().position(|run| run.name == *name),
+        None => (index > 0).then_some(0),
+    };
+    match other {
+        Some(other) if other != index && folders[other].is_complete() => {
+            let series = records::read_series(&folders[other].series_path())?;
+            Ok(Some((&runs[other], series)))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// `name` as a folder name: letters, digits, dashes.
+fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || c == '-' || c == '_' { c } else { '-' }).collect()
+}

@@ -1,0 +1,114 @@
+//! Why a study could not be made.
+
+use analysis::AnalysisError;
+use farm::plan::PlanError;
+use farm::self_check::SelfCheckError;
+use flow::FlowError;
+use flow::inflow::InflowError;
+use flow::lattice::{PlaneSizeError, SettingsError};
+use formats::atomic::FileError;
+use formats::case::CaseError;
+use formats::checkpoint::CheckpointError;
+use formats::library::LibraryError;
+use miette::Diagnostic;
+use report::ReportError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why a study could not be made.
+#[derive(Debug, Error, Diagnostic)]
+pub enum StudyError {
+    /// The case file cannot be used.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Case(#[from] CaseError),
+    /// A turbine cannot be used.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Library(#[from] LibraryError),
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] FileError),
+    /// A checkpoint cannot be taken up.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// The layout does not fit.
+    #[error("the case cannot be run as it stands")]
+    Plan(#[from] PlanError),
+    /// The air cannot be set up.
+    #[error("the air cannot be set up")]
+    Settings(#[from] SettingsError),
+    /// The turbulence cannot be made.
+    #[error("the turbulence cannot be made")]
+    Inflow(#[from] InflowError),
+    /// The self-check cannot be made.
+    #[error(transparent)]
+    SelfCheck(#[from] SelfCheckError),
+    /// The records of a run cannot be analysed.
+    #[error("the records cannot be analysed")]
+    Analysis(#[from] AnalysisError),
+    /// The report cannot be made.
+    #[error("the report cannot be made")]
+    Report(#[from] ReportError),
+    /// A stored average does not fit the grid.
+    #[error("the checkpoint does not fit the grid")]
+    PlaneSize(#[from] PlaneSizeError),
+    /// The simulation broke down.
+    #[error("run {run} diverged: {source}")]
+    #[diagnostic(help("{}", kept(checkpoint, series)))]
+    Diverged {
+        /// Run.
+        run: String,
+        /// Where and when.
+        source: FlowError,
+        /// Last good checkpoint, if there is one.
+        checkpoint: Option<PathBuf>,
+        /// Series up to that time.
+        series: Option<PathBuf>,
+    },
+    /// A run that the command line names is not in the case.
+    #[error("the case has no run called `{name}`")]
+    #[diagnostic(help("its runs are {}", known.join(", ")))]
+    UnknownRun {
+        /// Asked name.
+        name: String,
+        /// Names in the case.
+        known: Vec<String>,
+    },
+    /// The output folder holds something that would be overwritten.
+    #[error("{} already holds results", directory.display())]
+    #[diagnostic(help("use --resume to go on with them, or another folder with -o, or remove the folder"))]
+    OutputExists {
+        /// The folder.
+        directory: PathBuf,
+    },
+    /// The machine has too little memory.
+    #[error("the study needs {needed:.1} GiB of memory, {available:.1} GiB are free")]
+    #[diagnostic(help("lower flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters"))]
+    Memory {
+        /// Needed (GiB).
+        needed: f64,
+        /// Free (GiB).
+        available: f64,
+    },
+    /// A series lacks a channel that the summary needs.
+    #[error("the series has no channel `{channel}`")]
+    #[diagnostic(help("the file is of another version; run the case again"))]
+    MissingChannel {
+        /// Channel.
+        channel: String,
+    },
+}
+
+fn kept(checkpoint: &Option<PathBuf>, series: &Option<PathBuf>) -> String {
+    let mut text = String::from("a shorter flow.step or more cells may carry it");
+    if let Some(path) = series {
+        text += &format!("; measured so far: {}", path.display());
+    }
+    if let Some(path) = checkpoint {
+        text += &format!("; last good checkpoint: {}", path.display());
+    }
+    text
+}

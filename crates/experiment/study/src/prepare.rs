@@ -1,0 +1,212 @@
+//! What all runs of a case share: turbines, domain, wind.
+
+use crate::StudyError;
+use crate::watcher::{Estimate, Watcher};
+use farm::assemble::Model;
+use farm::case::{Case, Control};
+use farm::self_check::self_check;
+use farm::{Plan, plan};
+use flow::Inflow;
+use flow::inflow::{MeanProfile, TurbulentInflow};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Share of the domain's cross-section beyond which walls speed the wake up visibly (–).
+const BLOCKAGE_TO_WARN: f64 = 0.04;
+/// Cells per diameter below which wakes are smeared (–).
+const CELLS_TO_WARN: f64 = 16.0;
+/// Blocks below which an interval says little (–).
+const BLOCKS_TO_WARN: f64 = 3.0;
+/// Bytes of a value in `series.csv`, about.
+const SERIES_VALUE_BYTES: u64 = 14;
+/// Bytes of a cell in the flow field, boundaries included.
+const CELL_BYTES: u64 = 80;
+
+/// A case with everything that its runs share.
+pub struct Setup {
+    /// The study.
+    pub case: Case,
+    /// The case as run, overrides included (TOML).
+    pub case_text: String,
+    /// One per turbine, in the case's order.
+    pub models: Vec<Model>,
+    /// Domain and steps.
+    pub plan: Plan,
+    /// The wind that enters.
+    pub inflow: Arc<dyn Inflow>,
+    /// What a reader of the numbers must know.
+    pub warnings: Vec<String>,
+}
+
+impl Setup {
+    /// Reads the case at `path` with `overrides`, loads its turbines and lays out its domain.
+    ///
+    /// # Errors
+    /// [`StudyError`] for a case, a turbine or a layout that cannot be used.
+    pub fn read(path: &Path, overrides: &[String]) -> Result<Self, StudyError> {
+        let file = formats::case::read(path, overrides)?;
+        let mut loaded: BTreeMap<String, Model> = BTreeMap::new();
+        for placement in &file.case.turbines {
+            if !loaded.contains_key(&placement.model) {
+                let turbine = formats::library::load(&placement.model, file.folder())?;
+                let model = Model {
+                    definition: Arc::new(turbine.definition),
+                    constants: turbine.controller,
+                };
+                loaded.insert(placement.model.clone(), model);
+            }
+        }
+        let case_text = formats::case::write(&file.case);
+        Self::new(file.case, case_text, &loaded)
+    }
+
+    fn new(
+        case: Case,
+        case_text: String,
+        loaded: &BTreeMap<String, Model>,
+    ) -> Result<Self, StudyError> {
+        let footprints =
+            loaded.iter().map(|(name, model)| (name.clone(), model.footprint())).collect();
+        let plan = plan(&case, &footprints)?;
+        let models =
+            case.turbines.iter().map(|placement| loaded[&placement.model].clone()).collect();
+        let warnings = warnings(&case, &plan);
+        let inflow = Arc::new(profile(&case, &plan));
+        Ok(Self { case, case_text, models, plan, inflow, warnings })
+    }
+
+    /// The cost of `n_runs` runs, the machine's speed not known yet.
+    pub fn estimate(&self, n_runs: usize) -> Estimate {
+        let plan = &self.plan;
+        let channels = 4 + 16 * self.case.turbines.len() as u64;
+        let field = plan.cells() as u64 * CELL_BYTES;
+        Estimate {
+            n_runs,
+            n_cells: plan.n_cells,
+            spacing: plan.spacing,
+            interval: plan.interval,
+            n_steps: plan.n_steps,
+            memory: field + self.turbulence_memory(),
+            // A new checkpoint stands beside the old one until it is complete.
+            disk: 2 * field + channels * plan.n_steps * SERIES_VALUE_BYTES,
+            updates_per_second: None,
+            blockage: plan.blockage,
+            lattice_speed: plan.lattice_speed,
+        }
+    }
+
+    /// Whether this machine's free memory carries `estimate`; passes where the system does not tell.
+    ///
+    /// # Errors
+    /// [`StudyError::Memory`].
+    pub fn check_memory(&self, estimate: &Estimate) -> Result<(), StudyError> {
+        const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
+        let needed = estimate.memory as f64 / GIB;
+        match formats::records::free_memory() {
+            Some(free) if (free as f64) < estimate.memory as f64 => {
+                Err(StudyError::Memory { needed, available: free as f64 / GIB })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks each turbine model against blade-element momentum; gives the slowest update rate met (1/s).
+    ///
+    /// # Errors
+    /// [`StudyError::SelfCheck`] when a check cannot be made; a model that falls short is a warning.
+    pub fn self_check(&mut self, watcher: &mut dyn Watcher) -> Result<Option<f64>, StudyError> {
+        let mut checked: Vec<String> = Vec::new();
+        let mut slowest: Option<f64> = None;
+        for model in &self.models {
+            let name = &model.definition.name;
+            if checked.contains(name) {
+                continue;
+            }
+            checked.push(name.clone());
+            let what = format!("checking {name}");
+            let check = self_check(
+                model,
+                &self.case.wind,
+                self.plan.spacing,
+                self.plan.interval,
+                self.case.flow.threads,
+                &mut |share| watcher.preparing(&what, share),
+            )?;
+            watcher.checked(&check);
+            if !check.passes() {
+                let warning = format!(
+                    "{name} alone in a steady {:.1} m/s gives {:+.1} % power and {:+.1} % thrust of blade-element momentum on this grid",
+                    check.wind_speed,
+                    100.0 * check.power_error(),
+                    100.0 * check.thrust_error()
+                );
+                watcher.warned(&warning);
+                self.warnings.push(warning);
+            }
+            let speed = check.updates_per_second;
+            slowest = Some(slowest.map_or(speed, |slowest| slowest.min(speed)));
+        }
+        Ok(slowest)
+    }
+
+    /// On return the inflow carries the case's turbulence.
+    ///
+    /// # Errors
+    /// [`StudyError::Inflow`] when it cannot be made.
+    pub fn make_turbulence(&mut self, watcher: &mut dyn Watcher) -> Result<(), StudyError> {
+        if self.case.wind.turbulence_intensity > 0.0 {
+            let turbulence = flow::inflow::mann::generate(&self.turbulence_settings(), &mut |share| {
+                watcher.preparing("turbulence", share);
+            })?;
+            let profile = profile(&self.case, &self.plan);
+            self.inflow = Arc::new(TurbulentInflow::new(profile, turbulence, self.plan.origin));
+        }
+        Ok(())
+    }
+}
+
+fn profile(case: &Case, plan: &Plan) -> MeanProfile {
+    MeanProfile::power_law(case.wind.speed, plan.hub_height, case.wind.shear_exponent)
+}
+
+fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if plan.blockage > BLOCKAGE_TO_WARN {
+        warnings.push(format!(
+            "a rotor takes {:.1} % of the domain's cross-section, so that the air around it speeds up; \
+             raise flow.width_diameters or flow.height_diameters",
+            100.0 * plan.blockage
+        ));
+    }
+    if case.flow.cells_per_diameter < CELLS_TO_WARN {
+        warnings.push(format!(
+            "{:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results",
+            case.flow.cells_per_diameter
+        ));
+    }
+    let blocks = (case.time.duration - case.time.spin_up) / analysis::statistics::BLOCK_LENGTH;
+    if blocks < BLOCKS_TO_WARN {
+        warnings.push(format!(
+            "{blocks:.1} blocks of ten minutes are analysed; with fewer than {BLOCKS_TO_WARN:.0} the intervals say little"
+        ));
+    }
+    for run in &case.runs {
+        for (control, placement) in run.control.iter().zip(&case.turbines) {
+            let strouhal = match control {
+                Control::Helix(helix) => helix.strouhal,
+                Control::Pulse(pulse) => pulse.strouhal,
+                Control::Baseline | Control::Absent => continue,
+            };
+            let period = plan.diameter / (strouhal * case.wind.speed);
+            let periods = (case.time.duration - case.time.spin_up) / period;
+            if periods < 3.0 {
+                warnings.push(format!(
+                    "run {}: only {periods:.1} periods of {}'s excitation ({period:.0} s) are analysed",
+                    run.name, placement.name
+                ));
+            }
+        }
+    }
+    warnings
+}

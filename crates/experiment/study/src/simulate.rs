@@ -1,0 +1,356 @@
+//! One run: from time zero, or from its checkpoint, to its last step.
+
+use crate::StudyError;
+use crate::channels::Row;
+use crate::prepare::Setup;
+use crate::watcher::{Progress, Watcher};
+use basis::records::{Cost, Plane, PlaneAxes};
+use basis::Vector3;
+use control::TurbineController;
+use farm::case::Run;
+use farm::{Farm, assemble};
+use flow::lattice::{Lattice, PlaneAverage, PlaneAverageState};
+use flow::{FlowError, WindField};
+use formats::checkpoint::{CheckpointReader, CheckpointWriter};
+use formats::records::{self, RunFolder, SeriesWriter};
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Distance of the wind probe upstream of the first turbine (rotor diameters), or halfway to the inlet if nearer.
+const PROBE_DISTANCE: f64 = 2.0;
+/// Planes are averaged from instants about this far apart (s).
+const AVERAGING_INTERVAL: f64 = 2.0;
+/// Every so many cells along each axis are kept in a volume.
+const VOLUME_STRIDE: usize = 2;
+/// Wall time between two reports of progress.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
+
+/// How a run ended.
+pub(crate) enum Ending {
+    /// All steps made.
+    Complete {
+        /// What it cost, all its sessions together.
+        cost: Cost,
+        /// Share of instants at which a pitch limit held a command back, turbine by turbine (–).
+        clipped_shares: Vec<f64>,
+    },
+    /// Stopped on request; a checkpoint stands.
+    Interrupted,
+}
+
+/// Everything besides the air that time changes.
+#[derive(Serialize, Deserialize)]
+struct RunState {
+    step: u64,
+    wall_time: f64,
+    series_bytes: u64,
+    turbines: Vec<turbine::State>,
+    controllers: Vec<TurbineController>,
+    averages: Vec<PlaneAverageState>,
+    n_plane_instants: u64,
+    n_volumes: u64,
+}
+
+/// A run under way.
+struct Simulation<'a> {
+    setup: &'a Setup,
+    folder: &'a RunFolder,
+    farm: Farm<Lattice>,
+    row: Row,
+    series: SeriesWriter,
+    averages: Vec<PlaneAverage>,
+    n_plane_instants: u64,
+    n_volumes: u64,
+    probe: Vector3,
+    started: Instant,
+    wall_time_before: f64,
+    first_step: u64,
+}
+
+/// Makes `run`, or goes on with it from its checkpoint when `resume`; `place` is its place among the `n_runs` runs.
+pub(crate) fn simulate(
+    setup: &Setup,
+    run: &Run,
+    folder: &RunFolder,
+    resume: bool,
+    place: (usize, usize),
+    stop: &AtomicBool,
+    watcher: &mut dyn Watcher,
+) -> Result<Ending, StudyError> {
+    let mut simulation = Simulation::begin(setup, run, folder, resume)?;
+    let n_steps = setup.plan.n_steps;
+    let every = Duration::from_secs_f64(setup.case.output.checkpoint_interval);
+    let mut last_checkpoint = Instant::now();
+    let mut last_progress = Instant::now();
+    while simulation.farm.step() < n_steps {
+        if stop.load(Ordering::Relaxed) {
+            simulation.checkpoint(run)?;
+            return Ok(Ending::Interrupted);
+        }
+        if let Err(error) = simulation.step() {
+            return Err(match error {
+                StepError::Flow(error) => simulation.diverged(run, error),
+                StepError::Study(error) => error,
+            });
+        }
+        if last_checkpoint.elapsed() >= every {
+            simulation.checkpoint(run)?;
+            last_checkpoint = Instant::now();
+        }
+        if last_progress.elapsed() >= PROGRESS_INTERVAL {
+            watcher.advanced(&simulation.progress(run, place));
+            last_progress = Instant::now();
+        }
+    }
+    simulation.finish(run)
+}
+
+/// Why a step failed.
+enum StepError {
+    Flow(FlowError),
+    Study(StudyError),
+}
+
+impl<T: Into<StudyError>> From<T> for StepError {
+    fn from(error: T) -> Self {
+        Self::Study(error.into())
+    }
+}
+
+impl<'a> Simulation<'a> {
+    fn begin(
+        setup: &'a Setup,
+        run: &Run,
+        folder: &'a RunFolder,
+        resume: bool,
+    ) -> Result<Self, StudyError> {
+        let farm =
+            assemble::farm(&setup.case, run, &setup.plan, &setup.models, setup.inflow.clone())?;
+        let blades: Vec<(String, usize)> = run
+            .present()
+            .map(|index| {
+                let name = setup.case.turbines[index].name.clone();
+                (name, setup.models[index].definition.n_blades)
+            })
+            .collect();
+        let row = Row::new(&blades);
+        let averages = slices(setup)
+            .into_iter()
+            .map(|(name, axes, position)| PlaneAverage::new(farm.flow(), &name, axes, position))
+            .collect();
+        let checkpoint = folder.checkpoint_path();
+        let stored = if resume && checkpoint.exists() {
+            Some(CheckpointReader::open(&checkpoint, &setup.case_text, &run.name)?)
+        } else {
+            None
+        };
+        let started = Instant::now();
+        let probe = probe(setup);
+        let Some(mut reader) = stored else {
+            let series = SeriesWriter::create(&folder.series_path(), row.names())?;
+            return Ok(Self {
+                setup,
+                folder,
+                farm,
+                row,
+                series,
+                averages,
+                n_plane_instants: 0,
+                n_volumes: 0,
+                probe,
+                started,
+                wall_time_before: 0.0,
+                first_step: 0,
+            });
+        };
+        let state: RunState = reader.state("run")?;
+        let mut simulation = Self {
+            setup,
+            folder,
+            row,
+            series: SeriesWriter::resume(&folder.series_path(), state.series_bytes)?,
+            averages,
+            n_plane_instants: state.n_plane_instants,
+            n_volumes: state.n_volumes,
+            probe,
+            started,
+            wall_time_before: state.wall_time,
+            first_step: state.step,
+            farm: farm.at_step(state.step),
+        };
+        for (machine, (turbine, controller)) in simulation
+            .farm
+            .machines_mut()
+            .iter_mut()
+            .zip(state.turbines.into_iter().zip(state.controllers))
+        {
+            machine.turbine.restore(turbine);
+            machine.controller = controller;
+        }
+        for (average, stored) in simulation.averages.iter_mut().zip(state.averages) {
+            average.restore(stored)?;
+        }
+        reader.stream("air", |bytes| simulation.farm.flow_mut().read_state(bytes))?;
+        Ok(simulation)
+    }
+
+    fn step(&mut self) -> Result<(), StepError> {
+        let plan = &self.setup.plan;
+        let mut wind = [Vector3::ZERO];
+        self.farm.flow().sample(&[self.probe], &mut wind);
+        self.row.start(self.farm.time(), wind[0]);
+        self.farm.advance(&mut self.row).map_err(StepError::Flow)?;
+        self.series.write(self.row.values())?;
+        let step = self.farm.step();
+        if step > plan.n_spin_up_steps {
+            let since = step - plan.n_spin_up_steps;
+            if since % whole_steps(AVERAGING_INTERVAL, plan.interval) == 0 {
+                for average in &mut self.averages {
+                    average.add(self.farm.flow());
+                }
+            }
+            let due = |every: Option<f64>| {
+                every.is_some_and(|every| since % whole_steps(every, plan.interval) == 0)
+            };
+            if due(self.setup.case.output.plane_interval) {
+                self.write_instants()?;
+            }
+            if due(self.setup.case.output.volume_interval) {
+                let volume = self.farm.flow().volume(VOLUME_STRIDE);
+                records::write_volume(self.folder, self.n_volumes, &volume)?;
+                self.n_volumes += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn write_instants(&mut self) -> Result<(), StudyError> {
+        for (name, axes, position) in slices(self.setup) {
+            let plane = self.farm.flow().plane(&name, axes, position);
+            records::write_instant_plane(self.folder, self.n_plane_instants, &plane)?;
+        }
+        self.n_plane_instants += 1;
+        Ok(())
+    }
+
+    fn wall_time(&self) -> f64 {
+        self.wall_time_before + self.started.elapsed().as_secs_f64()
+    }
+
+    /// On return the checkpoint on disk holds this very instant.
+    fn checkpoint(&mut self, run: &Run) -> Result<(), StudyError> {
+        let series_bytes = self.series.flush()?;
+        let state = RunState {
+            step: self.farm.step(),
+            wall_time: self.wall_time(),
+            series_bytes,
+            turbines: self.farm.machines().iter().map(|m| m.turbine.state().clone()).collect(),
+            controllers: self.farm.machines().iter().map(|m| m.controller.clone()).collect(),
+            averages: self.averages.iter().map(PlaneAverage::state).collect(),
+            n_plane_instants: self.n_plane_instants,
+            n_volumes: self.n_volumes,
+        };
+        let path = self.folder.checkpoint_path();
+        let mut writer = CheckpointWriter::create(&path, &self.setup.case_text, &run.name)?;
+        writer.state("run", &state)?;
+        let air = self.farm.flow_mut();
+        writer.stream("air", |bytes| air.write_state(bytes))?;
+        writer.finish()?;
+        Ok(())
+    }
+
+    fn diverged(&mut self, run: &Run, source: FlowError) -> StudyError {
+        // What was measured up to here is kept; the checkpoint before it stands.
+        let kept = self.series.flush().is_ok();
+        let checkpoint = self.folder.checkpoint_path();
+        StudyError::Diverged {
+            run: run.name.clone(),
+            source,
+            checkpoint: checkpoint.exists().then_some(checkpoint),
+            series: kept.then(|| self.folder.series_path()),
+        }
+    }
+
+    fn progress<'b>(&self, run: &'b Run, (run_index, n_runs): (usize, usize)) -> Progress<'b> {
+        let plan = &self.setup.plan;
+        let cells = plan.cells() as f64;
+        let made = (self.farm.step() - self.first_step) as f64;
+        let updates_per_second = cells * made / self.started.elapsed().as_secs_f64();
+        let runs_after = (n_runs - run_index - 1) as f64;
+        let left = (plan.n_steps - self.farm.step()) as f64 + runs_after * plan.n_steps as f64;
+        Progress {
+            run: &run.name,
+            run_index,
+            n_runs,
+            step: self.farm.step(),
+            n_steps: plan.n_steps,
+            updates_per_second,
+            time_left: left * cells / updates_per_second,
+        }
+    }
+
+    fn finish(mut self, _run: &Run) -> Result<Ending, StudyError> {
+        self.series.finish()?;
+        // The last instant is always kept: the report shows it.
+        for (name, axes, position) in slices(self.setup) {
+            let plane = self.farm.flow().plane(&name, axes, position);
+            records::write_last_plane(self.folder, &plane)?;
+        }
+        for average in &self.averages {
+            if average.n_instants() > 0 {
+                let mean: Plane = average.mean();
+                records::write_mean_plane(self.folder, &mean)?;
+            }
+        }
+        let air = self.farm.flow();
+        let plan = &self.setup.plan;
+        let wall_time = self.wall_time();
+        let cost = Cost {
+            wall_time,
+            n_cells: plan.cells() as u64,
+            n_steps: plan.n_steps,
+            updates_per_second: plan.updates() / wall_time,
+            n_threads: air.n_threads(),
+            memory: air.memory(),
+        };
+        let clipped_shares = self
+            .farm
+            .machines()
+            .iter()
+            .map(|machine| {
+                let (instants, limited) = machine.turbine.limited_instants();
+                limited as f64 / instants.max(1) as f64
+            })
+            .collect();
+        Ok(Ending::Complete { cost, clipped_shares })
+    }
+}
+
+/// Whole steps of `interval` (s) nearest to `duration` (s), at least one.
+fn whole_steps(duration: f64, interval: f64) -> u64 {
+    (duration / interval).round().max(1.0) as u64
+}
+
+/// Point at hub height upstream of the first turbine where the arriving wind is read (m).
+fn probe(setup: &Setup) -> Vector3 {
+    let plan = &setup.plan;
+    let foot = plan.positions[0];
+    let distance = (PROBE_DISTANCE * plan.diameter).min(0.5 * (foot.x - plan.origin.x));
+    Vector3::new(foot.x - distance, foot.y, plan.hub_height)
+}
+
+/// Planes that are averaged and kept: name, axes, position across them (m).
+fn slices(setup: &Setup) -> Vec<(String, PlaneAxes, f64)> {
+    let plan = &setup.plan;
+    let foot = plan.positions[0];
+    let mut slices = vec![
+        ("hub-height".to_owned(), PlaneAxes::Horizontal, plan.hub_height),
+        ("streamwise".to_owned(), PlaneAxes::Streamwise, foot.y),
+    ];
+    for distance in &setup.case.output.crosswind_diameters {
+        let position = foot.x + distance * plan.diameter;
+        slices.push((format!("{distance}D"), PlaneAxes::Crosswind, position));
+    }
+    slices
+}

@@ -1,0 +1,215 @@
+//! From the series of a run to its summary.
+
+use crate::StudyError;
+use crate::prepare::Setup;
+use analysis::AnalysisError;
+use analysis::pitch::{Motion, delivered};
+use analysis::statistics::{BLOCK_LENGTH, gain, statistic};
+use basis::records::{
+    Conditions, Cost, DeliveredPitch, SCHEMA_VERSION, Series, Statistic, Summary, TurbineSummary,
+};
+use farm::assemble::controller;
+use farm::case::{Control, Run};
+
+/// Share of clipped control instants beyond which a reader must know (–).
+const CLIPPED_SHARE: f64 = 0.01;
+/// Share of the asked amplitude that must arrive at the blades (–).
+const DELIVERED_SHARE: f64 = 0.95;
+
+/// The series of one run, cut to the analysed time.
+struct Analysed<'a> {
+    series: &'a Series,
+    first: usize,
+    interval: f64,
+}
+
+impl<'a> Analysed<'a> {
+    fn new(series: &'a Series, setup: &Setup) -> Self {
+        Self {
+            series,
+            first: setup.plan.n_spin_up_steps as usize,
+            interval: setup.plan.interval,
+        }
+    }
+
+    fn column(&self, name: &str) -> Result<&'a [f64], StudyError> {
+        let column = self
+            .series
+            .column(name)
+            .ok_or_else(|| StudyError::MissingChannel { channel: name.to_owned() })?;
+        Ok(column.get(self.first..).unwrap_or_default())
+    }
+
+    fn statistic(&self, name: &str) -> Result<Statistic, StudyError> {
+        Ok(statistic(self.column(name)?, self.interval, BLOCK_LENGTH)?)
+    }
+
+    /// Sum of a channel over all turbines, instant by instant.
+    fn sum(&self, names: &[&str], channel: &str) -> Result<Vec<f64>, StudyError> {
+        let mut sum = Vec::new();
+        for name in names {
+            let column = self.column(&format!("{name}.{channel}"))?;
+            sum.resize(column.len(), 0.0);
+            for (sum, value) in sum.iter_mut().zip(column) {
+                *sum += value;
+            }
+        }
+        Ok(sum)
+    }
+}
+
+/// The run `run` in numbers; `compared` is the series of the run that its gains compare with.
+///
+/// `clipped_shares` (–) holds, for each turbine that is there, the share of control instants at which a pitch limit
+/// held a command back.
+pub(crate) fn summarise(
+    setup: &Setup,
+    run: &Run,
+    series: &Series,
+    compared: Option<(&Run, &Series)>,
+    clipped_shares: &[f64],
+    cost: Cost,
+) -> Result<Summary, StudyError> {
+    let analysed = Analysed::new(series, setup);
+    let mut warnings = setup.warnings.clone();
+    let mut turbines = Vec::new();
+    for (machine, index) in run.present().enumerate() {
+        let placement = &setup.case.turbines[index];
+        let name = &placement.name;
+        let control = &run.control[index];
+        let wind_speed = setup.case.wind.speed;
+        let runs = controller(control, &setup.models[index], wind_speed, setup.plan.diameter);
+        let delivered_pitch =
+            delivered_pitch(&analysed, name, control, setup, clipped_shares[machine])?;
+        warn_of_clipping(name, &run.name, delivered_pitch, clipped_shares[machine], &mut warnings);
+        let power_gain = match compared {
+            Some((other, other_series)) if other.present().any(|there| there == index) => {
+                let other = Analysed::new(other_series, setup);
+                let channel = format!("{name}.power_w");
+                let own = analysed.column(&channel)?;
+                Some(gain(own, other.column(&channel)?, analysed.interval, BLOCK_LENGTH)?)
+            }
+            _ => None,
+        };
+        let n_blades = setup.models[index].definition.n_blades;
+        turbines.push(TurbineSummary {
+            name: name.clone(),
+            model: placement.model.clone(),
+            control: runs.describe(),
+            power: analysed.statistic(&format!("{name}.power_w"))?,
+            thrust: analysed.statistic(&format!("{name}.thrust_n"))?,
+            rotor_speed: analysed.statistic(&format!("{name}.rotor_speed_rad_s"))?,
+            pitch: collective_pitch(&analysed, name, n_blades)?,
+            delivered_pitch,
+            power_gain,
+            damage_equivalent_loads: Default::default(),
+        });
+    }
+    let names: Vec<&str> = turbines.iter().map(|turbine| turbine.name.as_str()).collect();
+    let array = analysed.sum(&names, "power_w")?;
+    let array_power_gain = match compared {
+        Some((other, other_series)) if other.present().eq(run.present()) => {
+            let other = Analysed::new(other_series, setup).sum(&names, "power_w")?;
+            Some(gain(&array, &other, analysed.interval, BLOCK_LENGTH)?)
+        }
+        _ => None,
+    };
+    Ok(Summary {
+        schema_version: SCHEMA_VERSION,
+        case: setup.case.name.clone(),
+        run: run.name.clone(),
+        compare_with: compared.map(|(other, _)| other.name.clone()),
+        conditions: conditions(&analysed, setup)?,
+        array_power: statistic(&array, analysed.interval, BLOCK_LENGTH)?,
+        array_power_gain,
+        turbines,
+        cost,
+        warnings,
+    })
+}
+
+fn collective_pitch(
+    analysed: &Analysed,
+    name: &str,
+    n_blades: usize,
+) -> Result<Statistic, StudyError> {
+    let mut mean = Vec::new();
+    for blade in 1..=n_blades {
+        let column = analysed.column(&format!("{name}.pitch_{blade}_rad"))?;
+        mean.resize(column.len(), 0.0);
+        for (mean, pitch) in mean.iter_mut().zip(column) {
+            *mean += pitch / n_blades as f64;
+        }
+    }
+    Ok(statistic(&mean, analysed.interval, BLOCK_LENGTH)?)
+}
+
+fn delivered_pitch(
+    analysed: &Analysed,
+    name: &str,
+    control: &Control,
+    setup: &Setup,
+    clipped_share: f64,
+) -> Result<Option<DeliveredPitch>, StudyError> {
+    let (motion, amplitude, strouhal, start) = match control {
+        Control::Helix(helix) => (Motion::Cyclic, helix.amplitude, helix.strouhal, helix.start),
+        Control::Pulse(pulse) => (Motion::Collective, pulse.amplitude, pulse.strouhal, pulse.start),
+        Control::Baseline | Control::Absent => return Ok(None),
+    };
+    if amplitude == 0.0 {
+        return Ok(None);
+    }
+    // The excitation fades in over one period; only what comes after is measured.
+    let period = setup.plan.diameter / (strouhal * setup.case.wind.speed);
+    let full = ((start + period) / analysed.interval).ceil() as usize;
+    let skip = full.saturating_sub(analysed.first);
+    let cut = |column: &'_ [f64]| column.get(skip..).unwrap_or_default().to_vec();
+    let azimuth = cut(analysed.column(&format!("{name}.azimuth_rad"))?);
+    let n_blades = setup.models[0].definition.n_blades;
+    let mut pitch = Vec::with_capacity(n_blades);
+    for blade in 1..=n_blades {
+        pitch.push(cut(analysed.column(&format!("{name}.pitch_{blade}_rad"))?));
+    }
+    let pitch: Vec<&[f64]> = pitch.iter().map(Vec::as_slice).collect();
+    match delivered(motion, &azimuth, &pitch, analysed.interval, amplitude, clipped_share) {
+        Ok(delivered) => Ok(Some(delivered)),
+        Err(AnalysisError::TooShort { .. }) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+fn warn_of_clipping(
+    name: &str,
+    run: &str,
+    pitch: Option<DeliveredPitch>,
+    clipped_share: f64,
+    warnings: &mut Vec<String>,
+) {
+    let Some(pitch) = pitch else { return };
+    let asked = pitch.commanded_amplitude_deg;
+    let arrived = pitch.delivered_amplitude_deg;
+    if arrived < DELIVERED_SHARE * asked || clipped_share > CLIPPED_SHARE {
+        warnings.push(format!(
+            "{run}: {name} was asked for {asked:.2}° and delivered {arrived:.2}°; a pitch limit held it back {:.0} % of the time",
+            100.0 * clipped_share
+        ));
+    }
+}
+
+fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyError> {
+    let arrived = analysed.statistic("wind.u_m_s")?;
+    let case = &setup.case;
+    Ok(Conditions {
+        wind_speed: case.wind.speed,
+        turbulence_intensity: case.wind.turbulence_intensity,
+        arriving_wind_speed: arrived.mean,
+        arriving_turbulence_intensity: arrived.standard_deviation / arrived.mean,
+        shear_exponent: case.wind.shear_exponent,
+        seed: case.wind.seed,
+        rotor_diameter: setup.plan.diameter,
+        cells_per_diameter: case.flow.cells_per_diameter,
+        interval: setup.plan.interval,
+        spin_up: case.time.spin_up,
+        duration: case.time.duration,
+    })
+}
