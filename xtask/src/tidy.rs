@@ -1,6 +1,7 @@
 //! The rules of the house that a compiler does not know, checked against the files themselves.
 
 mod architecture;
+mod links;
 mod text;
 
 use std::fmt;
@@ -42,6 +43,7 @@ pub fn findings(root: &Path) -> io::Result<Vec<Finding>> {
         // What is not text, such as a picture, has no lines to check.
         if let Ok(text) = String::from_utf8(fs::read(root.join(&file))?) {
             text::check(&file, &text, &rules, &mut findings);
+            links::check(root, &file, &text, &mut findings);
         }
     }
     Ok(findings)

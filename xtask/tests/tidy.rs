@@ -127,6 +127,13 @@ fn sources_that_break_a_rule_are_found() {
 }
 
 #[test]
+fn links_that_lead_nowhere_are_found() {
+    let text =
+        "[here](page.md) [up](../ARCHITECTURE.md#map) [web](https://example.org/x) [lost](no.md)\n";
+    assert_found("docs/page.md", text, "docs/page.md:1: the link to no.md leads nowhere");
+}
+
+#[test]
 fn words_of_one_machine_are_found_in_any_file() {
     for word in [concat!("/wo", "rk/x"), concat!("/ho", "me/x"), concat!("../sha", "red/x")] {
         assert_found("docs/page.md", &format!("see {word}\n"), "docs/page.md:1:");
