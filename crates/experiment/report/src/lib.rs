@@ -71,6 +71,15 @@ pub enum ReportError {
     Page(#[from] minijinja::Error),
 }
 
+/// The page of `study` as text: HTML that needs nothing beside it.
+///
+/// # Errors
+/// [`ReportError::NoRuns`] for a study without runs.
+pub fn page(study: &StudyRecords) -> Result<String, ReportError> {
+    let digest = study::Study::new(study)?;
+    page::render(&digest, &figures::all(&digest))
+}
+
 /// Writes `report.html` and `figures/*.svg`, `figures/*.png` of `study` into `directory`.
 ///
 /// The page needs nothing beside it. Every file is made in memory first and appears whole or not

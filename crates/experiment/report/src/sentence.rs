@@ -170,6 +170,36 @@ pub(crate) fn conditions_line(study: &Study, run: Option<&RunRecords>) -> String
     items.join(" · ")
 }
 
+/// The conditions of all runs in one line: each excitation where there are few, their span where
+/// there are many.
+pub(crate) fn study_line(study: &Study) -> String {
+    const MOST: usize = 3;
+    let mut items = shared_conditions(study);
+    let runs = study.runs();
+    let each: Vec<String> = runs.iter().flat_map(|run| excitation_conditions(study, run)).collect();
+    if each.len() <= MOST {
+        items.extend(each);
+        return items.join(" · ");
+    }
+    let all: Vec<Excitation> = runs.iter().flat_map(|run| study.excitations(run)).collect();
+    items.push(span("St", all.iter().map(|excitation| excitation.strouhal), 2, ""));
+    let delivered = all.iter().map(|excitation| excitation.pitch.delivered_amplitude_deg);
+    items.push(span("delivered", delivered, 1, "°"));
+    items.join(" · ")
+}
+
+/// "St 0.25" or "St 0.20 to 0.30".
+fn span(name: &str, values: impl Iterator<Item = f64>, decimals: usize, unit: &str) -> String {
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    let (low, high) = (number(low, decimals), number(high, decimals));
+    if low == high {
+        format!("{name}{SPACE}{low}{unit}")
+    } else {
+        format!("{name}{SPACE}{low}{unit} to {high}{unit}")
+    }
+}
+
 /// Distance of neighbours in words: "5.0 D", or "5.0 D, 6.0 D".
 pub(crate) fn spacing(study: &Study) -> Option<String> {
     let mut spacings: Vec<String> =

@@ -30,12 +30,21 @@ pub(crate) struct Excitation<'a> {
     pub(crate) strouhal: f64,
 }
 
+/// Where a turbine stands.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Place {
+    /// Name of the turbine.
+    pub(crate) name: String,
+    /// Downwind and to the left (diameters of the first turbine).
+    pub(crate) position: [f64; 2],
+}
+
 /// The study, digested.
 pub(crate) struct Study<'a> {
     /// The records behind it.
     pub(crate) records: &'a StudyRecords,
-    /// Position of each turbine (diameters); empty when the case file does not tell.
-    pub(crate) layout: Vec<[f64; 2]>,
+    /// Where the turbines stand; empty when the case file does not tell.
+    pub(crate) layout: Vec<Place>,
     /// Colour index of each run: 0 is kept for the run that others compare with.
     pub(crate) colours: Vec<usize>,
 }
@@ -74,6 +83,22 @@ impl<'a> Study<'a> {
     pub(crate) fn names(&self) -> Vec<(usize, &'a str)> {
         let names = self.runs().iter().map(|run| run.summary.run.as_str());
         self.colours.iter().copied().zip(names).collect()
+    }
+
+    /// Names of all turbines; one that is absent in a run may be there in another.
+    pub(crate) fn turbines(&self) -> Vec<&'a str> {
+        let mut names = Vec::new();
+        for turbine in self.runs().iter().flat_map(|run| &run.summary.turbines) {
+            if !names.contains(&turbine.name.as_str()) {
+                names.push(turbine.name.as_str());
+            }
+        }
+        names
+    }
+
+    /// How far left of the origin the first turbine stands (diameters).
+    pub(crate) fn side(&self) -> f64 {
+        self.layout.first().map_or(0.0, |place| place.position[1])
     }
 
     /// Diameter of the first turbine's rotor (m).
@@ -126,7 +151,10 @@ impl<'a> Study<'a> {
     pub(crate) fn spacings(&self) -> Vec<f64> {
         self.layout
             .windows(2)
-            .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
+            .map(|pair| {
+                let [from, to] = [pair[0].position, pair[1].position];
+                (to[0] - from[0]).hypot(to[1] - from[1])
+            })
             .collect()
     }
 }
@@ -197,20 +225,21 @@ fn kind_of(turbine: &TurbineSummary, pitch: &DeliveredPitch) -> Kind {
     }
 }
 
-/// Positions of the turbines (diameters) that the case file gives; empty when it gives none.
-fn layout_of(case_text: &str) -> Vec<[f64; 2]> {
+/// Where the case file puts the turbines; empty when it does not tell of all.
+fn layout_of(case_text: &str) -> Vec<Place> {
     let Ok(case) = case_text.parse::<toml::Table>() else { return Vec::new() };
     let turbines = case.get("turbine").and_then(toml::Value::as_array);
-    let position = |turbine: &toml::Value| {
+    let place = |turbine: &toml::Value| {
         let pair = turbine.get("position_diameters")?.as_array()?;
         let value = |index: usize| {
             let value: &toml::Value = pair.get(index)?;
             value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64))
         };
-        Some([value(0)?, value(1)?])
+        let name = turbine.get("name")?.as_str()?.to_owned();
+        Some(Place { name, position: [value(0)?, value(1)?] })
     };
     turbines
-        .and_then(|turbines| turbines.iter().map(position).collect::<Option<Vec<_>>>())
+        .and_then(|turbines| turbines.iter().map(place).collect::<Option<Vec<_>>>())
         .unwrap_or_default()
 }
 
@@ -220,8 +249,10 @@ mod tests {
 
     #[test]
     fn the_layout_comes_from_the_case_file() {
-        let text = "[[turbine]]\nposition_diameters = [0, 0.0]\n[[turbine]]\nposition_diameters = [5.0, -1]\n";
-        assert_eq!(layout_of(text), [[0.0, 0.0], [5.0, -1.0]]);
+        let text = "[[turbine]]\nname = 'A'\nposition_diameters = [0, 0.0]\n\
+                    [[turbine]]\nname = 'B'\nposition_diameters = [5.0, -1]\n";
+        let positions: Vec<[f64; 2]> = layout_of(text).iter().map(|place| place.position).collect();
+        assert_eq!(positions, [[0.0, 0.0], [5.0, -1.0]]);
         assert!(layout_of("name = 3").is_empty() && layout_of("not toml at all [").is_empty());
         assert!(layout_of("[[turbine]]\nposition_diameters = [1]\n").is_empty());
     }

@@ -56,7 +56,7 @@ pub(crate) fn thinned(times: &[f64], values: &[f64], n_points: usize) -> Vec<[f6
     let stride = n_samples.div_ceil(n_points.max(1)).max(1);
     let mut points: Vec<[f64; 2]> =
         (0..n_samples).step_by(stride).map(|index| [times[index], values[index]]).collect();
-    if n_samples > 0 && (n_samples - 1) % stride != 0 {
+    if n_samples > 0 && !(n_samples - 1).is_multiple_of(stride) {
         points.push([times[n_samples - 1], values[n_samples - 1]]);
     }
     points

@@ -7,9 +7,7 @@ use std::fs;
 use std::path::Path;
 
 fn page(study: &StudyRecords) -> String {
-    let folder = tempfile::tempdir().expect("a folder");
-    report::write(study, folder.path()).expect("a report");
-    read(folder.path())
+    report::page(study).expect("a page").replace('\u{a0}', " ")
 }
 
 fn read(folder: &Path) -> String {
@@ -110,19 +108,19 @@ fn figures_lie_beside_the_page_in_both_forms_and_nothing_else_does() {
 }
 
 #[test]
-fn the_same_records_give_the_same_bytes() {
-    let study = synthetic::two_runs();
-    assert_eq!(page(&study), page(&study));
-}
-
-#[test]
-fn a_second_report_replaces_the_first() {
+fn the_same_records_give_the_same_bytes_and_a_second_report_replaces_the_first() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut study = synthetic::two_runs();
-    report::write(&study, folder.path()).expect("a report");
+    study.runs.truncate(1);
+    study.runs[0].instant_planes.clear();
+    let bytes = |study: &StudyRecords| {
+        report::write(study, folder.path()).expect("a report");
+        let picture = fs::read(folder.path().join("figures/power.png")).expect("a picture");
+        (read(folder.path()), picture)
+    };
+    assert_eq!(bytes(&study), bytes(&study));
     study.case_name = "renamed".into();
-    report::write(&study, folder.path()).expect("a report");
-    assert!(read(folder.path()).contains("<h1>renamed</h1>"));
+    assert!(bytes(&study).0.contains("<h1>renamed</h1>"));
 }
 
 #[test]
@@ -175,6 +173,18 @@ fn many_runs_make_a_curve_over_amplitude_and_keep_their_colours() {
     let page = page(&synthetic::nine_runs());
     assert!(page.contains("id=\"gain-over-amplitude\""));
     assert!(page.contains("A counter-clockwise helix of 5.0° on T1"));
+    assert_well_formed(&page);
+}
+
+#[test]
+fn a_turbine_that_is_absent_in_one_run_is_shown_in_the_others() {
+    let mut study = synthetic::two_runs();
+    study.runs[0].summary.turbines.remove(1);
+    study.runs[1].summary.turbines[1].power_gain = None;
+    study.runs[1].summary.array_power_gain = None;
+    let page = page(&study);
+    assert!(page.contains("T1 made 13.4 ± 0.3 MW in the run “baseline”."));
+    assert!(page.contains("<td>T2</td>"));
     assert_well_formed(&page);
 }
 

@@ -25,8 +25,9 @@ pub(crate) enum Ink {
 
 /// Colours for runs that differ for colour-blind readers too: slate for the compared run, then the
 /// set of Okabe and Ito ("Color Universal Design", 2008) with the purple of Tol's bright scheme and
-/// a yellow dark enough for lines. The second column is for dark pages.
-const RUNS: [([u8; 3], [u8; 3]); 7] = [
+/// a yellow dark enough for lines; four more, further apart in lightness than in hue, for large
+/// studies. The second column is for dark pages.
+const RUNS: [([u8; 3], [u8; 3]); 11] = [
     ([95, 107, 122], [160, 173, 187]),
     ([213, 94, 0], [245, 138, 66]),
     ([0, 114, 178], [84, 172, 229]),
@@ -34,6 +35,10 @@ const RUNS: [([u8; 3], [u8; 3]); 7] = [
     ([170, 51, 119], [224, 133, 190]),
     ([196, 138, 0], [242, 190, 84]),
     ([66, 160, 214], [150, 211, 247]),
+    ([110, 64, 28], [201, 158, 122]),
+    ([136, 116, 205], [182, 168, 240]),
+    ([104, 122, 14], [180, 198, 82]),
+    ([14, 84, 92], [96, 176, 182]),
 ];
 
 /// Dashes of the runs beyond the last colour, so that no two look alike.
@@ -265,7 +270,7 @@ mod tests {
     #[test]
     fn runs_differ_in_colour_or_dash() {
         let looks: Vec<_> =
-            (0..18).map(|run| (run_colour(run), run_dash(run).map(|d| d[0] as i64))).collect();
+            (0..30).map(|run| (run_colour(run), run_dash(run).map(|d| d[0] as i64))).collect();
         for (index, look) in looks.iter().enumerate() {
             assert!(!looks[..index].contains(look), "run {index} looks like an earlier one");
         }

@@ -5,7 +5,6 @@ use crate::draw::axes::{Frame, MEDIUM, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::font::Face;
 use crate::draw::{Figure, Look, Role, Setting, Shape, rectangle, segment, text};
-use crate::sentence;
 use crate::study::{Kind, Study};
 use crate::words;
 use basis::records::Statistic;
@@ -19,9 +18,7 @@ type Row<'a> = (usize, &'a str, Statistic);
 pub(crate) fn gains(study: &Study) -> Option<Figure> {
     let groups = groups(study);
     let rows = || groups.iter().flat_map(|(_, rows)| rows);
-    if rows().next().is_none() {
-        return None;
-    }
+    rows().next()?;
     let face = Face::new(false);
     let name_width = rows().map(|row| face.width(row.1, MEDIUM)).fold(60.0, f64::max).min(260.0);
     let group_face = Face::new(true);
@@ -69,14 +66,11 @@ pub(crate) fn gains(study: &Study) -> Option<Figure> {
         }
         y += 7.0;
     }
-    let best = study.best();
     Some(Figure {
         name: "gains".to_owned(),
         title: "Power gain over the compared run".to_owned(),
-        caption: format!(
-            "Dots: gain of the mean power; whiskers: 95 % interval from paired blocks. {}.",
-            sentence::conditions_line(study, best)
-        ),
+        caption: "Dots: gain of the mean power; whiskers: 95\u{a0}% interval from paired blocks."
+            .to_owned(),
         width: WIDTH,
         height: frame.area[1] + height + 50.0,
         shapes,
@@ -86,19 +80,18 @@ pub(crate) fn gains(study: &Study) -> Option<Figure> {
 /// Rows of every turbine, then of all together.
 fn groups<'a>(study: &Study<'a>) -> Vec<(String, Vec<Row<'a>>)> {
     let runs = || study.runs().iter().zip(&study.colours);
-    let mut groups: Vec<(String, Vec<Row>)> = study.runs()[0]
-        .summary
-        .turbines
-        .iter()
+    let mut groups: Vec<(String, Vec<Row>)> = study
+        .turbines()
+        .into_iter()
         .map(|turbine| {
             let rows = runs()
                 .filter_map(|(run, &colour)| {
-                    let same = run.summary.turbines.iter().find(|t| t.name == turbine.name)?;
+                    let same = run.summary.turbines.iter().find(|t| t.name == turbine)?;
                     Some((colour, run.summary.run.as_str(), same.power_gain?))
                 })
                 .filter(|row: &Row| row.2.mean.is_finite())
                 .collect();
-            (turbine.name.clone(), rows)
+            (turbine.to_owned(), rows)
         })
         .collect();
     if groups.len() > 1 {
@@ -137,77 +130,107 @@ fn whisker((colour, name, gain): &Row, frame: &Frame, name_end: f64, y: f64) -> 
     Shape::Group { role: Role::Run(*colour), clip: None, shapes }
 }
 
-/// Gain of all turbines together over the amplitude on the first excited one, a line for each
-/// kind of excitation; only for studies with three amplitudes of a kind.
+/// A line of the figure over amplitude.
+struct Line {
+    name: &'static str,
+    /// Colour of its first run.
+    colour: usize,
+    /// Delivered amplitude (deg) with the gains of all together and of the excited turbine.
+    points: Vec<(f64, [Statistic; 2])>,
+}
+
+/// Gain of all together and of the excited turbine over the delivered amplitude, a line for each
+/// kind of excitation; only for studies with three amplitudes of a kind on one turbine.
 pub(crate) fn gain_over_amplitude(study: &Study) -> Option<Figure> {
+    const HEIGHT: f64 = 250.0;
+    let lines = lines_over_amplitude(study);
+    let amplitudes = lines.iter().flat_map(|line| line.points.iter().map(|point| point.0));
+    let largest = amplitudes.fold(0.0, f64::max);
+    if largest <= 0.0 {
+        return None;
+    }
+    let mut shapes = Vec::new();
+    let names: Vec<(usize, &str)> = lines.iter().map(|line| (line.colour, line.name)).collect();
+    let top = 22.0 + legend([64.0, 22.0], WIDTH - 90.0, &names, &mut shapes) + 18.0;
+    for (side, title) in ["all together", "the excited turbine"].into_iter().enumerate() {
+        let ends = lines.iter().flat_map(|line| &line.points).flat_map(|(_, gains)| {
+            let half = gains[side].half_width_95.unwrap_or(0.0);
+            [gains[side].mean - half, gains[side].mean + half, 0.0].map(|share| 100.0 * share)
+        });
+        let frame = Frame {
+            area: [64.0 + 476.0 * side as f64, top, 424.0, HEIGHT],
+            x: Scale::linear(0.0, 1.06 * largest),
+            y: Scale::around(ends, 0.06),
+        };
+        frame.rows(5, &mut shapes);
+        frame.columns(6, true, &mut shapes);
+        frame.title(title, &mut shapes);
+        frame.x_label("delivered amplitude (°)", &mut shapes);
+        if side == 0 {
+            frame.y_label("power gain (%)", 46.0, &mut shapes);
+        }
+        let zero = [frame.point([0.0, 0.0]), frame.point([frame.x.high, 0.0])];
+        shapes.push(segment(zero[0], zero[1], Look::line(Ink::Axis, 1.0)));
+        for line in &lines {
+            over_amplitude(line, side, &frame, &mut shapes);
+        }
+    }
+    Some(Figure {
+        name: "gain-over-amplitude".to_owned(),
+        title: "Power gain over amplitude".to_owned(),
+        caption:
+            "Whiskers: 95\u{a0}% intervals from paired blocks; amplitude zero is the compared \
+                  run itself."
+                .to_owned(),
+        width: WIDTH,
+        height: top + HEIGHT + 50.0,
+        shapes,
+    })
+}
+
+fn lines_over_amplitude(study: &Study) -> Vec<Line> {
     const KINDS: [(Kind, &str); 3] = [
         (Kind::CounterClockwise, "counter-clockwise helix"),
         (Kind::Clockwise, "clockwise helix"),
         (Kind::Pulse, "pulse"),
     ];
-    // Kind, colour of its first run, points of amplitude (deg) and gain (%), half widths (%).
-    let mut lines: Vec<(&str, usize, Vec<[f64; 3]>)> = Vec::new();
+    let mut lines = Vec::new();
     for (kind, name) in KINDS {
+        let mut colours = Vec::new();
         let mut points = Vec::new();
-        let mut first_colour = None;
         for (run, &colour) in study.runs().iter().zip(&study.colours) {
             let excitations = study.excitations(run);
             let [excitation] = excitations.as_slice() else { continue };
-            let Some(gain) = run.summary.array_power_gain else { continue };
-            if excitation.kind == kind && gain.mean.is_finite() {
-                first_colour.get_or_insert(colour);
-                let half = gain.half_width_95.unwrap_or(0.0);
-                let amplitude = excitation.pitch.delivered_amplitude_deg;
-                points.push([amplitude, 100.0 * gain.mean, 100.0 * half]);
+            let gains = (run.summary.array_power_gain, excitation.turbine.power_gain);
+            let (Some(all), Some(excited)) = gains else { continue };
+            if excitation.kind == kind && all.mean.is_finite() && excited.mean.is_finite() {
+                colours.push(colour);
+                points.push((excitation.pitch.delivered_amplitude_deg, [all, excited]));
             }
         }
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        if let (Some(colour), true) = (first_colour, points.len() > 2) {
-            lines.push((name, colour, points));
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if points.len() > 2 {
+            lines.push(Line { name, colour: colours[0], points });
         }
     }
-    if lines.is_empty() {
-        return None;
-    }
-    let all = || lines.iter().flat_map(|line| &line.2);
-    let largest = all().map(|point| point[0]).fold(0.0, f64::max);
-    let mut shapes = Vec::new();
-    let names: Vec<(usize, &str)> = lines.iter().map(|line| (line.1, line.0)).collect();
-    let top = 22.0 + legend([64.0, 22.0], WIDTH - 90.0, &names, &mut shapes);
-    let frame = Frame {
-        area: [64.0, top, 560.0, 260.0],
-        x: Scale::linear(0.0, 1.06 * largest),
-        y: Scale::around(all().flat_map(|p| [p[1] - p[2], p[1] + p[2], 0.0]), 0.06),
-    };
-    frame.rows(5, &mut shapes);
-    frame.columns(6, true, &mut shapes);
-    let zero = [frame.point([0.0, 0.0]), frame.point([frame.x.high, 0.0])];
-    shapes.push(segment(zero[0], zero[1], Look::line(Ink::Axis, 1.0)));
-    frame.x_label("delivered amplitude (°)", &mut shapes);
-    frame.y_label("gain of all turbines together (%)", 46.0, &mut shapes);
-    for (_, colour, points) in &lines {
-        let ink = Ink::Run(*colour);
-        let through: Vec<[f64; 2]> =
-            std::iter::once([0.0, 0.0]).chain(points.iter().map(|p| [p[0], p[1]])).collect();
-        let look = Look::line(ink, 1.6).dashed(run_dash(*colour));
-        shapes.push(frame.panel(vec![frame.line(&through, look)], ["°", "%"]));
-        for [amplitude, gain, half] in points {
-            let ends = [gain - half, gain + half].map(|value| frame.point([*amplitude, value]));
+    lines
+}
+
+fn over_amplitude(line: &Line, side: usize, frame: &Frame, shapes: &mut Vec<Shape>) {
+    let ink = Ink::Run(line.colour);
+    let gains = line.points.iter().map(|(amplitude, gains)| (*amplitude, gains[side]));
+    let through: Vec<[f64; 2]> = std::iter::once([0.0, 0.0])
+        .chain(gains.clone().map(|(amplitude, gain)| [amplitude, 100.0 * gain.mean]))
+        .collect();
+    let look = Look::line(ink, 1.8).dashed(run_dash(line.colour));
+    shapes.push(crate::draw::polyline(frame.points(&through), look));
+    for (amplitude, gain) in gains {
+        if let Some(half) = gain.half_width_95 {
+            let ends = [gain.mean - half, gain.mean + half]
+                .map(|share| frame.point([amplitude, 100.0 * share]));
             shapes.push(segment(ends[0], ends[1], Look::line(ink, 1.6)));
-            let center = frame.point([*amplitude, *gain]);
-            shapes.push(Shape::Circle { center, radius: 4.5, look: Look::fill(ink) });
         }
+        let center = frame.point([amplitude, 100.0 * gain.mean]);
+        shapes.push(Shape::Circle { center, radius: 4.5, look: Look::fill(ink) });
     }
-    Some(Figure {
-        name: "gain-over-amplitude".to_owned(),
-        title: "Gain of the array over amplitude".to_owned(),
-        caption: format!(
-            "Whiskers: 95 % intervals from paired blocks; amplitude zero is the compared run itself. \
-             {}.",
-            sentence::conditions_line(study, study.best())
-        ),
-        width: WIDTH,
-        height: top + 260.0 + 50.0,
-        shapes,
-    })
 }

@@ -4,9 +4,13 @@ mod gains;
 mod pitch;
 mod power;
 mod profiles;
+mod sheet;
 mod slices;
 
-use crate::draw::Figure;
+use crate::draw::colour::Ink;
+use crate::draw::font::Face;
+use crate::draw::{Figure, Setting, text};
+use crate::sentence;
 use crate::study::Study;
 
 /// Width of every figure.
@@ -27,5 +31,32 @@ pub(crate) fn all(study: &Study) -> Vec<Figure> {
     figures.extend(profiles::centre_line(study));
     figures.extend(pitch::pitch(study));
     figures.extend(power::rotor_speed(study));
+    let conditions = sentence::study_line(study);
+    figures.iter_mut().for_each(|figure| sign(figure, &conditions));
     figures
+}
+
+/// Writes the conditions below a figure, so that it keeps them wherever it is shown.
+fn sign(figure: &mut Figure, conditions: &str) {
+    const SIZE: f64 = 10.5;
+    const LINE: f64 = 15.0;
+    let face = Face::new(false);
+    let mut line = String::new();
+    let mut lines = Vec::new();
+    for item in conditions.split(" · ") {
+        let longer = if line.is_empty() { item.to_owned() } else { format!("{line} · {item}") };
+        // Readers' own fonts may be wider than the one that is measured.
+        if !line.is_empty() && 1.1 * face.width(&longer, SIZE) > figure.width - 40.0 {
+            lines.push(std::mem::replace(&mut line, item.to_owned()));
+        } else {
+            line = longer;
+        }
+    }
+    lines.push(line);
+    let setting = Setting::plain(Ink::Muted, SIZE);
+    for line in lines {
+        figure.height += LINE;
+        figure.shapes.push(text([16.0, figure.height - 4.0], line, setting));
+    }
+    figure.height += 4.0;
 }

@@ -5,7 +5,6 @@ use crate::RunRecords;
 use crate::draw::axes::{Frame, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::{Figure, Look, Role, Setting, Shape, segment, text};
-use crate::sentence;
 use crate::study::Study;
 use crate::trace::{amplitude_spectrum, thinned};
 use std::f64::consts::TAU;
@@ -62,12 +61,10 @@ pub(crate) fn pitch(study: &Study) -> Option<Figure> {
     Some(Figure {
         name: "pitch".to_owned(),
         title: "Blade pitch as delivered".to_owned(),
-        caption: format!(
-            "Left: pitch of blade 1 (thick) and of the others (thin) at the end of the run. Right: \
+        caption: "Left: pitch of blade 1 (thick) and of the others (thin) at the end of the run. Right: \
              amplitude spectrum of blade 1's pitch over the analysed time, with the rotor frequency \
-             1P and 1P ± fₑ marked; a clean helix is one line. {}.",
-            sentence::conditions_line(study, study.best())
-        ),
+             1P and 1P ± fₑ marked; a clean helix is one line."
+            .to_owned(),
         width: WIDTH,
         height: top - 30.0,
         shapes,

@@ -4,7 +4,6 @@ use super::WIDTH;
 use crate::draw::axes::{Frame, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::{Figure, Look, Role, Setting, Shape, segment, text};
-use crate::sentence;
 use crate::study::Study;
 use crate::trace::{envelope, moving_mean, thinned};
 use basis::records::Statistic;
@@ -61,11 +60,9 @@ pub(crate) fn rotor_speed(study: &Study) -> Option<Figure> {
 }
 
 fn over_time(study: &Study, quantity: &Quantity) -> Option<Figure> {
-    let first = &study.runs()[0].summary;
-    let names: Vec<&str> = first
-        .turbines
-        .iter()
-        .map(|turbine| turbine.name.as_str())
+    let names: Vec<&str> = study
+        .turbines()
+        .into_iter()
         .filter(|name| study.runs().iter().any(|run| channel(run, name, quantity).is_some()))
         .collect();
     let end = study
@@ -92,8 +89,7 @@ fn over_time(study: &Study, quantity: &Quantity) -> Option<Figure> {
         title: quantity.title.to_owned(),
         caption: format!(
             "Thick: {SMOOTHING:.0} s moving mean{raw}. Grey: spin-up, not analysed. Marks at the \
-             right: mean over the analysed time with its 95 % interval. {}.",
-            sentence::conditions_line(study, None)
+             right: mean over the analysed time with its 95\u{a0}% interval.",
         ),
         width: WIDTH,
         height: frame_top + 14.0,

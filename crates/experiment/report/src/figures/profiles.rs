@@ -4,7 +4,6 @@ use super::WIDTH;
 use crate::draw::axes::{Frame, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::{Figure, Look, Role, Setting, Shape, segment, text};
-use crate::sentence;
 use crate::study::{Study, plane, sample};
 use crate::words::{SPACE, number};
 use basis::records::{Plane, PlaneAxes};
@@ -47,7 +46,7 @@ pub(crate) fn profiles(study: &Study) -> Option<Figure> {
     let planes = planes(study);
     let (diameter, free_stream) = (study.diameter(), study.free_stream());
     let distances = distances(study, planes.first()?.1);
-    let center = study.layout.first().map_or(0.0, |position| position[1]);
+    let center = study.side();
     let lines: Vec<Vec<(usize, Vec<[f64; 2]>)>> = distances
         .iter()
         .map(|distance| {
@@ -64,9 +63,7 @@ pub(crate) fn profiles(study: &Study) -> Option<Figure> {
         })
         .collect();
     let values = || lines.iter().flatten().flat_map(|line| &line.1);
-    if values().next().is_none() {
-        return None;
-    }
+    values().next()?;
     let mut shapes = Vec::new();
     let top = 22.0 + legend([58.0, 22.0], WIDTH - 90.0, &study.names(), &mut shapes) + 18.0;
     let gap = 16.0;
@@ -103,11 +100,10 @@ pub(crate) fn profiles(study: &Study) -> Option<Figure> {
     Some(Figure {
         name: "profiles".to_owned(),
         title: "Velocity profiles behind the first turbine".to_owned(),
-        caption: format!(
+        caption:
             "Mean streamwise velocity at hub height across the wake; the grey band is the first \
-             turbine's rotor. {}.",
-            sentence::conditions_line(study, None)
-        ),
+             turbine's rotor."
+                .to_owned(),
         width: WIDTH,
         height: top + HEIGHT + 50.0,
         shapes,
@@ -119,7 +115,7 @@ pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
     const HEIGHT: f64 = 210.0;
     let planes = planes(study);
     let (diameter, free_stream) = (study.diameter(), study.free_stream());
-    let center = study.layout.first().map_or(0.0, |position| position[1]) * diameter;
+    let center = study.side() * diameter;
     let along = |plane: &Plane, sides: &[f64]| -> Vec<[f64; 2]> {
         let stride = plane.n_points[0].div_ceil(400);
         (0..plane.n_points[0])
@@ -171,10 +167,8 @@ pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
     Some(Figure {
         name: "recovery".to_owned(),
         title: "Recovery along the row".to_owned(),
-        caption: format!(
-            "Mean streamwise velocity at hub height along the wind; dashed lines are rotors. {}.",
-            sentence::conditions_line(study, None)
-        ),
+        caption: "Mean streamwise velocity at hub height along the wind; dashed lines are rotors."
+            .to_owned(),
         width: WIDTH,
         height: top + HEIGHT + 50.0,
         shapes,
@@ -184,11 +178,11 @@ pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
 /// A dashed line with its name for every turbine.
 fn rotors(study: &Study, frame: &Frame, shapes: &mut Vec<Shape>) {
     let [_, top, _, height] = frame.area;
-    for (position, turbine) in study.layout.iter().zip(&study.runs()[0].summary.turbines) {
-        let [x, _] = frame.point([position[0], frame.y.low]);
+    for place in &study.layout {
+        let [x, _] = frame.point([place.position[0], frame.y.low]);
         let look = Look::line(Ink::Axis, 1.0).dashed(Some([4.0, 3.0]));
         shapes.push(segment([x, top], [x, top + height], look));
         let setting = Setting::plain(Ink::Muted, 11.5);
-        shapes.push(text([x + 4.0, top + 12.0], turbine.name.as_str(), setting));
+        shapes.push(text([x + 4.0, top + 12.0], place.name.as_str(), setting));
     }
 }

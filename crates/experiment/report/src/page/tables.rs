@@ -56,6 +56,21 @@ pub(crate) fn conditions(study: &Study) -> Vec<Value> {
         format!("{}{SPACE}s", number(conditions.duration, 0)),
         format!("{}{SPACE}s spin-up, {blocks}", number(conditions.spin_up, 0)),
     ));
+    if let Some(run) = study.best().or_else(|| study.runs().last())
+        && let Some(excitation) = study.excitations(run).first()
+    {
+        let value = sentence::words_of(excitation);
+        facts.push(fact(
+            if study.best().is_some() { "Excitation, best run" } else { "Excitation" },
+            words::capitalised(value.trim_start_matches("a ")),
+            format!(
+                "on {}, {}° delivered, St{SPACE}{}",
+                excitation.turbine.name,
+                number(excitation.pitch.delivered_amplitude_deg, 1),
+                number(excitation.strouhal, 2)
+            ),
+        ));
+    }
     facts.push(fact(
         "Grid",
         format!("{} cells per D", number(conditions.cells_per_diameter, 0)),
