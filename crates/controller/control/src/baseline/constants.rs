@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 ///
 /// Gains act on *measured minus reference* rotor speed and are positive when more speed asks for more
 /// torque or more pitch. Controller decks that define them on the high-speed shaft or on *reference minus
-/// measured* are converted where they are read: with gearbox ratio N, a pitch gain is −N times, a torque
-/// gain −N² times and the torque constant N³ times the deck's.
+/// measured* are converted where they are read: with gearbox ratio N, speeds are 1/N times the deck's,
+/// torques and torque rates N times, pitch gains −N times, torque gains −N² times and the torque constant
+/// N³ times.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Constants {
     /// Rotor radius, hub centre to tip (m).
