@@ -134,13 +134,16 @@ impl Frame {
         [left, top, (to[0] - from[0]).abs(), (to[1] - from[1]).abs()]
     }
 
-    /// Horizontal grid lines with their values at the left.
-    pub(crate) fn rows(&self, n_wanted: usize, shapes: &mut Vec<Shape>) {
+    /// Horizontal grid lines, with their values at the left where `labelled`.
+    pub(crate) fn rows(&self, n_wanted: usize, labelled: bool, shapes: &mut Vec<Shape>) {
         let [left, _, width, _] = self.area;
         let (ticks, decimals) = self.y.ticks(n_wanted);
         for tick in ticks {
             let [_, y] = self.point([self.x.low, tick]);
             shapes.push(segment([left, y], [left + width, y], Look::line(Ink::Grid, 1.0)));
+            if !labelled {
+                continue;
+            }
             let label =
                 if self.y.logarithmic { power(tick) } else { words::number(tick, decimals) };
             let setting = Setting::plain(Ink::Muted, SMALL).anchored(1.0);
@@ -203,10 +206,12 @@ impl Frame {
     }
 }
 
-/// Colours and names of runs in rows from (`left`, `base`) to the right; gives the height used.
+/// Colours and names in rows from (`left`, `base`) to the right; gives the height used. Entries for
+/// single runs vanish with them when `role` is [`Role::Run`].
 pub(crate) fn legend(
     [left, base]: [f64; 2],
     width: f64,
+    role: fn(usize) -> Role,
     runs: &[(usize, &str)],
     shapes: &mut Vec<Shape>,
 ) -> f64 {
@@ -222,7 +227,7 @@ pub(crate) fn legend(
         let setting = Setting::plain(Ink::Text, MEDIUM);
         let sample = segment([x, y - 4.0], [x + 24.0, y - 4.0], look);
         let label = text([x + 32.0, y], name, setting);
-        shapes.push(Shape::Group { role: Role::Run(run), clip: None, shapes: vec![sample, label] });
+        shapes.push(Shape::Group { role: role(run), clip: None, shapes: vec![sample, label] });
         x += length;
     }
     y - base + LINE

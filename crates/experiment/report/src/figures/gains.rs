@@ -151,7 +151,8 @@ pub(crate) fn gain_over_amplitude(study: &Study) -> Option<Figure> {
     }
     let mut shapes = Vec::new();
     let names: Vec<(usize, &str)> = lines.iter().map(|line| (line.colour, line.name)).collect();
-    let top = 22.0 + legend([64.0, 22.0], WIDTH - 90.0, &names, &mut shapes) + 18.0;
+    let top =
+        22.0 + legend([64.0, 22.0], WIDTH - 90.0, |_| Role::Plain, &names, &mut shapes) + 18.0;
     for (side, title) in ["all together", "the excited turbine"].into_iter().enumerate() {
         let ends = lines.iter().flat_map(|line| &line.points).flat_map(|(_, gains)| {
             let half = gains[side].half_width_95.unwrap_or(0.0);
@@ -162,7 +163,7 @@ pub(crate) fn gain_over_amplitude(study: &Study) -> Option<Figure> {
             x: Scale::linear(0.0, 1.06 * largest),
             y: Scale::around(ends, 0.06),
         };
-        frame.rows(5, &mut shapes);
+        frame.rows(5, true, &mut shapes);
         frame.columns(6, true, &mut shapes);
         frame.title(title, &mut shapes);
         frame.x_label("delivered amplitude (°)", &mut shapes);

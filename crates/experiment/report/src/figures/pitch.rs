@@ -51,7 +51,7 @@ pub(crate) fn pitch(study: &Study) -> Option<Figure> {
         excited.iter().map(|one| (one.colour, one.run.summary.run.as_str())).collect();
     names.dedup();
     let mut shapes = Vec::new();
-    let mut top = 22.0 + legend([58.0, 22.0], WIDTH - 90.0, &names, &mut shapes) + 30.0;
+    let mut top = 22.0 + legend([58.0, 22.0], WIDTH - 90.0, Role::Run, &names, &mut shapes) + 30.0;
     for turbine in turbines {
         let rows: Vec<&Excited> = excited.iter().filter(|one| one.turbine == turbine).collect();
         over_turns(&rows, [58.0, top, 420.0, HEIGHT], &mut shapes);
@@ -99,7 +99,7 @@ fn over_turns(rows: &[&Excited], area: [f64; 4], shapes: &mut Vec<Shape>) {
         x: Scale::linear(0.0, N_TURNS),
         y: Scale::around(lines.iter().flat_map(|line| line.2.iter().map(|point| point[1])), 0.08),
     };
-    frame.rows(5, shapes);
+    frame.rows(5, true, shapes);
     frame.columns(6, true, shapes);
     frame.title(&format!("{}, last {N_TURNS:.0} turns", rows[0].turbine), shapes);
     frame.x_label("turns of the rotor", shapes);
@@ -139,7 +139,7 @@ fn spectra(rows: &[&Excited], area: [f64; 4], shapes: &mut Vec<Shape>) {
         x: Scale::linear(0.0, highest),
         y: Scale { low: 1e-3, high: 10f64.powf((2.5 * largest).log10()), logarithmic: true },
     };
-    frame.rows(5, shapes);
+    frame.rows(5, true, shapes);
     frame.columns(6, true, shapes);
     frame.x_label("frequency (Hz)", shapes);
     frame.y_label("amplitude (°)", 46.0, shapes);

@@ -74,7 +74,7 @@ fn over_time(study: &Study, quantity: &Quantity) -> Option<Figure> {
         return None;
     }
     let mut shapes = Vec::new();
-    let top = 22.0 + legend([64.0, 22.0], WIDTH - 90.0, &study.names(), &mut shapes);
+    let top = 22.0 + legend([64.0, 22.0], WIDTH - 90.0, Role::Run, &study.names(), &mut shapes);
     let mut frame_top = top + 16.0;
     for (index, name) in names.iter().enumerate() {
         let area = [64.0, frame_top, WIDTH - 64.0 - 62.0, PANEL_HEIGHT];
@@ -143,7 +143,7 @@ fn panel(
             shapes.push(text([x, area[1] + area[3] - 8.0], "spin-up", setting));
         }
     }
-    frame.rows(4, shapes);
+    frame.rows(4, true, shapes);
     frame.columns(10, is_last, shapes);
     frame.title(turbine, shapes);
     frame.y_label(quantity.label, 46.0, shapes);

@@ -65,7 +65,8 @@ pub(crate) fn profiles(study: &Study) -> Option<Figure> {
     let values = || lines.iter().flatten().flat_map(|line| &line.1);
     values().next()?;
     let mut shapes = Vec::new();
-    let top = 22.0 + legend([58.0, 22.0], WIDTH - 90.0, &study.names(), &mut shapes) + 18.0;
+    let top =
+        22.0 + legend([58.0, 22.0], WIDTH - 90.0, Role::Run, &study.names(), &mut shapes) + 18.0;
     let gap = 16.0;
     let n_panels = distances.len() as f64;
     let width = ((WIDTH - 58.0 - 24.0 - gap * (n_panels - 1.0)) / n_panels).min(220.0);
@@ -78,8 +79,8 @@ pub(crate) fn profiles(study: &Study) -> Option<Figure> {
         };
         let rotor = frame.rectangle([scale.low, center - 0.5], [scale.high, center + 0.5]);
         shapes.push(crate::draw::rectangle(rotor, Look::fill(Ink::Band)));
+        frame.rows(6, index == 0, &mut shapes);
         if index == 0 {
-            frame.rows(6, &mut shapes);
             frame.y_label("y/D", 38.0, &mut shapes);
         }
         frame.columns(3, true, &mut shapes);
@@ -136,7 +137,8 @@ pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
     let ends =
         [first.origin[0], first.origin[0] + first.spacing[0] * (first.n_points[0] - 1) as f64];
     let mut shapes = Vec::new();
-    let top = 22.0 + legend([58.0, 22.0], WIDTH - 90.0, &study.names(), &mut shapes) + 18.0;
+    let top =
+        22.0 + legend([58.0, 22.0], WIDTH - 90.0, Role::Run, &study.names(), &mut shapes) + 18.0;
     for (index, (title, sides)) in panels.iter().enumerate() {
         let lines: Vec<(usize, Vec<[f64; 2]>)> =
             planes.iter().map(|&(colour, plane)| (colour, along(plane, sides))).collect();
@@ -146,7 +148,7 @@ pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
             x: Scale::linear(ends[0] / diameter, ends[1] / diameter),
             y: Scale::around(velocities, 0.06),
         };
-        frame.rows(5, &mut shapes);
+        frame.rows(5, true, &mut shapes);
         frame.columns(8, true, &mut shapes);
         frame.title(title, &mut shapes);
         frame.x_label("x/D", &mut shapes);

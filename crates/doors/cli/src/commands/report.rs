@@ -1,0 +1,11 @@
+//! `wakemix report`: the page and figures of a study, made anew from its records.
+
+use miette::Result;
+use std::path::Path;
+
+/// Rebuilds the report of the study in `directory`; its path goes to stdout.
+pub(crate) fn run(directory: &Path) -> Result<()> {
+    let page = wakemix::study::report(directory)?;
+    println!("{}", page.display());
+    Ok(())
+}
