@@ -2,6 +2,7 @@
 //!
 //! The air feels point forces, not rotors: nothing here knows what a turbine is.
 
+pub mod inflow;
 pub mod lattice;
 
 use basis::{PointForce, Vector3};

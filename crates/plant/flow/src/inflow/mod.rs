@@ -1,0 +1,76 @@
+//! Wind that blows in: mean profiles and Mann's synthetic turbulence, carried along by Taylor's hypothesis.
+//!
+//! [`MeanProfile`] alone is steady wind; [`mann::generate`] makes a [`TurbulenceBox`], [`TurbulentInflow`]
+//! carries it past the farm on top of a profile, [`sizing`] says how large the box must be.
+//! Sources: [Mann1994] J. Mann, J. Fluid Mech. 273 (1994) 141-168; [Mann1998] J. Mann, Probabilistic
+//! Engineering Mechanics 13 (1998) 269-282.
+
+pub mod lifetime;
+pub mod mann;
+mod noise;
+pub mod profile;
+pub mod sizing;
+pub mod spectra;
+pub mod statistics;
+pub mod tensor;
+pub mod turbulence_box;
+pub mod turbulent;
+
+pub use profile::MeanProfile;
+pub use sizing::size_box;
+pub use tensor::SpectralTensor;
+pub use turbulence_box::TurbulenceBox;
+pub use turbulent::TurbulentInflow;
+
+use thiserror::Error;
+
+/// Why turbulence could not be made or used.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum InflowError {
+    /// A setting out of its range.
+    #[error("{name} = {value} cannot be used: {expected}")]
+    Setting {
+        /// Setting, in words.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// Arrays that do not fit the numbers of points.
+    #[error("a box of {n_x} × {n_y} × {n_z} points needs {needed} values per component, component {component} has {found}", n_x = n_points[0], n_y = n_points[1], n_z = n_points[2])]
+    Shape {
+        /// Points along x, y, z.
+        n_points: [usize; 3],
+        /// Component, 0 to 2.
+        component: usize,
+        /// Values needed.
+        needed: usize,
+        /// Values found.
+        found: usize,
+    },
+    /// A box that the machine cannot hold.
+    #[error("a box of {n_x} × {n_y} × {n_z} points needs {memory} bytes, which cannot be had; make it coarser or shorter", n_x = n_points[0], n_y = n_points[1], n_z = n_points[2])]
+    Memory {
+        /// Points along x, y, z.
+        n_points: [usize; 3],
+        /// Bytes at the peak.
+        memory: u64,
+    },
+}
+
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), InflowError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(InflowError::Setting { name, value, expected: "a positive number" })
+    }
+}
+
+pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<(), InflowError> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(())
+    } else {
+        Err(InflowError::Setting { name, value, expected: "zero or a positive number" })
+    }
+}
