@@ -21,16 +21,7 @@ impl WindField for Lattice {
                     corners
                 }
             };
-            let mut result = [0.0; 3];
-            for (component, corners) in result.iter_mut().zip(&corners) {
-                for (corner, value) in corners.iter().enumerate() {
-                    let mut share = f64::from(*value);
-                    for (axis, weight) in weight.iter().enumerate() {
-                        share *= if corner >> axis & 1 == 1 { *weight } else { 1.0 - weight };
-                    }
-                    *component += share;
-                }
-            }
+            let result = corners.each_ref().map(|corners| interpolate(corners, weight));
             *velocity = self.scaling().to_si_velocity(Vector3::from_array(result));
         }
     }
@@ -68,6 +59,13 @@ impl Lattice {
         }
         let settings = self.settings();
         self.scaling().to_si_velocity(total) * settings.air_density * settings.spacing.powi(3)
+    }
+
+    /// Pressure above that of undisturbed air (Pa) at `position` (m), trilinear between cell centres.
+    pub fn pressure(&self, position: Vector3) -> f64 {
+        let (low, high, weight) = self.cell_cube(position);
+        let [excess, ..] = self.kernel.read_cells(&self.view(), &corners(low, high));
+        self.scaling().to_si_pressure(interpolate(&excess, weight))
     }
 
     /// On return `state` holds the row at (`y`, `z`) in lattice units; velocities are the physical ones, half-way
@@ -113,9 +111,7 @@ impl Lattice {
     }
 
     fn cube_velocities(&self, low: [usize; 3], high: [usize; 3]) -> [[f32; 8]; 3] {
-        self.cell_velocities(&std::array::from_fn(|corner| {
-            std::array::from_fn(|axis| if corner >> axis & 1 == 1 { high[axis] } else { low[axis] })
-        }))
+        self.cell_velocities(&corners(low, high))
     }
 
     /// Physical velocities of eight cells, component by component, in lattice units.
@@ -135,6 +131,26 @@ impl Lattice {
         }
         [u, v, w]
     }
+}
+
+/// The corners of the cube from `low` to `high`, x fastest.
+fn corners(low: [usize; 3], high: [usize; 3]) -> [[usize; 3]; 8] {
+    std::array::from_fn(|corner| {
+        std::array::from_fn(|axis| if corner >> axis & 1 == 1 { high[axis] } else { low[axis] })
+    })
+}
+
+/// Trilinear value `weight` of the way along each axis, of values at the corners of a cube.
+fn interpolate(corners: &[f32; 8], weight: [f64; 3]) -> f64 {
+    let mut result = 0.0;
+    for (corner, value) in corners.iter().enumerate() {
+        let mut share = f64::from(*value);
+        for (axis, weight) in weight.iter().enumerate() {
+            share *= if corner >> axis & 1 == 1 { *weight } else { 1.0 - weight };
+        }
+        result += share;
+    }
+    result
 }
 
 /// Cells below and above `coordinate` on an axis of `n` cells, and the share of the way between them (–).
