@@ -4,5 +4,14 @@
 
 pub mod atomic;
 pub mod case;
+pub mod checkpoint;
+pub mod machine;
+pub mod netcdf;
+pub mod library;
+pub mod openfast;
+pub mod records;
+pub mod turbine_file;
+pub mod turbulence_box;
+pub mod vtk;
 
 pub use atomic::FileError;

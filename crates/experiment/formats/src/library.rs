@@ -1,0 +1,78 @@
+//! The turbines that come with the program.
+
+use crate::turbine_file::{self, TurbineFile, TurbineFileError};
+use std::path::Path;
+
+/// Name and file of each turbine.
+const TURBINES: [(&str, &str); 3] = [
+    ("iea-15mw", include_str!("../../../../turbines/iea-15mw.toml")),
+    ("iea-22mw", include_str!("../../../../turbines/iea-22mw.toml")),
+    ("nrel-5mw", include_str!("../../../../turbines/nrel-5mw.toml")),
+];
+
+/// Names of the turbines that come with the program.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    TURBINES.iter().map(|(name, _)| *name)
+}
+
+/// File of the turbine called `name`, as text.
+pub fn text(name: &str) -> Option<&'static str> {
+    TURBINES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// The turbine called `name`, or the one in the file of that path.
+///
+/// # Errors
+/// [`TurbineFileError`] when there is neither, or the file does not hold a turbine.
+pub fn load(name: &str) -> Result<TurbineFile, TurbineFileError> {
+    if let Some(text) = text(name) {
+        return turbine_file::parse(&format!("turbines/{name}.toml"), text);
+    }
+    let path = Path::new(name);
+    if path.exists() || path.extension().is_some() || name.contains(std::path::MAIN_SEPARATOR) {
+        return turbine_file::read(path);
+    }
+    let known: Vec<&str> = names().collect();
+    let fix = format!("known are {}; or give the path of a turbine file", known.join(", "));
+    Err(TurbineFileError::Unknown { name: name.to_owned(), fix })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_library_loads_and_stands_as_published() {
+        // Rated power (W), swept diameter, hub height (m), and published blade mass (kg) with the margin of the
+        // versions between report and input set.
+        let published = [
+            ("iea-15mw", 15e6, 240.8, 150.0, 65.25e3, 0.06),
+            ("iea-22mw", 22e6, 282.3, 170.0, 82.3e3, 0.01),
+            ("nrel-5mw", 5e6, 125.9, 90.0, 17.74e3, 0.01),
+        ];
+        assert_eq!(names().count(), published.len());
+        for (name, power, diameter, height, mass, margin) in published {
+            let file = load(name).unwrap();
+            let definition = &file.definition;
+            assert_eq!(definition.name, name);
+            assert_eq!(definition.rated_power, power);
+            assert!((definition.rotor_diameter() - diameter).abs() < 0.1, "{name}");
+            assert!((definition.rotor.hub_height - height).abs() < 0.05, "{name}");
+            assert!((definition.blade_mass() / mass - 1.0).abs() < margin, "{name}");
+            assert_eq!(file.sources.len(), 10);
+            let rated = file.controller.rated_torque
+                * file.controller.rated_rotor_speed
+                * definition.efficiency();
+            assert!((rated / power - 1.0).abs() < 2e-3, "{name}: {rated}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_there_is_said_with_what_is() {
+        let error = load("iea-10mw").unwrap_err();
+        assert_eq!(error.to_string(), "no turbine is called \"iea-10mw\"");
+        let TurbineFileError::Unknown { fix, .. } = error else { panic!("{error}") };
+        assert!(fix.contains("iea-15mw, iea-22mw, nrel-5mw"));
+        assert!(matches!(load("nowhere/t.toml"), Err(TurbineFileError::Unreadable { .. })));
+    }
+}

@@ -1,0 +1,561 @@
+//! From the file's figures to a turbine in SI, with every figure that cannot be named.
+
+use super::document::{self, Document};
+use super::error::{Place, Step, TurbineFileError};
+use super::{TurbineFile, document as file};
+use basis::Vector3;
+use basis::blades::MAXIMUM_BLADES;
+use control::baseline::{Constants, MinimumPitch, PitchGains, SetPointSmoothing, TorqueGains};
+use std::f64::consts::PI;
+use turbine::actuators::PitchActuator;
+use turbine::definition::{
+    BladeSection, BladeStation, BladeStructure, Definition, DriveTrain, Hub, Mode, Nacelle,
+    RotorGeometry, Tower, TowerProfile, TowerSection,
+};
+use turbine::{Polar, aero};
+
+use Step::{Key, Row};
+
+type Checked<T> = Result<T, TurbineFileError>;
+
+/// Coefficients of a mode may miss one by this: printed to a few digits, they do not add up exactly (–).
+const SHAPE_TOLERANCE: f64 = 2e-3;
+/// First and last station may miss root and tip by this share of the blade (–).
+const END_TOLERANCE: f64 = 1e-4;
+
+pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> {
+    let missing = |group: &'static str| {
+        let fix =
+            format!("add [{group}]; `wakemix turbine show` prints a complete file to compare with");
+        place.error(&[Key(group)], format!("a group [{group}]"), "none", fix)
+    };
+    let rotor = document.rotor.as_ref().ok_or_else(|| missing("rotor"))?;
+    let blade = document.blade.as_ref().ok_or_else(|| missing("blade"))?;
+    let structure = document.blade_structure.as_ref().ok_or_else(|| missing("blade_structure"))?;
+    let tower = document.tower.as_ref().ok_or_else(|| missing("tower"))?;
+    let hub = document.hub.as_ref().ok_or_else(|| missing("hub"))?;
+    let nacelle = document.nacelle.as_ref().ok_or_else(|| missing("nacelle"))?;
+    let drive_train = document.drive_train.as_ref().ok_or_else(|| missing("drive_train"))?;
+    let actuator = document.pitch_actuator.as_ref().ok_or_else(|| missing("pitch_actuator"))?;
+    let controller = document.controller.as_ref().ok_or_else(|| missing("controller"))?;
+    let airfoils = document.airfoils.as_ref().ok_or_else(|| missing("airfoils"))?;
+    if !(1..=MAXIMUM_BLADES).contains(&document.n_blades) {
+        return Err(place.error(
+            &[Key("n_blades")],
+            format!("1 to {MAXIMUM_BLADES} blades"),
+            document.n_blades.to_string(),
+            "count the blades",
+        ));
+    }
+    let polars = polars_of(airfoils, place)?;
+    let rotor_geometry = rotor_of(rotor, place)?;
+    let length = rotor.tip_radius - rotor.hub_radius;
+    let definition = Definition {
+        name: document.name.clone(),
+        n_blades: document.n_blades,
+        rotor: rotor_geometry,
+        blade: stations_of(blade, length, airfoils, place)?,
+        polars,
+        blade_structure: blade_structure_of(structure, length, place)?,
+        tower: tower_of(tower, rotor, place)?,
+        hub: hub_of(hub, place)?,
+        nacelle: nacelle_of(nacelle, place)?,
+        drive_train: drive_train_of(drive_train, place)?,
+        pitch_actuator: actuator_of(actuator, place)?,
+        rated_power: 1e3 * controller.rated_power_kw,
+        rated_rotor_speed: from_rpm(controller.rated_rotor_speed_rpm),
+    };
+    check_controller(controller, place)?;
+    let radius = definition.rotor_radius();
+    let controller_constants = controller_of(controller, radius, drive_train.generator_efficiency);
+    let sources = [
+        ("rotor", &rotor.source),
+        ("blade", &blade.source),
+        ("blade_structure", &structure.source),
+        ("tower", &tower.source),
+        ("hub", &hub.source),
+        ("nacelle", &nacelle.source),
+        ("drive_train", &drive_train.source),
+        ("pitch_actuator", &actuator.source),
+        ("controller", &controller.source),
+        ("airfoils", &airfoils.source),
+    ];
+    for (group, source) in sources {
+        if source.trim().is_empty() {
+            let fix = "name publication or input set, with its commit or edition";
+            return Err(place.error(
+                &[Key(group), Key("source")],
+                "a source",
+                "an empty text",
+                fix,
+            ));
+        }
+    }
+    Ok(TurbineFile {
+        title: document.title.clone(),
+        definition,
+        controller: controller_constants,
+        sources: sources.map(|(group, source)| (group.to_owned(), source.clone())).into(),
+    })
+}
+
+fn from_rpm(speed: f64) -> f64 {
+    speed * PI / 30.0
+}
+
+impl Place<'_> {
+    fn within(&self, path: &[Step], value: f64, low: f64, high: f64, unit: &str) -> Checked<()> {
+        if value.is_finite() && (low..=high).contains(&value) {
+            return Ok(());
+        }
+        let expected = format!("{low} to {high}{unit}");
+        Err(self.error(
+            path,
+            expected,
+            value.to_string(),
+            "check figure and unit; keys without a unit are SI",
+        ))
+    }
+
+    fn positive(&self, path: &[Step], value: f64) -> Checked<()> {
+        if value.is_finite() && value > 0.0 {
+            return Ok(());
+        }
+        Err(self.error(path, "a number above zero", value.to_string(), "check figure and unit"))
+    }
+
+    fn not_negative(&self, path: &[Step], value: f64) -> Checked<()> {
+        if value.is_finite() && value >= 0.0 {
+            return Ok(());
+        }
+        Err(self.error(path, "zero or more", value.to_string(), "check figure and unit"))
+    }
+
+    /// First column of a table rises; at least `least` rows.
+    fn rising(
+        &self,
+        group: &str,
+        key: &str,
+        column: &[f64],
+        least: usize,
+        strictly: bool,
+    ) -> Checked<()> {
+        if column.len() < least {
+            return Err(self.error(
+                &[Key(group), Key(key)],
+                format!("{least} rows or more"),
+                column.len().to_string(),
+                "add rows, root or bottom first",
+            ));
+        }
+        for row in 1..column.len() {
+            let (before, here) = (column[row - 1], column[row]);
+            if !(here > before || here == before && !strictly) {
+                return Err(self.error(
+                    &[Key(group), Key(key), Row(row)],
+                    format!("a first column that rises, more than {before}"),
+                    here.to_string(),
+                    "sort the rows by their first column",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn rotor_of(rotor: &file::Rotor, place: &Place) -> Checked<RotorGeometry> {
+    let at = |key| [Key("rotor"), Key(key)];
+    place.positive(&at("hub_radius"), rotor.hub_radius)?;
+    if rotor.tip_radius <= rotor.hub_radius {
+        let expected = format!("more than hub_radius, {} m", rotor.hub_radius);
+        let fix = "both count from the rotor apex, along the blade";
+        return Err(place.error(&at("tip_radius"), expected, rotor.tip_radius.to_string(), fix));
+    }
+    place.within(&at("tip_radius"), rotor.tip_radius, 0.1, 300.0, " m")?;
+    place.within(&at("precone_deg"), rotor.precone_deg, -30.0, 30.0, "°")?;
+    place.within(&at("shaft_tilt_deg"), rotor.shaft_tilt_deg, -30.0, 30.0, "°")?;
+    place.within(&at("overhang"), rotor.overhang, -50.0, 50.0, " m")?;
+    if rotor.hub_height < rotor.tip_radius {
+        let expected = format!("more than tip_radius, {} m", rotor.tip_radius);
+        let fix = "raise the hub, or the blades meet the ground";
+        return Err(place.error(&at("hub_height"), expected, rotor.hub_height.to_string(), fix));
+    }
+    Ok(RotorGeometry {
+        hub_radius: rotor.hub_radius,
+        tip_radius: rotor.tip_radius,
+        precone: rotor.precone_deg.to_radians(),
+        shaft_tilt: rotor.shaft_tilt_deg.to_radians(),
+        overhang: rotor.overhang,
+        hub_height: rotor.hub_height,
+    })
+}
+
+fn spans_end_at(place: &Place, path: [Step; 2], spans: &[f64], length: f64) -> Checked<()> {
+    let rows = spans.len();
+    for (row, span, end) in [(0, spans[0], 0.0), (rows - 1, spans[rows - 1], length)] {
+        if (span - end).abs() > END_TOLERANCE * length {
+            let fix = "spans count from the blade root; the last is tip_radius - hub_radius";
+            let expected = format!("{end:.4} m");
+            return Err(place.error(
+                &[path[0], path[1], Row(row)],
+                expected,
+                span.to_string(),
+                fix,
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn stations_of(
+    blade: &file::Blade,
+    length: f64,
+    airfoils: &file::Airfoils,
+    place: &Place,
+) -> Checked<Vec<BladeStation>> {
+    let spans: Vec<f64> = blade.stations.iter().map(|station| station.0).collect();
+    place.rising("blade", "stations", &spans, 2, true)?;
+    spans_end_at(place, [Key("blade"), Key("stations")], &spans, length)?;
+    let station_of = |(row, station): (usize, &document::Station)| {
+        let (span, chord, twist, prebend, sweep, polar_name) = station;
+        let path = [Key("blade"), Key("stations"), Row(row)];
+        place.positive(&path, *chord)?;
+        place.within(&path, *twist, -90.0, 90.0, "° twist")?;
+        place.within(&path, *prebend, -0.3 * length, 0.3 * length, " m prebend")?;
+        place.within(&path, *sweep, -0.3 * length, 0.3 * length, " m sweep")?;
+        let polar = airfoils.polar.iter().position(|polar| polar.name == *polar_name);
+        let polar = polar.ok_or_else(|| {
+            let fix = "name a polar of [[airfoils.polar]], or add it there";
+            place.error(&path, "the name of a polar", format!("\"{polar_name}\""), fix)
+        })?;
+        Ok(BladeStation {
+            span: *span,
+            chord: *chord,
+            twist: twist.to_radians(),
+            prebend: *prebend,
+            sweep: *sweep,
+            polar,
+        })
+    };
+    blade.stations.iter().enumerate().map(station_of).collect()
+}
+
+fn polars_of(airfoils: &file::Airfoils, place: &Place) -> Checked<Vec<Polar>> {
+    let polar_of = |(row, table): (usize, &document::PolarTable)| {
+        let path = [Key("airfoils"), Key("polar"), Row(row)];
+        let twin = airfoils.polar[..row].iter().any(|other| other.name == table.name);
+        if twin {
+            let found = format!("\"{}\" a second time", table.name);
+            return Err(place.error(&path, "a name of its own", found, "rename one of the two"));
+        }
+        let column = |index: usize| table.table.iter().map(|row| row[index]).collect::<Vec<f64>>();
+        let angles: Vec<f64> = column(0).into_iter().map(f64::to_radians).collect();
+        let mut polar = Polar::new(&table.name, &angles, &column(1), &column(2), &column(3))
+            .map_err(|error| polar_error(place, row, &error))?;
+        polar.reynolds_number = table.reynolds_number;
+        polar.unsteady = table.unsteady.as_ref().map(unsteady_of);
+        Ok(polar)
+    };
+    airfoils.polar.iter().enumerate().map(polar_of).collect()
+}
+
+fn polar_error(place: &Place, index: usize, error: &aero::PolarError) -> TurbineFileError {
+    let base = [Key("airfoils"), Key("polar"), Row(index), Key("table")];
+    let path = match error {
+        aero::PolarError::NotRising { row, .. } | aero::PolarError::Value { row, .. } => {
+            [base.as_slice(), &[Row(row - 1)]].concat()
+        }
+        _ => base.to_vec(),
+    };
+    let expected = "rows of angle (deg), lift, drag, moment from -180 to 180 degrees";
+    place.error(
+        &path,
+        expected,
+        error.to_string(),
+        "correct the table; angles rise from row to row",
+    )
+}
+
+fn unsteady_of(unsteady: &document::Unsteady) -> aero::UnsteadyConstants {
+    aero::UnsteadyConstants {
+        zero_lift_angle: unsteady.zero_lift_angle_deg.to_radians(),
+        upper_separation_angle: unsteady.upper_separation_angle_deg.to_radians(),
+        lower_separation_angle: unsteady.lower_separation_angle_deg.to_radians(),
+        normal_force_slope: unsteady.normal_force_slope,
+        upper_critical_normal_force: unsteady.upper_critical_normal_force,
+        lower_critical_normal_force: unsteady.lower_critical_normal_force,
+        zero_lift_drag: unsteady.zero_lift_drag,
+        zero_lift_moment: unsteady.zero_lift_moment,
+        time_constants: unsteady.time_constants,
+        indicial_amplitudes: unsteady.indicial_amplitudes,
+        indicial_exponents: unsteady.indicial_exponents,
+    }
+}
+
+fn mode_of(mode: &file::Mode, group: &str, key: &str, place: &Place) -> Checked<Mode> {
+    let sum: f64 = mode.coefficients.iter().sum();
+    if (sum - 1.0).abs() > SHAPE_TOLERANCE || !sum.is_finite() {
+        let fix = "divide the coefficients by their sum, so that the free end moves by one";
+        let path = [Key(group), Key(key)];
+        return Err(place.error(&path, "coefficients that add up to 1", format!("{sum:.6}"), fix));
+    }
+    place.within(&[Key(group), Key(key)], mode.damping_ratio, 0.0, 0.2, " damping ratio")?;
+    Ok(Mode { coefficients: mode.coefficients, damping_ratio: mode.damping_ratio })
+}
+
+fn blade_structure_of(
+    structure: &file::BladeStructure,
+    length: f64,
+    place: &Place,
+) -> Checked<BladeStructure> {
+    let spans: Vec<f64> = structure.sections.iter().map(|section| section[0]).collect();
+    place.rising("blade_structure", "sections", &spans, 2, true)?;
+    spans_end_at(place, [Key("blade_structure"), Key("sections")], &spans, length)?;
+    let section_of = |(row, section): (usize, &[f64; 5])| {
+        let path = [Key("blade_structure"), Key("sections"), Row(row)];
+        for value in &section[2..] {
+            place.positive(&path, *value)?;
+        }
+        Ok(BladeSection {
+            span: section[0],
+            twist: section[1].to_radians(),
+            mass: section[2],
+            flap_stiffness: section[3],
+            edge_stiffness: section[4],
+        })
+    };
+    let mode = |mode, key| mode_of(mode, "blade_structure", key, place);
+    Ok(BladeStructure {
+        sections: structure.sections.iter().enumerate().map(section_of).collect::<Checked<_>>()?,
+        flap_modes: [
+            mode(&structure.flap_mode_1, "flap_mode_1")?,
+            mode(&structure.flap_mode_2, "flap_mode_2")?,
+        ],
+        edge_mode: mode(&structure.edge_mode_1, "edge_mode_1")?,
+    })
+}
+
+fn tower_of(tower: &file::Tower, rotor: &file::Rotor, place: &Place) -> Checked<Tower> {
+    let at = |key| [Key("tower"), Key(key)];
+    if tower.top_height <= tower.base_height {
+        let expected = format!("more than base_height, {} m", tower.base_height);
+        let fix = "both count from ground or mean sea level";
+        return Err(place.error(&at("top_height"), expected, tower.top_height.to_string(), fix));
+    }
+    // The hub height follows from tower, shaft and overhang; the file says it twice so that a wrong figure shows.
+    let tilt = rotor.shaft_tilt_deg.to_radians();
+    let hub_height = tower.top_height + tower.top_to_shaft + rotor.overhang * tilt.sin();
+    if (hub_height - rotor.hub_height).abs() > 0.5 {
+        let expected = format!("{hub_height:.2} m, from tower, shaft and overhang");
+        let fix =
+            "check hub_height, tower.top_height, tower.top_to_shaft, overhang and shaft_tilt_deg";
+        let path = [Key("rotor"), Key("hub_height")];
+        return Err(place.error(&path, expected, rotor.hub_height.to_string(), fix));
+    }
+    let heights: Vec<f64> = tower.profile.iter().map(|row| row[0]).collect();
+    place.rising("tower", "profile", &heights, 2, true)?;
+    let section_heights: Vec<f64> = tower.sections.iter().map(|row| row[0]).collect();
+    place.rising("tower", "sections", &section_heights, 2, true)?;
+    let profile_of = |(row, profile): (usize, &[f64; 3])| {
+        let path = [Key("tower"), Key("profile"), Row(row)];
+        place.positive(&path, profile[1])?;
+        place.within(&path, profile[2], 0.0, 3.0, " drag coefficient")?;
+        Ok(TowerProfile { height: profile[0], diameter: profile[1], drag_coefficient: profile[2] })
+    };
+    let section_of = |(row, section): (usize, &[f64; 4])| {
+        let path = [Key("tower"), Key("sections"), Row(row)];
+        for value in &section[1..] {
+            place.positive(&path, *value)?;
+        }
+        Ok(TowerSection {
+            height: section[0],
+            mass: section[1],
+            fore_aft_stiffness: section[2],
+            side_to_side_stiffness: section[3],
+        })
+    };
+    let mode = |mode, key| mode_of(mode, "tower", key, place);
+    Ok(Tower {
+        base_height: tower.base_height,
+        top_height: tower.top_height,
+        top_to_shaft: tower.top_to_shaft,
+        profile: tower.profile.iter().enumerate().map(profile_of).collect::<Checked<_>>()?,
+        sections: tower.sections.iter().enumerate().map(section_of).collect::<Checked<_>>()?,
+        fore_aft_modes: [
+            mode(&tower.fore_aft_mode_1, "fore_aft_mode_1")?,
+            mode(&tower.fore_aft_mode_2, "fore_aft_mode_2")?,
+        ],
+        side_to_side_modes: [
+            mode(&tower.side_to_side_mode_1, "side_to_side_mode_1")?,
+            mode(&tower.side_to_side_mode_2, "side_to_side_mode_2")?,
+        ],
+    })
+}
+
+fn hub_of(hub: &file::Hub, place: &Place) -> Checked<Hub> {
+    place.positive(&[Key("hub"), Key("mass")], hub.mass)?;
+    place.positive(&[Key("hub"), Key("inertia")], hub.inertia)?;
+    Ok(Hub { mass: hub.mass, inertia: hub.inertia })
+}
+
+fn nacelle_of(nacelle: &file::Nacelle, place: &Place) -> Checked<Nacelle> {
+    place.positive(&[Key("nacelle"), Key("mass")], nacelle.mass)?;
+    place.positive(&[Key("nacelle"), Key("yaw_inertia")], nacelle.yaw_inertia)?;
+    place.not_negative(&[Key("nacelle"), Key("yaw_bearing_mass")], nacelle.yaw_bearing_mass)?;
+    Ok(Nacelle {
+        mass: nacelle.mass,
+        yaw_inertia: nacelle.yaw_inertia,
+        center_of_mass: Vector3::from_array(nacelle.center_of_mass),
+        yaw_bearing_mass: nacelle.yaw_bearing_mass,
+    })
+}
+
+fn drive_train_of(drive_train: &file::DriveTrain, place: &Place) -> Checked<DriveTrain> {
+    let at = |key| [Key("drive_train"), Key(key)];
+    place.within(&at("gear_ratio"), drive_train.gear_ratio, 1.0, 1000.0, "")?;
+    place.positive(&at("generator_inertia"), drive_train.generator_inertia)?;
+    place.within(
+        &at("gearbox_efficiency"),
+        drive_train.gearbox_efficiency,
+        0.5,
+        1.0,
+        ", a share",
+    )?;
+    place.within(
+        &at("generator_efficiency"),
+        drive_train.generator_efficiency,
+        0.5,
+        1.0,
+        ", a share",
+    )?;
+    place.positive(&at("stiffness"), drive_train.stiffness)?;
+    place.not_negative(&at("damping"), drive_train.damping)?;
+    Ok(DriveTrain {
+        gear_ratio: drive_train.gear_ratio,
+        generator_inertia: drive_train.generator_inertia,
+        gearbox_efficiency: drive_train.gearbox_efficiency,
+        generator_efficiency: drive_train.generator_efficiency,
+        stiffness: drive_train.stiffness,
+        damping: drive_train.damping,
+    })
+}
+
+fn actuator_of(actuator: &file::PitchActuator, place: &Place) -> Checked<PitchActuator> {
+    let at = |key| [Key("pitch_actuator"), Key(key)];
+    place.positive(&at("natural_frequency"), actuator.natural_frequency)?;
+    place.within(&at("damping_ratio"), actuator.damping_ratio, 0.05, 5.0, "")?;
+    place.within(&at("maximum_rate_deg_s"), actuator.maximum_rate_deg_s, 0.01, 100.0, "°/s")?;
+    place.within(&at("minimum_pitch_deg"), actuator.minimum_pitch_deg, -90.0, 90.0, "°")?;
+    let (low, high) = (actuator.minimum_pitch_deg, actuator.maximum_pitch_deg);
+    place.within(&at("maximum_pitch_deg"), high, low, 180.0, "°")?;
+    Ok(PitchActuator {
+        natural_frequency: actuator.natural_frequency,
+        damping_ratio: actuator.damping_ratio,
+        maximum_rate: actuator.maximum_rate_deg_s.to_radians(),
+        minimum_pitch: low.to_radians(),
+        maximum_pitch: high.to_radians(),
+    })
+}
+
+fn check_controller(controller: &file::Controller, place: &Place) -> Checked<()> {
+    let at = |key| [Key("controller"), Key(key)];
+    place.within(&at("rated_power_kw"), controller.rated_power_kw, 1e-3, 1e5, " kW")?;
+    place.within(
+        &at("rated_rotor_speed_rpm"),
+        controller.rated_rotor_speed_rpm,
+        0.1,
+        2000.0,
+        " rpm",
+    )?;
+    let rated = controller.rated_rotor_speed_rpm;
+    place.within(
+        &at("minimum_rotor_speed_rpm"),
+        controller.minimum_rotor_speed_rpm,
+        0.0,
+        rated,
+        " rpm",
+    )?;
+    place.within(
+        &at("optimal_tip_speed_ratio"),
+        controller.optimal_tip_speed_ratio,
+        1.0,
+        20.0,
+        "",
+    )?;
+    let positive = [
+        ("torque_gain", controller.torque_gain),
+        ("rated_torque", controller.rated_torque),
+        ("maximum_torque_rate", controller.maximum_torque_rate),
+        ("maximum_pitch_rate_deg_s", controller.maximum_pitch_rate_deg_s),
+        ("speed_filter_corner", controller.speed_filter_corner),
+    ];
+    for (key, value) in positive {
+        place.positive(&at(key), value)?;
+    }
+    place.not_negative(&at("minimum_torque"), controller.minimum_torque)?;
+    place.within(
+        &at("maximum_torque"),
+        controller.maximum_torque,
+        controller.rated_torque,
+        1e10,
+        " N m",
+    )?;
+    place.not_negative(&at("torque_proportional"), controller.torque_proportional)?;
+    place.not_negative(&at("torque_integral"), controller.torque_integral)?;
+    place.within(&at("fine_pitch_deg"), controller.fine_pitch_deg, -30.0, 30.0, "°")?;
+    let fine = controller.fine_pitch_deg;
+    place.within(&at("maximum_pitch_deg"), controller.maximum_pitch_deg, fine, 180.0, "°")?;
+    let speeds: Vec<f64> = controller.minimum_pitch.iter().map(|row| row[0]).collect();
+    place.rising("controller", "minimum_pitch", &speeds, 0, true)?;
+    let pitches: Vec<f64> = controller.pitch_gains.iter().map(|row| row[0]).collect();
+    place.rising("controller", "pitch_gains", &pitches, 1, true)?;
+    let smoothing = &controller.set_point_smoothing;
+    let at = |key| [Key("controller"), Key("set_point_smoothing"), Key(key)];
+    place.not_negative(&at("torque_shift"), smoothing.torque_shift)?;
+    place.not_negative(&at("pitch_shift"), smoothing.pitch_shift)?;
+    place.positive(&at("filter_corner"), smoothing.filter_corner)
+}
+
+/// The controller's constants in SI; `rotor_radius` (m) and `generator_efficiency` (–) stand elsewhere in the file.
+pub fn controller_of(
+    controller: &file::Controller,
+    rotor_radius: f64,
+    generator_efficiency: f64,
+) -> Constants {
+    let minimum_pitch =
+        |row: &[f64; 2]| MinimumPitch { wind_speed: row[0], pitch: row[1].to_radians() };
+    let pitch_gains = |row: &[f64; 3]| PitchGains {
+        pitch: row[0].to_radians(),
+        proportional: row[1],
+        integral: row[2],
+    };
+    Constants {
+        rotor_radius,
+        optimal_tip_speed_ratio: controller.optimal_tip_speed_ratio,
+        torque_gain: controller.torque_gain,
+        minimum_rotor_speed: from_rpm(controller.minimum_rotor_speed_rpm),
+        rated_rotor_speed: from_rpm(controller.rated_rotor_speed_rpm),
+        rated_torque: controller.rated_torque,
+        rated_power: 1e3 * controller.rated_power_kw,
+        generator_efficiency,
+        minimum_torque: controller.minimum_torque,
+        maximum_torque: controller.maximum_torque,
+        maximum_torque_rate: controller.maximum_torque_rate,
+        constant_power: controller.constant_power,
+        torque_gains: TorqueGains {
+            proportional: controller.torque_proportional,
+            integral: controller.torque_integral,
+        },
+        fine_pitch: controller.fine_pitch_deg.to_radians(),
+        minimum_pitch: controller.minimum_pitch.iter().map(minimum_pitch).collect(),
+        maximum_pitch: controller.maximum_pitch_deg.to_radians(),
+        maximum_pitch_rate: controller.maximum_pitch_rate_deg_s.to_radians(),
+        pitch_gains: controller.pitch_gains.iter().map(pitch_gains).collect(),
+        set_point_smoothing: SetPointSmoothing {
+            torque_shift: controller.set_point_smoothing.torque_shift,
+            pitch_shift: controller.set_point_smoothing.pitch_shift,
+            filter_corner: controller.set_point_smoothing.filter_corner,
+        },
+        speed_filter_corner: controller.speed_filter_corner,
+    }
+}

@@ -1,0 +1,166 @@
+//! What can be wrong with a turbine, and where.
+
+use miette::Diagnostic;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+use toml::de::{DeTable, DeValue};
+
+/// Why a turbine cannot be read.
+#[derive(Debug, Error, Diagnostic)]
+pub enum TurbineFileError {
+    /// The file cannot be opened.
+    #[error("cannot read {}", path.display())]
+    #[diagnostic(code(wakemix::turbine::unreadable))]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+        /// What mends it.
+        #[help]
+        fix: String,
+    },
+    /// No such turbine in the library, and no such file.
+    #[error("no turbine is called \"{name}\"")]
+    #[diagnostic(code(wakemix::turbine::unknown))]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        #[help]
+        fix: String,
+    },
+    /// Text that is not what the format asks for.
+    #[error("{file}, line {line}: {message}")]
+    #[diagnostic(code(wakemix::turbine::syntax))]
+    Syntax {
+        /// The file.
+        file: String,
+        /// Line, from 1 (–).
+        line: usize,
+        /// What the reader stumbled over.
+        message: String,
+        /// What mends it.
+        #[help]
+        fix: String,
+    },
+    /// A figure that cannot be.
+    #[error("{file}, line {line}, {key}: expected {expected}, found {found}")]
+    #[diagnostic(code(wakemix::turbine::value))]
+    Value {
+        /// The file.
+        file: String,
+        /// Line, from 1 (–).
+        line: usize,
+        /// Key, as a path through the file.
+        key: String,
+        /// What should be there.
+        expected: String,
+        /// What is there.
+        found: String,
+        /// What mends it.
+        #[help]
+        fix: String,
+    },
+}
+
+impl TurbineFileError {
+    pub(crate) fn unreadable(path: &Path, source: std::io::Error) -> Self {
+        let fix = "check the path; names of known turbines are listed by `wakemix turbine list`";
+        Self::Unreadable { path: path.to_owned(), source, fix: fix.to_owned() }
+    }
+
+    pub(super) fn syntax(file: &str, text: &str, error: &toml::de::Error) -> Self {
+        let place = error.span().map_or(text.len(), |span| span.start);
+        let message = error.message().trim().replace('\n', "; ");
+        let fix = if message.starts_with("unknown field") {
+            "correct or remove this key; `wakemix turbine show` prints a complete file to compare with"
+        } else if message.starts_with("missing field") {
+            "add the key to this group; `wakemix turbine show` prints a complete file to compare with"
+        } else {
+            "see `wakemix turbine show` for a complete file to compare with"
+        };
+        Self::Syntax {
+            file: file.to_owned(),
+            line: line_of(text, place),
+            message,
+            fix: fix.to_owned(),
+        }
+    }
+}
+
+/// Line (from 1) of byte number `place` of `text`.
+pub(crate) fn line_of(text: &str, place: usize) -> usize {
+    1 + text.as_bytes()[..place.min(text.len())].iter().filter(|byte| **byte == b'\n').count()
+}
+
+/// The file that is being checked.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'a> {
+    pub(super) file: &'a str,
+    pub(super) text: &'a str,
+}
+
+/// One step of a path through a file.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Step<'a> {
+    Key(&'a str),
+    Row(usize),
+}
+
+impl Place<'_> {
+    /// The error that at `path` (as far as it exists) something else was expected.
+    pub(super) fn error(
+        &self,
+        path: &[Step],
+        expected: impl Into<String>,
+        found: impl Into<String>,
+        fix: impl Into<String>,
+    ) -> TurbineFileError {
+        let mut key = String::new();
+        for step in path {
+            match step {
+                Step::Key(name) if key.is_empty() => key.push_str(name),
+                Step::Key(name) => key.push_str(&format!(".{name}")),
+                Step::Row(row) => key.push_str(&format!("[{}]", row + 1)),
+            }
+        }
+        TurbineFileError::Value {
+            file: self.file.to_owned(),
+            line: line_of(self.text, self.byte_of(path)),
+            key,
+            expected: expected.into(),
+            found: found.into(),
+            fix: fix.into(),
+        }
+    }
+
+    fn byte_of(&self, path: &[Step]) -> usize {
+        let Ok(root) = DeTable::parse(self.text) else { return 0 };
+        let mut byte = 0;
+        let mut node: Option<&toml::Spanned<DeValue>> = None;
+        for step in path {
+            let next = match (step, node.map(|node| node.get_ref())) {
+                (Step::Key(name), None) => {
+                    root.get_ref().iter().find(|(key, _)| key.get_ref() == *name)
+                }
+                (Step::Key(name), Some(DeValue::Table(table))) => {
+                    table.iter().find(|(key, _)| key.get_ref() == *name)
+                }
+                (Step::Row(row), Some(DeValue::Array(rows))) => match rows.get(*row) {
+                    Some(value) => {
+                        byte = value.span().start;
+                        node = Some(value);
+                        continue;
+                    }
+                    None => None,
+                },
+                _ => None,
+            };
+            let Some((key, value)) = next else { break };
+            byte = key.span().start;
+            node = Some(value);
+        }
+        byte
+    }
+}

@@ -1,0 +1,63 @@
+//! Turbines in the project's own format: TOML, degrees and rpm where the key says so, a source for every group of figures.
+
+mod check;
+mod document;
+mod error;
+mod write;
+
+pub use check::controller_of;
+pub use document::{
+    Airfoils, Blade, BladeStructure, Controller, Document, DriveTrain, Hub, Mode, Nacelle,
+    PitchActuator, PolarTable, Rotor, SetPointSmoothing, Station, Tower, Unsteady,
+};
+pub use error::TurbineFileError;
+pub use write::write;
+
+use control::baseline::Constants;
+use std::fs;
+use std::path::Path;
+use turbine::Definition;
+
+/// A turbine with its controller's constants and where every figure comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TurbineFile {
+    /// What the turbine is called in words.
+    pub title: String,
+    /// The machine.
+    pub definition: Definition,
+    /// Constants of its torque and pitch control.
+    pub controller: Constants,
+    /// Group of figures and its source, in the file's order.
+    pub sources: Vec<(String, String)>,
+}
+
+/// The turbine in `text`, which errors call `file`.
+///
+/// # Errors
+/// [`TurbineFileError`] naming file, line, key, what was expected there and what mends it.
+pub fn parse(file: &str, text: &str) -> Result<TurbineFile, TurbineFileError> {
+    let document: Document =
+        toml::from_str(text).map_err(|error| TurbineFileError::syntax(file, text, &error))?;
+    check::check(&document, &error::Place { file, text })
+}
+
+/// The turbine of `document`, which errors call `file`.
+///
+/// # Errors
+/// As [`parse`], without lines.
+pub fn check(document: &Document, file: &str) -> Result<TurbineFile, TurbineFileError> {
+    check::check(document, &error::Place { file, text: "" })
+}
+
+/// The turbine in the file at `path`.
+///
+/// # Errors
+/// As [`parse`], and when the file cannot be read.
+pub fn read(path: &Path) -> Result<TurbineFile, TurbineFileError> {
+    let text =
+        fs::read_to_string(path).map_err(|source| TurbineFileError::unreadable(path, source))?;
+    parse(&path.display().to_string(), &text)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,313 @@
+//! A turbine file as text: groups with their sources, tables in aligned columns.
+
+use super::document::{
+    Airfoils, Blade, BladeStructure, Controller, Document, DriveTrain, Hub, Mode, Nacelle,
+    PitchActuator, PolarTable, Rotor, Tower, Unsteady,
+};
+
+/// The text of `document`, figures to seven digits; a comment stands where a group is missing.
+pub fn write(document: &Document) -> String {
+    let mut out = Text::default();
+    out.line(&format!("# {}", document.title));
+    out.line("# SI units unless the key says otherwise. Every group names its source.");
+    out.line(
+        "# Positive precone, tilt, overhang and prebend carry the blade tips away from the tower;",
+    );
+    out.line(
+        "# twist and pitch are positive to feather; heights count from ground or mean sea level.",
+    );
+    out.line("");
+    out.text("name", &document.name);
+    out.text("title", &document.title);
+    out.line(&format!("n_blades = {}", document.n_blades));
+    out.group("rotor", &document.rotor, rotor);
+    out.group("blade", &document.blade, blade);
+    out.group("blade_structure", &document.blade_structure, blade_structure);
+    out.group("tower", &document.tower, tower);
+    out.group("hub", &document.hub, hub);
+    out.group("nacelle", &document.nacelle, nacelle);
+    out.group("drive_train", &document.drive_train, drive_train);
+    out.group("pitch_actuator", &document.pitch_actuator, pitch_actuator);
+    out.group("controller", &document.controller, controller);
+    out.group("airfoils", &document.airfoils, airfoils);
+    out.0
+}
+
+#[derive(Default)]
+struct Text(String);
+
+impl Text {
+    fn line(&mut self, line: &str) {
+        self.0.push_str(line.trim_end());
+        self.0.push('\n');
+    }
+
+    fn text(&mut self, key: &str, text: &str) {
+        self.line(&format!("{key} = {}", quoted(text)));
+    }
+
+    fn number(&mut self, key: &str, value: f64, comment: &str) {
+        let comment = if comment.is_empty() { String::new() } else { format!("  # {comment}") };
+        self.line(&format!("{key} = {}{comment}", number(value)));
+    }
+
+    fn group<Group>(&mut self, name: &str, group: &Option<Group>, write: fn(&mut Self, &Group)) {
+        self.line("");
+        match group {
+            Some(group) => {
+                self.line(&format!("[{name}]"));
+                write(self, group);
+            }
+            None => self.line(&format!(
+                "# [{name}] is not in the source of this file; complete it by hand."
+            )),
+        }
+    }
+
+    fn table<Cells: IntoIterator<Item = String>>(
+        &mut self,
+        key: &str,
+        columns: &[&str],
+        rows: impl IntoIterator<Item = Cells>,
+    ) {
+        let rows: Vec<Vec<String>> =
+            rows.into_iter().map(|row| row.into_iter().collect()).collect();
+        self.line(&format!("{key} = ["));
+        let mut widths: Vec<usize> = columns.iter().map(|name| name.chars().count()).collect();
+        for row in &rows {
+            for (width, cell) in widths.iter_mut().zip(row) {
+                *width = (*width).max(cell.len());
+            }
+        }
+        let join = |cells: Vec<String>| cells.join("  ");
+        let pad = |cells: &mut dyn Iterator<Item = (&str, &str)>| -> Vec<String> {
+            cells
+                .zip(&widths)
+                .map(|((cell, end), width)| {
+                    let blanks = width.saturating_sub(cell.chars().count());
+                    format!("{}{cell}{end}", " ".repeat(blanks))
+                })
+                .collect()
+        };
+        let head = pad(&mut columns.iter().map(|name| (*name, " ")));
+        self.line(&format!("  # {}", join(head)));
+        for row in &rows {
+            let last = row.len() - 1;
+            let cells = row.iter().enumerate();
+            let cells =
+                pad(&mut cells.map(|(k, cell)| (cell.as_str(), if k == last { "" } else { "," })));
+            self.line(&format!("  [ {} ],", join(cells)));
+        }
+        self.line("]");
+    }
+
+    fn mode(&mut self, key: &str, mode: &Mode) {
+        let coefficients: Vec<String> = mode.coefficients.iter().map(|c| number(*c)).collect();
+        let damping = number(mode.damping_ratio);
+        let coefficients = coefficients.join(", ");
+        self.line(&format!(
+            "{key} = {{ coefficients = [{coefficients}], damping_ratio = {damping} }}"
+        ));
+    }
+}
+
+/// Seven significant digits, as TOML reads them as a number with a point.
+fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0.0".to_owned();
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if !(-4..9).contains(&magnitude) {
+        let text = format!("{value:.6e}");
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
+        return format!("{mantissa}e{exponent}");
+    }
+    let decimals = usize::try_from(6 - magnitude).unwrap_or(0).max(1);
+    let text = format!("{value:.decimals$}");
+    let trimmed = text.trim_end_matches('0');
+    if trimmed.ends_with('.') { format!("{trimmed}0") } else { trimmed.to_owned() }
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+fn rotor(out: &mut Text, rotor: &Rotor) {
+    out.text("source", &rotor.source);
+    out.number("hub_radius", rotor.hub_radius, "rotor apex to blade root");
+    out.number("tip_radius", rotor.tip_radius, "rotor apex to blade tip, along the pitch axis");
+    out.number("precone_deg", rotor.precone_deg, "");
+    out.number("shaft_tilt_deg", rotor.shaft_tilt_deg, "");
+    out.number("overhang", rotor.overhang, "yaw axis to rotor apex, along the shaft");
+    out.number("hub_height", rotor.hub_height, "rotor apex");
+}
+
+fn blade(out: &mut Text, blade: &Blade) {
+    out.text("source", &blade.source);
+    let columns = ["span", "chord", "twist_deg", "prebend", "sweep", "polar"];
+    let rows = blade.stations.iter().map(|(span, chord, twist, prebend, sweep, polar)| {
+        let numbers = [span, chord, twist, prebend, sweep].map(|value| number(*value));
+        numbers.into_iter().chain([quoted(polar)])
+    });
+    out.table("stations", &columns, rows);
+}
+
+fn numbers<const N: usize>(row: &[f64; N]) -> [String; N] {
+    row.map(number)
+}
+
+fn blade_structure(out: &mut Text, structure: &BladeStructure) {
+    out.text("source", &structure.source);
+    out.line(
+        "# Shape of a mode: coefficients of x^2 to x^6, x the share of the blade from its root.",
+    );
+    out.mode("flap_mode_1", &structure.flap_mode_1);
+    out.mode("flap_mode_2", &structure.flap_mode_2);
+    out.mode("edge_mode_1", &structure.edge_mode_1);
+    let columns = ["span", "twist_deg", "mass", "flap_stiffness", "edge_stiffness"];
+    out.table("sections", &columns, structure.sections.iter().map(numbers));
+}
+
+fn tower(out: &mut Text, tower: &Tower) {
+    out.text("source", &tower.source);
+    out.number("base_height", tower.base_height, "clamped here");
+    out.number("top_height", tower.top_height, "yaw bearing");
+    out.number("top_to_shaft", tower.top_to_shaft, "yaw bearing up to the shaft, on the yaw axis");
+    out.table("profile", &["height", "diameter", "drag"], tower.profile.iter().map(numbers));
+    let columns = ["height", "mass", "fore_aft_stiffness", "side_to_side_stiffness"];
+    out.table("sections", &columns, tower.sections.iter().map(numbers));
+    out.line(
+        "# Shape of a mode: coefficients of x^2 to x^6, x the share of the tower from its base.",
+    );
+    out.mode("fore_aft_mode_1", &tower.fore_aft_mode_1);
+    out.mode("fore_aft_mode_2", &tower.fore_aft_mode_2);
+    out.mode("side_to_side_mode_1", &tower.side_to_side_mode_1);
+    out.mode("side_to_side_mode_2", &tower.side_to_side_mode_2);
+}
+
+fn hub(out: &mut Text, hub: &Hub) {
+    out.text("source", &hub.source);
+    out.number("mass", hub.mass, "");
+    out.number("inertia", hub.inertia, "about the shaft");
+}
+
+fn nacelle(out: &mut Text, nacelle: &Nacelle) {
+    out.text("source", &nacelle.source);
+    out.number("mass", nacelle.mass, "");
+    out.number("yaw_inertia", nacelle.yaw_inertia, "about the yaw axis");
+    let center = numbers(&nacelle.center_of_mass).join(", ");
+    out.line(&format!(
+        "center_of_mass = [{center}]  # from the tower top: downwind, left looking downwind, up"
+    ));
+    out.number("yaw_bearing_mass", nacelle.yaw_bearing_mass, "");
+}
+
+fn drive_train(out: &mut Text, drive_train: &DriveTrain) {
+    out.text("source", &drive_train.source);
+    out.number("gear_ratio", drive_train.gear_ratio, "generator speed over rotor speed");
+    out.number(
+        "generator_inertia",
+        drive_train.generator_inertia,
+        "about the generator's own shaft",
+    );
+    out.number("gearbox_efficiency", drive_train.gearbox_efficiency, "");
+    out.number("generator_efficiency", drive_train.generator_efficiency, "");
+    out.number("stiffness", drive_train.stiffness, "torsion, low-speed side");
+    out.number("damping", drive_train.damping, "torsion, low-speed side");
+}
+
+fn pitch_actuator(out: &mut Text, actuator: &PitchActuator) {
+    out.text("source", &actuator.source);
+    out.number("natural_frequency", actuator.natural_frequency, "rad/s");
+    out.number("damping_ratio", actuator.damping_ratio, "");
+    out.number("maximum_rate_deg_s", actuator.maximum_rate_deg_s, "");
+    out.number("minimum_pitch_deg", actuator.minimum_pitch_deg, "");
+    out.number("maximum_pitch_deg", actuator.maximum_pitch_deg, "");
+}
+
+fn controller(out: &mut Text, controller: &Controller) {
+    out.text("source", &controller.source);
+    out.line("# Low-speed side; gains act on measured minus reference rotor speed (rad/s).");
+    out.number("rated_power_kw", controller.rated_power_kw, "electrical");
+    out.number("rated_rotor_speed_rpm", controller.rated_rotor_speed_rpm, "");
+    out.number("minimum_rotor_speed_rpm", controller.minimum_rotor_speed_rpm, "");
+    out.number("optimal_tip_speed_ratio", controller.optimal_tip_speed_ratio, "");
+    out.number(
+        "torque_gain",
+        controller.torque_gain,
+        "torque over rotor speed squared below rated, N m s^2",
+    );
+    out.number("rated_torque", controller.rated_torque, "");
+    out.number("minimum_torque", controller.minimum_torque, "");
+    out.number("maximum_torque", controller.maximum_torque, "");
+    out.number("maximum_torque_rate", controller.maximum_torque_rate, "N m/s");
+    out.line(&format!("constant_power = {}  # above rated", controller.constant_power));
+    out.number("torque_proportional", controller.torque_proportional, "N m s");
+    out.number("torque_integral", controller.torque_integral, "N m");
+    out.number("fine_pitch_deg", controller.fine_pitch_deg, "");
+    out.number("maximum_pitch_deg", controller.maximum_pitch_deg, "");
+    out.number("maximum_pitch_rate_deg_s", controller.maximum_pitch_rate_deg_s, "");
+    out.number("speed_filter_corner", controller.speed_filter_corner, "rad/s");
+    let smoothing = &controller.set_point_smoothing;
+    out.line(&format!(
+        "set_point_smoothing = {{ torque_shift = {}, pitch_shift = {}, filter_corner = {} }}",
+        number(smoothing.torque_shift),
+        number(smoothing.pitch_shift),
+        number(smoothing.filter_corner),
+    ));
+    let rows = controller.minimum_pitch.iter().map(numbers);
+    out.table("minimum_pitch", &["wind_speed", "pitch_deg"], rows);
+    let columns = ["pitch_deg", "proportional_s", "integral"];
+    out.table("pitch_gains", &columns, controller.pitch_gains.iter().map(numbers));
+}
+
+fn airfoils(out: &mut Text, airfoils: &Airfoils) {
+    out.text("source", &airfoils.source);
+    for table in &airfoils.polar {
+        out.line("");
+        out.line("[[airfoils.polar]]");
+        polar(out, table);
+    }
+}
+
+fn polar(out: &mut Text, polar: &PolarTable) {
+    out.text("name", &polar.name);
+    if let Some(reynolds_number) = polar.reynolds_number {
+        out.number("reynolds_number", reynolds_number, "");
+    }
+    let columns = ["angle_deg", "lift", "drag", "moment"];
+    // Coefficients are known to a few digits; five decimals keep the file small.
+    let rows = polar.table.iter().map(|[angle, lift, drag, moment]| {
+        let coefficient = |value: f64| {
+            let text = format!("{value:.5}");
+            if text == "-0.00000" { "0.00000".to_owned() } else { text }
+        };
+        [format!("{angle:.4}"), coefficient(*lift), coefficient(*drag), coefficient(*moment)]
+    });
+    out.table("table", &columns, rows);
+    if let Some(constants) = &polar.unsteady {
+        out.line("[airfoils.polar.unsteady]");
+        unsteady(out, constants);
+    }
+}
+
+fn unsteady(out: &mut Text, unsteady: &Unsteady) {
+    out.number("zero_lift_angle_deg", unsteady.zero_lift_angle_deg, "");
+    out.number("upper_separation_angle_deg", unsteady.upper_separation_angle_deg, "");
+    out.number("lower_separation_angle_deg", unsteady.lower_separation_angle_deg, "");
+    out.number("normal_force_slope", unsteady.normal_force_slope, "");
+    out.number("upper_critical_normal_force", unsteady.upper_critical_normal_force, "");
+    out.number("lower_critical_normal_force", unsteady.lower_critical_normal_force, "");
+    out.number("zero_lift_drag", unsteady.zero_lift_drag, "");
+    out.number("zero_lift_moment", unsteady.zero_lift_moment, "");
+    let mut list = |key: &str, values: Option<&[f64]>| {
+        if let Some(values) = values {
+            let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
+            out.line(&format!("{key} = [{}]", values.join(", ")));
+        }
+    };
+    list("time_constants", unsteady.time_constants.as_ref().map(|values| values.as_slice()));
+    list("indicial_amplitudes", unsteady.indicial_amplitudes.as_ref().map(|v| v.as_slice()));
+    list("indicial_exponents", unsteady.indicial_exponents.as_ref().map(|v| v.as_slice()));
+}
