@@ -25,6 +25,7 @@ mod solver;
 pub mod spreading;
 mod state;
 mod stencil;
+mod stencil27;
 mod sweep;
 #[cfg(test)]
 mod tests;

@@ -196,6 +196,8 @@ pub enum Ground {
 pub enum Stencil {
     /// Rest, faces and edges of the cube.
     D3Q19,
+    /// Rest, faces, edges and corners of the cube: twice the cost.
+    D3Q27,
 }
 
 /// Why a lattice cannot be built as asked.

@@ -3,6 +3,7 @@
 mod boundaries;
 mod closed_forms;
 mod invariants;
+mod stencils;
 
 use super::*;
 use crate::Inflow;
