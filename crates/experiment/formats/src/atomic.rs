@@ -1,5 +1,6 @@
 //! Files that appear whole or not at all: write beside, sync, rename.
 
+use crate::checkpoint::CheckpointProblem;
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -42,6 +43,18 @@ pub enum FileError {
         #[help]
         fix: String,
     },
+    /// A run cannot go on from this checkpoint.
+    #[error("cannot go on from the checkpoint {}: {problem}", path.display())]
+    #[diagnostic(code(wakemix::checkpoint))]
+    Checkpoint {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: CheckpointProblem,
+        /// What mends it.
+        #[help]
+        fix: &'static str,
+    },
 }
 
 impl FileError {
@@ -78,7 +91,9 @@ fn fix_of(kind: ErrorKind, path: &Path) -> String {
         ErrorKind::NotFound => format!("check that {} exists and is spelt right", path.display()),
         ErrorKind::IsADirectory => format!("{} is a folder: name a file", path.display()),
         ErrorKind::NotADirectory | ErrorKind::AlreadyExists => {
-            format!("something other than a folder stands at {folder}: remove it or choose another folder (-o DIR)")
+            format!(
+                "something other than a folder stands at {folder}: remove it or choose another folder (-o DIR)"
+            )
         }
         _ => format!("check the disk that holds {folder}"),
     }

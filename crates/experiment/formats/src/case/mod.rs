@@ -17,6 +17,7 @@ pub use write::write;
 
 use crate::atomic;
 use farm::case::Case;
+use sha2::Digest;
 use std::path::{Path, PathBuf};
 
 /// A case with the file that it came from.
@@ -61,6 +62,22 @@ pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, CaseE
     document
         .and_then(|entries| check::check(&entries, text.len(), &sources))
         .map_err(|problems| CaseError::Invalid { name: name.to_owned(), problems })
+}
+
+/// What decides the bits of the run `run` of the case in `text`: SHA-256 of the case without what changes no result,
+/// which is its description, threads, checkpoint interval, comparison and other runs. Of the bare text when that is no case.
+pub fn fingerprint(text: &str, run: &str) -> [u8; 32] {
+    let decisive = parse("", text, &[]).map(|mut case| {
+        case.description = None;
+        case.flow.threads = None;
+        case.output.checkpoint_interval = 300.0;
+        for other in &mut case.runs {
+            other.compare_with = None;
+        }
+        case.runs.retain(|other| other.name == run);
+        write(&case)
+    });
+    sha2::Sha256::digest(decisive.as_deref().unwrap_or(text)).into()
 }
 
 #[cfg(test)]

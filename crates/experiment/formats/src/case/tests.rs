@@ -296,6 +296,29 @@ fn every_default_of_the_table_is_what_the_reader_uses() {
     }
 }
 
+#[test]
+fn a_fingerprint_is_of_what_decides_the_bits() {
+    let of = |overrides: &[&str]| fingerprint(&write(&small(overrides).unwrap()), "helix");
+    let plain = of(&[]);
+    assert_eq!(plain, fingerprint(SMALL, "helix"));
+    for harmless in [
+        "flow.threads=3",
+        "description=words",
+        "output.checkpoint_interval=9",
+        "run.baseline.control.T1={ kind = \"absent\" }",
+    ] {
+        assert_eq!(of(&[harmless]), plain, "{harmless}");
+    }
+    for decisive in [
+        "wind.seed=2",
+        "run.helix.control.T1.phase_deg=1",
+        "time.duration=901",
+        "output.plane_interval=5",
+    ] {
+        assert_ne!(of(&[decisive]), plain, "{decisive}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 

@@ -1,0 +1,199 @@
+//! What a run leaves behind: `DIR/RUN/` with summary, series, planes, volumes, manifest and checkpoint.
+//!
+//! `summary.json` comes last: a run whose folder has one is complete. Everything that a report needs is in these
+//! files, planes included, so that a study can be told anew from its folder alone.
+
+mod manifest;
+mod series;
+mod study;
+
+pub use manifest::{Machine, Manifest, read_manifest, sha256, write_manifest};
+pub use series::{SeriesWriter, read_series};
+pub use study::{RunRecords, StudyRecords, read_study};
+
+use crate::{FileError, atomic, netcdf, vtk};
+use basis::records::{Plane, SCHEMA_VERSION, Summary};
+use flow::lattice::Volume;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+const SUMMARY: &str = "the summary of a run";
+
+/// The folder of one run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunFolder {
+    path: PathBuf,
+}
+
+impl RunFolder {
+    /// The folder of the run `run` in the study's folder `study`; nothing is touched.
+    pub fn new(study: &Path, run: &str) -> Self {
+        Self { path: study.join(run) }
+    }
+
+    /// Makes the folder, with those for planes and volumes in it.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn create(&self) -> Result<(), FileError> {
+        atomic::create_folder(&self.planes_path())?;
+        atomic::create_folder(&self.volumes_path())
+    }
+
+    /// Takes away what an earlier run of this name left, summary first, so that no mixture is ever taken for a run.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn clear(&self) -> Result<(), FileError> {
+        let part = self.path.join("series.csv.part");
+        let [summary, series] = [self.summary_path(), self.series_path()];
+        for file in [summary, self.checkpoint_path(), series, part, self.manifest_path()] {
+            gone(fs::remove_file(&file), &file)?;
+        }
+        for folder in [self.planes_path(), self.volumes_path()] {
+            gone(fs::remove_dir_all(&folder), &folder)?;
+        }
+        Ok(())
+    }
+
+    /// Whether the run is complete.
+    pub fn is_complete(&self) -> bool {
+        self.summary_path().is_file()
+    }
+
+    /// Takes the checkpoint away once the run is complete.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn remove_checkpoint(&self) -> Result<(), FileError> {
+        gone(fs::remove_file(self.checkpoint_path()), &self.checkpoint_path())
+    }
+
+    /// The folder itself.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Name of the run.
+    pub fn run(&self) -> String {
+        self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// `summary.json`.
+    pub fn summary_path(&self) -> PathBuf {
+        self.path.join("summary.json")
+    }
+
+    /// `manifest.json`.
+    pub fn manifest_path(&self) -> PathBuf {
+        self.path.join("manifest.json")
+    }
+
+    /// `series.csv`; until the run is complete its rows are in `series.csv.part`.
+    pub fn series_path(&self) -> PathBuf {
+        self.path.join("series.csv")
+    }
+
+    /// `checkpoint`.
+    pub fn checkpoint_path(&self) -> PathBuf {
+        self.path.join("checkpoint")
+    }
+
+    /// Folder of the planes.
+    pub fn planes_path(&self) -> PathBuf {
+        self.path.join("planes")
+    }
+
+    /// Folder of the volumes.
+    pub fn volumes_path(&self) -> PathBuf {
+        self.path.join("volumes")
+    }
+}
+
+/// On return the file or folder is not there.
+fn gone(removed: std::io::Result<()>, path: &Path) -> Result<(), FileError> {
+    match removed {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(FileError::system("remove", "what an earlier run left,", path, error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes the mean of a plane over the analysed time: `planes/NAME-mean.nc`.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn write_mean_plane(folder: &RunFolder, plane: &Plane) -> Result<(), FileError> {
+    write_plane(folder, &format!("{}-mean.nc", plane.name), plane)
+}
+
+/// Writes a plane at an instant, the `index`-th kept: `planes/NAME-0000.nc`.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn write_instant_plane(folder: &RunFolder, index: u64, plane: &Plane) -> Result<(), FileError> {
+    write_plane(folder, &format!("{}-{index:04}.nc", plane.name), plane)
+}
+
+/// Writes a plane at the run's last instant: `planes/NAME-last.nc`.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn write_last_plane(folder: &RunFolder, plane: &Plane) -> Result<(), FileError> {
+    write_plane(folder, &format!("{}-last.nc", plane.name), plane)
+}
+
+fn write_plane(folder: &RunFolder, name: &str, plane: &Plane) -> Result<(), FileError> {
+    netcdf::write_plane(&folder.planes_path().join(name), &folder.run(), plane)
+}
+
+/// Writes a volume, the `index`-th kept: `volumes/velocity-0000.vti`.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn write_volume(folder: &RunFolder, index: u64, volume: &Volume) -> Result<(), FileError> {
+    vtk::write_volume(&folder.volumes_path().join(format!("velocity-{index:04}.vti")), volume)
+}
+
+/// Writes the summary; the run is complete with it.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn write_summary(folder: &RunFolder, summary: &Summary) -> Result<(), FileError> {
+    write_json(&folder.summary_path(), SUMMARY, summary)
+}
+
+/// Reads the summary of a run.
+///
+/// # Errors
+/// [`FileError::System`], and [`FileError::Content`] when it is something else or of another version.
+pub fn read_summary(folder: &RunFolder) -> Result<Summary, FileError> {
+    let path = folder.summary_path();
+    let summary: Summary = read_json(&path, SUMMARY)?;
+    if summary.schema_version != SCHEMA_VERSION {
+        let version = summary.schema_version;
+        let problem = format!("schema_version is {version}, this program knows {SCHEMA_VERSION}");
+        let fix = "use the version of the program that wrote it, or make the run again";
+        return Err(FileError::content(SUMMARY, &path, problem, fix));
+    }
+    Ok(summary)
+}
+
+fn write_json(path: &Path, what: &'static str, value: &impl Serialize) -> Result<(), FileError> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| FileError::system("write", what, path, error.into()))?;
+    atomic::write(path, what, (text + "\n").as_bytes())
+}
+
+fn read_json<T: DeserializeOwned>(path: &Path, what: &'static str) -> Result<T, FileError> {
+    let text = atomic::read_text(path, what)?;
+    serde_json::from_str(&text).map_err(|error| {
+        // The library's message ends with line and column.
+        let fix = "restore the file, or make the run again";
+        FileError::content(what, path, error.to_string(), fix)
+    })
+}

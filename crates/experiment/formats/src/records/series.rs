@@ -1,0 +1,302 @@
+//! The series of a run: one row a control instant, as CSV that pandas and spreadsheets open.
+
+use crate::{FileError, atomic};
+use basis::records::Series;
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, BufWriter, ErrorKind, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+const WHAT: &str = "the series";
+const BUFFER: usize = 1 << 18;
+const FIX: &str = "start the run afresh, without --resume";
+
+/// Writes rows as they come; the file bears its name once it is whole, until then `.part` after it.
+///
+/// Numbers have the fewest digits that read back to the same bits, so a resumed series equals an uninterrupted one.
+#[derive(Debug)]
+pub struct SeriesWriter {
+    file: BufWriter<File>,
+    part: PathBuf,
+    path: PathBuf,
+    line: Vec<u8>,
+    n_columns: usize,
+    n_bytes: u64,
+}
+
+impl SeriesWriter {
+    /// Starts the series that will stand at `path`, with the channels `names`.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn create(path: &Path, names: &[String]) -> Result<Self, FileError> {
+        let part = part_of(path);
+        let file = File::create(&part).map_err(|e| FileError::system("write", WHAT, &part, e))?;
+        let line = names.join(",").into_bytes();
+        let mut writer = Self::new(file, part, path, names.len(), 0);
+        writer.line = line;
+        writer.end_line()?;
+        Ok(writer)
+    }
+
+    /// Goes on with the series that will stand at `path` after its first `n_bytes`; what came after them goes.
+    ///
+    /// # Errors
+    /// [`FileError::System`], and [`FileError::Content`] when it is shorter than that or does not end a row there.
+    pub fn resume(path: &Path, n_bytes: u64) -> Result<Self, FileError> {
+        let part = part_of(path);
+        let failed = |source| FileError::system("read", WHAT, &part, source);
+        if !part.exists() && path.exists() {
+            // Completed, but its run was killed before it could say so.
+            fs::rename(path, &part).map_err(failed)?;
+        }
+        let mut file = File::options().read(true).write(true).open(&part).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
+        if length < n_bytes || n_bytes == 0 {
+            let problem = format!("it has {length} bytes, the checkpoint knows {n_bytes}");
+            return Err(FileError::content(WHAT, &part, problem, FIX));
+        }
+        let mut header = String::new();
+        BufReader::new(&file).read_line(&mut header).map_err(failed)?;
+        let mut last = [0];
+        file.seek(SeekFrom::Start(n_bytes - 1)).map_err(failed)?;
+        io::Read::read_exact(&mut file, &mut last).map_err(failed)?;
+        if last != *b"\n" {
+            let problem = format!("no row ends at byte {n_bytes}, as the checkpoint says");
+            return Err(FileError::content(WHAT, &part, problem, FIX));
+        }
+        file.set_len(n_bytes).map_err(failed)?;
+        let n_columns = header.trim_end().split(',').count();
+        Ok(Self::new(file, part, path, n_columns, n_bytes))
+    }
+
+    fn new(file: File, part: PathBuf, path: &Path, n_columns: usize, n_bytes: u64) -> Self {
+        let file = BufWriter::with_capacity(BUFFER, file);
+        Self { file, part, path: path.to_owned(), line: Vec::new(), n_columns, n_bytes }
+    }
+
+    /// Adds one row, in the order of the channels.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    ///
+    /// # Panics
+    /// When `row` has not one value per channel.
+    pub fn write(&mut self, row: &[f64]) -> Result<(), FileError> {
+        assert_eq!(row.len(), self.n_columns, "a row has one value per channel");
+        self.line.clear();
+        for (index, value) in row.iter().enumerate() {
+            if index > 0 {
+                self.line.push(b',');
+            }
+            // Writing to memory cannot fail.
+            let _ = write!(self.line, "{value:?}");
+        }
+        self.end_line()
+    }
+
+    fn end_line(&mut self) -> Result<(), FileError> {
+        self.line.push(b'\n');
+        self.file.write_all(&self.line).map_err(|e| self.refused(e))?;
+        self.n_bytes += self.line.len() as u64;
+        Ok(())
+    }
+
+    /// Puts all rows on the disk; gives the bytes that are there, for [`resume`](Self::resume).
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn flush(&mut self) -> Result<u64, FileError> {
+        let done = self.file.flush().and_then(|()| self.file.get_ref().sync_data());
+        done.map_err(|source| self.refused(source))?;
+        Ok(self.n_bytes)
+    }
+
+    /// Completes the series: it now bears its name. Nothing may be written after it.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn finish(&mut self) -> Result<(), FileError> {
+        self.flush()?;
+        fs::rename(&self.part, &self.path).map_err(|source| self.refused(source))?;
+        atomic::sync_folder(&self.path);
+        Ok(())
+    }
+
+    /// Where the rows are until the series is complete.
+    pub fn part_path(&self) -> &Path {
+        &self.part
+    }
+
+    fn refused(&self, source: io::Error) -> FileError {
+        FileError::system("write", WHAT, &self.part, source)
+    }
+}
+
+fn part_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    path.with_file_name(name)
+}
+
+/// Reads the series at `path`.
+///
+/// # Errors
+/// [`FileError::System`] when it cannot be read, [`FileError::Content`] with line and column when it is something else.
+pub fn read_series(path: &Path) -> Result<Series, FileError> {
+    let failed = |source: io::Error| match source.kind() {
+        ErrorKind::InvalidData => FileError::content(WHAT, path, "it is not text", "restore it"),
+        _ => FileError::system("read", WHAT, path, source),
+    };
+    let mut reader = BufReader::with_capacity(BUFFER, File::open(path).map_err(failed)?);
+    let mut line = String::new();
+    reader.read_line(&mut line).map_err(failed)?;
+    let names: Vec<String> = line.trim_end().split(',').map(str::to_owned).collect();
+    let mut columns = vec![Vec::new(); names.len()];
+    for number in 2.. {
+        line.clear();
+        if reader.read_line(&mut line).map_err(failed)? == 0 {
+            break;
+        }
+        let told = |problem: String| {
+            let fix = "restore the file, or make the run again";
+            FileError::content(WHAT, path, format!("line {number}: {problem}"), fix)
+        };
+        let mut n_values = 0;
+        for (index, value) in line.trim_end().split(',').enumerate() {
+            let column = columns.get_mut(index);
+            let column = column.ok_or_else(|| told(format!("more than {} values", names.len())))?;
+            let name = || &names[index];
+            let value = value
+                .parse()
+                .map_err(|_| told(format!("`{value}` in column {} is no number", name())))?;
+            column.push(value);
+            n_values = index + 1;
+        }
+        if n_values != names.len() {
+            return Err(told(format!("{n_values} values, the header has {}", names.len())));
+        }
+    }
+    Ok(Series { names, columns })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn names() -> Vec<String> {
+        ["time_s", "T1.power_w", "T1.pitch_1_rad"].map(str::to_owned).to_vec()
+    }
+
+    fn row(step: usize) -> [f64; 3] {
+        let time = step as f64 * (60.0 / 419.0);
+        [time, 5e6 * (0.3 * time).sin(), 1e-9 * (1.7 * time).cos()]
+    }
+
+    #[test]
+    fn a_resumed_series_equals_an_uninterrupted_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let [whole, broken] = ["whole.csv", "broken.csv"].map(|name| folder.path().join(name));
+        let mut writer = SeriesWriter::create(&whole, &names()).unwrap();
+        (0..300).for_each(|step| writer.write(&row(step)).unwrap());
+        writer.finish().unwrap();
+
+        let mut writer = SeriesWriter::create(&broken, &names()).unwrap();
+        (0..120).for_each(|step| writer.write(&row(step)).unwrap());
+        let n_bytes = writer.flush().unwrap();
+        // Rows after the checkpoint, the last one torn by the kill.
+        (120..150).for_each(|step| writer.write(&row(step)).unwrap());
+        writer.flush().unwrap();
+        fs::OpenOptions::new()
+            .append(true)
+            .open(writer.part_path())
+            .unwrap()
+            .write_all(b"17.2,4")
+            .unwrap();
+        drop(writer);
+        assert!(!broken.exists());
+
+        let mut writer = SeriesWriter::resume(&broken, n_bytes).unwrap();
+        (120..300).for_each(|step| writer.write(&row(step)).unwrap());
+        writer.finish().unwrap();
+        assert_eq!(fs::read(&whole).unwrap(), fs::read(&broken).unwrap());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+
+        let series = read_series(&broken).unwrap();
+        assert_eq!(series.names, names());
+        for (step, power) in series.column("T1.power_w").unwrap().iter().enumerate() {
+            assert_eq!(power.to_bits(), row(step)[1].to_bits());
+        }
+    }
+
+    #[test]
+    fn a_finished_series_can_be_taken_up_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("series.csv");
+        let mut writer = SeriesWriter::create(&path, &names()).unwrap();
+        writer.write(&row(0)).unwrap();
+        let n_bytes = writer.flush().unwrap();
+        writer.write(&row(1)).unwrap();
+        writer.finish().unwrap();
+        let mut writer = SeriesWriter::resume(&path, n_bytes).unwrap();
+        writer.write(&row(1)).unwrap();
+        writer.finish().unwrap();
+        assert_eq!(read_series(&path).unwrap().columns[0].len(), 2);
+    }
+
+    #[test]
+    fn a_series_that_does_not_fit_the_checkpoint_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("series.csv");
+        let mut writer = SeriesWriter::create(&path, &names()).unwrap();
+        writer.write(&row(1)).unwrap();
+        let n_bytes = writer.flush().unwrap();
+        let error = SeriesWriter::resume(&path, n_bytes + 10).unwrap_err();
+        assert!(error.to_string().contains("the checkpoint knows"), "{error}");
+        let error = SeriesWriter::resume(&path, n_bytes - 3).unwrap_err();
+        assert!(error.to_string().contains("no row ends at byte"), "{error}");
+        let error = SeriesWriter::resume(&folder.path().join("other.csv"), 5).unwrap_err();
+        assert!(error.to_string().contains("cannot read the series"), "{error}");
+    }
+
+    #[test]
+    fn a_broken_row_is_told_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("series.csv");
+        let cases = [
+            ("a,b\n1,2\n3\n", "line 3: 1 values, the header has 2"),
+            ("a,b\n1,2,3\n", "line 2: more than 2 values"),
+            ("a,b\n1,two\n", "line 2: `two` in column b is no number"),
+        ];
+        for (text, expected) in cases {
+            fs::write(&path, text).unwrap();
+            let error = read_series(&path).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_number_comes_back_bit_for_bit(bits in prop::collection::vec(any::<u64>(), 1..20)) {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("series.csv");
+            let mut writer = SeriesWriter::create(&path, &["a".to_owned()]).unwrap();
+            for bits in &bits {
+                writer.write(&[f64::from_bits(*bits)]).unwrap();
+            }
+            writer.finish().unwrap();
+            for (value, bits) in read_series(&path).unwrap().columns[0].iter().zip(bits) {
+                let same = value.to_bits() == bits;
+                prop_assert!(same || value.is_nan() && f64::from_bits(bits).is_nan());
+            }
+        }
+
+        #[test]
+        fn no_bytes_make_the_reader_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("series.csv");
+            fs::write(&path, bytes).unwrap();
+            let _ = read_series(&path);
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! A study read back from its folder.
+
+use super::{Manifest, RunFolder, read_manifest, read_series, read_summary};
+use crate::{FileError, netcdf};
+use basis::records::{Plane, Series, Summary};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Everything that the runs of a study left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyRecords {
+    /// Name of the case.
+    pub case_name: String,
+    /// What the study is for, in one line.
+    pub description: Option<String>,
+    /// The case file as run (TOML), of the run that started last.
+    pub case_text: String,
+    /// The complete runs, in the case file's order.
+    pub runs: Vec<RunRecords>,
+    /// Runs that are under way or were interrupted.
+    pub incomplete: Vec<String>,
+    /// Version of the program that made the run that started last.
+    pub version: String,
+    /// What a reader of the numbers must know: runs of unlike versions of the case.
+    pub warnings: Vec<String>,
+}
+
+/// What one run left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunRecords {
+    /// The run in numbers.
+    pub summary: Summary,
+    /// What was run, where and when.
+    pub manifest: Manifest,
+    /// Channels over time.
+    pub series: Series,
+    /// Planes averaged over the analysed time, by name.
+    pub mean_planes: Vec<Plane>,
+    /// The same planes at the run's last instant.
+    pub last_planes: Vec<Plane>,
+    /// Files of planes at earlier instants, by name and time.
+    pub instant_paths: Vec<PathBuf>,
+    /// Files of volumes, by time.
+    pub volume_paths: Vec<PathBuf>,
+}
+
+/// Reads the study in the folder `path` back: every run's folder in it.
+///
+/// # Errors
+/// [`FileError::System`] when a file cannot be read; [`FileError::Content`] when one holds something else, or when
+/// no run of a study is there.
+pub fn read_study(path: &Path) -> Result<StudyRecords, FileError> {
+    let mut runs = Vec::new();
+    let mut incomplete = Vec::new();
+    for entry in entries(path)? {
+        let folder = RunFolder { path: entry };
+        if !folder.manifest_path().is_file() {
+            continue;
+        }
+        let manifest = read_manifest(&folder)?;
+        if folder.is_complete() {
+            runs.push(read_run(&folder, manifest)?);
+        } else {
+            incomplete.push((manifest.run_index, manifest.run));
+        }
+    }
+    runs.sort_by(|a, b| place(a).cmp(&place(b)));
+    incomplete.sort();
+    let incomplete: Vec<String> = incomplete.into_iter().map(|(_, run)| run).collect();
+    // Times of this form sort as text.
+    let Some(latest) = runs.iter().map(|run| &run.manifest).max_by_key(|run| &run.started) else {
+        let problem = match incomplete.as_slice() {
+            [] => "there is no run in it".to_owned(),
+            names => {
+                format!("no run in it is complete; under way or interrupted: {}", names.join(", "))
+            }
+        };
+        let fix =
+            "name the folder that `wakemix run CASE -o DIR` wrote, or complete it with --resume";
+        return Err(FileError::content("a study", path, problem, fix));
+    };
+    Ok(StudyRecords {
+        case_name: latest.case.clone(),
+        description: latest.description.clone(),
+        case_text: latest.case_text.clone(),
+        version: latest.version.clone(),
+        warnings: warnings(&runs, latest),
+        incomplete,
+        runs,
+    })
+}
+
+fn place(run: &RunRecords) -> (usize, &str) {
+    (run.manifest.run_index, &run.manifest.run)
+}
+
+fn warnings(runs: &[RunRecords], latest: &Manifest) -> Vec<String> {
+    let differs = |run: &&RunRecords| {
+        let run = &run.manifest;
+        run.case_sha256 != latest.case_sha256 || run.turbines_sha256 != latest.turbines_sha256
+    };
+    let warn = |run: &RunRecords| {
+        let run = &run.manifest.run;
+        format!(
+            "run {run} was made with another version of the case or of a turbine than run {}",
+            latest.run
+        )
+    };
+    runs.iter().filter(differs).map(warn).collect()
+}
+
+fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileError> {
+    let mut records = RunRecords {
+        summary: read_summary(folder)?,
+        manifest,
+        series: read_series(&folder.series_path())?,
+        mean_planes: Vec::new(),
+        last_planes: Vec::new(),
+        instant_paths: Vec::new(),
+        volume_paths: Vec::new(),
+    };
+    for path in entries(&folder.planes_path())? {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if name.starts_with('.') || !name.ends_with(".nc") {
+            continue;
+        }
+        if name.ends_with("-mean.nc") {
+            records.mean_planes.push(netcdf::read_plane(&path)?);
+        } else if name.ends_with("-last.nc") {
+            records.last_planes.push(netcdf::read_plane(&path)?);
+        } else {
+            records.instant_paths.push(path);
+        }
+    }
+    records.volume_paths = entries(&folder.volumes_path())?;
+    records.volume_paths.retain(|path| path.extension().is_some_and(|ending| ending == "vti"));
+    Ok(records)
+}
+
+/// Paths of what is in the folder `path`, by name.
+fn entries(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let failed = |source| FileError::system("read", "the folder", path, source);
+    let listed = fs::read_dir(path).map_err(failed)?;
+    let mut paths = listed
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<Vec<PathBuf>, _>>()
+        .map_err(failed)?;
+    paths.sort();
+    Ok(paths)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::*;
+    use super::*;
+    use basis::Vector3;
+    use basis::records::{Conditions, Cost, PlaneAxes, Statistic};
+
+    const CASE: &str = include_str!("../../../../../cases/quickstart.toml");
+
+    fn summary(run: &str) -> Summary {
+        let statistic = |mean| Statistic {
+            mean,
+            standard_deviation: 0.1 + 0.2,
+            half_width_95: None,
+            n_blocks: 2,
+        };
+        Summary {
+            schema_version: SCHEMA_VERSION,
+            case: "quickstart".into(),
+            run: run.into(),
+            compare_with: None,
+            conditions: Conditions {
+                wind_speed: 9.0,
+                turbulence_intensity: 0.05,
+                arriving_wind_speed: 8.9,
+                arriving_turbulence_intensity: 0.04,
+                shear_exponent: 0.1,
+                seed: 1,
+                rotor_diameter: 240.0,
+                cells_per_diameter: 16.0,
+                interval: 60.0 / 419.0,
+                spin_up: 300.0,
+                duration: 1500.0,
+            },
+            turbines: Vec::new(),
+            array_power: statistic(1.1e7 / 3.0),
+            array_power_gain: None,
+            cost: Cost::default(),
+            warnings: vec!["a warning".into()],
+        }
+    }
+
+    fn plane(name: &str, averaged: f64) -> Plane {
+        Plane {
+            name: name.into(),
+            axes: PlaneAxes::Horizontal,
+            origin: [0.0, 0.0, 150.0],
+            spacing: [15.0, 15.0],
+            n_points: [2, 2],
+            time: 1500.0,
+            averaged,
+            velocity: [vec![9.0, 8.0, 7.0, 6.5], vec![0.0; 4], vec![0.1; 4]],
+        }
+    }
+
+    /// A complete run as the program leaves it.
+    fn leave(study: &Path, run_index: usize, text: &str) -> RunFolder {
+        let case = crate::case::parse("quickstart.toml", text, &[]).unwrap();
+        let manifest =
+            Manifest::start("0.1.0", &case, text, run_index, [("iea-15mw", "a turbine")]);
+        let folder = RunFolder::new(study, &manifest.run);
+        folder.create().unwrap();
+        write_manifest(&folder, &manifest).unwrap();
+        let mut series = SeriesWriter::create(&folder.series_path(), &["time_s".into()]).unwrap();
+        series.write(&[0.1]).unwrap();
+        series.finish().unwrap();
+        write_mean_plane(&folder, &plane("hub-height", 1200.0)).unwrap();
+        write_last_plane(&folder, &plane("hub-height", 0.0)).unwrap();
+        write_instant_plane(&folder, 3, &plane("hub-height", 0.0)).unwrap();
+        let volume = Volume {
+            origin: Vector3::ZERO,
+            spacing: 30.0,
+            n_points: [1, 1, 1],
+            time: 5.0,
+            velocity: [vec![9.0], vec![0.0], vec![0.0]],
+        };
+        write_volume(&folder, 0, &volume).unwrap();
+        write_summary(&folder, &summary(&manifest.run)).unwrap();
+        write_manifest(&folder, &manifest.finish()).unwrap();
+        folder
+    }
+
+    #[test]
+    fn a_study_comes_back_as_it_was_left() {
+        let study = tempfile::tempdir().unwrap();
+        leave(study.path(), 1, CASE);
+        leave(study.path(), 0, CASE);
+        fs::write(study.path().join("report.html"), "a page").unwrap();
+        let records = read_study(study.path()).unwrap();
+        assert_eq!(records.case_name, "quickstart");
+        assert_eq!(records.case_text, CASE);
+        let names: Vec<&str> = records.runs.iter().map(|run| run.summary.run.as_str()).collect();
+        assert_eq!(names, ["baseline", "helix-ccw"]);
+        let run = &records.runs[0];
+        assert_eq!(run.summary, summary("baseline"));
+        assert_eq!(run.series.columns, [[0.1]]);
+        assert_eq!(run.mean_planes, [plane("hub-height", 1200.0)]);
+        assert_eq!(run.last_planes, [plane("hub-height", 0.0)]);
+        assert!(run.instant_paths[0].ends_with("baseline/planes/hub-height-0003.nc"));
+        assert!(run.volume_paths[0].ends_with("baseline/volumes/velocity-0000.vti"));
+        assert!(run.manifest.finished.is_some() && run.manifest.machine.n_cores > 0);
+        assert!(records.warnings.is_empty() && records.incomplete.is_empty());
+    }
+
+    #[test]
+    fn incomplete_runs_and_mixed_cases_are_told() {
+        let study = tempfile::tempdir().unwrap();
+        leave(study.path(), 0, CASE);
+        let folder = leave(study.path(), 1, CASE);
+        fs::remove_file(folder.summary_path()).unwrap();
+        let records = read_study(study.path()).unwrap();
+        assert_eq!(records.incomplete, ["helix-ccw"]);
+        leave(study.path(), 1, &CASE.replace("speed = 9.0", "speed = 8.0"));
+        assert_eq!(read_study(study.path()).unwrap().warnings.len(), 1);
+    }
+
+    #[test]
+    fn a_folder_without_runs_is_told() {
+        let study = tempfile::tempdir().unwrap();
+        let error = read_study(study.path()).unwrap_err().to_string();
+        assert!(error.contains("does not hold a study: there is no run in it"), "{error}");
+        let error = read_study(&study.path().join("none")).unwrap_err().to_string();
+        assert!(error.contains("cannot read the folder"), "{error}");
+    }
+
+    #[test]
+    fn a_broken_summary_is_told_with_its_line() {
+        let study = tempfile::tempdir().unwrap();
+        let folder = leave(study.path(), 0, CASE);
+        fs::write(folder.summary_path(), "{\n  \"schema_version\": \"one\"\n}").unwrap();
+        let error = read_study(study.path()).unwrap_err().to_string();
+        assert!(error.contains("summary.json does not hold the summary of a run"), "{error}");
+        assert!(error.contains("line 2"), "{error}");
+    }
+
+    #[test]
+    fn a_cleared_folder_holds_nothing_of_the_earlier_run() {
+        let study = tempfile::tempdir().unwrap();
+        let folder = leave(study.path(), 0, CASE);
+        fs::write(folder.checkpoint_path(), "x").unwrap();
+        folder.clear().unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        folder.clear().unwrap();
+        folder.create().unwrap();
+    }
+}
