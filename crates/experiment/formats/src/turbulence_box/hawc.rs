@@ -1,0 +1,265 @@
+//! HAWC2-style binaries: one little-endian f32 file per component and a readable header.
+//!
+//! HAWC2's binaries carry no header; programs differ in which way they count. Ours is a TOML file beside them that
+//! says so, and any other program's binaries can be read after writing one by hand. What we write is in the order
+//! in which OpenFAST's InflowWind reads HAWC files: x slowest and in order of arrival, then y from left to right
+//! looking downwind, then z upwards, fastest.
+
+use super::{FASTEST, StoredBox, in_order_of_arrival};
+use crate::FileError;
+use crate::atomic::{self, AtomicFile};
+use flow::inflow::TurbulenceBox;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{BufReader, Read, Write};
+use std::path::Path;
+
+const WHAT: &str = "the header of a turbulence box";
+const COMPONENT: &str = "one component of a turbulence box";
+
+/// Which way a file counts along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Axis {
+    /// x: the first plane arrives first, so that the count runs against the wind.
+    Upwind,
+    /// x: the count runs with the wind, and the last plane arrives first.
+    Downwind,
+    /// y: from the right to the left, looking downwind.
+    Left,
+    /// y: from the left to the right, looking downwind.
+    Right,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    description: String,
+    #[serde(rename = "box")]
+    layout: Layout,
+    wind: Wind,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Layout {
+    n_points: [usize; 3],
+    spacing: [f64; 3],
+    files: [String; 3],
+    x_runs: Axis,
+    y_runs: Axis,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Wind {
+    hub_speed: f64,
+    hub_height: f64,
+    lowest_height: f64,
+    mean_speeds: Vec<f64>,
+}
+
+const PREFACE: &str = "\
+# Turbulence box: fluctuations u (downwind), v (left looking downwind), w (up), in m/s, one file each.
+# Each file: little-endian 32-bit floats without header, x slowest, then y, z fastest and upwards.
+#   box.n_points, box.spacing   along x, y, z (m)
+#   box.x_runs                  \"upwind\": the first plane arrives first; \"downwind\": the last one does
+#   box.y_runs                  \"right\" or \"left\", looking downwind
+#   wind.mean_speeds            mean speed at each height (m/s), lowest first; not part of the fluctuations
+";
+
+/// Writes `stored` as NAME.toml at `path` with NAME_u.bin, NAME_v.bin, NAME_w.bin beside it.
+///
+/// # Errors
+/// [`FileError`]; each file appears whole or not at all, the header last.
+pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
+    let turbulence = &stored.turbulence;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let files = ["u", "v", "w"].map(|component| format!("{stem}_{component}.bin"));
+    let [n_x, n_y, n_z] = turbulence.n_points();
+    let mut bytes = Vec::with_capacity(4 * n_y * n_z);
+    for (component, name) in files.iter().enumerate() {
+        let path = path.with_file_name(name);
+        let mut file = AtomicFile::create(&path, COMPONENT)?;
+        for place in 0..n_x {
+            let plane = turbulence.plane(component, in_order_of_arrival(place, n_x));
+            bytes.clear();
+            for y in (0..n_y).rev() {
+                for z in 0..n_z {
+                    bytes.extend_from_slice(&plane[z * n_y + y].to_le_bytes());
+                }
+            }
+            file.write_all(&bytes)
+                .map_err(|source| FileError::system("write", COMPONENT, &path, source))?;
+        }
+        file.commit()?;
+    }
+    let header = Header {
+        description: stored.description.clone(),
+        layout: Layout {
+            n_points: turbulence.n_points(),
+            spacing: turbulence.spacing(),
+            files,
+            x_runs: Axis::Upwind,
+            y_runs: Axis::Right,
+        },
+        wind: Wind {
+            hub_speed: stored.hub_speed,
+            hub_height: stored.hub_height,
+            lowest_height: stored.lowest_height,
+            mean_speeds: stored.mean_speeds.clone(),
+        },
+    };
+    let text = toml::to_string(&header).map_err(|error| {
+        FileError::content(WHAT, path, error.to_string(), "check the numbers of the box")
+    })?;
+    atomic::write(path, WHAT, format!("{PREFACE}\n{text}").as_bytes())
+}
+
+/// Reads the header at `path` and the binaries that it names, beside it.
+///
+/// # Errors
+/// [`FileError`] names file, place and fix.
+pub fn read(path: &Path) -> Result<StoredBox, FileError> {
+    let header = read_header(path)?;
+    let Layout { n_points, spacing, files, x_runs, y_runs } = header.layout;
+    let mut velocity: [Vec<f32>; 3] = Default::default();
+    for (values, name) in velocity.iter_mut().zip(files) {
+        *values = read_component(&path.with_file_name(name), n_points, x_runs, y_runs)?;
+    }
+    let turbulence = TurbulenceBox::new(n_points, spacing, velocity)
+        .map_err(|error| FileError::content(WHAT, path, error.to_string(), "mend the header"))?;
+    Ok(StoredBox {
+        turbulence,
+        hub_speed: header.wind.hub_speed,
+        hub_height: header.wind.hub_height,
+        lowest_height: header.wind.lowest_height,
+        mean_speeds: header.wind.mean_speeds,
+        description: header.description,
+    })
+}
+
+fn read_header(path: &Path) -> Result<Header, FileError> {
+    let text = atomic::read_text(path, WHAT)?;
+    let header: Header = toml::from_str(&text).map_err(|error| {
+        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+        let problem = format!("line {line}: {}", error.message());
+        FileError::content(
+            WHAT,
+            path,
+            problem,
+            "the comments of a header that `wakemix inflow generate` wrote name all keys",
+        )
+    })?;
+    let wrong = |problem: String, fix: &str| Err(FileError::content(WHAT, path, problem, fix));
+    let Layout { n_points, spacing, x_runs, y_runs, .. } = &header.layout;
+    if !matches!(x_runs, Axis::Upwind | Axis::Downwind) {
+        return wrong("box.x_runs is a way along y".into(), "x_runs = \"upwind\" or \"downwind\"");
+    }
+    if !matches!(y_runs, Axis::Left | Axis::Right) {
+        return wrong("box.y_runs is a way along x".into(), "y_runs = \"left\" or \"right\"");
+    }
+    let n_values = n_points.iter().try_fold(4_usize, |bytes, n| bytes.checked_mul(*n));
+    if n_values.is_none_or(|bytes| bytes == 0) {
+        return wrong(
+            format!("box.n_points = {n_points:?} is no box"),
+            "give the points along x, y, z",
+        );
+    }
+    if !spacing.iter().all(|spacing| spacing.is_finite() && *spacing > 0.0) {
+        return wrong(
+            format!("box.spacing = {spacing:?} is no distance"),
+            "give metres along x, y, z",
+        );
+    }
+    let wind = &header.wind;
+    for (key, value) in [("hub_speed", wind.hub_speed), ("hub_height", wind.hub_height)] {
+        if !(value.is_finite() && value > 0.0) {
+            return wrong(format!("wind.{key} = {value} is not positive"), "give it in m/s or m");
+        }
+    }
+    if !wind.lowest_height.is_finite() || wind.mean_speeds.iter().any(|speed| !speed.is_finite()) {
+        return wrong("a number under [wind] is not finite".into(), "give numbers");
+    }
+    if wind.mean_speeds.len() != n_points[2] {
+        let found = wind.mean_speeds.len();
+        let needed = n_points[2];
+        return wrong(
+            format!("wind.mean_speeds has {found} speeds for {needed} heights"),
+            "one per height, lowest first",
+        );
+    }
+    Ok(header)
+}
+
+fn read_component(
+    path: &Path,
+    [n_x, n_y, n_z]: [usize; 3],
+    x_runs: Axis,
+    y_runs: Axis,
+) -> Result<Vec<f32>, FileError> {
+    let refused = |source| FileError::system("read", COMPONENT, path, source);
+    let file = File::open(path).map_err(refused)?;
+    let found = file.metadata().map_err(refused)?.len();
+    let size = n_y * n_z;
+    let needed = 4 * (n_x * size) as u64;
+    if found != needed {
+        let how = if found < needed {
+            format!("ends within plane {} of {n_x}", found / (4 * size as u64) + 1)
+        } else {
+            "goes on behind the last plane".into()
+        };
+        let problem =
+            format!("{found} bytes instead of {needed} for {n_x} × {n_y} × {n_z} values: it {how}");
+        return Err(FileError::content(
+            COMPONENT,
+            path,
+            problem,
+            "copy or write the file again, or mend box.n_points in the header",
+        ));
+    }
+    let mut values = vec![0.0; n_x * size];
+    let mut file = BufReader::with_capacity(1 << 20, file);
+    let mut bytes = vec![0; 4 * size];
+    for place in 0..n_x {
+        file.read_exact(&mut bytes).map_err(refused)?;
+        let x = match x_runs {
+            Axis::Downwind => place,
+            _ => in_order_of_arrival(place, n_x),
+        };
+        let plane = &mut values[x * size..(x + 1) * size];
+        for (index, four) in bytes.chunks_exact(4).enumerate() {
+            let four = [four[0], four[1], four[2], four[3]];
+            let value = f32::from_le_bytes(four);
+            let (column, z) = (index / n_z, index % n_z);
+            if !(value.abs() <= FASTEST) {
+                let byte = 4 * (place * size + index);
+                return Err(not_wind(path, four, byte, [place, column, z]));
+            }
+            let y = if y_runs == Axis::Left { column } else { n_y - 1 - column };
+            plane[z * n_y + y] = value;
+        }
+    }
+    Ok(values)
+}
+
+/// Says what is wrong with the four bytes at `byte`, which are no wind.
+fn not_wind(path: &Path, four: [u8; 4], byte: usize, [x, y, z]: [usize; 3]) -> FileError {
+    let value = f32::from_le_bytes(four);
+    let swapped = f32::from_be_bytes(four);
+    let place = format!("byte {byte} (plane {}, column {}, row {})", x + 1, y + 1, z + 1);
+    let (problem, fix) = if (1e-9..=FASTEST).contains(&swapped.abs()) {
+        (
+            format!(
+                "{place} is {value:e} m/s, but {swapped} m/s with its bytes swapped: the byte order is big-endian"
+            ),
+            "write the file in little-endian order",
+        )
+    } else {
+        (
+            format!("{place} is {value} m/s, which is no wind"),
+            "make the box again; a box with a gap cannot be used",
+        )
+    };
+    FileError::content(COMPONENT, path, problem, fix)
+}

@@ -1,0 +1,309 @@
+//! TurbSim's binary full field (`.bts`).
+//!
+//! Time steps in order of arrival; in each, rows of z upwards, in each, y from the right to the left looking
+//! downwind (TurbSim's own y, which like ours points left), in each, u, v, w as 16-bit integers: (integer −
+//! intercept) / slope in m/s, the mean wind included. Source: TurbSim user's guide 2.00, appendix D; the order of y
+//! was checked against the standard deviations by point in a summary file of TurbSim 2.
+
+use super::{FASTEST, StoredBox, in_order_of_arrival};
+use crate::FileError;
+use crate::atomic::AtomicFile;
+use flow::inflow::TurbulenceBox;
+use std::fs::File;
+use std::io::{BufReader, Read, Write};
+use std::path::Path;
+
+const WHAT: &str = "a TurbSim full field";
+/// Identifier of a record that does not repeat.
+const ONCE: i16 = 7;
+/// Identifier of a record that repeats in time.
+const PERIODIC: i16 = 8;
+/// Bytes in front of the description.
+const FIXED_HEADER: usize = 2 + 4 * 4 + 12 * 4 + 4;
+/// Characters that TurbSim reserves for the description.
+const LONGEST_DESCRIPTION: usize = 200;
+
+struct Header {
+    periodic: bool,
+    n_z: usize,
+    n_y: usize,
+    n_tower: usize,
+    n_steps: usize,
+    spacing_z: f64,
+    spacing_y: f64,
+    interval: f64,
+    hub_speed: f64,
+    hub_height: f64,
+    lowest_height: f64,
+    slopes: [f32; 3],
+    intercepts: [f32; 3],
+    description_length: usize,
+}
+
+/// Reads the full field at `path`.
+///
+/// Planes stand U Δt apart, with U the hub speed of the file. The mean of u over time and width at each height goes
+/// to [`StoredBox::mean_speeds`]; v and w keep their means. Tower points below the grid are passed over.
+///
+/// # Errors
+/// [`FileError`] names file, place and fix.
+pub fn read(path: &Path) -> Result<StoredBox, FileError> {
+    let refused = |source| FileError::system("read", WHAT, path, source);
+    let file = File::open(path).map_err(refused)?;
+    let found = file.metadata().map_err(refused)?.len();
+    let mut file = BufReader::with_capacity(1 << 20, file);
+    let header = read_header(path, &mut file, found)?;
+    let mut description = vec![0; header.description_length];
+    file.read_exact(&mut description).map_err(refused)?;
+    let mut description = String::from_utf8_lossy(&description).trim().to_owned();
+    if !header.periodic {
+        description.push_str(" (does not repeat: its end meets its beginning with a jump)");
+    }
+
+    let (n_x, size) = (header.n_steps, header.n_y * header.n_z);
+    let mut velocity: [Vec<f32>; 3] = std::array::from_fn(|_| vec![0.0; n_x * size]);
+    let mut bytes = vec![0; 2 * 3 * (size + header.n_tower)];
+    for step in 0..n_x {
+        file.read_exact(&mut bytes).map_err(refused)?;
+        let start = in_order_of_arrival(step, n_x) * size;
+        for (point, six) in bytes.chunks_exact(6).take(size).enumerate() {
+            for component in 0..3 {
+                let integer = i16::from_le_bytes([six[2 * component], six[2 * component + 1]]);
+                velocity[component][start + point] =
+                    (f32::from(integer) - header.intercepts[component]) / header.slopes[component];
+            }
+        }
+    }
+    let mean_speeds = take_means(&mut velocity[0], header.n_y, header.n_z);
+    let n_points = [n_x, header.n_y, header.n_z];
+    let spacing = [header.hub_speed * header.interval, header.spacing_y, header.spacing_z];
+    let turbulence = TurbulenceBox::new(n_points, spacing, velocity)
+        .map_err(|error| FileError::content(WHAT, path, error.to_string(), "run TurbSim again"))?;
+    Ok(StoredBox {
+        turbulence,
+        hub_speed: header.hub_speed,
+        hub_height: header.hub_height,
+        lowest_height: header.lowest_height,
+        mean_speeds,
+        description,
+    })
+}
+
+/// Writes `stored` to `path`: a record that repeats, interval = spacing along x over hub speed.
+///
+/// Values are rounded to 1/65535 of their range, a few 1e-5 of it; the description to 200 characters of ASCII.
+///
+/// # Errors
+/// [`FileError`]; the file appears whole or not at all.
+pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
+    let turbulence = &stored.turbulence;
+    let [n_x, n_y, n_z] = turbulence.n_points();
+    let mean = |z: usize| stored.mean_speeds.get(z).copied().unwrap_or(stored.hub_speed);
+    let total = |component: usize, x: usize, point: usize| {
+        let fluctuation = f64::from(turbulence.plane(component, x)[point]);
+        if component == 0 { fluctuation + mean(point / n_y) } else { fluctuation }
+    };
+    let scales = [0, 1, 2].map(|component| scale(turbulence, component, total));
+    let description: String = stored
+        .description
+        .chars()
+        .filter(|character| character.is_ascii() && !character.is_ascii_control())
+        .take(LONGEST_DESCRIPTION)
+        .collect();
+
+    let refused = |source| FileError::system("write", WHAT, path, source);
+    let mut file = AtomicFile::create(path, WHAT)?;
+    let mut bytes = PERIODIC.to_le_bytes().to_vec();
+    for count in [n_z, n_y, 0, n_x] {
+        let count = i32::try_from(count).map_err(|_| {
+            FileError::content(
+                WHAT,
+                path,
+                format!("{count} points are more than the format counts"),
+                "make the box shorter",
+            )
+        })?;
+        bytes.extend_from_slice(&count.to_le_bytes());
+    }
+    let [spacing_x, spacing_y, spacing_z] = turbulence.spacing();
+    let interval = spacing_x / stored.hub_speed;
+    for value in
+        [spacing_z, spacing_y, interval, stored.hub_speed, stored.hub_height, stored.lowest_height]
+    {
+        bytes.extend_from_slice(&(value as f32).to_le_bytes());
+    }
+    for (slope, intercept) in scales {
+        bytes.extend_from_slice(&slope.to_le_bytes());
+        bytes.extend_from_slice(&intercept.to_le_bytes());
+    }
+    bytes.extend_from_slice(&(description.len() as i32).to_le_bytes());
+    bytes.extend_from_slice(description.as_bytes());
+    file.write_all(&bytes).map_err(refused)?;
+    for step in 0..n_x {
+        let x = in_order_of_arrival(step, n_x);
+        bytes.clear();
+        for point in 0..n_y * n_z {
+            for (component, (slope, intercept)) in scales.into_iter().enumerate() {
+                let scaled = f64::from(slope) * total(component, x, point) + f64::from(intercept);
+                // Rounding of slope and intercept may reach beyond the last integer by a hair.
+                let integer = scaled.round().clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16;
+                bytes.extend_from_slice(&integer.to_le_bytes());
+            }
+        }
+        file.write_all(&bytes).map_err(refused)?;
+    }
+    file.commit()
+}
+
+/// Slope and intercept that spread the range of a component over all integers.
+fn scale(
+    turbulence: &TurbulenceBox,
+    component: usize,
+    total: impl Fn(usize, usize, usize) -> f64,
+) -> (f32, f32) {
+    let [n_x, n_y, n_z] = turbulence.n_points();
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for x in 0..n_x {
+        for point in 0..n_y * n_z {
+            let value = total(component, x, point);
+            (least, most) = (least.min(value), most.max(value));
+        }
+    }
+    let range = if most - least > 1e-6 { most - least } else { 1.0 };
+    let slope = (f64::from(u16::MAX) / range) as f32;
+    (slope, (f64::from(i16::MIN) - f64::from(slope) * least) as f32)
+}
+
+/// Takes the mean of each row off `values` (n_x × n_z × n_y) and gives it, lowest row first.
+fn take_means(values: &mut [f32], n_y: usize, n_z: usize) -> Vec<f64> {
+    let n_rows = values.len() / n_y;
+    let mut means = vec![0.0; n_z];
+    for (row, values) in values.chunks(n_y).enumerate() {
+        means[row % n_z] += values.iter().map(|value| f64::from(*value)).sum::<f64>();
+    }
+    let points = (n_rows / n_z * n_y) as f64;
+    means.iter_mut().for_each(|mean| *mean /= points);
+    for (row, values) in values.chunks_mut(n_y).enumerate() {
+        for value in values {
+            *value = (f64::from(*value) - means[row % n_z]) as f32;
+        }
+    }
+    means
+}
+
+fn read_header(path: &Path, file: &mut impl Read, found: u64) -> Result<Header, FileError> {
+    let wrong = |problem: String, fix: &str| Err(FileError::content(WHAT, path, problem, fix));
+    if found < FIXED_HEADER as u64 {
+        return wrong(
+            format!("it ends after {found} bytes, within the header of {FIXED_HEADER}"),
+            "copy the file again or run TurbSim again",
+        );
+    }
+    let mut bytes = [0; FIXED_HEADER];
+    file.read_exact(&mut bytes).map_err(|source| FileError::system("read", WHAT, path, source))?;
+    let four = |place: usize| [0, 1, 2, 3].map(|byte| bytes[place + byte]);
+    let count = |index: usize| i32::from_le_bytes(four(2 + 4 * index));
+    let number = |index: usize| f32::from_le_bytes(four(18 + 4 * index));
+
+    let identifier = i16::from_le_bytes([bytes[0], bytes[1]]);
+    if [ONCE, PERIODIC].contains(&identifier.swap_bytes()) {
+        return wrong(
+            format!(
+                "byte 0: the identifier is {} with its bytes swapped: the byte order is big-endian",
+                identifier.swap_bytes()
+            ),
+            "write the file in little-endian order",
+        );
+    }
+    if ![ONCE, PERIODIC].contains(&identifier) {
+        return wrong(
+            format!("byte 0: the identifier is {identifier}, not {ONCE} or {PERIODIC}"),
+            "give a .bts file of TurbSim (WrADFF = True)",
+        );
+    }
+    let counts =
+        [count(0), count(1), count(2), count(3), i32::from_le_bytes(four(FIXED_HEADER - 4))];
+    let named = [
+        "points along z",
+        "points along y",
+        "tower points",
+        "time steps",
+        "characters of description",
+    ];
+    for (index, (value, name)) in counts.into_iter().zip(named).enumerate() {
+        let least = if [2, 4].contains(&index) { 0 } else { 1 };
+        if value < least {
+            return wrong(
+                format!("the header counts {value} {name}"),
+                "copy the file again or run TurbSim again",
+            );
+        }
+    }
+    let [n_z, n_y, n_tower, n_steps, description_length] = counts.map(|value| value as usize);
+    for (index, name) in [
+        (0, "spacing along z"),
+        (1, "spacing along y"),
+        (2, "time step"),
+        (3, "hub speed"),
+        (4, "hub height"),
+    ] {
+        let value = number(index);
+        if !(value.is_finite() && value > 0.0) {
+            return wrong(
+                format!("byte {}: the {name} is {value}", 18 + 4 * index),
+                "run TurbSim again",
+            );
+        }
+    }
+    let slopes = [number(6), number(8), number(10)];
+    let intercepts = [number(7), number(9), number(11)];
+    for (component, (slope, intercept)) in
+        ["u", "v", "w"].iter().zip(slopes.into_iter().zip(intercepts))
+    {
+        let ends = [i16::MIN, i16::MAX].map(|end| (f32::from(end) - intercept) / slope);
+        if !ends.iter().all(|end| end.abs() <= FASTEST) {
+            return wrong(
+                format!(
+                    "slope {slope} and intercept {intercept} of {component} give winds of {} to {} m/s",
+                    ends[0], ends[1]
+                ),
+                "run TurbSim again",
+            );
+        }
+    }
+    let per_step = 6 * (n_y as u128 * n_z as u128 + n_tower as u128);
+    let start = (FIXED_HEADER + description_length) as u128;
+    let needed = start + per_step * n_steps as u128;
+    if u128::from(found) != needed {
+        let how = if u128::from(found) < needed {
+            format!(
+                "it ends within step {} of {n_steps}",
+                (u128::from(found).saturating_sub(start)) / per_step + 1
+            )
+        } else {
+            "it goes on behind the last step".to_owned()
+        };
+        return wrong(
+            format!(
+                "{found} bytes instead of {needed} for {n_steps} steps of {n_y} × {n_z} points: {how}"
+            ),
+            "copy the file again or run TurbSim again",
+        );
+    }
+    Ok(Header {
+        periodic: identifier == PERIODIC,
+        n_z,
+        n_y,
+        n_tower,
+        n_steps,
+        spacing_z: f64::from(number(0)),
+        spacing_y: f64::from(number(1)),
+        interval: f64::from(number(2)),
+        hub_speed: f64::from(number(3)),
+        hub_height: f64::from(number(4)),
+        lowest_height: f64::from(number(5)),
+        slopes,
+        intercepts,
+        description_length,
+    })
+}
