@@ -2,6 +2,7 @@
 
 mod boundaries;
 mod closed_forms;
+mod ground;
 mod invariants;
 mod stencils;
 
@@ -30,7 +31,7 @@ fn periodic_box(n_cells: [usize; 3], viscosity: f64) -> Settings {
     settings.sides = Sides::Periodic;
     settings.ground = Ground::Periodic;
     settings.smagorinsky = 0.0;
-    settings.threads = Some(2);
+    settings.threads = Some(1);
     settings
 }
 
