@@ -2,6 +2,9 @@
 //!
 //! `wakemix validate NAME` repeats one and prints measured against expected; `docs/validation/` keeps the record.
 
+pub mod flow;
+pub mod helix;
+pub mod resume;
 pub mod row;
 
 pub use row::Row;
@@ -19,4 +22,41 @@ pub struct Validation {
 }
 
 /// All of them.
-pub const VALIDATIONS: &[Validation] = &[];
+pub const VALIDATIONS: &[Validation] = &[
+    Validation {
+        name: "flow",
+        about: "the lattice against closed forms: Taylor-Green, free stream, mass, outlet, a disc in momentum theory",
+        minutes: "1",
+        run: flow::flow,
+    },
+    Validation {
+        name: "log-profile",
+        about: "turbulent wind over a rough ground against the logarithmic law",
+        minutes: "2",
+        run: flow::log_profile,
+    },
+    Validation {
+        name: "isotropy",
+        about: "19 directions against 27 in round, deflected and helical wakes",
+        minutes: "3",
+        run: flow::isotropy,
+    },
+    Validation {
+        name: "helix",
+        about: "power of two turbines against amplitude and sense of the helix, beside published large-eddy figures",
+        minutes: "35",
+        run: helix::helix,
+    },
+    Validation {
+        name: "centre-line",
+        about: "recovery of the wake without and with a helix, beside published large-eddy figures",
+        minutes: "5",
+        run: helix::centre_line,
+    },
+    Validation {
+        name: "resume",
+        about: "20 kills at random moments, each followed by --resume: same bits",
+        minutes: "5",
+        run: resume::resume,
+    },
+];

@@ -8,8 +8,7 @@ use flow::inflow::InflowError;
 use flow::lattice::{PlaneSizeError, SettingsError};
 use formats::atomic::FileError;
 use formats::case::CaseError;
-use formats::checkpoint::CheckpointError;
-use formats::library::LibraryError;
+use formats::turbine_file::TurbineFileError;
 use miette::Diagnostic;
 use report::ReportError;
 use std::path::PathBuf;
@@ -24,16 +23,11 @@ pub enum StudyError {
     Case(#[from] CaseError),
     /// A turbine cannot be used.
     #[error(transparent)]
-    #[diagnostic(transparent)]
-    Library(#[from] LibraryError),
+    Turbine(#[from] TurbineFileError),
     /// A file cannot be read or written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] FileError),
-    /// A checkpoint cannot be taken up.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Checkpoint(#[from] CheckpointError),
     /// The layout does not fit.
     #[error("the case cannot be run as it stands")]
     Plan(#[from] PlanError),
@@ -79,7 +73,7 @@ pub enum StudyError {
     },
     /// The output folder holds something that would be overwritten.
     #[error("{} already holds results", directory.display())]
-    #[diagnostic(help("use --resume to go on with them, or another folder with -o, or remove the folder"))]
+    #[diagnostic(help("use --resume to go on with them, --overwrite to lose them, or another folder with -o"))]
     OutputExists {
         /// The folder.
         directory: PathBuf,

@@ -15,7 +15,7 @@ pub use watcher::{Estimate, Progress, Watcher};
 
 use basis::records::{Series, Summary};
 use farm::case::Run;
-use formats::records::{self, RunFolder};
+use formats::records::{self, Manifest, RunFolder};
 use simulate::{Ending, simulate};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -33,6 +33,8 @@ pub struct Options {
     pub overrides: Vec<String>,
     /// Go on with what is there.
     pub resume: bool,
+    /// Put new results in the place of old ones.
+    pub overwrite: bool,
     /// Say what it would cost, and stop.
     pub dry_run: bool,
 }
@@ -78,7 +80,8 @@ pub fn run(
         .copied()
         .filter(|&index| !(options.resume && folders[index].is_complete()))
         .collect();
-    if !options.resume && !options.dry_run && open.iter().any(|&index| folders[index].exists()) {
+    let keeps = options.resume || options.overwrite || options.dry_run;
+    if !keeps && open.iter().any(|&index| folders[index].path().exists()) {
         return Err(StudyError::OutputExists { directory });
     }
     let mut estimate = setup.estimate(open.len());
@@ -96,13 +99,11 @@ pub fn run(
     }
     if !open.is_empty() {
         setup.make_turbulence(watcher)?;
-        records::begin_study(&directory, &setup.case_text)?;
     }
     for (place, &index) in open.iter().enumerate() {
         let run = &setup.case.runs[index];
         let folder = &folders[index];
-        folder.create()?;
-        let started = records::now();
+        let manifest = begin_run(&setup, index, folder, options.resume)?;
         let place = (place, open.len());
         match simulate(&setup, run, folder, options.resume, place, stop, watcher)? {
             Ending::Interrupted => return Ok(Outcome::Interrupted { directory }),
@@ -115,24 +116,65 @@ pub fn run(
                 for warning in &summary.warnings[setup.warnings.len()..] {
                     watcher.warned(warning);
                 }
-                folder.complete(&summary, &setup.case_text, &started)?;
+                records::write_manifest(folder, &manifest.finish())?;
+                // The summary comes last: with it the run is complete.
+                records::write_summary(folder, &summary)?;
+                folder.remove_checkpoint()?;
                 watcher.finished(&summary);
             }
         }
     }
-    let report = self::report(&directory)?;
-    let summaries = records::read_summaries(&directory)?;
+    let (summaries, report) = self::report(&directory)?;
     Ok(Outcome::Done { summaries, report })
 }
 
-/// Rebuilds the report of the study in `directory` from its records, and gives its path.
+/// Rebuilds the report of the study in `directory` from its records; gives the summaries and the report's path.
 ///
 /// # Errors
 /// [`StudyError::File`] for records that cannot be read, [`StudyError::Report`] for a report that cannot be written.
-pub fn report(directory: &Path) -> Result<PathBuf, StudyError> {
+pub fn report(directory: &Path) -> Result<(Vec<Summary>, PathBuf), StudyError> {
     let study = records::read_study(directory)?;
+    let mut runs = Vec::with_capacity(study.runs.len());
+    let mut summaries = Vec::with_capacity(study.runs.len());
+    for run in study.runs {
+        let mut summary = run.summary;
+        summaries.push(summary.clone());
+        summary.warnings.extend(study.warnings.iter().cloned());
+        runs.push(report::RunRecords {
+            summary,
+            series: run.series,
+            mean_planes: run.mean_planes,
+            instant_planes: run.last_planes,
+        });
+    }
+    let study = report::StudyRecords {
+        case_name: study.case_name,
+        description: study.description,
+        case_text: study.case_text,
+        runs,
+        version: study.version,
+    };
     report::write(&study, directory)?;
-    Ok(directory.join("report.html"))
+    Ok((summaries, directory.join("report.html")))
+}
+
+/// On return the run's folder is ready: empty but for the manifest, or as an interrupted run left it when `resume`.
+fn begin_run(
+    setup: &Setup,
+    index: usize,
+    folder: &RunFolder,
+    resume: bool,
+) -> Result<Manifest, StudyError> {
+    if resume && folder.checkpoint_path().exists() && folder.manifest_path().exists() {
+        return Ok(records::read_manifest(folder)?);
+    }
+    folder.clear()?;
+    folder.create()?;
+    let texts = setup.turbine_texts.iter().map(|(name, text)| (name.as_str(), text.as_str()));
+    let version = env!("CARGO_PKG_VERSION");
+    let manifest = Manifest::start(version, &setup.case, &setup.case_text, index, texts);
+    records::write_manifest(folder, &manifest)?;
+    Ok(manifest)
 }
 
 fn wanted_runs(setup: &Setup, names: &[String]) -> Result<Vec<usize>, StudyError> {

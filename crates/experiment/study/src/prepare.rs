@@ -7,7 +7,11 @@ use farm::case::{Case, Control};
 use farm::self_check::self_check;
 use farm::{Plan, plan};
 use flow::Inflow;
-use flow::inflow::{MeanProfile, TurbulentInflow};
+use flow::inflow::sizing::Need;
+use flow::inflow::turbulent::BLOCKING_HEIGHT;
+use flow::inflow::{MeanProfile, TurbulentInflow, mann, size_box};
+use formats::turbine_file::TurbineFile;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -20,6 +24,8 @@ const CELLS_TO_WARN: f64 = 16.0;
 const BLOCKS_TO_WARN: f64 = 3.0;
 /// Bytes of a value in `series.csv`, about.
 const SERIES_VALUE_BYTES: u64 = 14;
+/// Most memory that the turbulence may take (bytes); a longer run then meets the same wind again, and is warned of it.
+const TURBULENCE_MEMORY: u64 = 6 << 30;
 /// Bytes of a cell in the flow field, boundaries included.
 const CELL_BYTES: u64 = 80;
 
@@ -31,6 +37,8 @@ pub struct Setup {
     pub case_text: String,
     /// One per turbine, in the case's order.
     pub models: Vec<Model>,
+    /// Text of each turbine model's file.
+    pub turbine_texts: BTreeMap<String, String>,
     /// Domain and steps.
     pub plan: Plan,
     /// The wind that enters.
@@ -47,9 +55,11 @@ impl Setup {
     pub fn read(path: &Path, overrides: &[String]) -> Result<Self, StudyError> {
         let file = formats::case::read(path, overrides)?;
         let mut loaded: BTreeMap<String, Model> = BTreeMap::new();
+        let mut texts = BTreeMap::new();
         for placement in &file.case.turbines {
             if !loaded.contains_key(&placement.model) {
-                let turbine = formats::library::load(&placement.model, file.folder())?;
+                let (text, turbine) = turbine(&placement.model, file.folder())?;
+                texts.insert(placement.model.clone(), text);
                 let model = Model {
                     definition: Arc::new(turbine.definition),
                     constants: turbine.controller,
@@ -58,7 +68,9 @@ impl Setup {
             }
         }
         let case_text = formats::case::write(&file.case);
-        Self::new(file.case, case_text, &loaded)
+        let mut setup = Self::new(file.case, case_text, &loaded)?;
+        setup.turbine_texts = texts;
+        Ok(setup)
     }
 
     fn new(
@@ -73,7 +85,16 @@ impl Setup {
             case.turbines.iter().map(|placement| loaded[&placement.model].clone()).collect();
         let warnings = warnings(&case, &plan);
         let inflow = Arc::new(profile(&case, &plan));
-        Ok(Self { case, case_text, models, plan, inflow, warnings })
+        let turbine_texts = BTreeMap::new();
+        let mut setup = Self { case, case_text, models, turbine_texts, plan, inflow, warnings };
+        let size = size_box(&setup.turbulence_need());
+        if setup.case.wind.turbulence_intensity > 0.0 && !size.covers {
+            setup.warnings.push(format!(
+                "the turbulence returns after {:.0} s: more would not fit in memory",
+                size.repeats_after
+            ));
+        }
+        Ok(setup)
     }
 
     /// The cost of `n_runs` runs, the machine's speed not known yet.
@@ -103,7 +124,7 @@ impl Setup {
     pub fn check_memory(&self, estimate: &Estimate) -> Result<(), StudyError> {
         const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
         let needed = estimate.memory as f64 / GIB;
-        match formats::records::free_memory() {
+        match formats::machine::free_memory() {
             Some(free) if (free as f64) < estimate.memory as f64 => {
                 Err(StudyError::Memory { needed, available: free as f64 / GIB })
             }
@@ -150,24 +171,81 @@ impl Setup {
         Ok(slowest)
     }
 
+    /// What the inlet needs of the turbulence: the box of air at the start, then a plane for every later step.
+    fn turbulence_need(&self) -> Need {
+        let plan = &self.plan;
+        let [length, width, height] = plan.n_cells.map(|n| n as f64 * plan.spacing);
+        Need {
+            length,
+            width,
+            height,
+            hub_speed: self.case.wind.speed,
+            duration: self.case.time.duration,
+            spacing: plan.spacing,
+            length_scale: self.case.wind.length_scale,
+            memory_limit: TURBULENCE_MEMORY,
+        }
+    }
+
+    fn turbulence_memory(&self) -> u64 {
+        if self.case.wind.turbulence_intensity > 0.0 {
+            size_box(&self.turbulence_need()).peak_memory
+        } else {
+            0
+        }
+    }
+
     /// On return the inflow carries the case's turbulence.
     ///
     /// # Errors
     /// [`StudyError::Inflow`] when it cannot be made.
     pub fn make_turbulence(&mut self, watcher: &mut dyn Watcher) -> Result<(), StudyError> {
-        if self.case.wind.turbulence_intensity > 0.0 {
-            let turbulence = flow::inflow::mann::generate(&self.turbulence_settings(), &mut |share| {
-                watcher.preparing("turbulence", share);
+        let wind = &self.case.wind;
+        if wind.turbulence_intensity > 0.0 {
+            let size = size_box(&self.turbulence_need());
+            let settings = mann::Settings {
+                n_points: size.n_points,
+                spacing: size.spacing,
+                length_scale: wind.length_scale,
+                anisotropy: wind.anisotropy,
+                standard_deviation: wind.turbulence_intensity * wind.speed,
+                seed: wind.seed,
+                threads: self.case.flow.threads,
+            };
+            let watcher = RefCell::new(watcher);
+            let turbulence = mann::generate(&settings, |share| {
+                watcher.borrow_mut().preparing("turbulence", share);
             })?;
             let profile = profile(&self.case, &self.plan);
-            self.inflow = Arc::new(TurbulentInflow::new(profile, turbulence, self.plan.origin));
+            let inflow =
+                TurbulentInflow::aligned(Arc::new(turbulence), profile, self.plan.origin)?;
+            self.inflow = Arc::new(inflow.blocked(BLOCKING_HEIGHT * wind.length_scale));
         }
         Ok(())
     }
 }
 
+/// The turbine of the library called `model`, or that in the file of this path, relative to `folder`; with its text.
+fn turbine(model: &str, folder: &Path) -> Result<(String, TurbineFile), StudyError> {
+    if let Some(text) = formats::library::text(model) {
+        return Ok((text.to_owned(), formats::library::load(model)?));
+    }
+    let path = folder.join(model);
+    if path.is_file() {
+        let text = formats::atomic::read_text(&path, "a turbine file")?;
+        let parsed = formats::turbine_file::parse(&path.display().to_string(), &text)?;
+        return Ok((text, parsed));
+    }
+    // Neither: the library says what there is.
+    Ok((String::new(), formats::library::load(model)?))
+}
+
 fn profile(case: &Case, plan: &Plan) -> MeanProfile {
-    MeanProfile::power_law(case.wind.speed, plan.hub_height, case.wind.shear_exponent)
+    MeanProfile::PowerLaw {
+        hub_height: plan.hub_height,
+        speed: case.wind.speed,
+        exponent: case.wind.shear_exponent,
+    }
 }
 
 fn warnings(case: &Case, plan: &Plan) -> Vec<String> {

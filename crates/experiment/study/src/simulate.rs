@@ -268,7 +268,7 @@ impl<'a> Simulation<'a> {
             run: run.name.clone(),
             source,
             checkpoint: checkpoint.exists().then_some(checkpoint),
-            series: kept.then(|| self.folder.series_path()),
+            series: kept.then(|| self.series.part_path().to_owned()),
         }
     }
 

@@ -30,6 +30,9 @@ pub(crate) struct RunArguments {
     /// Take up where an interrupted or killed run stopped; the result has the same bits
     #[arg(long)]
     resume: bool,
+    /// Put new results in the place of old ones
+    #[arg(long, conflicts_with = "resume")]
+    overwrite: bool,
     /// Print what the study would cost, and stop
     #[arg(long)]
     dry_run: bool,
@@ -58,6 +61,7 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
         runs: arguments.runs.clone(),
         overrides: arguments.overrides.clone(),
         resume: arguments.resume,
+        overwrite: arguments.overwrite,
         dry_run: arguments.dry_run,
     };
     let mut screen = Screen::new();

@@ -1,0 +1,239 @@
+//! `wakemix turbine`: the library of turbines, and what blade-element momentum says of them.
+
+use clap::Subcommand;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use wakemix::formats::turbine_file::{self, Document, TurbineFile};
+use wakemix::formats::{atomic, library, openfast, windio};
+use wakemix::turbine::aero::blade_element::Theory;
+use wakemix::turbine::steady::SteadyRotor;
+
+/// What to do with turbines.
+#[derive(Debug, Subcommand)]
+pub enum TurbineCommand {
+    /// List the turbines that come with the program
+    List,
+    /// Describe a turbine: geometry, masses, ratings, and where every figure comes from
+    Show {
+        /// Name of the library, or path of a turbine file
+        name: String,
+        /// Print the whole file of a library turbine instead
+        #[arg(long)]
+        file: bool,
+    },
+    /// Convert an OpenFAST deck (.fst) or a windIO file (.yaml) into a turbine file
+    Import {
+        /// Main file of the deck, or the windIO file
+        file: PathBuf,
+        /// Turbine file to write (TOML)
+        #[arg(short, long)]
+        output: PathBuf,
+        /// Short name, such as iea-15mw; the stem of OUTPUT when left out
+        #[arg(long)]
+        name: Option<String>,
+        /// Name in words; the input's own title when left out
+        #[arg(long)]
+        title: Option<String>,
+        /// Where the input comes from (publication, commit), noted with every group of figures
+        #[arg(long)]
+        source: Option<String>,
+    },
+    /// Print coefficients of power, thrust and torque of the rigid rotor in steady wind as CSV
+    Steady {
+        /// Name of the library, or path of a turbine file
+        name: String,
+        /// Tip-speed ratios, FROM:TO:COUNT or one value
+        #[arg(long, value_name = "A:B:N", default_value = "4:12:17")]
+        tsr: Range,
+        /// Pitch angles (degrees), FROM:TO:COUNT or one value
+        #[arg(long, value_name = "A:B:N", default_value = "0", allow_hyphen_values = true)]
+        pitch: Range,
+    },
+}
+
+/// Equally spaced values, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    from: f64,
+    to: f64,
+    count: usize,
+}
+
+impl Range {
+    fn values(self) -> impl Iterator<Item = f64> {
+        let steps = self.count.saturating_sub(1).max(1) as f64;
+        (0..self.count).map(move |k| self.from + (self.to - self.from) * k as f64 / steps)
+    }
+}
+
+impl FromStr for Range {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |part: &str| {
+            let value = part.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+            value.ok_or_else(|| format!("\"{part}\" is not a number; write FROM:TO:COUNT, as in 6:11:11"))
+        };
+        let parts: Vec<&str> = text.split(':').collect();
+        match parts[..] {
+            [value] => Ok(Self { from: number(value)?, to: number(value)?, count: 1 }),
+            [from, to, count] => {
+                let count = count.trim().parse().ok().filter(|count| (1..=100_000).contains(count));
+                let count = count.ok_or("COUNT is a whole number from 1 to 100000, as in 6:11:11")?;
+                Ok(Self { from: number(from)?, to: number(to)?, count })
+            }
+            _ => Err("write FROM:TO:COUNT, as in 6:11:11, or one value".to_owned()),
+        }
+    }
+}
+
+/// Runs `command`; data goes to stdout.
+///
+/// # Errors
+/// Input that cannot be read, and output that cannot be written.
+pub fn run(command: TurbineCommand) -> Result<()> {
+    match command {
+        TurbineCommand::List => list(),
+        TurbineCommand::Show { name, file: false } => show(&library::load(&name)?),
+        TurbineCommand::Show { name, file: true } => {
+            let text = library::text(&name).map_or_else(
+                || Ok::<_, miette::Report>(atomic::read_text(Path::new(&name), "the turbine file")?),
+                |text| Ok(text.to_owned()),
+            )?;
+            print(&text)
+        }
+        TurbineCommand::Import { file, output, name, title, source } => {
+            let stem = output.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            let options = openfast::ImportOptions { name: name.or(stem), title, source };
+            import(&file, &output, &options)
+        }
+        TurbineCommand::Steady { name, tsr, pitch } => steady(&library::load(&name)?, tsr, pitch),
+    }
+}
+
+/// Writes `text` to stdout; a reader that has seen enough is no error.
+fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        result => result.into_diagnostic().wrap_err("cannot write to standard output"),
+    }
+}
+
+fn list() -> Result<()> {
+    let mut text = format!("{:10} {:>9} {:>10} {:>8}  {}\n", "name", "rated MW", "diameter m", "hub m", "");
+    for name in library::names() {
+        let TurbineFile { title, definition, .. } = library::load(name)?;
+        text += &format!(
+            "{name:10} {:9.1} {:10.1} {:8.1}  {title}\n",
+            1e-6 * definition.rated_power,
+            definition.rotor_diameter(),
+            definition.rotor.hub_height,
+        );
+    }
+    print(&text)
+}
+
+fn show(file: &TurbineFile) -> Result<()> {
+    let TurbineFile { title, definition, controller, sources } = file;
+    let rpm = |speed: f64| speed * 30.0 / std::f64::consts::PI;
+    let ratio = controller.optimal_tip_speed_ratio;
+    let best = SteadyRotor::new(definition, Theory::default()).coefficients(ratio, controller.fine_pitch);
+    let rows = [
+        ("blades", definition.n_blades.to_string()),
+        ("swept diameter", format!("{:.2} m (tip radius {} m along the blade)", definition.rotor_diameter(), definition.rotor.tip_radius)),
+        ("hub height", format!("{:.2} m", definition.rotor.hub_height)),
+        ("precone, tilt, overhang", format!("{:.2}°, {:.2}°, {:.2} m", definition.rotor.precone.to_degrees(), definition.rotor.shaft_tilt.to_degrees(), definition.rotor.overhang)),
+        ("tower", format!("{:.1} m to {:.1} m, {:.2} m to {:.2} m wide", definition.tower.base_height, definition.tower.top_height, definition.tower.profile.first().map_or(0.0, |p| p.diameter), definition.tower.profile.last().map_or(0.0, |p| p.diameter))),
+        ("rated", format!("{:.3} MW at {:.3} rpm", 1e-6 * definition.rated_power, rpm(definition.rated_rotor_speed))),
+        ("blade mass", format!("{:.2} t each", 1e-3 * definition.blade_mass())),
+        ("inertia about the shaft", format!("{:.4e} kg m2 rotor, {:.4e} kg m2 with generator", definition.rotor_inertia(), definition.drive_train_inertia())),
+        ("generator to grid", format!("{:.4}", definition.efficiency())),
+        ("pitch actuator", format!("{:.3} rad/s, damping {:.3}, {:.1} deg/s, {:.1}° to {:.1}°", definition.pitch_actuator.natural_frequency, definition.pitch_actuator.damping_ratio, definition.pitch_actuator.maximum_rate.to_degrees(), definition.pitch_actuator.minimum_pitch.to_degrees(), definition.pitch_actuator.maximum_pitch.to_degrees())),
+        ("best tip-speed ratio", format!("{ratio:.2}: power coefficient {:.4}, thrust coefficient {:.4} (rigid, pitch {:.2}°)", best.power, best.thrust, controller.fine_pitch.to_degrees())),
+        ("tables", format!("{} stations, {} polars, {} structural sections", definition.blade.len(), definition.polars.len(), definition.blade_structure.sections.len())),
+    ];
+    let mut text = format!("{}: {title}\n\n", definition.name);
+    for (what, value) in rows {
+        text += &format!("{what:24} {value}\n");
+    }
+    text += "\nsources\n";
+    for (group, source) in sources {
+        text += &format!("{group:16} {source}\n");
+    }
+    print(&text)
+}
+
+fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Result<()> {
+    let extension = file.extension().map(|end| end.to_string_lossy().to_lowercase());
+    let document = match extension.as_deref() {
+        Some("fst") => openfast::import(file, options)?,
+        Some("yaml" | "yml") => windio::import(file, options)?,
+        _ => {
+            let found = file.display();
+            return Err(miette!(
+                help = "give the main file of an OpenFAST deck (.fst) or a windIO file (.yaml)",
+                "cannot tell what {found} is"
+            ));
+        }
+    };
+    let text = turbine_file::write(&document);
+    atomic::write(output, "the turbine file", text.as_bytes())?;
+    eprintln!("wrote {}", output.display());
+    for (group, _) in groups(&document).iter().filter(|(_, there)| !there) {
+        eprintln!("[{group}] is not in the input; complete it by hand before the turbine is used");
+    }
+    if groups(&document).iter().all(|(_, there)| *there) {
+        turbine_file::read(output)?;
+    }
+    Ok(())
+}
+
+/// Groups of a turbine file, and whether `document` has them.
+fn groups(document: &Document) -> [(&'static str, bool); 10] {
+    [
+        ("rotor", document.rotor.is_some()),
+        ("blade", document.blade.is_some()),
+        ("blade_structure", document.blade_structure.is_some()),
+        ("tower", document.tower.is_some()),
+        ("hub", document.hub.is_some()),
+        ("nacelle", document.nacelle.is_some()),
+        ("drive_train", document.drive_train.is_some()),
+        ("pitch_actuator", document.pitch_actuator.is_some()),
+        ("controller", document.controller.is_some()),
+        ("airfoils", document.airfoils.is_some()),
+    ]
+}
+
+fn steady(file: &TurbineFile, tsr: Range, pitch: Range) -> Result<()> {
+    let rotor = SteadyRotor::new(&file.definition, Theory::default());
+    let mut text = BufWriter::new(Vec::new());
+    writeln!(text, "tsr,pitch_deg,cp,ct,cq").into_diagnostic()?;
+    for ratio in tsr.values() {
+        for pitch_deg in pitch.values() {
+            let c = rotor.coefficients(ratio, pitch_deg.to_radians());
+            writeln!(text, "{ratio},{pitch_deg},{:.6},{:.6},{:.6}", c.power, c.thrust, c.torque)
+                .into_diagnostic()?;
+        }
+    }
+    let bytes = text.into_inner().map_err(|error| miette!("{error}"))?;
+    print(&String::from_utf8_lossy(&bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_include_both_ends() {
+        let range: Range = "6:11:11".parse().unwrap();
+        let values: Vec<f64> = range.values().collect();
+        assert_eq!((values.len(), values[0], values[1], values[10]), (11, 6.0, 6.5, 11.0));
+        assert_eq!("-2".parse::<Range>().unwrap().values().collect::<Vec<_>>(), [-2.0]);
+        for bad in ["6:11", "a", "6:11:0", "6:11:1.5", "1:2:3:4"] {
+            assert!(bad.parse::<Range>().is_err(), "{bad}");
+        }
+    }
+}

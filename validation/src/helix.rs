@@ -1,0 +1,190 @@
+//! What the helix costs the first turbine, what it gives the array, and how the wake recovers, beside published large-eddy figures.
+
+use crate::Row;
+use basis::records::{Plane, PlaneAxes, Summary};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use study::{Options, Outcome, Watcher};
+
+/// Power of the first turbine over its baseline at St 0.25, IEA 22 MW: fit to published large-eddy tables
+/// (amplitude in degrees, ratio).
+const POWER_RATIOS: [(u32, f64); 4] = [(2, 0.994), (3, 0.986), (4, 0.975), (5, 0.963)];
+const RATIO_TOLERANCE: f64 = 0.01;
+/// Array gain of a tuned helix, two IEA 22 MW turbines at 5 D in 8 m/s (van der Hoek, Dammann, van Wingerden: 7.5 % ccw,
+/// about 3 % cw, near 4° and St 0.25).
+const ARRAY_GAINS: [(&str, f64); 2] = [("ccw-4", 7.5), ("cw-4", 3.0)];
+/// Hub-height centre-line speed (m/s) behind one IEA 22 MW turbine in 10 m/s: distance (D), baseline, helix ccw 4°
+/// (published large-eddy tables).
+const CENTRE_LINE: [(f64, f64, f64); 6] = [
+    (3.0, 5.04, 4.85),
+    (4.0, 5.02, 5.53),
+    (5.0, 5.45, 6.47),
+    (6.0, 6.05, 7.04),
+    (7.0, 6.52, 7.39),
+    (8.0, 6.87, 7.77),
+];
+
+/// Prints progress as plain lines.
+struct Lines {
+    last: String,
+}
+
+impl Watcher for Lines {
+    fn advanced(&mut self, progress: &study::Progress) {
+        let share = 10 * progress.step / progress.n_steps.max(1);
+        let line = format!("{} {share}0 %", progress.run);
+        if line != self.last {
+            eprintln!("{line}, {:.0} s left in all", progress.time_left);
+            self.last = line;
+        }
+    }
+
+    fn warned(&mut self, warning: &str) {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Runs the case at `path`, or takes up what is left of it in `runs/validate-NAME`; gives summaries and that folder.
+fn summaries(path: &Path, name: &str) -> Result<(Vec<Summary>, PathBuf), String> {
+    let output = Path::new("runs").join(format!("validate-{name}"));
+    let options = Options {
+        case: path.to_owned(),
+        output: Some(output.clone()),
+        resume: true,
+        ..Options::default()
+    };
+    let mut watcher = Lines { last: String::new() };
+    match study::run(&options, &AtomicBool::new(false), &mut watcher) {
+        Ok(Outcome::Done { summaries, .. }) => Ok((summaries, output)),
+        Ok(other) => Err(format!("the study ended early: {other:?}")),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn failure(problem: String) -> Vec<Row> {
+    vec![Row { what: problem, measured: f64::NAN, expected: 0.0, tolerance: 0.0, unit: "-" }]
+}
+
+fn find<'a>(summaries: &'a [Summary], run: &str) -> Option<&'a Summary> {
+    summaries.iter().find(|summary| summary.run == run)
+}
+
+/// `cases/helix-two-turbines.toml`: power ratio of the first turbine and gain of the array against amplitude and sense.
+pub fn helix() -> Vec<Row> {
+    let (summaries, _) = match summaries(Path::new("cases/helix-two-turbines.toml"), "helix") {
+        Ok(done) => done,
+        Err(problem) => return failure(problem),
+    };
+    let mut rows = Vec::new();
+    for (degrees, expected) in POWER_RATIOS {
+        let gain = find(&summaries, &format!("ccw-{degrees}")).and_then(|s| s.turbines[0].power_gain);
+        rows.push(Row {
+            what: format!("T1 power over baseline, ccw {degrees}°, St 0.25, 8 m/s"),
+            measured: gain.map_or(f64::NAN, |gain| 1.0 + gain.mean),
+            expected,
+            tolerance: RATIO_TOLERANCE,
+            unit: "-",
+        });
+    }
+    let mut gains = [f64::NAN; 2];
+    for ((run, expected), measured) in ARRAY_GAINS.iter().zip(&mut gains) {
+        let gain = find(&summaries, run).and_then(|summary| summary.array_power_gain);
+        *measured = gain.map_or(f64::NAN, |gain| 100.0 * gain.mean);
+        let half_width = gain.and_then(|gain| gain.half_width_95).map_or(f64::NAN, |h| 100.0 * h);
+        rows.push(Row {
+            what: format!("array gain, {run}, two turbines at 5 D (within own 95 % interval)"),
+            measured: *measured,
+            expected: *expected,
+            tolerance: half_width,
+            unit: "%",
+        });
+    }
+    for run in ["ccw-1", "ccw-2", "ccw-3", "ccw-5", "cw-1", "cw-2", "cw-3", "cw-5"] {
+        if let Some(gain) = find(&summaries, run).and_then(|summary| summary.array_power_gain) {
+            rows.push(Row {
+                what: format!("array gain, {run}: above zero"),
+                measured: 100.0 * gain.mean,
+                expected: 50.0,
+                tolerance: 50.0,
+                unit: "%",
+            });
+        }
+    }
+    rows.push(Row {
+        what: "array gain of ccw 4° less that of cw 4°: above zero".to_owned(),
+        measured: gains[0] - gains[1],
+        expected: 50.0,
+        tolerance: 50.0,
+        unit: "%",
+    });
+    for run in ["ccw-4", "cw-4"] {
+        let delivered = find(&summaries, run).and_then(|s| s.turbines[0].delivered_pitch);
+        rows.push(Row {
+            what: format!("delivered amplitude, {run}"),
+            measured: delivered.map_or(f64::NAN, |pitch| pitch.delivered_amplitude_deg),
+            expected: 4.0,
+            tolerance: 0.2,
+            unit: "deg",
+        });
+        rows.push(Row {
+            what: format!("delivered excitation frequency, {run}, St 0.25"),
+            measured: delivered.map_or(f64::NAN, |pitch| 1e3 * pitch.excitation_frequency_hz),
+            expected: find(&summaries, run).map_or(f64::NAN, |summary| {
+                let wind = &summary.conditions;
+                1e3 * 0.25 * wind.wind_speed / wind.rotor_diameter
+            }),
+            tolerance: 0.05,
+            unit: "mHz",
+        });
+    }
+    rows
+}
+
+/// `validation/cases/centre-line.toml`: mean hub-height speed behind one turbine, baseline and helix.
+pub fn centre_line() -> Vec<Row> {
+    let path = Path::new("validation/cases/centre-line.toml");
+    let (summaries, folder) = match summaries(path, "centre-line") {
+        Ok(done) => done,
+        Err(problem) => return failure(problem),
+    };
+    let study = match formats::records::read_study(&folder) {
+        Ok(study) => study,
+        Err(error) => return failure(error.to_string()),
+    };
+    let Some(diameter) = summaries.first().map(|summary| summary.conditions.rotor_diameter) else {
+        return failure("no summary was written".to_owned());
+    };
+    let mut rows = Vec::new();
+    for (run, published) in [("baseline", 0), ("ccw-4", 1)] {
+        let plane = study
+            .runs
+            .iter()
+            .find(|records| records.summary.run == run)
+            .and_then(|records| {
+                records.mean_planes.iter().find(|plane| plane.axes == PlaneAxes::Horizontal)
+            });
+        for (distance, baseline, helix) in CENTRE_LINE {
+            rows.push(Row {
+                what: format!("centre-line speed at {distance} D, {run}, 10 m/s"),
+                measured: plane.map_or(f64::NAN, |plane| along_x(plane, distance * diameter)),
+                expected: if published == 0 { baseline } else { helix },
+                tolerance: 0.5,
+                unit: "m/s",
+            });
+        }
+    }
+    rows
+}
+
+/// Streamwise speed (m/s) of a horizontal plane at x (m) and y = 0, bilinear.
+fn along_x(plane: &Plane, x: f64) -> f64 {
+    let place = |position: f64, axis: usize| {
+        let index = (position - plane.origin[axis]) / plane.spacing[axis];
+        let low = index.floor().clamp(0.0, plane.n_points[axis] as f64 - 2.0);
+        (low as usize, index - low)
+    };
+    let ((i, wx), (j, wy)) = (place(x, 0), place(0.0, 1));
+    let u = |i: usize, j: usize| f64::from(plane.velocity[0][j * plane.n_points[0] + i]);
+    (1.0 - wy) * ((1.0 - wx) * u(i, j) + wx * u(i + 1, j))
+        + wy * ((1.0 - wx) * u(i, j + 1) + wx * u(i + 1, j + 1))
+}
