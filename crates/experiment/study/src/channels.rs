@@ -10,7 +10,7 @@ const SHARED: [&str; 4] = ["time_s", "wind.u_m_s", "wind.v_m_s", "wind.w_m_s"];
 ///
 /// A row is: time, wind at the hub-height probe upstream of the first turbine, then for each
 /// turbine what it measured and what it was told.
-pub struct Row {
+pub(crate) struct Row {
     names: Vec<String>,
     values: Vec<f64>,
     offsets: Vec<usize>,
@@ -18,7 +18,7 @@ pub struct Row {
 
 impl Row {
     /// The row for `turbines`: name and number of blades of each.
-    pub fn new(turbines: &[(String, usize)]) -> Self {
+    pub(crate) fn new(turbines: &[(String, usize)]) -> Self {
         let mut names: Vec<String> = SHARED.iter().map(|&name| name.to_owned()).collect();
         let mut offsets = Vec::with_capacity(turbines.len());
         for (name, n_blades) in turbines {
@@ -47,17 +47,17 @@ impl Row {
     }
 
     /// Names of the channels, in the order of [`Self::values`].
-    pub fn names(&self) -> &[String] {
+    pub(crate) fn names(&self) -> &[String] {
         &self.names
     }
 
     /// The row as it stands, in single precision (what the sensors are worth), time in double.
-    pub fn values(&self) -> &[f64] {
+    pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }
 
     /// Starts the row of `time` (s) with the probe's `wind` (m/s).
-    pub fn start(&mut self, time: f64, wind: Vector3) {
+    pub(crate) fn start(&mut self, time: f64, wind: Vector3) {
         self.values[..SHARED.len()].copy_from_slice(&[time, wind.x, wind.y, wind.z]);
     }
 }
