@@ -3,7 +3,9 @@
 //! `wakemix validate NAME` repeats one and prints measured against expected; `docs/validation/` keeps the record.
 
 pub mod flow;
+pub mod blade_element;
 pub mod helix;
+pub mod inflow;
 pub mod resume;
 pub mod row;
 
@@ -23,6 +25,12 @@ pub struct Validation {
 
 /// All of them.
 pub const VALIDATIONS: &[Validation] = &[
+    Validation {
+        name: "blade-element",
+        about: "power, thrust and blade loads by blade-element momentum, beside published tables and AeroDyn",
+        minutes: "under 1",
+        run: blade_element::blade_element,
+    },
     Validation {
         name: "flow",
         about: "the lattice against closed forms: Taylor-Green, free stream, mass, outlet, a disc in momentum theory",
@@ -58,5 +66,11 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "20 kills at random moments, each followed by --resume: same bits",
         minutes: "5",
         run: resume::resume,
+    },
+    Validation {
+        name: "inflow",
+        about: "Mann's turbulence: spectra, coherence, intensity and length scale against the tensor's integrals",
+        minutes: "1",
+        run: inflow::inflow,
     },
 ];

@@ -91,6 +91,23 @@ impl<'a> SteadyRotor<'a> {
         let length = definition.blade_length();
         let edge = |k: usize| length * k as f64 / N_ELEMENTS as f64;
         let elements = (0..N_ELEMENTS).map(|k| element(definition, edge(k), edge(k + 1))).collect();
+        Self::with_elements(definition, theory, elements)
+    }
+
+    /// Takes the stations of `definition` for nodes and joins their loads by the trapezoidal rule, with no load at root
+    /// and tip: coarser near the tip than [`SteadyRotor::new`], but what programs do that published tables come from.
+    pub fn at_stations(definition: &'a Definition, theory: Theory) -> Self {
+        let blade = &definition.blade;
+        let nodes = blade.windows(3).map(|stations| {
+            let [before, here, after] = [stations[0].span, stations[1].span, stations[2].span];
+            // Its half of either neighbouring length, with the section of the station itself.
+            let reach = 0.25 * (after - before);
+            element(definition, here - reach, here + reach)
+        });
+        Self::with_elements(definition, theory, nodes.collect())
+    }
+
+    fn with_elements(definition: &'a Definition, theory: Theory, elements: Vec<Element>) -> Self {
         Self {
             polars: &definition.polars,
             theory,
