@@ -21,41 +21,44 @@ pub(crate) struct Relaxation<S> {
 /// 18 √2: Smagorinsky's closed form for the relaxation time, Hou, Sterling, Chen, Doolen (1996), Fields Inst. Comm. 6, 151.
 pub(crate) const SUBGRID_FACTOR: f64 = 25.455_844_122_715_71;
 
-/// State after the collision of a cell in state `before`, under `force` (density per step).
+/// Rate at which the stress of a cell in state `before` relaxes.
+#[inline(always)]
+pub(crate) fn relaxation_rate<S: Simd>(before: &Moments<S>, relaxation: &Relaxation<S>) -> S {
+    // Symbols: s stress, t a third of its trace, d its deviator, q the deviator's norm, tau relaxation time.
+    let [sxx, syy, szz, sxy, sxz, syz] = before.stress;
+    let two = S::splat(2.0);
+    let t = (sxx + syy + szz) * S::splat(1.0 / 3.0);
+    let (dxx, dyy, dzz) = (sxx - t, syy - t, szz - t);
+    let shear = sxy.mul_add(sxy, sxz.mul_add(sxz, syz * syz));
+    let q = two.mul_add(shear, dxx.mul_add(dxx, dyy.mul_add(dyy, dzz * dzz))).sqrt();
+    let squared =
+        (q * before.per_density).mul_add(relaxation.subgrid, relaxation.time * relaxation.time);
+    // 1/tau, tau = (tau0 + sqrt(tau0² + 18 √2 C² q/rho))/2.
+    two.divide(relaxation.time + squared.sqrt())
+}
+
+/// State after the collision of a cell in state `before`, its stress relaxed at `rate`, under `force` (density per step).
 ///
 /// The force shifts the velocity that the outgoing populations are built around by F/ρ (exact difference:
 /// Kupershtokh, Medvedev, Karpov 2009, Comput. Math. Appl. 58, 965); the physical velocity lies half-way.
 #[inline(always)]
-pub(crate) fn collide<S: Simd>(
-    before: &Moments<S>,
-    relaxation: &Relaxation<S>,
-    force: Option<[S; 3]>,
-) -> Moments<S> {
-    // Symbols: s stress, t a third of its trace, q its deviatoric norm, tau relaxation time, omega rate.
+pub(crate) fn collide<S: Simd>(before: &Moments<S>, rate: S, force: Option<[S; 3]>) -> Moments<S> {
+    // Symbols as above; h what each axis lacks.
     let [sxx, syy, szz, sxy, sxz, syz] = before.stress;
     let [ux, uy, uz] = before.velocity;
-    let one = S::splat(1.0);
-    let half = S::splat(0.5);
     let third = S::splat(1.0 / 3.0);
     let per_density = before.per_density;
-
     let t = (sxx + syy + szz) * third;
     let (dxx, dyy, dzz) = (sxx - t, syy - t, szz - t);
-    let shear = sxy.mul_add(sxy, sxz.mul_add(sxz, syz * syz));
-    let q = S::splat(2.0).mul_add(shear, dxx.mul_add(dxx, dyy.mul_add(dyy, dzz * dzz))).sqrt();
-    let tau = (relaxation.time
-        + relaxation.time.mul_add(relaxation.time, relaxation.subgrid * (q * per_density)).sqrt())
-        * half;
-    let omega = one.divide(tau);
-    let kept = one - omega;
+    let kept = S::splat(1.0) - rate;
 
     // The lattice cannot tell c³ from c: without these terms the viscosity of normal strains would depend on the
     // speed of the grid through the air (Geier et al. 2015, eqs. 43-48, with bulk rate one).
-    let hx = ux * ux * omega.mul_add(dxx, t);
-    let hy = uy * uy * omega.mul_add(dyy, t);
-    let hz = uz * uz * omega.mul_add(dzz, t);
+    let hx = ux * ux * rate.mul_add(dxx, t);
+    let hy = uy * uy * rate.mul_add(dyy, t);
+    let hz = uz * uz * rate.mul_add(dzz, t);
     let trace = (hx + hy + hz) * third;
-    let gain = S::splat(4.5).mul_add(one, S::splat(-2.25) * omega);
+    let gain = rate.sub_from(S::splat(2.25), S::splat(4.5));
     let bulk = S::splat(2.25) * trace;
 
     let (momentum, velocity) = match force {

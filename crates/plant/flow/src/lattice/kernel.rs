@@ -3,15 +3,15 @@
 use super::probe::{self, RowState, View};
 use super::settings::Stencil as Set;
 use super::simd::{Backend, Portable};
-use super::stencil::D3Q19;
+use super::stencil::{D3Q19, Stencil};
 use super::stencil27::D3Q27;
 use super::sweep::{self, Share, Step};
 
 /// Loops for one velocity set, compiled for one instruction set.
 #[derive(Clone, Copy)]
 pub(crate) struct Kernel {
-    /// Populations of a cell (–).
-    pub(crate) n_populations: usize,
+    /// Directions of the populations.
+    pub(crate) directions: &'static [[i8; 3]],
     sweep: unsafe fn(&Step<'_>, &mut Share),
     read_row: unsafe fn(&View<'_>, usize, &mut RowState),
     read_cells: unsafe fn(&View<'_>, &[[usize; 3]; 8]) -> [[f32; 8]; 4],
@@ -40,7 +40,8 @@ macro_rules! kernel {
             // SAFETY: handed through.
             unsafe { probe::write_row::<$vector, $stencil, $n>(view, row, state) }
         }
-        Kernel { n_populations: $n, sweep, read_row, read_cells, write_row }
+        let directions = &<$stencil as Stencil<$n>>::DIRECTIONS;
+        Kernel { directions, sweep, read_row, read_cells, write_row }
     }};
 }
 

@@ -10,7 +10,7 @@
 //! | even | slot q of the cell | slot q̄ of the cell |
 //! | odd | slot q̄ of the neighbour against q | slot q of the neighbour along q |
 
-use super::stencil::{Stencil, mirrored, opposite};
+use super::stencil::opposite;
 
 /// Values per cache line (–).
 const LINE: usize = 16;
@@ -18,6 +18,9 @@ const LINE: usize = 16;
 const SKEW: usize = 3 * LINE;
 /// Values per page (–).
 const PAGE: usize = 1024;
+
+/// Most directions of a velocity set (–).
+const MOST_SLOTS: usize = 27;
 
 /// What a row meets beyond the first or last along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,16 +61,50 @@ pub(crate) struct Layout {
     n_slots: usize,
     sides: Edge,
     levels: Edge,
+    directions: [[i8; 3]; MOST_SLOTS],
+    /// Slot of the direction mirrored along y, and along z.
+    mirrored: [[u8; MOST_SLOTS]; 2],
+    /// From a row's first cell in slot 0 to its addresses in an odd step, away from the sides.
+    reach: [usize; MOST_SLOTS],
 }
 
 impl Layout {
-    /// `n_slots` slots of `n_cells` cells; `sides` beyond y, `levels` beyond z.
-    pub(crate) fn new(n_cells: [usize; 3], n_slots: usize, sides: Edge, levels: Edge) -> Self {
+    /// `n_cells` cells with a slot for each of `directions`; `sides` beyond y, `levels` beyond z.
+    pub(crate) fn new(
+        n_cells: [usize; 3],
+        directions: &[[i8; 3]],
+        sides: Edge,
+        levels: Edge,
+    ) -> Self {
         // One halo cell at each end of a row; the one before x = 0 is the last value of the row before.
         let row_stride = (n_cells[0] + 2).next_multiple_of(LINE);
         let plane_stride = row_stride * n_cells[1];
         let slot_stride = (plane_stride * n_cells[2] + LINE).next_multiple_of(PAGE) + SKEW;
-        Self { n_cells, row_stride, plane_stride, slot_stride, n_slots, sides, levels }
+        let mut layout = Self {
+            n_cells,
+            row_stride,
+            plane_stride,
+            slot_stride,
+            n_slots: directions.len(),
+            sides,
+            levels,
+            directions: [[0; 3]; MOST_SLOTS],
+            mirrored: [[0; MOST_SLOTS]; 2],
+            reach: [0; MOST_SLOTS],
+        };
+        for (q, direction) in directions.iter().enumerate() {
+            layout.directions[q] = *direction;
+            for (axis, mirrored) in [1, 2].into_iter().zip(&mut layout.mirrored) {
+                let mut image = *direction;
+                image[axis] = -image[axis];
+                mirrored[q] =
+                    directions.iter().position(|other| *other == image).unwrap_or(q) as u8;
+            }
+            let [x, y, z] = direction.map(isize::from);
+            layout.reach[q] = (q * slot_stride)
+                .wrapping_add_signed(x + y * row_stride as isize + z * plane_stride as isize);
+        }
+        layout
     }
 
     /// Values of the whole array.
@@ -91,40 +128,50 @@ impl Layout {
         LINE + slot * self.slot_stride + z * self.plane_stride + y * self.row_stride
     }
 
-    /// The `Q` offsets that a row's populations are read from and written to at x = 0; x is added to all of them.
+    /// The `Q` offsets that the populations of the row at (`y`, `z`) are read from and written to at x = 0; x is
+    /// added to all of them.
     #[inline(always)]
-    pub(crate) fn addresses<L: Stencil<Q>, const Q: usize>(
+    pub(crate) fn addresses<const Q: usize>(
         &self,
         parity: Parity,
-        row: usize,
+        y: usize,
+        z: usize,
     ) -> [usize; Q] {
-        let [y, z] = self.place(row);
+        let first = self.row(0, y, z);
         let mut offsets = [0; Q];
         if parity == Parity::Even {
             for (slot, offset) in offsets.iter_mut().enumerate() {
-                *offset = self.row(slot, y, z);
+                *offset = first + slot * self.slot_stride;
             }
-            return offsets;
+        } else if y > 0 && y + 1 < self.n_cells[1] && z > 0 && z + 1 < self.n_cells[2] {
+            for (offset, reach) in offsets.iter_mut().zip(&self.reach) {
+                *offset = first.wrapping_add(*reach);
+            }
+        } else {
+            self.addresses_at_sides(y, z, &mut offsets);
         }
-        for q in 0..Q {
-            let [ex, ey, ez] = L::DIRECTIONS[q];
+        offsets
+    }
+
+    /// As [`Self::addresses`] for an odd step, past the sides.
+    #[inline(never)]
+    fn addresses_at_sides(&self, y: usize, z: usize, offsets: &mut [usize]) {
+        for (q, offset) in offsets.iter_mut().enumerate() {
+            let [ex, ey, ez] = self.directions[q];
             let (y_there, mirror_y) = step(y, ey, self.n_cells[1], self.sides);
             let (z_there, mirror_z) = step(z, ez, self.n_cells[2], self.levels);
             let mut slot = q;
-            if mirror_y {
-                slot = mirrored(&L::DIRECTIONS, slot, 1);
+            for (mirror, mirrored) in [mirror_y, mirror_z].into_iter().zip(&self.mirrored) {
+                if mirror {
+                    slot = usize::from(mirrored[slot]);
+                }
             }
-            if mirror_z {
-                slot = mirrored(&L::DIRECTIONS, slot, 2);
-            }
-            offsets[q] = self.row(slot, y_there, z_there).wrapping_add_signed(isize::from(ex));
+            *offset = self.row(slot, y_there, z_there).wrapping_add_signed(isize::from(ex));
         }
-        offsets
     }
 }
 
 /// From `place` one step along `direction` on an axis of `n` rows: where it ends, and whether it was mirrored.
-#[inline(always)]
 fn step(place: usize, direction: i8, n: usize, edge: Edge) -> (usize, bool) {
     match direction {
         1 if place + 1 == n => match edge {
@@ -159,32 +206,50 @@ pub(crate) const fn write_direction(parity: Parity, slot: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::stencil::D3Q19;
+    use super::super::stencil::{D3Q19, Stencil};
+    use super::super::stencil27::D3Q27;
     use super::*;
     use std::collections::BTreeSet;
 
-    #[test]
-    fn every_address_belongs_to_one_cell() {
-        for (sides, levels) in
-            [(Edge::Periodic, Edge::Slip), (Edge::Slip, Edge::Slip), (Edge::Slip, Edge::Periodic)]
-        {
-            for n_cells in [[5, 4, 3], [4, 1, 2], [4, 2, 1]] {
-                let layout = Layout::new(n_cells, 19, sides, levels);
-                for parity in [Parity::Even, Parity::Odd] {
-                    let mut seen = BTreeSet::new();
-                    for row in 0..layout.n_rows() {
-                        for offset in layout.addresses::<D3Q19, 19>(parity, row) {
-                            for x in 0..n_cells[0] {
-                                assert!(offset + x < layout.n_values());
-                                assert!(
-                                    seen.insert(offset + x),
-                                    "{parity:?} {n_cells:?} row {row} x {x}"
-                                );
-                            }
-                        }
+    fn each_once<L: Stencil<Q>, const Q: usize>(n_cells: [usize; 3], sides: Edge, levels: Edge) {
+        let layout = Layout::new(n_cells, &L::DIRECTIONS, sides, levels);
+        for parity in [Parity::Even, Parity::Odd] {
+            let mut seen = BTreeSet::new();
+            for row in 0..layout.n_rows() {
+                let [y, z] = layout.place(row);
+                let addresses: [usize; Q] = layout.addresses(parity, y, z);
+                for offset in addresses {
+                    for x in 0..n_cells[0] {
+                        assert!(offset + x < layout.n_values());
+                        assert!(
+                            seen.insert(offset + x),
+                            "{parity:?} {n_cells:?} y {y} z {z} x {x}"
+                        );
                     }
                 }
             }
         }
+    }
+
+    #[test]
+    fn every_address_belongs_to_one_cell() {
+        use Edge::{Periodic, Slip};
+        for (sides, levels) in
+            [(Periodic, Slip), (Slip, Slip), (Slip, Periodic), (Periodic, Periodic)]
+        {
+            for n_cells in [[5, 4, 3], [4, 1, 2], [4, 2, 1], [7, 3, 4]] {
+                each_once::<D3Q19, 19>(n_cells, sides, levels);
+                each_once::<D3Q27, 27>(n_cells, sides, levels);
+            }
+        }
+    }
+
+    #[test]
+    fn rows_inside_are_reached_as_rows_at_the_sides_are() {
+        let layout = Layout::new([6, 5, 4], &D3Q27::DIRECTIONS, Edge::Slip, Edge::Periodic);
+        let quick: [usize; 27] = layout.addresses(Parity::Odd, 2, 1);
+        let mut slow = [0; 27];
+        layout.addresses_at_sides(2, 1, &mut slow);
+        assert_eq!(quick, slow);
     }
 }

@@ -44,7 +44,8 @@ pub(crate) unsafe fn read_row<S: Simd, L: Stencil<Q>, const Q: usize>(
     row: usize,
     state: &mut RowState,
 ) {
-    let addresses = view.layout.addresses::<L, Q>(view.parity, row);
+    let [y, z] = view.layout.place(row);
+    let addresses: [usize; Q] = view.layout.addresses(view.parity, y, z);
     let mut x = 0;
     while x < view.layout.n_cells[0] {
         let mut populations = [S::splat(0.0); Q];
@@ -75,7 +76,7 @@ pub(crate) unsafe fn read_cells<S: Simd, L: Stencil<Q>, const Q: usize>(
 ) -> [[f32; 8]; 4] {
     let mut lanes = [[0.0; MAXIMUM_LANES]; Q];
     for (lane, [x, y, z]) in cells.iter().enumerate() {
-        let addresses = view.layout.addresses::<L, Q>(view.parity, z * view.layout.n_cells[1] + y);
+        let addresses: [usize; Q] = view.layout.addresses(view.parity, *y, *z);
         for slot in 0..Q {
             // SAFETY: a cell of the grid.
             lanes[read_direction(view.parity, slot)][lane] =
@@ -115,7 +116,8 @@ pub(crate) unsafe fn write_row<S: Simd, L: Stencil<Q>, const Q: usize>(
     row: usize,
     state: &RowState,
 ) {
-    let addresses = view.layout.addresses::<L, Q>(Parity::Even, row);
+    let [y, z] = view.layout.place(row);
+    let addresses: [usize; Q] = view.layout.addresses(Parity::Even, y, z);
     let n = view.layout.n_cells[0];
     let mut x = 0;
     while x < n {

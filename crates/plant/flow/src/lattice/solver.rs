@@ -88,7 +88,7 @@ impl Lattice {
             Ground::Periodic => Edge::Periodic,
             Ground::Slip | Ground::WallStress { .. } => Edge::Slip,
         };
-        let layout = Layout::new(settings.n_cells, kernel.n_populations, sides, levels);
+        let layout = Layout::new(settings.n_cells, kernel.directions, sides, levels);
         let refused =
             SettingsError::Memory { n_cells: settings.cells(), bytes: 4 * layout.n_values() };
         let memory = Memory::zeroed(layout.n_values()).ok_or(refused)?;

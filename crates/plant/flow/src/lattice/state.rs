@@ -118,7 +118,7 @@ impl Lattice {
 
     fn header(&self) -> [u64; 5] {
         let [x, y, z] = self.layout.n_cells.map(|n| n as u64);
-        [VERSION, x, y, z, self.kernel.n_populations as u64]
+        [VERSION, x, y, z, self.kernel.directions.len() as u64]
     }
 }
 

@@ -59,31 +59,6 @@ pub(crate) const fn opposite(q: usize) -> usize {
     }
 }
 
-/// Index of direction `q` mirrored along `axis`.
-pub(crate) const fn mirrored<const Q: usize>(
-    directions: &[[i8; 3]; Q],
-    q: usize,
-    axis: usize,
-) -> usize {
-    let mut other = 0;
-    while other < Q {
-        let mut same = true;
-        let mut a = 0;
-        while a < 3 {
-            let sign = if a == axis { -1 } else { 1 };
-            if directions[other][a] != sign * directions[q][a] {
-                same = false;
-            }
-            a += 1;
-        }
-        if same {
-            return other;
-        }
-        other += 1;
-    }
-    q
-}
-
 /// Rest, faces and edges of the cube.
 pub(crate) struct D3Q19;
 
@@ -190,42 +165,23 @@ impl Stencil<19> for D3Q19 {
         let m_xxzz = uxx.mul_add(full_zz, uzz.mul_add(k_xx, (u2x * u2z).mul_add(sxz, base_xz)));
         let m_yyzz = uyy.mul_add(full_zz, uzz.mul_add(k_yy, (u2y * u2z).mul_add(syz, base_yz)));
         // The inverse of the moments: edges first, faces and rest from what the edges leave.
-        let (even, odd) = (m_xxyy + m_xy, m_xyy + m_xxy);
-        let (f7, f8) = (quarter * (even + odd), quarter * (even - odd));
-        let (even, odd) = (m_xxyy - m_xy, m_xyy - m_xxy);
-        let (f9, f10) = (quarter * (even + odd), quarter * (even - odd));
-        let (even, odd) = (m_xxzz + m_xz, m_xzz + m_xxz);
-        let (f11, f12) = (quarter * (even + odd), quarter * (even - odd));
-        let (even, odd) = (m_xxzz - m_xz, m_xzz - m_xxz);
-        let (f13, f14) = (quarter * (even + odd), quarter * (even - odd));
-        let (even, odd) = (m_yyzz + m_yz, m_yzz + m_yyz);
-        let (f15, f16) = (quarter * (even + odd), quarter * (even - odd));
-        let (even, odd) = (m_yyzz - m_yz, m_yzz - m_yyz);
-        let (f17, f18) = (quarter * (even + odd), quarter * (even - odd));
-        let (even_x, odd_x) = (m_xx - m_xxyy - m_xxzz, jx - m_xyy - m_xzz);
-        let (even_y, odd_y) = (m_yy - m_xxyy - m_yyzz, jy - m_xxy - m_yzz);
-        let (even_z, odd_z) = (m_zz - m_xxzz - m_yyzz, jz - m_xxz - m_yyz);
+        let [f7, f8] = pair(quarter, m_xxyy + m_xy, m_xyy + m_xxy);
+        let [f9, f10] = pair(quarter, m_xxyy - m_xy, m_xyy - m_xxy);
+        let [f11, f12] = pair(quarter, m_xxzz + m_xz, m_xzz + m_xxz);
+        let [f13, f14] = pair(quarter, m_xxzz - m_xz, m_xzz - m_xxz);
+        let [f15, f16] = pair(quarter, m_yyzz + m_yz, m_yzz + m_yyz);
+        let [f17, f18] = pair(quarter, m_yyzz - m_yz, m_yzz - m_yyz);
+        let [f1, f2] = pair(half, m_xx - m_xxyy - m_xxzz, jx - m_xyy - m_xzz);
+        let [f3, f4] = pair(half, m_yy - m_xxyy - m_yyzz, jy - m_xxy - m_yzz);
+        let [f5, f6] = pair(half, m_zz - m_xxzz - m_yyzz, jz - m_xxz - m_yyz);
         let rest = excess - (m_xx + m_yy + m_zz) + (m_xxyy + m_xxzz + m_yyzz);
-        [
-            rest,
-            half * (even_x + odd_x),
-            half * (even_x - odd_x),
-            half * (even_y + odd_y),
-            half * (even_y - odd_y),
-            half * (even_z + odd_z),
-            half * (even_z - odd_z),
-            f7,
-            f8,
-            f9,
-            f10,
-            f11,
-            f12,
-            f13,
-            f14,
-            f15,
-            f16,
-            f17,
-            f18,
-        ]
+        [rest, f1, f2, f3, f4, f5, f6, f7, f8, f9, f10, f11, f12, f13, f14, f15, f16, f17, f18]
     }
+}
+
+/// Populations along a direction and against it from what they have in common and what they differ by.
+#[inline(always)]
+fn pair<S: Simd>(share: S, even: S, odd: S) -> [S; 2] {
+    let common = share * even;
+    [share.mul_add(odd, common), share.sub_from(odd, common)]
 }

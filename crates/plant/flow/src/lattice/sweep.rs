@@ -5,7 +5,7 @@
 //! exactly one cell in a step of either parity (a test of [`Layout`] shows it), a halo value to exactly one row's
 //! end, and each row to exactly one thread.
 
-use super::collision::{Relaxation, collide};
+use super::collision::{Relaxation, collide, relaxation_rate};
 use super::ends::{self, RowEnds};
 use super::forces::ForceBlock;
 use super::layout::{Layout, Parity, read_direction, write_direction};
@@ -57,14 +57,14 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
 ) {
     let first = share.rows.start;
     let mut start = first;
+    let [mut y, mut z] = step.layout.place(first);
     while start < share.rows.end {
         let n = (share.rows.end - start).min(S::LANES);
         let mut addresses = [[0; Q]; MAXIMUM_LANES];
         for (index, address) in addresses[..n].iter_mut().enumerate() {
-            let row = start + index;
-            *address = step.layout.addresses::<L, Q>(step.parity, row);
-            let forced = gather_forces(step, &share.wall, &mut share.force, first, row);
-            let [_, z] = step.layout.place(row);
+            *address = step.layout.addresses(step.parity, y, z);
+            let number = start + index - first;
+            let forced = gather_forces(step, &share.wall, &mut share.force, number, [y, z]);
             // SAFETY: handed through.
             unsafe {
                 match step.parity {
@@ -84,6 +84,10 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
                     ),
                 }
             }
+            y += 1;
+            if y == step.layout.n_cells[1] {
+                (y, z) = (0, z + 1);
+            }
         }
         // SAFETY: handed through; these rows' cells are done.
         unsafe { ends::close::<S, L, Q>(step, &addresses[..n], start - first, &mut share.ends) };
@@ -91,17 +95,18 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
     }
 }
 
-/// On return `force` holds the force density on the cells of `row` in the range that is given back, and perhaps around it.
+/// On return `force` holds the force density on the cells of a row in the range that is given back, and perhaps around it.
+///
+/// It is the row at (`y`, `z`), number `number` of the thread's rows.
 #[inline(always)]
 fn gather_forces(
     step: &Step<'_>,
     wall: &[Vec<f32>; 2],
     force: &mut [Vec<f32>; 3],
-    first: usize,
-    row: usize,
+    number: usize,
+    [y, z]: [usize; 2],
 ) -> Range<usize> {
     let n = step.layout.n_cells[0];
-    let [y, z] = step.layout.place(row);
     let at_wall = z == 0 && !wall[0].is_empty();
     let everywhere = at_wall || step.acceleration != [0.0; 3];
     let mut range = if everywhere { 0..n } else { n..0 };
@@ -121,7 +126,7 @@ fn gather_forces(
         component[range.clone()].fill(value);
     }
     if at_wall {
-        let start = (row - first) * step.layout.row_stride;
+        let start = number * step.layout.row_stride;
         for (component, wall) in force.iter_mut().zip(wall) {
             for (value, wall) in component[..n].iter_mut().zip(&wall[start..start + n]) {
                 *value += wall;
@@ -227,7 +232,9 @@ unsafe fn vector<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const 
         } else {
             None
         };
-        L::populations(&collide(&L::moments(&populations), &relaxation, force))
+        let before = L::moments(&populations);
+        let rate = relaxation_rate(&before, &relaxation);
+        L::populations(&collide(&before, rate, force))
     }
 }
 
