@@ -3,7 +3,9 @@
 use super::document::{Entry, Node, Sources, Value};
 use super::error::{Problem, ProblemKind};
 use super::keys::{self, CONTROLS};
-use super::section::{Findings, Section, list, nearest};
+use super::section::{Findings, Section, list};
+use super::spelling::nearest;
+use super::table::Table;
 use farm::case::{
     Case, Control, Flow, Ground, Helix, Output, Placement, Pulse, Run, Sense, Sides, Time, Wind,
 };
@@ -41,7 +43,7 @@ fn case_of(root: &Section) -> Case {
 
 impl<'a> Section<'a> {
     /// The section of a required table; when it is missing, only that is noted, not each of its keys.
-    fn section_or_missing(&self, key: &str, table: &'static keys::Table) -> Option<Section<'a>> {
+    fn section_or_missing(&self, key: &str, table: &'static Table) -> Option<Section<'a>> {
         let is_table = matches!(self.entry(key)?.node.value, Value::Table(_));
         let section = self.section(key, table);
         is_table.then_some(section)
@@ -150,7 +152,7 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
         }
         runs.push(Run { name, compare_with, control });
     }
-    for (section, run) in sections.iter().zip(&runs) {
+    for (index, (section, run)) in sections.iter().zip(&runs).enumerate() {
         let Some(other) = &run.compare_with else { continue };
         if *other == run.name {
             let kind = ProblemKind::ComparedWithItself { name: run.name.clone() };
@@ -166,6 +168,11 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
             };
             let fix = nearest(other, names()).map(|name| format!("did you mean \"{name}\"?"));
             section.findings().note(section.span_of("compare_with"), kind, fix);
+        } else if !runs[..index].iter().any(|run| run.name == *other) {
+            let kind =
+                ProblemKind::ComparedWithLater { name: run.name.clone(), other: other.clone() };
+            let fix = format!("put [[run]] `{other}` before");
+            section.findings().note(section.span_of("compare_with"), kind, Some(fix));
         }
     }
     runs

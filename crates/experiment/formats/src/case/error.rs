@@ -227,6 +227,14 @@ pub enum ProblemKind {
         /// The run.
         name: String,
     },
+    /// A run compared with one that is made after it.
+    #[error("run `{name}` is compared with `{other}`, which comes after it")]
+    ComparedWithLater {
+        /// The run.
+        name: String,
+        /// The later one.
+        other: String,
+    },
     /// Nobody is there.
     #[error("run `{name}` has no turbine left: every one is absent")]
     NobodyThere {
@@ -259,6 +267,7 @@ impl ProblemKind {
             Self::NothingAnalysed { .. } => "too short",
             Self::StartsTooLate { .. } => "too late",
             Self::ComparedWithItself { .. } => "itself",
+            Self::ComparedWithLater { .. } => "comes later",
             Self::NobodyThere { .. } => "nobody there",
             Self::Override { .. } => "this override",
         };

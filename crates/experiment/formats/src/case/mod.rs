@@ -9,6 +9,8 @@ mod error;
 mod keys;
 mod reference;
 mod section;
+mod spelling;
+mod table;
 mod write;
 
 pub use error::{CaseError, Problem, ProblemKind};

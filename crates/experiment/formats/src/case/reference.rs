@@ -1,8 +1,7 @@
 //! The table of keys as a page for people and as a schema for editors.
 
-use super::keys::{
-    CONTROLS, Default, FLOW, GROUND, Key, Kind, OUTPUT, ROOT, RUN, TIME, TURBINE, Table, WIND,
-};
+use super::keys::{CONTROLS, FLOW, GROUND, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND};
+use super::table::{Default, Key, Kind, Table};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -85,7 +84,7 @@ fn schema_of(table: &Table) -> Map<String, Value> {
 }
 
 fn schema_of_key(key: &Key) -> Value {
-    let number = |range: super::keys::Range| {
+    let number = |range: super::table::Range| {
         let low = if range.open { "exclusiveMinimum" } else { "minimum" };
         json!({ "type": "number", low: range.low, "maximum": range.high })
     };

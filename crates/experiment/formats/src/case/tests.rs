@@ -121,6 +121,11 @@ fn errors_name_file_line_key_and_fix() {
         ),
         ("= \"baseline\"\ncontrol", "= \"helix\"\ncontrol", "run `helix` is compared with itself"),
         (
+            "[[run]]\nname = \"baseline\"",
+            "[[run]]\nname = \"baseline\"\ncompare_with = \"helix\"",
+            "small.toml:19: run `baseline` is compared with `helix`, which comes after it; put [[run]] `helix` before",
+        ),
+        (
             "4.0, strouhal",
             "14, strouhal",
             "`run.helix.control.T1.amplitude_deg` = 14 is out of range: 0 <= amplitude_deg <= 10 deg",
@@ -288,10 +293,14 @@ fn every_default_of_the_table_is_what_the_reader_uses() {
     let written = write(&case);
     for table in [&keys::WIND, &keys::FLOW, &keys::OUTPUT] {
         for key in table.keys {
-            let keys::Default::Value(default) = key.default else { continue };
+            let table::Default::Value(default) = key.default else { continue };
             let stated =
                 format!("{}.{}={default}", table.heading.trim_matches(['[', ']']), key.name);
-            assert_eq!(parse("written", &written, &[stated.clone()]).unwrap(), case, "{stated}");
+            assert_eq!(
+                parse("written", &written, std::slice::from_ref(&stated)).unwrap(),
+                case,
+                "{stated}"
+            );
         }
     }
 }
