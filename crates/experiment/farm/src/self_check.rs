@@ -55,9 +55,9 @@ impl SelfCheck {
 }
 
 /// Domain of the check, in diameters: upstream, downstream, width and height.
-const EXTENT: [f64; 4] = [2.0, 1.5, 6.0, 6.0];
+const EXTENT: [f64; 4] = [3.0, 3.0, 6.0, 6.0];
 /// Time for the near wake to settle, and time averaged after it (diameters over wind speed).
-const SETTLING: f64 = 5.0;
+const SETTLING: f64 = 7.0;
 const AVERAGING: f64 = 1.0;
 
 /// Checks `model` in the steady speed of `wind` on cells of `spacing` (m) and steps of `interval` (s), rotor speed held
