@@ -13,5 +13,6 @@ pub mod records;
 pub mod turbine_file;
 pub mod turbulence_box;
 pub mod vtk;
+pub mod windio;
 
 pub use atomic::FileError;

@@ -5,7 +5,7 @@ use crate::aero::blade_element::{self, Annulus, Inflow, Theory};
 use crate::{Definition, Polar};
 use std::f64::consts::TAU;
 
-/// Rings of air that a blade is cut into.
+/// Rings of air that a blade is cut into; eight times as many change power by less than 0.1 %.
 const N_ELEMENTS: usize = 80;
 /// Positions in a turn over which a tilted rotor is averaged.
 const N_AZIMUTHS: usize = 8;
@@ -232,3 +232,6 @@ fn add(sum: &mut Inflow, inflow: &Inflow, share: f64) {
     sum.normal_coefficient += share * inflow.normal_coefficient;
     sum.tangential_coefficient += share * inflow.tangential_coefficient;
 }
+
+#[cfg(test)]
+mod tests;

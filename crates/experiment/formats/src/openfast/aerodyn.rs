@@ -9,10 +9,12 @@ pub(super) type Aerodynamics = (Blade, Airfoils, Vec<[f64; 3]>);
 
 pub(super) fn read(deck: &Deck, source: &Source) -> Result<Aerodynamics, TurbineFileError> {
     let count = deck.value("NumAFfiles")?.count()?;
-    let columns = ["InCol_Alfa", "InCol_Cl", "InCol_Cd", "InCol_Cm"];
-    let columns = columns.map(|key| column(deck, key));
-    let [alfa, lift, drag, moment] = columns;
-    let columns = [alfa?, lift?, drag?, moment?];
+    let columns = [
+        column(deck, "InCol_Alfa")?,
+        column(deck, "InCol_Cl")?,
+        column(deck, "InCol_Cd")?,
+        column(deck, "InCol_Cm")?,
+    ];
     let files = deck.list("AFNames", count)?;
     let polars: Vec<PolarTable> =
         files.iter().map(|file| polar(&file.deck()?, &columns)).collect::<Result<_, _>>()?;

@@ -193,11 +193,15 @@ impl Deck {
             column_index(columns, first).map(|_| (index, words))
         });
         let (skipped, head) = head.unwrap_or_else(|| (0, columns.to_vec()));
+        let starts_number = |words: &Vec<&str>| words.first().is_some_and(|word| is_number(word));
+        // Blank lines and remarks may stand between rows.
+        let is_remark = |words: &Vec<&str>| words.first().is_none_or(|word| word.starts_with('!'));
         let rows: Vec<(usize, Vec<&str>)> = below[skipped..]
             .iter()
             .map(|line| (line.number, words(line)))
-            .skip_while(|(_, words)| !words.first().is_some_and(|word| is_number(word)))
-            .take_while(|(_, words)| words.first().is_some_and(|word| is_number(word)))
+            .skip_while(|(_, words)| !starts_number(words))
+            .take_while(|(_, words)| starts_number(words) || is_remark(words))
+            .filter(|(_, words)| starts_number(words))
             .take(count)
             .collect();
         let first_line = self.lines[start].number;

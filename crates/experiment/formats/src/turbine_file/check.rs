@@ -1,12 +1,11 @@
 //! From the file's figures to a turbine in SI, with every figure that cannot be named.
 
+use super::controller::{self, controller_of, from_rpm};
 use super::document::{self, Document};
 use super::error::{Place, Step, TurbineFileError};
 use super::{TurbineFile, document as file};
 use basis::Vector3;
 use basis::blades::MAXIMUM_BLADES;
-use control::baseline::{Constants, MinimumPitch, PitchGains, SetPointSmoothing, TorqueGains};
-use std::f64::consts::PI;
 use turbine::actuators::PitchActuator;
 use turbine::definition::{
     BladeSection, BladeStation, BladeStructure, Definition, DriveTrain, Hub, Mode, Nacelle,
@@ -26,7 +25,7 @@ const END_TOLERANCE: f64 = 1e-4;
 pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> {
     let missing = |group: &'static str| {
         let fix =
-            format!("add [{group}]; `wakemix turbine show` prints a complete file to compare with");
+            format!("add [{group}]; `wakemix turbine show nrel-5mw --file` prints a complete one");
         place.error(&[Key(group)], format!("a group [{group}]"), "none", fix)
     };
     let rotor = document.rotor.as_ref().ok_or_else(|| missing("rotor"))?;
@@ -37,7 +36,7 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
     let nacelle = document.nacelle.as_ref().ok_or_else(|| missing("nacelle"))?;
     let drive_train = document.drive_train.as_ref().ok_or_else(|| missing("drive_train"))?;
     let actuator = document.pitch_actuator.as_ref().ok_or_else(|| missing("pitch_actuator"))?;
-    let controller = document.controller.as_ref().ok_or_else(|| missing("controller"))?;
+    let controller_group = document.controller.as_ref().ok_or_else(|| missing("controller"))?;
     let airfoils = document.airfoils.as_ref().ok_or_else(|| missing("airfoils"))?;
     if !(1..=MAXIMUM_BLADES).contains(&document.n_blades) {
         return Err(place.error(
@@ -62,12 +61,13 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         nacelle: nacelle_of(nacelle, place)?,
         drive_train: drive_train_of(drive_train, place)?,
         pitch_actuator: actuator_of(actuator, place)?,
-        rated_power: 1e3 * controller.rated_power_kw,
-        rated_rotor_speed: from_rpm(controller.rated_rotor_speed_rpm),
+        rated_power: 1e3 * controller_group.rated_power_kw,
+        rated_rotor_speed: from_rpm(controller_group.rated_rotor_speed_rpm),
     };
-    check_controller(controller, place)?;
+    controller::check(controller_group, place)?;
     let radius = definition.rotor_radius();
-    let controller_constants = controller_of(controller, radius, drive_train.generator_efficiency);
+    let controller_constants =
+        controller_of(controller_group, radius, drive_train.generator_efficiency);
     let sources = [
         ("rotor", &rotor.source),
         ("blade", &blade.source),
@@ -77,7 +77,7 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         ("nacelle", &nacelle.source),
         ("drive_train", &drive_train.source),
         ("pitch_actuator", &actuator.source),
-        ("controller", &controller.source),
+        ("controller", &controller_group.source),
         ("airfoils", &airfoils.source),
     ];
     for (group, source) in sources {
@@ -97,70 +97,6 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         controller: controller_constants,
         sources: sources.map(|(group, source)| (group.to_owned(), source.clone())).into(),
     })
-}
-
-fn from_rpm(speed: f64) -> f64 {
-    speed * PI / 30.0
-}
-
-impl Place<'_> {
-    fn within(&self, path: &[Step], value: f64, low: f64, high: f64, unit: &str) -> Checked<()> {
-        if value.is_finite() && (low..=high).contains(&value) {
-            return Ok(());
-        }
-        let expected = format!("{low} to {high}{unit}");
-        Err(self.error(
-            path,
-            expected,
-            value.to_string(),
-            "check figure and unit; keys without a unit are SI",
-        ))
-    }
-
-    fn positive(&self, path: &[Step], value: f64) -> Checked<()> {
-        if value.is_finite() && value > 0.0 {
-            return Ok(());
-        }
-        Err(self.error(path, "a number above zero", value.to_string(), "check figure and unit"))
-    }
-
-    fn not_negative(&self, path: &[Step], value: f64) -> Checked<()> {
-        if value.is_finite() && value >= 0.0 {
-            return Ok(());
-        }
-        Err(self.error(path, "zero or more", value.to_string(), "check figure and unit"))
-    }
-
-    /// First column of a table rises; at least `least` rows.
-    fn rising(
-        &self,
-        group: &str,
-        key: &str,
-        column: &[f64],
-        least: usize,
-        strictly: bool,
-    ) -> Checked<()> {
-        if column.len() < least {
-            return Err(self.error(
-                &[Key(group), Key(key)],
-                format!("{least} rows or more"),
-                column.len().to_string(),
-                "add rows, root or bottom first",
-            ));
-        }
-        for row in 1..column.len() {
-            let (before, here) = (column[row - 1], column[row]);
-            if !(here > before || here == before && !strictly) {
-                return Err(self.error(
-                    &[Key(group), Key(key), Row(row)],
-                    format!("a first column that rises, more than {before}"),
-                    here.to_string(),
-                    "sort the rows by their first column",
-                ));
-            }
-        }
-        Ok(())
-    }
 }
 
 fn rotor_of(rotor: &file::Rotor, place: &Place) -> Checked<RotorGeometry> {
@@ -455,107 +391,4 @@ fn actuator_of(actuator: &file::PitchActuator, place: &Place) -> Checked<PitchAc
         minimum_pitch: low.to_radians(),
         maximum_pitch: high.to_radians(),
     })
-}
-
-fn check_controller(controller: &file::Controller, place: &Place) -> Checked<()> {
-    let at = |key| [Key("controller"), Key(key)];
-    place.within(&at("rated_power_kw"), controller.rated_power_kw, 1e-3, 1e5, " kW")?;
-    place.within(
-        &at("rated_rotor_speed_rpm"),
-        controller.rated_rotor_speed_rpm,
-        0.1,
-        2000.0,
-        " rpm",
-    )?;
-    let rated = controller.rated_rotor_speed_rpm;
-    place.within(
-        &at("minimum_rotor_speed_rpm"),
-        controller.minimum_rotor_speed_rpm,
-        0.0,
-        rated,
-        " rpm",
-    )?;
-    place.within(
-        &at("optimal_tip_speed_ratio"),
-        controller.optimal_tip_speed_ratio,
-        1.0,
-        20.0,
-        "",
-    )?;
-    let positive = [
-        ("torque_gain", controller.torque_gain),
-        ("rated_torque", controller.rated_torque),
-        ("maximum_torque_rate", controller.maximum_torque_rate),
-        ("maximum_pitch_rate_deg_s", controller.maximum_pitch_rate_deg_s),
-        ("speed_filter_corner", controller.speed_filter_corner),
-    ];
-    for (key, value) in positive {
-        place.positive(&at(key), value)?;
-    }
-    place.not_negative(&at("minimum_torque"), controller.minimum_torque)?;
-    place.within(
-        &at("maximum_torque"),
-        controller.maximum_torque,
-        controller.rated_torque,
-        1e10,
-        " N m",
-    )?;
-    place.not_negative(&at("torque_proportional"), controller.torque_proportional)?;
-    place.not_negative(&at("torque_integral"), controller.torque_integral)?;
-    place.within(&at("fine_pitch_deg"), controller.fine_pitch_deg, -30.0, 30.0, "°")?;
-    let fine = controller.fine_pitch_deg;
-    place.within(&at("maximum_pitch_deg"), controller.maximum_pitch_deg, fine, 180.0, "°")?;
-    let speeds: Vec<f64> = controller.minimum_pitch.iter().map(|row| row[0]).collect();
-    place.rising("controller", "minimum_pitch", &speeds, 0, true)?;
-    let pitches: Vec<f64> = controller.pitch_gains.iter().map(|row| row[0]).collect();
-    place.rising("controller", "pitch_gains", &pitches, 1, true)?;
-    let smoothing = &controller.set_point_smoothing;
-    let at = |key| [Key("controller"), Key("set_point_smoothing"), Key(key)];
-    place.not_negative(&at("torque_shift"), smoothing.torque_shift)?;
-    place.not_negative(&at("pitch_shift"), smoothing.pitch_shift)?;
-    place.positive(&at("filter_corner"), smoothing.filter_corner)
-}
-
-/// The controller's constants in SI; `rotor_radius` (m) and `generator_efficiency` (–) stand elsewhere in the file.
-pub fn controller_of(
-    controller: &file::Controller,
-    rotor_radius: f64,
-    generator_efficiency: f64,
-) -> Constants {
-    let minimum_pitch =
-        |row: &[f64; 2]| MinimumPitch { wind_speed: row[0], pitch: row[1].to_radians() };
-    let pitch_gains = |row: &[f64; 3]| PitchGains {
-        pitch: row[0].to_radians(),
-        proportional: row[1],
-        integral: row[2],
-    };
-    Constants {
-        rotor_radius,
-        optimal_tip_speed_ratio: controller.optimal_tip_speed_ratio,
-        torque_gain: controller.torque_gain,
-        minimum_rotor_speed: from_rpm(controller.minimum_rotor_speed_rpm),
-        rated_rotor_speed: from_rpm(controller.rated_rotor_speed_rpm),
-        rated_torque: controller.rated_torque,
-        rated_power: 1e3 * controller.rated_power_kw,
-        generator_efficiency,
-        minimum_torque: controller.minimum_torque,
-        maximum_torque: controller.maximum_torque,
-        maximum_torque_rate: controller.maximum_torque_rate,
-        constant_power: controller.constant_power,
-        torque_gains: TorqueGains {
-            proportional: controller.torque_proportional,
-            integral: controller.torque_integral,
-        },
-        fine_pitch: controller.fine_pitch_deg.to_radians(),
-        minimum_pitch: controller.minimum_pitch.iter().map(minimum_pitch).collect(),
-        maximum_pitch: controller.maximum_pitch_deg.to_radians(),
-        maximum_pitch_rate: controller.maximum_pitch_rate_deg_s.to_radians(),
-        pitch_gains: controller.pitch_gains.iter().map(pitch_gains).collect(),
-        set_point_smoothing: SetPointSmoothing {
-            torque_shift: controller.set_point_smoothing.torque_shift,
-            pitch_shift: controller.set_point_smoothing.pitch_shift,
-            filter_corner: controller.set_point_smoothing.filter_corner,
-        },
-        speed_filter_corner: controller.speed_filter_corner,
-    }
 }

@@ -74,11 +74,11 @@ impl TurbineFileError {
         let place = error.span().map_or(text.len(), |span| span.start);
         let message = error.message().trim().replace('\n', "; ");
         let fix = if message.starts_with("unknown field") {
-            "correct or remove this key; `wakemix turbine show` prints a complete file to compare with"
+            "correct or remove this key; `wakemix turbine show nrel-5mw --file` prints a complete one"
         } else if message.starts_with("missing field") {
-            "add the key to this group; `wakemix turbine show` prints a complete file to compare with"
+            "add the key to this group; `wakemix turbine show nrel-5mw --file` prints a complete one"
         } else {
-            "see `wakemix turbine show` for a complete file to compare with"
+            "`wakemix turbine show nrel-5mw --file` prints a complete one"
         };
         Self::Syntax {
             file: file.to_owned(),
@@ -162,5 +162,75 @@ impl Place<'_> {
             node = Some(value);
         }
         byte
+    }
+}
+
+impl Place<'_> {
+    /// Nothing when `value` lies from `low` to `high`; `unit` follows the figures of the error.
+    pub(super) fn within(
+        &self,
+        path: &[Step],
+        value: f64,
+        low: f64,
+        high: f64,
+        unit: &str,
+    ) -> Result<(), TurbineFileError> {
+        if value.is_finite() && (low..=high).contains(&value) {
+            return Ok(());
+        }
+        let expected = format!("{low} to {high}{unit}");
+        Err(self.error(
+            path,
+            expected,
+            value.to_string(),
+            "check figure and unit; keys without a unit are SI",
+        ))
+    }
+
+    /// Nothing when `value` lies above zero.
+    pub(super) fn positive(&self, path: &[Step], value: f64) -> Result<(), TurbineFileError> {
+        if value.is_finite() && value > 0.0 {
+            return Ok(());
+        }
+        Err(self.error(path, "a number above zero", value.to_string(), "check figure and unit"))
+    }
+
+    /// Nothing when `value` does not lie below zero.
+    pub(super) fn not_negative(&self, path: &[Step], value: f64) -> Result<(), TurbineFileError> {
+        if value.is_finite() && value >= 0.0 {
+            return Ok(());
+        }
+        Err(self.error(path, "zero or more", value.to_string(), "check figure and unit"))
+    }
+
+    /// Nothing when the first `column` of a table rises, from row to row where `strictly`, and has `least` rows or more.
+    pub(super) fn rising(
+        &self,
+        group: &str,
+        key: &str,
+        column: &[f64],
+        least: usize,
+        strictly: bool,
+    ) -> Result<(), TurbineFileError> {
+        if column.len() < least {
+            return Err(self.error(
+                &[Step::Key(group), Step::Key(key)],
+                format!("{least} rows or more"),
+                column.len().to_string(),
+                "add rows, root or bottom first",
+            ));
+        }
+        for row in 1..column.len() {
+            let (before, here) = (column[row - 1], column[row]);
+            if !(here > before || here == before && !strictly) {
+                return Err(self.error(
+                    &[Step::Key(group), Step::Key(key), Step::Row(row)],
+                    format!("a first column that rises, more than {before}"),
+                    here.to_string(),
+                    "sort the rows by their first column",
+                ));
+            }
+        }
+        Ok(())
     }
 }

@@ -1,17 +1,18 @@
 //! Turbines in the project's own format: TOML, degrees and rpm where the key says so, a source for every group of figures.
 
 mod check;
+mod controller;
 mod document;
 mod error;
 mod write;
 
-pub use check::controller_of;
+pub use controller::controller_of;
 pub use document::{
     Airfoils, Blade, BladeStructure, Controller, Document, DriveTrain, Hub, Mode, Nacelle,
     PitchActuator, PolarTable, Rotor, SetPointSmoothing, Station, Tower, Unsteady,
 };
 pub use error::TurbineFileError;
-pub use write::write;
+pub use write::{Written, write};
 
 use control::baseline::Constants;
 use std::fs;

@@ -5,8 +5,18 @@ use super::document::{
     PitchActuator, PolarTable, Rotor, Tower, Unsteady,
 };
 
-/// The text of `document`, figures to seven digits; a comment stands where a group is missing.
-pub fn write(document: &Document) -> String {
+/// A turbine file as text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The text.
+    pub text: String,
+    /// Groups and keys that the document does not hold and a turbine needs; comments stand in their places.
+    pub missing: Vec<String>,
+}
+
+/// The text of `document`, figures to seven digits. Groups that are absent, figures that are not a number and tables
+/// without rows (but for `controller.minimum_pitch`, which may be empty) are missing.
+pub fn write(document: &Document) -> Written {
     let mut out = Text::default();
     out.line(&format!("# {}", document.title));
     out.line("# SI units unless the key says otherwise. Every group names its source.");
@@ -30,37 +40,57 @@ pub fn write(document: &Document) -> String {
     out.group("pitch_actuator", &document.pitch_actuator, pitch_actuator);
     out.group("controller", &document.controller, controller);
     out.group("airfoils", &document.airfoils, airfoils);
-    out.0
+    Written { text: out.text, missing: out.missing }
 }
 
 #[derive(Default)]
-struct Text(String);
+struct Text {
+    text: String,
+    group: &'static str,
+    missing: Vec<String>,
+}
 
 impl Text {
     fn line(&mut self, line: &str) {
-        self.0.push_str(line.trim_end());
-        self.0.push('\n');
+        self.text.push_str(line.trim_end());
+        self.text.push('\n');
     }
 
     fn text(&mut self, key: &str, text: &str) {
         self.line(&format!("{key} = {}", quoted(text)));
     }
 
+    /// A comment where `key` should stand, with what is known of it.
+    fn missing(&mut self, key: &str, known: &str) {
+        self.missing.push(format!("{}.{key}", self.group));
+        self.line(&format!("# {key} = {known}  # not in the source; complete by hand"));
+    }
+
     fn number(&mut self, key: &str, value: f64, comment: &str) {
+        if !value.is_finite() {
+            return self.missing(key, "?");
+        }
         let comment = if comment.is_empty() { String::new() } else { format!("  # {comment}") };
         self.line(&format!("{key} = {}{comment}", number(value)));
     }
 
-    fn group<Group>(&mut self, name: &str, group: &Option<Group>, write: fn(&mut Self, &Group)) {
+    fn group<Group>(
+        &mut self,
+        name: &'static str,
+        group: &Option<Group>,
+        write: fn(&mut Self, &Group),
+    ) {
         self.line("");
+        self.group = name;
         match group {
             Some(group) => {
                 self.line(&format!("[{name}]"));
                 write(self, group);
             }
-            None => self.line(&format!(
-                "# [{name}] is not in the source of this file; complete it by hand."
-            )),
+            None => {
+                self.missing.push(name.to_owned());
+                self.line(&format!("# [{name}] is not in the source; complete by hand"));
+            }
         }
     }
 
@@ -72,6 +102,9 @@ impl Text {
     ) {
         let rows: Vec<Vec<String>> =
             rows.into_iter().map(|row| row.into_iter().collect()).collect();
+        if rows.is_empty() && key != "minimum_pitch" {
+            return self.missing(key, "[]");
+        }
         self.line(&format!("{key} = ["));
         let mut widths: Vec<usize> = columns.iter().map(|name| name.chars().count()).collect();
         for row in &rows {
@@ -102,6 +135,9 @@ impl Text {
     }
 
     fn mode(&mut self, key: &str, mode: &Mode) {
+        if !mode.coefficients.iter().chain([&mode.damping_ratio]).all(|value| value.is_finite()) {
+            return self.missing(key, "{ coefficients = [?], damping_ratio = ? }");
+        }
         let coefficients: Vec<String> = mode.coefficients.iter().map(|c| number(*c)).collect();
         let damping = number(mode.damping_ratio);
         let coefficients = coefficients.join(", ");
@@ -250,12 +286,16 @@ fn controller(out: &mut Text, controller: &Controller) {
     out.number("maximum_pitch_rate_deg_s", controller.maximum_pitch_rate_deg_s, "");
     out.number("speed_filter_corner", controller.speed_filter_corner, "rad/s");
     let smoothing = &controller.set_point_smoothing;
-    out.line(&format!(
-        "set_point_smoothing = {{ torque_shift = {}, pitch_shift = {}, filter_corner = {} }}",
-        number(smoothing.torque_shift),
-        number(smoothing.pitch_shift),
-        number(smoothing.filter_corner),
-    ));
+    let shifts = [smoothing.torque_shift, smoothing.pitch_shift, smoothing.filter_corner];
+    let [torque, pitch, corner] =
+        shifts.map(|value| if value.is_finite() { number(value) } else { "?".to_owned() });
+    let text =
+        format!("{{ torque_shift = {torque}, pitch_shift = {pitch}, filter_corner = {corner} }}");
+    if shifts.iter().all(|value| value.is_finite()) {
+        out.line(&format!("set_point_smoothing = {text}"));
+    } else {
+        out.missing("set_point_smoothing", &text);
+    }
     let rows = controller.minimum_pitch.iter().map(numbers);
     out.table("minimum_pitch", &["wind_speed", "pitch_deg"], rows);
     let columns = ["pitch_deg", "proportional_s", "integral"];

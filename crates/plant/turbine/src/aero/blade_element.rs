@@ -141,6 +141,9 @@ struct Trial {
 impl<Section: Fn(f64) -> SectionCoefficients> Ring<'_, Section> {
     /// Inflow angle (rad) in the true frame, of one in the frame in which both winds are positive.
     fn true_angle(&self, angle: f64) -> f64 {
+        if self.axial > 0.0 && self.tangential > 0.0 {
+            return angle;
+        }
         let (sine, cosine) = angle.sin_cos();
         (sine * self.axial.signum()).atan2(cosine * self.tangential.signum())
     }

@@ -1,0 +1,115 @@
+//! The controller's constants: limits of what the file may hold, and their form in SI.
+
+use super::document::Controller;
+use super::error::{Place, Step::Key, TurbineFileError};
+use control::baseline::{Constants, MinimumPitch, PitchGains, SetPointSmoothing, TorqueGains};
+use std::f64::consts::PI;
+
+/// What the group `controller` may hold.
+pub(super) fn check(controller: &Controller, place: &Place) -> Result<(), TurbineFileError> {
+    let at = |key| [Key("controller"), Key(key)];
+    place.within(&at("rated_power_kw"), controller.rated_power_kw, 1e-3, 1e5, " kW")?;
+    place.within(
+        &at("rated_rotor_speed_rpm"),
+        controller.rated_rotor_speed_rpm,
+        0.1,
+        2000.0,
+        " rpm",
+    )?;
+    let rated = controller.rated_rotor_speed_rpm;
+    place.within(
+        &at("minimum_rotor_speed_rpm"),
+        controller.minimum_rotor_speed_rpm,
+        0.0,
+        rated,
+        " rpm",
+    )?;
+    place.within(
+        &at("optimal_tip_speed_ratio"),
+        controller.optimal_tip_speed_ratio,
+        1.0,
+        20.0,
+        "",
+    )?;
+    let positive = [
+        ("torque_gain", controller.torque_gain),
+        ("rated_torque", controller.rated_torque),
+        ("maximum_torque_rate", controller.maximum_torque_rate),
+        ("maximum_pitch_rate_deg_s", controller.maximum_pitch_rate_deg_s),
+        ("speed_filter_corner", controller.speed_filter_corner),
+    ];
+    for (key, value) in positive {
+        place.positive(&at(key), value)?;
+    }
+    place.not_negative(&at("minimum_torque"), controller.minimum_torque)?;
+    place.within(
+        &at("maximum_torque"),
+        controller.maximum_torque,
+        controller.rated_torque,
+        1e10,
+        " N m",
+    )?;
+    place.not_negative(&at("torque_proportional"), controller.torque_proportional)?;
+    place.not_negative(&at("torque_integral"), controller.torque_integral)?;
+    place.within(&at("fine_pitch_deg"), controller.fine_pitch_deg, -30.0, 30.0, "°")?;
+    let fine = controller.fine_pitch_deg;
+    place.within(&at("maximum_pitch_deg"), controller.maximum_pitch_deg, fine, 180.0, "°")?;
+    let speeds: Vec<f64> = controller.minimum_pitch.iter().map(|row| row[0]).collect();
+    place.rising("controller", "minimum_pitch", &speeds, 0, true)?;
+    let pitches: Vec<f64> = controller.pitch_gains.iter().map(|row| row[0]).collect();
+    place.rising("controller", "pitch_gains", &pitches, 1, true)?;
+    let smoothing = &controller.set_point_smoothing;
+    let at = |key| [Key("controller"), Key("set_point_smoothing"), Key(key)];
+    place.not_negative(&at("torque_shift"), smoothing.torque_shift)?;
+    place.not_negative(&at("pitch_shift"), smoothing.pitch_shift)?;
+    place.positive(&at("filter_corner"), smoothing.filter_corner)
+}
+
+/// The controller's constants in SI; `rotor_radius` (m) and `generator_efficiency` (–) stand elsewhere in the file.
+pub fn controller_of(
+    controller: &Controller,
+    rotor_radius: f64,
+    generator_efficiency: f64,
+) -> Constants {
+    let minimum_pitch =
+        |row: &[f64; 2]| MinimumPitch { wind_speed: row[0], pitch: row[1].to_radians() };
+    let pitch_gains = |row: &[f64; 3]| PitchGains {
+        pitch: row[0].to_radians(),
+        proportional: row[1],
+        integral: row[2],
+    };
+    Constants {
+        rotor_radius,
+        optimal_tip_speed_ratio: controller.optimal_tip_speed_ratio,
+        torque_gain: controller.torque_gain,
+        minimum_rotor_speed: from_rpm(controller.minimum_rotor_speed_rpm),
+        rated_rotor_speed: from_rpm(controller.rated_rotor_speed_rpm),
+        rated_torque: controller.rated_torque,
+        rated_power: 1e3 * controller.rated_power_kw,
+        generator_efficiency,
+        minimum_torque: controller.minimum_torque,
+        maximum_torque: controller.maximum_torque,
+        maximum_torque_rate: controller.maximum_torque_rate,
+        constant_power: controller.constant_power,
+        torque_gains: TorqueGains {
+            proportional: controller.torque_proportional,
+            integral: controller.torque_integral,
+        },
+        fine_pitch: controller.fine_pitch_deg.to_radians(),
+        minimum_pitch: controller.minimum_pitch.iter().map(minimum_pitch).collect(),
+        maximum_pitch: controller.maximum_pitch_deg.to_radians(),
+        maximum_pitch_rate: controller.maximum_pitch_rate_deg_s.to_radians(),
+        pitch_gains: controller.pitch_gains.iter().map(pitch_gains).collect(),
+        set_point_smoothing: SetPointSmoothing {
+            torque_shift: controller.set_point_smoothing.torque_shift,
+            pitch_shift: controller.set_point_smoothing.pitch_shift,
+            filter_corner: controller.set_point_smoothing.filter_corner,
+        },
+        speed_filter_corner: controller.speed_filter_corner,
+    }
+}
+
+/// Speed (rad/s) of one in revolutions per minute.
+pub(super) fn from_rpm(speed: f64) -> f64 {
+    speed * PI / 30.0
+}

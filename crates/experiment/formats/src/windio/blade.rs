@@ -1,0 +1,167 @@
+//! Outer shape and polars of a windIO file: airfoils at a few places, blended by relative thickness between them.
+
+use super::node::{Curve, Node};
+use crate::turbine_file::{Airfoils, Blade, PolarTable, TurbineFileError};
+use std::f64::consts::PI;
+
+/// How far a polar of the file may end from ±180° (rad); it is extended to there.
+const END_GAP: f64 = 0.02;
+
+/// What the file says of a blade.
+pub(super) struct BladeShape {
+    pub(super) shape: Blade,
+    pub(super) airfoils: Airfoils,
+    /// Root to tip along the pitch axis (m).
+    pub(super) length: f64,
+}
+
+/// An airfoil of the file with its first polar.
+struct Airfoil {
+    thickness: f64,
+    center: f64,
+    reynolds_number: f64,
+    lift: Curve,
+    drag: Curve,
+    moment: Curve,
+}
+
+pub(super) fn read(
+    shape: &Node,
+    airfoils: &Node,
+    source: &str,
+) -> Result<BladeShape, TurbineFileError> {
+    let curve = |key: &str| Curve::read(&shape.get(key)?);
+    let (chord, twist, pitch_axis) = (curve("chord")?, curve("twist")?, curve("pitch_axis")?);
+    let axis = shape.get("reference_axis")?;
+    let axis = |key: &str| Curve::read(&axis.get(key)?);
+    let (x, y, z) = (axis("x")?, axis("y")?, axis("z")?);
+    let positions = shape.get("airfoil_position")?;
+    let grid = positions.get("grid")?.numbers()?;
+    let labels = positions.get("labels")?.items()?;
+    let placed: Vec<Airfoil> =
+        labels.iter().map(|label| airfoil(label, airfoils)).collect::<Result<_, _>>()?;
+    if grid.len() != placed.len() || grid.is_empty() {
+        return Err(positions.error("as many labels as grid points", "one label per grid point"));
+    }
+    let thickness = match shape.optional("rthick") {
+        Some(node) => Some(Curve::read(&node)?),
+        None => None,
+    };
+    let mut stations = Vec::new();
+    let mut polars = Vec::new();
+    for (number, place) in chord.grid().iter().enumerate() {
+        let blend = blend_at(*place, &grid, &placed, thickness.as_ref());
+        let name = format!("station-{:02}", number + 1);
+        let (low, high) = (&placed[blend.low], &placed[blend.high]);
+        let center = low.center + blend.share * (high.center - low.center);
+        // Aerodynamic centre off the pitch axis, along the chord towards the trailing edge.
+        let offset = (center - pitch_axis.at(*place)) * chord.at(*place);
+        let (sine, cosine) = twist.at(*place).sin_cos();
+        stations.push((
+            z.at(*place) - z.at(0.0),
+            chord.at(*place),
+            twist.at(*place).to_degrees(),
+            -(x.at(*place) + offset * sine),
+            y.at(*place) + offset * cosine,
+            name.clone(),
+        ));
+        polars.push(polar(name, low, high, blend.share));
+    }
+    let length = z.last() - z.at(0.0);
+    Ok(BladeShape {
+        shape: Blade { source: source.to_owned(), stations },
+        airfoils: Airfoils {
+            source: format!("{source}, blended by relative thickness at each station"),
+            polar: polars,
+        },
+        length,
+    })
+}
+
+struct Blend {
+    low: usize,
+    high: usize,
+    share: f64,
+}
+
+/// The two airfoils around `place` and the share of the second.
+fn blend_at(place: f64, grid: &[f64], placed: &[Airfoil], thickness: Option<&Curve>) -> Blend {
+    let high = grid.partition_point(|point| *point < place).clamp(1, grid.len().max(2) - 1);
+    let (low, high) = (high - 1, high.min(grid.len() - 1));
+    let along =
+        if grid[high] > grid[low] { (place - grid[low]) / (grid[high] - grid[low]) } else { 0.0 };
+    let (thick, thin) = (placed[low].thickness, placed[high].thickness);
+    let share = match thickness {
+        Some(curve) if (thin - thick).abs() > 1e-9 => (curve.at(place) - thick) / (thin - thick),
+        _ => along,
+    };
+    Blend { low, high, share: share.clamp(0.0, 1.0) }
+}
+
+fn airfoil(label: &Node, airfoils: &Node) -> Result<Airfoil, TurbineFileError> {
+    let name = label.text()?;
+    let items = airfoils.items()?;
+    let known =
+        |item: &&Node| item.optional("name").is_some_and(|node| node.text().ok() == Some(name));
+    let item = items
+        .iter()
+        .find(known)
+        .ok_or_else(|| label.error("the name of an airfoil", "a name of the list airfoils"))?;
+    let polars = item.get("polars")?;
+    let list = polars.items()?;
+    let polar = list.first().ok_or_else(|| polars.error("at least one polar", "a polar"))?;
+    Ok(Airfoil {
+        thickness: item.number("relative_thickness")?,
+        center: item.number("aerodynamic_center")?,
+        reynolds_number: polar.number("re")?,
+        lift: full_turn(&polar.get("c_l")?)?,
+        drag: full_turn(&polar.get("c_d")?)?,
+        moment: full_turn(&polar.get("c_m")?)?,
+    })
+}
+
+/// A curve over the full turn; published ones may end a hair before it.
+fn full_turn(node: &Node) -> Result<Curve, TurbineFileError> {
+    let curve = Curve::read(node)?;
+    let grid = curve.grid();
+    let (first, last) = (grid[0], grid[grid.len() - 1]);
+    if first > -PI + END_GAP || last < PI - END_GAP {
+        return Err(node
+            .get("grid")?
+            .error("angles from -3.1416 to 3.1416 rad", "a polar over the full turn"));
+    }
+    Ok(curve)
+}
+
+/// Polar with `share` of `high` in it, at all angles that either has.
+fn polar(name: String, low: &Airfoil, high: &Airfoil, share: f64) -> PolarTable {
+    let mut angles: Vec<f64> = [low, high]
+        .iter()
+        .flat_map(|airfoil| [&airfoil.lift, &airfoil.drag, &airfoil.moment])
+        .flat_map(|curve| curve.grid().iter().copied())
+        .filter(|angle| angle.abs() < PI - END_GAP)
+        .chain([-PI, 0.0, PI])
+        .collect();
+    angles.sort_by(f64::total_cmp);
+    // Printed to four decimals of a degree, closer angles would fall together.
+    angles.dedup_by(|next, before| *next - *before < 1e-4);
+    let blend = |curve: fn(&Airfoil) -> &Curve, angle: f64| {
+        let (from, to) = (curve(low).at(angle), curve(high).at(angle));
+        from + share * (to - from)
+    };
+    let row = |angle: f64| {
+        [
+            angle.to_degrees(),
+            blend(|airfoil| &airfoil.lift, angle),
+            blend(|airfoil| &airfoil.drag, angle),
+            blend(|airfoil| &airfoil.moment, angle),
+        ]
+    };
+    let reynolds = low.reynolds_number + share * (high.reynolds_number - low.reynolds_number);
+    PolarTable {
+        name,
+        reynolds_number: Some(reynolds),
+        unsteady: None,
+        table: angles.into_iter().map(row).collect(),
+    }
+}
