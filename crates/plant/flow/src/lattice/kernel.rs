@@ -1,5 +1,6 @@
 //! The compiled loops: one entry per velocity set and instruction set, picked once when a lattice is built.
 
+use super::forces::ForceBlock;
 use super::probe::{self, RowState, View};
 use super::settings::Stencil as Set;
 use super::simd::{Backend, Portable};
@@ -12,7 +13,7 @@ use super::sweep::{self, Share, Step};
 pub(crate) struct Kernel {
     /// Directions of the populations.
     pub(crate) directions: &'static [[i8; 3]],
-    sweep: unsafe fn(&Step<'_>, &mut Share),
+    sweep: unsafe fn(&Step<'_>, &[ForceBlock], &mut Share),
     read_row: unsafe fn(&View<'_>, usize, &mut RowState),
     read_cells: unsafe fn(&View<'_>, &[[usize; 3]; 8]) -> [[f32; 8]; 4],
     write_row: unsafe fn(&View<'_>, usize, &RowState),
@@ -21,9 +22,9 @@ pub(crate) struct Kernel {
 macro_rules! kernel {
     ($vector:ty, $stencil:ty, $n:literal $(, $features:literal)?) => {{
         $(#[target_feature(enable = $features)])?
-        unsafe fn sweep(step: &Step<'_>, share: &mut Share) {
+        unsafe fn sweep(step: &Step<'_>, blocks: &[ForceBlock], share: &mut Share) {
             // SAFETY: handed through.
-            unsafe { sweep::rows::<$vector, $stencil, $n>(step, share) }
+            unsafe { sweep::rows::<$vector, $stencil, $n>(step, blocks, share) }
         }
         $(#[target_feature(enable = $features)])?
         unsafe fn read_row(view: &View<'_>, row: usize, state: &mut RowState) {
@@ -64,10 +65,10 @@ impl Kernel {
         }
     }
 
-    /// Moves the rows of `share` on by a step.
-    pub(crate) fn sweep(&self, step: &Step<'_>, share: &mut Share) {
+    /// Moves the rows of `share` on by a step, under the force densities of `blocks`.
+    pub(crate) fn sweep(&self, step: &Step<'_>, blocks: &[ForceBlock], share: &mut Share) {
         // SAFETY: shares of one step have disjoint rows, and the back-end was checked.
-        unsafe { (self.sweep)(step, share) }
+        unsafe { (self.sweep)(step, blocks, share) }
     }
 
     /// Density and velocity of row number `row`.

@@ -2,9 +2,10 @@
 
 use super::probe::RowState;
 use super::settings::{Ends, Ground, Sides};
-use super::solver::Lattice;
+use super::solver::{Lattice, Worker, own};
 use crate::WindField;
 use basis::Vector3;
+use std::sync::Mutex;
 
 impl WindField for Lattice {
     /// Trilinear between cell centres; outside the box, the nearest cell's wind.
@@ -81,7 +82,8 @@ impl Lattice {
                 }
             }
         }
-        for block in self.spreader.blocks() {
+        let worker = own(self.worker_of(y, z));
+        for block in worker.spreader.blocks() {
             if let Some(cells) = block.row(y, z) {
                 let x = block.origin[0]..block.origin[0] + block.size[0];
                 for (column, force) in velocity.iter_mut().zip(&block.force) {
@@ -114,13 +116,23 @@ impl Lattice {
         self.cell_velocities(&corners(low, high))
     }
 
+    /// The worker that the row at (`y`, `z`) belongs to.
+    fn worker_of(&self, y: usize, z: usize) -> &Mutex<Worker> {
+        let row = z * self.layout.n_cells[1] + y;
+        // Workers' rows start at worker · n_rows / n_workers, rounded down.
+        let n_workers = self.workers.len();
+        &self.workers[((row + 1) * n_workers - 1) / self.layout.n_rows()]
+    }
+
     /// Physical velocities of eight cells, component by component, in lattice units.
     pub(super) fn cell_velocities(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 3] {
         let [excess, mut u, mut v, mut w] = self.kernel.read_cells(&self.view(), cells);
         for (corner, [x, y, z]) in cells.iter().copied().enumerate() {
             let half = 0.5 / (1.0 + excess[corner]);
             let mut force = self.acceleration;
-            if let Some(block) = self.spreader.blocks().iter().find_map(|block| block.at(x, y, z)) {
+            let worker = own(self.worker_of(y, z));
+            let block = worker.spreader.blocks().iter().find_map(|block| block.at(x, y, z));
+            if let Some(block) = block {
                 for (total, value) in force.iter_mut().zip(block) {
                     *total += value;
                 }

@@ -55,7 +55,6 @@ pub struct Lattice {
     pub(super) acceleration: [f32; 3],
     outlet_stiffness: f32,
     pub(super) forces: Vec<PointForce>,
-    pub(super) spreader: Spreader,
     pub(super) n_steps: u64,
 }
 
@@ -64,6 +63,8 @@ pub(super) struct Worker {
     pub(super) share: Share,
     pub(super) inlet: Inlet,
     pub(super) wall: WallMemory,
+    /// Forces on the levels that the worker's rows are part of.
+    pub(super) spreader: Spreader,
     /// Room for a row.
     row: RowState,
     /// First bad cell of the last look and its speed.
@@ -115,7 +116,6 @@ impl Lattice {
             outlet_stiffness: (2.0 * OUTLET_PULL / (3.0_f64.sqrt() * settings.n_cells[0] as f64))
                 as f32,
             forces: Vec::new(),
-            spreader: Spreader::new(scaling, settings.n_cells),
             n_steps: 0,
             layout,
             settings,
@@ -212,16 +212,23 @@ impl Lattice {
             relaxation_times: &self.relaxation_times,
             subgrid: &self.subgrid,
             acceleration: self.acceleration,
-            blocks: self.spreader.blocks(),
             outlet_stiffness: self.outlet_stiffness,
         };
         let (inflow, n_steps) = (&*self.inflow, self.n_steps);
         self.pool.run(&|thread| {
-            let Worker { share, inlet, .. } = &mut *own(&workers[thread]);
+            let Worker { share, inlet, spreader, .. } = &mut *own(&workers[thread]);
             inlet.update(n_steps, inflow, scaling, &mut share.ends);
-            kernel.sweep(&step, share);
+            kernel.sweep(&step, spreader.blocks(), share);
         });
         self.n_steps += 1;
+    }
+
+    /// On return every worker holds its part of the forces.
+    pub(super) fn spread(&mut self) {
+        let (workers, forces) = (&self.workers, &self.forces);
+        self.pool.run(&|thread| {
+            own(&workers[thread]).spreader.spread(forces);
+        });
     }
 
     /// Looks at every `stride`-th row from `first`.
@@ -253,7 +260,7 @@ impl FlowSolver for Lattice {
         }
         self.forces.clear();
         self.forces.extend_from_slice(forces);
-        self.spreader.spread(forces);
+        self.spread();
         for _ in 0..n_steps as u64 {
             self.step();
             if self.n_steps.is_multiple_of(LOOK_STRIDE) {
@@ -278,6 +285,7 @@ impl Worker {
     ) -> Self {
         let n_rows = layout.n_rows();
         let rows = thread * n_rows / n_threads..(thread + 1) * n_rows / n_threads;
+        let levels = rows.start / layout.n_cells[1]..rows.end.div_ceil(layout.n_cells[1]);
         let n_wall_rows = match has_wall {
             true => rows.end.min(layout.n_cells[1]) - rows.start.min(layout.n_cells[1]),
             false => 0,
@@ -287,6 +295,7 @@ impl Worker {
         Self {
             inlet: Inlet::new(layout, &settings.scaling(), rows.clone()),
             wall: WallMemory::new(layout, n_wall_rows),
+            spreader: Spreader::new(settings.scaling(), settings.n_cells).on_levels(levels),
             row: RowState::new(layout.n_cells[0]),
             found: None,
             share: Share {

@@ -8,6 +8,7 @@
 use super::forces::ForceBlock;
 use super::scaling::Scaling;
 use basis::PointForce;
+use std::ops::Range;
 
 /// Where the Gaussian is cut, in smearing lengths (–): the weight there is 1.2e-4 of the peak.
 pub const REACH: f64 = 3.0;
@@ -17,6 +18,8 @@ pub const REACH: f64 = 3.0;
 pub struct Spreader {
     scaling: Scaling,
     n_cells: [usize; 3],
+    /// Levels along z whose cells are filled.
+    levels: Range<usize>,
     blocks: Vec<ForceBlock>,
     /// Cells that each point reaches.
     reaches: Vec<CellBox>,
@@ -56,12 +59,20 @@ impl Spreader {
         Self {
             scaling,
             n_cells,
+            levels: 0..n_cells[2],
             blocks: Vec::new(),
             reaches: Vec::new(),
             boxes: Vec::new(),
             weights: Default::default(),
             row: Default::default(),
         }
+    }
+
+    /// The same spreader, filling only cells on `levels` along z, with the values that they have without this: so
+    /// that threads share the work.
+    pub fn on_levels(mut self, levels: Range<usize>) -> Self {
+        self.levels = levels;
+        self
     }
 
     /// Boxes of cells, none overlapping another, that carry `forces` in lattice units.
@@ -82,8 +93,9 @@ impl Spreader {
         }
         for (index, point) in forces.iter().enumerate() {
             let reach = self.reaches[index];
-            if !reach.is_empty()
-                && let Some(block) = self.boxes.iter().position(|b| b.overlaps(&reach))
+            let filled = self.filled(&reach);
+            if !filled.is_empty()
+                && let Some(block) = self.boxes.iter().position(|b| b.overlaps(&filled))
             {
                 self.add(point, reach, block);
             }
@@ -112,11 +124,22 @@ impl Spreader {
         &self.blocks[..self.boxes.len()]
     }
 
+    /// The part of `reach` that lies on this spreader's levels.
+    fn filled(&self, reach: &CellBox) -> CellBox {
+        let mut filled = *reach;
+        filled.low[2] = filled.low[2].max(self.levels.start);
+        filled.high[2] = filled.high[2].min(self.levels.end);
+        filled
+    }
+
     /// On return `boxes` holds disjoint boxes that cover every reach.
     fn group(&mut self) {
         self.boxes.clear();
-        for reach in self.reaches.iter().filter(|reach| !reach.is_empty()) {
-            let mut joined = *reach;
+        for index in 0..self.reaches.len() {
+            let mut joined = self.filled(&self.reaches[index]);
+            if joined.is_empty() {
+                continue;
+            }
             // Growing may touch boxes that the reach alone did not: look again until none is left.
             while let Some(index) = self.boxes.iter().position(|b| b.overlaps(&joined)) {
                 joined = joined.join(&self.boxes.remove(index));
@@ -140,8 +163,11 @@ impl Spreader {
         let ForceBlock { origin, size, force: cells } = &mut self.blocks[block];
         let x = reach.low[0] - origin[0];
         let n = self.weights[0].len();
-        for (k, weight_z) in self.weights[2].iter().enumerate() {
-            let z = reach.low[2] - origin[2] + k;
+        for (level, weight_z) in (reach.low[2]..).zip(&self.weights[2]) {
+            if !self.levels.contains(&level) {
+                continue;
+            }
+            let z = level - origin[2];
             for (j, weight_y) in self.weights[1].iter().enumerate() {
                 let y = reach.low[1] - origin[1] + j;
                 let weight = (weight_z * weight_y) as f32;
@@ -314,6 +340,32 @@ mod tests {
         spreader.spread(&points[..20]);
         assert_eq!(spreader.spread(&points), first);
         assert_eq!(spreader.blocks[0].force[0].as_ptr(), storage);
+    }
+
+    #[test]
+    fn parts_together_are_the_whole() {
+        let points: Vec<_> = (0..30)
+            .map(|i| {
+                let at = f64::from(i);
+                point(200.0 + at, 3.0 * at, 100.0 + 7.0 * at, 20.0, Vector3::new(1.0, 0.3, -0.2))
+            })
+            .collect();
+        let mut whole = spreader();
+        whole.spread(&points);
+        for levels in [0..13, 13..14, 14..48] {
+            let mut part = spreader().on_levels(levels.clone());
+            part.spread(&points);
+            for (x, y, z) in (0..64 * 40 * 48).map(|i| (i % 64, i / 64 % 40, i / 64 / 40)) {
+                let value =
+                    |spreader: &Spreader| spreader.blocks().iter().find_map(|b| b.at(x, y, z));
+                if levels.contains(&z) {
+                    let zero = [0.0; 3];
+                    assert_eq!(value(&part).unwrap_or(zero), value(&whole).unwrap_or(zero));
+                } else {
+                    assert_eq!(value(&part), None);
+                }
+            }
+        }
     }
 
     #[test]

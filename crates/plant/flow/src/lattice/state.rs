@@ -91,7 +91,7 @@ impl Lattice {
             let (position, force) = (Vector3::new(x, y, z), Vector3::new(fx, fy, fz));
             self.forces.push(PointForce { position, force, smearing_length });
         }
-        self.spreader.spread(&self.forces);
+        self.spread();
         let mut bytes = Vec::with_capacity(CHUNK * size_of::<f32>());
         for worker in &self.workers {
             let mut worker = own(worker);

@@ -25,8 +25,6 @@ pub(crate) struct Step<'a> {
     pub(crate) subgrid: &'a [f32],
     /// Force density on every cell.
     pub(crate) acceleration: [f32; 3],
-    /// Force density on some cells.
-    pub(crate) blocks: &'a [ForceBlock],
     /// How the outlet pulls its pressure back to that of undisturbed air.
     pub(crate) outlet_stiffness: f32,
 }
@@ -46,13 +44,14 @@ pub(crate) struct Share {
     pub(crate) force: [Vec<f32>; 3],
 }
 
-/// Moves the rows of `share` on by a step.
+/// Moves the rows of `share` on by a step, under the force densities of `blocks`.
 ///
 /// # Safety
 /// As the module says; `S`'s instructions are there; buffers are padded as their docs say.
 #[inline(always)]
 pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
     step: &Step<'_>,
+    blocks: &[ForceBlock],
     share: &mut Share,
 ) {
     let first = share.rows.start;
@@ -64,7 +63,7 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
         for (index, address) in addresses[..n].iter_mut().enumerate() {
             *address = step.layout.addresses(step.parity, y, z);
             let number = start + index - first;
-            let forced = gather_forces(step, &share.wall, &mut share.force, number, [y, z]);
+            let forced = gather_forces(step, blocks, &share.wall, &mut share.force, number, [y, z]);
             // SAFETY: handed through.
             unsafe {
                 match step.parity {
@@ -101,6 +100,7 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
 #[inline(always)]
 fn gather_forces(
     step: &Step<'_>,
+    blocks: &[ForceBlock],
     wall: &[Vec<f32>; 2],
     force: &mut [Vec<f32>; 3],
     number: usize,
@@ -110,7 +110,7 @@ fn gather_forces(
     let at_wall = z == 0 && !wall[0].is_empty();
     let everywhere = at_wall || step.acceleration != [0.0; 3];
     let mut range = if everywhere { 0..n } else { n..0 };
-    for block in step.blocks {
+    for block in blocks {
         if block.row(y, z).is_some() {
             range.start = range.start.min(block.origin[0]);
             range.end = range.end.max(block.origin[0] + block.size[0]);
@@ -133,7 +133,7 @@ fn gather_forces(
             }
         }
     }
-    for block in step.blocks {
+    for block in blocks {
         if let Some(cells) = block.row(y, z) {
             for (component, source) in force.iter_mut().zip(&block.force) {
                 for (value, source) in
