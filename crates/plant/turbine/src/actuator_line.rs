@@ -2,6 +2,7 @@
 
 use crate::definition::{BladeStation, Definition};
 use crate::lifting_line::{OPTIMAL_WIDTH_OVER_CHORD, SmearingCorrection, Span};
+use crate::loading::{Loading, excess};
 use crate::rotor::Frame;
 use basis::Vector3;
 use std::f64::consts::PI;
@@ -20,6 +21,7 @@ pub struct ActuatorLine {
     air_density: f64,
     elements: Vec<Element>,
     correction: SmearingCorrection,
+    loading: Loading,
     definition: Arc<Definition>,
 }
 
@@ -65,6 +67,28 @@ pub struct Load {
     pub tangential: f64,
     /// Circulation, positive where lift drives the rotor (m²/s).
     pub circulation: f64,
+}
+
+/// Working memory of [`ActuatorLine::loads`]; carries nothing from one call to the next.
+#[derive(Clone, Debug)]
+pub struct Scratch {
+    circulations: Vec<f64>,
+    thrusts: Vec<f64>,
+    speeds: Vec<f64>,
+    excess: Vec<f64>,
+}
+
+impl Scratch {
+    /// For `n_blades` blades of `n_elements` elements each.
+    pub fn new(n_blades: usize, n_elements: usize) -> Self {
+        let rings = || vec![0.0; n_elements];
+        Self {
+            circulations: vec![0.0; n_blades * n_elements],
+            thrusts: rings(),
+            speeds: rings(),
+            excess: rings(),
+        }
+    }
 }
 
 impl ActuatorLine {
@@ -125,7 +149,8 @@ impl ActuatorLine {
         };
         let seen_width = smearing_length.hypot(sample_spacing / 3.0_f64.sqrt());
         let correction = SmearingCorrection::new(definition.n_blades, &span, seen_width);
-        Self { air_density, elements, correction, definition }
+        let loading = Loading::new(&span.centres, seen_width);
+        Self { air_density, elements, correction, loading, definition }
     }
 
     /// Elements of each blade, root to tip.
@@ -146,11 +171,11 @@ impl ActuatorLine {
         pitch: &[f64],
         missing: &mut [[f64; 2]],
         loads: &mut [Load],
-        circulations: &mut [f64],
+        scratch: &mut Scratch,
     ) {
         let n = self.elements.len();
-        let advance = self.mean_wind(onsets) / rotor_speed.max(1e-3);
-        let helix = self.correction.helix(advance);
+        let carried = self.mean_wind(onsets);
+        let helix = self.correction.helix(carried / rotor_speed.max(1e-3));
         for sweep in 0..=N_SWEEPS {
             for (index, (load, onset)) in loads.iter_mut().zip(onsets).enumerate() {
                 let element = &self.elements[index % n];
@@ -160,18 +185,43 @@ impl ActuatorLine {
                     tangential: onset.tangential - tangential,
                 };
                 *load = self.load(element, felt, pitch[index / n]);
-                circulations[index] = load.circulation;
+                scratch.circulations[index] = load.circulation;
             }
             if sweep == N_SWEEPS {
                 break;
             }
+            self.nonlinear_part(onsets, carried, scratch);
             for (index, missing) in missing.iter_mut().enumerate() {
-                let (axial, tangential) =
-                    self.correction.missing_velocity(helix, index / n, index % n, circulations);
+                let (axial, tangential) = self.correction.missing_velocity(
+                    helix,
+                    index / n,
+                    index % n,
+                    &scratch.circulations,
+                );
+                let axial = axial + scratch.excess[index % n];
                 let relaxation = self.elements[index % n].relaxation;
                 missing[0] += relaxation * (axial - missing[0]);
                 missing[1] += relaxation * (tangential - missing[1]);
             }
+        }
+    }
+
+    /// On return `scratch.excess` holds what momentum theory adds to the linear wake on each ring (m/s).
+    fn nonlinear_part(&self, onsets: &[Onset], carried: f64, scratch: &mut Scratch) {
+        let n = self.elements.len();
+        let Scratch { circulations, thrusts, speeds, excess: parts } = scratch;
+        let n_blades = onsets.len() / n;
+        thrusts.fill(0.0);
+        speeds.fill(0.0);
+        for (index, (onset, circulation)) in onsets.iter().zip(&*circulations).enumerate() {
+            // Lift across the wind of rotation, over the density (m⁴/s²).
+            thrusts[index % n] += circulation * onset.tangential * self.elements[index % n].width;
+            speeds[index % n] += onset.normal / n_blades as f64;
+        }
+        for (station, (part, element)) in parts.iter_mut().zip(&self.elements).enumerate() {
+            let thin = thrusts[station] / (2.0 * PI * element.radius * element.width);
+            let smeared = self.loading.smeared(station, thrusts);
+            *part = excess(speeds[station], smeared, thin, carried);
         }
     }
 

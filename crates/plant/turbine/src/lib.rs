@@ -8,6 +8,7 @@ pub mod bodies;
 pub mod definition;
 pub mod drivetrain;
 pub mod lifting_line;
+pub mod loading;
 pub mod rotor;
 pub mod steady;
 mod turbine;

@@ -1,6 +1,6 @@
 //! One turbine in the air: handed wind at its stations and commands, it turns, pitches and pushes on the air.
 
-use crate::actuator_line::{ActuatorLine, Load, Onset};
+use crate::actuator_line::{ActuatorLine, Load, Onset, Scratch};
 use crate::actuators::PitchState;
 use crate::bodies::{self, Body};
 use crate::definition::Definition;
@@ -67,12 +67,19 @@ struct Readings {
     flap_moments: PerBlade<f64>,
 }
 
+impl State {
+    /// Velocity that smearing hides from each blade element, axial and along the rotation (m/s), blade after blade.
+    pub fn missing(&self) -> &[[f64; 2]] {
+        &self.missing
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Workspace {
     stations: Vec<Vector3>,
     onsets: Vec<Onset>,
     loads: Vec<Load>,
-    circulations: Vec<f64>,
+    scratch: Scratch,
     forces: Vec<PointForce>,
 }
 
@@ -117,7 +124,7 @@ impl Turbine {
             stations: vec![Vector3::ZERO; n + bodies.len()],
             onsets: vec![Onset::default(); n],
             loads: vec![Load::default(); n],
-            circulations: vec![0.0; n],
+            scratch: Scratch::new(n_blades, N_ELEMENTS),
             forces: Vec::with_capacity(n + bodies.len()),
         };
         let drivetrain = Drivetrain {
@@ -166,9 +173,9 @@ impl Turbine {
         self.advance_pitch(interval, commands);
         self.meet(winds);
         let pitch = self.state.pitch.map(|actuator| actuator.pitch);
-        let Workspace { onsets, loads, circulations, .. } = &mut self.workspace;
+        let Workspace { onsets, loads, scratch, .. } = &mut self.workspace;
         let rotor = self.state.rotor;
-        self.line.loads(onsets, rotor.speed, &pitch, &mut self.state.missing, loads, circulations);
+        self.line.loads(onsets, rotor.speed, &pitch, &mut self.state.missing, loads, scratch);
         let readings = self.read_loads(commands);
         let after = self.drivetrain.after(
             rotor,
@@ -323,3 +330,6 @@ impl Turbine {
         stations.extend(self.bodies.iter().map(|body| body.position));
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,234 @@
+use super::*;
+use crate::Polar;
+use crate::actuators::PitchActuator;
+use crate::definition::{
+    BladeSection, BladeStation, BladeStructure, DriveTrain, Hub, Mode, Nacelle, RotorGeometry,
+    Tower, TowerProfile,
+};
+use std::f64::consts::PI;
+
+const DENSITY: f64 = 1.2;
+const INTERVAL: f64 = 0.1;
+
+/// A tilted, coned and prebent rotor of thin aerofoils, 100 m across.
+fn machine() -> Arc<Definition> {
+    let angles: Vec<f64> = (-360..=360).map(|k| f64::from(k) * PI / 360.0).collect();
+    let lift: Vec<f64> = angles.iter().map(|angle| 2.0 * PI * angle.sin()).collect();
+    let drag: Vec<f64> = angles.iter().map(|angle| 0.01 + angle.sin().powi(2)).collect();
+    let polar = Polar::new("thin", &angles, &lift, &drag, &vec![0.0; angles.len()]).unwrap();
+    let station = |k: usize| {
+        let share = k as f64 / 20.0;
+        BladeStation {
+            span: 48.0 * share,
+            chord: 4.0 - 3.0 * share,
+            twist: (12.0 - 12.0 * share).to_radians(),
+            prebend: 2.0 * share * share,
+            sweep: 0.0,
+            polar: 0,
+        }
+    };
+    let mode = Mode { coefficients: [1.0, 0.0, 0.0, 0.0, 0.0], damping_ratio: 0.01 };
+    let section = |span: f64| BladeSection {
+        span,
+        twist: 0.0,
+        mass: 200.0,
+        flap_stiffness: 1e9,
+        edge_stiffness: 1e9,
+    };
+    let profile = |height: f64| TowerProfile { height, diameter: 5.0, drag_coefficient: 0.6 };
+    Arc::new(Definition {
+        name: "small".into(),
+        n_blades: 3,
+        rotor: RotorGeometry {
+            hub_radius: 2.0,
+            tip_radius: 50.0,
+            precone: 0.05,
+            shaft_tilt: 0.09,
+            overhang: 5.0,
+            hub_height: 90.0,
+        },
+        blade: (0..=20).map(station).collect(),
+        polars: vec![polar],
+        blade_structure: BladeStructure {
+            sections: vec![section(0.0), section(48.0)],
+            flap_modes: [mode, mode],
+            edge_mode: mode,
+        },
+        tower: Tower {
+            base_height: 0.0,
+            top_height: 88.0,
+            top_to_shaft: 2.0,
+            profile: vec![profile(0.0), profile(88.0)],
+            sections: vec![],
+            fore_aft_modes: [mode, mode],
+            side_to_side_modes: [mode, mode],
+        },
+        hub: Hub { mass: 1e4, inertia: 1e5 },
+        nacelle: Nacelle {
+            mass: 1e5,
+            yaw_inertia: 1e6,
+            center_of_mass: Vector3::ZERO,
+            yaw_bearing_mass: 0.0,
+        },
+        drive_train: DriveTrain {
+            gear_ratio: 1.0,
+            generator_inertia: 1e6,
+            gearbox_efficiency: 1.0,
+            generator_efficiency: 0.95,
+            stiffness: 1e9,
+            damping: 1e6,
+        },
+        pitch_actuator: PitchActuator {
+            natural_frequency: 3.0,
+            damping_ratio: 0.7,
+            maximum_rate: 0.1,
+            minimum_pitch: -0.05,
+            maximum_pitch: 1.5,
+        },
+        rated_power: 3e6,
+        rated_rotor_speed: 1.4,
+    })
+}
+
+fn turbine() -> Turbine {
+    let settings = Settings {
+        smearing_length: 12.0,
+        sample_spacing: 6.0,
+        air_density: DENSITY,
+        rotor_speed: 1.3,
+        azimuth: 0.3,
+        pitch: 0.0,
+    };
+    Turbine::new(machine(), Vector3::new(100.0, -20.0, 0.0), settings)
+}
+
+fn commands(pitch: f64) -> Commands {
+    Commands { pitch: PerBlade::splat(3, pitch), generator_torque: 1e6 }
+}
+
+/// Wind that varies from place to place, a sheared wake of some sort.
+fn winds(turbine: &Turbine) -> Vec<Vector3> {
+    turbine
+        .stations()
+        .iter()
+        .map(|at| Vector3::new(6.0 + 0.01 * at.z, 0.2 + 0.002 * at.y, -0.1))
+        .collect()
+}
+
+#[test]
+fn the_air_feels_what_the_blades_feel() {
+    let mut turbine = turbine().without_bodies();
+    let winds = winds(&turbine);
+    let speed = turbine.measurements(0.0, INTERVAL).rotor_speed;
+    turbine.advance(INTERVAL, &winds, &commands(0.0));
+    let read = turbine.measurements(INTERVAL, INTERVAL);
+    let Frame { hub, shaft, .. } = *turbine.frame();
+    let total: Vector3 = turbine.forces().iter().map(|point| point.force).sum();
+    let moment: Vector3 =
+        turbine.forces().iter().map(|point| (point.position - hub).cross(point.force)).sum();
+    assert!((total.dot(shaft) / -read.thrust - 1.0).abs() < 1e-12);
+    assert!((moment.dot(shaft) / -read.aerodynamic_torque - 1.0).abs() < 1e-12);
+    // Power from the shaft is what the blades' motion takes from the air: Σ force on blade · velocity of blade.
+    let work: f64 = turbine
+        .forces()
+        .iter()
+        .map(|point| -point.force.dot((shaft * speed).cross(point.position - hub)))
+        .sum();
+    assert!((work / (read.aerodynamic_torque * speed) - 1.0).abs() < 1e-12);
+    assert!(read.thrust > 0.0 && read.aerodynamic_torque > 0.0);
+}
+
+#[test]
+fn a_blade_reaches_up_at_azimuth_zero_and_apex_stands_at_hub_height() {
+    let turbine = turbine();
+    let apex = turbine.frame().hub;
+    assert!((apex.z - 90.0).abs() < 1e-12 && (apex.y + 20.0).abs() < 1e-12 && apex.x < 100.0);
+    let tip = turbine.stations()[N_ELEMENTS - 1] - apex;
+    // Azimuth 0.3: up, and to the right looking downwind.
+    assert!(tip.z > 0.0 && tip.y < 0.0 && (tip.y / tip.z + 0.3_f64.tan()).abs() < 0.01);
+}
+
+#[test]
+fn bodies_hold_the_air_back() {
+    let mut turbine = turbine();
+    let winds = winds(&turbine);
+    turbine.advance(INTERVAL, &winds, &commands(0.0));
+    let bodies = &turbine.forces()[3 * N_ELEMENTS..];
+    assert!(bodies.len() > 5 && bodies.iter().all(|point| point.force.x < 0.0));
+    let foot = bodies[0].position;
+    assert!((foot.x - 100.0).abs() < 1e-12 && (foot.y + 20.0).abs() < 1e-12 && foot.z > 0.0);
+}
+
+#[test]
+fn the_rotor_spins_up_by_its_torques() {
+    let mut turbine = turbine();
+    let winds = winds(&turbine);
+    let before = turbine.measurements(0.0, INTERVAL);
+    turbine.advance(INTERVAL, &winds, &commands(0.0));
+    let after = turbine.measurements(INTERVAL, INTERVAL);
+    let gained =
+        (after.aerodynamic_torque - 1e6) * INTERVAL / turbine.definition().drive_train_inertia();
+    assert!((after.rotor_speed - before.rotor_speed - gained).abs() < 1e-14);
+    let turned = 0.5 * INTERVAL * (before.rotor_speed + after.rotor_speed);
+    assert!((after.azimuth - before.azimuth - turned).abs() < 1e-14);
+    assert!((after.power - 0.95 * 1e6 * after.rotor_speed).abs() < 1e-6);
+    let mut held = self::turbine().at_held_speed();
+    held.advance(INTERVAL, &winds, &commands(0.0));
+    assert_eq!(held.measurements(INTERVAL, INTERVAL).rotor_speed, 1.3);
+}
+
+#[test]
+fn a_restored_turbine_goes_on_with_the_same_bits() {
+    let (mut first, mut second) = (turbine(), turbine());
+    for step in 0..20 {
+        let pitch = 0.05 * (0.3 * f64::from(step)).sin();
+        let winds = winds(&first);
+        first.advance(INTERVAL, &winds, &commands(pitch));
+    }
+    second.restore(first.state().clone());
+    for step in 20..30 {
+        let pitch = 0.05 * (0.3 * f64::from(step)).sin();
+        let winds = winds(&first);
+        first.advance(INTERVAL, &winds, &commands(pitch));
+        second.advance(INTERVAL, &winds, &commands(pitch));
+    }
+    assert_eq!(first.state(), second.state());
+    assert_eq!(first.forces(), second.forces());
+}
+
+#[test]
+fn limits_of_the_pitch_are_counted() {
+    let mut turbine = turbine();
+    let winds = winds(&turbine);
+    turbine.advance(INTERVAL, &winds, &commands(0.0));
+    turbine.advance(INTERVAL, &winds, &commands(-0.2));
+    turbine.advance(INTERVAL, &winds, &commands(0.5));
+    assert_eq!(turbine.limited_instants(), (3, 2));
+}
+
+#[test]
+fn pitching_all_blades_by_nothing_is_not_pitching() {
+    let (mut still, mut excited) = (turbine(), turbine());
+    for step in 0..10 {
+        let winds = winds(&still);
+        still.advance(INTERVAL, &winds, &commands(0.02));
+        let helix = 0.0 * (0.1 * f64::from(step)).sin();
+        excited.advance(INTERVAL, &winds, &commands(0.02 + helix));
+    }
+    assert_eq!(still.state(), excited.state());
+}
+
+#[test]
+fn the_correction_settles_and_forgets_where_it_began() {
+    let mut turbine = turbine().without_bodies().at_held_speed();
+    let mut thrusts = Vec::new();
+    for _ in 0..60 {
+        // The same wind for every blade, so that turning changes nothing.
+        let winds = vec![Vector3::new(7.0, 0.0, 0.0); turbine.stations().len()];
+        turbine.advance(0.01, &winds, &commands(0.0));
+        thrusts.push(turbine.measurements(0.0, 0.01).thrust);
+    }
+    let last = thrusts[59];
+    assert!((thrusts[40] / last - 1.0).abs() < 1e-3, "{thrusts:?}");
+    assert!(turbine.state().missing().iter().all(|velocity| velocity[0].abs() < 4.0));
+}
