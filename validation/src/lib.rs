@@ -2,6 +2,7 @@
 //!
 //! `wakemix validate NAME` repeats one and prints measured against expected; `docs/validation/` keeps the record.
 
+pub mod actuator_line;
 pub mod flow;
 pub mod blade_element;
 pub mod helix;
@@ -30,6 +31,18 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "power, thrust and blade loads by blade-element momentum, beside published tables and AeroDyn",
         minutes: "under 1",
         run: blade_element::blade_element,
+    },
+    Validation {
+        name: "actuator-line",
+        about: "power and thrust of three rotors on 16, 24 and 32 cells per diameter against blade-element momentum",
+        minutes: "60",
+        run: actuator_line::actuator_line,
+    },
+    Validation {
+        name: "actuator-line-coarse",
+        about: "the same on 16 cells per diameter alone",
+        minutes: "3",
+        run: actuator_line::actuator_line_coarse,
     },
     Validation {
         name: "flow",

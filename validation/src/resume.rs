@@ -16,7 +16,7 @@ speed = 9.0
 turbulence_intensity = 0.06
 shear_exponent = 0.1
 [flow]
-cells_per_diameter = 10
+cells_per_diameter = 14
 upstream_diameters = 2.0
 downstream_diameters = 2.0
 width_diameters = 3.0
@@ -24,12 +24,12 @@ height_diameters = 3.0
 ground = { roughness_length = 0.001 }
 [time]
 spin_up = 30.0
-duration = 630.0
+duration = 1230.0
 [output]
 plane_interval = 60.0
-volume_interval = 300.0
+volume_interval = 600.0
 crosswind_diameters = [1.0]
-checkpoint_interval = 0.2
+checkpoint_interval = 1
 [[turbine]]
 name = "T1"
 model = "iea-15mw"

@@ -51,7 +51,7 @@ impl Row {
         &self.names
     }
 
-    /// The row as it stands, in single precision (what the sensors are worth), time in double.
+    /// The row as it stands.
     pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }

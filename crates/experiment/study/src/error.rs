@@ -78,6 +78,15 @@ pub enum StudyError {
         /// The folder.
         directory: PathBuf,
     },
+    /// Results of another case or of other turbines are to be resumed.
+    #[error("run {run} in {} was made with another version of the case or of a turbine", directory.display())]
+    #[diagnostic(help("use --overwrite to make it again, or another folder with -o"))]
+    OtherCase {
+        /// Run.
+        run: String,
+        /// Its folder.
+        directory: PathBuf,
+    },
     /// The machine has too little memory.
     #[error("the study needs {needed:.1} GiB of memory, {available:.1} GiB are free")]
     #[diagnostic(help("lower flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters"))]

@@ -15,6 +15,7 @@ pub use watcher::{Estimate, Progress, Watcher};
 
 use basis::records::{Series, Summary};
 use farm::case::Run;
+use formats::case;
 use formats::records::{self, Manifest, RunFolder};
 use simulate::{Ending, simulate};
 use std::path::{Path, PathBuf};
@@ -83,6 +84,11 @@ pub fn run(
     let keeps = options.resume || options.overwrite || options.dry_run;
     if !keeps && open.iter().any(|&index| folders[index].path().exists()) {
         return Err(StudyError::OutputExists { directory });
+    }
+    if options.resume {
+        for &index in &wanted {
+            check_same(&setup, &setup.case.runs[index], &folders[index])?;
+        }
     }
     let mut estimate = setup.estimate(open.len());
     watcher.estimated(&estimate);
@@ -175,6 +181,25 @@ fn begin_run(
     let manifest = Manifest::start(version, &setup.case, &setup.case_text, index, texts);
     records::write_manifest(folder, &manifest)?;
     Ok(manifest)
+}
+
+/// Whether what is in `folder` was made with this very case and these very turbines.
+fn check_same(setup: &Setup, run: &Run, folder: &RunFolder) -> Result<(), StudyError> {
+    if !folder.manifest_path().exists() {
+        return Ok(());
+    }
+    let manifest = records::read_manifest(folder)?;
+    let same_case = case::fingerprint(&manifest.case_text, &run.name)
+        == case::fingerprint(&setup.case_text, &run.name);
+    let same_turbines = setup
+        .turbine_texts
+        .iter()
+        .all(|(name, text)| manifest.turbines_sha256.get(name) == Some(&records::sha256(text.as_bytes())));
+    if same_case && same_turbines {
+        Ok(())
+    } else {
+        Err(StudyError::OtherCase { run: run.name.clone(), directory: folder.path().to_owned() })
+    }
 }
 
 fn wanted_runs(setup: &Setup, names: &[String]) -> Result<Vec<usize>, StudyError> {

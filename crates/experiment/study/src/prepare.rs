@@ -15,15 +15,18 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
+use turbine::blockage::equivalent_speed_ratio;
 
-/// Share of the domain's cross-section beyond which walls speed the wake up visibly (–).
-const BLOCKAGE_TO_WARN: f64 = 0.04;
+/// Rise of a rotor's power by the walls of the domain beyond which a reader must know (–).
+const WALL_GAIN_TO_WARN: f64 = 0.05;
+/// Thrust coefficient of a rotor below rated, with which that rise is estimated (–).
+const USUAL_THRUST: f64 = 0.8;
 /// Cells per diameter below which wakes are smeared (–).
 const CELLS_TO_WARN: f64 = 16.0;
 /// Blocks below which an interval says little (–).
 const BLOCKS_TO_WARN: f64 = 3.0;
 /// Bytes of a value in `series.csv`, about.
-const SERIES_VALUE_BYTES: u64 = 14;
+const SERIES_VALUE_BYTES: u64 = 19;
 /// Most memory that the turbulence may take (bytes); a longer run then meets the same wind again, and is warned of it.
 const TURBULENCE_MEMORY: u64 = 6 << 30;
 /// Bytes of a cell in the flow field, boundaries included.
@@ -113,6 +116,7 @@ impl Setup {
             disk: 2 * field + channels * plan.n_steps * SERIES_VALUE_BYTES,
             updates_per_second: None,
             blockage: plan.blockage,
+            wall_gain: wall_gain(plan.blockage),
             lattice_speed: plan.lattice_speed,
         }
     }
@@ -248,13 +252,20 @@ fn profile(case: &Case, plan: &Plan) -> MeanProfile {
     }
 }
 
+/// Rise of a rotor's power (–) in a domain of which it takes `blockage` (–), over that in unbounded air.
+fn wall_gain(blockage: f64) -> f64 {
+    equivalent_speed_ratio(USUAL_THRUST, blockage).powi(3) - 1.0
+}
+
 fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
     let mut warnings = Vec::new();
-    if plan.blockage > BLOCKAGE_TO_WARN {
+    let gain = wall_gain(plan.blockage);
+    if gain > WALL_GAIN_TO_WARN {
         warnings.push(format!(
-            "a rotor takes {:.1} % of the domain's cross-section, so that the air around it speeds up; \
+            "a rotor takes {:.1} % of the domain's cross-section: the walls raise its power by about {:.0} %, in every run alike; \
              raise flow.width_diameters or flow.height_diameters",
-            100.0 * plan.blockage
+            100.0 * plan.blockage,
+            100.0 * gain
         ));
     }
     if case.flow.cells_per_diameter < CELLS_TO_WARN {

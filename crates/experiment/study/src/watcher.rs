@@ -24,6 +24,8 @@ pub struct Estimate {
     pub updates_per_second: Option<f64>,
     /// Share of the domain's cross-section that a rotor takes (–).
     pub blockage: f64,
+    /// Rise of a rotor's power below rated by the domain's walls, in every run alike (–).
+    pub wall_gain: f64,
     /// Free-stream speed in cells per step (–).
     pub lattice_speed: f64,
 }

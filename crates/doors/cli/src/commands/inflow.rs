@@ -3,6 +3,7 @@
 use clap::{Args, Subcommand};
 use indicatif::{HumanBytes, ProgressBar};
 use miette::{IntoDiagnostic, miette};
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use wakemix::flow::inflow::statistics::{BoxStatistics, statistics};
 use wakemix::flow::inflow::{MeanProfile, mann};
@@ -74,6 +75,7 @@ pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
         InflowCommand::Generate(arguments) => generate(&arguments),
         InflowCommand::Info { file, json } => info(&file, json),
         InflowCommand::Convert { from, to } => {
+            turbulence_box::check_name(&to)?;
             let stored = turbulence_box::read(&from)?;
             turbulence_box::write(&to, &stored)?;
             eprintln!("wrote {}", to.display());
@@ -100,6 +102,7 @@ fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
             "speed, hub height or shear exponent is out of range"
         ));
     }
+    turbulence_box::check_name(&arguments.output)?;
     let settings = mann::Settings {
         n_points: arguments.size,
         spacing: arguments.spacing,
@@ -164,11 +167,18 @@ fn info(file: &Path, json: bool) -> miette::Result<()> {
             "turbulence_intensity": u / stored.hub_speed,
             "statistics": numbers,
         });
-        println!("{}", serde_json::to_string_pretty(&value).into_diagnostic()?);
+        say(&(serde_json::to_string_pretty(&value).into_diagnostic()? + "\n"))
     } else {
-        print!("{}", text(&stored, &numbers));
+        say(&text(&stored, &numbers))
     }
-    Ok(())
+}
+
+/// Writes `text` to stdout; a reader that has read enough, such as `head`, is no error.
+fn say(text: &str) -> miette::Result<()> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).into_diagnostic(),
+        _ => Ok(()),
+    }
 }
 
 fn text(stored: &StoredBox, numbers: &BoxStatistics) -> String {
@@ -176,7 +186,12 @@ fn text(stored: &StoredBox, numbers: &BoxStatistics) -> String {
     let [d_x, d_y, d_z] = stored.turbulence.spacing();
     let [l_x, l_y, l_z] = stored.turbulence.lengths();
     let three = |values: [f64; 3], digits: usize| {
-        values.map(|value| format!("{value:10.digits$}")).join("")
+        // What rounds to nothing is printed without a sign.
+        let least = 0.5 * 0.1_f64.powi(digits as i32);
+        values
+            .map(|value| if value.abs() < least { 0.0 } else { value })
+            .map(|value| format!("{value:10.digits$}"))
+            .join("")
     };
     format!(
         "{}\n\

@@ -135,7 +135,7 @@ impl Watcher for Screen {
             )),
             _ => self.say(&format!(
                 "grid: {n_x} × {n_y} × {n_z} = {:.2} million cells of {:.1} m, {} steps of {:.4} s a run; \
-                 memory {}, disk up to {} a run; blockage {:.1} %, wind {:.3} cells a step",
+                 memory {}, disk up to {} a run; blockage {:.1} % raises power by {:.1} % in every run; wind {:.3} cells a step",
                 (n_x * n_y * n_z) as f64 / 1e6,
                 estimate.spacing,
                 estimate.n_steps,
@@ -143,6 +143,7 @@ impl Watcher for Screen {
                 HumanBytes(estimate.memory),
                 HumanBytes(estimate.disk),
                 100.0 * estimate.blockage,
+                100.0 * estimate.wall_gain,
                 estimate.lattice_speed,
             )),
         }

@@ -5,14 +5,14 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use wakemix::formats::turbine_file::{self, Document, TurbineFile};
+use wakemix::formats::turbine_file::{self, TurbineFile};
 use wakemix::formats::{atomic, library, openfast, windio};
 use wakemix::turbine::aero::blade_element::Theory;
 use wakemix::turbine::steady::SteadyRotor;
 
 /// What to do with turbines.
 #[derive(Debug, Subcommand)]
-pub enum TurbineCommand {
+pub(crate) enum TurbineCommand {
     /// List the turbines that come with the program
     List,
     /// Describe a turbine: geometry, masses, ratings, and where every figure comes from
@@ -55,7 +55,7 @@ pub enum TurbineCommand {
 
 /// Equally spaced values, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
+pub(crate) struct Range {
     from: f64,
     to: f64,
     count: usize,
@@ -74,14 +74,17 @@ impl FromStr for Range {
     fn from_str(text: &str) -> Result<Self, String> {
         let number = |part: &str| {
             let value = part.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-            value.ok_or_else(|| format!("\"{part}\" is not a number; write FROM:TO:COUNT, as in 6:11:11"))
+            value.ok_or_else(|| {
+                format!("\"{part}\" is not a number; write FROM:TO:COUNT, as in 6:11:11")
+            })
         };
         let parts: Vec<&str> = text.split(':').collect();
         match parts[..] {
             [value] => Ok(Self { from: number(value)?, to: number(value)?, count: 1 }),
             [from, to, count] => {
                 let count = count.trim().parse().ok().filter(|count| (1..=100_000).contains(count));
-                let count = count.ok_or("COUNT is a whole number from 1 to 100000, as in 6:11:11")?;
+                let count =
+                    count.ok_or("COUNT is a whole number from 1 to 100000, as in 6:11:11")?;
                 Ok(Self { from: number(from)?, to: number(to)?, count })
             }
             _ => Err("write FROM:TO:COUNT, as in 6:11:11, or one value".to_owned()),
@@ -93,13 +96,18 @@ impl FromStr for Range {
 ///
 /// # Errors
 /// Input that cannot be read, and output that cannot be written.
-pub fn run(command: TurbineCommand) -> Result<()> {
+pub(crate) fn run(command: TurbineCommand) -> Result<()> {
     match command {
         TurbineCommand::List => list(),
         TurbineCommand::Show { name, file: false } => show(&library::load(&name)?),
         TurbineCommand::Show { name, file: true } => {
             let text = library::text(&name).map_or_else(
-                || Ok::<_, miette::Report>(atomic::read_text(Path::new(&name), "the turbine file")?),
+                || {
+                    Ok::<_, miette::Report>(atomic::read_text(
+                        Path::new(&name),
+                        "the turbine file",
+                    )?)
+                },
                 |text| Ok(text.to_owned()),
             )?;
             print(&text)
@@ -123,7 +131,8 @@ fn print(text: &str) -> Result<()> {
 }
 
 fn list() -> Result<()> {
-    let mut text = format!("{:10} {:>9} {:>10} {:>8}  {}\n", "name", "rated MW", "diameter m", "hub m", "");
+    let mut text =
+        format!("{:10} {:>9} {:>10} {:>8}  {}\n", "name", "rated MW", "diameter m", "hub m", "");
     for name in library::names() {
         let TurbineFile { title, definition, .. } = library::load(name)?;
         text += &format!(
@@ -140,20 +149,85 @@ fn show(file: &TurbineFile) -> Result<()> {
     let TurbineFile { title, definition, controller, sources } = file;
     let rpm = |speed: f64| speed * 30.0 / std::f64::consts::PI;
     let ratio = controller.optimal_tip_speed_ratio;
-    let best = SteadyRotor::new(definition, Theory::default()).coefficients(ratio, controller.fine_pitch);
+    let best =
+        SteadyRotor::new(definition, Theory::default()).coefficients(ratio, controller.fine_pitch);
     let rows = [
         ("blades", definition.n_blades.to_string()),
-        ("swept diameter", format!("{:.2} m (tip radius {} m along the blade)", definition.rotor_diameter(), definition.rotor.tip_radius)),
+        (
+            "swept diameter",
+            format!(
+                "{:.2} m (tip radius {} m along the blade)",
+                definition.rotor_diameter(),
+                definition.rotor.tip_radius
+            ),
+        ),
         ("hub height", format!("{:.2} m", definition.rotor.hub_height)),
-        ("precone, tilt, overhang", format!("{:.2}°, {:.2}°, {:.2} m", definition.rotor.precone.to_degrees(), definition.rotor.shaft_tilt.to_degrees(), definition.rotor.overhang)),
-        ("tower", format!("{:.1} m to {:.1} m, {:.2} m to {:.2} m wide", definition.tower.base_height, definition.tower.top_height, definition.tower.profile.first().map_or(0.0, |p| p.diameter), definition.tower.profile.last().map_or(0.0, |p| p.diameter))),
-        ("rated", format!("{:.3} MW at {:.3} rpm", 1e-6 * definition.rated_power, rpm(definition.rated_rotor_speed))),
+        (
+            "precone, tilt, overhang",
+            format!(
+                "{:.2}°, {:.2}°, {:.2} m",
+                definition.rotor.precone.to_degrees(),
+                definition.rotor.shaft_tilt.to_degrees(),
+                definition.rotor.overhang
+            ),
+        ),
+        (
+            "tower",
+            format!(
+                "{:.1} m to {:.1} m, {:.2} m to {:.2} m wide",
+                definition.tower.base_height,
+                definition.tower.top_height,
+                definition.tower.profile.first().map_or(0.0, |p| p.diameter),
+                definition.tower.profile.last().map_or(0.0, |p| p.diameter)
+            ),
+        ),
+        (
+            "rated",
+            format!(
+                "{:.3} MW at {:.3} rpm",
+                1e-6 * definition.rated_power,
+                rpm(definition.rated_rotor_speed)
+            ),
+        ),
         ("blade mass", format!("{:.2} t each", 1e-3 * definition.blade_mass())),
-        ("inertia about the shaft", format!("{:.4e} kg m2 rotor, {:.4e} kg m2 with generator", definition.rotor_inertia(), definition.drive_train_inertia())),
+        (
+            "inertia about the shaft",
+            format!(
+                "{:.4e} kg m2 rotor, {:.4e} kg m2 with generator",
+                definition.rotor_inertia(),
+                definition.drive_train_inertia()
+            ),
+        ),
         ("generator to grid", format!("{:.4}", definition.efficiency())),
-        ("pitch actuator", format!("{:.3} rad/s, damping {:.3}, {:.1} deg/s, {:.1}° to {:.1}°", definition.pitch_actuator.natural_frequency, definition.pitch_actuator.damping_ratio, definition.pitch_actuator.maximum_rate.to_degrees(), definition.pitch_actuator.minimum_pitch.to_degrees(), definition.pitch_actuator.maximum_pitch.to_degrees())),
-        ("best tip-speed ratio", format!("{ratio:.2}: power coefficient {:.4}, thrust coefficient {:.4} (rigid, pitch {:.2}°)", best.power, best.thrust, controller.fine_pitch.to_degrees())),
-        ("tables", format!("{} stations, {} polars, {} structural sections", definition.blade.len(), definition.polars.len(), definition.blade_structure.sections.len())),
+        (
+            "pitch actuator",
+            format!(
+                "{:.3} rad/s, damping {:.3}, {:.1} deg/s, {:.1}° to {:.1}°",
+                definition.pitch_actuator.natural_frequency,
+                definition.pitch_actuator.damping_ratio,
+                definition.pitch_actuator.maximum_rate.to_degrees(),
+                definition.pitch_actuator.minimum_pitch.to_degrees(),
+                definition.pitch_actuator.maximum_pitch.to_degrees()
+            ),
+        ),
+        (
+            "best tip-speed ratio",
+            format!(
+                "{ratio:.2}: power coefficient {:.4}, thrust coefficient {:.4} (rigid, pitch {:.2}°)",
+                best.power,
+                best.thrust,
+                controller.fine_pitch.to_degrees()
+            ),
+        ),
+        (
+            "tables",
+            format!(
+                "{} stations, {} polars, {} structural sections",
+                definition.blade.len(),
+                definition.polars.len(),
+                definition.blade_structure.sections.len()
+            ),
+        ),
     ];
     let mut text = format!("{}: {title}\n\n", definition.name);
     for (what, value) in rows {
@@ -179,32 +253,18 @@ fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Resu
             ));
         }
     };
-    let text = turbine_file::write(&document);
-    atomic::write(output, "the turbine file", text.as_bytes())?;
+    let written = turbine_file::write(&document);
+    atomic::write(output, "the turbine file", written.text.as_bytes())?;
     eprintln!("wrote {}", output.display());
-    for (group, _) in groups(&document).iter().filter(|(_, there)| !there) {
-        eprintln!("[{group}] is not in the input; complete it by hand before the turbine is used");
-    }
-    if groups(&document).iter().all(|(_, there)| *there) {
+    if written.missing.is_empty() {
         turbine_file::read(output)?;
+        return Ok(());
+    }
+    eprintln!("the input does not hold what a turbine needs besides; complete by hand:");
+    for key in &written.missing {
+        eprintln!("  {key}");
     }
     Ok(())
-}
-
-/// Groups of a turbine file, and whether `document` has them.
-fn groups(document: &Document) -> [(&'static str, bool); 10] {
-    [
-        ("rotor", document.rotor.is_some()),
-        ("blade", document.blade.is_some()),
-        ("blade_structure", document.blade_structure.is_some()),
-        ("tower", document.tower.is_some()),
-        ("hub", document.hub.is_some()),
-        ("nacelle", document.nacelle.is_some()),
-        ("drive_train", document.drive_train.is_some()),
-        ("pitch_actuator", document.pitch_actuator.is_some()),
-        ("controller", document.controller.is_some()),
-        ("airfoils", document.airfoils.is_some()),
-    ]
 }
 
 fn steady(file: &TurbineFile, tsr: Range, pitch: Range) -> Result<()> {
