@@ -58,6 +58,14 @@ pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
     }
 }
 
+/// Whether a box can be written under the name `path`, before the work of making one.
+///
+/// # Errors
+/// [`FileError::Content`] when its ending names no format.
+pub fn check_name(path: &Path) -> Result<(), FileError> {
+    kind(path).map(|_| ())
+}
+
 enum Kind {
     Hawc,
     TurbSim,

@@ -43,7 +43,7 @@ struct Header {
 /// Reads the full field at `path`.
 ///
 /// Planes stand U Δt apart, with U the hub speed of the file. The mean of u over time and width at each height goes
-/// to [`StoredBox::mean_speeds`]; v and w keep their means. Tower points below the grid are passed over.
+/// to [`StoredBox::mean_speeds`], so that the fluctuations have none; v and w keep theirs. Tower points below the grid are passed over.
 ///
 /// # Errors
 /// [`FileError`] names file, place and fix.
