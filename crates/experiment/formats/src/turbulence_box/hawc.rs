@@ -232,7 +232,7 @@ fn read_component(
             let four = [four[0], four[1], four[2], four[3]];
             let value = f32::from_le_bytes(four);
             let (column, z) = (index / n_z, index % n_z);
-            if !(value.abs() <= FASTEST) {
+            if value.is_nan() || value.abs() > FASTEST {
                 let byte = 4 * (place * size + index);
                 return Err(not_wind(path, four, byte, [place, column, z]));
             }

@@ -79,7 +79,7 @@ impl EddyLifetime {
         }
         let scaled = wave_number * self.length_scale;
         let place = (scaled.ln() - LOWEST) * (INTERVALS as f64 / (HIGHEST - LOWEST));
-        if !(place >= 0.0 && place < INTERVALS as f64) {
+        if !(0.0..INTERVALS as f64).contains(&place) {
             return exact(scaled, self.anisotropy);
         }
         let index = place as usize;

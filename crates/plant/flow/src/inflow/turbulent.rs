@@ -149,7 +149,7 @@ struct Rows {
 #[inline(always)]
 fn place(place: f64, n: usize) -> (usize, f64) {
     let period = n as f64;
-    let wrapped = if place >= 0.0 && place < period {
+    let wrapped = if (0.0..period).contains(&place) {
         place
     } else {
         place - period * (place / period).floor()
