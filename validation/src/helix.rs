@@ -77,7 +77,8 @@ pub fn helix() -> Vec<Row> {
     };
     let mut rows = Vec::new();
     for (degrees, expected) in POWER_RATIOS {
-        let gain = find(&summaries, &format!("ccw-{degrees}")).and_then(|s| s.turbines[0].power_gain);
+        let gain =
+            find(&summaries, &format!("ccw-{degrees}")).and_then(|s| s.turbines[0].power_gain);
         rows.push(Row {
             what: format!("T1 power over baseline, ccw {degrees}°, St 0.25, 8 m/s"),
             measured: gain.map_or(f64::NAN, |gain| 1.0 + gain.mean),
@@ -156,11 +157,8 @@ pub fn centre_line() -> Vec<Row> {
     };
     let mut rows = Vec::new();
     for (run, published) in [("baseline", 0), ("ccw-4", 1)] {
-        let plane = study
-            .runs
-            .iter()
-            .find(|records| records.summary.run == run)
-            .and_then(|records| {
+        let plane =
+            study.runs.iter().find(|records| records.summary.run == run).and_then(|records| {
                 records.mean_planes.iter().find(|plane| plane.axes == PlaneAxes::Horizontal)
             });
         for (distance, baseline, helix) in CENTRE_LINE {

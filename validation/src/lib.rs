@@ -3,8 +3,8 @@
 //! `wakemix validate NAME` repeats one and prints measured against expected; `docs/validation/` keeps the record.
 
 pub mod actuator_line;
-pub mod flow;
 pub mod blade_element;
+pub mod flow;
 pub mod helix;
 pub mod inflow;
 pub mod resume;

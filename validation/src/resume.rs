@@ -55,7 +55,11 @@ pub fn resume() -> Vec<Row> {
     };
     match kill_and_compare() {
         Ok((kills, compared, different)) => vec![
-            row("kills at random moments, each followed by --resume", f64::from(kills), f64::from(N_KILLS)),
+            row(
+                "kills at random moments, each followed by --resume",
+                f64::from(kills),
+                f64::from(N_KILLS),
+            ),
             row(
                 &format!("files with other bits, of {compared} (series, planes, volumes)"),
                 different.len() as f64,
@@ -80,7 +84,8 @@ fn kill_and_compare() -> Result<(u32, usize, Vec<PathBuf>), String> {
     let mut random: u64 = 20_261_121;
     let mut kills = 0;
     while kills < N_KILLS {
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        random =
+            random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let share = (random >> 33) as f64 / f64::from(u32::MAX >> 1);
         let mut child = command(&case, &broken).spawn().map_err(|error| error.to_string())?;
         sleep(undisturbed.mul_f64(0.2 + 0.3 * share));
@@ -128,7 +133,10 @@ fn compare(
         let other = broken.join(name);
         if path.is_dir() {
             compare(&path, &other, compared, different)?;
-        } else if path.extension().is_some_and(|kind| kind == "csv" || kind == "nc" || kind == "vti") {
+        } else if path
+            .extension()
+            .is_some_and(|kind| kind == "csv" || kind == "nc" || kind == "vti")
+        {
             *compared += 1;
             if fs::read(&path).ok() != fs::read(&other).ok() {
                 different.push(path);

@@ -25,7 +25,9 @@ impl Model {
         Footprint {
             diameter: self.definition.rotor_diameter(),
             hub_height: self.definition.rotor.hub_height,
-            rated_tip_speed: self.constants.rated_rotor_speed * 0.5 * self.definition.rotor_diameter(),
+            rated_tip_speed: self.constants.rated_rotor_speed
+                * 0.5
+                * self.definition.rotor_diameter(),
         }
     }
 

@@ -124,9 +124,8 @@ pub struct Run {
 impl Run {
     /// Places in [`Case::turbines`] of the turbines that are there in this run, in order: the farm's machines.
     pub fn present(&self) -> impl Iterator<Item = usize> + '_ {
-        let is_there = |(index, control): (usize, &Control)| {
-            (*control != Control::Absent).then_some(index)
-        };
+        let is_there =
+            |(index, control): (usize, &Control)| (*control != Control::Absent).then_some(index);
         self.control.iter().enumerate().filter_map(is_there)
     }
 }

@@ -56,7 +56,9 @@ pub struct Plan {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PlanError {
     /// A rotor reaches outside the air.
-    #[error("turbine {name} reaches outside the domain: its rotor spans {axis} = {low:.0} to {high:.0} m, the domain {domain_low:.0} to {domain_high:.0} m; {fix}")]
+    #[error(
+        "turbine {name} reaches outside the domain: its rotor spans {axis} = {low:.0} to {high:.0} m, the domain {domain_low:.0} to {domain_high:.0} m; {fix}"
+    )]
     OutsideDomain {
         /// Turbine.
         name: String,
@@ -74,7 +76,9 @@ pub enum PlanError {
         fix: &'static str,
     },
     /// Rotors that touch each other.
-    #[error("turbines {first} and {second} overlap: their towers are {distance:.0} m apart, their rotors need {needed:.0} m; move one of them (turbine.position_diameters)")]
+    #[error(
+        "turbines {first} and {second} overlap: their towers are {distance:.0} m apart, their rotors need {needed:.0} m; move one of them (turbine.position_diameters)"
+    )]
     Overlap {
         /// One turbine.
         first: String,
@@ -86,7 +90,9 @@ pub enum PlanError {
         needed: f64,
     },
     /// The grid is too coarse.
-    #[error("turbine {name} has only {cells:.1} cells across its rotor, {MINIMUM_CELLS_PER_DIAMETER} are the least; raise flow.cells_per_diameter to at least {needed:.0}")]
+    #[error(
+        "turbine {name} has only {cells:.1} cells across its rotor, {MINIMUM_CELLS_PER_DIAMETER} are the least; raise flow.cells_per_diameter to at least {needed:.0}"
+    )]
     TooCoarse {
         /// Turbine.
         name: String,
@@ -96,7 +102,9 @@ pub enum PlanError {
         needed: f64,
     },
     /// A tip crosses more than a cell a step.
-    #[error("flow.step = {step} s is too long: the tip of {name} moves {cells:.2} cells a step at {tip_speed:.0} m/s; at most {longest:.4} s, or leave the key out")]
+    #[error(
+        "flow.step = {step} s is too long: the tip of {name} moves {cells:.2} cells a step at {tip_speed:.0} m/s; at most {longest:.4} s, or leave the key out"
+    )]
     TipOutruns {
         /// Turbine.
         name: String,
@@ -110,7 +118,9 @@ pub enum PlanError {
         longest: f64,
     },
     /// The free stream moves too many cells a step.
-    #[error("flow.step = {step} s is too long: the wind moves {cells:.2} cells a step, {MAXIMUM_LATTICE_SPEED} are the most; at most {longest:.4} s, or leave the key out")]
+    #[error(
+        "flow.step = {step} s is too long: the wind moves {cells:.2} cells a step, {MAXIMUM_LATTICE_SPEED} are the most; at most {longest:.4} s, or leave the key out"
+    )]
     TooFast {
         /// Asked step (s).
         step: f64,
@@ -149,7 +159,11 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
     let positions: Vec<Vector3> = machines
         .iter()
         .map(|(p, _)| {
-            Vector3::new(p.position_diameters[0] * diameter, p.position_diameters[1] * diameter, 0.0)
+            Vector3::new(
+                p.position_diameters[0] * diameter,
+                p.position_diameters[1] * diameter,
+                0.0,
+            )
         })
         .collect();
     check_distances(&machines, &positions)?;
@@ -283,12 +297,30 @@ fn check_extent(
     for ((placement, footprint), position) in machines.iter().zip(&plan.positions) {
         let radius = 0.5 * footprint.diameter;
         let spans = [
-            ("x", position.x - radius, position.x + radius, low.x, high.x,
-             "raise flow.upstream_diameters or flow.downstream_diameters"),
-            ("y", position.y - radius, position.y + radius, low.y, high.y,
-             "raise flow.width_diameters"),
-            ("z", footprint.hub_height - radius, footprint.hub_height + radius, low.z, high.z,
-             "raise flow.height_diameters, or check hub height and rotor diameter"),
+            (
+                "x",
+                position.x - radius,
+                position.x + radius,
+                low.x,
+                high.x,
+                "raise flow.upstream_diameters or flow.downstream_diameters",
+            ),
+            (
+                "y",
+                position.y - radius,
+                position.y + radius,
+                low.y,
+                high.y,
+                "raise flow.width_diameters",
+            ),
+            (
+                "z",
+                footprint.hub_height - radius,
+                footprint.hub_height + radius,
+                low.z,
+                high.z,
+                "raise flow.height_diameters, or check hub height and rotor diameter",
+            ),
         ];
         for (axis, span_low, span_high, domain_low, domain_high, fix) in spans {
             if span_low < domain_low || span_high > domain_high {

@@ -8,8 +8,8 @@ use flow::{FlowError, FlowSolver, Inflow, WindField};
 use std::sync::Arc;
 use std::time::Instant;
 use thiserror::Error;
-use turbine::blockage::equivalent_speed_ratio;
 use turbine::aero::blade_element::Theory;
+use turbine::blockage::equivalent_speed_ratio;
 use turbine::steady::SteadyRotor;
 use turbine::{Definition, Turbine};
 
@@ -109,10 +109,8 @@ pub fn self_check(
     )
     .without_bodies()
     .at_held_speed();
-    let commands = Commands {
-        pitch: PerBlade::splat(definition.n_blades, pitch),
-        generator_torque: 0.0,
-    };
+    let commands =
+        Commands { pitch: PerBlade::splat(definition.n_blades, pitch), generator_torque: 0.0 };
 
     let steps = |diameters: f64| (diameters * diameter / wind.speed / interval).ceil() as u64;
     let (n_settling, n_averaging) = (steps(SETTLING), steps(AVERAGING));
@@ -133,8 +131,8 @@ pub fn self_check(
     }
     let wall_time = started.elapsed().as_secs_f64();
 
-    let area_ratio = definition.rotor_area()
-        / (n_cells[1] as f64 * n_cells[2] as f64 * spacing * spacing);
+    let area_ratio =
+        definition.rotor_area() / (n_cells[1] as f64 * n_cells[2] as f64 * spacing * spacing);
     let expected = expectation(definition, wind, rotor_speed, pitch, area_ratio);
     Ok(SelfCheck {
         model: definition.name.clone(),

@@ -5,9 +5,9 @@
 pub mod atomic;
 pub mod case;
 pub mod checkpoint;
+pub mod library;
 pub mod machine;
 pub mod netcdf;
-pub mod library;
 pub mod openfast;
 pub mod records;
 pub mod turbine_file;

@@ -19,7 +19,8 @@ mod tests {
 
     #[test]
     fn reads_the_line_that_tells() {
-        let meminfo = "MemTotal:       24000000 kB\nMemFree:  1000 kB\nMemAvailable:   23000000 kB\n";
+        let meminfo =
+            "MemTotal:       24000000 kB\nMemFree:  1000 kB\nMemAvailable:   23000000 kB\n";
         assert_eq!(available(meminfo), Some(23_000_000 * 1024));
         assert_eq!(available("MemTotal: 1 kB\n"), None);
         assert_eq!(available("MemAvailable: many kB\n"), None);

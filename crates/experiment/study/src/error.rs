@@ -73,7 +73,9 @@ pub enum StudyError {
     },
     /// The output folder holds something that would be overwritten.
     #[error("{} already holds results", directory.display())]
-    #[diagnostic(help("use --resume to go on with them, --overwrite to lose them, or another folder with -o"))]
+    #[diagnostic(help(
+        "use --resume to go on with them, --overwrite to lose them, or another folder with -o"
+    ))]
     OutputExists {
         /// The folder.
         directory: PathBuf,
@@ -89,7 +91,9 @@ pub enum StudyError {
     },
     /// The machine has too little memory.
     #[error("the study needs {needed:.1} GiB of memory, {available:.1} GiB are free")]
-    #[diagnostic(help("lower flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters"))]
+    #[diagnostic(help(
+        "lower flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters"
+    ))]
     Memory {
         /// Needed (GiB).
         needed: f64,

@@ -191,10 +191,9 @@ fn check_same(setup: &Setup, run: &Run, folder: &RunFolder) -> Result<(), StudyE
     let manifest = records::read_manifest(folder)?;
     let same_case = case::fingerprint(&manifest.case_text, &run.name)
         == case::fingerprint(&setup.case_text, &run.name);
-    let same_turbines = setup
-        .turbine_texts
-        .iter()
-        .all(|(name, text)| manifest.turbines_sha256.get(name) == Some(&records::sha256(text.as_bytes())));
+    let same_turbines = setup.turbine_texts.iter().all(|(name, text)| {
+        manifest.turbines_sha256.get(name) == Some(&records::sha256(text.as_bytes()))
+    });
     if same_case && same_turbines {
         Ok(())
     } else {
@@ -240,5 +239,7 @@ fn compared_run<'a>(
 
 /// `name` as a folder name: letters, digits, dashes.
 fn file_name(name: &str) -> String {
-    name.chars().map(|c| if c.is_alphanumeric() || c == '-' || c == '_' { c } else { '-' }).collect()
+    name.chars()
+        .map(|c| if c.is_alphanumeric() || c == '-' || c == '_' { c } else { '-' })
+        .collect()
 }

@@ -221,8 +221,7 @@ impl Setup {
                 watcher.borrow_mut().preparing("turbulence", share);
             })?;
             let profile = profile(&self.case, &self.plan);
-            let inflow =
-                TurbulentInflow::aligned(Arc::new(turbulence), profile, self.plan.origin)?;
+            let inflow = TurbulentInflow::aligned(Arc::new(turbulence), profile, self.plan.origin)?;
             self.inflow = Arc::new(inflow.blocked(BLOCKING_HEIGHT * wind.length_scale));
         }
         Ok(())

@@ -4,8 +4,8 @@ use crate::StudyError;
 use crate::channels::Row;
 use crate::prepare::Setup;
 use crate::watcher::{Progress, Watcher};
-use basis::records::{Cost, Plane, PlaneAxes};
 use basis::Vector3;
+use basis::records::{Cost, Plane, PlaneAxes};
 use control::TurbineController;
 use farm::case::Run;
 use farm::{Farm, assemble};
@@ -205,13 +205,13 @@ impl<'a> Simulation<'a> {
         let step = self.farm.step();
         if step > plan.n_spin_up_steps {
             let since = step - plan.n_spin_up_steps;
-            if since % whole_steps(AVERAGING_INTERVAL, plan.interval) == 0 {
+            if since.is_multiple_of(whole_steps(AVERAGING_INTERVAL, plan.interval)) {
                 for average in &mut self.averages {
                     average.add(self.farm.flow());
                 }
             }
             let due = |every: Option<f64>| {
-                every.is_some_and(|every| since % whole_steps(every, plan.interval) == 0)
+                every.is_some_and(|every| since.is_multiple_of(whole_steps(every, plan.interval)))
             };
             if due(self.setup.case.output.plane_interval) {
                 self.write_instants()?;

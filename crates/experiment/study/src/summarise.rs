@@ -25,11 +25,7 @@ struct Analysed<'a> {
 
 impl<'a> Analysed<'a> {
     fn new(series: &'a Series, setup: &Setup) -> Self {
-        Self {
-            series,
-            first: setup.plan.n_spin_up_steps as usize,
-            interval: setup.plan.interval,
-        }
+        Self { series, first: setup.plan.n_spin_up_steps as usize, interval: setup.plan.interval }
     }
 
     fn column(&self, name: &str) -> Result<&'a [f64], StudyError> {

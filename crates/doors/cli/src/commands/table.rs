@@ -56,7 +56,10 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
             summary.array_power_gain.map_or(String::new(), |gain| with_interval(&gain, 100.0, 2)),
         );
     }
-    let _ = writeln!(text, "± 95 % from blocks of the analysed time; gains compare the same blocks of the same wind");
+    let _ = writeln!(
+        text,
+        "± 95 % from blocks of the analysed time; gains compare the same blocks of the same wind"
+    );
     text
 }
 

@@ -71,12 +71,12 @@ impl Deck {
         fix: impl Into<String>,
     ) -> TurbineFileError {
         TurbineFileError::Value {
-            file: self.path.display().to_string(),
+            file: self.path.display().to_string().into(),
             line,
-            key: key.to_owned(),
-            expected: expected.into(),
-            found: found.into(),
-            fix: fix.into(),
+            key: key.into(),
+            expected: expected.into().into(),
+            found: found.into().into(),
+            fix: fix.into().into(),
         }
     }
 

@@ -49,18 +49,18 @@ pub enum TurbineFileError {
     #[diagnostic(code(wakemix::turbine::value))]
     Value {
         /// The file.
-        file: String,
+        file: Box<str>,
         /// Line, from 1 (–).
         line: usize,
         /// Key, as a path through the file.
-        key: String,
+        key: Box<str>,
         /// What should be there.
-        expected: String,
+        expected: Box<str>,
         /// What is there.
-        found: String,
+        found: Box<str>,
         /// What mends it.
         #[help]
-        fix: String,
+        fix: Box<str>,
     },
 }
 
@@ -126,12 +126,12 @@ impl Place<'_> {
             }
         }
         TurbineFileError::Value {
-            file: self.file.to_owned(),
+            file: self.file.into(),
             line: line_of(self.text, self.byte_of(path)),
-            key,
-            expected: expected.into(),
-            found: found.into(),
-            fix: fix.into(),
+            key: key.into(),
+            expected: expected.into().into(),
+            found: found.into().into(),
+            fix: fix.into().into(),
         }
     }
 

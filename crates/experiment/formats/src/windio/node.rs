@@ -63,12 +63,13 @@ impl<'a> Node<'a> {
             let path =
                 if self.key.is_empty() { key.to_owned() } else { format!("{}.{key}", self.key) };
             TurbineFileError::Value {
-                file: self.file.display().to_string(),
+                file: self.file.display().to_string().into(),
                 line: self.line(),
-                key: path,
-                expected: format!("the key {key} in this group"),
-                found: "none".to_owned(),
-                fix: format!("add {key}; the format is windIO's, as WISDEM 2 and 3 write it"),
+                key: path.into(),
+                expected: format!("the key {key} in this group").into(),
+                found: "none".into(),
+                fix: format!("add {key}; the format is windIO's, as WISDEM 2 and 3 write it")
+                    .into(),
             }
         })
     }
@@ -131,12 +132,12 @@ impl<'a> Node<'a> {
                 .map_or_else(|| "another value".to_owned(), |text| format!("\"{text}\"")),
         };
         TurbineFileError::Value {
-            file: self.file.display().to_string(),
+            file: self.file.display().to_string().into(),
             line: self.line(),
-            key: self.key.clone(),
-            expected: expected.to_owned(),
-            found,
-            fix: format!("write {fix}"),
+            key: self.key.as_str().into(),
+            expected: expected.into(),
+            found: found.into(),
+            fix: format!("write {fix}").into(),
         }
     }
 }
