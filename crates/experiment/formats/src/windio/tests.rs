@@ -1,3 +1,5 @@
+//! Files as users have them, written here: read right, or refused with file, line, key and what was expected.
+
 use super::*;
 use crate::turbine_file;
 use std::fs;

@@ -1,3 +1,5 @@
+//! Closed forms, balances and limits.
+
 use super::*;
 use crate::Polar;
 use crate::actuators::PitchActuator;

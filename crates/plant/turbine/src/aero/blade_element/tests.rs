@@ -1,3 +1,5 @@
+//! Closed forms, balances and limits.
+
 use super::*;
 use proptest::prelude::*;
 
