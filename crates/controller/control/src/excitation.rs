@@ -2,7 +2,7 @@
 //!
 //! # The sense of the helix
 //!
-//! Symbols of [vanVondelen2025, Eqs. 1-7]: A amplitude, ω_e excitation rate, ω_r rotor speed, φ phase,
+//! Symbols of van Vondelen et al. (2025), Eqs. 1-7: A amplitude, ω_e excitation rate, ω_r rotor speed, φ phase,
 //! ψ_i = ω_r t + ψ_i0 azimuth of blade i, ψ_o azimuth offset. The fixed-frame commands are (Eq. 2)
 //!
 //! ```text
@@ -92,7 +92,7 @@ impl Excitation {
 }
 
 /// Excitation rate ω_e = 2π St U / D (rad/s) of Strouhal number `strouhal` (–) in a free stream of
-/// `wind_speed` U (m/s) past a rotor of `diameter` D (m). [vanVondelen2025], Eq. 3.
+/// `wind_speed` U (m/s) past a rotor of `diameter` D (m). van Vondelen et al. (2025), Eq. 3.
 pub fn excitation_rate(strouhal: f64, wind_speed: f64, diameter: f64) -> f64 {
     TAU * strouhal * wind_speed / diameter
 }

@@ -15,7 +15,7 @@ fn senses() -> impl Strategy<Value = Sense> {
 }
 
 proptest! {
-    /// [vanVondelen2025], Eq. 7, with the minus sign of the cw form that the module derives.
+    /// van Vondelen et al. (2025), Eq. 7, with the minus sign of the cw form that the module derives.
     #[test]
     fn inverse_transformation_equals_the_normal_mode_form(
         sense in senses(), n_blades in 3_usize..=6, amplitude in 0.0..0.1_f64, rate in 0.01..0.2_f64,

@@ -28,7 +28,7 @@ pub enum Motion {
 /// rotor frequency minus the signed frequency of that turning, and has the same amplitude. A pulse is
 /// looked for in the mean over the blades and has one frequency in both frames.
 ///
-/// Source: [vanVondelen2025], Eqs. 4-7. Limits: collective pitch control that moves at the pulse's frequency counts
+/// Source: van Vondelen et al. (2025), Eqs. 4-7. Limits: collective pitch control that moves at the pulse's frequency counts
 /// as delivered pulse.
 ///
 /// # Errors

@@ -11,8 +11,8 @@ const GREATEST_THRUST: f64 = 0.96;
 /// A disc of the same thrust T and the same speed through it, u₁, in unbounded air has U′ with T = 2 ρ A u₁ (U′ − u₁),
 /// so U′/U = u₁/U + C_T / (4 u₁/U). The speed u₁ follows from mass, momentum and Bernoulli in the channel, with the wake
 /// and the faster bypass at one pressure far behind.
-/// Source: axial momentum theory of a disc in a wind tunnel, [Glauert1935, ch. IX] in the form of
-/// [MikkelsenSorensen2002] and [Werle2010].
+/// Source: axial momentum theory of a disc in a wind tunnel, Glauert (1935), ch. IX, in the form of
+/// Mikkelsen, Sørensen (2002) and Werle (2010).
 /// Limits: no swirl, no mixing of wake and bypass; above C_T 0.96, where that no longer holds, the value at 0.96.
 ///
 /// ```

@@ -71,7 +71,7 @@ impl Body {
     /// A segment of a round tower: `height` (m) of it around `position`, `diameter` (m) wide.
     ///
     /// The wake of a two-dimensional drag smeared over ε takes c_d d / (4 √π ε) from the wind at its own centre,
-    /// [MartinezTossas2017]: half the wake's centre-line deficit.
+    /// Martínez-Tossas (2017): half the wake's centre-line deficit.
     pub fn tower_segment(
         position: Vector3,
         height: f64,

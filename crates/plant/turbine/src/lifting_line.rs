@@ -14,8 +14,8 @@
 //! the other blades and earlier turns that pass within reach. The flow solves the rest. With ε at the core ε_core, the
 //! optimal width of a quarter chord, nothing is missing and nothing is added.
 //!
-//! Sources: the Gaussian-smeared line as a lifting line with a viscous core, [MartinezTossas2019] and
-//! [MeyerForsting2019]; ε_core = c/4, [MartinezTossas2017]; q is the radial integral of the Gaussian blob
+//! Sources: the Gaussian-smeared line as a lifting line with a viscous core, Martínez-Tossas (2019) and
+//! Meyer Forsting (2019); ε_core = c/4, Martínez-Tossas (2017); q is the radial integral of the Gaussian blob
 //! exp(−r²/ε²)/(ε³ π^{3/2}) that `basis::PointForce` defines.
 //! Limits: the near wake is a helix of constant radius and of one pitch for the whole rotor; circulation changes slowly
 //! against the passage of a few ε; blades are straight and lie in the rotor plane (precone is neglected here).
@@ -23,7 +23,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
-/// Optimal Gaussian width over chord (–), [MartinezTossas2017].
+/// Optimal Gaussian width over chord (–), Martínez-Tossas (2017).
 pub const OPTIMAL_WIDTH_OVER_CHORD: f64 = 0.25;
 /// Helix pitches, advance per radian over rotor radius, for which influences are tabulated: the first of them, …
 const FIRST_PITCH: f64 = 0.03;

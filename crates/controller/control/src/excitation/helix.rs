@@ -68,7 +68,7 @@ impl Helix {
         Self { sense, amplitude, strouhal, rate, phase: 0.0, azimuth_offset: 0.0, start: 0.0 }
     }
 
-    /// Tilt and yaw commands (rad) at `time` (s); the average is zero. [vanVondelen2025], Eq. 2.
+    /// Tilt and yaw commands (rad) at `time` (s); the average is zero. van Vondelen et al. (2025), Eq. 2.
     pub fn commands(&self, time: f64) -> FixedFrame {
         let amplitude = self.amplitude * fade_in(time, self.start, self.rate);
         let angle = self.rate * time + self.phase;
@@ -80,7 +80,7 @@ impl Helix {
     }
 
     /// What is added to each of `n_blades` blades (rad) at `time` (s), blade 1 at `azimuth` (rad).
-    /// [vanVondelen2025], Eqs. 1 and 5.
+    /// van Vondelen et al. (2025), Eqs. 1 and 5.
     pub fn pitch(&self, time: f64, azimuth: f64, n_blades: usize) -> PerBlade<f64> {
         to_blades(azimuth + self.azimuth_offset, self.commands(time), n_blades)
     }

@@ -2,7 +2,7 @@
 //!
 //! Source: Coudou, Moens, Marichal, Van Beeck, Bricteux, Chatelain, "Development of wake meandering detection
 //! algorithms and their application to large eddy simulations of an isolated wind turbine and a wind farm",
-//! J. Phys.: Conf. Ser. 1037, 072024, 2018; used in [vanVondelen2025], §4.5.
+//! J. Phys.: Conf. Ser. 1037, 072024, 2018; used in van Vondelen et al. (2025), §4.5.
 
 use super::{expect_axes, profile::origin};
 use crate::AnalysisError;

@@ -2,7 +2,7 @@
 //!
 //! [`MeanProfile`] alone is steady wind; [`mann::generate`] makes a [`TurbulenceBox`], [`TurbulentInflow`]
 //! carries it past the farm on top of a profile, [`sizing`] says how large the box must be.
-//! Sources: [Mann1994] J. Mann, J. Fluid Mech. 273 (1994) 141-168; [Mann1998] J. Mann, Probabilistic
+//! Sources: Mann (1994) J. Mann, J. Fluid Mech. 273 (1994) 141-168; Mann (1998) J. Mann, Probabilistic
 //! Engineering Mechanics 13 (1998) 269-282.
 
 pub mod lifetime;
