@@ -15,9 +15,11 @@ pub(crate) struct Kernel {
     pub(crate) directions: &'static [[i8; 3]],
     sweep: unsafe fn(&Step<'_>, &[ForceBlock], &mut Share),
     read_row: unsafe fn(&View<'_>, usize, &mut RowState),
-    read_cells: unsafe fn(&View<'_>, &[[usize; 3]; 8]) -> [[f32; 8]; 4],
+    read_cells: ReadCells,
     write_row: unsafe fn(&View<'_>, usize, &RowState),
 }
+
+type ReadCells = unsafe fn(&View<'_>, &[[usize; 3]; 8]) -> [[f32; 8]; 4];
 
 macro_rules! kernel {
     ($vector:ty, $stencil:ty, $n:literal $(, $features:literal)?) => {{

@@ -43,7 +43,7 @@ pub(crate) enum Parity {
 impl Parity {
     /// Parity of step number `step`.
     pub(crate) fn of(step: u64) -> Self {
-        if step % 2 == 0 { Self::Even } else { Self::Odd }
+        if step.is_multiple_of(2) { Self::Even } else { Self::Odd }
     }
 }
 

@@ -57,6 +57,10 @@ mod system {
     use std::ptr::{NonNull, null_mut};
 
     pub(super) fn map(bytes: usize) -> Option<NonNull<f32>> {
+        // The system promises more than it has and ends the program later; ask first.
+        if installed().is_some_and(|installed| bytes > installed) {
+            return None;
+        }
         // SAFETY: an anonymous private mapping; the result is checked.
         let start = unsafe {
             libc::mmap(
@@ -78,6 +82,14 @@ mod system {
             libc::madvise(start, bytes, libc::MADV_HUGEPAGE);
         }
         NonNull::new(start.cast())
+    }
+
+    /// Memory of the machine (bytes), when the system tells.
+    fn installed() -> Option<usize> {
+        // SAFETY: plain queries.
+        let (pages, size) =
+            unsafe { (libc::sysconf(libc::_SC_PHYS_PAGES), libc::sysconf(libc::_SC_PAGESIZE)) };
+        usize::try_from(pages).ok()?.checked_mul(usize::try_from(size).ok()?)
     }
 
     pub(super) fn unmap(start: NonNull<f32>, bytes: usize) {

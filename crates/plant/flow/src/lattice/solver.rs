@@ -255,7 +255,9 @@ impl FlowSolver for Lattice {
     fn advance(&mut self, duration: f64, forces: &[PointForce]) -> Result<(), FlowError> {
         let step = self.scaling.interval();
         let n_steps = (duration / step).round();
-        if !((duration / step - n_steps).abs() <= 1e-6 * n_steps.max(1.0)) || n_steps < 0.0 {
+        // Written so that a duration that is not a number is refused.
+        let whole = n_steps >= 0.0 && (duration / step - n_steps).abs() <= 1e-6 * n_steps.max(1.0);
+        if !whole {
             return Err(FlowError::FractionalStep { duration, step });
         }
         self.forces.clear();

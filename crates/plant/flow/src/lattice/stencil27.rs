@@ -1,5 +1,10 @@
 //! Rest, faces, edges and corners of the cube: twice the cost of D3Q19, kept to judge it by (docs/validation/flow.md).
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops over constants, to be unrolled; iterators hide the symmetry"
+)]
+
 use super::simd::Simd;
 use super::stencil::{D3Q19, Moments, Stencil};
 

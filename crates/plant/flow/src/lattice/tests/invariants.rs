@@ -246,3 +246,24 @@ fn planes_and_volumes_show_what_sampling_gives() {
         assert!((shown - velocity[0]).length() < 1e-4);
     }
 }
+
+#[test]
+fn assumptions_are_checked_with_what_would_do() {
+    let sound = Settings::new(Vector3::ZERO, 10.0, [16, 16, 16], 0.1, 10.0);
+    assert_eq!(sound.check(), Ok(()));
+    let refusal = |change: fn(&mut Settings)| {
+        let mut settings = sound.clone();
+        change(&mut settings);
+        match Lattice::new(settings, Arc::new(Wind(|_, _| Vector3::ZERO))) {
+            Ok(_) => panic!("accepted"),
+            Err(error) => error.to_string(),
+        }
+    };
+    assert!(refusal(|s| s.interval = 0.2).contains("at most 0.1500 s"));
+    assert!(refusal(|s| s.spacing = -1.0).contains("spacing"));
+    assert!(refusal(|s| s.n_cells[0] = 3).contains("along x"));
+    assert!(refusal(|s| s.kinematic_viscosity = 600.0).contains("viscosity"));
+    assert!(refusal(|s| s.ground = Ground::WallStress { roughness_length: 4.0 }).contains("1.839"));
+    assert!(refusal(|s| s.threads = Some(0)).contains("thread"));
+    assert!(refusal(|s| s.n_cells = [100_000; 3]).contains("memory"));
+}
