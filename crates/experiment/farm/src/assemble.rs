@@ -20,14 +20,12 @@ pub struct Model {
 }
 
 impl Model {
-    /// What the layout needs to know.
-    pub fn footprint(&self) -> Footprint {
+    /// What the layout needs to know, in a mean wind of `wind_speed` (m/s).
+    pub fn footprint(&self, wind_speed: f64) -> Footprint {
         Footprint {
             diameter: self.definition.rotor_diameter(),
             hub_height: self.definition.rotor.hub_height,
-            rated_tip_speed: self.constants.rated_rotor_speed
-                * 0.5
-                * self.definition.rotor_diameter(),
+            tip_speed: self.rotor_speed(wind_speed) * self.definition.rotor_radius(),
         }
     }
 

@@ -9,8 +9,11 @@ use thiserror::Error;
 pub const MAXIMUM_LATTICE_SPEED: f64 = 0.12;
 /// Fewest cells across a rotor on which an actuator line still means something.
 pub const MINIMUM_CELLS_PER_DIAMETER: f64 = 8.0;
-/// Margin of the tip speed over its rated value: gusts above rated push the rotor past it.
-const OVERSPEED: f64 = 1.1;
+/// Speed of sound on the lattice, in cells a step: a tip that outruns it meets its own bound vortex
+/// (docs/validation/actuator-line.md).
+const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
+/// Fastest tip that a chosen step allows, in cells a step, in the mean wind; gusts may take it up to the speed of sound.
+const FASTEST_TIP: f64 = 0.5;
 /// Longest step between two control instants (s): pitch actuators and rotor speed are integrated on it.
 const LONGEST_STEP: f64 = 0.5;
 
@@ -21,8 +24,8 @@ pub struct Footprint {
     pub diameter: f64,
     /// Hub height (m).
     pub hub_height: f64,
-    /// Tip speed at rated rotor speed (m/s).
-    pub rated_tip_speed: f64,
+    /// Tip speed in the case's mean wind (m/s).
+    pub tip_speed: f64,
 }
 
 /// The box of air and the steps that a case needs.
@@ -141,7 +144,7 @@ pub enum PlanError {
 
 /// Sizes domain and step for `case`; `footprints` holds one entry per model that the case names.
 ///
-/// The step is the longest one that keeps rated tips within a cell a step and the free stream within
+/// The step is the longest one that keeps tips well below the speed of sound on the lattice and the free stream within
 /// [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole number of steps.
 ///
 /// # Errors
@@ -257,16 +260,16 @@ fn step(
 ) -> Result<f64, PlanError> {
     let (fastest, tip_speed) = machines
         .iter()
-        .map(|(placement, footprint)| (placement, OVERSPEED * footprint.rated_tip_speed))
+        .map(|(placement, footprint)| (placement, footprint.tip_speed))
         .reduce(|a, b| if b.1 > a.1 { b } else { a })
         .map_or(("", 0.0), |(placement, speed)| (placement.name.as_str(), speed));
-    let tip_limit = spacing / tip_speed;
+    let tip_limit = LATTICE_SOUND_SPEED * spacing / tip_speed;
     let speed_limit = MAXIMUM_LATTICE_SPEED * spacing / case.wind.speed;
     match case.flow.step {
         Some(step) if step > tip_limit => Err(PlanError::TipOutruns {
             name: fastest.to_owned(),
             step,
-            cells: step / tip_limit,
+            cells: step * tip_speed / spacing,
             tip_speed,
             longest: tip_limit,
         }),
@@ -277,7 +280,8 @@ fn step(
         }),
         Some(step) => Ok(step),
         None => {
-            let longest = tip_limit.min(speed_limit).min(LONGEST_STEP);
+            let safe = FASTEST_TIP * spacing / tip_speed;
+            let longest = safe.min(speed_limit).min(LONGEST_STEP);
             Ok(60.0 / (60.0 / longest).ceil())
         }
     }
@@ -350,3 +354,6 @@ impl Plan {
         self.cells() as f64 * self.n_steps as f64
     }
 }
+
+#[cfg(test)]
+mod tests;

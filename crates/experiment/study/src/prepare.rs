@@ -82,7 +82,7 @@ impl Setup {
         loaded: &BTreeMap<String, Model>,
     ) -> Result<Self, StudyError> {
         let footprints =
-            loaded.iter().map(|(name, model)| (name.clone(), model.footprint())).collect();
+            loaded.iter().map(|(name, model)| (name.clone(), model.footprint(case.wind.speed))).collect();
         let plan = plan(&case, &footprints)?;
         let models =
             case.turbines.iter().map(|placement| loaded[&placement.model].clone()).collect();

@@ -1,0 +1,112 @@
+//! Domains that fit, steps that tips do not outrun, and errors that name what does not fit.
+
+use super::*;
+use crate::case::{Control, Flow, Ground, Output, Placement, Run, Sides, Time, Wind};
+
+fn case(positions: &[[f64; 2]]) -> Case {
+    let placement = |(index, &position): (usize, &[f64; 2])| Placement {
+        name: format!("T{}", index + 1),
+        model: "model".to_owned(),
+        position_diameters: position,
+    };
+    Case {
+        name: "test".to_owned(),
+        description: None,
+        wind: Wind {
+            speed: 9.0,
+            turbulence_intensity: 0.05,
+            shear_exponent: 0.1,
+            length_scale: 33.6,
+            anisotropy: 3.9,
+            seed: 1,
+            air_density: 1.225,
+            kinematic_viscosity: 1.5e-5,
+        },
+        flow: Flow {
+            cells_per_diameter: 16.0,
+            upstream_diameters: 3.0,
+            downstream_diameters: 4.0,
+            width_diameters: 6.0,
+            height_diameters: 4.0,
+            ground: Ground::Slip,
+            sides: Sides::Periodic,
+            step: None,
+            threads: None,
+        },
+        time: Time { spin_up: 300.0, duration: 1500.0 },
+        turbines: positions.iter().enumerate().map(placement).collect(),
+        runs: vec![Run {
+            name: "baseline".to_owned(),
+            compare_with: None,
+            control: vec![Control::Baseline; positions.len()],
+        }],
+        output: Output {
+            plane_interval: None,
+            crosswind_diameters: Vec::new(),
+            volume_interval: None,
+            checkpoint_interval: 60.0,
+        },
+    }
+}
+
+fn footprints() -> BTreeMap<String, Footprint> {
+    let footprint = Footprint { diameter: 240.0, hub_height: 150.0, tip_speed: 81.0 };
+    BTreeMap::from([("model".to_owned(), footprint)])
+}
+
+#[test]
+fn the_domain_follows_the_layout() {
+    let plan = plan(&case(&[[0.0, 0.0], [5.0, 1.0]]), &footprints()).unwrap();
+    assert_eq!(plan.spacing, 15.0);
+    // 3 + 5 + 4 D along, 6 + 1 D across, 4 D up.
+    assert_eq!(plan.n_cells, [192, 112, 64]);
+    assert_eq!(plan.origin, Vector3::new(-720.0, -720.0, 0.0));
+    assert_eq!(plan.positions[1], Vector3::new(1200.0, 240.0, 0.0));
+    let blockage = std::f64::consts::PI / 4.0 / 28.0;
+    assert!((plan.blockage - blockage).abs() < 1e-12);
+}
+
+#[test]
+fn the_step_keeps_tips_and_wind_slow_and_minutes_whole() {
+    let plan = plan(&case(&[[0.0, 0.0]]), &footprints()).unwrap();
+    let tip = 81.0 * plan.interval / plan.spacing;
+    assert!(tip <= FASTEST_TIP && tip > 0.98 * FASTEST_TIP, "{tip} cells a step");
+    assert!(plan.lattice_speed <= MAXIMUM_LATTICE_SPEED);
+    let per_minute = 60.0 / plan.interval;
+    assert!((per_minute - per_minute.round()).abs() < 1e-9);
+    assert_eq!(plan.n_steps as f64 * plan.interval, 1500.0);
+}
+
+#[test]
+fn what_does_not_fit_is_named_with_its_fix() {
+    let error = |case: &Case| plan(case, &footprints()).unwrap_err().to_string();
+
+    let overlapping = error(&case(&[[0.0, 0.0], [0.5, 0.5]]));
+    assert!(overlapping.contains("T1 and T2 overlap"), "{overlapping}");
+
+    let mut low = case(&[[0.0, 0.0]]);
+    low.flow.height_diameters = 1.0;
+    let outside = error(&low);
+    assert!(
+        outside.contains("z = 30 to 270 m") && outside.contains("height_diameters"),
+        "{outside}"
+    );
+
+    let mut coarse = case(&[[0.0, 0.0]]);
+    coarse.flow.cells_per_diameter = 6.0;
+    assert!(error(&coarse).contains("at least 8"), "{}", error(&coarse));
+
+    let mut long = case(&[[0.0, 0.0]]);
+    long.flow.step = Some(0.15);
+    let outrun = error(&long);
+    assert!(outrun.contains("0.81 cells a step") && outrun.contains("0.1069 s"), "{outrun}");
+
+    let mut fast = case(&[[0.0, 0.0]]);
+    fast.flow.step = Some(0.1);
+    fast.wind.speed = 24.0;
+    assert!(error(&fast).contains("the wind moves 0.16 cells"), "{}", error(&fast));
+
+    let mut other = case(&[[0.0, 0.0]]);
+    other.turbines[0].model = "iea-10mw".to_owned();
+    assert!(error(&other).contains("`iea-10mw`"));
+}
