@@ -168,7 +168,7 @@ pub fn outlet() -> Vec<Row> {
         let bump = (-((p.x - 160.0) / 8.0).powi(2)).exp();
         Vector3::new(speed + 0.004 * bump, 0.0, 0.0)
     });
-    let mut largest = |air: &mut Lattice, n_steps: f64, from: u32, to: u32| {
+    let largest = |air: &mut Lattice, n_steps: f64, from: u32, to: u32| {
         advance(air, n_steps, &[]);
         let positions: Vec<_> = (from..to).map(|x| Vector3::new(f64::from(x), 0.0, 0.0)).collect();
         let mut velocities = vec![Vector3::ZERO; positions.len()];
@@ -184,7 +184,7 @@ pub fn outlet() -> Vec<Row> {
         let swirl = 0.01 * (-(dx * dx + dy * dy) / 64.0).exp();
         Vector3::new(speed - swirl * dy / 8.0, swirl * dx / 8.0, 0.0)
     });
-    let mut energy = |air: &mut Lattice, n_steps: f64| {
+    let energy = |air: &mut Lattice, n_steps: f64| {
         advance(air, n_steps, &[]);
         let [u, v, _] = air.volume(1).velocity;
         u.iter()
