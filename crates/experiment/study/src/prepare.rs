@@ -81,8 +81,10 @@ impl Setup {
         case_text: String,
         loaded: &BTreeMap<String, Model>,
     ) -> Result<Self, StudyError> {
-        let footprints =
-            loaded.iter().map(|(name, model)| (name.clone(), model.footprint(case.wind.speed))).collect();
+        let footprints = loaded
+            .iter()
+            .map(|(name, model)| (name.clone(), model.footprint(case.wind.speed)))
+            .collect();
         let plan = plan(&case, &footprints)?;
         let models =
             case.turbines.iter().map(|placement| loaded[&placement.model].clone()).collect();
