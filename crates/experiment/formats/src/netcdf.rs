@@ -172,7 +172,7 @@ mod tests {
             origin: [-0.1 - 0.2, -37.5, 150.0],
             spacing: [15.0, 1.0 / 3.0],
             n_points: [4, 3],
-            time: 1500.000_000_100,
+            time: 1_500.000_000_1,
             averaged: 1200.0,
             velocity: [values(1.0), values(-0.3), values(1e-7)],
         }
