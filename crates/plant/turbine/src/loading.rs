@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Replacing the linear (τ_s − τ) / (2 ρ u_c), which is what the helices carried at u_c amount to on average over the
-//! azimuth, leaves the difference that `Loading::excess` gives. It vanishes for light loads and for narrow smearing.
+//! azimuth, leaves the difference that [`excess`] gives. It vanishes for light loads and for narrow smearing.
 //! Source: axial momentum theory; above an induction of 0.4 its tangent, as Glauert's empirical relation.
 
 use std::f64::consts::PI;
