@@ -2,8 +2,9 @@
 
 use crate::Row;
 use basis::{Commands, PerBlade, Vector3};
+use flow::inflow::MeanProfile;
 use flow::lattice::{Ground, Lattice, Settings};
-use flow::{FlowSolver, Inflow, WindField};
+use flow::{FlowSolver, WindField};
 use std::f64::consts::PI;
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
@@ -98,7 +99,7 @@ fn measure(
     let mut settings = Settings::new(corner, spacing, n_cells, interval, wind_speed);
     settings.air_density = AIR_DENSITY;
     settings.ground = Ground::Periodic;
-    let mut air = Lattice::new(settings, Arc::new(UniformWind(wind_speed)))
+    let mut air = Lattice::new(settings, Arc::new(MeanProfile::Uniform { speed: wind_speed }))
         .expect("the box is within the lattice's limits");
     let rotor_speed = tip_speed_ratio * wind_speed / definition.rotor_radius();
     let mut rotor = Turbine::new(
@@ -145,13 +146,4 @@ pub fn expected(definition: &Definition, tip_speed_ratio: f64, area_ratio: f64) 
     // The speed-up depends on the thrust, which hardly depends on the speed-up.
     let ratio = (0..8).fold(1.0, |ratio, _| equivalent_speed_ratio(at(ratio)[1], area_ratio));
     at(ratio)
-}
-
-/// The same wind everywhere.
-struct UniformWind(f64);
-
-impl Inflow for UniformWind {
-    fn sample(&self, _time: f64, _positions: &[Vector3], velocities: &mut [Vector3]) {
-        velocities.fill(Vector3::new(self.0, 0.0, 0.0));
-    }
 }

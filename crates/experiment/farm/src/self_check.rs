@@ -3,8 +3,9 @@
 use crate::assemble::{Model, SMEARING_CELLS};
 use crate::case::Wind;
 use basis::{Commands, PerBlade, Vector3};
+use flow::inflow::MeanProfile;
 use flow::lattice::{self, Lattice};
-use flow::{FlowError, FlowSolver, Inflow, WindField};
+use flow::{FlowError, FlowSolver, WindField};
 use std::sync::Arc;
 use std::time::Instant;
 use thiserror::Error;
@@ -91,7 +92,7 @@ pub fn self_check(
     settings.kinematic_viscosity = wind.kinematic_viscosity;
     settings.ground = lattice::Ground::Periodic;
     settings.threads = threads;
-    let mut air = Lattice::new(settings, Arc::new(UniformInflow(wind.speed)))?;
+    let mut air = Lattice::new(settings, Arc::new(MeanProfile::Uniform { speed: wind.speed }))?;
 
     let pitch = model.constants.fine_pitch;
     let rotor_speed = model.rotor_speed(wind.speed);
@@ -168,15 +169,6 @@ fn expectation(
     let (speed, coefficients) = at(ratio);
     let dynamic = 0.5 * wind.air_density * definition.rotor_area() * speed * speed;
     (coefficients.power * dynamic * speed, coefficients.thrust * dynamic)
-}
-
-/// The same wind everywhere.
-struct UniformInflow(f64);
-
-impl Inflow for UniformInflow {
-    fn sample(&self, _time: f64, _positions: &[Vector3], velocities: &mut [Vector3]) {
-        velocities.fill(Vector3::new(self.0, 0.0, 0.0));
-    }
 }
 
 /// Why a self-check could not be made.
