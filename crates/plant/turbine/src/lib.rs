@@ -9,6 +9,7 @@ pub mod definition;
 pub mod drivetrain;
 pub mod lifting_line;
 pub mod loading;
+pub mod motion;
 pub mod rotor;
 pub mod steady;
 mod turbine;
