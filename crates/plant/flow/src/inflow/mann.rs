@@ -1,9 +1,9 @@
 //! Mann's turbulence: a box drawn from the spectral tensor by Fourier synthesis.
 
-mod passes;
+pub(super) mod passes;
 
 use super::noise::Noise;
-use super::{InflowError, SpectralTensor, TurbulenceBox, not_negative, positive};
+use super::{InflowError, SpectralTensor, TurbulenceBox, not_negative};
 use basis::{Matrix3, Vector3};
 use rustfft::num_complex::{Complex32, Complex64};
 use serde::{Deserialize, Serialize};
@@ -32,23 +32,7 @@ impl Settings {
     /// # Errors
     /// [`InflowError::Setting`] names what cannot be used.
     fn check(&self) -> Result<(), InflowError> {
-        for points in self.n_points {
-            if !(2..=1 << 20).contains(&points) {
-                let expected = "2 to 1048576 along each axis";
-                return Err(InflowError::Setting {
-                    name: "number of points (–)",
-                    value: points as f64,
-                    expected,
-                });
-            }
-        }
-        if !self.n_points[0].is_multiple_of(2) {
-            let (name, value) = ("number of points along x (–)", self.n_points[0] as f64);
-            return Err(InflowError::Setting { name, value, expected: "an even number" });
-        }
-        for spacing in self.spacing {
-            positive("spacing (m)", spacing)?;
-        }
+        super::check_grid(self.n_points, self.spacing)?;
         not_negative("standard deviation (m/s)", self.standard_deviation)
     }
 }

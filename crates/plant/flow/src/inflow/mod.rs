@@ -5,6 +5,8 @@
 //! Sources: Mann (1994) J. Mann, J. Fluid Mech. 273 (1994) 141-168; Mann (1998) J. Mann, Probabilistic
 //! Engineering Mechanics 13 (1998) 269-282.
 
+pub mod iec;
+pub mod kaimal;
 pub mod lifetime;
 pub mod mann;
 mod noise;
@@ -57,6 +59,26 @@ pub enum InflowError {
         /// Bytes at the peak.
         memory: u64,
     },
+}
+
+/// # Errors
+/// [`InflowError::Setting`] for numbers of points or spacings (m) along x, y, z that make no box to transform.
+pub(crate) fn check_grid(n_points: [usize; 3], spacing: [f64; 3]) -> Result<(), InflowError> {
+    for points in n_points {
+        if !(2..=1 << 20).contains(&points) {
+            let (name, value) = ("number of points (–)", points as f64);
+            let expected = "2 to 1048576 along each axis";
+            return Err(InflowError::Setting { name, value, expected });
+        }
+    }
+    if !n_points[0].is_multiple_of(2) {
+        let (name, value) = ("number of points along x (–)", n_points[0] as f64);
+        return Err(InflowError::Setting { name, value, expected: "an even number" });
+    }
+    for spacing in spacing {
+        positive("spacing (m)", spacing)?;
+    }
+    Ok(())
 }
 
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), InflowError> {

@@ -57,7 +57,7 @@ pub(super) fn across(
 }
 
 /// Transforms a half-spectrum along x into real `values`, n_x × `n_columns`.
-pub(super) fn along(
+pub(in crate::inflow) fn along(
     mut spectrum: Vec<Complex32>,
     values: &mut [f32],
     n_x: usize,
