@@ -55,16 +55,37 @@ impl SelfCheck {
     }
 }
 
-/// Domain of the check, in diameters: upstream, downstream, width and height.
-const EXTENT: [f64; 4] = [3.0, 3.0, 6.0, 6.0];
-/// Time for the near wake to settle, and time averaged after it (diameters over wind speed).
-const SETTLING: f64 = 7.0;
-const AVERAGING: f64 = 1.0;
+/// A wind tunnel for one rotor, and how long it runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tunnel {
+    /// Inlet to rotor (diameters).
+    pub upstream: f64,
+    /// Rotor to outlet (diameters).
+    pub downstream: f64,
+    /// Width and height (diameters).
+    pub width: f64,
+    /// Time for the near wake to settle (diameters over wind speed).
+    pub settling: f64,
+    /// Time averaged after it (diameters over wind speed).
+    pub averaging: f64,
+    /// Edge of a cell (m).
+    pub spacing: f64,
+    /// Step (s).
+    pub interval: f64,
+}
 
-/// Checks `model` in the steady speed of `wind` on cells of `spacing` (m) and steps of `interval` (s), rotor speed held
-/// at its optimum (or rated), pitch at its least; `progress` is told the share done.
+impl Tunnel {
+    /// The one of the check before a study: as small as the walls' effect still follows its closed form.
+    pub fn of_study(spacing: f64, interval: f64) -> Self {
+        let [upstream, downstream, width] = [3.0, 3.0, 6.0];
+        Self { upstream, downstream, width, settling: 7.0, averaging: 1.0, spacing, interval }
+    }
+}
+
+/// Checks `model` in the steady speed of `wind` in `tunnel`, rotor speed held at its optimum (or rated), pitch at its
+/// least, tower and nacelle left out; `progress` is told the share done.
 ///
-/// The box is narrow, so the expectation is taken in the wind that an open sky would need for the same rotor state
+/// The tunnel is narrow, so the expectation is taken in the wind that an open sky would need for the same rotor state
 /// ([`turbine::blockage`]).
 ///
 /// # Errors
@@ -72,21 +93,18 @@ const AVERAGING: f64 = 1.0;
 pub fn self_check(
     model: &Model,
     wind: &Wind,
-    spacing: f64,
-    interval: f64,
+    tunnel: &Tunnel,
     threads: Option<usize>,
     progress: &mut dyn FnMut(f64),
 ) -> Result<SelfCheck, SelfCheckError> {
     let definition = &model.definition;
     let diameter = definition.rotor_diameter();
-    let [upstream, downstream, width, height] = EXTENT.map(|extent| extent * diameter);
-    let cells = |length: f64| (length / spacing).round() as usize;
-    let n_cells = [cells(upstream + downstream), cells(width), cells(height)];
-    let origin = Vector3::new(
-        -upstream,
-        -0.5 * n_cells[1] as f64 * spacing,
-        -0.5 * n_cells[2] as f64 * spacing,
-    );
+    let Tunnel { spacing, interval, .. } = *tunnel;
+    let cells = |diameters: f64| (diameters * diameter / spacing).round() as usize;
+    let n_across = cells(tunnel.width);
+    let n_cells = [cells(tunnel.upstream + tunnel.downstream), n_across, n_across];
+    let half_width = 0.5 * n_across as f64 * spacing;
+    let origin = Vector3::new(-tunnel.upstream * diameter, -half_width, -half_width);
     let mut settings = lattice::Settings::new(origin, spacing, n_cells, interval, wind.speed);
     settings.air_density = wind.air_density;
     settings.kinematic_viscosity = wind.kinematic_viscosity;
@@ -114,7 +132,7 @@ pub fn self_check(
         Commands { pitch: PerBlade::splat(definition.n_blades, pitch), generator_torque: 0.0 };
 
     let steps = |diameters: f64| (diameters * diameter / wind.speed / interval).ceil() as u64;
-    let (n_settling, n_averaging) = (steps(SETTLING), steps(AVERAGING));
+    let (n_settling, n_averaging) = (steps(tunnel.settling), steps(tunnel.averaging));
     let n_steps = n_settling + n_averaging;
     let mut winds = vec![Vector3::ZERO; rotor.stations().len()];
     let (mut power, mut thrust) = (0.0, 0.0);
@@ -132,8 +150,7 @@ pub fn self_check(
     }
     let wall_time = started.elapsed().as_secs_f64();
 
-    let area_ratio =
-        definition.rotor_area() / (n_cells[1] as f64 * n_cells[2] as f64 * spacing * spacing);
+    let area_ratio = definition.rotor_area() / (2.0 * half_width).powi(2);
     let expected = expectation(definition, wind, rotor_speed, pitch, area_ratio);
     Ok(SelfCheck {
         model: definition.name.clone(),

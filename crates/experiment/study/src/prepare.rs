@@ -4,7 +4,7 @@ use crate::StudyError;
 use crate::watcher::{Estimate, Watcher};
 use farm::assemble::Model;
 use farm::case::{Case, Control};
-use farm::self_check::self_check;
+use farm::self_check::{Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
 use flow::inflow::sizing::Need;
@@ -155,8 +155,7 @@ impl Setup {
             let check = self_check(
                 model,
                 &self.case.wind,
-                self.plan.spacing,
-                self.plan.interval,
+                &Tunnel::of_study(self.plan.spacing, self.plan.interval),
                 self.case.flow.threads,
                 &mut |share| watcher.preparing(&what, share),
             )?;
