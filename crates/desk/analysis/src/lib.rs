@@ -1,5 +1,6 @@
-//! What an engineer reads from records: means with their uncertainty, spectra, delivered pitch, wakes.
+//! What an engineer reads from records: means with their uncertainty, spectra, fatigue, delivered pitch, wakes.
 
+pub mod fatigue;
 pub mod line;
 pub mod pitch;
 pub mod spectra;
@@ -34,6 +35,18 @@ pub enum AnalysisError {
         quantity: &'static str,
         /// What was given (s).
         value: f64,
+    },
+    /// A sample that is infinite or no number.
+    #[error("sample {index} is not a finite number")]
+    NotFinite {
+        /// Its place in the record, the first is 0.
+        index: usize,
+    },
+    /// An S-N slope that no material has.
+    #[error("the slope must be a number of at least 1, not {slope}")]
+    Slope {
+        /// What was given (–).
+        slope: f64,
     },
     /// A ratio to a mean of zero.
     #[error("the compared record has a mean of zero")]
