@@ -35,6 +35,9 @@ pub trait Inflow: Send + Sync {
 /// Why a solver could not go on.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum FlowError {
+    /// The prescribed wind could not be had.
+    #[error(transparent)]
+    Inflow(#[from] inflow::InflowError),
     /// The field is no longer physical.
     #[error("the flow diverged at {time:.2} s near x {x:.0} m, y {y:.0} m, z {z:.0} m (speed {speed} m/s)", x = position.x, y = position.y, z = position.z)]
     Diverged {

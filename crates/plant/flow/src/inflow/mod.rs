@@ -1,15 +1,20 @@
-//! Wind that blows in: mean profiles and Mann's synthetic turbulence, carried along by Taylor's hypothesis.
+//! Wind that blows in: mean profiles, gusts, synthetic turbulence carried along by Taylor's hypothesis.
 //!
-//! [`MeanProfile`] alone is steady wind; [`mann::generate`] makes a [`TurbulenceBox`], [`TurbulentInflow`]
-//! carries it past the farm on top of a profile, [`sizing`] says how large the box must be.
+//! [`MeanProfile`] alone is steady wind, [`DeterministicWind`] adds veer and one event; [`mann::generate`] and
+//! [`kaimal::generate`] make a [`TurbulenceBox`]. For a solver's inlet [`TurbulentInflow`] carries it past the farm on top
+//! of a profile, [`sizing`] says how large it must be. Where no air is solved, [`PrescribedWind`] is the flow: any of these
+//! winds, or [`Planes`] that come from a file one by one.
 //! Sources: Mann (1994) J. Mann, J. Fluid Mech. 273 (1994) 141-168; Mann (1998) J. Mann, Probabilistic
 //! Engineering Mechanics 13 (1998) 269-282.
 
+pub mod deterministic;
 pub mod iec;
 pub mod kaimal;
 pub mod lifetime;
 pub mod mann;
 mod noise;
+pub mod planes;
+pub mod prescribed;
 pub mod profile;
 pub mod sizing;
 pub mod spectra;
@@ -18,12 +23,16 @@ pub mod tensor;
 pub mod turbulence_box;
 pub mod turbulent;
 
+pub use deterministic::DeterministicWind;
+pub use planes::{PlaneGrid, Planes};
+pub use prescribed::PrescribedWind;
 pub use profile::MeanProfile;
 pub use sizing::size_box;
 pub use tensor::SpectralTensor;
 pub use turbulence_box::TurbulenceBox;
 pub use turbulent::TurbulentInflow;
 
+use basis::Vector3;
 use thiserror::Error;
 
 /// Why turbulence could not be made or used.
@@ -58,6 +67,32 @@ pub enum InflowError {
         n_points: [usize; 3],
         /// Bytes at the peak.
         memory: u64,
+    },
+    /// A place where the wind is not known.
+    #[error("the wind is asked for at y {y:.1} m, z {z:.1} m, outside its grid of y {left:.1} to {right:.1} m, z {low:.1} to {high:.1} m; make the grid larger, or move it", y = position.y, z = position.z, left = across[0], right = across[1], low = up[0], high = up[1])]
+    Outside {
+        /// The place, farm frame (m).
+        position: Vector3,
+        /// What the grid spans along y (m).
+        across: [f64; 2],
+        /// What the grid spans along z (m).
+        up: [f64; 2],
+    },
+    /// A record of wind that is over.
+    #[error("the wind's record of {length:.1} s does not repeat, and the run asks for its {time:.1} s; make a longer record, or one that repeats")]
+    Ended {
+        /// Length of the record (s).
+        length: f64,
+        /// Time into the record that was asked for (s).
+        time: f64,
+    },
+    /// A plane of wind that its source could not give.
+    #[error("plane {step} of the wind cannot be had: {problem}")]
+    Plane {
+        /// Its place in order of arrival, from 0.
+        step: usize,
+        /// What the source says: file, place and fix.
+        problem: String,
     },
 }
 

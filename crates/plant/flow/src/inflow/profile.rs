@@ -1,5 +1,6 @@
 //! Mean wind over height.
 
+use super::{InflowError, not_negative, positive};
 use crate::Inflow;
 use basis::Vector3;
 use serde::{Deserialize, Serialize};
@@ -37,6 +38,33 @@ pub enum MeanProfile {
 }
 
 impl MeanProfile {
+    /// # Errors
+    /// [`InflowError::Setting`] names what cannot be used.
+    pub fn check(&self) -> Result<(), InflowError> {
+        match *self {
+            Self::Uniform { speed } => not_negative("speed (m/s)", speed),
+            Self::PowerLaw { hub_height, speed, exponent } => {
+                positive("hub height (m)", hub_height)?;
+                not_negative("speed (m/s)", speed)?;
+                if exponent.is_finite() {
+                    return Ok(());
+                }
+                let (name, expected) = ("shear exponent (–)", "a finite number");
+                Err(InflowError::Setting { name, value: exponent, expected })
+            }
+            Self::LogLaw { hub_height, speed, roughness_length } => {
+                positive("hub height (m)", hub_height)?;
+                not_negative("speed (m/s)", speed)?;
+                positive("roughness length (m)", roughness_length)?;
+                if roughness_length < hub_height {
+                    return Ok(());
+                }
+                let (name, expected) = ("roughness length (m)", "less than the hub height");
+                Err(InflowError::Setting { name, value: roughness_length, expected })
+            }
+        }
+    }
+
     /// Mean speed (m/s) at `height` (m) above the ground; finite for every height, below the ground too.
     pub fn speed(&self, height: f64) -> f64 {
         match *self {

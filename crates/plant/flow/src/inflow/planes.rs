@@ -1,0 +1,125 @@
+//! Planes of wind that arrive one after the other: what a turbulence box is to a turbine that stands in it.
+
+use super::{InflowError, MeanProfile, TurbulenceBox, positive};
+use std::sync::Arc;
+
+/// Where the points of planes are, and how the planes follow each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneGrid {
+    /// Points along y (–).
+    pub n_y: usize,
+    /// Points along z (–).
+    pub n_z: usize,
+    /// Distance of neighbouring points along y, z (m).
+    pub spacing: [f64; 2],
+    /// Place of the first point along y, z (m): the right-most looking downwind, and the lowest.
+    pub first: [f64; 2],
+    /// Time between planes (s).
+    pub interval: f64,
+    /// Speed with which planes travel along x (m/s).
+    pub speed: f64,
+    /// Number of planes (–).
+    pub n_steps: usize,
+    /// Whether the first plane follows the last.
+    pub repeats: bool,
+}
+
+impl PlaneGrid {
+    /// # Errors
+    /// [`InflowError::Setting`] names what cannot be used.
+    pub fn check(&self) -> Result<(), InflowError> {
+        for n in [self.n_y, self.n_z, self.n_steps] {
+            positive("number of points (–)", n as f64)?;
+        }
+        for spacing in self.spacing {
+            positive("spacing (m)", spacing)?;
+        }
+        positive("time between planes (s)", self.interval)?;
+        positive("mean speed at hub height (m/s)", self.speed)
+    }
+
+    /// What the grid spans along y (m).
+    pub fn across(&self) -> [f64; 2] {
+        [self.first[0], self.first[0] + (self.n_y - 1) as f64 * self.spacing[0]]
+    }
+
+    /// What the grid spans along z (m).
+    pub fn up(&self) -> [f64; 2] {
+        [self.first[1], self.first[1] + (self.n_z - 1) as f64 * self.spacing[1]]
+    }
+
+    /// Time (s) from the first plane to the last, or until the first returns.
+    pub fn length(&self) -> f64 {
+        let n_intervals = if self.repeats { self.n_steps } else { self.n_steps - 1 };
+        n_intervals as f64 * self.interval
+    }
+}
+
+/// Planes of wind in order of arrival, from memory or from a file.
+pub trait Planes: Send + Sync {
+    /// Where the points are.
+    fn grid(&self) -> PlaneGrid;
+
+    /// Writes the wind u, v, w (m/s, the mean included) on plane `step`, from 0 in order of arrival, into `values`,
+    /// n_z × n_y, y fastest and from the right to the left, looking downwind.
+    ///
+    /// # Errors
+    /// [`InflowError::Plane`] when it cannot be had.
+    fn read(&mut self, step: usize, values: &mut [[f32; 3]]) -> Result<(), InflowError>;
+}
+
+/// Planes of a box of fluctuations on top of a mean speed per row.
+#[derive(Clone, Debug)]
+pub struct BoxPlanes {
+    turbulence: Arc<TurbulenceBox>,
+    mean_speeds: Vec<f32>,
+    grid: PlaneGrid,
+}
+
+impl BoxPlanes {
+    /// `turbulence` on top of `profile` and carried along with its hub speed. The middle of the box's width stands at
+    /// y = 0, its lowest row at `lowest_height` (m). Plane 0 arrives first, then n_x − 1, n_x − 2, …: time runs against x.
+    ///
+    /// # Errors
+    /// [`InflowError::Setting`] when the hub speed is not positive.
+    pub fn new(
+        turbulence: Arc<TurbulenceBox>,
+        profile: &MeanProfile,
+        lowest_height: f64,
+    ) -> Result<Self, InflowError> {
+        let speed = profile.hub_speed();
+        let [n_steps, n_y, n_z] = turbulence.n_points();
+        let [along, across, up] = turbulence.spacing();
+        let grid = PlaneGrid {
+            n_y,
+            n_z,
+            spacing: [across, up],
+            first: [-0.5 * (n_y - 1) as f64 * across, lowest_height],
+            interval: along / speed,
+            speed,
+            n_steps,
+            repeats: true,
+        };
+        grid.check()?;
+        let height = |z: usize| lowest_height + z as f64 * up;
+        let mean_speeds = (0..n_z).map(|z| profile.speed(height(z)) as f32).collect();
+        Ok(Self { turbulence, mean_speeds, grid })
+    }
+}
+
+impl Planes for BoxPlanes {
+    fn grid(&self) -> PlaneGrid {
+        self.grid
+    }
+
+    fn read(&mut self, step: usize, values: &mut [[f32; 3]]) -> Result<(), InflowError> {
+        let n_x = self.grid.n_steps;
+        let x = (n_x - step % n_x) % n_x;
+        let [u, v, w] = [0, 1, 2].map(|component| self.turbulence.plane(component, x));
+        for (point, value) in values.iter_mut().enumerate() {
+            let mean = self.mean_speeds[point / self.grid.n_y];
+            *value = [mean + u[point], v[point], w[point]];
+        }
+        Ok(())
+    }
+}
