@@ -13,10 +13,10 @@ const TOLERANCE: f64 = 0.03;
 const TIP_CELLS: f64 = 0.5;
 /// The tunnel, in diameters: large enough for what its walls and its inlet do to be below a percent of the power, and time
 /// enough for the near wake to stand.
-const UPSTREAM: f64 = 4.0;
+const UPSTREAM: f64 = 5.0;
 const DOWNSTREAM: f64 = 5.0;
-const WIDTH: f64 = 8.0;
-const SETTLING: f64 = 12.0;
+const WIDTH: f64 = 6.0;
+const SETTLING: f64 = 14.0;
 const AVERAGING: f64 = 1.0;
 
 /// Turbines, cells per diameter and wind speeds (m/s) that are compared.

@@ -77,8 +77,8 @@ pub struct Tunnel {
 impl Tunnel {
     /// The one of the check before a study: as small as the walls' effect still follows its closed form.
     pub fn of_study(spacing: f64, interval: f64) -> Self {
-        let [upstream, downstream, width] = [3.0, 3.0, 6.0];
-        Self { upstream, downstream, width, settling: 7.0, averaging: 1.0, spacing, interval }
+        let [upstream, downstream, width] = [4.0, 4.0, 6.0];
+        Self { upstream, downstream, width, settling: 10.0, averaging: 1.0, spacing, interval }
     }
 }
 
@@ -172,7 +172,7 @@ fn expectation(
     pitch: f64,
     area_ratio: f64,
 ) -> (f64, f64) {
-    let rotor = SteadyRotor::new(definition, Theory::default());
+    let rotor = SteadyRotor::new(definition, Theory::default()).along_shaft();
     let at = |ratio: f64| {
         let speed = ratio * wind.speed;
         (speed, rotor.coefficients(rotor_speed * definition.rotor_radius() / speed, pitch))

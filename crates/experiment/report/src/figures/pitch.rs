@@ -6,7 +6,8 @@ use crate::draw::axes::{Frame, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::{Figure, Look, Role, Setting, Shape, segment, text};
 use crate::study::Study;
-use crate::trace::{amplitude_spectrum, thinned};
+use crate::trace::{peaks, thinned};
+use analysis::spectra::amplitude;
 use std::f64::consts::TAU;
 
 /// Turns of the rotor that are shown.
@@ -130,8 +131,13 @@ fn spectra(rows: &[&Excited], area: [f64; 4], shapes: &mut Vec<Shape>) {
         let spin_up = one.run.summary.conditions.spin_up;
         let first = times.partition_point(|time| *time < spin_up).min(times.len() - 4);
         let interval = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
-        let spectrum = amplitude_spectrum(&pitch[first..], interval, highest);
-        lines.push((one.colour, crate::trace::peaks(&spectrum, 360)));
+        // A record too short for a spectrum has no line to show.
+        let Ok(spectrum) = amplitude(&pitch[first..], interval) else { continue };
+        let n_shown = (highest / spectrum.frequency_step) as usize;
+        let points: Vec<[f64; 2]> = (1..spectrum.values.len().min(n_shown + 1))
+            .map(|index| [spectrum.frequency(index), spectrum.values[index]])
+            .collect();
+        lines.push((one.colour, peaks(&points, 360)));
     }
     let largest = lines.iter().flat_map(|line| &line.1).map(|point| point[1]).fold(1e-2, f64::max);
     let frame = Frame {
