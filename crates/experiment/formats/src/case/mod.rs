@@ -15,6 +15,7 @@ mod write;
 
 pub use error::{CaseError, Problem, ProblemKind};
 pub use reference::{reference, schema};
+pub(crate) use spelling::nearest;
 pub use write::write;
 
 use crate::atomic;

@@ -1,7 +1,7 @@
 //! Which known name a misspelt one may have meant.
 
 /// The name that `misspelt` may have meant, when one is near enough: a third of its letters wrong at most.
-pub(super) fn nearest<'n>(misspelt: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+pub(crate) fn nearest<'n>(misspelt: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     // A name of any length can stand in a file; only what might be near is measured.
     if misspelt.len() > 80 {
         return None;

@@ -1,0 +1,90 @@
+//! Which column a name means.
+
+use super::Column;
+use crate::case::nearest;
+
+/// Names that a refusal lists at most.
+const LISTED: usize = 8;
+
+/// Index of the column that `name` means: as it is, ignoring case, or as the beginning of one name up to `_` or a space.
+///
+/// # Errors
+/// The problem and its fix, in words.
+pub(crate) fn find(name: &str, columns: &[Column]) -> Result<usize, (String, String)> {
+    let lower = name.to_lowercase();
+    let is_beginning = |column: &Column| {
+        let rest = column.name.to_lowercase();
+        rest.strip_prefix(&lower).is_some_and(|rest| rest.starts_with(['_', ' ']))
+    };
+    let rules: [&dyn Fn(&Column) -> bool; 3] = [
+        &|column| column.name == name,
+        &|column| column.name.to_lowercase() == lower,
+        &is_beginning,
+    ];
+    for rule in rules {
+        let found: Vec<usize> = (0..columns.len()).filter(|index| rule(&columns[*index])).collect();
+        match found[..] {
+            [] => {}
+            [one] => return Ok(one),
+            [first, ..] => {
+                let n_found = found.len();
+                let same = found.iter().all(|index| columns[*index].name == columns[first].name);
+                if same {
+                    let problem = format!("{n_found} channels are called \"{name}\"");
+                    return Err((problem, "leave only one of them in the file".to_owned()));
+                }
+                let names = list(found.iter().map(|index| &columns[*index].name));
+                let problem = format!("the channel \"{name}\" is one of {n_found}: {names}");
+                return Err((problem, "give the whole name of one of them".to_owned()));
+            }
+        }
+    }
+    Err((format!("it has no channel \"{name}\""), suggestion(name, &lower, columns)))
+}
+
+fn suggestion(name: &str, lower: &str, columns: &[Column]) -> String {
+    let names = || columns.iter().map(|column| column.name.as_str());
+    let alike: Vec<&str> =
+        names().filter(|other| !lower.is_empty() && other.to_lowercase().contains(lower)).collect();
+    if let Some(nearest) = nearest(name, names()) {
+        return format!("did you mean \"{nearest}\"?");
+    }
+    let all: Vec<&str> = if alike.is_empty() { names().collect() } else { alike };
+    format!("give one of its {} channels: {}", all.len(), list(all.iter()))
+}
+
+fn list<T: AsRef<str>>(names: impl ExactSizeIterator<Item = T>) -> String {
+    let n_names = names.len();
+    let mut text: Vec<String> = names.take(LISTED).map(|name| name.as_ref().to_owned()).collect();
+    if n_names > LISTED {
+        text.push("…".to_owned());
+    }
+    text.join(", ")
+}
+
+/// Which of `columns` is time, in seconds.
+///
+/// # Errors
+/// The problem and its fix, in words: no such column, or one in another unit.
+pub(crate) fn find_time(columns: &[Column]) -> Result<usize, (String, String)> {
+    let found = columns.iter().enumerate().find_map(|(index, column)| {
+        let lower = column.name.to_lowercase();
+        let rest = if lower == "t" { Some("") } else { lower.strip_prefix("time") };
+        let rest = rest.filter(|rest| !rest.starts_with(char::is_alphanumeric))?;
+        let rest = rest.trim_start_matches(['_', ' ', '-', '.']).to_owned();
+        Some((index, if column.unit.is_empty() { rest } else { column.unit.to_lowercase() }))
+    });
+    match found {
+        Some((index, unit)) if ["", "s", "sec", "second", "seconds"].contains(&unit.as_str()) => {
+            Ok(index)
+        }
+        Some((index, unit)) => Err((
+            format!("its time \"{}\" is in \"{unit}\"", columns[index].name),
+            "give time in seconds, in a column called time_s".to_owned(),
+        )),
+        None => Err((
+            format!("none of its {} columns is time", columns.len()),
+            "call the column of time (in seconds) time_s, time or t".to_owned(),
+        )),
+    }
+}
