@@ -12,6 +12,7 @@ pub mod loading;
 pub mod motion;
 pub mod rotor;
 pub mod steady;
+pub mod structure;
 mod turbine;
 
 pub use aero::polar::Polar;

@@ -1,0 +1,236 @@
+//! Loads under the names, axes and signs of OpenFAST's ElastoDyn.
+
+use super::loads::{Loads, N_GAUGES};
+use super::machine::Pitch;
+use std::f64::consts::PI;
+
+/// One column of output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// OpenFAST's name, such as `RootMyc1`.
+    pub name: String,
+    /// OpenFAST's unit, such as `kN-m`.
+    pub unit: &'static str,
+    /// One SI unit (N, N m, m, rad, rad/s, m/s²) in `unit` (–).
+    pub scale: f64,
+}
+
+const FORCE: (&str, f64) = ("kN", 1e-3);
+const MOMENT: (&str, f64) = ("kN-m", 1e-3);
+const LENGTH: (&str, f64) = ("m", 1.0);
+const ANGLE: (&str, f64) = ("deg", 180.0 / PI);
+const SPEED: (&str, f64) = ("rpm", 30.0 / PI);
+const ACCELERATION: (&str, f64) = ("m/s^2", 1.0);
+
+/// Names of one turbine, in the order in which [`write`] gives values.
+const TURBINE: [(&str, (&str, f64)); 32] = [
+    ("Azimuth", ANGLE),
+    ("RotSpeed", SPEED),
+    ("GenSpeed", SPEED),
+    ("NacYaw", ANGLE),
+    ("RotThrust", FORCE),
+    ("RotTorq", MOMENT),
+    ("LSShftFys", FORCE),
+    ("LSShftFzs", FORCE),
+    ("LSSTipMys", MOMENT),
+    ("LSSTipMzs", MOMENT),
+    ("LSShftFya", FORCE),
+    ("LSShftFza", FORCE),
+    ("LSSTipMya", MOMENT),
+    ("LSSTipMza", MOMENT),
+    ("YawBrFxp", FORCE),
+    ("YawBrFyp", FORCE),
+    ("YawBrFzp", FORCE),
+    ("YawBrMxp", MOMENT),
+    ("YawBrMyp", MOMENT),
+    ("YawBrMzp", MOMENT),
+    ("TwrBsFxt", FORCE),
+    ("TwrBsFyt", FORCE),
+    ("TwrBsFzt", FORCE),
+    ("TwrBsMxt", MOMENT),
+    ("TwrBsMyt", MOMENT),
+    ("TwrBsMzt", MOMENT),
+    ("TTDspFA", LENGTH),
+    ("TTDspSS", LENGTH),
+    ("TTDspAx", LENGTH),
+    ("NcIMUTAxs", ACCELERATION),
+    ("NcIMUTAys", ACCELERATION),
+    ("NcIMUTAzs", ACCELERATION),
+];
+
+/// Names of one blade, its number to be put behind them.
+const BLADE: [(&str, (&str, f64)); 14] = [
+    ("BldPitch", ANGLE),
+    ("RootFxc", FORCE),
+    ("RootFyc", FORCE),
+    ("RootFzc", FORCE),
+    ("RootMxc", MOMENT),
+    ("RootMyc", MOMENT),
+    ("RootMzc", MOMENT),
+    ("RootFxb", FORCE),
+    ("RootFyb", FORCE),
+    ("RootMxb", MOMENT),
+    ("RootMyb", MOMENT),
+    ("OoPDefl", LENGTH),
+    ("IPDefl", LENGTH),
+    ("TipDzc", LENGTH),
+];
+
+/// Other names of the same channels; a blade's number follows where one does in the second.
+const ALIASES: [(&str, &str); 26] = [
+    ("RotSpeed", "LSSTipVxa"),
+    ("NacYaw", "YawPzn"),
+    ("RotThrust", "LSShftFxa"),
+    ("RotThrust", "LSShftFxs"),
+    ("RotTorq", "LSShftTq"),
+    ("RotTorq", "LSShftMxa"),
+    ("RotTorq", "LSShftMxs"),
+    ("RotTorq", "LSSGagMxa"),
+    ("RotTorq", "LSSGagMxs"),
+    ("LSSTipMys", "LSSGagMys"),
+    ("LSSTipMzs", "LSSGagMzs"),
+    ("LSSTipMya", "LSSGagMya"),
+    ("LSSTipMza", "LSSGagMza"),
+    ("YawBrFzp", "YawBrFzn"),
+    ("YawBrMzp", "YawBrMzn"),
+    ("TTDspFA", "YawBrTDxt"),
+    ("TTDspSS", "YawBrTDyt"),
+    ("RootFzc", "RootFzb"),
+    ("RootMzc", "RootMzb"),
+    ("RootMxc", "RootMIP"),
+    ("RootMyc", "RootMOoP"),
+    ("RootMxb", "RootMEdg"),
+    ("RootMyb", "RootMFlp"),
+    ("OoPDefl", "TipDxc"),
+    ("IPDefl", "TipDyc"),
+    ("TipDzc", "TipDzb"),
+];
+
+/// The table of channels of a turbine with `n_blades` blades.
+///
+/// `Spn1` to `Spn7` lie at 1/8 to 7/8 of the blade, strain gauges of the shaft at the rotor apex.
+pub(super) fn table(n_blades: usize) -> Vec<Channel> {
+    let channel = |name: String, (unit, scale): (&'static str, f64)| Channel { name, unit, scale };
+    let mut channels: Vec<Channel> =
+        TURBINE.iter().map(|(name, unit)| channel((*name).into(), *unit)).collect();
+    for blade in 1..=n_blades {
+        channels.extend(BLADE.iter().map(|(name, unit)| channel(format!("{name}{blade}"), *unit)));
+        for gauge in 1..=N_GAUGES {
+            for axis in ["x", "y"] {
+                channels.push(channel(format!("Spn{gauge}ML{axis}b{blade}"), MOMENT));
+            }
+        }
+    }
+    channels
+}
+
+/// Place of the channel called `name` in `table`; case does not matter, and OpenFAST's other names are known.
+pub(super) fn index(table: &[Channel], name: &str) -> Option<usize> {
+    let find = |name: &str| table.iter().position(|c| c.name.eq_ignore_ascii_case(name));
+    find(name).or_else(|| {
+        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        let number = &name[stem.len()..];
+        let same = ALIASES.iter().find(|(_, alias)| alias.eq_ignore_ascii_case(stem))?;
+        find(&format!("{}{number}", same.0))
+    })
+}
+
+/// On return `values` holds each channel of the table in SI units (N, N m, m, rad, rad/s, m/s²).
+pub(super) fn write(loads: &Loads, yaw: f64, pitch: &[Pitch], values: &mut [f64]) {
+    let mut rest = values.iter_mut();
+    let mut put = |value: f64| {
+        if let Some(slot) = rest.next() {
+            *slot = value;
+        }
+    };
+    let (shaft, rotating) = (&loads.shaft, &loads.rotating_shaft);
+    [
+        basis::angle::wrap_to_turn(loads.azimuth),
+        loads.rotor_speed,
+        loads.generator_speed,
+        yaw,
+        shaft.force.x,
+        shaft.moment.x,
+        shaft.force.y,
+        shaft.force.z,
+        shaft.moment.y,
+        shaft.moment.z,
+        rotating.force.y,
+        rotating.force.z,
+        rotating.moment.y,
+        rotating.moment.z,
+    ]
+    .into_iter()
+    .for_each(&mut put);
+    for wrench in [&loads.yaw_bearing, &loads.tower_base] {
+        wrench.force.to_array().into_iter().for_each(&mut put);
+        wrench.moment.to_array().into_iter().for_each(&mut put);
+    }
+    loads.tower_top.to_array().into_iter().for_each(&mut put);
+    loads.nacelle_acceleration.to_array().into_iter().for_each(&mut put);
+    for (blade, pitch) in loads.blades.iter().zip(pitch) {
+        put(pitch.angle);
+        blade.root.force.to_array().into_iter().for_each(&mut put);
+        blade.root.moment.to_array().into_iter().for_each(&mut put);
+        let pitched = &blade.pitched_root;
+        [pitched.force.x, pitched.force.y, pitched.moment.x, pitched.moment.y]
+            .into_iter()
+            .for_each(&mut put);
+        blade.tip_deflection.to_array().into_iter().for_each(&mut put);
+        blade.span_moments.iter().flatten().for_each(|moment| put(*moment));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use basis::PerBlade;
+
+    #[test]
+    fn names_are_unique_and_aliases_lead_to_them() {
+        let table = table(4);
+        for (place, channel) in table.iter().enumerate() {
+            assert_eq!(index(&table, &channel.name), Some(place), "{}", channel.name);
+        }
+        for (name, alias) in ALIASES {
+            let number = if BLADE.iter().any(|(blade, _)| *blade == name) { "4" } else { "" };
+            let found = index(&table, &format!("{alias}{number}"));
+            assert_eq!(found, index(&table, &format!("{name}{number}")), "{alias}");
+            assert!(found.is_some(), "{alias}");
+        }
+        assert_eq!(index(&table, "rootmyc2"), index(&table, "RootMOoP2"));
+        assert_eq!(index(&table, "RootMyc5"), None);
+        assert_eq!(index(&table, "é9"), None);
+    }
+
+    #[test]
+    fn every_channel_is_written_in_its_place() {
+        let table = table(2);
+        let mut loads = Loads {
+            azimuth: 7.0,
+            rotor_speed: 1.0,
+            generator_speed: 2.0,
+            blades: PerBlade::splat(2, Default::default()),
+            shaft: Default::default(),
+            rotating_shaft: Default::default(),
+            yaw_bearing: Default::default(),
+            tower_base: Default::default(),
+            tower_top: Default::default(),
+            nacelle_acceleration: basis::Vector3::new(0.0, 0.0, 5.0),
+        };
+        loads.tower_base.moment.y = 11.0;
+        loads.blades[1].root.moment.y = 12.0;
+        loads.blades[1].span_moments[N_GAUGES - 1][1] = 13.0;
+        let mut values = vec![f64::NAN; table.len()];
+        write(&loads, 0.1, &[Pitch::default(); 2], &mut values);
+        assert!(values.iter().all(|value| value.is_finite()));
+        let value = |name: &str| index(&table, name).map(|place| values[place]);
+        assert_eq!(value("GenSpeed"), Some(2.0));
+        assert_eq!(value("NacYaw"), Some(0.1));
+        assert_eq!(value("NcIMUTAzs"), Some(5.0));
+        assert_eq!(value("TwrBsMyt"), Some(11.0));
+        assert_eq!(value("RootMyc2"), Some(12.0));
+        assert_eq!(values.last(), Some(&13.0));
+        assert!((value("Azimuth").unwrap() - (7.0 - std::f64::consts::TAU)).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,303 @@
+//! The flexible turbine: blades, tower and drive train in motion, and the loads inside them.
+//!
+//! ```text
+//! blade: 2 flapwise + 1 edgewise mode        z up, x downwind, y left looking downwind
+//!    \    hub ── shaft torsion ── generator  azimuth of generator + torsion = azimuth of the rotor
+//!     ●══════╪═══ nacelle
+//!    /       │    tower top: yaw bearing, nacelle, shaft tilted
+//!            │    tower: 2 fore-aft + 2 side-to-side modes
+//!         ───┴─── clamped
+//! ```
+//!
+//! Blades and tower are beams whose modes bend them along two principal axes; the axes twist along the blade, so that each
+//! mode moves out of plane and in plane. A point of a beam moves as p = p₀ + Σ φᵢ qᵢ − ½ Σ qᵢ Aᵢⱼ qⱼ ẑ, the last term the
+//! shortening that bending brings: through it centrifugal force stiffens the blades and weight softens the tower. Positions
+//! are exact functions of the coordinates otherwise. Mass stands in Gaussian points (see `quadrature`), their velocities
+//! have partial derivatives by the rates, and Kane's equations put inertia, gravity and load through these on the
+//! coordinates. Loads inside are what lies outboard of a cut, inertia included.
+//!
+//! Sources: Kane and Levinson, Dynamics (1985), ch. 6; Jonkman and Buhl, FAST User's Guide, NREL/EL-500-38230 (2005), for the
+//! degrees of freedom, mode shapes and channels.
+//! Limits: no torsion and no extension of blades, sections' own rotary inertia left out, mass on the pitch axis: prebend
+//! and sweep carry the aerodynamic forces, not the mass. Slopes are small rotations.
+
+mod arrow;
+mod balance;
+mod beam;
+mod channels;
+mod coordinates;
+mod energy;
+mod error;
+mod frame;
+mod loads;
+mod machine;
+mod midpoint;
+mod modes;
+mod quadrature;
+mod shapes;
+mod stations;
+#[cfg(test)]
+mod tests;
+
+pub use beam::Wrench;
+pub use channels::Channel;
+pub use coordinates::{Coordinates, Freedom};
+pub use energy::Energy;
+pub use error::StructureError;
+pub use loads::{BladeLoads, Loads, N_GAUGES};
+pub use machine::Pitch;
+pub use modes::NaturalMode;
+pub use stations::{AppliedLoads, ElementLoad};
+
+use crate::definition::Definition;
+use crate::motion::ElementMotion;
+use crate::rotor::Frame;
+use balance::Balance;
+use basis::{PerBlade, Vector3};
+use coordinates::{GENERATOR, Locks, TORSION};
+use machine::Machine;
+use midpoint::Phase;
+use serde::{Deserialize, Serialize};
+use stations::{Gathered, Stations};
+
+/// Standard acceleration of free fall (m/s²).
+pub const GRAVITY: f64 = 9.806_65;
+
+/// Where a flexible turbine stands and how it begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings<'a> {
+    /// Foot of the turbine on the ground or mean sea level, farm frame (m).
+    pub position: Vector3,
+    /// Turn of the nacelle about the vertical, from facing −x, counter-clockwise from above (rad).
+    pub yaw: f64,
+    /// Acceleration of gravity (m/s²), see [`GRAVITY`].
+    pub gravity: f64,
+    /// Rotor speed at the beginning (rad/s).
+    pub rotor_speed: f64,
+    /// Azimuth of blade 1 at the beginning (rad).
+    pub azimuth: f64,
+    /// Pitch of all blades at the beginning (rad).
+    pub pitch: f64,
+    /// Middles of the blade elements that the air acts on, from the rotor apex along the pitch axis (m).
+    pub spans: &'a [f64],
+    /// Points of the tower that the air acts on, above ground or mean sea level (m).
+    pub heights: &'a [f64],
+}
+
+impl Settings<'_> {
+    /// At the farm's origin, facing the wind, at rest, without elements.
+    pub const AT_REST: Settings<'static> = Settings {
+        position: Vector3::ZERO,
+        yaw: 0.0,
+        gravity: GRAVITY,
+        rotor_speed: 0.0,
+        azimuth: 0.0,
+        pitch: 0.0,
+        spans: &[],
+        heights: &[],
+    };
+}
+
+/// A flexible turbine: what it is made of, how it moves now, and the loads of its last step.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    machine: Machine,
+    stations: Stations,
+    locks: Locks,
+    yaw: f64,
+    channels: Vec<Channel>,
+    state: State,
+    balance: Balance,
+}
+
+/// Everything of a structure that time changes; restoring it continues with the same bits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Where the coordinates are.
+    pub coordinates: Coordinates,
+    /// How fast they change.
+    pub velocities: Coordinates,
+    /// How fast that changes, mean of the last step.
+    pub accelerations: Coordinates,
+    /// Pitch during the last step.
+    pub pitch: PerBlade<Pitch>,
+    /// Loads at the middle of the last step.
+    pub loads: Loads,
+}
+
+impl State {
+    fn phase(&self) -> Phase {
+        Phase { q: self.coordinates, v: self.velocities, a: self.accelerations }
+    }
+}
+
+impl Structure {
+    /// The structure of `definition`, undeflected.
+    ///
+    /// # Errors
+    /// When sections do not span blade or tower, are not made of anything, or a mode shape is not one at the free end.
+    pub fn new(definition: &Definition, settings: &Settings<'_>) -> Result<Self, StructureError> {
+        let (machine, tables) =
+            Machine::new(definition, settings.position, settings.yaw, settings.gravity)?;
+        let stations = Stations::new(definition, &tables, settings.spans, settings.heights);
+        let pitch = Pitch { angle: settings.pitch, ..Pitch::default() };
+        let mut phase = Phase::default();
+        phase.q.shared[GENERATOR] = basis::angle::wrap_to_turn(settings.azimuth);
+        phase.v.shared[GENERATOR] = settings.rotor_speed;
+        let pitch = PerBlade::splat(machine.n_blades, pitch);
+        let none = Gathered::default();
+        let balance = machine.balance(&phase.q, &phase.v, &pitch, &none);
+        let loads = machine.loads(&phase, &balance, &none);
+        let state = State {
+            coordinates: phase.q,
+            velocities: phase.v,
+            accelerations: phase.a,
+            pitch,
+            loads,
+        };
+        let channels = channels::table(machine.n_blades);
+        let locks = Locks::default();
+        Ok(Self { machine, stations, locks, yaw: settings.yaw, channels, state, balance })
+    }
+
+    /// Holds exactly `freedoms`: no acceleration from now on. A held mode stops where it is, held rotor freedoms keep their speed.
+    pub fn hold(&mut self, freedoms: &[Freedom]) {
+        self.locks = Locks::of(freedoms);
+        for (index, held) in self.locks.shared.into_iter().enumerate() {
+            if held {
+                self.state.accelerations.shared[index] = 0.0;
+                if index != GENERATOR {
+                    self.state.velocities.shared[index] = 0.0;
+                }
+            }
+        }
+        for mode in (0..coordinates::N_MODES).filter(|&mode| self.locks.modes[mode]) {
+            for blade in 0..self.machine.n_blades {
+                self.state.accelerations.blades[blade][mode] = 0.0;
+                self.state.velocities.blades[blade][mode] = 0.0;
+            }
+        }
+    }
+
+    /// On return `elements` holds the motion of each blade element `ahead` (s) after now, blade after blade.
+    ///
+    /// Loads belong to the middle of the step they act in: ask half a step ahead, blades at the `pitch` of then.
+    ///
+    /// # Panics
+    /// When `elements` does not hold `n_blades × n_elements` values.
+    pub fn observe(&self, ahead: f64, pitch: &[Pitch], elements: &mut [ElementMotion]) {
+        let n = self.machine.n_blades * self.stations.n_elements();
+        assert_eq!(elements.len(), n, "one motion for each blade element");
+        if n > 0 {
+            let phase = self.state.phase().ahead(ahead);
+            let motion = self.machine.motion(&phase.q, &phase.v, pitch);
+            self.stations.observe(&motion, &phase.q, &phase.v, pitch, elements);
+        }
+    }
+
+    /// On return `points` holds position (m) and velocity (m/s) of each point of the tower `ahead` (s) after now, farm frame.
+    pub fn observe_tower(&self, ahead: f64, points: &mut [(Vector3, Vector3)]) {
+        let phase = self.state.phase().ahead(ahead);
+        self.stations.observe_tower(&self.machine, &phase.q, &phase.v, points);
+    }
+
+    /// Attitude of the rotor `ahead` (s) after now, deflection of the tower included.
+    pub fn frame(&self, ahead: f64) -> Frame {
+        let phase = self.state.phase().ahead(ahead);
+        let shaft = self.machine.motion(&phase.q, &phase.v, &self.state.pitch).shaft;
+        Frame {
+            hub: shaft.origin,
+            shaft: shaft.axes.x_axis,
+            up: shaft.axes.z_axis,
+            right: -shaft.axes.y_axis,
+        }
+    }
+
+    /// Moves `interval` (s) on under `loads`, which are held, blades at `pitch` in the middle of the step.
+    ///
+    /// # Panics
+    /// When `loads` or `pitch` do not fit the blades, elements and points that the structure was made with.
+    pub fn advance(&mut self, interval: f64, loads: &AppliedLoads<'_>, pitch: &[Pitch]) {
+        let machine = &self.machine;
+        let fits = |given: usize, wanted: usize| given == 0 || given == wanted;
+        assert_eq!(pitch.len(), machine.n_blades, "one pitch for each blade");
+        let n_elements = machine.n_blades * self.stations.n_elements();
+        assert!(fits(loads.elements.len(), n_elements), "one load for each blade element");
+        assert!(fits(loads.tower.len(), self.stations.n_tower()), "one force for each tower point");
+        let phase = self.state.phase();
+        let middle = phase.middle(interval);
+        let motion = machine.motion(&middle.q, &middle.v, pitch);
+        let applied = self.stations.gather(&motion, &middle.q, loads);
+        let (mut after, middle) =
+            machine.step(&phase, interval, pitch, &applied, &self.locks, &mut self.balance);
+        after.q.shared[GENERATOR] = basis::angle::wrap_to_turn(after.q.shared[GENERATOR]);
+        self.state.coordinates = after.q;
+        self.state.velocities = after.v;
+        self.state.accelerations = after.a;
+        self.state.pitch.copy_from_slice(pitch);
+        self.state.loads = machine.loads(&middle, &self.balance, &applied);
+    }
+
+    /// Everything that time changes.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Continues from `state`.
+    ///
+    /// # Panics
+    /// When `state` is that of a turbine with another number of blades.
+    pub fn restore(&mut self, state: State) {
+        assert_eq!(state.pitch.len(), self.machine.n_blades, "a state of as many blades");
+        self.state = state;
+    }
+
+    /// Azimuth of blade 1 (rad, [0, 2π)).
+    pub fn azimuth(&self) -> f64 {
+        let shared = &self.state.coordinates.shared;
+        basis::angle::wrap_to_turn(shared[GENERATOR] + shared[TORSION])
+    }
+
+    /// Rotor speed (rad/s).
+    pub fn rotor_speed(&self) -> f64 {
+        self.state.velocities.shared[GENERATOR] + self.state.velocities.shared[TORSION]
+    }
+
+    /// Generator speed, high-speed side (rad/s).
+    pub fn generator_speed(&self) -> f64 {
+        self.machine.gear_ratio * self.state.velocities.shared[GENERATOR]
+    }
+
+    /// Loads at the middle of the last step.
+    pub fn loads(&self) -> &Loads {
+        &self.state.loads
+    }
+
+    /// Names and units of what [`Structure::write_channels`] writes.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// Place of the channel called `name`, one of OpenFAST's names, among [`Structure::channels`].
+    pub fn channel(&self, name: &str) -> Option<usize> {
+        channels::index(&self.channels, name)
+    }
+
+    /// On return `values` holds the channels of the middle of the last step in SI units; times their scale, in OpenFAST's.
+    pub fn write_channels(&self, values: &mut [f64]) {
+        channels::write(&self.state.loads, self.yaw, &self.state.pitch, values);
+    }
+
+    /// Mechanical energy now, from the speeds of the coordinates.
+    pub fn energy(&self) -> Energy {
+        self.machine.energy(&self.state.coordinates, &self.state.velocities, &self.state.pitch)
+    }
+
+    /// Undamped modes about where the turbine is now, lowest first; a turning rotor stiffens its blades.
+    ///
+    /// Held freedoms take no part. Gyroscopic forces are left out: exact at standstill.
+    pub fn natural_modes(&self) -> Vec<NaturalMode> {
+        let state = &self.state;
+        self.machine.natural_modes(&state.coordinates, &state.velocities, &state.pitch, &self.locks)
+    }
+}
