@@ -4,8 +4,11 @@
 //! convergence", Wind Energy 17, 2014: one residual in the inflow angle φ, bracketed, never diverging.
 //! Tip and hub loss after Prandtl; heavily loaded discs after Buhl, NREL/TP-500-36834, 2005.
 
+mod warm_start;
+
 use super::SectionCoefficients;
 use std::f64::consts::{FRAC_PI_2, PI};
+pub use warm_start::{Factors, WarmStart, solve_near};
 
 /// Smallest inflow angle that is searched (rad): the blade's drag outweighs the air there for any section that has some.
 const SMALLEST_ANGLE: f64 = 1e-15;
@@ -48,6 +51,11 @@ pub struct Annulus {
     pub chord: f64,
     /// Twist plus pitch, positive to feather (rad).
     pub section_pitch: f64,
+    /// Lean of the blade's line out of the plane across the shaft (rad), as far as the air's momentum feels it.
+    ///
+    /// A leaning blade loses cos² of it: of its force one cosine slows the air along the shaft, and of that slowing one
+    /// cosine crosses the blade. Zero balances the momentum across the blade instead, as most programs do.
+    pub lean: f64,
 }
 
 /// Where blades and air agree.
@@ -96,29 +104,26 @@ pub fn solve(
     section: impl Fn(f64) -> SectionCoefficients,
     theory: Theory,
 ) -> Inflow {
-    let speed = axial.hypot(tangential);
-    let at_least = |wind: f64| wind.abs().max(LEAST_SHARE * speed).copysign(wind);
-    let (axial, tangential) = (at_least(axial), at_least(tangential));
-    if speed == 0.0 {
-        return Inflow { loss_factor: 1.0, ..Inflow::default() };
+    match Ring::new(annulus, axial, tangential, section, theory) {
+        Some(ring) => ring.inflow(ring.root()),
+        None => Inflow { loss_factor: 1.0, ..Inflow::default() },
     }
-    let ring = Ring { annulus, axial, tangential, section, theory };
-    let residual = |angle: f64| ring.state(angle).residual;
-    let low = residual(SMALLEST_ANGLE);
-    let angle = if low < 0.0 {
-        let middle = residual(FRAC_PI_2);
-        if middle >= 0.0 {
-            bracketed_root(residual, SMALLEST_ANGLE, low, FRAC_PI_2, middle)
-        } else {
-            // Blades that drive the air along with them, faster than they turn.
-            let highest = PI - SMALLEST_ANGLE;
-            bracketed_root(residual, FRAC_PI_2, middle, highest, residual(highest))
-        }
-    } else {
-        // Only without drag: the disc may be loaded beyond what passes it, then the flow turns back.
-        reversed_angle(residual).unwrap_or(SMALLEST_ANGLE)
-    };
-    ring.inflow(angle)
+}
+
+/// Prandtl's loss factor (–) where the relative wind meets the plane of rotation at an angle of that `sine` (–, positive).
+pub fn loss_factor(annulus: &Annulus, theory: Theory, sine: f64) -> f64 {
+    let Annulus { radius, hub_radius, tip_radius, .. } = *annulus;
+    let half_blades = 0.5 * annulus.n_blades as f64;
+    let prandtl = |exponent: f64| 2.0 / PI * (-exponent).exp().min(1.0).acos();
+    let mut loss = 1.0;
+    if theory.tip_loss {
+        loss *= prandtl(half_blades * (tip_radius - radius) / (radius * sine));
+    }
+    if theory.hub_loss {
+        loss *= prandtl(half_blades * (radius - hub_radius) / (hub_radius * sine));
+    }
+    // Exactly at tip or hub no finite load is possible; a whisper keeps the division defined.
+    loss.max(1e-9)
 }
 
 struct Ring<'a, Section> {
@@ -138,7 +143,40 @@ struct Trial {
     section: SectionCoefficients,
 }
 
-impl<Section: Fn(f64) -> SectionCoefficients> Ring<'_, Section> {
+impl<'a, Section: Fn(f64) -> SectionCoefficients> Ring<'a, Section> {
+    /// None where there is no wind at all.
+    fn new(
+        annulus: &'a Annulus,
+        axial: f64,
+        tangential: f64,
+        section: Section,
+        theory: Theory,
+    ) -> Option<Self> {
+        let speed = axial.hypot(tangential);
+        let at_least = |wind: f64| wind.abs().max(LEAST_SHARE * speed).copysign(wind);
+        let (axial, tangential) = (at_least(axial), at_least(tangential));
+        (speed != 0.0).then_some(Self { annulus, axial, tangential, section, theory })
+    }
+
+    /// Inflow angle (rad) at which the residual vanishes, in the frame in which both winds are positive.
+    fn root(&self) -> f64 {
+        let residual = |angle: f64| self.state(angle).residual;
+        let low = residual(SMALLEST_ANGLE);
+        if low < 0.0 {
+            let middle = residual(FRAC_PI_2);
+            if middle >= 0.0 {
+                bracketed_root(residual, SMALLEST_ANGLE, low, FRAC_PI_2, middle)
+            } else {
+                // Blades that drive the air along with them, faster than they turn.
+                let highest = PI - SMALLEST_ANGLE;
+                bracketed_root(residual, FRAC_PI_2, middle, highest, residual(highest))
+            }
+        } else {
+            // Only without drag: the disc may be loaded beyond what passes it, then the flow turns back.
+            reversed_angle(residual).unwrap_or(SMALLEST_ANGLE)
+        }
+    }
+
     /// Inflow angle (rad) in the true frame, of one in the frame in which both winds are positive.
     fn true_angle(&self, angle: f64) -> f64 {
         if self.axial > 0.0 && self.tangential > 0.0 {
@@ -159,10 +197,10 @@ impl<Section: Fn(f64) -> SectionCoefficients> Ring<'_, Section> {
         let (sphi, cphi) = angle.sin_cos();
         let cn = cl * cphi + cd * sphi;
         let ct = cl * sphi - cd * cphi;
-        let loss = self.loss_factor(sphi.abs());
+        let loss = loss_factor(self.annulus, self.theory, sphi.abs());
         let sigma =
             self.annulus.n_blades as f64 * self.annulus.chord / (2.0 * PI * self.annulus.radius);
-        let k = sigma * cn / (4.0 * loss * sphi * sphi);
+        let k = sigma * cn * self.annulus.lean.cos().powi(2) / (4.0 * loss * sphi * sphi);
         // Times cos φ, so that it stays finite at a right angle.
         let kp_cphi = sigma * ct / (4.0 * loss * sphi);
         let ratio = (self.axial / self.tangential).abs();
@@ -182,21 +220,6 @@ impl<Section: Fn(f64) -> SectionCoefficients> Ring<'_, Section> {
             loss_factor: loss,
             section: coefficients,
         }
-    }
-
-    fn loss_factor(&self, sine: f64) -> f64 {
-        let Annulus { radius, hub_radius, tip_radius, .. } = *self.annulus;
-        let half_blades = 0.5 * self.annulus.n_blades as f64;
-        let prandtl = |exponent: f64| 2.0 / PI * (-exponent).exp().min(1.0).acos();
-        let mut loss = 1.0;
-        if self.theory.tip_loss {
-            loss *= prandtl(half_blades * (tip_radius - radius) / (radius * sine));
-        }
-        if self.theory.hub_loss {
-            loss *= prandtl(half_blades * (radius - hub_radius) / (hub_radius * sine));
-        }
-        // Exactly at tip or hub no finite load is possible; a whisper keeps the division defined.
-        loss.max(1e-9)
     }
 
     fn inflow(&self, angle: f64) -> Inflow {
@@ -220,7 +243,7 @@ impl<Section: Fn(f64) -> SectionCoefficients> Ring<'_, Section> {
 }
 
 /// Axial induction (–) from the loading κ = a/(1 − a) of momentum theory; above a = 0.4 from Buhl's parabola, which meets it smoothly.
-fn axial_induction(k: f64, loss: f64) -> f64 {
+pub(super) fn axial_induction(k: f64, loss: f64) -> f64 {
     if k <= 2.0 / 3.0 {
         return k / (1.0 + k);
     }

@@ -1,0 +1,173 @@
+//! Blade-element momentum from one step of time to the next: a step or two of the secant method from the last inflow angle.
+
+use super::{Annulus, FRAC_PI_2, Ring, SMALLEST_ANGLE, SectionCoefficients, Theory, Trial};
+use serde::{Deserialize, Serialize};
+
+/// A step of the inflow angle that needs no further one (rad); the angle reached is kept for the next time.
+const SMALL_STEP: f64 = 1e-6;
+/// A step that leads out of the neighbourhood (rad): the bracketed search then takes over.
+const LARGEST_STEP: f64 = 0.1;
+/// Smallest change of the angle from which a slope is drawn (rad).
+const LEAST_SECANT: f64 = 1e-8;
+/// Steps before the bracketed search takes over.
+const MAXIMUM_STEPS: usize = 5;
+/// Width over which the first slope is drawn (rad).
+const FIRST_SECANT: f64 = 1e-6;
+
+/// Where the search begins next time: angle and slope of the residual of the last one; by default, anywhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WarmStart {
+    angle: f64,
+    slope: f64,
+}
+
+/// Induction factors at the blade.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Factors {
+    /// Axial induction factor a (–): axial wind × (1 − a) passes the blade.
+    pub axial: f64,
+    /// Tangential induction factor a′ (–): tangential wind × (1 + a′) passes it.
+    pub tangential: f64,
+}
+
+/// Induction of one annulus like [`solve`](super::solve), to 1e-6 rad of the inflow angle, starting from where it was last time.
+///
+/// The same residual, so that a wind which stays gives the induction of `solve`. Where the neighbourhood of the last angle
+/// holds no answer, `solve`'s bracketed search finds one: always an answer, whatever `warm_start` holds. Between two
+/// answers, as sections in stall have, it stays with the one that the last angle led to.
+pub fn solve_near(
+    annulus: &Annulus,
+    axial: f64,
+    tangential: f64,
+    section: impl Fn(f64) -> SectionCoefficients,
+    theory: Theory,
+    warm_start: &mut WarmStart,
+) -> Factors {
+    let Some(ring) = Ring::new(annulus, axial, tangential, section, theory) else {
+        return Factors::default();
+    };
+    let trial = nearby(&ring, warm_start).unwrap_or_else(|| {
+        let angle = ring.root();
+        let trial = ring.state(angle);
+        let beside = ring.state(angle + FIRST_SECANT).residual;
+        *warm_start = WarmStart { angle, slope: (beside - trial.residual) / FIRST_SECANT };
+        trial
+    });
+    Factors { axial: trial.axial_induction, tangential: trial.tangential_induction }
+}
+
+/// State of `ring` where its residual vanishes near `warm_start`; on return that has moved there. None where it does not.
+fn nearby<Section: Fn(f64) -> SectionCoefficients>(
+    ring: &Ring<'_, Section>,
+    warm_start: &mut WarmStart,
+) -> Option<Trial> {
+    let WarmStart { mut angle, mut slope } = *warm_start;
+    if !(slope > 0.0 && slope.is_finite()) {
+        return None;
+    }
+    let mut trial = ring.state(angle);
+    for _ in 0..MAXIMUM_STEPS {
+        let step = -trial.residual / slope;
+        let next = angle + step;
+        // A residual that is no number ends here too.
+        if !(step.abs() < LARGEST_STEP && (SMALLEST_ANGLE..FRAC_PI_2).contains(&next)) {
+            return None;
+        }
+        if step.abs() < SMALL_STEP {
+            *warm_start = WarmStart { angle: next, slope };
+            return Some(trial);
+        }
+        let before = trial.residual;
+        trial = ring.state(next);
+        angle = next;
+        if step.abs() > LEAST_SECANT {
+            slope = (trial.residual - before) / step;
+        }
+        if slope <= 0.0 {
+            return None;
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{axial_induction, loss_factor, solve};
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::PI;
+
+    fn annulus(radius: f64, chord: f64, section_pitch: f64) -> Annulus {
+        let (hub_radius, tip_radius) = (2.0, 60.0);
+        Annulus { n_blades: 3, radius, hub_radius, tip_radius, chord, section_pitch, lean: 0.0 }
+    }
+
+    fn stalling(angle: f64) -> SectionCoefficients {
+        let attached = 1.0 / (1.0 + ((angle.abs() - 0.25) / 0.03).exp());
+        let lift = attached * 2.0 * PI * angle.sin() + (1.0 - attached) * 1.1 * (2.0 * angle).sin();
+        SectionCoefficients { lift, drag: 0.01 + 1.3 * angle.sin().powi(2), moment: 0.0 }
+    }
+
+    #[test]
+    fn a_wind_that_stays_gives_the_bracketed_searchs_answer_in_one_look() {
+        let ring = annulus(45.0, 2.0, 0.02);
+        let expected = solve(&ring, 9.0, 50.0, stalling, Theory::default());
+        let mut warm_start = WarmStart::default();
+        for _ in 0..5 {
+            let looks = std::cell::Cell::new(0);
+            let section = |angle: f64| {
+                looks.set(looks.get() + 1);
+                stalling(angle)
+            };
+            let before = warm_start;
+            let got = solve_near(&ring, 9.0, 50.0, section, Theory::default(), &mut warm_start);
+            assert!((got.axial - expected.axial_induction).abs() < 1e-10);
+            assert!((got.tangential - expected.tangential_induction).abs() < 1e-10);
+            assert!(before == WarmStart::default() || looks.get() == 1, "{}", looks.get());
+        }
+    }
+
+    #[test]
+    fn a_wind_that_drifts_needs_two_looks() {
+        let ring = annulus(45.0, 2.0, 0.02);
+        let looks = std::cell::Cell::new(0);
+        let section = |angle: f64| {
+            looks.set(looks.get() + 1);
+            stalling(angle)
+        };
+        let mut warm_start = WarmStart::default();
+        let wind = |step: i32| 9.0 + (0.02 * f64::from(step)).sin();
+        solve_near(&ring, wind(0), 50.0, section, Theory::default(), &mut warm_start);
+        looks.set(0);
+        for step in 1..=1000 {
+            solve_near(&ring, wind(step), 50.0, section, Theory::default(), &mut warm_start);
+        }
+        assert!(looks.get() <= 2100, "{}", looks.get());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        /// Whatever the warm start, blades and air agree.
+        #[test]
+        fn every_start_leads_to_an_answer(
+            share in 0.02..0.99_f64, chord in 0.5..4.0_f64, pitch in -0.3..1.0_f64, wind in 1.0..25.0_f64,
+            rotation in 3.0..90.0_f64, angle in -4.0..4.0_f64, slope in -3.0..30.0_f64,
+        ) {
+            let ring = annulus(2.0 + share * 58.0, chord, pitch);
+            let mut warm_start = WarmStart { angle, slope };
+            let got = solve_near(&ring, wind, rotation, stalling, Theory::default(), &mut warm_start);
+            prop_assert!(got.axial < 1.0, "{got:?}");
+            let (through, along) = (wind * (1.0 - got.axial), rotation * (1.0 + got.tangential));
+            let (sine, cosine) = through.atan2(along).sin_cos();
+            let section = stalling(through.atan2(along) - pitch);
+            let sigma = 3.0 * chord / (2.0 * PI * ring.radius);
+            let loss = loss_factor(&ring, Theory::default(), sine);
+            let loading = sigma * (section.lift * cosine + section.drag * sine) / (4.0 * loss * sine * sine);
+            // Blades that drive the air have induction beyond all bounds near κ = −1.
+            if loading > -0.5 {
+                let expected = axial_induction(loading, loss);
+                prop_assert!((got.axial - expected).abs() < 1e-3, "{got:?} {expected}");
+            }
+        }
+    }
+}
