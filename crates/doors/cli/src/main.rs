@@ -29,6 +29,8 @@ enum Command {
     /// Turbulent inflow: generate, inspect, convert boxes
     #[command(subcommand)]
     Inflow(commands::inflow::InflowCommand),
+    /// Damage-equivalent loads of channels in OpenFAST output, CSV or the records of a run
+    Fatigue(commands::fatigue::FatigueArguments),
     /// Repeat recorded validations and print measured against expected
     Validate(commands::validate::ValidateArguments),
     /// Print the JSON Schema of the case file, for editors
@@ -42,6 +44,7 @@ fn main() -> ExitCode {
         Command::Report { directory } => commands::report::run(&directory),
         Command::Turbine(command) => commands::turbine::run(command),
         Command::Inflow(command) => commands::inflow::run(command),
+        Command::Fatigue(arguments) => commands::fatigue::run(&arguments),
         Command::Validate(arguments) => return commands::validate::run(&arguments),
         Command::Schema => {
             println!("{}", wakemix::formats::case::schema());

@@ -23,8 +23,9 @@ impl RangeBins {
         let width = largest / n_bins as f64;
         let mut counts = vec![0.0; n_bins];
         for cycle in cycles {
-            // The largest range belongs to the last bin.
-            let bin = ((cycle.range / width) as usize).min(n_bins - 1);
+            // One rounding alone, so that whole numbers fall on the edges that they are on; the largest range belongs to
+            // the last bin.
+            let bin = ((cycle.range * n_bins as f64 / largest) as usize).min(n_bins - 1);
             counts[bin] += cycle.count;
         }
         Self { width, counts }

@@ -46,8 +46,14 @@ fn suggestion(name: &str, lower: &str, columns: &[Column]) -> String {
     let names = || columns.iter().map(|column| column.name.as_str());
     let alike: Vec<&str> =
         names().filter(|other| !lower.is_empty() && other.to_lowercase().contains(lower)).collect();
-    if let Some(nearest) = nearest(name, names()) {
-        return format!("did you mean \"{nearest}\"?");
+    // A unit at the end may be what keeps a name from being near.
+    let stem = |other: &str| other.rfind(['_', ' ']).unwrap_or(other.len());
+    let meant = nearest(name, names()).or_else(|| {
+        let stem_meant = nearest(name, names().map(|other| &other[..stem(other)]))?;
+        names().find(|other| &other[..stem(other)] == stem_meant)
+    });
+    if let Some(meant) = meant {
+        return format!("did you mean \"{meant}\"?");
     }
     let all: Vec<&str> = if alike.is_empty() { names().collect() } else { alike };
     format!("give one of its {} channels: {}", all.len(), list(all.iter()))

@@ -109,6 +109,8 @@ fn a_name_that_is_not_there_is_told_with_what_may_be_meant() {
     let (_folder, path) = written("a.csv", &format!("{names}\n0,1,2,3,4\n"));
     let told = |name: &str| complaint(rows(&path, &[name]));
     assert_eq!(told("RotMyc1"), "it has no channel \"RotMyc1\" | did you mean \"RootMyc1\"?");
+    let with_unit = told("TwrBsMxt");
+    assert!(with_unit.ends_with("did you mean \"TwrBsMyt_kN-m\"?"), "{with_unit}");
     let several = told("Myc");
     assert!(several.ends_with("one of its 3 channels: RootMyc1, RootMyc2, RootMyc3"), "{several}");
     let all = told("blade");
