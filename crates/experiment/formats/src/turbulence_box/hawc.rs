@@ -8,11 +8,11 @@
 use super::{FASTEST, StoredBox, in_order_of_arrival};
 use crate::FileError;
 use crate::atomic::{self, AtomicFile};
-use flow::inflow::TurbulenceBox;
+use flow::inflow::{InflowError, PlaneGrid, Planes, TurbulenceBox};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::{BufReader, Read, Write};
-use std::path::Path;
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
 
 const WHAT: &str = "the header of a turbulence box";
 const COMPONENT: &str = "one component of a turbulence box";
@@ -125,7 +125,12 @@ pub fn read(path: &Path) -> Result<StoredBox, FileError> {
     let Layout { n_points, spacing, files, x_runs, y_runs } = header.layout;
     let mut velocity: [Vec<f32>; 3] = Default::default();
     for (values, name) in velocity.iter_mut().zip(files) {
-        *values = read_component(&path.with_file_name(name), n_points, x_runs, y_runs)?;
+        let mut component = Component::open(&path.with_file_name(name), n_points, x_runs, y_runs)?;
+        let [n_x, n_y, n_z] = n_points;
+        values.resize(n_x * n_y * n_z, 0.0);
+        for (x, plane) in values.chunks_mut(n_y * n_z).enumerate() {
+            component.read(in_order_of_arrival(x, n_x), |point, value| plane[point] = value)?;
+        }
     }
     let turbulence = TurbulenceBox::new(n_points, spacing, velocity)
         .map_err(|error| FileError::content(WHAT, path, error.to_string(), "mend the header"))?;
@@ -192,55 +197,124 @@ fn read_header(path: &Path) -> Result<Header, FileError> {
     Ok(header)
 }
 
-fn read_component(
-    path: &Path,
-    [n_x, n_y, n_z]: [usize; 3],
+/// Planes of the box whose header is at `path`, read one at a time; the middle of its width stands at y = 0.
+///
+/// # Errors
+/// As [`read`].
+pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
+    let header = read_header(path)?;
+    let Layout { n_points, spacing, files, x_runs, y_runs } = header.layout;
+    let open =
+        |name: &String| Component::open(&path.with_file_name(name), n_points, x_runs, y_runs);
+    let components = [open(&files[0])?, open(&files[1])?, open(&files[2])?];
+    let [n_steps, n_y, n_z] = n_points;
+    let speed = header.wind.hub_speed;
+    let grid = PlaneGrid {
+        n_y,
+        n_z,
+        spacing: [spacing[1], spacing[2]],
+        first: [-0.5 * (n_y - 1) as f64 * spacing[1], header.wind.lowest_height],
+        interval: spacing[0] / speed,
+        speed,
+        n_steps,
+        repeats: true,
+    };
+    let mean_speeds = header.wind.mean_speeds.iter().map(|speed| *speed as f32).collect();
+    Ok(HawcPlanes { components, mean_speeds, grid })
+}
+
+/// Planes in three files.
+struct HawcPlanes {
+    components: [Component; 3],
+    mean_speeds: Vec<f32>,
+    grid: PlaneGrid,
+}
+
+impl Planes for HawcPlanes {
+    fn grid(&self) -> PlaneGrid {
+        self.grid
+    }
+
+    fn read(&mut self, step: usize, values: &mut [[f32; 3]]) -> Result<(), InflowError> {
+        for (index, component) in self.components.iter_mut().enumerate() {
+            component
+                .read(step, |point, value| values[point][index] = value)
+                .map_err(|error| super::plane_error(step, &error))?;
+        }
+        for (row, mean) in values.chunks_mut(self.grid.n_y).zip(&self.mean_speeds) {
+            row.iter_mut().for_each(|[u, ..]| *u += mean);
+        }
+        Ok(())
+    }
+}
+
+/// One component's file, of which one plane is in memory.
+struct Component {
+    file: File,
+    path: PathBuf,
+    n_points: [usize; 3],
     x_runs: Axis,
     y_runs: Axis,
-) -> Result<Vec<f32>, FileError> {
-    let refused = |source| FileError::system("read", COMPONENT, path, source);
-    let file = File::open(path).map_err(refused)?;
-    let found = file.metadata().map_err(refused)?.len();
-    let size = n_y * n_z;
-    let needed = 4 * (n_x * size) as u64;
-    if found != needed {
-        let how = if found < needed {
-            format!("ends within plane {} of {n_x}", found / (4 * size as u64) + 1)
-        } else {
-            "goes on behind the last plane".into()
-        };
-        let problem =
-            format!("{found} bytes instead of {needed} for {n_x} × {n_y} × {n_z} values: it {how}");
-        return Err(FileError::content(
-            COMPONENT,
-            path,
-            problem,
-            "copy or write the file again, or mend box.n_points in the header",
-        ));
+    bytes: Vec<u8>,
+}
+
+impl Component {
+    fn open(
+        path: &Path,
+        n_points: [usize; 3],
+        x_runs: Axis,
+        y_runs: Axis,
+    ) -> Result<Self, FileError> {
+        let [n_x, n_y, n_z] = n_points;
+        let refused = |source| FileError::system("read", COMPONENT, path, source);
+        let file = File::open(path).map_err(refused)?;
+        let found = file.metadata().map_err(refused)?.len();
+        let size = n_y * n_z;
+        let needed = 4 * (n_x * size) as u64;
+        if found != needed {
+            let how = if found < needed {
+                format!("ends within plane {} of {n_x}", found / (4 * size as u64) + 1)
+            } else {
+                "goes on behind the last plane".into()
+            };
+            let problem = format!(
+                "{found} bytes instead of {needed} for {n_x} × {n_y} × {n_z} values: it {how}"
+            );
+            return Err(FileError::content(
+                COMPONENT,
+                path,
+                problem,
+                "copy or write the file again, or mend box.n_points in the header",
+            ));
+        }
+        let bytes = vec![0; 4 * size];
+        Ok(Self { file, path: path.to_owned(), n_points, x_runs, y_runs, bytes })
     }
-    let mut values = vec![0.0; n_x * size];
-    let mut file = BufReader::with_capacity(1 << 20, file);
-    let mut bytes = vec![0; 4 * size];
-    for place in 0..n_x {
-        file.read_exact(&mut bytes).map_err(refused)?;
-        let x = match x_runs {
-            Axis::Downwind => place,
-            _ => in_order_of_arrival(place, n_x),
+
+    /// Calls `put(point, value)` for all points of the plane that arrives as number `step`; points y fastest.
+    fn read(&mut self, step: usize, mut put: impl FnMut(usize, f32)) -> Result<(), FileError> {
+        let [n_x, n_y, n_z] = self.n_points;
+        let place = match self.x_runs {
+            Axis::Downwind => in_order_of_arrival(step, n_x),
+            _ => step,
         };
-        let plane = &mut values[x * size..(x + 1) * size];
-        for (index, four) in bytes.chunks_exact(4).enumerate() {
+        let start = place * self.bytes.len();
+        self.file
+            .seek(SeekFrom::Start(start as u64))
+            .and_then(|_| self.file.read_exact(&mut self.bytes))
+            .map_err(|source| FileError::system("read", COMPONENT, &self.path, source))?;
+        for (index, four) in self.bytes.chunks_exact(4).enumerate() {
             let four = [four[0], four[1], four[2], four[3]];
             let value = f32::from_le_bytes(four);
             let (column, z) = (index / n_z, index % n_z);
             if value.is_nan() || value.abs() > FASTEST {
-                let byte = 4 * (place * size + index);
-                return Err(not_wind(path, four, byte, [place, column, z]));
+                return Err(not_wind(&self.path, four, start + 4 * index, [place, column, z]));
             }
-            let y = if y_runs == Axis::Left { column } else { n_y - 1 - column };
-            plane[z * n_y + y] = value;
+            let y = if self.y_runs == Axis::Left { column } else { n_y - 1 - column };
+            put(z * n_y + y, value);
         }
+        Ok(())
     }
-    Ok(values)
 }
 
 /// Says what is wrong with the four bytes at `byte`, which are no wind.

@@ -1,19 +1,22 @@
-//! Turbulence boxes in files: HAWC2's three binaries with a header, TurbSim's full field.
+//! Turbulence boxes in files: HAWC2's three binaries with a header, TurbSim's full field, Bladed's.
 //!
 //! In memory a box lies in the farm frame (x downwind, y left looking downwind, z up); each format converts on its way in
 //! and out. Time runs against x: of a box that stands with x index 0 at the inlet at time zero, the planes
 //! n_x − 1, n_x − 2, … arrive next. Formats that count in order of arrival therefore hold plane (n_x − i) mod n_x
-//! at place i.
+//! at place i. [`read`] takes a whole box into memory, [`open`] gives its planes one at a time, however long it is.
 
+mod bladed;
 mod hawc;
+mod packed;
 mod turbsim;
 
-pub use hawc::{Axis, read as read_hawc, write as write_hawc};
-pub use turbsim::{read as read_turbsim, write as write_turbsim};
+pub use bladed::{open as open_bladed, read as read_bladed, write as write_bladed};
+pub use hawc::{Axis, open as open_hawc, read as read_hawc, write as write_hawc};
+pub use turbsim::{open as open_turbsim, read as read_turbsim, write as write_turbsim};
 
 use crate::FileError;
-use flow::inflow::TurbulenceBox;
-use std::path::Path;
+use flow::inflow::{InflowError, Planes, TurbulenceBox};
+use std::path::{Path, PathBuf};
 
 /// Fastest wind that a file may hold (m/s); beyond it the bytes mean something else.
 const FASTEST: f32 = 200.0;
@@ -35,16 +38,30 @@ pub struct StoredBox {
     pub description: String,
 }
 
-/// Reads the box at `path`: a HAWC2-style header (`.toml`) or a TurbSim full field (`.bts`).
+/// Reads the box at `path`: a HAWC2-style header (`.toml`) or one of its binaries (`.bin`), a full field of TurbSim
+/// (`.bts`) or of Bladed (`.wnd`).
 ///
 /// # Errors
 /// [`FileError`] names file, place and fix: a cut or overlong file, the wrong byte order, values that are not numbers
 /// or no wind, a header that does not fit.
 pub fn read(path: &Path) -> Result<StoredBox, FileError> {
     match kind(path)? {
-        Kind::Hawc => hawc::read(path),
+        Kind::Hawc(header) => hawc::read(&header),
         Kind::TurbSim => turbsim::read(path),
+        Kind::Bladed => bladed::read(path),
     }
+}
+
+/// Planes of the box at `path` in order of arrival, the mean wind included, read one at a time.
+///
+/// # Errors
+/// As [`read`].
+pub fn open(path: &Path) -> Result<Box<dyn Planes>, FileError> {
+    Ok(match kind(path)? {
+        Kind::Hawc(header) => Box::new(hawc::open(&header)?),
+        Kind::TurbSim => Box::new(turbsim::open(path)?),
+        Kind::Bladed => Box::new(bladed::open(path)?),
+    })
 }
 
 /// Writes `stored` to `path`, whose extension chooses the format as in [`read`].
@@ -53,8 +70,9 @@ pub fn read(path: &Path) -> Result<StoredBox, FileError> {
 /// [`FileError`]; files appear whole or not at all, the header last.
 pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
     match kind(path)? {
-        Kind::Hawc => hawc::write(path, stored),
+        Kind::Hawc(header) => hawc::write(&header, stored),
         Kind::TurbSim => turbsim::write(path, stored),
+        Kind::Bladed => bladed::write(path, stored),
     }
 }
 
@@ -67,21 +85,38 @@ pub fn check_name(path: &Path) -> Result<(), FileError> {
 }
 
 enum Kind {
-    Hawc,
+    /// With the path of the header.
+    Hawc(PathBuf),
     TurbSim,
+    Bladed,
 }
 
 fn kind(path: &Path) -> Result<Kind, FileError> {
     match path.extension().and_then(|extension| extension.to_str()) {
-        Some("toml") => Ok(Kind::Hawc),
+        Some("toml") => Ok(Kind::Hawc(path.to_owned())),
+        Some("bin") => {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let name = ["_u", "_v", "_w"].iter().find_map(|end| stem.strip_suffix(end));
+            Ok(Kind::Hawc(path.with_file_name(format!("{}.toml", name.unwrap_or(&stem)))))
+        }
         Some("bts") => Ok(Kind::TurbSim),
+        Some("wnd") => Ok(Kind::Bladed),
         _ => Err(FileError::content(
             "a turbulence box",
             path,
-            "its name ends neither in .toml nor in .bts",
-            "name it NAME.toml (header of HAWC2-style binaries) or NAME.bts (TurbSim)",
+            "its name ends neither in .toml nor in .bts, .wnd or .bin",
+            "name it NAME.toml or NAME.bin (HAWC2-style binaries with their header), NAME.bts (TurbSim) or NAME.wnd (Bladed)",
         )),
     }
+}
+
+/// What a flow hears when plane `step` cannot be read.
+fn plane_error(step: usize, error: &FileError) -> InflowError {
+    let mut problem = error.to_string();
+    if let Some(source) = std::error::Error::source(error) {
+        problem = format!("{problem}: {source}");
+    }
+    InflowError::Plane { step, problem }
 }
 
 /// Plane of the box at place `place` in order of arrival, of `n_x`; the same the other way round.
@@ -89,5 +124,7 @@ fn in_order_of_arrival(place: usize, n_x: usize) -> usize {
     (n_x - place) % n_x
 }
 
+#[cfg(test)]
+mod streaming_tests;
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 
 /// A box in which every value is another one.
-fn stored([n_x, n_y, n_z]: [usize; 3]) -> StoredBox {
+pub(super) fn stored([n_x, n_y, n_z]: [usize; 3]) -> StoredBox {
     let values = |component: usize| {
         (0..n_x * n_y * n_z).map(|n| ((37 * n + 11 * component) as f32 * 0.7).sin()).collect()
     };
@@ -21,11 +21,11 @@ fn stored([n_x, n_y, n_z]: [usize; 3]) -> StoredBox {
     }
 }
 
-fn folder() -> tempfile::TempDir {
+pub(super) fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()
 }
 
-fn complaint(path: &Path) -> (String, String) {
+pub(super) fn complaint(path: &Path) -> (String, String) {
     match read(path).unwrap_err() {
         FileError::Content { path: named, problem, fix, .. } => {
             (format!("{} {problem}", named.display()), fix)

@@ -5,12 +5,13 @@
 //! intercept) / slope in m/s, the mean wind included. Source: TurbSim user's guide 2.00, appendix D; the order of y
 //! was checked against the standard deviations by point in a summary file of TurbSim 2.
 
+use super::packed::{PackedPlanes, Packing};
 use super::{FASTEST, StoredBox, in_order_of_arrival};
 use crate::FileError;
 use crate::atomic::AtomicFile;
-use flow::inflow::TurbulenceBox;
+use flow::inflow::{PlaneGrid, Planes, TurbulenceBox};
 use std::fs::File;
-use std::io::{BufReader, Read, Write};
+use std::io::{Read, Write};
 use std::path::Path;
 
 const WHAT: &str = "a TurbSim full field";
@@ -48,45 +49,50 @@ struct Header {
 /// # Errors
 /// [`FileError`] names file, place and fix.
 pub fn read(path: &Path) -> Result<StoredBox, FileError> {
-    let refused = |source| FileError::system("read", WHAT, path, source);
-    let file = File::open(path).map_err(refused)?;
-    let found = file.metadata().map_err(refused)?.len();
-    let mut file = BufReader::with_capacity(1 << 20, file);
-    let header = read_header(path, &mut file, found)?;
-    let mut description = vec![0; header.description_length];
-    file.read_exact(&mut description).map_err(refused)?;
-    let mut description = String::from_utf8_lossy(&description).trim().to_owned();
+    let (planes, header, mut description) = start(path)?;
     if !header.periodic {
         description.push_str(" (does not repeat: its end meets its beginning with a jump)");
     }
+    planes.into_box(header.hub_height, description)
+}
 
-    let (n_x, size) = (header.n_steps, header.n_y * header.n_z);
-    let mut velocity: [Vec<f32>; 3] = std::array::from_fn(|_| vec![0.0; n_x * size]);
-    let mut bytes = vec![0; 2 * 3 * (size + header.n_tower)];
-    for step in 0..n_x {
-        file.read_exact(&mut bytes).map_err(refused)?;
-        let start = in_order_of_arrival(step, n_x) * size;
-        for (point, six) in bytes.chunks_exact(6).take(size).enumerate() {
-            for component in 0..3 {
-                let integer = i16::from_le_bytes([six[2 * component], six[2 * component + 1]]);
-                velocity[component][start + point] =
-                    (f32::from(integer) - header.intercepts[component]) / header.slopes[component];
-            }
-        }
-    }
-    let mean_speeds = take_means(&mut velocity[0], header.n_y, header.n_z);
-    let n_points = [n_x, header.n_y, header.n_z];
-    let spacing = [header.hub_speed * header.interval, header.spacing_y, header.spacing_z];
-    let turbulence = TurbulenceBox::new(n_points, spacing, velocity)
-        .map_err(|error| FileError::content(WHAT, path, error.to_string(), "run TurbSim again"))?;
-    Ok(StoredBox {
-        turbulence,
-        hub_speed: header.hub_speed,
-        hub_height: header.hub_height,
-        lowest_height: header.lowest_height,
-        mean_speeds,
-        description,
-    })
+/// Planes of the full field at `path`, read one at a time; the middle of its width stands at y = 0.
+///
+/// # Errors
+/// As [`read`].
+pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
+    start(path).map(|(planes, ..)| planes)
+}
+
+fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
+    let refused = |source| FileError::system("read", WHAT, path, source);
+    let mut file = File::open(path).map_err(refused)?;
+    let found = file.metadata().map_err(refused)?.len();
+    let header = read_header(path, &mut file, found)?;
+    let mut description = vec![0; header.description_length];
+    file.read_exact(&mut description).map_err(refused)?;
+    let description = String::from_utf8_lossy(&description).trim().to_owned();
+    let n_points = header.n_y * header.n_z;
+    let packing = Packing {
+        grid: PlaneGrid {
+            n_y: header.n_y,
+            n_z: header.n_z,
+            spacing: [header.spacing_y, header.spacing_z],
+            first: [-0.5 * (header.n_y - 1) as f64 * header.spacing_y, header.lowest_height],
+            interval: header.interval,
+            speed: header.hub_speed,
+            n_steps: header.n_steps,
+            repeats: header.periodic,
+        },
+        start: (FIXED_HEADER + header.description_length) as u64,
+        bytes_per_step: 6 * (n_points + header.n_tower) as u64,
+        offsets: [0, 1, 2].map(|component| {
+            -f64::from(header.intercepts[component]) / f64::from(header.slopes[component])
+        }),
+        scales: header.slopes.map(|slope| 1.0 / f64::from(slope)),
+        from_left: false,
+    };
+    Ok((PackedPlanes::new(file, path, WHAT, packing), header, description))
 }
 
 /// Writes `stored` to `path`: a record that repeats, interval = spacing along x over hub speed.
@@ -172,23 +178,6 @@ fn scale(
     let range = if most - least > 1e-6 { most - least } else { 1.0 };
     let slope = (f64::from(u16::MAX) / range) as f32;
     (slope, (f64::from(i16::MIN) - f64::from(slope) * least) as f32)
-}
-
-/// Takes the mean of each row off `values` (n_x × n_z × n_y) and gives it, lowest row first.
-fn take_means(values: &mut [f32], n_y: usize, n_z: usize) -> Vec<f64> {
-    let n_rows = values.len() / n_y;
-    let mut means = vec![0.0; n_z];
-    for (row, values) in values.chunks(n_y).enumerate() {
-        means[row % n_z] += values.iter().map(|value| f64::from(*value)).sum::<f64>();
-    }
-    let points = (n_rows / n_z * n_y) as f64;
-    means.iter_mut().for_each(|mean| *mean /= points);
-    for (row, values) in values.chunks_mut(n_y).enumerate() {
-        for value in values {
-            *value = (f64::from(*value) - means[row % n_z]) as f32;
-        }
-    }
-    means
 }
 
 fn read_header(path: &Path, file: &mut impl Read, found: u64) -> Result<Header, FileError> {

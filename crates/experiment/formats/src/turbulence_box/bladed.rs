@@ -1,0 +1,155 @@
+//! Bladed's binary full field (`.wnd`).
+//!
+//! Time steps in order of arrival; in each, rows of z upwards; in each, columns of y; in each, u, v, w as 16-bit integers:
+//! thousandths of a standard deviation, u around the mean speed. Little-endian. Two headers are in use: the old one of 16-bit integers, and the one
+//! that starts with −99 and a type of turbulence. Only type 4 carries intensities; for others, and for the hub height, the
+//! repetition and the way in which columns count, programs look into a summary beside the file (`NAME.sum`), as we do.
+//! Without one, columns run from the right to the left looking downwind, v blows to the left, the record repeats and
+//! the hub is in the middle of the grid; a file that carries no intensities is refused.
+//!
+//! Source: TurbSim user's guide 2.00, appendix E; headers as OpenFAST's InflowWind reads them (FlowField_IO).
+
+mod header;
+
+use super::packed::{PackedPlanes, Packing};
+use super::{FASTEST, StoredBox, in_order_of_arrival};
+use crate::FileError;
+use crate::atomic::{self, AtomicFile};
+use flow::inflow::{PlaneGrid, Planes};
+use header::{Header, Summary};
+use std::fs::File;
+use std::io::Write;
+use std::path::Path;
+
+const WHAT: &str = "a full field of Bladed";
+const SUMMARY: &str = "the summary of a full field of Bladed";
+/// Steps of an integer in a standard deviation.
+const PER_DEVIATION: f64 = 1000.0;
+/// Identifier of the new header, and its type that carries intensities.
+const NEW: i16 = -99;
+const IMPROVED_VON_KARMAN: i16 = 4;
+
+/// Reads the full field at `path`.
+///
+/// The mean of u over time and width at each height goes to [`StoredBox::mean_speeds`], so that the fluctuations have none.
+///
+/// # Errors
+/// [`FileError`] names file, place and fix.
+pub fn read(path: &Path) -> Result<StoredBox, FileError> {
+    let (planes, hub_height) = start(path)?;
+    let mut description = "a full field of Bladed".to_owned();
+    if !planes.grid().repeats {
+        description.push_str(" (does not repeat: its end meets its beginning with a jump)");
+    }
+    planes.into_box(hub_height, description)
+}
+
+/// Planes of the full field at `path`, read one at a time; the middle of its width stands at y = 0.
+///
+/// # Errors
+/// As [`read`].
+pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
+    start(path).map(|(planes, _)| planes)
+}
+
+/// Planes with the hub height (m).
+fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
+    let refused = |source| FileError::system("read", WHAT, path, source);
+    let mut file = File::open(path).map_err(refused)?;
+    let found = file.metadata().map_err(refused)?.len();
+    let header = Header::read(path, &mut file, found)?;
+    let summary = Summary::beside(path)?;
+    let Some(intensities) = header.intensities.or(summary.intensities) else {
+        return Err(FileError::content(
+            WHAT,
+            path,
+            "its type of turbulence carries no intensities, and no summary beside it gives them",
+            format!(
+                "write {} with the lines `TI(u) = 10.0 %`, `TI(v) = 8.0 %`, `TI(w) = 5.0 %`, `90.0 Hub height [m]`",
+                path.with_extension("sum").display()
+            ),
+        ));
+    };
+    let half = 0.5 * (header.n_z - 1) as f64 * header.spacing[2];
+    let middle = summary
+        .hub_height
+        .map(|hub_height| hub_height - summary.height_offset)
+        .or(header.middle_height)
+        .unwrap_or(half);
+    let speed = header.mean_speed;
+    let scales = intensities.map(|intensity| speed * intensity / 100.0 / PER_DEVIATION);
+    let fastest = speed + f64::from(i16::MAX) * scales.iter().copied().fold(0.0, f64::max);
+    if !(fastest <= 100.0 * f64::from(FASTEST)) {
+        let problem = format!("speed {speed} m/s and intensities {intensities:?} % are no wind");
+        return Err(FileError::content(WHAT, path, problem, "make the file again"));
+    }
+    let packing = Packing {
+        grid: PlaneGrid {
+            n_y: header.n_y,
+            n_z: header.n_z,
+            spacing: [header.spacing[1], header.spacing[2]],
+            first: [-0.5 * (header.n_y - 1) as f64 * header.spacing[1], middle - half],
+            interval: header.spacing[0] / speed,
+            speed,
+            n_steps: header.n_steps,
+            repeats: summary.repeats,
+        },
+        start: header.start,
+        bytes_per_step: 6 * (header.n_y * header.n_z) as u64,
+        offsets: [speed, 0.0, 0.0],
+        scales,
+        from_left: summary.from_left,
+    };
+    let hub_height = summary.hub_height.unwrap_or(middle);
+    Ok((PackedPlanes::new(file, path, WHAT, packing), hub_height))
+}
+
+/// Writes `stored` to `path` with the header of type 4, and `NAME.sum` beside it, which other programs want.
+///
+/// Values are rounded to a thousandth of the deviation that scales them: that of the component, or a thirtieth of its
+/// greatest distance from the mean speed where that is more.
+///
+/// # Errors
+/// [`FileError`]; each file appears whole or not at all, the summary last.
+pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
+    let turbulence = &stored.turbulence;
+    let [n_x, n_y, n_z] = turbulence.n_points();
+    let speed = stored.hub_speed;
+    let above = |component: usize, x: usize, point: usize| {
+        let fluctuation = f64::from(turbulence.plane(component, x)[point]);
+        let mean = stored.mean_speeds.get(point / n_y).copied().unwrap_or(speed);
+        if component == 0 { fluctuation + mean - speed } else { fluctuation }
+    };
+    let deviations = turbulence.standard_deviations();
+    let intensities: [f32; 3] = std::array::from_fn(|component| {
+        let greatest = (0..n_x)
+            .flat_map(|x| (0..n_y * n_z).map(move |point| (x, point)))
+            .map(|(x, point)| above(component, x, point).abs())
+            .fold(0.0, f64::max);
+        (100.0 * deviations[component].max(greatest / 30.0).max(1e-4 * speed) / speed) as f32
+    });
+    let per_integer = intensities.map(|ti| f64::from(ti) / 100.0 * speed / PER_DEVIATION);
+    let refused = |source| FileError::system("write", WHAT, path, source);
+    let mut file = AtomicFile::create(path, WHAT)?;
+    let mut bytes = header::bytes(path, stored, intensities)?;
+    file.write_all(&bytes).map_err(refused)?;
+    for step in 0..n_x {
+        let x = in_order_of_arrival(step, n_x);
+        bytes.clear();
+        for point in 0..n_y * n_z {
+            for (component, per_integer) in per_integer.into_iter().enumerate() {
+                let integer = (above(component, x, point) / per_integer).round();
+                let integer = integer.clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16;
+                bytes.extend_from_slice(&integer.to_le_bytes());
+            }
+        }
+        file.write_all(&bytes).map_err(refused)?;
+    }
+    file.commit()?;
+    let summary = header::summary(stored, intensities);
+    atomic::write(&path.with_extension("sum"), SUMMARY, summary.as_bytes())
+}
+
+#[cfg(test)]
+#[path = "bladed_tests.rs"]
+mod tests;
