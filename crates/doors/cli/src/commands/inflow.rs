@@ -1,28 +1,29 @@
 //! `wakemix inflow`: turbulence boxes made, looked at, converted.
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use indicatif::{HumanBytes, ProgressBar};
 use miette::{IntoDiagnostic, miette};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use wakemix::flow::inflow::statistics::{BoxStatistics, statistics};
-use wakemix::flow::inflow::{MeanProfile, mann};
+use wakemix::flow::inflow::iec::TurbulenceClass;
+use wakemix::flow::inflow::statistics::{BoxStatistics, line_deviations, statistics};
+use wakemix::flow::inflow::{MeanProfile, kaimal, mann};
 use wakemix::formats::turbulence_box::{self, StoredBox};
 
 /// Subcommands of `wakemix inflow`.
 #[derive(Subcommand)]
 pub(crate) enum InflowCommand {
-    /// Make a box of Mann's turbulence and write it
+    /// Make a box of turbulence, Mann's or Kaimal's, and write it
     Generate(GenerateArguments),
     /// Print what a box holds: size, intensities, length scales, divergence
     Info {
-        /// Header of HAWC2-style binaries (.toml) or TurbSim full field (.bts)
+        /// Box: .toml or .bin (HAWC2-style), .bts (TurbSim) or .wnd (Bladed)
         file: PathBuf,
         /// Print JSON on stdout instead of text
         #[arg(long)]
         json: bool,
     },
-    /// Convert a box between HAWC2-style binaries (.toml) and TurbSim's full field (.bts)
+    /// Convert a box between HAWC2-style binaries (.toml, .bin), TurbSim's (.bts) and Bladed's (.wnd) full fields
     Convert {
         /// Box to read
         from: PathBuf,
@@ -31,37 +32,83 @@ pub(crate) enum InflowCommand {
     },
 }
 
+/// What turbulence is drawn from.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Model {
+    /// Mann's tensor of sheared turbulence: free of divergence, repeats in all directions
+    Mann,
+    /// Kaimal's spectra of IEC 61400-1 edition 3, u with exponential coherence, as TurbSim's IECKAI
+    Kaimal,
+}
+
+/// Category of turbulence of IEC 61400-1.
+#[derive(Clone, Copy, ValueEnum)]
+enum Class {
+    /// 16 % at 15 m/s
+    A,
+    /// 14 %
+    B,
+    /// 12 %
+    C,
+}
+
+/// What meets the asked deviation exactly.
+#[derive(Clone, Copy, ValueEnum)]
+enum Scale {
+    /// Nothing: chance, and what a record cannot hold
+    None,
+    /// The point nearest the hub
+    Hub,
+    /// Every point
+    EachPoint,
+}
+
 /// Arguments of `wakemix inflow generate`.
 #[derive(Args)]
 pub(crate) struct GenerateArguments {
+    /// What turbulence is drawn from
+    #[arg(long, value_enum, default_value = "mann")]
+    model: Model,
     /// Mean speed at hub height (m/s)
     #[arg(long)]
     speed: f64,
     /// Turbulence intensity: streamwise standard deviation over mean speed (0.06 is 6 %)
+    #[arg(long, required_unless_present = "class", conflicts_with = "class")]
+    ti: Option<f64>,
+    /// Normal turbulence model of a category instead of --ti
+    #[arg(long, value_enum, ignore_case = true)]
+    class: Option<Class>,
+    /// Length scale L of Mann's tensor (m) [default: 33.6]
     #[arg(long)]
-    ti: f64,
-    /// Length scale L of Mann's tensor (m)
-    #[arg(long, default_value_t = 33.6)]
-    length_scale: f64,
-    /// Anisotropy Γ of Mann's tensor; 0 is isotropic
-    #[arg(long, default_value_t = 3.9)]
-    gamma: f64,
+    length_scale: Option<f64>,
+    /// Anisotropy Γ of Mann's tensor; 0 is isotropic [default: 3.9]
+    #[arg(long)]
+    gamma: Option<f64>,
+    /// What meets the asked deviation exactly, of --model kaimal [default: none]
+    #[arg(long, value_enum)]
+    scale: Option<Scale>,
     /// Seed; the same seed gives the same box
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Points along x, y, z, such as 1024x96x64
+    /// Points along x (that is time), y, z, such as 1024x96x64
     #[arg(long, value_parser = points)]
     size: [usize; 3],
     /// Distance of points (m): one for all axes, or three such as 10x8x8
     #[arg(long, value_parser = distances)]
     spacing: [f64; 3],
+    /// Time step (s); along x points then stand speed × time step apart, whatever --spacing says
+    #[arg(long)]
+    time_step: Option<f64>,
     /// Hub height (m)
     #[arg(long, default_value_t = 150.0)]
     hub_height: f64,
+    /// Height of the lowest points (m) [default: half a spacing for mann, centred on the hub for kaimal]
+    #[arg(long)]
+    lowest_height: Option<f64>,
     /// Power-law exponent of the mean profile that is written beside the fluctuations
     #[arg(long, default_value_t = 0.0)]
     shear_exponent: f64,
-    /// File to write: NAME.toml (HAWC2-style, with three .bin) or NAME.bts (TurbSim)
+    /// File to write: NAME.toml or NAME.bin (HAWC2-style), NAME.bts (TurbSim) or NAME.wnd (Bladed)
     #[arg(short, long)]
     output: PathBuf,
 }
@@ -85,69 +132,149 @@ pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
 }
 
 fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
-    if !(0.0..=1.0).contains(&arguments.ti) {
-        return Err(miette!(
-            help = "give a fraction: --ti 0.06 is 6 %",
-            "--ti {} is no turbulence intensity",
-            arguments.ti
-        ));
-    }
-    let finite = [arguments.speed, arguments.hub_height]
-        .iter()
-        .all(|value| value.is_finite() && *value > 0.0);
-    if !finite || !arguments.shear_exponent.is_finite() {
-        return Err(miette!(
-            help =
-                "--speed in m/s and --hub-height in m are positive, --shear-exponent is a number",
-            "speed, hub height or shear exponent is out of range"
-        ));
-    }
+    let plan = Plan::new(arguments)?;
     turbulence_box::check_name(&arguments.output)?;
-    let settings = mann::Settings {
-        n_points: arguments.size,
-        spacing: arguments.spacing,
-        length_scale: arguments.length_scale,
-        anisotropy: arguments.gamma,
-        standard_deviation: arguments.ti * arguments.speed,
-        seed: arguments.seed,
-        threads: None,
+    let [n_x, n_y, n_z] = arguments.size;
+    let memory = match plan.settings {
+        Settings::Mann(_) => mann::peak_memory(arguments.size),
+        Settings::Kaimal(_) => kaimal::peak_memory(arguments.size),
     };
-    let [n_x, n_y, n_z] = settings.n_points;
     eprintln!(
-        "box: {n_x} × {n_y} × {n_z} points, {:.0} s of wind; memory {}, disk {}",
-        n_x as f64 * settings.spacing[0] / arguments.speed,
-        HumanBytes(mann::peak_memory(settings.n_points)),
-        HumanBytes(12 * (n_x * n_y * n_z) as u64),
+        "box: {n_x} × {n_y} × {n_z} points, {:.0} s of wind; memory {}",
+        n_x as f64 * plan.spacing[0] / arguments.speed,
+        HumanBytes(memory),
     );
     let bar = ProgressBar::new(1000);
-    let turbulence = mann::generate(&settings, |share| bar.set_position((1000.0 * share) as u64));
+    let progress = |share: f64| bar.set_position((1000.0 * share) as u64);
+    let turbulence = match &plan.settings {
+        Settings::Mann(settings) => mann::generate(settings, progress),
+        Settings::Kaimal(settings) => kaimal::generate(settings, progress),
+    };
     bar.finish_and_clear();
     let profile = MeanProfile::PowerLaw {
         hub_height: arguments.hub_height,
         speed: arguments.speed,
         exponent: arguments.shear_exponent,
     };
-    let lowest_height = 0.5 * arguments.spacing[2];
     let stored = StoredBox {
         turbulence: turbulence.into_diagnostic()?,
         hub_speed: arguments.speed,
         hub_height: arguments.hub_height,
-        lowest_height,
+        lowest_height: plan.lowest_height,
         mean_speeds: (0..n_z)
-            .map(|z| profile.speed(lowest_height + z as f64 * arguments.spacing[2]))
+            .map(|z| profile.speed(plan.lowest_height + z as f64 * plan.spacing[2]))
             .collect(),
-        description: format!(
-            "wakemix {}: Mann, L {} m, Gamma {}, TI {}, seed {}",
-            env!("CARGO_PKG_VERSION"),
-            arguments.length_scale,
-            arguments.gamma,
-            arguments.ti,
-            arguments.seed
-        ),
+        description: format!("wakemix {}: {}", env!("CARGO_PKG_VERSION"), plan.description),
     };
     turbulence_box::write(&arguments.output, &stored)?;
     eprintln!("wrote {}", arguments.output.display());
     Ok(())
+}
+
+/// Arguments, checked.
+struct Plan {
+    settings: Settings,
+    spacing: [f64; 3],
+    lowest_height: f64,
+    description: String,
+}
+
+enum Settings {
+    Mann(mann::Settings),
+    Kaimal(kaimal::Settings),
+}
+
+impl Plan {
+    fn new(arguments: &GenerateArguments) -> miette::Result<Self> {
+        let speed = arguments.speed;
+        let ti = arguments.ti.unwrap_or(0.0);
+        if !(0.0..=1.0).contains(&ti) {
+            return Err(miette!(
+                help = "give a fraction: --ti 0.06 is 6 %",
+                "--ti {ti} is no turbulence intensity"
+            ));
+        }
+        let finite =
+            [speed, arguments.hub_height].iter().all(|value| value.is_finite() && *value > 0.0);
+        if !finite || !arguments.shear_exponent.is_finite() {
+            return Err(miette!(
+                help = "--speed in m/s and --hub-height in m are positive, --shear-exponent is a number",
+                "speed, hub height or shear exponent is out of range"
+            ));
+        }
+        let standard_deviation = match arguments.class {
+            Some(Class::A) => TurbulenceClass::A.standard_deviation(speed),
+            Some(Class::B) => TurbulenceClass::B.standard_deviation(speed),
+            Some(Class::C) => TurbulenceClass::C.standard_deviation(speed),
+            None => ti * speed,
+        };
+        let [along, across, up] = arguments.spacing;
+        let spacing = [arguments.time_step.map_or(along, |step| step * speed), across, up];
+        let (n_points, seed) = (arguments.size, arguments.seed);
+        let height = (n_points[2].saturating_sub(1)) as f64 * up;
+        let lowest_height = arguments.lowest_height.unwrap_or(match arguments.model {
+            Model::Mann => 0.5 * up,
+            Model::Kaimal => arguments.hub_height - 0.5 * height,
+        });
+        if !(lowest_height >= 0.0) {
+            return Err(miette!(
+                help =
+                    "take fewer points along z, a smaller spacing, a higher hub or --lowest-height",
+                "the lowest points would be at {lowest_height:.1} m, under the ground"
+            ));
+        }
+        let intensity = standard_deviation / speed;
+        let (settings, model) = match arguments.model {
+            Model::Mann => {
+                if arguments.scale.is_some() {
+                    return Err(miette!(
+                        help =
+                            "a box of Mann's turbulence always has the asked deviation as a whole",
+                        "--scale belongs to --model kaimal"
+                    ));
+                }
+                let length_scale = arguments.length_scale.unwrap_or(33.6);
+                let anisotropy = arguments.gamma.unwrap_or(3.9);
+                let settings = mann::Settings {
+                    n_points,
+                    spacing,
+                    length_scale,
+                    anisotropy,
+                    standard_deviation,
+                    seed,
+                    threads: None,
+                };
+                let model = format!("Mann, L {length_scale} m, Gamma {anisotropy}");
+                (Settings::Mann(settings), model)
+            }
+            Model::Kaimal => {
+                if arguments.length_scale.is_some() || arguments.gamma.is_some() {
+                    return Err(miette!(
+                        help = "Kaimal's scales follow from the hub height",
+                        "--length-scale and --gamma belong to --model mann"
+                    ));
+                }
+                let settings = kaimal::Settings {
+                    n_points,
+                    spacing,
+                    hub_speed: speed,
+                    hub_height: arguments.hub_height,
+                    lowest_height,
+                    standard_deviation,
+                    scaling: match arguments.scale {
+                        None | Some(Scale::None) => kaimal::Scaling::None,
+                        Some(Scale::Hub) => kaimal::Scaling::Hub,
+                        Some(Scale::EachPoint) => kaimal::Scaling::EachPoint,
+                    },
+                    seed,
+                    threads: None,
+                };
+                (Settings::Kaimal(settings), "IEC Kaimal".to_owned())
+            }
+        };
+        let description = format!("{model}, TI {intensity:.4}, seed {seed}");
+        Ok(Self { settings, spacing, lowest_height, description })
+    }
 }
 
 fn info(file: &Path, json: bool) -> miette::Result<()> {
@@ -165,12 +292,21 @@ fn info(file: &Path, json: bool) -> miette::Result<()> {
             "lowest_height": stored.lowest_height,
             "mean_speeds": stored.mean_speeds,
             "turbulence_intensity": u / stored.hub_speed,
+            "hub_standard_deviations": hub_deviations(&stored),
             "statistics": numbers,
         });
         say(&(serde_json::to_string_pretty(&value).into_diagnostic()? + "\n"))
     } else {
         say(&text(&stored, &numbers))
     }
+}
+
+/// Standard deviations of u, v, w at the point nearest the hub (m/s).
+fn hub_deviations(stored: &StoredBox) -> [f64; 3] {
+    let [_, n_y, n_z] = stored.turbulence.n_points();
+    let row = (stored.hub_height - stored.lowest_height) / stored.turbulence.spacing()[2];
+    let z = (row.round().max(0.0) as usize).min(n_z - 1);
+    line_deviations(&stored.turbulence, n_y / 2, z)
 }
 
 /// Writes `text` to stdout; a reader that has read enough, such as `head`, is no error.
@@ -204,6 +340,7 @@ fn text(stored: &StoredBox, numbers: &BoxStatistics) -> String {
          mean           m/s   {}\n\
          deviation      m/s   {}\n\
          intensity      %     {}\n\
+         at hub         %     {}\n\
          length scale   m     {}\n\
          u'w'           {:.4} m²/s²\n\
          divergence     {:.1e} of the gradients, in Fourier space\n",
@@ -218,6 +355,7 @@ fn text(stored: &StoredBox, numbers: &BoxStatistics) -> String {
         three(numbers.means, 4),
         three(numbers.standard_deviations, 4),
         three(numbers.standard_deviations.map(|value| 100.0 * value / stored.hub_speed), 2),
+        three(hub_deviations(stored).map(|value| 100.0 * value / stored.hub_speed), 2),
         three(numbers.integral_scales, 1),
         numbers.shear_stress,
         numbers.divergence_residual,

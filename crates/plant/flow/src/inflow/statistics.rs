@@ -31,6 +31,17 @@ pub fn statistics(turbulence: &TurbulenceBox) -> BoxStatistics {
     }
 }
 
+/// Standard deviations of u, v, w (m/s) along the line of points with indices `y`, `z`: those of the wind that a fixed
+/// place meets.
+pub fn line_deviations(turbulence: &TurbulenceBox, y: usize, z: usize) -> [f64; 3] {
+    let n_x = turbulence.n_points()[0];
+    [0, 1, 2].map(|component| {
+        let value = |x: usize| f64::from(turbulence.at(component, [x, y, z]));
+        let mean = (0..n_x).map(value).sum::<f64>() / n_x as f64;
+        ((0..n_x).map(|x| (value(x) - mean).powi(2)).sum::<f64>() / n_x as f64).sqrt()
+    })
+}
+
 /// Integral length scale along x of component 0 to 2 (m): ∫ of the correlation coefficient up to its first zero.
 ///
 /// The correlation is that of the box less the mean of each line, which is what spectra at k₁ > 0 hold; zero for
