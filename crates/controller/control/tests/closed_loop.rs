@@ -109,6 +109,7 @@ impl Rotor {
             interval,
             azimuth: 0.0,
             rotor_speed,
+            generator_speed: rotor_speed,
             pitch: PerBlade::splat(3, 0.0),
             generator_torque: 0.0,
             power: 0.0,
@@ -116,6 +117,8 @@ impl Rotor {
             aerodynamic_torque: 0.0,
             rotor_wind_speed: 0.0,
             flap_moments: PerBlade::splat(3, 0.0),
+            edge_moments: PerBlade::splat(3, 0.0),
+            tower_top_acceleration: 0.0,
         };
         Self { interval, measurements }
     }
@@ -141,6 +144,7 @@ impl Rotor {
                 now.azimuth = (now.azimuth + self.interval * now.rotor_speed)
                     .rem_euclid(std::f64::consts::TAU);
                 now.rotor_speed += self.interval * acceleration;
+                now.generator_speed = now.rotor_speed;
                 now.power = EFFICIENCY * now.generator_torque * now.rotor_speed;
                 now.time = (step + 1) as f64 * self.interval;
                 *now

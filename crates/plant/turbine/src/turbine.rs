@@ -204,6 +204,7 @@ impl Turbine {
             interval,
             azimuth: rotor.azimuth,
             rotor_speed: rotor.speed,
+            generator_speed: rotor.speed,
             pitch: pitch.map(|actuator| actuator.pitch),
             generator_torque: readings.generator_torque,
             power: self.drivetrain.power(rotor.speed, readings.generator_torque),
@@ -211,6 +212,8 @@ impl Turbine {
             aerodynamic_torque: readings.aerodynamic_torque,
             rotor_wind_speed: readings.rotor_wind_speed,
             flap_moments: readings.flap_moments,
+            edge_moments: pitch.map(|_| 0.0),
+            tower_top_acceleration: 0.0,
         }
     }
 

@@ -14,6 +14,8 @@ pub struct Measurements {
     pub azimuth: f64,
     /// Rotor speed (rad/s).
     pub rotor_speed: f64,
+    /// Generator speed on the low-speed side, over the gear ratio: rotor speed but for the twist of the shaft (rad/s).
+    pub generator_speed: f64,
     /// Blade pitch angles, positive to feather (rad).
     pub pitch: PerBlade<f64>,
     /// Generator torque on the low-speed side (N m).
@@ -26,8 +28,12 @@ pub struct Measurements {
     pub aerodynamic_torque: f64,
     /// Rotor-averaged axial wind speed at the blades, induction included where the flow resolves it (m/s).
     pub rotor_wind_speed: f64,
-    /// Blade root out-of-plane bending moments (N m).
+    /// Blade root out-of-plane bending moments, positive where thrust bends the blade (N m).
     pub flap_moments: PerBlade<f64>,
+    /// Blade root in-plane bending moments about the axis downwind (N m); zero where nothing tells them.
+    pub edge_moments: PerBlade<f64>,
+    /// Fore-aft acceleration of the tower top, positive downwind (m/s²); zero on a rigid tower.
+    pub tower_top_acceleration: f64,
 }
 
 /// What a controller asks of its turbine until the next control instant.
