@@ -43,8 +43,8 @@ pub struct Element {
     /// Twist, positive to feather (rad).
     pub twist: f64,
     /// Polars of the definition's stations on either side, and the share of the second (–).
-    polars: [usize; 2],
-    share: f64,
+    pub(crate) polars: [usize; 2],
+    pub(crate) share: f64,
     /// Relaxation of its missing velocity (–).
     relaxation: f64,
 }

@@ -19,6 +19,9 @@ const MAXIMUM_ITERATIONS: usize = 200;
 /// Least share of either wind in the relative wind (–); induction factors need both.
 const LEAST_SHARE: f64 = 1e-9;
 
+/// Exponent of Prandtl's formula (–) from which the loss is less than the rounding of one.
+const NO_LOSS: f64 = 38.0;
+
 /// Which parts of the theory act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theory {
@@ -56,6 +59,13 @@ pub struct Annulus {
     /// A leaning blade loses cos² of it: of its force one cosine slows the air along the shaft, and of that slowing one
     /// cosine crosses the blade. Zero balances the momentum across the blade instead, as most programs do.
     pub lean: f64,
+}
+
+impl Annulus {
+    /// Share of a leaning blade's force across itself that the air's momentum feels (–).
+    pub(super) fn momentum_share(&self) -> f64 {
+        if self.lean == 0.0 { 1.0 } else { self.lean.cos().powi(2) }
+    }
 }
 
 /// Where blades and air agree.
@@ -114,7 +124,9 @@ pub fn solve(
 pub fn loss_factor(annulus: &Annulus, theory: Theory, sine: f64) -> f64 {
     let Annulus { radius, hub_radius, tip_radius, .. } = *annulus;
     let half_blades = 0.5 * annulus.n_blades as f64;
-    let prandtl = |exponent: f64| 2.0 / PI * (-exponent).exp().min(1.0).acos();
+    let prandtl = |exponent: f64| {
+        if exponent > NO_LOSS { 1.0 } else { 2.0 / PI * (-exponent).exp().min(1.0).acos() }
+    };
     let mut loss = 1.0;
     if theory.tip_loss {
         loss *= prandtl(half_blades * (tip_radius - radius) / (radius * sine));
@@ -137,6 +149,8 @@ struct Ring<'a, Section> {
 /// One trial of the inflow angle.
 struct Trial {
     residual: f64,
+    /// Sine and cosine of the angle.
+    direction: (f64, f64),
     axial_induction: f64,
     tangential_induction: f64,
     loss_factor: f64,
@@ -152,7 +166,7 @@ impl<'a, Section: Fn(f64) -> SectionCoefficients> Ring<'a, Section> {
         section: Section,
         theory: Theory,
     ) -> Option<Self> {
-        let speed = axial.hypot(tangential);
+        let speed = (axial * axial + tangential * tangential).sqrt();
         let at_least = |wind: f64| wind.abs().max(LEAST_SHARE * speed).copysign(wind);
         let (axial, tangential) = (at_least(axial), at_least(tangential));
         (speed != 0.0).then_some(Self { annulus, axial, tangential, section, theory })
@@ -200,7 +214,7 @@ impl<'a, Section: Fn(f64) -> SectionCoefficients> Ring<'a, Section> {
         let loss = loss_factor(self.annulus, self.theory, sphi.abs());
         let sigma =
             self.annulus.n_blades as f64 * self.annulus.chord / (2.0 * PI * self.annulus.radius);
-        let k = sigma * cn * self.annulus.lean.cos().powi(2) / (4.0 * loss * sphi * sphi);
+        let k = sigma * cn * self.annulus.momentum_share() / (4.0 * loss * sphi * sphi);
         // Times cos φ, so that it stays finite at a right angle.
         let kp_cphi = sigma * ct / (4.0 * loss * sphi);
         let ratio = (self.axial / self.tangential).abs();
@@ -215,6 +229,7 @@ impl<'a, Section: Fn(f64) -> SectionCoefficients> Ring<'a, Section> {
         let kp = kp_cphi / cphi;
         Trial {
             residual: if residual.is_finite() { residual } else { -cphi },
+            direction: (sphi, cphi),
             axial_induction: a,
             tangential_induction: kp / (1.0 - kp),
             loss_factor: loss,

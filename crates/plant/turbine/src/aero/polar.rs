@@ -9,6 +9,8 @@ const BUCKET: f64 = PI / 720.0;
 const N_BUCKETS: usize = 1440;
 /// How far a table may end from ±180° (rad); rounding in published tables, no more.
 const END_TOLERANCE: f64 = 1e-6;
+/// Angles of two tables closer than this are the same (rad).
+const SAME_ANGLE: f64 = 1e-9;
 
 /// Coefficients of a section at one angle of attack.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -114,6 +116,8 @@ pub enum PolarError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Knot {
     angle: f64,
+    /// One over the angle to the next knot (1/rad); the last has none.
+    per_width: f64,
     lift: f64,
     drag: f64,
     moment: f64,
@@ -155,12 +159,21 @@ impl Polar {
         let mut knots: Vec<Knot> = (0..angles.len())
             .map(|row| Knot {
                 angle: angles[row],
+                per_width: 0.0,
                 lift: lift[row],
                 drag: drag[row],
                 moment: moment[row],
             })
             .collect();
         close_turn(&mut knots);
+        Ok(Self::from_knots(name, knots))
+    }
+
+    /// With the buckets of the look-up over `knots`, which cover the turn.
+    fn from_knots(name: String, mut knots: Vec<Knot>) -> Self {
+        for row in 1..knots.len() {
+            knots[row - 1].per_width = 1.0 / (knots[row].angle - knots[row - 1].angle);
+        }
         let mut first_knots = Vec::with_capacity(N_BUCKETS + 1);
         let mut knot = 0;
         for bucket in 0..=N_BUCKETS {
@@ -171,7 +184,32 @@ impl Polar {
             }
             first_knots.push(knot as u32);
         }
-        Ok(Self { name, reynolds_number: None, unsteady: None, knots, first_knots })
+        Self { name, reynolds_number: None, unsteady: None, knots, first_knots }
+    }
+
+    /// The polar that lies between `inner` and `outer`, with a share of `share` (–, 0 to 1) of the latter; without constants of unsteady flow.
+    ///
+    /// It has a row wherever one of the two has one, so that it is exactly their blend at every angle.
+    pub fn between(inner: &Self, outer: &Self, share: f64) -> Self {
+        let mut angles: Vec<f64> = inner.knots.iter().map(|knot| knot.angle).collect();
+        angles.extend(outer.knots.iter().map(|knot| knot.angle));
+        angles.sort_by(f64::total_cmp);
+        angles.dedup_by(|next, kept| *next - *kept < SAME_ANGLE);
+        let knots = angles
+            .iter()
+            .map(|&angle| {
+                let (from, to) = (inner.at(angle), outer.at(angle));
+                let blend = |from: f64, to: f64| from + share * (to - from);
+                Knot {
+                    angle,
+                    per_width: 0.0,
+                    lift: blend(from.lift, to.lift),
+                    drag: blend(from.drag, to.drag),
+                    moment: blend(from.moment, to.moment),
+                }
+            })
+            .collect();
+        Self::from_knots(format!("{} to {}", inner.name, outer.name), knots)
     }
 
     /// Coefficients at `angle_of_attack` (rad, any turn).
@@ -187,7 +225,7 @@ impl Polar {
             row += 1;
         }
         let (low, high) = (&self.knots[row], &self.knots[row + 1]);
-        let share = (angle - low.angle) / (high.angle - low.angle);
+        let share = (angle - low.angle) * low.per_width;
         SectionCoefficients {
             lift: low.lift + share * (high.lift - low.lift),
             drag: low.drag + share * (high.drag - low.drag),
@@ -310,6 +348,22 @@ mod tests {
                 assert!((polar.at(angle - 3.0 * TAU).lift - lift).abs() < 1e-9);
             }
         }
+    }
+
+    #[test]
+    fn between_two_polars_lies_their_blend() {
+        let (inner, rows) = (uneven(), [-PI, -0.2, 0.07, 0.4, PI]);
+        let outer = Polar::new("few", &rows, &[0.0, -0.9, 0.3, 1.5, 0.0], &[0.02; 5], &[0.1; 5]);
+        let outer = outer.unwrap();
+        let blend = Polar::between(&inner, &outer, 0.3);
+        for k in -4000..=4000 {
+            let angle = f64::from(k) * 1e-3;
+            let (from, to, got) = (inner.at(angle), outer.at(angle), blend.at(angle));
+            assert!((got.lift - (0.7 * from.lift + 0.3 * to.lift)).abs() < 1e-12, "{angle}");
+            assert!((got.drag - (0.7 * from.drag + 0.3 * to.drag)).abs() < 1e-12);
+            assert!((got.moment - (0.7 * from.moment + 0.3 * to.moment)).abs() < 1e-12);
+        }
+        assert_eq!(blend.rows().len(), inner.rows().len() + 3);
     }
 
     #[test]

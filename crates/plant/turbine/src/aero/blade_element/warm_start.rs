@@ -1,24 +1,30 @@
-//! Blade-element momentum from one step of time to the next: a step or two of the secant method from the last inflow angle.
+//! Blade-element momentum from one step of time to the next: one look at the residual, from the last inflow angle.
 
 use super::{Annulus, FRAC_PI_2, Ring, SMALLEST_ANGLE, SectionCoefficients, Theory, Trial};
 use serde::{Deserialize, Serialize};
 
-/// A step of the inflow angle that needs no further one (rad); the angle reached is kept for the next time.
-const SMALL_STEP: f64 = 1e-6;
+/// A step of the inflow angle that needs no second look (rad).
+const SMALL_STEP: f64 = 2e-3;
 /// A step that leads out of the neighbourhood (rad): the bracketed search then takes over.
 const LARGEST_STEP: f64 = 0.1;
 /// Smallest change of the angle from which a slope is drawn (rad).
-const LEAST_SECANT: f64 = 1e-8;
-/// Steps before the bracketed search takes over.
-const MAXIMUM_STEPS: usize = 5;
-/// Width over which the first slope is drawn (rad).
-const FIRST_SECANT: f64 = 1e-6;
+const LEAST_SECANT: f64 = 1e-6;
+/// Looks before the bracketed search takes over.
+const MAXIMUM_LOOKS: usize = 6;
+/// Cosine of the angle (–) below which its tangent says nothing about the air's way.
+const LEAST_COSINE: f64 = 0.1;
+/// Tangential induction (–) that only odd winds bring; they are searched anew each time, lest one stays when they have gone.
+const LARGEST_SWIRL: f64 = 1.0;
+/// Times that a slope serves before it is drawn anew.
+const SLOPE_LIFE: u8 = 16;
 
 /// Where the search begins next time: angle and slope of the residual of the last one; by default, anywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WarmStart {
     angle: f64,
     slope: f64,
+    /// Times that the slope has served.
+    age: u8,
 }
 
 /// Induction factors at the blade.
@@ -30,11 +36,13 @@ pub struct Factors {
     pub tangential: f64,
 }
 
-/// Induction of one annulus like [`solve`](super::solve), to 1e-6 rad of the inflow angle, starting from where it was last time.
+/// Induction of one annulus like [`solve`](super::solve), starting from where it was last time.
 ///
-/// The same residual, so that a wind which stays gives the induction of `solve`. Where the neighbourhood of the last angle
-/// holds no answer, `solve`'s bracketed search finds one: always an answer, whatever `warm_start` holds. Between two
-/// answers, as sections in stall have, it stays with the one that the last angle led to.
+/// A step of the inflow angle below 2e-3 rad is taken by the slope that the residual had within the last sixteen calls; what
+/// its change leaves over, some percent of the step, the next call takes. So a wind that stays gives the induction of
+/// `solve`, and one that changes from step to step gives it to about 1e-5 rad. Larger steps take further looks. Where the
+/// neighbourhood of the last angle holds no answer, `solve`'s bracketed search finds one: always an answer, whatever
+/// `warm_start` holds. Between two answers, as sections in stall have, it stays with the one that the last angle led to.
 pub fn solve_near(
     annulus: &Annulus,
     axial: f64,
@@ -46,48 +54,63 @@ pub fn solve_near(
     let Some(ring) = Ring::new(annulus, axial, tangential, section, theory) else {
         return Factors::default();
     };
-    let trial = nearby(&ring, warm_start).unwrap_or_else(|| {
+    nearby(&ring, warm_start).unwrap_or_else(|| {
         let angle = ring.root();
         let trial = ring.state(angle);
-        let beside = ring.state(angle + FIRST_SECANT).residual;
-        *warm_start = WarmStart { angle, slope: (beside - trial.residual) / FIRST_SECANT };
-        trial
-    });
-    Factors { axial: trial.axial_induction, tangential: trial.tangential_induction }
+        let beside = ring.state(angle + LEAST_SECANT).residual;
+        *warm_start = WarmStart { angle, slope: (beside - trial.residual) / LEAST_SECANT, age: 0 };
+        Factors { axial: trial.axial_induction, tangential: trial.tangential_induction }
+    })
 }
 
-/// State of `ring` where its residual vanishes near `warm_start`; on return that has moved there. None where it does not.
+/// Induction of `ring` where its residual vanishes near `warm_start`; on return that has moved there. None where it does not.
 fn nearby<Section: Fn(f64) -> SectionCoefficients>(
     ring: &Ring<'_, Section>,
     warm_start: &mut WarmStart,
-) -> Option<Trial> {
-    let WarmStart { mut angle, mut slope } = *warm_start;
+) -> Option<Factors> {
+    let WarmStart { mut angle, mut slope, mut age } = *warm_start;
     if !(slope > 0.0 && slope.is_finite()) {
         return None;
     }
     let mut trial = ring.state(angle);
-    for _ in 0..MAXIMUM_STEPS {
+    for _ in 0..MAXIMUM_LOOKS {
         let step = -trial.residual / slope;
         let next = angle + step;
         // A residual that is no number ends here too.
         if !(step.abs() < LARGEST_STEP && (SMALLEST_ANGLE..FRAC_PI_2).contains(&next)) {
             return None;
         }
-        if step.abs() < SMALL_STEP {
-            *warm_start = WarmStart { angle: next, slope };
-            return Some(trial);
+        if step.abs() < SMALL_STEP && (age < SLOPE_LIFE || step.abs() < LEAST_SECANT) {
+            *warm_start = WarmStart { angle: next, slope, age: age.saturating_add(1) };
+            return beside(ring, &trial, step);
         }
         let before = trial.residual;
         trial = ring.state(next);
         angle = next;
-        if step.abs() > LEAST_SECANT {
-            slope = (trial.residual - before) / step;
-        }
+        slope = (trial.residual - before) / step;
+        age = 0;
         if slope <= 0.0 {
             return None;
         }
     }
     None
+}
+
+/// Induction a small `step` of the angle (rad) from `trial`: the swirl stays, and the air goes where the angle says.
+fn beside<Section>(ring: &Ring<'_, Section>, trial: &Trial, step: f64) -> Option<Factors> {
+    let tangential = trial.tangential_induction;
+    if tangential.abs() > LARGEST_SWIRL {
+        return None;
+    }
+    let (sine, cosine) = trial.direction;
+    let axial = if cosine > LEAST_COSINE {
+        // The tangent of the new angle to second order.
+        let tangent = sine / cosine + step / (cosine * cosine) * (1.0 + sine / cosine * step);
+        1.0 - tangent * (ring.tangential / ring.axial).abs() * (1.0 + tangential)
+    } else {
+        trial.axial_induction
+    };
+    (axial < 1.0).then_some(Factors { axial, tangential })
 }
 
 #[cfg(test)]
@@ -128,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wind_that_drifts_needs_two_looks() {
+    fn a_wind_that_drifts_needs_little_more_than_one_look() {
         let ring = annulus(45.0, 2.0, 0.02);
         let looks = std::cell::Cell::new(0);
         let section = |angle: f64| {
@@ -139,23 +162,37 @@ mod tests {
         let wind = |step: i32| 9.0 + (0.02 * f64::from(step)).sin();
         solve_near(&ring, wind(0), 50.0, section, Theory::default(), &mut warm_start);
         looks.set(0);
+        let mut largest = 0.0_f64;
         for step in 1..=1000 {
-            solve_near(&ring, wind(step), 50.0, section, Theory::default(), &mut warm_start);
+            let (wind, theory) = (wind(step), Theory::default());
+            let got = solve_near(&ring, wind, 50.0, section, theory, &mut warm_start);
+            let expected = solve(&ring, wind, 50.0, stalling, theory);
+            largest = largest.max((got.axial - expected.axial_induction).abs() * wind);
         }
-        assert!(looks.get() <= 2100, "{}", looks.get());
+        // Induced velocity (m/s), where the wind changes by up to 0.02 m/s a step.
+        assert!(largest < 1e-3, "{largest}");
+        assert!(looks.get() < 1100, "{}", looks.get());
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
-        /// Whatever the warm start, blades and air agree.
+        /// Whatever the warm start, blades and air come to agree.
         #[test]
-        fn every_start_leads_to_an_answer(
+        fn every_start_leads_to_the_answer(
             share in 0.02..0.99_f64, chord in 0.5..4.0_f64, pitch in -0.3..1.0_f64, wind in 1.0..25.0_f64,
-            rotation in 3.0..90.0_f64, angle in -4.0..4.0_f64, slope in -3.0..30.0_f64,
+            rotation in 3.0..90.0_f64, angle in -4.0..4.0_f64, slope in -3.0..30.0_f64, age in 0..40_u8,
         ) {
             let ring = annulus(2.0 + share * 58.0, chord, pitch);
-            let mut warm_start = WarmStart { angle, slope };
-            let got = solve_near(&ring, wind, rotation, stalling, Theory::default(), &mut warm_start);
+            let mut warm_start = WarmStart { angle, slope, age };
+            let mut next = || {
+                solve_near(&ring, wind, rotation, stalling, Theory::default(), &mut warm_start)
+            };
+            prop_assert!(next().axial < 1.0);
+            // Whatever slope it began with has been drawn anew by then.
+            for _ in 0..40 {
+                next();
+            }
+            let got = next();
             prop_assert!(got.axial < 1.0, "{got:?}");
             let (through, along) = (wind * (1.0 - got.axial), rotation * (1.0 + got.tangential));
             let (sine, cosine) = through.atan2(along).sin_cos();
@@ -166,7 +203,7 @@ mod tests {
             // Blades that drive the air have induction beyond all bounds near κ = −1.
             if loading > -0.5 {
                 let expected = axial_induction(loading, loss);
-                prop_assert!((got.axial - expected).abs() < 1e-3, "{got:?} {expected}");
+                prop_assert!((got.axial - expected).abs() < 1e-6, "{got:?} {expected}");
             }
         }
     }

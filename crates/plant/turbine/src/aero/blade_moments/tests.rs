@@ -1,0 +1,109 @@
+//! The small model against the large one, and what an estimator leans on.
+
+use super::*;
+use crate::aero::induction::{SnelSchepers, TwoConstant};
+use crate::aero::rotor::{Posture, RotorAerodynamics, Settings};
+use crate::aero::sample::{Stiff, definition};
+use basis::Vector3;
+
+const ROTOR_SPEED: f64 = 1.1;
+
+fn conditions(winds: [f64; 3], pitch: f64) -> Conditions {
+    Conditions {
+        winds: PerBlade::from_fn(3, |blade| winds[blade]),
+        rotor_speed: ROTOR_SPEED,
+        pitch: PerBlade::splat(3, pitch),
+    }
+}
+
+fn model(induction: Induction) -> (Stiff, BladeMoments) {
+    let stiff = Stiff::new(definition(), ROTOR_SPEED);
+    let elements = stiff.line.elements();
+    let moments =
+        BladeMoments::new(&stiff.definition, elements, induction, Theory::default(), 1.225);
+    (stiff, moments)
+}
+
+#[test]
+fn the_small_model_is_the_rotors() {
+    let inductions = [
+        Induction::SnelSchepers(SnelSchepers::default()),
+        Induction::TwoConstant(TwoConstant::varying()),
+    ];
+    for induction in inductions {
+        let (stiff, model) = model(induction);
+        let settings = Settings {
+            air_density: 1.225,
+            induction,
+            theory: Theory::default(),
+            skewed_wake: false,
+            dynamic_stall: false,
+            tower: None,
+        };
+        let rotor = RotorAerodynamics::new(&stiff.definition, stiff.line.elements(), settings);
+        let (mut state, mut loads) = (rotor.start(), rotor.loads());
+        let mut wake = model.settled(&conditions([9.0; 3], 0.0));
+        for step in 0..300 {
+            let pitch = if step == 0 { 0.0 } else { 0.03 };
+            let elements = stiff.motions(0.3 * f64::from(step));
+            let winds = vec![Vector3::X * 9.0; elements.len()];
+            let pitches = stiff.pitch(pitch);
+            let posture = Posture { frame: &stiff.frame, elements: &elements, pitch: &pitches };
+            rotor.advance(0.05, &winds, posture, &mut state, &mut loads);
+            let now = conditions([9.0; 3], pitch);
+            if step > 0 {
+                model.advance(0.05, &now, &mut wake);
+            }
+            let got = model.moments(&now, &wake);
+            let n = stiff.line.elements().len();
+            let expected: f64 = loads.elements[..n]
+                .iter()
+                .zip(stiff.line.elements())
+                .map(|(load, element)| load.force.x * (element.span - 2.0))
+                .sum();
+            assert!((got[0] / expected - 1.0).abs() < 1e-9, "{induction:?} {step}");
+            assert!(
+                (got[1] / expected - 1.0).abs() < 1e-6 && (got[2] / expected - 1.0).abs() < 1e-6
+            );
+        }
+    }
+}
+
+#[test]
+fn each_blade_answers_to_its_own_wind_and_trying_changes_nothing() {
+    let (_, model) = model(Induction::SnelSchepers(SnelSchepers::default()));
+    let mean = conditions([9.0; 3], 0.0);
+    let wake = model.settled(&mean);
+    let kept = wake.clone();
+    let base = model.moments(&mean, &wake);
+    let step = 1e-3;
+    for blade in 0..3 {
+        let mut winds = [9.0; 3];
+        winds[blade] += step;
+        let tried = model.moments(&conditions(winds, 0.0), &wake);
+        for other in 0..3 {
+            let slope = (tried[other] - base[other]) / step;
+            if other == blade {
+                assert!(slope > 0.1 * base[blade] / 9.0, "{slope}");
+            } else {
+                assert_eq!(slope, 0.0);
+            }
+        }
+    }
+    assert_eq!(wake, kept);
+}
+
+#[test]
+fn moments_overshoot_after_pitching_and_the_wake_restores_them() {
+    let (_, model) = model(Induction::SnelSchepers(SnelSchepers::default()));
+    let (before, after) = (conditions([9.0; 3], 0.0), conditions([9.0; 3], 0.04));
+    let mut wake = model.settled(&before);
+    let at_first = model.moments(&after, &wake)[0];
+    for _ in 0..2000 {
+        model.advance(0.1, &after, &mut wake);
+    }
+    let at_last = model.moments(&after, &wake)[0];
+    let steady = model.moments(&after, &model.settled(&after))[0];
+    assert!((at_last / steady - 1.0).abs() < 1e-6);
+    assert!(at_first < at_last && at_last < model.moments(&before, &model.settled(&before))[0]);
+}
