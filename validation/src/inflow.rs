@@ -1,5 +1,6 @@
 //! Mann's turbulence against its own tensor, integrated numerically, and against closed forms.
 
+pub mod kaimal;
 mod theory;
 
 use crate::Row;

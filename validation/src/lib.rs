@@ -3,6 +3,7 @@
 //! `wakemix validate NAME` repeats one and prints measured against expected; `docs/validation/` keeps the record.
 
 pub mod actuator_line;
+pub mod aeroelastic;
 pub mod blade_element;
 pub mod flow;
 pub mod helix;
@@ -75,10 +76,28 @@ pub const VALIDATIONS: &[Validation] = &[
         run: helix::centre_line,
     },
     Validation {
+        name: "openfast-steady",
+        about: "the flexible turbine in steady prescribed wind against OpenFAST: power, thrust, mean loads, deflection",
+        minutes: "under 1",
+        run: aeroelastic::openfast_steady,
+    },
+    Validation {
+        name: "openfast-helix",
+        about: "changes of power and loads by a helix of 1 to 4° in steady prescribed wind against OpenFAST",
+        minutes: "under 1",
+        run: aeroelastic::openfast_helix,
+    },
+    Validation {
         name: "resume",
         about: "20 kills at random moments, each followed by --resume: same bits",
         minutes: "5",
         run: resume::resume,
+    },
+    Validation {
+        name: "kaimal",
+        about: "IEC turbulence: spectra, deviations, coherence against the standard's, and beside a record of TurbSim",
+        minutes: "under 1",
+        run: inflow::kaimal::kaimal,
     },
     Validation {
         name: "inflow",

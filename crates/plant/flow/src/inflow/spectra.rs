@@ -53,11 +53,7 @@ pub fn one_point(turbulence: &TurbulenceBox) -> OnePointSpectra {
 pub fn cross(turbulence: &TurbulenceBox, component: usize, apart: [usize; 2]) -> Vec<Complex64> {
     let [n_x, n_y, n_z] = turbulence.n_points();
     let n_waves = n_x.div_ceil(2) - 1;
-    let mut lines = Lines::new(turbulence);
-    let mut transforms = vec![Vec::new(); n_y * n_z];
-    for (line, transform) in transforms.iter_mut().enumerate() {
-        lines.transform(component, line % n_y, line / n_y, transform);
-    }
+    let transforms = lines(turbulence, component);
     let scale = turbulence.lengths()[0] / TAU / (n_y * n_z) as f64;
     let mut spectrum = vec![Complex64::default(); n_waves];
     for z in 0..n_z {
@@ -70,6 +66,18 @@ pub fn cross(turbulence: &TurbulenceBox, component: usize, apart: [usize; 2]) ->
         }
     }
     spectrum
+}
+
+/// Fourier coefficients (m/s) of component `component` along x at the wave numbers of [`one_point`], for every line:
+/// n_z × n_y, y fastest.
+pub fn lines(turbulence: &TurbulenceBox, component: usize) -> Vec<Vec<Complex64>> {
+    let [_, n_y, n_z] = turbulence.n_points();
+    let mut lines = Lines::new(turbulence);
+    let mut transforms = vec![Vec::new(); n_y * n_z];
+    for (line, transform) in transforms.iter_mut().enumerate() {
+        lines.transform(component, line % n_y, line / n_y, transform);
+    }
+    transforms
 }
 
 fn wave_numbers(turbulence: &TurbulenceBox) -> Vec<f64> {

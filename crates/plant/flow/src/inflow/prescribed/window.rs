@@ -42,12 +42,12 @@ impl Window {
         }
         let extent = ((to - from) / (grid.speed * grid.interval)).ceil();
         let size = grid.n_y.saturating_mul(grid.n_z);
-        let capacity = extent as usize + 2 * MARGIN as usize + 2;
+        let capacity = (extent as usize).saturating_add(2 * MARGIN as usize + 2);
         let n_values = capacity.saturating_mul(size);
         let mut ring: Vec<[f32; 4]> = Vec::new();
         ring.try_reserve_exact(n_values).map_err(|_| InflowError::Memory {
             n_points: [capacity, grid.n_y, grid.n_z],
-            memory: 16 * n_values as u64,
+            memory: 16_u64.saturating_mul(n_values as u64),
         })?;
         ring.resize(n_values, [0.0; 4]);
         let arriving = vec![[0.0; 3]; size];
