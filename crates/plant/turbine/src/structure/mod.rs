@@ -119,6 +119,8 @@ pub struct State {
     pub velocities: Coordinates,
     /// How fast that changes, mean of the last step.
     pub accelerations: Coordinates,
+    /// The same of the step before.
+    pub earlier_accelerations: Coordinates,
     /// Pitch during the last step.
     pub pitch: PerBlade<Pitch>,
     /// Loads at the middle of the last step.
@@ -127,7 +129,12 @@ pub struct State {
 
 impl State {
     fn phase(&self) -> Phase {
-        Phase { q: self.coordinates, v: self.velocities, a: self.accelerations }
+        Phase {
+            q: self.coordinates,
+            v: self.velocities,
+            a: self.accelerations,
+            earlier: self.earlier_accelerations,
+        }
     }
 }
 
@@ -152,6 +159,7 @@ impl Structure {
             coordinates: phase.q,
             velocities: phase.v,
             accelerations: phase.a,
+            earlier_accelerations: phase.earlier,
             pitch,
             loads,
         };
@@ -166,6 +174,7 @@ impl Structure {
         for (index, held) in self.locks.shared.into_iter().enumerate() {
             if held {
                 self.state.accelerations.shared[index] = 0.0;
+                self.state.earlier_accelerations.shared[index] = 0.0;
                 if index != GENERATOR {
                     self.state.velocities.shared[index] = 0.0;
                 }
@@ -174,6 +183,7 @@ impl Structure {
         for mode in (0..coordinates::N_MODES).filter(|&mode| self.locks.modes[mode]) {
             for blade in 0..self.machine.n_blades {
                 self.state.accelerations.blades[blade][mode] = 0.0;
+                self.state.earlier_accelerations.blades[blade][mode] = 0.0;
                 self.state.velocities.blades[blade][mode] = 0.0;
             }
         }
@@ -234,6 +244,7 @@ impl Structure {
         self.state.coordinates = after.q;
         self.state.velocities = after.v;
         self.state.accelerations = after.a;
+        self.state.earlier_accelerations = after.earlier;
         self.state.pitch.copy_from_slice(pitch);
         self.state.loads = machine.loads(&middle, &self.balance, &applied);
     }

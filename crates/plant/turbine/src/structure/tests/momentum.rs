@@ -1,0 +1,163 @@
+//! Forces and moments inside against the momentum of everything outboard, differenced from positions alone.
+
+use super::samples::*;
+use crate::definition::Definition;
+use crate::structure::{AppliedLoads, ElementLoad, Freedom, Pitch, Settings, Structure, Wrench};
+use basis::Vector3;
+
+const STEP: f64 = 2e-3;
+
+/// Mass (kg) and position (m) of every mass point: first those of each blade, then hub and nacelle, then the rest.
+fn points(structure: &Structure, pitch: &[Pitch]) -> Vec<(f64, Vector3)> {
+    let machine = &structure.machine;
+    let (q, v) = (&structure.state().coordinates, &structure.state().velocities);
+    let motion = machine.motion(q, v, pitch);
+    let mut points = Vec::new();
+    for blade in 0..machine.n_blades {
+        let frame = &motion.blades[blade];
+        points.extend(machine.blade.points.iter().map(|point| {
+            (point.mass, frame.origin + frame.axes * point.place.at(&q.blades[blade]).0)
+        }));
+    }
+    points.push((machine.hub_mass, motion.hub.origin));
+    points.push((machine.nacelle_mass, motion.nacelle.origin));
+    points.push((machine.yaw_bearing_mass, motion.top.origin));
+    points.extend(
+        machine
+            .tower
+            .points
+            .iter()
+            .map(|point| (point.mass, machine.base + point.place.at(&q.tower()).0)),
+    );
+    points
+}
+
+/// What gravity and inertia of `range` of the points do about `centre`, from their positions at three instants.
+fn wrench(
+    history: &[Vec<(f64, Vector3)>],
+    range: std::ops::Range<usize>,
+    centre: Vector3,
+) -> Wrench {
+    let mut sum = Wrench::default();
+    for index in range {
+        let [before, now, after] = [0, 1, 2].map(|instant: usize| history[instant][index].1);
+        let acceleration = (after - 2.0 * now + before) / (STEP * STEP);
+        let force = (Vector3::Z * -crate::structure::GRAVITY - acceleration) * history[1][index].0;
+        sum.add(Wrench { force, moment: (now - centre).cross(force) });
+    }
+    sum
+}
+
+/// Point masses only: bodies without inertia of their own.
+fn of_points(mut definition: Definition) -> Definition {
+    let nacelle = &mut definition.nacelle;
+    nacelle.yaw_inertia = nacelle.mass * nacelle.center_of_mass.truncate().length_squared();
+    definition.hub.inertia = 0.0;
+    definition.drive_train.generator_inertia = 0.0;
+    definition
+}
+
+#[test]
+fn loads_are_the_rate_of_momentum_outboard() {
+    for text in [NREL_5, IEA_15] {
+        let definition = of_points(published(text));
+        let spans: Vec<f64> =
+            [0.3, 0.6, 0.9].iter().map(|share| share * definition.rotor.tip_radius).collect();
+        let settings = Settings {
+            rotor_speed: definition.rated_rotor_speed,
+            yaw: 0.2,
+            spans: &spans,
+            position: Vector3::new(30.0, -20.0, 0.0),
+            azimuth: 0.5,
+            ..Settings::AT_REST
+        };
+        let mut structure = structure(&definition, &settings);
+        // With no generator to turn against, the shaft has no torsion.
+        structure.hold(&[Freedom::DriveTrain]);
+        let loads: Vec<ElementLoad> = (0..9)
+            .map(|k| ElementLoad {
+                force: Vector3::new(4e4, 5e3 * f64::from(k % 4), -2e3 * f64::from(k)),
+                moment: Vector3::ZERO,
+            })
+            .collect();
+        let applied = AppliedLoads { elements: &loads, ..AppliedLoads::NONE };
+        let pitch = [0.05, 0.1, 0.0].map(|angle| Pitch { angle, ..Pitch::default() });
+        (0..1500).for_each(|_| structure.advance(STEP, &applied, &pitch));
+        let mut history = vec![points(&structure, &pitch)];
+        structure.advance(STEP, &applied, &pitch);
+        let first = structure.loads().clone();
+        history.push(points(&structure, &pitch));
+        let machine = structure.machine.clone();
+        let state = structure.state();
+        let motion = machine.motion(&state.coordinates, &state.velocities, &pitch);
+        let mut elements = vec![
+            crate::motion::ElementMotion {
+                position: Vector3::ZERO,
+                velocity: Vector3::ZERO,
+                axes: crate::rotor::Frame::new(Vector3::ZERO, 0.0).blade(0.0, 0.0),
+            };
+            9
+        ];
+        structure.observe(0.0, &pitch, &mut elements);
+        let base = machine.base;
+        let blade_points = machine.blade.points.len();
+        let n = history[0].len();
+        let n_outboard = 3 * blade_points;
+        structure.advance(STEP, &applied, &pitch);
+        let second = structure.loads().clone();
+        history.push(points(&structure, &pitch));
+        let air = |range: std::ops::Range<usize>, centre: Vector3| {
+            let mut sum = Wrench::default();
+            for k in range {
+                let force = loads[k].force;
+                sum.add(Wrench { force, moment: (elements[k].position - centre).cross(force) });
+            }
+            sum
+        };
+        let check = |found: [Wrench; 2], expected: Wrench, what: &str| {
+            let force = 0.5 * (found[0].force + found[1].force);
+            let moment = 0.5 * (found[0].moment + found[1].moment);
+            let (force_gap, moment_gap) =
+                ((force - expected.force).length(), (moment - expected.moment).length());
+            assert!(
+                force_gap < 2e-4 * expected.force.length(),
+                "{what}: {force} {}",
+                expected.force
+            );
+            assert!(
+                moment_gap < 2e-4 * expected.moment.length(),
+                "{what}: {moment} {}",
+                expected.moment
+            );
+        };
+        let foot = {
+            let mut sum = wrench(&history, 0..n, base);
+            sum.add(air(0..9, base));
+            sum
+        };
+        check([first.tower_base, second.tower_base], foot, "tower base");
+        let top = motion.top.origin;
+        let mut above = wrench(&history, 0..n_outboard + 2, top);
+        above.add(air(0..9, top));
+        check(
+            [first.yaw_bearing, second.yaw_bearing],
+            above.turned(&motion.top.axes.transpose()),
+            "yaw bearing",
+        );
+        let apex = motion.hub.origin;
+        let mut rotor = wrench(&history, 0..n_outboard + 1, apex);
+        rotor.add(air(0..9, apex));
+        check([first.shaft, second.shaft], rotor.turned(&motion.shaft.axes.transpose()), "shaft");
+        for blade in 0..3 {
+            let frame = &motion.blades[blade];
+            let root = frame.origin + frame.axes.z_axis * machine.hub_radius;
+            let mut own = wrench(&history, blade * blade_points..(blade + 1) * blade_points, root);
+            own.add(air(3 * blade..3 * blade + 3, root));
+            check(
+                [first.blades[blade].pitched_root, second.blades[blade].pitched_root],
+                own.turned(&frame.axes.transpose()),
+                "blade root",
+            );
+        }
+    }
+}
