@@ -216,7 +216,7 @@ impl Plan {
             Model::Mann => 0.5 * up,
             Model::Kaimal => arguments.hub_height - 0.5 * height,
         });
-        if !(lowest_height >= 0.0) {
+        if lowest_height.is_nan() || lowest_height < 0.0 {
             return Err(miette!(
                 help =
                     "take fewer points along z, a smaller spacing, a higher hub or --lowest-height",

@@ -78,8 +78,9 @@ fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
         .unwrap_or(half);
     let speed = header.mean_speed;
     let scales = intensities.map(|intensity| speed * intensity / 100.0 / PER_DEVIATION);
-    let fastest = speed + f64::from(i16::MAX) * scales.iter().copied().fold(0.0, f64::max);
-    if !(fastest <= 100.0 * f64::from(FASTEST)) {
+    // Deviations, of which the integers are thousandths, and the mean are winds too.
+    let fastest = scales.iter().map(|scale| scale * PER_DEVIATION).fold(speed, f64::max);
+    if fastest > f64::from(FASTEST) {
         let problem = format!("speed {speed} m/s and intensities {intensities:?} % are no wind");
         return Err(FileError::content(WHAT, path, problem, "make the file again"));
     }
