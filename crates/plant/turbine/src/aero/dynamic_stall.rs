@@ -184,10 +184,11 @@ impl DynamicStall {
         let [a1, a2] = self.amplitudes;
         let mut alpha_e = angle * (1.0 - a1 - a2);
         if a1 != 0.0 {
-            for index in 0..2 {
-                let reached = self.amplitudes[index] * mean_downwash;
-                let part = &mut state.downwashes[index];
-                *part = reached + (*part - reached) * decay(RATES[index]);
+            for ((part, amplitude), rate) in
+                state.downwashes.iter_mut().zip(self.amplitudes).zip(RATES)
+            {
+                let reached = amplitude * mean_downwash;
+                *part = reached + (*part - reached) * decay(rate);
                 alpha_e += *part * inverse_speed;
             }
         }

@@ -11,15 +11,26 @@ use std::f64::consts::PI;
 /// Distance, in tower radii (–), that the potential flow's centre stands upwind of the axis.
 const OFFSET: f64 = 0.1;
 /// Distance (tower radii) beyond which the wind is left as it is: a thousandth of it at most changes there.
-const REACH: f64 = 32.0;
+const REACH: f64 = 80.0;
 
 /// Which effects act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
-    /// Potential flow about the tower, ahead of it and beside it.
-    pub potential: bool,
+    /// Flow about the tower, ahead of it and beside it.
+    pub potential: Potential,
     /// Slow wind behind it.
     pub shadow: bool,
+}
+
+/// Flow that parts about the tower.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Potential {
+    /// None.
+    None,
+    /// About a cylinder (AeroDyn's `TwrPotent` 1).
+    Cylinder,
+    /// After Bak: about a cylinder a little upwind, and a source that stands for the tower's drag (`TwrPotent` 2).
+    WithDrag,
 }
 
 /// A stiff, upright tower in the wind.
@@ -61,8 +72,11 @@ impl TowerInfluence {
     /// Change of the wind along and across itself, over its speed (–), `x` downwind and `y` across in tower radii (–).
     fn disturbance(&self, x: f64, y: f64, drag: f64) -> [f64; 2] {
         let mut change = [0.0; 2];
-        if self.effects.potential {
-            let x = x + OFFSET;
+        if self.effects.potential != Potential::None {
+            let (x, drag) = match self.effects.potential {
+                Potential::WithDrag => (x + OFFSET, drag),
+                _ => (x, 0.0),
+            };
             let square = (x * x + y * y).max(1.0);
             let source = drag / (2.0 * PI * square);
             change[0] += (y * y - x * x) / (square * square) + source * x;
@@ -93,7 +107,7 @@ impl TowerInfluence {
 mod tests {
     use super::*;
 
-    fn tower(drag: f64, potential: bool, shadow: bool) -> TowerInfluence {
+    fn tower(drag: f64, potential: Potential, shadow: bool) -> TowerInfluence {
         let row =
             |height: f64, diameter: f64| TowerProfile { height, diameter, drag_coefficient: drag };
         TowerInfluence {
@@ -105,15 +119,15 @@ mod tests {
 
     #[test]
     fn a_cylinder_in_potential_flow() {
-        // Without drag: stagnation ahead of the cylinder, twice the wind beside it, about a centre a little upwind.
-        let tower = tower(0.0, true, false);
+        // Stagnation ahead of the cylinder, twice the wind beside it.
+        let tower = tower(0.5, Potential::Cylinder, false);
         let wind = Vector3::X * 10.0;
-        let centre = tower.foot - Vector3::X * (OFFSET * 4.0) + Vector3::Z * 30.0;
+        let centre = tower.foot + Vector3::Z * 30.0;
         let ahead = tower.felt(centre - Vector3::X * 4.0, wind);
         assert!(ahead.length() < 1e-9, "{ahead}");
         let beside = tower.felt(centre + Vector3::Y * 4.0, wind);
         assert!((beside - wind * 2.0).length() < 1e-9, "{beside}");
-        for far in [Vector3::X * -200.0, Vector3::Z * 80.0, Vector3::Z * -29.0] {
+        for far in [Vector3::X * -400.0, Vector3::Z * 80.0, Vector3::Z * -29.0] {
             assert_eq!(tower.felt(centre + far, wind), wind);
         }
         // It carries no air away: the flow through a circle about it vanishes.
@@ -128,9 +142,21 @@ mod tests {
     }
 
     #[test]
+    fn drag_slows_the_wind_ahead_as_a_source_does() {
+        // Far ahead the doublet has gone and the source's Cd R / 2πr is left.
+        let tower = tower(0.5, Potential::WithDrag, false);
+        let wind = Vector3::X * 10.0;
+        let (radius, distance) = (4.0, 100.0);
+        let felt = tower.felt(tower.foot + Vector3::new(-distance, 0.0, 30.0), wind);
+        let source = 0.5 * radius / (2.0 * PI * distance);
+        let doublet = (radius / distance).powi(2);
+        assert!((1.0 - felt.x / 10.0 - source - doublet).abs() < 0.02 * source, "{felt}");
+    }
+
+    #[test]
     fn slower_ahead_and_behind_and_mirrored() {
         let (wind, height) = (Vector3::new(8.0, 6.0, 0.5), Vector3::Z * 70.0);
-        let both = tower(0.5, true, true);
+        let both = tower(0.5, Potential::WithDrag, true);
         let along = Vector3::new(0.8, 0.6, 0.0);
         let across = Vector3::new(-0.6, 0.8, 0.0);
         for distance in [-15.0, -8.0, 6.0, 30.0] {
@@ -142,7 +168,7 @@ mod tests {
             assert!((left.dot(across) + right.dot(across)).abs() < 1e-9);
         }
         // Momentum behind it: the deficit's width times depth is the drag, Cd d over half the wind's square, to first order.
-        let shadow = tower(0.1, false, true);
+        let shadow = tower(0.1, Potential::None, true);
         let deficit: f64 = (-4000..4000)
             .map(|k| {
                 let side = across * (0.01 * f64::from(k));

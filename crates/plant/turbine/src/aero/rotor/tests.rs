@@ -4,7 +4,7 @@ use super::*;
 use crate::aero::blade_element;
 use crate::aero::induction::{SnelSchepers, TwoConstant, two_constant};
 use crate::aero::sample::{Stiff, definition};
-use crate::aero::tower_influence::Effects;
+use crate::aero::tower_influence::{Effects, Potential};
 use crate::definition::TowerProfile;
 use crate::steady::SteadyRotor;
 
@@ -238,7 +238,7 @@ fn the_tower_is_felt_by_the_blade_that_passes_it() {
     towered.tower.profile = vec![row(0.0), row(85.0)];
     let mut with_tower = settings(Induction::QuasiSteady);
     with_tower.dynamic_stall = false;
-    let effects = Effects { potential: true, shadow: true };
+    let effects = Effects { potential: Potential::WithDrag, shadow: true };
     let foot = Vector3::X * 5.0;
     with_tower.tower = Some(TowerInfluence::new(&towered, foot, effects));
     let mut flight = Flight::new(Stiff::new(towered, ROTOR_SPEED), with_tower);
