@@ -2,7 +2,7 @@
 
 use crate::Row;
 use farm::assemble::Model;
-use farm::case::Wind;
+use farm::case::{TurbulenceModel, Wind};
 use farm::self_check::{Tunnel, self_check};
 use std::sync::Arc;
 
@@ -70,6 +70,8 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
         seed: 0,
         air_density: 1.225,
         kinematic_viscosity: 1.5e-5,
+        turbulence_model: TurbulenceModel::Mann,
+        planes: None,
     };
     let check = self_check(&model, &wind, &tunnel, None, &mut |_| ())
         .expect("a rotor in a steady wind stays finite");

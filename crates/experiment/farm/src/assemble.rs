@@ -1,14 +1,18 @@
 //! From case to farm: turbines, controllers and air put together.
 
-use crate::case::{Case, Control, Ground, Run, Sides};
+use crate::air::Air;
+use crate::case::{Case, Control, Ground, Run, Sides, Solver};
 use crate::plan::{Footprint, Plan};
 use crate::{Farm, Machine};
 use control::baseline::{Baseline, Constants};
 use control::{Excitation, Helix, Pulse, TurbineController};
-use flow::Inflow;
-use flow::lattice::{self, Lattice};
+use flow::lattice;
 use std::sync::Arc;
-use turbine::{Definition, Turbine};
+use turbine::aero::blade_element::Theory;
+use turbine::aero::induction::TwoConstant;
+use turbine::aero::{self, rotor};
+use turbine::structure::StructureError;
+use turbine::{Definition, Induction, Turbine};
 
 /// A turbine model with the constants of its controller.
 #[derive(Clone, Debug)]
@@ -42,7 +46,7 @@ pub const SMEARING_CELLS: f64 = 2.0;
 
 /// Smagorinsky's constant above a rough ground (–): with 0.16 the friction velocity lies within 3 % of the logarithmic law's,
 /// with the 0.12 of wakes in free air 20 % below it (docs/validation/flow.md).
-const SMAGORINSKY_OVER_GROUND: f64 = 0.16;
+pub const SMAGORINSKY_OVER_GROUND: f64 = 0.16;
 
 /// Settings of the air for `plan`.
 pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
@@ -98,35 +102,52 @@ pub fn controller(
     TurbineController::new(Baseline::new(model.constants.clone()), excitation)
 }
 
-/// The farm of one run, at time zero: the turbines that are there in it, in the case's order. `models` holds one entry per turbine of the case, in its order;
-/// the farm's machines are those of [`Run::present`].
+/// The farm of one run, at time zero: the turbines that are there in it, in the case's order, in `air`. `models` holds one
+/// entry per turbine of the case, in its order; the farm's machines are those of [`Run::present`].
 ///
 /// # Errors
-/// [`lattice::SettingsError`] when the air cannot be solved as planned.
+/// [`StructureError`] when a model's masses, stiffnesses or mode shapes make no structure.
 pub fn farm(
     case: &Case,
     run: &Run,
     plan: &Plan,
     models: &[Model],
-    inflow: Arc<dyn Inflow>,
-) -> Result<Farm<Lattice>, lattice::SettingsError> {
-    let air = Lattice::new(lattice_settings(case, plan), inflow)?;
-    let machines = run
-        .present()
-        .map(|index| {
-            let (model, position) = (&models[index], plan.positions[index]);
-            let settings = turbine::Settings {
-                smearing_length: SMEARING_CELLS * plan.spacing,
-                sample_spacing: plan.spacing,
-                air_density: case.wind.air_density,
-                rotor_speed: model.rotor_speed(case.wind.speed),
-                azimuth: 0.0,
-                pitch: model.constants.fine_pitch,
-            };
-            let turbine = Turbine::new(Arc::clone(&model.definition), position, settings);
-            let control = &run.control[index];
-            Machine::new(turbine, controller(control, model, case.wind.speed, plan.diameter))
-        })
-        .collect();
+    air: Air,
+) -> Result<Farm<Air>, StructureError> {
+    let mut machines = Vec::with_capacity(models.len());
+    for index in run.present() {
+        let model = &models[index];
+        let settings = turbine::Settings {
+            induction: induction(case, plan),
+            flexible: case.turbines[index].flexible,
+            air_density: case.wind.air_density,
+            rotor_speed: model.rotor_speed(case.wind.speed),
+            azimuth: 0.0,
+            pitch: model.constants.fine_pitch,
+        };
+        let turbine = Turbine::new(Arc::clone(&model.definition), plan.positions[index], settings)?;
+        let control = controller(&run.control[index], model, case.wind.speed, plan.diameter);
+        machines.push(Machine::new(turbine, control));
+    }
     Ok(Farm::new(machines, air, plan.interval))
+}
+
+/// Who solves the induction: the lattice itself, or momentum theory with dynamic inflow, skewed wake and dynamic stall.
+fn induction(case: &Case, plan: &Plan) -> Induction {
+    match case.flow.solver {
+        Solver::Lattice => Induction::ByFlow {
+            smearing_length: SMEARING_CELLS * plan.spacing,
+            sample_spacing: plan.spacing,
+        },
+        Solver::Uniform | Solver::Turbulence | Solver::Planes => {
+            Induction::ByMomentum(rotor::Settings {
+                air_density: case.wind.air_density,
+                induction: aero::Induction::TwoConstant(TwoConstant::varying()),
+                theory: Theory::default(),
+                skewed_wake: true,
+                dynamic_stall: true,
+                tower: None,
+            })
+        }
+    }
 }

@@ -44,11 +44,26 @@ pub struct Wind {
     pub air_density: f64,
     /// Kinematic viscosity of air (m²/s).
     pub kinematic_viscosity: f64,
+    /// Which turbulence is made, where it is made and not read.
+    pub turbulence_model: TurbulenceModel,
+    /// File with the planes of wind that [`Solver::Planes`] reads, relative to the case file.
+    pub planes: Option<String>,
+}
+
+/// How turbulence is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TurbulenceModel {
+    /// Mann's spectral tensor, free of divergence.
+    Mann,
+    /// Kaimal's spectra with the exponential coherence of IEC 61400-1, for prescribed wind only.
+    Kaimal,
 }
 
 /// How the air is solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flow {
+    /// What moves the air.
+    pub solver: Solver,
     /// Cells per diameter of the first turbine (–).
     pub cells_per_diameter: f64,
     /// Domain upstream of the first turbine (diameters of the first turbine).
@@ -63,10 +78,31 @@ pub struct Flow {
     pub ground: Ground,
     /// What it meets at the sides.
     pub sides: Sides,
-    /// Flow step (s); chosen from the tip speed and the Mach number when absent.
+    /// Step of air and turbines (s); when absent chosen from the tip speed and the Mach number for the lattice, and
+    /// [`PRESCRIBED_STEP`](crate::plan::PRESCRIBED_STEP) for prescribed wind.
     pub step: Option<f64>,
     /// Threads; all cores when absent. The result does not depend on it.
     pub threads: Option<usize>,
+}
+
+/// What moves the air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Solver {
+    /// Lattice Boltzmann large-eddy simulation, which feels the turbines.
+    Lattice,
+    /// The steady mean profile, prescribed; turbines make their own induction by momentum theory.
+    Uniform,
+    /// The mean profile with turbulence made for it, prescribed.
+    Turbulence,
+    /// Planes of wind from a file, prescribed.
+    Planes,
+}
+
+impl Solver {
+    /// Whether the wind does not feel the turbines.
+    pub fn is_prescribed(self) -> bool {
+        self != Self::Lattice
+    }
 }
 
 /// The ground.
@@ -108,6 +144,8 @@ pub struct Placement {
     pub model: String,
     /// Position of the tower's foot, farm frame x and y (diameters of the first turbine).
     pub position_diameters: [f64; 2],
+    /// Whether blades, tower and drive train bend.
+    pub flexible: bool,
 }
 
 /// One run: who does what.
@@ -176,6 +214,9 @@ pub struct Pulse {
 /// What is kept of a run, beside series and summary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
+    /// Time between rows of the series (s); when absent every step of a lattice and
+    /// [`PRESCRIBED_ROW`](crate::plan::PRESCRIBED_ROW) of prescribed wind.
+    pub interval: Option<f64>,
     /// Time between instantaneous hub-height and crosswind planes (s); none when absent.
     pub plane_interval: Option<f64>,
     /// Crosswind planes at these distances behind the first turbine (diameters).

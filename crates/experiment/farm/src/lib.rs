@@ -1,10 +1,12 @@
 //! Plant and controllers run together: layout, the loop, runs of a case, the self-check.
 
+pub mod air;
 pub mod assemble;
 pub mod case;
 pub mod farm;
 pub mod plan;
 pub mod self_check;
 
+pub use air::Air;
 pub use farm::{Farm, Machine, Recorder};
 pub use plan::{Plan, plan};

@@ -17,6 +17,11 @@ const FASTEST_TIP: f64 = 0.5;
 /// Longest step between two control instants (s): pitch actuators and rotor speed are integrated on it.
 const LONGEST_STEP: f64 = 0.5;
 
+/// Step of turbines in prescribed wind unless the case says otherwise (s): a thirtieth of the fastest period that carries load.
+pub const PRESCRIBED_STEP: f64 = 0.02;
+/// Time between rows of the series in prescribed wind unless the case says otherwise (s).
+pub const PRESCRIBED_ROW: f64 = 0.1;
+
 /// What the layout needs to know of a turbine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
@@ -43,6 +48,8 @@ pub struct Plan {
     pub n_steps: u64,
     /// Steps before the analysis starts (–).
     pub n_spin_up_steps: u64,
+    /// Steps from one row of the series to the next (–).
+    pub row_stride: u64,
     /// Diameter that "diameters" in the case file means: the first turbine's (m).
     pub diameter: f64,
     /// Hub height of the first turbine (m).
@@ -158,7 +165,6 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
         machines.push((placement, *footprint));
     }
     let diameter = machines[0].1.diameter;
-    let spacing = diameter / case.flow.cells_per_diameter;
     let positions: Vec<Vector3> = machines
         .iter()
         .map(|(p, _)| {
@@ -170,6 +176,10 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
         })
         .collect();
     check_distances(&machines, &positions)?;
+    if case.flow.solver.is_prescribed() {
+        return Ok(without_air(case, diameter, machines[0].1.hub_height, positions));
+    }
+    let spacing = diameter / case.flow.cells_per_diameter;
     check_resolution(&machines, spacing, case.flow.cells_per_diameter)?;
 
     let (origin, n_cells) = domain(case, &positions, diameter, spacing);
@@ -183,6 +193,7 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
             interval,
             n_steps: (case.time.duration / interval).round() as u64,
             n_spin_up_steps: (case.time.spin_up / interval).round() as u64,
+            row_stride: stride(case.output.interval.unwrap_or(0.0), interval),
             diameter,
             hub_height: machines[0].1.hub_height,
             positions: positions.clone(),
@@ -193,6 +204,32 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
     let plan = plan_without_step(step(case, &machines, spacing)?);
     check_extent(&machines, &plan)?;
     Ok(plan)
+}
+
+/// Steps nearest to `duration` (s), at least one.
+fn stride(duration: f64, interval: f64) -> u64 {
+    (duration / interval).round().max(1.0) as u64
+}
+
+/// The plan of turbines in prescribed wind: no cells.
+fn without_air(case: &Case, diameter: f64, hub_height: f64, positions: Vec<Vector3>) -> Plan {
+    let interval = case.flow.step.unwrap_or(PRESCRIBED_STEP);
+    let n_spin_up_steps = (case.time.spin_up / interval).round() as u64;
+    let row_stride = stride(case.output.interval.unwrap_or(PRESCRIBED_ROW), interval);
+    Plan {
+        origin: Vector3::ZERO,
+        spacing: 0.0,
+        n_cells: [0; 3],
+        interval,
+        n_steps: (case.time.duration / interval).round() as u64,
+        n_spin_up_steps,
+        row_stride,
+        diameter,
+        hub_height,
+        positions,
+        blockage: 0.0,
+        lattice_speed: 0.0,
+    }
 }
 
 fn check_distances(
@@ -347,6 +384,11 @@ impl Plan {
     /// Cells in all (–).
     pub fn cells(&self) -> usize {
         self.n_cells.iter().product()
+    }
+
+    /// Time between rows of the series (s).
+    pub fn row_interval(&self) -> f64 {
+        self.row_stride as f64 * self.interval
     }
 
     /// Cell updates of one run (–).

@@ -12,7 +12,8 @@ use thiserror::Error;
 use turbine::aero::blade_element::Theory;
 use turbine::blockage::equivalent_speed_ratio;
 use turbine::steady::SteadyRotor;
-use turbine::{Definition, Turbine};
+use turbine::structure::StructureError;
+use turbine::{Definition, Induction, Turbine};
 
 /// Power and thrust of one turbine in steady uniform flow, by the actuator line and by blade-element momentum.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,14 +119,17 @@ pub fn self_check(
         Arc::clone(definition),
         Vector3::new(0.0, 0.0, -definition.rotor.hub_height),
         turbine::Settings {
-            smearing_length: SMEARING_CELLS * spacing,
-            sample_spacing: spacing,
+            induction: Induction::ByFlow {
+                smearing_length: SMEARING_CELLS * spacing,
+                sample_spacing: spacing,
+            },
+            flexible: false,
             air_density: wind.air_density,
             rotor_speed,
             azimuth: 0.0,
             pitch,
         },
-    )
+    )?
     .without_bodies()
     .at_held_speed();
     let commands =
@@ -194,6 +198,9 @@ pub enum SelfCheckError {
     /// The air cannot be set up.
     #[error("the air of the self-check cannot be set up")]
     Settings(#[from] lattice::SettingsError),
+    /// The turbine has no structure.
+    #[error(transparent)]
+    Structure(#[from] StructureError),
     /// The air did not stay finite.
     #[error("the air of the self-check diverged")]
     Flow(#[from] FlowError),

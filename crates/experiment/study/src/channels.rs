@@ -2,26 +2,58 @@
 
 use basis::{Commands, Measurements, Vector3};
 use farm::farm::Recorder;
+use turbine::Turbine;
 
 /// Channels before the turbines' own.
 const SHARED: [&str; 4] = ["time_s", "wind.u_m_s", "wind.v_m_s", "wind.w_m_s"];
 
+/// Loads and motions that are kept of a turbine in solved air, under OpenFAST's names; in prescribed wind all are.
+const LOADS: [&str; 18] = [
+    "RootMxc1",
+    "RootMyc1",
+    "RootMzc1",
+    "RootMxb1",
+    "RootMyb1",
+    "RotTorq",
+    "LSSTipMys",
+    "LSSTipMzs",
+    "YawBrMxp",
+    "YawBrMyp",
+    "YawBrMzp",
+    "TwrBsMxt",
+    "TwrBsMyt",
+    "TwrBsMzt",
+    "OoPDefl1",
+    "IPDefl1",
+    "TTDspFA",
+    "TTDspSS",
+];
+
 /// Gathers one row of the series from the turbines' signals.
 ///
 /// A row is: time, wind at the hub-height probe upstream of the first turbine, then for each
-/// turbine what it measured and what it was told.
+/// turbine what it measured, what it was told, and its loads.
 pub(crate) struct Row {
     names: Vec<String>,
     values: Vec<f64>,
     offsets: Vec<usize>,
+    /// Of each turbine: where its loads begin, and places among its channels with the factor to the unit in the name.
+    loads: Vec<(usize, Vec<(usize, f64)>)>,
+    /// All channels of one turbine.
+    channels: Vec<f64>,
 }
 
 impl Row {
-    /// The row for `turbines`: name and number of blades of each.
-    pub(crate) fn new(turbines: &[(String, usize)]) -> Self {
+    /// The row for `turbines`, each with its name; `all_loads` or a choice of them.
+    pub(crate) fn new<'a>(
+        turbines: impl Iterator<Item = (&'a str, &'a Turbine)>,
+        all_loads: bool,
+    ) -> Self {
         let mut names: Vec<String> = SHARED.iter().map(|&name| name.to_owned()).collect();
-        let mut offsets = Vec::with_capacity(turbines.len());
-        for (name, n_blades) in turbines {
+        let (mut offsets, mut loads) = (Vec::new(), Vec::new());
+        let mut n_channels = 0;
+        for (name, turbine) in turbines {
+            let n_blades = turbine.definition().n_blades;
             offsets.push(names.len());
             let scalars = [
                 "power_w",
@@ -39,11 +71,32 @@ impl Row {
                 |blade| format!("flap_moment_{blade}_nm"),
             ];
             for channel in per_blade {
-                names.extend((1..=*n_blades).map(|blade| format!("{name}.{}", channel(blade))));
+                names.extend((1..=n_blades).map(|blade| format!("{name}.{}", channel(blade))));
             }
+            let channels = turbine.channels();
+            n_channels = n_channels.max(channels.len());
+            let kept: Vec<usize> = (0..channels.len())
+                .filter(|&index| all_loads || LOADS.contains(&channels[index].name.as_str()))
+                .collect();
+            let first = names.len();
+            names.extend(kept.iter().map(|&index| {
+                let channel = &channels[index];
+                format!("{name}.{}_{}", channel.name, channel.unit)
+            }));
+            loads.push((first, kept.iter().map(|&i| (i, channels[i].scale)).collect()));
         }
         let values = vec![0.0; names.len()];
-        Self { names, values, offsets }
+        Self { names, values, offsets, loads, channels: vec![0.0; n_channels] }
+    }
+
+    /// Takes the loads of turbine number `index` in, as they are before it moves on.
+    pub(crate) fn loads(&mut self, index: usize, turbine: &Turbine) {
+        let (first, kept) = &self.loads[index];
+        let channels = &mut self.channels[..turbine.channels().len()];
+        turbine.write_channels(channels);
+        for (value, (channel, scale)) in self.values[*first..].iter_mut().zip(kept) {
+            *value = channels[*channel] * scale;
+        }
     }
 
     /// Names of the channels, in the order of [`Self::values`].

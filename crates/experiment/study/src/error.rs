@@ -13,6 +13,7 @@ use miette::Diagnostic;
 use report::ReportError;
 use std::path::PathBuf;
 use thiserror::Error;
+use turbine::structure::StructureError;
 
 /// Why a study could not be made.
 #[derive(Debug, Error, Diagnostic)]
@@ -37,6 +38,9 @@ pub enum StudyError {
     /// The turbulence cannot be made.
     #[error("the turbulence cannot be made")]
     Inflow(#[from] InflowError),
+    /// A turbine's masses, stiffnesses or mode shapes make no structure.
+    #[error(transparent)]
+    Structure(#[from] StructureError),
     /// The self-check cannot be made.
     #[error(transparent)]
     SelfCheck(#[from] SelfCheckError),

@@ -2,8 +2,11 @@
 //!
 //! Reading order: [`run`], then `prepare` (what all runs share), `simulate` (one run), `summarise` (its numbers).
 
+mod air;
 mod channels;
 mod error;
+mod loads;
+mod outb;
 mod prepare;
 mod simulate;
 mod summarise;

@@ -3,7 +3,7 @@
 use crate::StudyError;
 use crate::watcher::{Estimate, Watcher};
 use farm::assemble::Model;
-use farm::case::{Case, Control};
+use farm::case::{Case, Control, Solver};
 use farm::self_check::{Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -13,7 +13,7 @@ use flow::inflow::{MeanProfile, TurbulentInflow, mann, size_box};
 use formats::turbine_file::TurbineFile;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use turbine::blockage::equivalent_speed_ratio;
 
@@ -25,6 +25,8 @@ const USUAL_THRUST: f64 = 0.8;
 const CELLS_TO_WARN: f64 = 16.0;
 /// Blocks below which an interval says little (–).
 const BLOCKS_TO_WARN: f64 = 3.0;
+/// Channels of a turbine with three blades, about (–).
+const CHANNELS_PER_TURBINE: u64 = 40;
 /// Bytes of a value in `series.csv`, about.
 const SERIES_VALUE_BYTES: u64 = 19;
 /// Most memory that the turbulence may take (bytes); a longer run then meets the same wind again, and is warned of it.
@@ -46,6 +48,8 @@ pub struct Setup {
     pub plan: Plan,
     /// The wind that enters.
     pub inflow: Arc<dyn Inflow>,
+    /// Folder that paths in the case are relative to.
+    folder: PathBuf,
     /// What a reader of the numbers must know.
     pub warnings: Vec<String>,
 }
@@ -71,8 +75,10 @@ impl Setup {
             }
         }
         let case_text = formats::case::write(&file.case);
+        let folder = file.folder().to_owned();
         let mut setup = Self::new(file.case, case_text, &loaded)?;
         setup.turbine_texts = texts;
+        setup.folder = folder;
         Ok(setup)
     }
 
@@ -89,11 +95,14 @@ impl Setup {
         let models =
             case.turbines.iter().map(|placement| loaded[&placement.model].clone()).collect();
         let warnings = warnings(&case, &plan);
-        let inflow = Arc::new(profile(&case, &plan));
+        let inflow = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
         let turbine_texts = BTreeMap::new();
-        let mut setup = Self { case, case_text, models, turbine_texts, plan, inflow, warnings };
-        let size = size_box(&setup.turbulence_need());
-        if setup.case.wind.turbulence_intensity > 0.0 && !size.covers {
+        let folder = PathBuf::new();
+        let mut setup =
+            Self { case, case_text, models, turbine_texts, plan, inflow, folder, warnings };
+        setup.inflow = Arc::new(setup.profile());
+        let size = setup.needs_box().then(|| size_box(&setup.turbulence_need()));
+        if let Some(size) = size.filter(|size| !size.covers) {
             setup.warnings.push(format!(
                 "the turbulence returns after {:.0} s: more would not fit in memory",
                 size.repeats_after
@@ -102,10 +111,25 @@ impl Setup {
         Ok(setup)
     }
 
+    /// Folder that paths in the case are relative to.
+    pub(crate) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The mean profile that blows in.
+    pub(crate) fn profile(&self) -> MeanProfile {
+        MeanProfile::PowerLaw {
+            hub_height: self.plan.hub_height,
+            speed: self.case.wind.speed,
+            exponent: self.case.wind.shear_exponent,
+        }
+    }
+
     /// The cost of `n_runs` runs, the machine's speed not known yet.
     pub fn estimate(&self, n_runs: usize) -> Estimate {
         let plan = &self.plan;
-        let channels = 4 + 16 * self.case.turbines.len() as u64;
+        let channels = 4 + CHANNELS_PER_TURBINE * self.case.turbines.len() as u64;
+        let n_rows = plan.n_steps / plan.row_stride;
         let field = plan.cells() as u64 * CELL_BYTES;
         Estimate {
             n_runs,
@@ -115,7 +139,7 @@ impl Setup {
             n_steps: plan.n_steps,
             memory: field + self.turbulence_memory(),
             // A new checkpoint stands beside the old one until it is complete.
-            disk: 2 * field + channels * plan.n_steps * SERIES_VALUE_BYTES,
+            disk: 2 * field + channels * n_rows * SERIES_VALUE_BYTES,
             updates_per_second: None,
             blockage: plan.blockage,
             wall_gain: wall_gain(plan.blockage),
@@ -143,6 +167,9 @@ impl Setup {
     /// # Errors
     /// [`StudyError::SelfCheck`] when a check cannot be made; a model that falls short is a warning.
     pub fn self_check(&mut self, watcher: &mut dyn Watcher) -> Result<Option<f64>, StudyError> {
+        if self.case.flow.solver.is_prescribed() {
+            return Ok(None);
+        }
         let mut checked: Vec<String> = Vec::new();
         let mut slowest: Option<f64> = None;
         for model in &self.models {
@@ -193,11 +220,12 @@ impl Setup {
     }
 
     fn turbulence_memory(&self) -> u64 {
-        if self.case.wind.turbulence_intensity > 0.0 {
-            size_box(&self.turbulence_need()).peak_memory
-        } else {
-            0
-        }
+        if self.needs_box() { size_box(&self.turbulence_need()).peak_memory } else { 0 }
+    }
+
+    /// Whether the inlet of a lattice is fed from a box of turbulence.
+    fn needs_box(&self) -> bool {
+        self.case.flow.solver == Solver::Lattice && self.case.wind.turbulence_intensity > 0.0
     }
 
     /// On return the inflow carries the case's turbulence.
@@ -206,7 +234,7 @@ impl Setup {
     /// [`StudyError::Inflow`] when it cannot be made.
     pub fn make_turbulence(&mut self, watcher: &mut dyn Watcher) -> Result<(), StudyError> {
         let wind = &self.case.wind;
-        if wind.turbulence_intensity > 0.0 {
+        if self.needs_box() {
             let size = size_box(&self.turbulence_need());
             let settings = mann::Settings {
                 n_points: size.n_points,
@@ -221,7 +249,7 @@ impl Setup {
             let turbulence = mann::generate(&settings, |share| {
                 watcher.borrow_mut().preparing("turbulence", share);
             })?;
-            let profile = profile(&self.case, &self.plan);
+            let profile = self.profile();
             let inflow = TurbulentInflow::aligned(Arc::new(turbulence), profile, self.plan.origin)?;
             self.inflow = Arc::new(inflow.blocked(BLOCKING_HEIGHT * wind.length_scale));
         }
@@ -244,14 +272,6 @@ fn turbine(model: &str, folder: &Path) -> Result<(String, TurbineFile), StudyErr
     Ok((String::new(), formats::library::load(model)?))
 }
 
-fn profile(case: &Case, plan: &Plan) -> MeanProfile {
-    MeanProfile::PowerLaw {
-        hub_height: plan.hub_height,
-        speed: case.wind.speed,
-        exponent: case.wind.shear_exponent,
-    }
-}
-
 /// Rise of a rotor's power (–) in a domain of which it takes `blockage` (–), over that in unbounded air.
 fn wall_gain(blockage: f64) -> f64 {
     equivalent_speed_ratio(USUAL_THRUST, blockage).powi(3) - 1.0
@@ -268,7 +288,8 @@ fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
             100.0 * gain
         ));
     }
-    if case.flow.cells_per_diameter < CELLS_TO_WARN {
+    let lattice = case.flow.solver == Solver::Lattice;
+    if lattice && case.flow.cells_per_diameter < CELLS_TO_WARN {
         warnings.push(format!(
             "{:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results",
             case.flow.cells_per_diameter

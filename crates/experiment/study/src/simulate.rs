@@ -1,15 +1,18 @@
 //! One run: from time zero, or from its checkpoint, to its last step.
 
 use crate::StudyError;
+use crate::air;
 use crate::channels::Row;
+use crate::outb;
 use crate::prepare::Setup;
 use crate::watcher::{Progress, Watcher};
 use basis::Vector3;
 use basis::records::{Cost, Plane, PlaneAxes};
 use control::TurbineController;
 use farm::case::Run;
-use farm::{Farm, assemble};
-use flow::lattice::{Lattice, PlaneAverage, PlaneAverageState};
+use farm::{Air, Farm, assemble};
+use flow::inflow::prescribed::Clock;
+use flow::lattice::{PlaneAverage, PlaneAverageState};
 use flow::{FlowError, WindField};
 use formats::checkpoint::{CheckpointReader, CheckpointWriter};
 use formats::records::{self, RunFolder, SeriesWriter};
@@ -56,7 +59,7 @@ struct RunState {
 struct Simulation<'a> {
     setup: &'a Setup,
     folder: &'a RunFolder,
-    farm: Farm<Lattice>,
+    farm: Farm<Air>,
     row: Row,
     series: SeriesWriter,
     averages: Vec<PlaneAverage>,
@@ -125,20 +128,18 @@ impl<'a> Simulation<'a> {
         folder: &'a RunFolder,
         resume: bool,
     ) -> Result<Self, StudyError> {
-        let farm =
-            assemble::farm(&setup.case, run, &setup.plan, &setup.models, setup.inflow.clone())?;
-        let blades: Vec<(String, usize)> = run
-            .present()
-            .map(|index| {
-                let name = setup.case.turbines[index].name.clone();
-                (name, setup.models[index].definition.n_blades)
-            })
-            .collect();
-        let row = Row::new(&blades);
-        let averages = slices(setup)
-            .into_iter()
-            .map(|(name, axes, position)| PlaneAverage::new(farm.flow(), &name, axes, position))
-            .collect();
+        let air = air::begin(setup)?;
+        let farm = assemble::farm(&setup.case, run, &setup.plan, &setup.models, air)?;
+        let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
+        let turbines = farm.machines().iter().map(|machine| &machine.turbine);
+        let row = Row::new(names.zip(turbines), setup.case.flow.solver.is_prescribed());
+        let averages = match farm.flow().lattice() {
+            Some(lattice) => slices(setup)
+                .into_iter()
+                .map(|(name, axes, position)| PlaneAverage::new(lattice, &name, axes, position))
+                .collect(),
+            None => Vec::new(),
+        };
         let checkpoint = folder.checkpoint_path();
         let stored = if resume && checkpoint.exists() {
             Some(CheckpointReader::open(&checkpoint, &setup.case_text, &run.name)?)
@@ -191,7 +192,10 @@ impl<'a> Simulation<'a> {
         for (average, stored) in simulation.averages.iter_mut().zip(state.averages) {
             average.restore(stored)?;
         }
-        reader.stream("air", |bytes| simulation.farm.flow_mut().read_state(bytes))?;
+        match simulation.farm.flow_mut() {
+            Air::Lattice(lattice) => reader.stream("air", |bytes| lattice.read_state(bytes))?,
+            Air::Prescribed(wind) => wind.restore(reader.state::<Clock>("wind")?)?,
+        }
         Ok(simulation)
     }
 
@@ -200,37 +204,41 @@ impl<'a> Simulation<'a> {
         let mut wind = [Vector3::ZERO];
         self.farm.flow().sample(&[self.probe], &mut wind);
         self.row.start(self.farm.time(), wind[0]);
+        let kept = self.farm.step().is_multiple_of(plan.row_stride);
+        if kept {
+            for (index, machine) in self.farm.machines().iter().enumerate() {
+                self.row.loads(index, &machine.turbine);
+            }
+        }
         self.farm.advance(&mut self.row).map_err(StepError::Flow)?;
-        self.series.write(self.row.values())?;
+        if kept {
+            self.series.write(self.row.values())?;
+        }
         let step = self.farm.step();
+        let Some(lattice) = self.farm.flow().lattice() else { return Ok(()) };
         if step > plan.n_spin_up_steps {
             let since = step - plan.n_spin_up_steps;
             if since.is_multiple_of(whole_steps(AVERAGING_INTERVAL, plan.interval)) {
                 for average in &mut self.averages {
-                    average.add(self.farm.flow());
+                    average.add(lattice);
                 }
             }
             let due = |every: Option<f64>| {
                 every.is_some_and(|every| since.is_multiple_of(whole_steps(every, plan.interval)))
             };
             if due(self.setup.case.output.plane_interval) {
-                self.write_instants()?;
+                for (name, axes, position) in slices(self.setup) {
+                    let plane = lattice.plane(&name, axes, position);
+                    records::write_instant_plane(self.folder, self.n_plane_instants, &plane)?;
+                }
+                self.n_plane_instants += 1;
             }
             if due(self.setup.case.output.volume_interval) {
-                let volume = self.farm.flow().volume(VOLUME_STRIDE);
+                let volume = lattice.volume(VOLUME_STRIDE);
                 records::write_volume(self.folder, self.n_volumes, &volume)?;
                 self.n_volumes += 1;
             }
         }
-        Ok(())
-    }
-
-    fn write_instants(&mut self) -> Result<(), StudyError> {
-        for (name, axes, position) in slices(self.setup) {
-            let plane = self.farm.flow().plane(&name, axes, position);
-            records::write_instant_plane(self.folder, self.n_plane_instants, &plane)?;
-        }
-        self.n_plane_instants += 1;
         Ok(())
     }
 
@@ -254,8 +262,10 @@ impl<'a> Simulation<'a> {
         let path = self.folder.checkpoint_path();
         let mut writer = CheckpointWriter::create(&path, &self.setup.case_text, &run.name)?;
         writer.state("run", &state)?;
-        let air = self.farm.flow_mut();
-        writer.stream("air", |bytes| air.write_state(bytes))?;
+        match self.farm.flow_mut() {
+            Air::Lattice(lattice) => writer.stream("air", |bytes| lattice.write_state(bytes))?,
+            Air::Prescribed(wind) => writer.state("wind", &wind.state())?,
+        }
         writer.finish()?;
         Ok(())
     }
@@ -274,9 +284,8 @@ impl<'a> Simulation<'a> {
 
     fn progress<'b>(&self, run: &'b Run, (run_index, n_runs): (usize, usize)) -> Progress<'b> {
         let plan = &self.setup.plan;
-        let cells = plan.cells() as f64;
         let made = (self.farm.step() - self.first_step) as f64;
-        let updates_per_second = cells * made / self.started.elapsed().as_secs_f64();
+        let steps_per_second = made / self.started.elapsed().as_secs_f64();
         let runs_after = (n_runs - run_index - 1) as f64;
         let left = (plan.n_steps - self.farm.step()) as f64 + runs_after * plan.n_steps as f64;
         Progress {
@@ -285,17 +294,34 @@ impl<'a> Simulation<'a> {
             n_runs,
             step: self.farm.step(),
             n_steps: plan.n_steps,
-            updates_per_second,
-            time_left: left * cells / updates_per_second,
+            updates_per_second: plan.cells() as f64 * steps_per_second,
+            time_left: left / steps_per_second,
         }
     }
 
-    fn finish(mut self, _run: &Run) -> Result<Ending, StudyError> {
+    fn finish(mut self, run: &Run) -> Result<Ending, StudyError> {
         self.series.finish()?;
-        // The last instant is always kept: the report shows it.
-        for (name, axes, position) in slices(self.setup) {
-            let plane = self.farm.flow().plane(&name, axes, position);
-            records::write_last_plane(self.folder, &plane)?;
+        if self.setup.case.flow.solver.is_prescribed() {
+            for index in run.present() {
+                outb::write(self.setup, run, self.folder, &self.setup.case.turbines[index].name)?;
+            }
+        }
+        let (plan, wall_time) = (&self.setup.plan, self.wall_time());
+        let mut cost = Cost {
+            wall_time,
+            n_cells: plan.cells() as u64,
+            n_steps: plan.n_steps,
+            updates_per_second: plan.updates() / wall_time,
+            n_threads: 1,
+            memory: 0,
+        };
+        if let Some(lattice) = self.farm.flow().lattice() {
+            cost.n_threads = lattice.n_threads();
+            cost.memory = lattice.memory();
+            // The last instant is always kept: the report shows it.
+            for (name, axes, position) in slices(self.setup) {
+                records::write_last_plane(self.folder, &lattice.plane(&name, axes, position))?;
+            }
         }
         for average in &self.averages {
             if average.n_instants() > 0 {
@@ -303,17 +329,6 @@ impl<'a> Simulation<'a> {
                 records::write_mean_plane(self.folder, &mean)?;
             }
         }
-        let air = self.farm.flow();
-        let plan = &self.setup.plan;
-        let wall_time = self.wall_time();
-        let cost = Cost {
-            wall_time,
-            n_cells: plan.cells() as u64,
-            n_steps: plan.n_steps,
-            updates_per_second: plan.updates() / wall_time,
-            n_threads: air.n_threads(),
-            memory: air.memory(),
-        };
         let clipped_shares = self
             .farm
             .machines()
@@ -332,10 +347,13 @@ fn whole_steps(duration: f64, interval: f64) -> u64 {
     (duration / interval).round().max(1.0) as u64
 }
 
-/// Point at hub height upstream of the first turbine where the arriving wind is read (m).
+/// Point at hub height where the arriving wind is read (m): upstream of the first turbine, in prescribed wind at it.
 fn probe(setup: &Setup) -> Vector3 {
     let plan = &setup.plan;
     let foot = plan.positions[0];
+    if setup.case.flow.solver.is_prescribed() {
+        return Vector3::new(foot.x, foot.y, plan.hub_height);
+    }
     let distance = (PROBE_DISTANCE * plan.diameter).min(0.5 * (foot.x - plan.origin.x));
     Vector3::new(foot.x - distance, foot.y, plan.hub_height)
 }

@@ -1,6 +1,7 @@
 //! From the series of a run to its summary.
 
 use crate::StudyError;
+use crate::loads;
 use crate::prepare::Setup;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
@@ -17,18 +18,22 @@ const CLIPPED_SHARE: f64 = 0.01;
 const DELIVERED_SHARE: f64 = 0.95;
 
 /// The series of one run, cut to the analysed time.
-struct Analysed<'a> {
+pub(crate) struct Analysed<'a> {
     series: &'a Series,
     first: usize,
-    interval: f64,
+    /// Time between rows (s).
+    pub(crate) interval: f64,
 }
 
 impl<'a> Analysed<'a> {
     fn new(series: &'a Series, setup: &Setup) -> Self {
-        Self { series, first: setup.plan.n_spin_up_steps as usize, interval: setup.plan.interval }
+        let plan = &setup.plan;
+        let first = plan.n_spin_up_steps.div_ceil(plan.row_stride) as usize;
+        Self { series, first, interval: plan.row_interval() }
     }
 
-    fn column(&self, name: &str) -> Result<&'a [f64], StudyError> {
+    /// The analysed part of the channel `name`.
+    pub(crate) fn column(&self, name: &str) -> Result<&'a [f64], StudyError> {
         let column = self
             .series
             .column(name)
@@ -98,7 +103,7 @@ pub(crate) fn summarise(
             pitch: collective_pitch(&analysed, name, n_blades)?,
             delivered_pitch,
             power_gain,
-            damage_equivalent_loads: Default::default(),
+            damage_equivalent_loads: loads::damage_equivalent(series, name, &analysed)?,
         });
     }
     let names: Vec<&str> = turbines.iter().map(|turbine| turbine.name.as_str()).collect();

@@ -177,15 +177,9 @@ impl ActuatorLine {
         let carried = self.mean_wind(onsets);
         let helix = self.correction.helix(carried / rotor_speed.max(1e-3));
         for sweep in 0..=N_SWEEPS {
-            for (index, (load, onset)) in loads.iter_mut().zip(onsets).enumerate() {
-                let element = &self.elements[index % n];
-                let [axial, tangential] = missing[index];
-                let felt = Onset {
-                    normal: onset.normal + axial,
-                    tangential: onset.tangential - tangential,
-                };
-                *load = self.load(element, felt, pitch[index / n]);
-                scratch.circulations[index] = load.circulation;
+            self.loads_under(onsets, pitch, missing, loads);
+            for (circulation, load) in scratch.circulations.iter_mut().zip(&*loads) {
+                *circulation = load.circulation;
             }
             if sweep == N_SWEEPS {
                 break;
@@ -203,6 +197,23 @@ impl ActuatorLine {
                 missing[0] += relaxation * (axial - missing[0]);
                 missing[1] += relaxation * (tangential - missing[1]);
             }
+        }
+    }
+
+    /// Loads of all elements as [`ActuatorLine::loads`] has them, with the velocity `missing` (m/s) as it is.
+    pub fn loads_under(
+        &self,
+        onsets: &[Onset],
+        pitch: &[f64],
+        missing: &[[f64; 2]],
+        loads: &mut [Load],
+    ) {
+        let n = self.elements.len();
+        for (index, (load, onset)) in loads.iter_mut().zip(onsets).enumerate() {
+            let [axial, tangential] = missing[index];
+            let felt =
+                Onset { normal: onset.normal + axial, tangential: onset.tangential - tangential };
+            *load = self.load(&self.elements[index % n], felt, pitch[index / n]);
         }
     }
 
@@ -225,8 +236,19 @@ impl ActuatorLine {
         }
     }
 
+    /// Component of `winds` (m/s, one for each element, blade after blade) along `shaft`, averaged over the swept area (m/s).
+    pub fn mean_axial(&self, winds: &[Vector3], shaft: Vector3) -> f64 {
+        let (mut sum, mut area) = (Vector3::ZERO, 0.0);
+        for (wind, element) in winds.iter().zip(self.elements.iter().cycle()) {
+            let ring = element.radius * element.width;
+            sum += *wind * ring;
+            area += ring;
+        }
+        sum.dot(shaft) / area
+    }
+
     /// Wind out of the swept surface (m/s), averaged over the swept area.
-    pub fn mean_wind(&self, onsets: &[Onset]) -> f64 {
+    fn mean_wind(&self, onsets: &[Onset]) -> f64 {
         let (mut sum, mut area) = (0.0, 0.0);
         for (onset, element) in onsets.iter().zip(self.elements.iter().cycle()) {
             let ring = element.radius * element.width;

@@ -93,6 +93,11 @@ impl Body {
         Self { position, drag_area, self_induction, axis: Vector3::ZERO }
     }
 
+    /// From now on the wind that it is handed is the free one: nothing of its own drag is in it.
+    pub fn feel_free_wind(&mut self) {
+        self.self_induction = 0.0;
+    }
+
     /// Force on the air in `wind` (m/s) sampled at the body's position, ½ ρ c_d A |v| v against the free wind v.
     pub fn force(&self, wind: Vector3, air_density: f64, smearing_length: f64) -> PointForce {
         let across = wind - self.axis * wind.dot(self.axis);

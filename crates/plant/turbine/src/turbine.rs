@@ -1,26 +1,35 @@
-//! One turbine in the air: handed wind at its stations and commands, it turns, pitches and pushes on the air.
+//! One turbine in the air: handed wind at its stations and commands, it turns, pitches, bends and pushes on the air.
 
-use crate::actuator_line::{ActuatorLine, Load, Onset, Scratch};
+mod aerodynamics;
+
+use crate::actuator_line::ActuatorLine;
 use crate::actuators::PitchState;
+use crate::aero::rotor;
 use crate::bodies::{self, Body};
 use crate::definition::Definition;
-use crate::drivetrain::{Drivetrain, RotorState};
-use crate::rotor::Frame;
-use basis::mbc::blade_azimuth;
+use crate::motion::ElementMotion;
+use crate::rotor::{BladeFrame, Frame};
+use crate::structure::{
+    AppliedLoads, Channel, ElementLoad, Freedom, GRAVITY, Pitch, Structure, StructureError,
+};
+use aerodynamics::Aerodynamics;
 use basis::{Commands, Measurements, PerBlade, PointForce, Vector3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Elements, and so point forces, of each blade.
 pub const N_ELEMENTS: usize = 32;
+/// Longest step of the structure (s): a sixtieth of the period of the fastest mode that carries load, the blades' second
+/// flapwise one. Longer intervals are cut into equal steps, over which the wind at each element is held.
+pub const LONGEST_STRUCTURAL_STEP: f64 = 0.025;
 
 /// How a turbine stands in the air when time begins.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Gaussian width of its forces (m).
-    pub smearing_length: f64,
-    /// Distance of the points between which the flow interpolates the wind (m); 0 where it does not.
-    pub sample_spacing: f64,
+    /// Who solves what the rotor does to the air.
+    pub induction: Induction,
+    /// Whether blades, tower and drive train bend; otherwise only the rotor turns.
+    pub flexible: bool,
     /// Air density (kg/m³).
     pub air_density: f64,
     /// Rotor speed (rad/s).
@@ -31,13 +40,29 @@ pub struct Settings {
     pub pitch: f64,
 }
 
+/// Who solves what the rotor does to the air.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Induction {
+    /// The flow: winds that the turbine is handed contain it, and the flow feels the turbine's forces.
+    ByFlow {
+        /// Gaussian width of the forces (m).
+        smearing_length: f64,
+        /// Distance of the points between which the flow interpolates the wind (m); 0 where it does not.
+        sample_spacing: f64,
+    },
+    /// The turbine itself, by momentum theory: winds are those without it. Its air density is that of [`Settings`].
+    ByMomentum(rotor::Settings),
+}
+
 /// A turbine: definition and what follows from it, state, and working memory.
 #[derive(Clone, Debug)]
 pub struct Turbine {
     definition: Arc<Definition>,
     line: ActuatorLine,
+    aerodynamics: Aerodynamics,
+    structure: Structure,
     bodies: Vec<Body>,
-    drivetrain: Drivetrain,
+    held: Vec<Freedom>,
     frame: Frame,
     air_density: f64,
     smearing_length: f64,
@@ -48,115 +73,160 @@ pub struct Turbine {
 /// Everything of a turbine that time changes; restoring it continues with the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    rotor: RotorState,
+    structure: crate::structure::State,
     pitch: PerBlade<PitchState>,
-    /// Axial and tangential velocity hidden by smearing (m/s), blade after blade.
-    missing: Vec<[f64; 2]>,
+    aerodynamics: aerodynamics::State,
     readings: Readings,
     n_instants: u64,
     n_limited: u64,
 }
 
 /// What the instruments read over the last interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Readings {
     generator_torque: f64,
     thrust: f64,
     aerodynamic_torque: f64,
     rotor_wind_speed: f64,
-    flap_moments: PerBlade<f64>,
 }
 
 impl State {
-    /// Velocity that smearing hides from each blade element, axial and along the rotation (m/s), blade after blade.
+    /// Velocity that smearing hides from each blade element, axial and along the rotation (m/s), blade after blade; empty
+    /// where momentum theory makes the induction.
     pub fn missing(&self) -> &[[f64; 2]] {
-        &self.missing
+        match &self.aerodynamics {
+            aerodynamics::State::Line(missing) => missing,
+            aerodynamics::State::Momentum(_) => &[],
+        }
     }
 }
 
 #[derive(Clone, Debug)]
 struct Workspace {
     stations: Vec<Vector3>,
-    onsets: Vec<Onset>,
-    loads: Vec<Load>,
-    scratch: Scratch,
+    /// Directions at the blade elements where the winds are sampled.
+    axes: Vec<BladeFrame>,
+    motions: Vec<ElementMotion>,
+    loads: Vec<ElementLoad>,
+    /// Sums over the steps of an interval: force on each element along normal and tangent (N).
+    sums: Vec<[f64; 2]>,
+    /// Forces on the tower's points (N).
+    tower: Vec<Vector3>,
     forces: Vec<PointForce>,
 }
 
 impl Turbine {
-    /// A turbine of `definition` with the foot of its tower at `position` (m), facing the wind.
-    pub fn new(definition: Arc<Definition>, position: Vector3, settings: Settings) -> Self {
-        let geometry = definition.rotor;
-        let smearing_length = settings.smearing_length;
+    /// A turbine of `definition` with the foot of its tower at `position` (m), facing the wind, undeflected.
+    ///
+    /// # Errors
+    /// [`StructureError`] when the definition's masses, stiffnesses or mode shapes do not make a structure.
+    pub fn new(
+        definition: Arc<Definition>,
+        position: Vector3,
+        settings: Settings,
+    ) -> Result<Self, StructureError> {
+        let (smearing_length, sample_spacing) = match settings.induction {
+            Induction::ByFlow { smearing_length, sample_spacing } => {
+                (smearing_length, sample_spacing)
+            }
+            // Nothing is spread; the length only cuts the tower into segments.
+            Induction::ByMomentum(_) => (0.1 * definition.rotor_radius(), 0.0),
+        };
         let line = ActuatorLine::new(
             Arc::clone(&definition),
             N_ELEMENTS,
             settings.air_density,
             smearing_length,
-            settings.sample_spacing,
+            sample_spacing,
         );
+        let geometry = definition.rotor;
         let shaft = Frame::new(Vector3::ZERO, geometry.shaft_tilt).shaft;
         // The overhang runs along the shaft; the hub height is the apex's own.
         let apex = position + Vector3::new(-geometry.overhang * shaft.x, 0.0, geometry.hub_height);
         let frame = Frame::new(apex, geometry.shaft_tilt);
-        let bodies = bodies::of(&definition, position, &frame, smearing_length);
+        let mut bodies = bodies::of(&definition, position, &frame, smearing_length);
+        if matches!(settings.induction, Induction::ByMomentum(_)) {
+            bodies.iter_mut().for_each(Body::feel_free_wind);
+        }
+        let aerodynamics = Aerodynamics::new(&definition, &line, &settings);
+        let spans: Vec<f64> = line.elements().iter().map(|element| element.span).collect();
+        // The last body is the nacelle.
+        let heights: Vec<f64> =
+            bodies[..bodies.len() - 1].iter().map(|body| body.position.z - position.z).collect();
+        let structure = Structure::new(
+            &definition,
+            &crate::structure::Settings {
+                position,
+                yaw: 0.0,
+                gravity: GRAVITY,
+                rotor_speed: settings.rotor_speed,
+                azimuth: settings.azimuth,
+                pitch: settings.pitch,
+                spans: &spans,
+                heights: &heights,
+            },
+        )?;
         let n_blades = definition.n_blades;
         let n = n_blades * N_ELEMENTS;
         let pitch = PitchState { pitch: settings.pitch, rate: 0.0 };
         let state = State {
-            rotor: RotorState {
-                azimuth: basis::angle::wrap_to_turn(settings.azimuth),
-                speed: settings.rotor_speed,
-            },
+            structure: structure.state().clone(),
             pitch: PerBlade::splat(n_blades, pitch),
-            missing: vec![[0.0; 2]; n],
-            readings: Readings {
-                generator_torque: 0.0,
-                thrust: 0.0,
-                aerodynamic_torque: 0.0,
-                rotor_wind_speed: 0.0,
-                flap_moments: PerBlade::splat(n_blades, 0.0),
-            },
+            aerodynamics: aerodynamics.start(),
+            readings: Readings::default(),
             n_instants: 0,
             n_limited: 0,
         };
+        let still = ElementMotion {
+            position: Vector3::ZERO,
+            velocity: Vector3::ZERO,
+            axes: frame.blade(0.0, 0.0),
+        };
         let workspace = Workspace {
-            stations: vec![Vector3::ZERO; n + bodies.len()],
-            onsets: vec![Onset::default(); n],
-            loads: vec![Load::default(); n],
-            scratch: Scratch::new(n_blades, N_ELEMENTS),
+            stations: Vec::with_capacity(n + bodies.len()),
+            axes: vec![still.axes; n],
+            motions: vec![still; n],
+            loads: vec![ElementLoad::default(); n],
+            sums: vec![[0.0; 2]; n],
+            tower: vec![Vector3::ZERO; heights.len()],
             forces: Vec::with_capacity(n + bodies.len()),
         };
-        let drivetrain = Drivetrain {
-            inertia: definition.drive_train_inertia(),
-            efficiency: definition.efficiency(),
+        let held = if settings.flexible {
+            Vec::new()
+        } else {
+            Freedom::ALL.into_iter().filter(|freedom| *freedom != Freedom::Generator).collect()
         };
-        let air_density = settings.air_density;
         let mut turbine = Self {
             definition,
             line,
+            aerodynamics,
+            structure,
             bodies,
-            drivetrain,
+            held,
             frame,
-            air_density,
+            air_density: settings.air_density,
             smearing_length,
             state,
             workspace,
         };
+        turbine.structure.hold(&turbine.held);
+        turbine.frame = turbine.structure.frame(0.0);
         turbine.place_stations();
-        turbine
+        Ok(turbine)
     }
 
-    /// The same turbine without tower and nacelle: the rotor alone, as blade-element momentum sees it.
+    /// The same turbine without tower and nacelle in the wind: the rotor alone, as blade-element momentum sees it.
     pub fn without_bodies(mut self) -> Self {
         self.bodies.clear();
+        self.workspace.tower.clear();
         self.place_stations();
         self
     }
 
     /// The same turbine on a test rig that holds its rotor speed whatever the torques.
     pub fn at_held_speed(mut self) -> Self {
-        self.drivetrain.inertia = f64::INFINITY;
+        self.held.push(Freedom::Generator);
+        self.structure.hold(&self.held);
         self
     }
 
@@ -170,22 +240,51 @@ impl Turbine {
     /// `winds` (m/s) holds the wind at each of [`Turbine::stations`] now, the rotor's induction included as far as the
     /// flow resolves it. On return [`Turbine::forces`] holds the forces that act on the air throughout the interval.
     pub fn advance(&mut self, interval: f64, winds: &[Vector3], commands: &Commands) {
-        self.advance_pitch(interval, commands);
-        self.meet(winds);
-        let pitch = self.state.pitch.map(|actuator| actuator.pitch);
-        let Workspace { onsets, loads, scratch, .. } = &mut self.workspace;
-        let rotor = self.state.rotor;
-        self.line.loads(onsets, rotor.speed, &pitch, &mut self.state.missing, loads, scratch);
-        let readings = self.read_loads(commands);
-        let after = self.drivetrain.after(
-            rotor,
-            interval,
-            readings.aerodynamic_torque,
-            readings.generator_torque,
-        );
-        self.push(winds);
+        let n_steps = (interval / LONGEST_STRUCTURAL_STEP - 1e-9).ceil().max(1.0) as usize;
+        let step = interval / n_steps as f64;
+        // A generator holds the rotor back and never drives it backwards.
+        let turning = self.structure.generator_speed() > 0.0;
+        let generator_torque = if turning { commands.generator_torque } else { 0.0 };
+        let (element_winds, body_winds) = winds.split_at(self.workspace.motions.len());
+        let nacelle = self.hold_back(body_winds);
+        self.workspace.sums.fill([0.0; 2]);
+        let mut readings = Readings {
+            generator_torque,
+            rotor_wind_speed: self.line.mean_axial(element_winds, self.frame.shaft),
+            ..Readings::default()
+        };
+        let mut limited = false;
+        for index in 0..n_steps {
+            let pitch = self.pitch_blades(step, commands, &mut limited);
+            let Workspace { motions, loads, sums, tower, .. } = &mut self.workspace;
+            self.structure.observe(0.5 * step, &pitch, motions);
+            let frame = self.structure.frame(0.5 * step);
+            let now = aerodynamics::Instant {
+                interval: step,
+                first: index == 0,
+                winds: element_winds,
+                motions,
+                pitch: &pitch,
+                frame: &frame,
+                rotor_speed: self.structure.rotor_speed(),
+            };
+            self.aerodynamics.loads(&self.line, &now, &mut self.state.aerodynamics, loads);
+            for ((load, motion), sum) in loads.iter().zip(&*motions).zip(sums) {
+                let share = 1.0 / n_steps as f64;
+                sum[0] += share * load.force.dot(motion.axes.normal);
+                sum[1] += share * load.force.dot(motion.axes.tangent);
+                let arm = motion.position - frame.hub;
+                readings.thrust += share * load.force.dot(frame.shaft);
+                readings.aerodynamic_torque += share * arm.cross(load.force).dot(frame.shaft);
+            }
+            let applied = AppliedLoads { elements: loads, tower, nacelle, generator_torque };
+            self.structure.advance(step, &applied, &pitch);
+        }
+        self.state.n_instants += 1;
+        self.state.n_limited += u64::from(limited);
         self.state.readings = readings;
-        self.state.rotor = after;
+        self.state.structure.clone_from(self.structure.state());
+        self.push();
         self.place_stations();
     }
 
@@ -198,22 +297,24 @@ impl Turbine {
     ///
     /// Azimuth, speed and pitch are those of the instant; loads and power those of the interval before it.
     pub fn measurements(&self, time: f64, interval: f64) -> Measurements {
-        let State { rotor, pitch, readings, .. } = &self.state;
+        let State { pitch, readings, .. } = &self.state;
+        let loads = self.structure.loads();
+        let low_speed = self.structure.generator_speed() / self.definition.drive_train.gear_ratio;
         Measurements {
             time,
             interval,
-            azimuth: rotor.azimuth,
-            rotor_speed: rotor.speed,
-            generator_speed: rotor.speed,
+            azimuth: self.structure.azimuth(),
+            rotor_speed: self.structure.rotor_speed(),
+            generator_speed: low_speed,
             pitch: pitch.map(|actuator| actuator.pitch),
             generator_torque: readings.generator_torque,
-            power: self.drivetrain.power(rotor.speed, readings.generator_torque),
+            power: self.definition.efficiency() * readings.generator_torque * low_speed,
             thrust: readings.thrust,
             aerodynamic_torque: readings.aerodynamic_torque,
             rotor_wind_speed: readings.rotor_wind_speed,
-            flap_moments: readings.flap_moments,
-            edge_moments: pitch.map(|_| 0.0),
-            tower_top_acceleration: 0.0,
+            flap_moments: loads.blades.map(|blade| blade.root.moment.y),
+            edge_moments: loads.blades.map(|blade| blade.root.moment.x),
+            tower_top_acceleration: loads.nacelle_acceleration.x,
         }
     }
 
@@ -227,7 +328,7 @@ impl Turbine {
         &self.definition
     }
 
-    /// Centre and attitude of the rotor.
+    /// Centre and attitude of the rotor at the beginning.
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -237,9 +338,19 @@ impl Turbine {
         &self.line
     }
 
-    /// Loads of the blade elements over the last interval, blade after blade.
-    pub fn loads(&self) -> &[Load] {
-        &self.workspace.loads
+    /// Blades, tower and drive train in motion.
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// Names and units of what [`Turbine::write_channels`] writes: loads and motions under OpenFAST's names.
+    pub fn channels(&self) -> &[Channel] {
+        self.structure.channels()
+    }
+
+    /// On return `values` holds each of [`Turbine::channels`] in SI units, in the middle of the last step.
+    pub fn write_channels(&self, values: &mut [f64]) {
+        self.structure.write_channels(values);
     }
 
     /// Everything that time changes, for a checkpoint.
@@ -249,87 +360,81 @@ impl Turbine {
 
     /// Continues from `state`, which a turbine of the same definition gave.
     pub fn restore(&mut self, state: State) {
+        self.structure.restore(state.structure.clone());
         self.state = state;
         self.place_stations();
     }
 
-    fn advance_pitch(&mut self, interval: f64, commands: &Commands) {
+    /// Moves the pitch actuators on by `step` (s); gives pitch in the middle of it.
+    fn pitch_blades(
+        &mut self,
+        step: f64,
+        commands: &Commands,
+        limited: &mut bool,
+    ) -> PerBlade<Pitch> {
         let actuator = &self.definition.pitch_actuator;
-        let mut limited = false;
-        for (blade, command) in self.state.pitch.iter_mut().zip(commands.pitch.iter()) {
-            limited |= actuator.advance(blade, interval, *command);
-        }
-        self.state.n_instants += 1;
-        self.state.n_limited += u64::from(limited);
-    }
-
-    /// On return the workspace holds the `winds` in the frames of the blades that move through them.
-    fn meet(&mut self, winds: &[Vector3]) {
-        let elements = self.line.elements();
-        let State { rotor, .. } = &self.state;
-        for (index, (onset, wind)) in self.workspace.onsets.iter_mut().zip(winds).enumerate() {
-            let (blade, element) = (index / elements.len(), &elements[index % elements.len()]);
-            let azimuth = blade_azimuth(rotor.azimuth, blade, self.definition.n_blades);
-            let axes = self.frame.blade(azimuth, element.cone);
-            *onset = Onset {
-                normal: wind.dot(axes.normal),
-                tangential: rotor.speed * element.radius - wind.dot(axes.tangent),
+        let mut blades = self.state.pitch;
+        let mut pitch = PerBlade::splat(blades.len(), Pitch::default());
+        for (index, blade) in blades.iter_mut().enumerate() {
+            let before = *blade;
+            *limited |= actuator.advance(blade, step, commands.pitch[index]);
+            pitch[index] = Pitch {
+                angle: 0.5 * (before.pitch + blade.pitch),
+                rate: (blade.pitch - before.pitch) / step,
+                acceleration: (blade.rate - before.rate) / step,
             };
         }
+        self.state.pitch = blades;
+        pitch
     }
 
-    fn read_loads(&self, commands: &Commands) -> Readings {
-        let elements = self.line.elements();
-        let hub_radius = self.definition.rotor.hub_radius;
-        let (mut thrust, mut torque) = (0.0, 0.0);
-        let mut flap_moments = PerBlade::splat(self.definition.n_blades, 0.0);
-        for (index, load) in self.workspace.loads.iter().enumerate() {
-            let (blade, element) = (index / elements.len(), &elements[index % elements.len()]);
-            let normal = load.normal * element.width;
-            thrust += normal * element.cone.cos();
-            torque += load.tangential * element.width * element.radius;
-            flap_moments[blade] += normal * (element.span - hub_radius);
+    /// On return the workspace holds the drag of the tower in `winds` (m/s), and the forces of all bodies on the air are
+    /// the last of its forces; gives the drag of the nacelle (N).
+    fn hold_back(&mut self, winds: &[Vector3]) -> Vector3 {
+        let Workspace { forces, tower, .. } = &mut self.workspace;
+        forces.clear();
+        let mut nacelle = Vector3::ZERO;
+        for (index, (body, wind)) in self.bodies.iter().zip(winds).enumerate() {
+            let force = body.force(*wind, self.air_density, self.smearing_length);
+            match tower.get_mut(index) {
+                Some(point) => *point = -force.force,
+                None => nacelle = -force.force,
+            }
+            forces.push(force);
         }
-        Readings {
-            generator_torque: commands.generator_torque,
-            thrust,
-            aerodynamic_torque: torque,
-            rotor_wind_speed: self.line.mean_wind(&self.workspace.onsets),
-            flap_moments,
-        }
+        nacelle
     }
 
     /// On return the workspace holds the forces on the air, where the winds were sampled: half the force of a step acts
     /// before the instant and half after it, so that a blade's bound vortex does not induce a velocity on itself.
-    fn push(&mut self, winds: &[Vector3]) {
-        let elements = self.line.elements();
-        let Workspace { loads, forces, stations, .. } = &mut self.workspace;
-        forces.clear();
-        for (index, load) in loads.iter().enumerate() {
-            let (blade, element) = (index / elements.len(), &elements[index % elements.len()]);
-            let azimuth = blade_azimuth(self.state.rotor.azimuth, blade, self.definition.n_blades);
-            let axes = self.frame.blade(azimuth, element.cone);
-            let force = axes.normal * load.normal + axes.tangent * load.tangential;
+    fn push(&mut self) {
+        let Workspace { forces, stations, axes, sums, .. } = &mut self.workspace;
+        let n_bodies = forces.len();
+        for ((axes, sum), position) in axes.iter().zip(&*sums).zip(&*stations) {
+            let force = axes.normal * sum[0] + axes.tangent * sum[1];
             forces.push(PointForce {
-                position: stations[index],
-                force: force * -element.width,
+                position: *position,
+                force: -force,
                 smearing_length: self.smearing_length,
             });
         }
-        for (body, wind) in self.bodies.iter().zip(&winds[loads.len()..]) {
-            forces.push(body.force(*wind, self.air_density, self.smearing_length));
-        }
+        forces.rotate_left(n_bodies);
     }
 
+    /// On return the workspace's motions, stations and their axes are those of now.
     fn place_stations(&mut self) {
-        let elements = self.line.elements();
-        let stations = &mut self.workspace.stations;
-        stations.clear();
-        for blade in 0..self.definition.n_blades {
-            let azimuth = blade_azimuth(self.state.rotor.azimuth, blade, self.definition.n_blades);
-            let precone = self.definition.rotor.precone;
-            stations.extend(elements.iter().map(|e| e.position(&self.frame, azimuth, precone)));
+        let pitch = self.state.pitch.map(|blade| Pitch {
+            angle: blade.pitch,
+            rate: blade.rate,
+            acceleration: 0.0,
+        });
+        let Workspace { stations, axes, motions, .. } = &mut self.workspace;
+        self.structure.observe(0.0, &pitch, motions);
+        for (axes, motion) in axes.iter_mut().zip(&*motions) {
+            *axes = motion.axes;
         }
+        stations.clear();
+        stations.extend(motions.iter().map(|motion| motion.position));
         stations.extend(self.bodies.iter().map(|body| body.position));
     }
 }

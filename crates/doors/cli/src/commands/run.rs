@@ -133,6 +133,12 @@ impl Watcher for Screen {
                 if estimate.n_runs == 1 { "" } else { "s" },
                 speed / 1e6
             )),
+            _ if n_x == 0 => self.say(&format!(
+                "prescribed wind: {} steps of {:.4} s a run, disk up to {} a run",
+                estimate.n_steps,
+                estimate.interval,
+                HumanBytes(estimate.disk),
+            )),
             _ => self.say(&format!(
                 "grid: {n_x} × {n_y} × {n_z} = {:.2} million cells of {:.1} m, {} steps of {:.4} s a run; \
                  memory {}, disk up to {} a run; blockage {:.1} % raises power by {:.1} % in every run; wind {:.3} cells a step",
@@ -180,11 +186,11 @@ impl Watcher for Screen {
         ));
         self.bar.set_length(progress.n_steps);
         self.bar.set_position(progress.step);
-        self.bar.set_message(format!(
-            "{:.0} Mups, {} left in all",
-            progress.updates_per_second / 1e6,
-            HumanDuration(Duration::from_secs_f64(progress.time_left.max(0.0)))
-        ));
+        let left = HumanDuration(Duration::from_secs_f64(progress.time_left.max(0.0)));
+        self.bar.set_message(match progress.updates_per_second / 1e6 {
+            0.0 => format!("{left} left in all"),
+            updates => format!("{updates:.0} Mups, {left} left in all"),
+        });
     }
 
     fn finished(&mut self, summary: &Summary) {

@@ -7,7 +7,8 @@ use super::section::{Findings, Section, list};
 use super::spelling::nearest;
 use super::table::Table;
 use farm::case::{
-    Case, Control, Flow, Ground, Helix, Output, Placement, Pulse, Run, Sense, Sides, Time, Wind,
+    Case, Control, Flow, Ground, Helix, Output, Placement, Pulse, Run, Sense, Sides, Solver, Time,
+    TurbulenceModel, Wind,
 };
 
 /// The case that `entries` describe.
@@ -32,8 +33,12 @@ pub(super) fn check(
 fn case_of(root: &Section) -> Case {
     let name = root.text("name");
     let description = root.optional_text("description");
-    let wind = wind_of(&root.section_or_missing("wind", &keys::WIND));
+    let wind_section = root.section_or_missing("wind", &keys::WIND);
+    let wind = wind_of(&wind_section);
     let flow = flow_of(&root.section("flow", &keys::FLOW));
+    if let Some(section) = &wind_section {
+        check_together(section, &wind, &flow);
+    }
     let time = time_of(&root.section_or_missing("time", &keys::TIME));
     let turbines = turbines_of(root);
     let runs = runs_of(root, &turbines, time);
@@ -61,13 +66,37 @@ fn wind_of(section: &Option<Section>) -> Wind {
         seed: section.as_ref().map_or(1, |section| section.whole("seed")),
         air_density: number("air_density"),
         kinematic_viscosity: number("kinematic_viscosity"),
+        turbulence_model: match section.as_ref().map(|section| section.choice("turbulence_model")) {
+            Some("kaimal") => TurbulenceModel::Kaimal,
+            _ => TurbulenceModel::Mann,
+        },
+        planes: section.as_ref().and_then(|section| section.optional_text("planes")),
+    }
+}
+
+/// Notes where the kind of wind does not suit what moves the air.
+fn check_together(section: &Section, wind: &Wind, flow: &Flow) {
+    if flow.solver == Solver::Planes && wind.planes.is_none() {
+        let kind = ProblemKind::Missing { key: "wind.planes".to_owned() };
+        let fix = "flow.solver = \"planes\" reads the wind from a file: planes = \"field.bts\"";
+        section.findings().note(section.span_of("speed"), kind, Some(fix.into()));
+    }
+    if flow.solver == Solver::Lattice && wind.turbulence_model == TurbulenceModel::Kaimal {
+        let kind = ProblemKind::KaimalInLattice;
+        let fix = "take turbulence_model = \"mann\", or flow.solver = \"turbulence\"";
+        section.findings().note(section.span_of("turbulence_model"), kind, Some(fix.into()));
     }
 }
 
 fn flow_of(section: &Section) -> Flow {
-    // The one solver that exists: reading the key refuses all others.
-    section.choice("solver");
+    let solver = match section.choice("solver") {
+        "uniform" => Solver::Uniform,
+        "turbulence" => Solver::Turbulence,
+        "planes" => Solver::Planes,
+        _ => Solver::Lattice,
+    };
     Flow {
+        solver,
         cells_per_diameter: section.number("cells_per_diameter"),
         upstream_diameters: section.number("upstream_diameters"),
         downstream_diameters: section.number("downstream_diameters"),
@@ -114,6 +143,7 @@ fn turbines_of(root: &Section) -> Vec<Placement> {
             name: section.text("name"),
             model: section.text("model"),
             position_diameters: section.pair("position_diameters"),
+            flexible: section.choice("structure") != "rigid",
         };
         if section.has("name") && turbines.iter().any(|other| other.name == placement.name) {
             note_duplicate(section, "turbine", &placement.name);
@@ -276,6 +306,7 @@ fn control_of(
 
 fn output_of(section: &Section) -> Output {
     Output {
+        interval: section.optional_number("interval"),
         plane_interval: section.optional_number("plane_interval"),
         crosswind_diameters: section.numbers("crosswind_diameters"),
         volume_interval: section.optional_number("volume_interval"),

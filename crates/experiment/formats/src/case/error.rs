@@ -125,6 +125,9 @@ pub enum ProblemKind {
         /// Where it stands, dotted.
         key: String,
     },
+    /// Turbulence that a solver of air cannot take in.
+    #[error("Kaimal's turbulence has divergence, which the lattice would turn into sound")]
+    KaimalInLattice,
     /// A key that must be there is not.
     #[error("`{key}` is missing")]
     Missing {
@@ -257,6 +260,7 @@ impl ProblemKind {
             Self::Syntax { .. } => "here",
             Self::UnknownKey { .. } => "no such key",
             Self::Missing { .. } => "should stand in here",
+            Self::KaimalInLattice => "not with flow.solver = \"lattice\"",
             Self::WrongType { expected, .. } => return format!("must be {expected}"),
             Self::OutOfRange { range, .. } => range,
             Self::UnknownChoice { .. } => "no such choice",

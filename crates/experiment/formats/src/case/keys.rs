@@ -54,6 +54,8 @@ pub(super) static WIND: Table = Table {
             .mistaken(&[Slip { unit: "g/m³", factor: 0.001 }]),
         key("kinematic_viscosity", above(0.0, 1e-3), "m²/s", Value("1.46e-5"), "Kinematic viscosity of air; the default is air at 15 °C at sea level.")
             .mistaken(&[Slip { unit: "mm²/s", factor: 1e-6 }]),
+        key("turbulence_model", Kind::Choice(&["mann", "kaimal"]), "", Value("\"mann\""), "`mann`: Mann's spectral tensor. `kaimal`: Kaimal's spectra with the exponential coherence of IEC 61400-1, with `flow.solver = \"turbulence\"` only: the lattice needs wind that is free of divergence."),
+        key("planes", Kind::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. `speed` then only sets the Strouhal numbers and the rotor's first speed."),
     ],
 };
 
@@ -67,10 +69,10 @@ pub(super) static FLOW: Table = Table {
     keys: &[
         key(
             "solver",
-            Kind::Choice(&["lattice"]),
+            Kind::Choice(&["lattice", "uniform", "turbulence", "planes"]),
             "",
             Value("\"lattice\""),
-            "`lattice` is a lattice Boltzmann large-eddy simulation with actuator lines, the one solver that exists today.",
+            "`lattice`: lattice Boltzmann large-eddy simulation with actuator lines; turbines feel each other's wakes. The others prescribe the wind, and each turbine makes its own induction by blade-element momentum, without wakes: `uniform` the steady mean profile, `turbulence` with turbulence on it, `planes` from `wind.planes`. Only `lattice` uses the keys from here to `sides`.",
         ),
         key(
             "cells_per_diameter",
@@ -119,8 +121,8 @@ pub(super) static FLOW: Table = Table {
             "step",
             above(0.0, 10.0),
             "s",
-            Otherwise("chosen from tip speed and wind speed"),
-            "Flow step, which is the control interval too.",
+            Otherwise("chosen from tip speed and wind speed; 0.02 s in prescribed wind"),
+            "Step of the air, which is the control interval too.",
         )
         .mistaken(&[Slip { unit: "ms", factor: 0.001 }]),
         key(
@@ -194,6 +196,13 @@ pub(super) static TURBINE: Table = Table {
             "D",
             Required,
             "Foot of the tower, x downwind and y to the left looking downwind, in diameters of the first turbine. At least 1 D from every other turbine.",
+        ),
+        key(
+            "structure",
+            Kind::Choice(&["flexible", "rigid"]),
+            "",
+            Value("\"flexible\""),
+            "`flexible`: blades, tower and drive train bend. `rigid`: only the rotor turns.",
         ),
     ],
 };
@@ -318,6 +327,13 @@ pub(super) static OUTPUT: Table = Table {
     heading: "[output]",
     about: "What is kept of a run, beside series, summary and mean planes.",
     keys: &[
+        key(
+            "interval",
+            above(0.0, 1e3),
+            "s",
+            Otherwise("every step of the lattice; 0.1 s in prescribed wind"),
+            "Time between rows of the series, rounded to whole steps.",
+        ),
         key(
             "plane_interval",
             above(0.0, 1e6),

@@ -1,6 +1,6 @@
 //! A case as text: every key written out, defaults included.
 
-use farm::case::{Case, Control, Ground, Sense, Sides};
+use farm::case::{Case, Control, Ground, Sense, Sides, Solver, TurbulenceModel};
 use std::fmt::Write;
 
 /// The case file that reads back as `case`, with every default written out.
@@ -27,8 +27,23 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
     writeln!(text, "air_density = {:?}", wind.air_density)?;
     writeln!(text, "kinematic_viscosity = {:?}", wind.kinematic_viscosity)?;
 
+    let model = match wind.turbulence_model {
+        TurbulenceModel::Mann => "mann",
+        TurbulenceModel::Kaimal => "kaimal",
+    };
+    writeln!(text, "turbulence_model = \"{model}\"")?;
+    if let Some(planes) = &wind.planes {
+        writeln!(text, "planes = {}", quoted(planes))?;
+    }
+
     let flow = &case.flow;
-    writeln!(text, "\n[flow]\nsolver = \"lattice\"")?;
+    let solver = match flow.solver {
+        Solver::Lattice => "lattice",
+        Solver::Uniform => "uniform",
+        Solver::Turbulence => "turbulence",
+        Solver::Planes => "planes",
+    };
+    writeln!(text, "\n[flow]\nsolver = \"{solver}\"")?;
     writeln!(text, "cells_per_diameter = {:?}", flow.cells_per_diameter)?;
     writeln!(text, "upstream_diameters = {:?}", flow.upstream_diameters)?;
     writeln!(text, "downstream_diameters = {:?}", flow.downstream_diameters)?;
@@ -55,6 +70,8 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         let [x, y] = turbine.position_diameters;
         writeln!(text, "\n[[turbine]]\nname = {}", quoted(&turbine.name))?;
         writeln!(text, "model = {}\nposition_diameters = [{x:?}, {y:?}]", quoted(&turbine.model))?;
+        let structure = if turbine.flexible { "flexible" } else { "rigid" };
+        writeln!(text, "structure = \"{structure}\"")?;
     }
     for run in &case.runs {
         writeln!(text, "\n[[run]]\nname = {}", quoted(&run.name))?;
@@ -67,6 +84,9 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
     }
     let output = &case.output;
     writeln!(text, "\n[output]")?;
+    if let Some(interval) = output.interval {
+        writeln!(text, "interval = {interval:?}")?;
+    }
     if let Some(interval) = output.plane_interval {
         writeln!(text, "plane_interval = {interval:?}")?;
     }

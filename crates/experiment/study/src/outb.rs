@@ -1,0 +1,69 @@
+//! What OpenFAST's users expect of a turbine in prescribed wind: one `.outb` file.
+
+use crate::StudyError;
+use crate::prepare::Setup;
+use farm::case::Run;
+use formats::openfast_output::{Encoding, Layout, OutbWriter};
+use formats::records::RunFolder;
+use formats::table::{Column, TableReader};
+
+/// Channels of ours under OpenFAST's names: ours, theirs, unit, factor to it; `{}` is the turbine's name.
+const RENAMED: [(&str, &str, &str, f64); 6] = [
+    ("wind.u_m_s", "Wind1VelX", "m/s", 1.0),
+    ("wind.v_m_s", "Wind1VelY", "m/s", 1.0),
+    ("wind.w_m_s", "Wind1VelZ", "m/s", 1.0),
+    ("{}.power_w", "GenPwr", "kW", 1e-3),
+    ("{}.thrust_n", "RtFldFxh", "N", 1.0),
+    ("{}.aerodynamic_torque_nm", "RtFldMxh", "N-m", 1.0),
+];
+
+/// Writes `TURBINE.outb` into `folder`, from the run's complete series.
+pub(crate) fn write(
+    setup: &Setup,
+    run: &Run,
+    folder: &RunFolder,
+    turbine: &str,
+) -> Result<(), StudyError> {
+    let mut reader = TableReader::open(&folder.series_path())?;
+    let prefix = format!("{turbine}.");
+    let (mut ours, mut channels, mut scales) = (Vec::new(), Vec::new(), Vec::new());
+    for (own, name, unit, scale) in RENAMED {
+        ours.push(own.replace("{}", turbine));
+        channels.push(Column { name: name.to_owned(), unit: unit.to_owned() });
+        scales.push(scale);
+    }
+    for column in reader.channels() {
+        // Loads already stand under OpenFAST's names and units, and only they begin with a capital.
+        let Some((name, unit)) = column
+            .name
+            .strip_prefix(&prefix)
+            .filter(|rest| rest.starts_with(|c: char| c.is_ascii_uppercase()))
+            .and_then(|rest| rest.split_once('_'))
+        else {
+            continue;
+        };
+        ours.push(column.name.clone());
+        channels.push(Column { name: name.to_owned(), unit: unit.to_owned() });
+        scales.push(1.0);
+    }
+    let names: Vec<&str> = ours.iter().map(String::as_str).collect();
+    reader.select(&names)?;
+    let layout = Layout {
+        description: format!("wakemix, case {}, run {}", setup.case.name, run.name),
+        channels,
+        start: 0.0,
+        interval: setup.plan.row_interval(),
+    };
+    let path = folder.path().join(format!("{turbine}.outb"));
+    let mut writer = OutbWriter::create(&path, layout, Encoding::Compressed)?;
+    let mut row = vec![0.0; names.len() + 1];
+    let mut values = vec![0.0; names.len()];
+    while reader.read(&mut row)? {
+        for ((value, own), scale) in values.iter_mut().zip(&row[1..]).zip(&scales) {
+            *value = own * scale;
+        }
+        writer.write(&values)?;
+    }
+    writer.finish()?;
+    Ok(())
+}

@@ -1,0 +1,135 @@
+//! What the air does to the blades: by actuator lines where the flow solves the induction, by momentum theory where not.
+
+use super::{Induction, N_ELEMENTS, Settings};
+use crate::actuator_line::{ActuatorLine, Load, Onset, Scratch};
+use crate::aero::rotor::{self, Posture, RotorAerodynamics};
+use crate::definition::Definition;
+use crate::motion::ElementMotion;
+use crate::rotor::Frame;
+use crate::structure::{ElementLoad, Pitch};
+use basis::{PerBlade, Vector3};
+use serde::{Deserialize, Serialize};
+
+/// One of the two ways, with its working memory.
+#[derive(Clone, Debug)]
+pub(super) enum Aerodynamics {
+    /// The flow contains the induction.
+    Line(Box<LineMemory>),
+    /// Momentum theory makes it.
+    Momentum(Box<(RotorAerodynamics, rotor::Loads)>),
+}
+
+/// Working memory of the actuator line.
+#[derive(Clone, Debug)]
+pub(super) struct LineMemory {
+    onsets: Vec<Onset>,
+    loads: Vec<Load>,
+    scratch: Scratch,
+}
+
+/// What time changes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum State {
+    /// Axial and tangential velocity hidden by smearing (m/s), blade after blade.
+    Line(Vec<[f64; 2]>),
+    /// Induction and dynamic stall.
+    Momentum(rotor::State),
+}
+
+/// The middle of a step.
+pub(super) struct Instant<'a> {
+    /// Duration of the step (s).
+    pub(super) interval: f64,
+    /// Whether it is the first step since the winds were sampled.
+    pub(super) first: bool,
+    pub(super) winds: &'a [Vector3],
+    pub(super) motions: &'a [ElementMotion],
+    pub(super) pitch: &'a PerBlade<Pitch>,
+    pub(super) frame: &'a Frame,
+    pub(super) rotor_speed: f64,
+}
+
+impl Aerodynamics {
+    pub(super) fn new(definition: &Definition, line: &ActuatorLine, settings: &Settings) -> Self {
+        match &settings.induction {
+            Induction::ByFlow { .. } => {
+                let n = definition.n_blades * N_ELEMENTS;
+                Self::Line(Box::new(LineMemory {
+                    onsets: vec![Onset::default(); n],
+                    loads: vec![Load::default(); n],
+                    scratch: Scratch::new(definition.n_blades, N_ELEMENTS),
+                }))
+            }
+            Induction::ByMomentum(theory) => {
+                let theory =
+                    rotor::Settings { air_density: settings.air_density, ..theory.clone() };
+                let rotor = RotorAerodynamics::new(definition, line.elements(), theory);
+                let loads = rotor.loads();
+                Self::Momentum(Box::new((rotor, loads)))
+            }
+        }
+    }
+
+    /// The state before the air has met the rotor.
+    pub(super) fn start(&self) -> State {
+        match self {
+            Self::Line(memory) => State::Line(vec![[0.0; 2]; memory.loads.len()]),
+            Self::Momentum(pair) => State::Momentum(pair.0.start()),
+        }
+    }
+
+    /// On return `loads` holds what the air does to each element `now`, and `state` has moved on.
+    pub(super) fn loads(
+        &mut self,
+        line: &ActuatorLine,
+        now: &Instant<'_>,
+        state: &mut State,
+        loads: &mut [ElementLoad],
+    ) {
+        match (self, state) {
+            (Self::Line(memory), State::Line(missing)) => memory.loads(line, now, missing, loads),
+            (Self::Momentum(pair), State::Momentum(state)) => {
+                let (rotor, result) = &mut **pair;
+                let posture =
+                    Posture { frame: now.frame, elements: now.motions, pitch: &now.pitch[..] };
+                let winds = &now.winds[..now.motions.len()];
+                rotor.advance(now.interval, winds, posture, state, result);
+                loads.copy_from_slice(&result.elements);
+            }
+            _ => unreachable!("a state comes from the aerodynamics that it goes back to"),
+        }
+    }
+}
+
+impl LineMemory {
+    fn loads(
+        &mut self,
+        line: &ActuatorLine,
+        now: &Instant<'_>,
+        missing: &mut [[f64; 2]],
+        loads: &mut [ElementLoad],
+    ) {
+        for ((onset, motion), wind) in self.onsets.iter_mut().zip(now.motions).zip(now.winds) {
+            let relative = *wind - motion.velocity;
+            *onset = Onset {
+                normal: relative.dot(motion.axes.normal),
+                tangential: -relative.dot(motion.axes.tangent),
+            };
+        }
+        let pitch = now.pitch.map(|pitch| pitch.angle);
+        if now.first {
+            let Self { onsets, loads, scratch } = self;
+            line.loads(onsets, now.rotor_speed, &pitch, missing, loads, scratch);
+        } else {
+            // The wake has not moved since; what smearing hides is held like the wind.
+            line.loads_under(&self.onsets, &pitch, missing, &mut self.loads);
+        }
+        let widths = line.elements().iter().cycle().map(|element| element.width);
+        for (((applied, load), motion), width) in
+            loads.iter_mut().zip(&self.loads).zip(now.motions).zip(widths)
+        {
+            let force = motion.axes.normal * load.normal + motion.axes.tangent * load.tangential;
+            *applied = ElementLoad { force: force * width, moment: Vector3::ZERO };
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! The flexible turbine in prescribed wind against OpenFAST 5.0.0 with ROSCO 2.10.1 on the same definitions.
+//!
+//! Reference: own runs of OpenFAST (commit 2895884): BEM_Mod 1, Pitt/Peters skew, DBEMT_Mod 3 with the time constants below,
+//! UA_Mod 3, tower influence off, clamped tower, steps of 0.02 s (IEA 15 MW) and 0.0125 s (NREL 5 MW).
+
+use crate::Row;
+use basis::Vector3;
+use control::{Baseline, Excitation, Helix, Sense, TurbineController};
+use farm::farm::Recorder;
+use farm::{Air, Farm, Machine};
+use flow::inflow::{MeanProfile, PrescribedWind};
+use std::sync::Arc;
+use turbine::aero;
+use turbine::aero::blade_element::Theory;
+use turbine::aero::induction::TwoConstant;
+use turbine::{Induction, Turbine};
+
+/// Step (s).
+const INTERVAL: f64 = 0.02;
+/// Accepted distance of means from the reference (–).
+const TOLERANCE: f64 = 0.02;
+/// Accepted distance of a change by the helix from the reference's: points (–), or share of the change (–).
+const CHANGE_POINTS: f64 = 0.03;
+const CHANGE_SHARE: f64 = 0.15;
+
+/// Steady states: turbine, wind (m/s), slow time constant (s), rotor speed (rpm), power (MW) and thrust (MN) of the air,
+/// means of RootMyc1 and TwrBsMyt (MN m), OoPDefl1 (m).
+const STEADY: [(&str, f64, f64, f64, [f64; 5]); 5] = [
+    ("iea-15mw", 7.0, 29.03, 5.02859, [4.684_78, 1.105_31, 31.1727, 78.6998, 7.61]),
+    ("iea-15mw", 8.0, 29.03, 5.74254, [6.982_32, 1.448_21, 39.9668, 125.897, 9.817_03]),
+    ("iea-15mw", 9.0, 29.03, 6.44866, [9.889_42, 1.824_03, 49.4302, 177.584, 12.1842]),
+    ("iea-15mw", 10.0, 29.03, 7.1418, [13.4364, 2.231_03, 59.4771, 233.542, 14.6958]),
+    ("nrel-5mw", 9.0, 12.6, 10.0934, [2.493_21, 0.451_639, 6.715_48, 39.9603, 3.805_65]),
+];
+
+/// IEA 15 MW at 9 m/s under a ccw helix of 0 to 4°: mean power (MW) and thrust (MN) of the air, standard deviations and
+/// 1-Hz damage-equivalent loads (m = 10) of RootMyc1, (m = 4) of TwrBsMyt and YawBrMyp (MN m).
+const HELIX: [(f64, [f64; 7]); 5] = [
+    (0.0, [9.889_42, 1.824_03, 0.922_378, 2.104, 0.192, 0.441, 0.059]),
+    (1.0, [9.828_55, 1.815_65, 2.942_36, 7.5122, 3.476_99, 3.349_93, 3.729_62]),
+    (2.0, [9.677_76, 1.795_36, 5.605_78, 13.4275, 6.981_99, 6.641_81, 7.410_86]),
+    (3.0, [9.490_56, 1.769_06, 8.233_51, 19.343, 10.4934, 10.1047, 10.9984]),
+    (4.0, [9.286_41, 1.739_14, 10.8051, 25.1243, 13.9591, 13.7299, 14.5075]),
+];
+
+/// Channels that are looked at.
+const CHANNELS: [&str; 4] = ["RootMyc1", "TwrBsMyt", "YawBrMyp", "OoPDefl1"];
+
+/// What a run gives over its last part.
+struct Run {
+    power: f64,
+    thrust: f64,
+    /// Samples of each of [`CHANNELS`], in MN m or m.
+    samples: [Vec<f64>; 4],
+}
+
+impl Run {
+    fn mean(&self, channel: usize) -> f64 {
+        self.samples[channel].iter().sum::<f64>() / self.samples[channel].len() as f64
+    }
+
+    fn deviation(&self, channel: usize) -> f64 {
+        let mean = self.mean(channel);
+        let samples = &self.samples[channel];
+        (samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples.len() as f64).sqrt()
+    }
+
+    fn equivalent(&self, channel: usize, slope: f64) -> f64 {
+        analysis::fatigue::damage_equivalent_load(&self.samples[channel], INTERVAL, slope, 1.0)
+            .expect("loads are finite and the record is long")
+    }
+}
+
+struct Silent;
+
+impl Recorder for Silent {
+    fn record(&mut self, _: usize, _: &basis::Measurements, _: &basis::Commands) {}
+}
+
+/// How a turbine is run.
+struct Asked<'a> {
+    model: &'a str,
+    wind: f64,
+    slow_constant: f64,
+    /// Rotor speed (rpm), held, or under torque control.
+    rotor_speed: f64,
+    held: bool,
+    /// Helix, degrees.
+    amplitude: f64,
+    /// From and to (s).
+    window: [f64; 2],
+}
+
+fn run(asked: &Asked<'_>) -> Run {
+    let file =
+        formats::library::load(asked.model).expect("the library's own turbines are readable");
+    let definition = Arc::new(file.definition);
+    let diameter = definition.rotor_diameter();
+    let settings = turbine::Settings {
+        induction: Induction::ByMomentum(aero::rotor::Settings {
+            air_density: AIR_DENSITY,
+            induction: aero::Induction::TwoConstant(TwoConstant::fixed(asked.slow_constant)),
+            theory: Theory::default(),
+            skewed_wake: true,
+            dynamic_stall: true,
+            tower: None,
+        }),
+        flexible: true,
+        air_density: AIR_DENSITY,
+        rotor_speed: asked.rotor_speed * std::f64::consts::PI / 30.0,
+        azimuth: 0.0,
+        pitch: 0.0,
+    };
+    let mut turbine = Turbine::new(definition, Vector3::ZERO, settings)
+        .expect("the library's own turbines have a structure")
+        .without_bodies();
+    if asked.held {
+        turbine = turbine.at_held_speed();
+    }
+    let mut excitation = Excitation::None;
+    if asked.amplitude > 0.0 {
+        let amplitude = asked.amplitude.to_radians();
+        let sense = Sense::CounterClockwise;
+        excitation = Excitation::Helix(Helix::new(sense, amplitude, 0.25, asked.wind, diameter));
+    }
+    let places = CHANNELS.map(|name| turbine.structure().channel(name).expect("a known channel"));
+    let n_channels = turbine.channels().len();
+    let controller = TurbineController::new(Baseline::new(file.controller), excitation);
+    let wind = PrescribedWind::everywhere(Arc::new(MeanProfile::Uniform { speed: asked.wind }));
+    let air = Air::Prescribed(Box::new(wind));
+    let mut farm = Farm::new(vec![Machine::new(turbine, controller)], air, INTERVAL);
+    let mut values = vec![0.0; n_channels];
+    let mut result = Run { power: 0.0, thrust: 0.0, samples: Default::default() };
+    while farm.time() < asked.window[1] {
+        farm.advance(&mut Silent).expect("a uniform wind does not end");
+        if farm.time() > asked.window[0] {
+            let turbine = &farm.machines()[0].turbine;
+            let read = turbine.measurements(farm.time(), INTERVAL);
+            result.power += 1e-6 * read.aerodynamic_torque * read.rotor_speed;
+            result.thrust += 1e-6 * read.thrust;
+            turbine.write_channels(&mut values);
+            for ((samples, place), name) in result.samples.iter_mut().zip(places).zip(CHANNELS) {
+                samples.push(if name.contains('M') { 1e-6 } else { 1.0 } * values[place]);
+            }
+        }
+    }
+    let n = result.samples[0].len() as f64;
+    (result.power, result.thrust) = (result.power / n, result.thrust / n);
+    result
+}
+
+/// Density of the air in the reference (kg/m³).
+const AIR_DENSITY: f64 = 1.225;
+
+/// Steady wind: means at the reference's rotor speed.
+pub fn openfast_steady() -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (model, wind, slow_constant, rotor_speed, expected) in STEADY {
+        let window = [500.0, 600.0];
+        let asked =
+            Asked { model, wind, slow_constant, rotor_speed, held: true, amplitude: 0.0, window };
+        let run = run(&asked);
+        let measured = [run.power, run.thrust, run.mean(0), run.mean(1), run.mean(3)];
+        let names = ["power of the air", "thrust", "RootMyc1", "TwrBsMyt", "OoPDefl1"];
+        let units = ["MW", "MN", "MN m", "MN m", "m"];
+        for (((name, unit), measured), expected) in
+            names.into_iter().zip(units).zip(measured).zip(expected)
+        {
+            rows.push(Row {
+                what: format!("{model}, {wind} m/s, {rotor_speed} rpm: mean {name}"),
+                measured,
+                expected,
+                tolerance: TOLERANCE * expected,
+                unit,
+            });
+        }
+    }
+    rows
+}
+
+/// The helix on IEA 15 MW in 9 m/s: changes against no helix.
+pub fn openfast_helix() -> Vec<Row> {
+    let runs = HELIX.map(|(amplitude, _)| {
+        let window = if amplitude == 0.0 { [500.0, 600.0] } else { [280.0, 600.0] };
+        run(&Asked {
+            model: "iea-15mw",
+            wind: 9.0,
+            slow_constant: 29.03,
+            rotor_speed: 6.44866,
+            held: false,
+            amplitude,
+            window,
+        })
+    });
+    let numbers = |run: &Run| {
+        [
+            run.power,
+            run.thrust,
+            run.deviation(0),
+            run.equivalent(0, 10.0),
+            run.deviation(1),
+            run.equivalent(1, 4.0),
+            run.equivalent(2, 4.0),
+        ]
+    };
+    let names = [
+        "mean power of the air",
+        "mean thrust",
+        "standard deviation of RootMyc1",
+        "equivalent load of RootMyc1 (m = 10)",
+        "standard deviation of TwrBsMyt",
+        "equivalent load of TwrBsMyt (m = 4)",
+        "equivalent load of YawBrMyp (m = 4)",
+    ];
+    let mut rows = Vec::new();
+    for (run, (amplitude, reference)) in runs.iter().zip(HELIX).skip(1) {
+        let (measured, without) = (numbers(run), numbers(&runs[0]));
+        for index in 0..names.len() {
+            // Loads without a helix are next to nothing in a steady wind: their changes are told as such, means as shares.
+            let (measured, expected, unit, least) = if index < 2 {
+                let change = |now: f64, before: f64| now / before - 1.0;
+                let expected = change(reference[index], HELIX[0].1[index]);
+                (change(measured[index], without[index]), expected, "–", CHANGE_POINTS)
+            } else {
+                let expected = reference[index] - HELIX[0].1[index];
+                (measured[index] - without[index], expected, "MN m", 0.0)
+            };
+            rows.push(Row {
+                what: format!("helix ccw {amplitude}°, change of {}", names[index]),
+                measured,
+                expected,
+                tolerance: (CHANGE_SHARE * expected.abs()).max(least),
+                unit,
+            });
+        }
+    }
+    rows
+}
