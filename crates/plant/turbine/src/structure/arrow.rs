@@ -1,4 +1,8 @@
 //! Symmetric matrices of a rotor: blades meet each other only in the shared coordinates, so that solving stays cheap.
+#![expect(
+    clippy::needless_range_loop,
+    reason = "rows and columns by index, as the equations have them"
+)]
 
 use super::coordinates::{Coordinates, Locks, N_MODES, N_SHARED};
 use basis::blades::MAXIMUM_BLADES;
@@ -172,8 +176,8 @@ mod tests {
     fn solving_undoes_multiplying() {
         for n_blades in 1..=4 {
             let matrix = sample(n_blades);
-            let mut x = Coordinates::default();
-            x.shared = [1.0, -2.0, 0.5, 3.0, -0.1, 0.7];
+            let shared = [1.0, -2.0, 0.5, 3.0, -0.1, 0.7];
+            let mut x = Coordinates { shared, ..Coordinates::default() };
             for blade in 0..n_blades {
                 x.blades[blade] = [blade as f64, 1.0, -0.4];
             }
@@ -188,9 +192,8 @@ mod tests {
     #[test]
     fn what_is_held_stays_and_does_not_load_the_rest() {
         let matrix = sample(3);
-        let mut right = Coordinates::default();
-        right.shared = [1.0; N_SHARED];
-        right.blades = [[1.0; N_MODES]; MAXIMUM_BLADES];
+        let right =
+            Coordinates { shared: [1.0; N_SHARED], blades: [[1.0; N_MODES]; MAXIMUM_BLADES] };
         let locks = Locks::of(&[Freedom::Generator, Freedom::Edge1]);
         let x = matrix.solve(3, &locks, &right);
         assert_eq!(x.shared[4], 0.0);

@@ -1,4 +1,8 @@
 //! Kane's equations M(q) q̈ = f: every body's inertia and load, put on the coordinates through its partial velocities.
+#![expect(
+    clippy::needless_range_loop,
+    reason = "rows and columns by index, as the equations have them"
+)]
 
 use super::arrow::Arrow;
 use super::beam::{Carrier, Inertia};

@@ -261,7 +261,7 @@ fn normalised<const N: usize>(
 ) -> Result<[PrincipalMode; N], StructureError> {
     for (mode, _, name) in &modes {
         let sum: f64 = mode.coefficients.iter().sum();
-        if !((sum - 1.0).abs() <= SHAPE_TOLERANCE) {
+        if sum.is_nan() || (sum - 1.0).abs() > SHAPE_TOLERANCE {
             return Err(StructureError::Shape { member, mode: name, sum });
         }
     }

@@ -12,6 +12,10 @@
 //! this gives: two evaluations leave 3e-5 of the energy of a parked turbine's vibration astray after 1000 periods of its
 //! tower at 0.02 s, one evaluation a tenth.
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), II.1 and V.1.
+#![expect(
+    clippy::needless_range_loop,
+    reason = "rows and columns by index, as the equations have them"
+)]
 
 use super::arrow::Arrow;
 use super::balance::Balance;

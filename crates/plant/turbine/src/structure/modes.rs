@@ -1,4 +1,8 @@
 //! Natural frequencies: the equations of motion linearised about where the turbine is.
+#![expect(
+    clippy::needless_range_loop,
+    reason = "rows and columns by index, as the equations have them"
+)]
 
 use super::coordinates::{Coordinates, Freedom, Locks, N_MODES, N_SHARED};
 use super::machine::{Machine, Pitch};

@@ -1,4 +1,8 @@
 //! Mode shapes along a beam: curvature in the principal axes, integrated to slope, deflection and shortening.
+#![expect(
+    clippy::needless_range_loop,
+    reason = "rows and columns by index, as the equations have them"
+)]
 
 use super::quadrature::GAUSS;
 use crate::definition::Mode;

@@ -159,7 +159,7 @@ proptest! {
     fn the_mass_matrix_is_symmetric_and_positive_definite(
         n_blades in 1_usize..=4,
         shared in prop::array::uniform4(-1.0_f64..1.0),
-        azimuth in 0.0_f64..6.28,
+        azimuth in 0.0_f64..std::f64::consts::TAU,
         twist in -0.05_f64..0.05,
         bends in prop::array::uniform12(-5.0_f64..5.0),
         pitch in -0.2_f64..1.6,

@@ -85,7 +85,7 @@ fn loads_are_the_rate_of_momentum_outboard() {
         (0..1500).for_each(|_| structure.advance(STEP, &applied, &pitch));
         let mut history = vec![points(&structure, &pitch)];
         structure.advance(STEP, &applied, &pitch);
-        let first = structure.loads().clone();
+        let first = *structure.loads();
         history.push(points(&structure, &pitch));
         let machine = structure.machine.clone();
         let state = structure.state();
@@ -104,7 +104,7 @@ fn loads_are_the_rate_of_momentum_outboard() {
         let n = history[0].len();
         let n_outboard = 3 * blade_points;
         structure.advance(STEP, &applied, &pitch);
-        let second = structure.loads().clone();
+        let second = *structure.loads();
         history.push(points(&structure, &pitch));
         let air = |range: std::ops::Range<usize>, centre: Vector3| {
             let mut sum = Wrench::default();

@@ -188,7 +188,7 @@ fn moments_along_the_span_are_those_of_what_lies_beyond() {
         let mut all = vec![push(0.0, 0.0); 6];
         (all[0], all[1]) = (push(loads[0][0], loads[0][1]), push(loads[1][0], loads[1][1]));
         structure.advance(STEP, &AppliedLoads { elements: &all, ..AppliedLoads::NONE }, &pitch);
-        structure.loads().blades.map(|blade| blade)
+        structure.loads().blades
     };
     let weight = moments(&mut structure, [[0.0; 2]; 2]);
     // Blade 2 stands at 120°: weight bends it edgewise by what lies beyond the gauge.
