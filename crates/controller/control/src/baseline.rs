@@ -1,23 +1,30 @@
 //! Torque and collective pitch control: most power below rated, rated power above.
 
+mod coefficients;
 mod constants;
+mod estimator;
 mod filter;
+mod individual_pitch;
 mod pitch;
+mod speed;
 mod torque;
+mod tower;
 
 use crate::Controller;
 use basis::{Commands, Measurements, PerBlade};
+pub use coefficients::{CoefficientTable, CoefficientTableError};
 pub use constants::{
-    Constants, MinimumPitch, PitchGains, SetPointSmoothing, TorqueGains, greedy_torque_gain,
+    Constants, IndividualPitch, MAXIMUM_NOTCHES, MinimumPitch, Notch, PitchFloor, PitchGains,
+    SetPointSmoothing, TorqueControl, TorqueGains, TowerDamping, WIND_SPEED_FILTER_CORNER,
+    WindSpeedEstimator, greedy_torque_gain,
 };
 use filter::LowPass;
+use individual_pitch::Individual;
 use pitch::{Pitch, least_pitch};
 use serde::{Deserialize, Serialize};
+use speed::{SpeedFilter, Wind};
 use torque::Torque;
-
-/// Corner of the filter on the power that the wind speed is estimated from (rad/s): slower than the rotor,
-/// faster than gusts as large as the rotor.
-const WIND_SPEED_FILTER_CORNER: f64 = 0.2;
+use tower::TowerDamper;
 
 /// Least distance of torque control's speed reference below pitch control's, relative to rated speed (–).
 ///
@@ -25,7 +32,8 @@ const WIND_SPEED_FILTER_CORNER: f64 = 0.2;
 /// rated, for ever and at a loss of power; apart, only one of them can stand still at its reference.
 const REFERENCE_DISTANCE: f64 = 0.005;
 
-/// Greedy control: k ω² torque below rated, collective pitch above.
+/// Greedy control: greatest power by torque below rated, collective pitch above; tower and individual-pitch damping where
+/// its constants ask for them.
 ///
 /// Starts without a bump from the first measurements it sees, and holds for any interval up to about 0.3 s.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,13 +45,14 @@ pub struct Baseline {
 /// What the controller remembers from one instant to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct State {
-    rotor_speed: LowPass,
+    rotor_speed: SpeedFilter,
+    wind: Wind,
     /// Relative shift of the two speed references (–).
     shift: LowPass,
-    /// Mechanical power taken off the shaft (W).
-    shaft_power: LowPass,
     torque: Torque,
     pitch: Pitch,
+    tower: Option<TowerDamper>,
+    individual: Individual,
 }
 
 impl Baseline {
@@ -57,9 +66,14 @@ impl Baseline {
         &self.constants
     }
 
-    /// Collective pitch last asked for (rad); fine pitch before the first update.
+    /// Collective pitch last asked for (rad), without damping; fine pitch before the first update.
     pub fn collective_pitch(&self) -> f64 {
         self.state.as_ref().map_or(self.constants.fine_pitch, |state| state.pitch.command())
+    }
+
+    /// Free-stream wind speed that the controller believes in (m/s), smoothed; nothing before the first update.
+    pub fn wind_speed(&self) -> Option<f64> {
+        self.state.as_ref().map(|state| state.wind.speed(&self.constants))
     }
 }
 
@@ -68,41 +82,79 @@ impl Controller for Baseline {
         let constants = &self.constants;
         let state = self.state.get_or_insert_with(|| State::settled(constants, measurements));
         let interval = measurements.interval;
-        let rotor_speed = state.rotor_speed.update(interval, measurements.rotor_speed);
-        let shaft_power = measurements.generator_torque * measurements.rotor_speed;
-        let shaft_power = state.shaft_power.update(interval, shaft_power);
-        let least_pitch = least_pitch(wind_speed(shaft_power, constants), constants);
+        let rotor_speed = state.rotor_speed.update(interval, measurements.generator_speed);
+        let wind_speed =
+            state.wind.update(measurements, rotor_speed, state.torque.command(), constants);
+        let least_pitch = least_pitch(wind_speed, constants);
 
         let shift = state.reference_shift(least_pitch, constants);
         let shift = constants.rated_rotor_speed * state.shift.update(interval, shift);
-        let distance = REFERENCE_DISTANCE * constants.rated_rotor_speed;
-        let torque_reference = constants.rated_rotor_speed - shift.max(0.0) - distance;
         let pitch_reference = constants.rated_rotor_speed - shift.min(0.0);
-
         let generator_torque =
-            state.torque.update(interval, rotor_speed, torque_reference, constants);
-        let pitch =
+            state.ask_torque(interval, rotor_speed, wind_speed, shift, constants);
+        let collective =
             state.pitch.update(interval, rotor_speed, pitch_reference, least_pitch, constants);
-        Commands { pitch: PerBlade::splat(measurements.pitch.len(), pitch), generator_torque }
+        let pitch = state.add_damping(measurements, wind_speed, collective, least_pitch, constants);
+        Commands { pitch, generator_torque }
     }
 }
 
 impl State {
     fn settled(constants: &Constants, measurements: &Measurements) -> Self {
-        let torque = Torque::settled(constants, measurements.rotor_speed);
-        let shaft_power = torque.command() * measurements.rotor_speed;
-        let least = least_pitch(wind_speed(shaft_power, constants), constants);
+        let rotor_speed = measurements.generator_speed;
+        let mut torque = Torque::settled(constants, rotor_speed);
+        let tracks = constants.torque_control() == TorqueControl::TipSpeedRatio;
+        let in_force = if tracks && measurements.generator_torque > 0.0 {
+            measurements.generator_torque
+        } else {
+            torque.command()
+        };
+        let wind = Wind::settled(measurements, in_force, constants);
+        if tracks {
+            let reference = tracking_speed(wind.speed(constants), 0.0, constants);
+            torque = Torque::continued(in_force, rotor_speed, reference, constants);
+        }
+        let least = least_pitch(wind.speed(constants), constants);
         let pitch = bounded(measurements.pitch.mean(), least, constants.maximum_pitch.max(least));
+        let tower = constants
+            .tower_damping
+            .as_ref()
+            .map(|damping| TowerDamper::settled(measurements.tower_top_acceleration, damping));
         let mut state = Self {
-            rotor_speed: LowPass::settled(constants.speed_filter_corner, measurements.rotor_speed),
+            rotor_speed: SpeedFilter::settled(rotor_speed, constants),
+            wind,
             shift: LowPass::settled(constants.set_point_smoothing.filter_corner, 0.0),
-            shaft_power: LowPass::settled(WIND_SPEED_FILTER_CORNER, shaft_power),
             torque,
             pitch: Pitch::settled(pitch),
+            tower,
+            individual: Individual::default(),
         };
         let shift = state.reference_shift(least, constants);
         state.shift = LowPass::settled(constants.set_point_smoothing.filter_corner, shift);
         state
+    }
+
+    /// Torque (N m) for the filtered `rotor_speed` (rad/s) in a wind of `wind_speed` (m/s), the references shifted by
+    /// `shift` (rad/s).
+    fn ask_torque(
+        &mut self,
+        interval: f64,
+        rotor_speed: f64,
+        wind_speed: f64,
+        shift: f64,
+        constants: &Constants,
+    ) -> f64 {
+        match constants.torque_control() {
+            TorqueControl::KOmegaSquared => {
+                let distance = REFERENCE_DISTANCE * constants.rated_rotor_speed;
+                let reference = constants.rated_rotor_speed - shift.max(0.0) - distance;
+                self.torque.follow_greedy(interval, rotor_speed, reference, constants)
+            }
+            TorqueControl::TipSpeedRatio => {
+                let reference = tracking_speed(wind_speed, shift, constants);
+                self.torque.track(interval, rotor_speed, reference, constants)
+            }
+        }
     }
 
     /// Positive while pitch is at work (torque then leaves rotor speed to it), negative while power is missing.
@@ -114,13 +166,41 @@ impl State {
         smoothing.torque_shift * (self.pitch.command() - least_pitch)
             - smoothing.pitch_shift * missing
     }
+
+    /// Pitch of each blade (rad): `collective` (rad) with what damps the tower and evens out the blades.
+    fn add_damping(
+        &mut self,
+        measurements: &Measurements,
+        wind_speed: f64,
+        collective: f64,
+        least_pitch: f64,
+        constants: &Constants,
+    ) -> PerBlade<f64> {
+        let mut collective = collective;
+        if let (Some(damper), Some(damping)) = (&mut self.tower, &constants.tower_damping) {
+            let acceleration = measurements.tower_top_acceleration;
+            let added = damper.update(measurements.interval, acceleration, damping);
+            collective = bounded(collective + added, constants.fine_pitch, constants.maximum_pitch);
+        }
+        let mut pitch = PerBlade::splat(measurements.pitch.len(), collective);
+        if let Some(individual) = &constants.individual_pitch {
+            let floors = [constants.fine_pitch, least_pitch];
+            let added =
+                self.individual.update(measurements, wind_speed, collective, floors, individual);
+            for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
+                *pitch += added;
+            }
+        }
+        pitch
+    }
 }
 
-/// Free-stream wind speed (m/s) in which the optimal rotor takes `shaft_power` (W) off the wind:
-/// with P = k (λ U / R)³. Below the true speed wherever the rotor is not at its optimum, so also above rated.
-fn wind_speed(shaft_power: f64, constants: &Constants) -> f64 {
-    let rotor_speed = (shaft_power.max(0.0) / constants.torque_gain).cbrt();
-    rotor_speed * constants.rotor_radius / constants.optimal_tip_speed_ratio
+/// Rotor speed (rad/s) that torque tracks in a wind of `wind_speed` (m/s): optimal tip-speed ratio, between the least speed
+/// and one just below rated, less a `shift` (rad/s) while pitch is at work.
+fn tracking_speed(wind_speed: f64, shift: f64, constants: &Constants) -> f64 {
+    let optimal = constants.optimal_tip_speed_ratio * wind_speed / constants.rotor_radius;
+    let most = (1.0 - REFERENCE_DISTANCE) * constants.rated_rotor_speed;
+    (optimal.min(most) - shift.max(0.0)).max(constants.minimum_rotor_speed)
 }
 
 /// `value` between `low` and `high`; unlike `clamp` it cannot panic, and a value that is no number becomes `low`.

@@ -116,7 +116,8 @@ pub fn farm(
 ) -> Result<Farm<Air>, StructureError> {
     let mut machines = Vec::with_capacity(models.len());
     for index in run.present() {
-        let model = &models[index];
+        let equipped = models[index].equipped(case.flow.solver, case.wind.air_density);
+        let model = &*equipped;
         let settings = turbine::Settings {
             induction: induction(case, plan),
             flexible: case.turbines[index].flexible,

@@ -6,6 +6,7 @@ pub mod case;
 pub mod farm;
 pub mod plan;
 pub mod self_check;
+pub mod tracking;
 
 pub use air::Air;
 pub use farm::{Farm, Machine, Recorder};

@@ -11,6 +11,7 @@ pub mod netcdf;
 pub mod openfast;
 pub mod openfast_output;
 pub mod records;
+pub mod rosco;
 pub mod table;
 pub mod turbine_file;
 pub mod turbulence_box;

@@ -1,6 +1,13 @@
 //! What the baseline controller must know of its turbine.
 
+use super::CoefficientTable;
 use serde::{Deserialize, Serialize};
+
+/// Most notch filters on rotor speed (–).
+pub const MAXIMUM_NOTCHES: usize = 4;
+
+/// Corner of the filter on the estimated wind speed where nothing else is known (rad/s): a period of half a minute.
+pub const WIND_SPEED_FILTER_CORNER: f64 = std::f64::consts::TAU / 30.0;
 
 /// Constants of torque and collective pitch control; everything on the low-speed side of the gearbox.
 ///
@@ -49,8 +56,116 @@ pub struct Constants {
     pub pitch_gains: Vec<PitchGains>,
     /// How torque and pitch control give way to each other around rated.
     pub set_point_smoothing: SetPointSmoothing,
-    /// Corner of the first-order low-pass filter on measured rotor speed (rad/s).
+    /// Corner of the low-pass filter on measured speed (rad/s).
     pub speed_filter_corner: f64,
+    /// Damping ratio of that filter, then of second order (–); of first order without.
+    pub speed_filter_damping: Option<f64>,
+    /// Notch filters on measured speed, [`MAXIMUM_NOTCHES`] of them at most; further ones are left out.
+    pub speed_notches: Vec<Notch>,
+    /// How torque finds the greatest power below rated; without, tip-speed-ratio tracking where there is an
+    /// [`Constants::estimator`] and k ω² where there is none.
+    pub torque_control: Option<TorqueControl>,
+    /// Corner of the filter on the estimated wind speed (rad/s).
+    pub wind_speed_filter_corner: f64,
+    /// What the estimator of the wind speed knows of the rotor; without, the wind is guessed from the power.
+    pub estimator: Option<WindSpeedEstimator>,
+    /// Pitch against the motion of the tower top, where wanted.
+    pub tower_damping: Option<TowerDamping>,
+    /// Pitch of each blade against tilt and yaw moment of the rotor, where wanted.
+    pub individual_pitch: Option<IndividualPitch>,
+}
+
+impl Constants {
+    /// The same with the wind speed estimated from a rotor of `inertia` (kg m², with the generator, low-speed side) and
+    /// `coefficients` in air of `air_density` (kg/m³).
+    pub fn with_estimator(
+        self,
+        inertia: f64,
+        air_density: f64,
+        coefficients: CoefficientTable,
+    ) -> Self {
+        let estimator = Some(WindSpeedEstimator { inertia, air_density, coefficients });
+        Self { estimator, ..self }
+    }
+
+    /// How torque finds the greatest power below rated, as it will be done: tracking needs the estimator.
+    pub fn torque_control(&self) -> TorqueControl {
+        match (self.torque_control, &self.estimator) {
+            (Some(TorqueControl::KOmegaSquared), _) | (_, None) => TorqueControl::KOmegaSquared,
+            _ => TorqueControl::TipSpeedRatio,
+        }
+    }
+}
+
+/// How torque finds the greatest power below rated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TorqueControl {
+    /// Torque is a constant times rotor speed squared.
+    KOmegaSquared,
+    /// Torque holds the rotor at the speed that the estimated wind asks for.
+    TipSpeedRatio,
+}
+
+/// What the estimator of the rotor-effective wind speed knows of the rotor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WindSpeedEstimator {
+    /// Inertia of rotor and generator on the low-speed side (kg m²).
+    pub inertia: f64,
+    /// Air density (kg/m³).
+    pub air_density: f64,
+    /// Power and thrust of the rotor, for [`Constants::rotor_radius`].
+    pub coefficients: CoefficientTable,
+}
+
+/// A notch filter: (s² + 2 ζₙ ω s + ω²)/(s² + 2 ζ ω s + ω²).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Notch {
+    /// Frequency ω that it takes out (rad/s).
+    pub frequency: f64,
+    /// Damping ratio ζₙ of the numerator (–); 0 takes out all.
+    pub numerator_damping: f64,
+    /// Damping ratio ζ of the denominator (–); more is wider.
+    pub denominator_damping: f64,
+}
+
+/// Collective pitch against the fore-aft motion of the tower top.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TowerDamping {
+    /// Pitch over velocity downwind (rad s/m).
+    pub gain: f64,
+    /// What is slower is left alone (rad/s).
+    pub high_pass_corner: f64,
+    /// Most that it adds or takes (rad).
+    pub limit: f64,
+}
+
+/// Individual pitch control at rotor frequency.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct IndividualPitch {
+    /// Pitch over moment (rad/(N m)).
+    pub proportional: f64,
+    /// Pitch rate over moment (rad/(N m s)).
+    pub integral: f64,
+    /// Added to the azimuth on the way back to the blades (rad).
+    pub azimuth_offset: f64,
+    /// Greatest amplitude (rad).
+    pub limit: f64,
+    /// Wind speeds (m/s) between which the amplitude is let in.
+    pub ramp: [f64; 2],
+    /// What the blades stay above.
+    pub floor: PitchFloor,
+}
+
+/// What the blades stay above under individual pitch control: its amplitude shrinks with the room that is left.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PitchFloor {
+    /// Nothing but the actuators' own limits.
+    None,
+    /// [`Constants::fine_pitch`].
+    #[default]
+    Fine,
+    /// [`Constants::minimum_pitch`], so that the limit on thrust holds for every blade.
+    Least,
 }
 
 /// Proportional and integral gain of torque control.

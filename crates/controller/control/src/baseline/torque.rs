@@ -19,12 +19,27 @@ impl Torque {
         Self { integral: command, command }
     }
 
-    /// Torque (N m) for the filtered `rotor_speed` (rad/s) over `interval` (s); the rotor is kept at or below
+    /// Torque control that goes on from `command` (N m) without a step, whatever the distance of `rotor_speed` (rad/s) from
+    /// its `reference` (rad/s).
+    pub(super) fn continued(
+        command: f64,
+        rotor_speed: f64,
+        reference: f64,
+        constants: &Constants,
+    ) -> Self {
+        let most = upper_limit(constants, rotor_speed);
+        let command = bounded(command, constants.minimum_torque, most);
+        let proportional = constants.torque_gains.proportional * (rotor_speed - reference);
+        let integral = bounded(command - proportional, constants.minimum_torque, most);
+        Self { integral, command }
+    }
+
+    /// Torque (N m) for the filtered `rotor_speed` (rad/s) over `interval` (s) along k ω²; the rotor is kept at or below
     /// `speed_reference` (rad/s) as long as torque can.
     ///
     /// A PI speed controller between two limits that close on k ω² away from minimum and rated speed:
     /// Hansen and Henriksen, "Basic DTU Wind Energy controller", DTU Wind Energy E-0028, 2013, §2.1.
-    pub(super) fn update(
+    pub(super) fn follow_greedy(
         &mut self,
         interval: f64,
         rotor_speed: f64,
@@ -39,7 +54,29 @@ impl Torque {
         } else {
             (speed_reference, greedy, most)
         };
-        let error = rotor_speed - reference;
+        self.hold(interval, rotor_speed - reference, [low, high], constants)
+    }
+
+    /// Torque (N m) for the filtered `rotor_speed` (rad/s) over `interval` (s) that brings the rotor to `reference` (rad/s).
+    pub(super) fn track(
+        &mut self,
+        interval: f64,
+        rotor_speed: f64,
+        reference: f64,
+        constants: &Constants,
+    ) -> f64 {
+        let limits = [constants.minimum_torque, upper_limit(constants, rotor_speed)];
+        self.hold(interval, rotor_speed - reference, limits, constants)
+    }
+
+    /// PI control of the speed `error` (rad/s) within limits on torque (N m) and its rate.
+    fn hold(
+        &mut self,
+        interval: f64,
+        error: f64,
+        [low, high]: [f64; 2],
+        constants: &Constants,
+    ) -> f64 {
         let gains = constants.torque_gains;
         self.integral = bounded(self.integral + gains.integral * error * interval, low, high);
         let wanted = bounded(gains.proportional * error + self.integral, low, high);

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A text file in which every figure stands before its key: `value  Key - description` or `value ! Key - description`.
-pub(super) struct Deck {
+pub(crate) struct Deck {
     path: PathBuf,
     name: String,
     lines: Vec<Line>,
@@ -21,15 +21,15 @@ struct Line {
 }
 
 /// A value with its place.
-pub(super) struct Value<'a> {
+pub(crate) struct Value<'a> {
     deck: &'a Deck,
     line: usize,
     key: &'a str,
-    pub(super) text: &'a str,
+    pub(crate) text: &'a str,
 }
 
 /// A table with named columns.
-pub(super) struct Table<'a> {
+pub(crate) struct Table<'a> {
     deck: &'a Deck,
     key: &'a str,
     columns: Vec<String>,
@@ -39,7 +39,7 @@ pub(super) struct Table<'a> {
 
 impl Deck {
     /// The file at `path`.
-    pub(super) fn read(path: &Path) -> Result<Self, TurbineFileError> {
+    pub(crate) fn read(path: &Path) -> Result<Self, TurbineFileError> {
         // Decks carry degree signs in whatever encoding their author's editor had.
         let bytes = fs::read(path).map_err(|source| TurbineFileError::unreadable(path, source))?;
         Ok(Self::parse(path, &String::from_utf8_lossy(&bytes)))
@@ -53,12 +53,12 @@ impl Deck {
     }
 
     /// Name of the file, without folders.
-    pub(super) fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
     /// Second line, which decks use for a title.
-    pub(super) fn title(&self) -> &str {
+    pub(crate) fn title(&self) -> &str {
         self.lines.get(1).map_or("", |line| line.text.trim())
     }
 
@@ -99,35 +99,35 @@ impl Deck {
     }
 
     /// Whether the deck has `key`.
-    pub(super) fn has(&self, key: &str) -> bool {
+    pub(crate) fn has(&self, key: &str) -> bool {
         self.position(key).is_some()
     }
 
     /// The first value before `key`.
-    pub(super) fn value<'a>(&'a self, key: &'a str) -> Result<Value<'a>, TurbineFileError> {
+    pub(crate) fn value<'a>(&'a self, key: &'a str) -> Result<Value<'a>, TurbineFileError> {
         let line = &self.lines[self.required(key)?];
         Ok(Value { deck: self, line: line.number, key, text: &line.values[0] })
     }
 
     /// The number before `key`.
-    pub(super) fn number(&self, key: &str) -> Result<f64, TurbineFileError> {
+    pub(crate) fn number(&self, key: &str) -> Result<f64, TurbineFileError> {
         self.value(key)?.number()
     }
 
     /// All numbers before `key`.
-    pub(super) fn numbers(&self, key: &str) -> Result<Vec<f64>, TurbineFileError> {
+    pub(crate) fn numbers(&self, key: &str) -> Result<Vec<f64>, TurbineFileError> {
         let line = &self.lines[self.required(key)?];
         let number = |text: &String| Value { deck: self, line: line.number, key, text }.number();
         line.values.iter().map(number).collect()
     }
 
     /// The file that the text before `key` names, relative to this one.
-    pub(super) fn deck(&self, key: &str) -> Result<Self, TurbineFileError> {
+    pub(crate) fn deck(&self, key: &str) -> Result<Self, TurbineFileError> {
         self.value(key)?.deck()
     }
 
     /// As [`Deck::deck`]; nothing when the key is missing or its value says that it is unused.
-    pub(super) fn optional_deck(&self, key: &str) -> Result<Option<Self>, TurbineFileError> {
+    pub(crate) fn optional_deck(&self, key: &str) -> Result<Option<Self>, TurbineFileError> {
         if !self.has(key) {
             return Ok(None);
         }
@@ -140,7 +140,7 @@ impl Deck {
     }
 
     /// The value before `key` and those of the lines that follow, `count` in all.
-    pub(super) fn list<'a>(
+    pub(crate) fn list<'a>(
         &'a self,
         key: &'a str,
         count: usize,
@@ -174,7 +174,7 @@ impl Deck {
     /// The table of as many rows as the number before `count_key` says, below a line that begins with one of `columns`.
     ///
     /// A table without such a line has the columns in the order of `columns`.
-    pub(super) fn table<'a>(
+    pub(crate) fn table<'a>(
         &'a self,
         count_key: &'a str,
         columns: &[&str],
@@ -223,12 +223,12 @@ impl Deck {
 
 impl Value<'_> {
     /// As a number.
-    pub(super) fn number(&self) -> Result<f64, TurbineFileError> {
+    pub(crate) fn number(&self) -> Result<f64, TurbineFileError> {
         number_of(self.text).ok_or_else(|| self.error("a number"))
     }
 
     /// As a count, at least one.
-    pub(super) fn count(&self) -> Result<usize, TurbineFileError> {
+    pub(crate) fn count(&self) -> Result<usize, TurbineFileError> {
         match number_of(self.text) {
             Some(count) if count >= 1.0 && count.fract() == 0.0 && count < 1e6 => {
                 Ok(count as usize)
@@ -238,10 +238,19 @@ impl Value<'_> {
     }
 
     /// As the name of a file relative to the deck's.
-    pub(super) fn deck(&self) -> Result<Deck, TurbineFileError> {
+    pub(crate) fn path(&self) -> PathBuf {
         let name = self.text.trim().replace('\\', "/");
-        let path = self.deck.path.parent().unwrap_or(Path::new("")).join(name);
-        Deck::read(&path).map_err(|error| match error {
+        self.deck.path.parent().unwrap_or(Path::new("")).join(name)
+    }
+
+    /// As the name of a deck relative to this one.
+    pub(crate) fn deck(&self) -> Result<Deck, TurbineFileError> {
+        Deck::read(&self.path()).map_err(|error| self.unread(error))
+    }
+
+    /// The error that the file named here cannot be read, where `error` is that; otherwise `error`.
+    pub(crate) fn unread(&self, error: TurbineFileError) -> TurbineFileError {
+        match error {
             TurbineFileError::Unreadable { path, source, .. } => {
                 let fix = format!(
                     "put the file at {} (the system says: {source}), or correct the name here",
@@ -256,11 +265,11 @@ impl Value<'_> {
                 )
             }
             other => other,
-        })
+        }
     }
 
     /// The error that something else was expected here.
-    pub(super) fn error(&self, expected: &str) -> TurbineFileError {
+    pub(crate) fn error(&self, expected: &str) -> TurbineFileError {
         let fix = format!("put {expected} before {}", self.key);
         self.deck.error(self.line, self.key, expected, format!("\"{}\"", self.text), fix)
     }
@@ -268,7 +277,7 @@ impl Value<'_> {
 
 impl Table<'_> {
     /// The numbers of the column `name`.
-    pub(super) fn column(&self, name: &str) -> Result<Vec<f64>, TurbineFileError> {
+    pub(crate) fn column(&self, name: &str) -> Result<Vec<f64>, TurbineFileError> {
         let wanted = normalised(name);
         let Some(column) = self.columns.iter().position(|column| *column == wanted) else {
             let found = format!("the columns {}", self.columns.join(", "));
@@ -285,7 +294,7 @@ impl Table<'_> {
     }
 
     /// The numbers of the column number `index` (from 0), called `name` in errors.
-    pub(super) fn column_at(&self, index: usize, name: &str) -> Result<Vec<f64>, TurbineFileError> {
+    pub(crate) fn column_at(&self, index: usize, name: &str) -> Result<Vec<f64>, TurbineFileError> {
         let cell = |(line, row): &(usize, Vec<&str>)| {
             let text = row.get(index).copied().unwrap_or("");
             number_of(text).ok_or_else(|| {
@@ -298,12 +307,12 @@ impl Table<'_> {
     }
 
     /// Line number of row `index` (from 0).
-    pub(super) fn line(&self, index: usize) -> usize {
+    pub(crate) fn line(&self, index: usize) -> usize {
         self.rows[index].0
     }
 
     /// The error that row `index` should hold something else in the column `name`.
-    pub(super) fn error(
+    pub(crate) fn error(
         &self,
         index: usize,
         name: &str,

@@ -1,12 +1,14 @@
 //! OpenFAST input decks, read by key: order, quotes, comments and most of the differences between versions do not matter.
 
 mod aerodyn;
-mod deck;
-mod discon;
+pub(crate) mod deck;
+pub(crate) mod discon;
 mod elastodyn;
 mod torque_gain;
 
-use crate::turbine_file::{Document, DriveTrain, PitchActuator, TurbineFileError};
+use crate::turbine_file::{
+    Document, DriveTrain, PitchActuator, TorqueControl, TurbineFileError,
+};
 use deck::Deck;
 use std::path::Path;
 
@@ -73,7 +75,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
         airfoils: Some(airfoils),
     };
     if let Some(discon) = servodyn.optional_deck("DLL_InFile")? {
-        document.controller = Some(discon::controller(&discon, gear_ratio, &source)?);
+        document.controller = Some(discon::controller(&discon, gear_ratio, source(&[&discon]))?);
         document.pitch_actuator = Some(PitchActuator {
             source: source(&[&discon]),
             natural_frequency: discon.number("PA_CornerFreq")?,
@@ -82,7 +84,8 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
             minimum_pitch_deg: discon.number("PC_MinPit")?.to_degrees(),
             maximum_pitch_deg: discon.number("PC_MaxPit")?.to_degrees(),
         });
-        if !matches!(discon.number("VS_ControlMode")?, 1.0 | 3.0) {
+        let torque_control = document.controller.as_ref().and_then(|known| known.torque_control);
+        if torque_control == Some(TorqueControl::TipSpeedRatio) {
             torque_gain::derive(&mut document, air_density(&main))?;
         }
     }

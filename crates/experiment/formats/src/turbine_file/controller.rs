@@ -1,8 +1,15 @@
 //! The controller's constants: limits of what the file may hold, and their form in SI.
 
-use super::document::Controller;
-use super::error::{Place, Step::Key, TurbineFileError};
-use control::baseline::{Constants, MinimumPitch, PitchGains, SetPointSmoothing, TorqueGains};
+use super::document::{self, Controller};
+use super::error::{
+    Place,
+    Step::{Key, Row},
+    TurbineFileError,
+};
+use control::baseline::{
+    Constants, IndividualPitch, MAXIMUM_NOTCHES, MinimumPitch, Notch, PitchFloor, PitchGains,
+    SetPointSmoothing, TorqueControl, TorqueGains, TowerDamping, WIND_SPEED_FILTER_CORNER,
+};
 use std::f64::consts::PI;
 
 /// What the group `controller` may hold.
@@ -62,10 +69,55 @@ pub(super) fn check(controller: &Controller, place: &Place) -> Result<(), Turbin
     let at = |key| [Key("controller"), Key("set_point_smoothing"), Key(key)];
     place.not_negative(&at("torque_shift"), smoothing.torque_shift)?;
     place.not_negative(&at("pitch_shift"), smoothing.pitch_shift)?;
-    place.positive(&at("filter_corner"), smoothing.filter_corner)
+    place.positive(&at("filter_corner"), smoothing.filter_corner)?;
+    optional(controller, place)
 }
 
-/// The controller's constants in SI; `rotor_radius` (m) and `generator_efficiency` (–) stand elsewhere in the file.
+/// What the keys may hold that a controller can do without.
+fn optional(controller: &Controller, place: &Place) -> Result<(), TurbineFileError> {
+    let at = |key| [Key("controller"), Key(key)];
+    if let Some(damping) = controller.speed_filter_damping {
+        place.within(&at("speed_filter_damping"), damping, 0.05, 5.0, "")?;
+    }
+    if let Some(corner) = controller.wind_speed_filter_corner {
+        place.positive(&at("wind_speed_filter_corner"), corner)?;
+    }
+    if controller.speed_notches.len() > MAXIMUM_NOTCHES {
+        return Err(place.error(
+            &at("speed_notches"),
+            format!("{MAXIMUM_NOTCHES} rows at most"),
+            controller.speed_notches.len().to_string(),
+            "leave out the notches that matter least",
+        ));
+    }
+    for (row, [frequency, numerator, denominator]) in controller.speed_notches.iter().enumerate() {
+        let at = [Key("controller"), Key("speed_notches"), Row(row)];
+        place.positive(&at, *frequency)?;
+        place.not_negative(&at, *numerator)?;
+        place.positive(&at, *denominator)?;
+    }
+    if let Some(damping) = &controller.tower_damping {
+        let at = |key| [Key("controller"), Key("tower_damping"), Key(key)];
+        place.not_negative(&at("gain"), damping.gain)?;
+        place.positive(&at("high_pass_corner"), damping.high_pass_corner)?;
+        place.within(&at("limit_deg"), damping.limit_deg, 0.0, 90.0, "°")?;
+    }
+    if let Some(individual) = &controller.individual_pitch {
+        let at = |key| [Key("controller"), Key("individual_pitch"), Key(key)];
+        place.not_negative(&at("proportional"), individual.proportional)?;
+        place.not_negative(&at("integral"), individual.integral)?;
+        let offset = individual.azimuth_offset_deg;
+        place.within(&at("azimuth_offset_deg"), offset, -360.0, 360.0, "°")?;
+        place.within(&at("limit_deg"), individual.limit_deg, 0.0, 90.0, "°")?;
+        let [start, full] = individual.ramp;
+        place.not_negative(&at("ramp"), start)?;
+        place.within(&at("ramp"), full, start, 1e3, " m/s")?;
+    }
+    Ok(())
+}
+
+/// The controller's constants in SI, without what estimates the wind; `rotor_radius` (m) and `generator_efficiency` (–)
+/// stand elsewhere in the file.
 pub fn controller_of(
     controller: &Controller,
     rotor_radius: f64,
@@ -106,6 +158,45 @@ pub fn controller_of(
             filter_corner: controller.set_point_smoothing.filter_corner,
         },
         speed_filter_corner: controller.speed_filter_corner,
+        speed_filter_damping: controller.speed_filter_damping,
+        speed_notches: controller
+            .speed_notches
+            .iter()
+            .map(|[frequency, numerator_damping, denominator_damping]| Notch {
+                frequency: *frequency,
+                numerator_damping: *numerator_damping,
+                denominator_damping: *denominator_damping,
+            })
+            .collect(),
+        torque_control: controller.torque_control.map(|asked| match asked {
+            document::TorqueControl::KOmegaSquared => TorqueControl::KOmegaSquared,
+            document::TorqueControl::TipSpeedRatio => TorqueControl::TipSpeedRatio,
+        }),
+        wind_speed_filter_corner: controller
+            .wind_speed_filter_corner
+            .unwrap_or(WIND_SPEED_FILTER_CORNER),
+        estimator: None,
+        tower_damping: controller.tower_damping.as_ref().map(|damping| TowerDamping {
+            gain: damping.gain,
+            high_pass_corner: damping.high_pass_corner,
+            limit: damping.limit_deg.to_radians(),
+        }),
+        individual_pitch: controller.individual_pitch.as_ref().map(individual_pitch_of),
+    }
+}
+
+fn individual_pitch_of(asked: &document::IndividualPitch) -> IndividualPitch {
+    IndividualPitch {
+        proportional: asked.proportional,
+        integral: asked.integral,
+        azimuth_offset: asked.azimuth_offset_deg.to_radians(),
+        limit: asked.limit_deg.to_radians(),
+        ramp: asked.ramp,
+        floor: match asked.floor {
+            document::PitchFloor::None => PitchFloor::None,
+            document::PitchFloor::FinePitch => PitchFloor::Fine,
+            document::PitchFloor::MinimumPitch => PitchFloor::Least,
+        },
     }
 }
 

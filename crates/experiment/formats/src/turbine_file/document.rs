@@ -229,6 +229,98 @@ pub struct Controller {
     pub set_point_smoothing: SetPointSmoothing,
     /// Corner of the filter on rotor speed (rad/s).
     pub speed_filter_corner: f64,
+    /// Damping ratio of that filter (–), then of second order; of first order without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_filter_damping: Option<f64>,
+    /// Notch filters on rotor speed: frequency (rad/s), damping ratios of numerator and denominator (–).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub speed_notches: Vec<[f64; 3]>,
+    /// How torque finds the greatest power; what suits the flow solver without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub torque_control: Option<TorqueControl>,
+    /// Corner of the filter on the estimated wind speed (rad/s); a period of half a minute without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wind_speed_filter_corner: Option<f64>,
+    /// Pitch against the motion of the tower.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tower_damping: Option<TowerDamping>,
+    /// Pitch of each blade against tilt and yaw moment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub individual_pitch: Option<IndividualPitch>,
+}
+
+/// How torque finds the greatest power below rated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TorqueControl {
+    /// `torque_gain` times rotor speed squared.
+    KOmegaSquared,
+    /// The speed that the estimated wind asks for.
+    TipSpeedRatio,
+}
+
+impl TorqueControl {
+    /// As the file says it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::KOmegaSquared => "k-omega-squared",
+            Self::TipSpeedRatio => "tip-speed-ratio",
+        }
+    }
+}
+
+/// Collective pitch against the fore-aft motion of the tower top.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TowerDamping {
+    /// Pitch over velocity (rad s/m).
+    pub gain: f64,
+    /// What is slower is left alone (rad/s).
+    pub high_pass_corner: f64,
+    /// Most that it adds or takes (deg).
+    pub limit_deg: f64,
+}
+
+/// Individual pitch control at rotor frequency.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IndividualPitch {
+    /// Pitch over moment (rad/(N m)).
+    pub proportional: f64,
+    /// Pitch rate over moment (rad/(N m s)).
+    pub integral: f64,
+    /// Added to the azimuth on the way back to the blades (deg).
+    pub azimuth_offset_deg: f64,
+    /// Greatest amplitude (deg).
+    pub limit_deg: f64,
+    /// Wind speeds (m/s) between which it is let in.
+    pub ramp: [f64; 2],
+    /// What the blades stay above.
+    pub floor: PitchFloor,
+}
+
+/// What the blades stay above under individual pitch control.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PitchFloor {
+    /// The actuators' limits alone.
+    None,
+    /// `fine_pitch_deg`.
+    #[default]
+    FinePitch,
+    /// `minimum_pitch` at the estimated wind.
+    MinimumPitch,
+}
+
+impl PitchFloor {
+    /// As the file says it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::FinePitch => "fine-pitch",
+            Self::MinimumPitch => "minimum-pitch",
+        }
+    }
 }
 
 /// How torque and pitch control give way to each other.

@@ -5,11 +5,13 @@ mod controller;
 mod document;
 mod error;
 mod write;
+mod write_controller;
 
 pub use controller::controller_of;
 pub use document::{
-    Airfoils, Blade, BladeStructure, Controller, Document, DriveTrain, Hub, Mode, Nacelle,
-    PitchActuator, PolarTable, Rotor, SetPointSmoothing, Station, Tower, Unsteady,
+    Airfoils, Blade, BladeStructure, Controller, Document, DriveTrain, Hub, IndividualPitch, Mode,
+    Nacelle, PitchActuator, PitchFloor, PolarTable, Rotor, SetPointSmoothing, Station,
+    TorqueControl, Tower, TowerDamping, Unsteady,
 };
 pub use error::TurbineFileError;
 pub use write::{Written, write};

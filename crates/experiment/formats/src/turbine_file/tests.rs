@@ -124,3 +124,38 @@ fn what_is_not_known_stays_out_and_is_listed() {
     let message = parse("mine.toml", &written.text).unwrap_err().to_string();
     assert!(message.contains("missing field"), "{message}");
 }
+
+#[test]
+fn what_a_controller_can_do_without_is_read_checked_and_written() {
+    let keys = "\
+speed_filter_damping = 0.7
+torque_control = \"k-omega-squared\"
+wind_speed_filter_corner = 0.3
+speed_notches = [[1.5, 0.0, 0.25], [3.0, 0.1, 0.3]]
+tower_damping = { gain = 0.02, high_pass_corner = 0.1, limit_deg = 2.0 }
+individual_pitch = { proportional = 0.0, integral = 2e-9, azimuth_offset_deg = 20.0, limit_deg = 5.0, ramp = [8.0, 10.0], floor = \"minimum-pitch\" }
+speed_filter_corner = 1.5708";
+    let text = nrel().replacen("speed_filter_corner = 1.5708", keys, 1);
+    let TurbineFile { controller, .. } = parse("mine.toml", &text).unwrap();
+    assert_eq!(controller.torque_control, Some(control::baseline::TorqueControl::KOmegaSquared));
+    assert_eq!(controller.speed_notches.len(), 2);
+    assert_eq!(controller.wind_speed_filter_corner, 0.3);
+    assert!((controller.tower_damping.unwrap().limit - 2f64.to_radians()).abs() < 1e-15);
+    let individual = controller.individual_pitch.unwrap();
+    assert_eq!(individual.floor, control::baseline::PitchFloor::Least);
+    assert!((individual.azimuth_offset - 20f64.to_radians()).abs() < 1e-15);
+    let written = write(&document(&text));
+    assert!(written.missing.is_empty(), "{:?}", written.missing);
+    assert_eq!(document(&written.text), document(&text));
+    for (from, to, place) in [
+        ("damping = 0.7", "damping = 0.0", "controller.speed_filter_damping: expected 0.05 to 5"),
+        ("[1.5, 0.0", "[-1.5, 0.0", "controller.speed_notches[1]"),
+        ("[[1.5,", "[[1.0, 0.0, 0.2], [1.1, 0.0, 0.2], [1.2, 0.0, 0.2], [1.5,", "4 rows at most"),
+        ("ramp = [8.0, 10.0]", "ramp = [8.0, 7.0]", "controller.individual_pitch.ramp"),
+        ("corner = 0.1,", "corner = 0.0,", "controller.tower_damping.high_pass_corner"),
+        ("\"k-omega-squared\"", "\"greedy\"", "k-omega-squared"),
+    ] {
+        let message = parse("mine.toml", &text.replacen(from, to, 1)).unwrap_err().to_string();
+        assert!(message.contains(place), "{message}");
+    }
+}

@@ -1,9 +1,10 @@
 //! A turbine file as text: groups with their sources, tables in aligned columns.
 
 use super::document::{
-    Airfoils, Blade, BladeStructure, Controller, Document, DriveTrain, Hub, Mode, Nacelle,
-    PitchActuator, PolarTable, Rotor, Tower, Unsteady,
+    Airfoils, Blade, BladeStructure, Document, DriveTrain, Hub, Mode, Nacelle, PitchActuator,
+    PolarTable, Rotor, Tower, Unsteady,
 };
+use super::write_controller::controller;
 
 /// A turbine file as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,29 +45,29 @@ pub fn write(document: &Document) -> Written {
 }
 
 #[derive(Default)]
-struct Text {
+pub(super) struct Text {
     text: String,
     group: &'static str,
     missing: Vec<String>,
 }
 
 impl Text {
-    fn line(&mut self, line: &str) {
+    pub(super) fn line(&mut self, line: &str) {
         self.text.push_str(line.trim_end());
         self.text.push('\n');
     }
 
-    fn text(&mut self, key: &str, text: &str) {
+    pub(super) fn text(&mut self, key: &str, text: &str) {
         self.line(&format!("{key} = {}", quoted(text)));
     }
 
     /// A comment where `key` should stand, with what is known of it.
-    fn missing(&mut self, key: &str, known: &str) {
+    pub(super) fn missing(&mut self, key: &str, known: &str) {
         self.missing.push(format!("{}.{key}", self.group));
         self.line(&format!("# {key} = {known}  # not in the source; complete by hand"));
     }
 
-    fn number(&mut self, key: &str, value: f64, comment: &str) {
+    pub(super) fn number(&mut self, key: &str, value: f64, comment: &str) {
         if !value.is_finite() {
             return self.missing(key, "?");
         }
@@ -94,7 +95,7 @@ impl Text {
         }
     }
 
-    fn table<Cells: IntoIterator<Item = String>>(
+    pub(super) fn table<Cells: IntoIterator<Item = String>>(
         &mut self,
         key: &str,
         columns: &[&str],
@@ -148,7 +149,7 @@ impl Text {
 }
 
 /// Seven significant digits, as TOML reads them as a number with a point.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0.0".to_owned();
     }
@@ -165,7 +166,7 @@ fn number(value: f64) -> String {
     if trimmed.ends_with('.') { format!("{trimmed}0") } else { trimmed.to_owned() }
 }
 
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     toml::Value::from(text).to_string()
 }
 
@@ -189,7 +190,7 @@ fn blade(out: &mut Text, blade: &Blade) {
     out.table("stations", &columns, rows);
 }
 
-fn numbers<const N: usize>(row: &[f64; N]) -> [String; N] {
+pub(super) fn numbers<const N: usize>(row: &[f64; N]) -> [String; N] {
     row.map(number)
 }
 
@@ -260,46 +261,6 @@ fn pitch_actuator(out: &mut Text, actuator: &PitchActuator) {
     out.number("maximum_rate_deg_s", actuator.maximum_rate_deg_s, "");
     out.number("minimum_pitch_deg", actuator.minimum_pitch_deg, "");
     out.number("maximum_pitch_deg", actuator.maximum_pitch_deg, "");
-}
-
-fn controller(out: &mut Text, controller: &Controller) {
-    out.text("source", &controller.source);
-    out.line("# Low-speed side; gains act on measured minus reference rotor speed (rad/s).");
-    out.number("rated_power_kw", controller.rated_power_kw, "electrical");
-    out.number("rated_rotor_speed_rpm", controller.rated_rotor_speed_rpm, "");
-    out.number("minimum_rotor_speed_rpm", controller.minimum_rotor_speed_rpm, "");
-    out.number("optimal_tip_speed_ratio", controller.optimal_tip_speed_ratio, "");
-    out.number(
-        "torque_gain",
-        controller.torque_gain,
-        "torque over rotor speed squared below rated, N m s^2",
-    );
-    out.number("rated_torque", controller.rated_torque, "");
-    out.number("minimum_torque", controller.minimum_torque, "");
-    out.number("maximum_torque", controller.maximum_torque, "");
-    out.number("maximum_torque_rate", controller.maximum_torque_rate, "N m/s");
-    out.line(&format!("constant_power = {}  # above rated", controller.constant_power));
-    out.number("torque_proportional", controller.torque_proportional, "N m s");
-    out.number("torque_integral", controller.torque_integral, "N m");
-    out.number("fine_pitch_deg", controller.fine_pitch_deg, "");
-    out.number("maximum_pitch_deg", controller.maximum_pitch_deg, "");
-    out.number("maximum_pitch_rate_deg_s", controller.maximum_pitch_rate_deg_s, "");
-    out.number("speed_filter_corner", controller.speed_filter_corner, "rad/s");
-    let smoothing = &controller.set_point_smoothing;
-    let shifts = [smoothing.torque_shift, smoothing.pitch_shift, smoothing.filter_corner];
-    let [torque, pitch, corner] =
-        shifts.map(|value| if value.is_finite() { number(value) } else { "?".to_owned() });
-    let text =
-        format!("{{ torque_shift = {torque}, pitch_shift = {pitch}, filter_corner = {corner} }}");
-    if shifts.iter().all(|value| value.is_finite()) {
-        out.line(&format!("set_point_smoothing = {text}"));
-    } else {
-        out.missing("set_point_smoothing", &text);
-    }
-    let rows = controller.minimum_pitch.iter().map(numbers);
-    out.table("minimum_pitch", &["wind_speed", "pitch_deg"], rows);
-    let columns = ["pitch_deg", "proportional_s", "integral"];
-    out.table("pitch_gains", &columns, controller.pitch_gains.iter().map(numbers));
 }
 
 fn airfoils(out: &mut Text, airfoils: &Airfoils) {

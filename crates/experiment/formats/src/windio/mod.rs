@@ -190,6 +190,12 @@ fn controller(
         pitch_gains: Vec::new(),
         set_point_smoothing: smoothing,
         speed_filter_corner: f64::NAN,
+        speed_filter_damping: None,
+        speed_notches: Vec::new(),
+        torque_control: None,
+        wind_speed_filter_corner: None,
+        tower_damping: None,
+        individual_pitch: None,
     }))
 }
 
