@@ -134,7 +134,10 @@ pub(crate) fn shared_conditions(study: &Study) -> Vec<String> {
         items.push(format!("spacing {spacing}"));
     }
     items.push(length(&summary.array_power, conditions.duration - conditions.spin_up));
-    items.push(format!("{} cells per diameter", number(conditions.cells_per_diameter, 0)));
+    items.push(match conditions.cells_per_diameter {
+        Some(cells) => format!("{} cells per diameter", number(cells, 0)),
+        None => "prescribed wind, no wakes".to_owned(),
+    });
     items
 }
 

@@ -8,7 +8,7 @@ use turbine::Turbine;
 const SHARED: [&str; 4] = ["time_s", "wind.u_m_s", "wind.v_m_s", "wind.w_m_s"];
 
 /// Loads and motions that are kept of a turbine in solved air, under OpenFAST's names; in prescribed wind all are.
-const LOADS: [&str; 18] = [
+pub(crate) const LOADS: [&str; 18] = [
     "RootMxc1",
     "RootMyc1",
     "RootMzc1",

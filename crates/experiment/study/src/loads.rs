@@ -1,6 +1,7 @@
 //! Damage-equivalent loads of a run.
 
 use crate::StudyError;
+use crate::channels::LOADS;
 use crate::summarise::Analysed;
 use analysis::fatigue::LoadCounter;
 use basis::records::Series;
@@ -11,8 +12,8 @@ const BLADE_SLOPE: f64 = 10.0;
 /// Wöhler's exponent of steel: shaft, tower (–).
 const STEEL_SLOPE: f64 = 4.0;
 
-/// 1-Hz damage-equivalent load (range, peak to peak) of every bending or torsion moment of `turbine` in `series`, by
-/// channel with slope and unit.
+/// 1-Hz damage-equivalent load (range, peak to peak) of the moments of `turbine` in `series` that are kept of any
+/// run, by channel with slope and unit.
 ///
 /// Slopes as van der Hoek et al., section 2.4: 10 for the blade's composite, 4 for steel.
 pub(crate) fn damage_equivalent(
@@ -29,11 +30,10 @@ pub(crate) fn damage_equivalent(
         else {
             continue;
         };
-        let slope = if channel.starts_with("Root") || channel.starts_with("Spn") {
-            BLADE_SLOPE
-        } else {
-            STEEL_SLOPE
-        };
+        let slope = if channel.starts_with("Root") { BLADE_SLOPE } else { STEEL_SLOPE };
+        if !LOADS.contains(&channel) {
+            continue;
+        }
         let load = analysed.column(name)?;
         if load.len() < 2 {
             continue;

@@ -208,7 +208,8 @@ fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyErr
         shear_exponent: case.wind.shear_exponent,
         seed: case.wind.seed,
         rotor_diameter: setup.plan.diameter,
-        cells_per_diameter: case.flow.cells_per_diameter,
+        cells_per_diameter: (!case.flow.solver.is_prescribed())
+            .then_some(case.flow.cells_per_diameter),
         interval: setup.plan.interval,
         spin_up: case.time.spin_up,
         duration: case.time.duration,

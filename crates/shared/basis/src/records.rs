@@ -55,7 +55,7 @@ pub struct TurbineSummary {
     pub delivered_pitch: Option<DeliveredPitch>,
     /// Power relative to the same turbine in the compared run, minus one (–).
     pub power_gain: Option<Statistic>,
-    /// Damage-equivalent loads by channel; empty until the turbine has a structure.
+    /// 1-Hz damage-equivalent loads by channel, slope and unit, such as `RootMyc1, m = 10 (kN m)`.
     pub damage_equivalent_loads: BTreeMap<String, f64>,
 }
 
@@ -93,8 +93,8 @@ pub struct Conditions {
     pub seed: u64,
     /// Rotor diameter of the first turbine (m).
     pub rotor_diameter: f64,
-    /// Cells per diameter of the first turbine (–).
-    pub cells_per_diameter: f64,
+    /// Cells per diameter of the first turbine (–); absent where the wind is prescribed.
+    pub cells_per_diameter: Option<f64>,
     /// Flow step (s).
     pub interval: f64,
     /// Time before the analysis starts (s).

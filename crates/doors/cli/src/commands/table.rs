@@ -11,17 +11,19 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
     };
     let wind = &first.conditions;
     let minutes = (wind.duration - wind.spin_up) / 60.0;
+    let air = wind
+        .cells_per_diameter
+        .map_or("prescribed wind".to_owned(), |cells| format!("{cells:.0} cells per diameter"));
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "{}: {:.1} m/s, turbulence {:.1} % asked, {:.1} % arrived; {:.0} min analysed after {:.0} s; {:.0} cells per diameter",
+        "{}: {:.1} m/s, turbulence {:.1} % asked, {:.1} % arrived; {:.0} min analysed after {:.0} s; {air}",
         first.case,
         wind.wind_speed,
         100.0 * wind.turbulence_intensity,
         100.0 * wind.arriving_turbulence_intensity,
         minutes,
         wind.spin_up,
-        wind.cells_per_diameter,
     );
     let _ = writeln!(
         text,

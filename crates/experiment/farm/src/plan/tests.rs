@@ -1,13 +1,16 @@
 //! Domains that fit, steps that tips do not outrun, and errors that name what does not fit.
 
 use super::*;
-use crate::case::{Control, Flow, Ground, Output, Placement, Run, Sides, Time, Wind};
+use crate::case::{
+    Control, Flow, Ground, Output, Placement, Run, Sides, Solver, Time, TurbulenceModel, Wind,
+};
 
 fn case(positions: &[[f64; 2]]) -> Case {
     let placement = |(index, &position): (usize, &[f64; 2])| Placement {
         name: format!("T{}", index + 1),
         model: "model".to_owned(),
         position_diameters: position,
+        flexible: true,
     };
     Case {
         name: "test".to_owned(),
@@ -21,8 +24,11 @@ fn case(positions: &[[f64; 2]]) -> Case {
             seed: 1,
             air_density: 1.225,
             kinematic_viscosity: 1.5e-5,
+            turbulence_model: TurbulenceModel::Mann,
+            planes: None,
         },
         flow: Flow {
+            solver: Solver::Lattice,
             cells_per_diameter: 16.0,
             upstream_diameters: 3.0,
             downstream_diameters: 4.0,
@@ -41,6 +47,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             control: vec![Control::Baseline; positions.len()],
         }],
         output: Output {
+            interval: None,
             plane_interval: None,
             crosswind_diameters: Vec::new(),
             volume_interval: None,
@@ -109,4 +116,17 @@ fn what_does_not_fit_is_named_with_its_fix() {
     let mut other = case(&[[0.0, 0.0]]);
     other.turbines[0].model = "iea-10mw".to_owned();
     assert!(error(&other).contains("`iea-10mw`"));
+}
+
+#[test]
+fn prescribed_wind_needs_no_cells_and_thins_its_rows() {
+    let mut case = case(&[[0.0, 0.0]]);
+    case.flow.solver = Solver::Turbulence;
+    let plan = plan(&case, &footprints()).unwrap();
+    assert_eq!((plan.cells(), plan.n_steps, plan.row_stride), (0, 75_000, 5));
+    assert!((plan.row_interval() - PRESCRIBED_ROW).abs() < 1e-12);
+    case.flow.step = Some(0.01);
+    case.output.interval = Some(0.05);
+    let finer = super::plan(&case, &footprints()).unwrap();
+    assert_eq!((finer.n_steps, finer.row_stride), (150_000, 5));
 }

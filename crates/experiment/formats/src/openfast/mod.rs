@@ -6,9 +6,7 @@ pub(crate) mod discon;
 mod elastodyn;
 mod torque_gain;
 
-use crate::turbine_file::{
-    Document, DriveTrain, PitchActuator, TorqueControl, TurbineFileError,
-};
+use crate::turbine_file::{Document, DriveTrain, PitchActuator, TorqueControl, TurbineFileError};
 use deck::Deck;
 use std::path::Path;
 

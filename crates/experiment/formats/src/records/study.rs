@@ -178,7 +178,7 @@ mod tests {
                 shear_exponent: 0.1,
                 seed: 1,
                 rotor_diameter: 240.0,
-                cells_per_diameter: 16.0,
+                cells_per_diameter: Some(16.0),
                 interval: 60.0 / 419.0,
                 spin_up: 300.0,
                 duration: 1500.0,

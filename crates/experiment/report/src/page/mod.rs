@@ -48,6 +48,7 @@ pub(crate) fn render(study: &Study, figures: &[Figure]) -> Result<String, Report
         has_gains => best.is_some(),
         has_loads => tables::has_loads(study),
         loads => tables::loads(study),
+        run_names => study.names().into_iter().map(|(_, name)| name.to_owned()).collect::<Vec<_>>(),
         conditions_line => sentence::conditions_line(study, None),
         small_print => small_print(study),
         parts => parts(figures)?,
@@ -117,13 +118,21 @@ fn warnings(study: &Study) -> Vec<Vec<String>> {
 fn small_print(study: &Study) -> Vec<String> {
     let summary = &study.runs()[0].summary;
     let conditions = &summary.conditions;
-    let cells = conditions.cells_per_diameter;
-    let mut items = vec![
-        "Large-eddy simulation with actuator lines: blades are lines of force from tabulated \
-         aerofoil data; rotor speed follows torque and inertia; blades and tower are rigid."
-            .to_owned(),
-    ];
-    if cells < 24.0 {
+    let mut items = match conditions.cells_per_diameter {
+        Some(_) => vec![
+            "Large-eddy simulation with actuator lines: blades are lines of force from tabulated \
+             aerofoil data; rotor speed follows torque and inertia; blades, tower and drive train \
+             bend unless the case says rigid."
+                .to_owned(),
+        ],
+        None => vec![
+            "Prescribed wind: turbines make their own induction by blade-element momentum with dynamic \
+             inflow, skewed wake and dynamic stall, and no turbine feels another's wake. What a helix \
+             does to wakes is not in these figures."
+                .to_owned(),
+        ],
+    };
+    if let Some(cells) = conditions.cells_per_diameter.filter(|cells| *cells < 24.0) {
         items.push(format!(
             "{} cells per diameter are coarse: the near wake and the tip vortices are blurred, small \
              turbulence is modelled rather than resolved. Differences between runs are more \

@@ -1,11 +1,13 @@
 //! The tables of the page, as rows of ready text.
 
+use crate::RunRecords;
 use crate::draw::colour::Ink;
 use crate::sentence;
 use crate::study::{Kind, Study};
 use crate::words::{self, SPACE, number, percent, three_figures};
 use basis::records::Statistic;
 use minijinja::{Value, context};
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 /// The conditions that all runs share.
@@ -71,15 +73,22 @@ pub(crate) fn conditions(study: &Study) -> Vec<Value> {
             ),
         ));
     }
-    facts.push(fact(
-        "Grid",
-        format!("{} cells per D", number(conditions.cells_per_diameter, 0)),
-        format!(
-            "{}{SPACE}m cells, {}{SPACE}s flow step",
-            number(conditions.rotor_diameter / conditions.cells_per_diameter, 1),
-            number(conditions.interval, 3)
+    facts.push(match conditions.cells_per_diameter {
+        Some(cells) => fact(
+            "Grid",
+            format!("{} cells per D", number(cells, 0)),
+            format!(
+                "{}{SPACE}m cells, {}{SPACE}s flow step",
+                number(conditions.rotor_diameter / cells, 1),
+                number(conditions.interval, 3)
+            ),
         ),
-    ));
+        None => fact(
+            "Wind",
+            "prescribed".to_owned(),
+            format!("no wakes, {}{SPACE}s step", number(conditions.interval, 3)),
+        ),
+    });
     facts
 }
 
@@ -190,23 +199,43 @@ pub(crate) fn has_loads(study: &Study) -> bool {
         .any(|run| run.summary.turbines.iter().any(|t| !t.damage_equivalent_loads.is_empty()))
 }
 
-/// Damage-equivalent loads of all turbines in all runs.
+/// Damage-equivalent loads: a row for each turbine and channel, in it a cell for each run with the load and its change.
 pub(crate) fn loads(study: &Study) -> Vec<Value> {
-    study
-        .runs()
-        .iter()
-        .flat_map(|run| run.summary.turbines.iter().map(move |turbine| (run, turbine)))
-        .flat_map(|(run, turbine)| {
-            turbine.damage_equivalent_loads.iter().map(move |(channel, load)| {
-                context! {
-                    run => run.summary.run.clone(),
-                    turbine => turbine.name.clone(),
-                    channel => channel.clone(),
-                    load => format!("{load:.4e}"),
-                }
-            })
-        })
-        .collect()
+    let mut rows = Vec::new();
+    for name in study.turbines() {
+        let of_run = |run: &RunRecords| {
+            let turbine = run.summary.turbines.iter().find(|turbine| turbine.name == name)?;
+            Some(turbine.damage_equivalent_loads.clone())
+        };
+        let loads: Vec<_> = study.runs().iter().map(of_run).collect();
+        let channels: BTreeSet<&String> = loads.iter().flatten().flat_map(BTreeMap::keys).collect();
+        for channel in channels {
+            let at = |index: usize| loads[index].as_ref().and_then(|loads| loads.get(channel));
+            let cells: Vec<[String; 2]> = study
+                .runs()
+                .iter()
+                .enumerate()
+                .map(|(index, run)| {
+                    let Some(&load) = at(index) else { return [String::new(), String::new()] };
+                    let other = run.summary.compare_with.as_deref();
+                    let compared = study
+                        .runs()
+                        .iter()
+                        .position(|run| Some(run.summary.run.as_str()) == other)
+                        .and_then(at);
+                    let change = match compared {
+                        Some(&compared) if compared > 0.0 => {
+                            words::signed_percent(load / compared - 1.0)
+                        }
+                        _ => String::new(),
+                    };
+                    [number(load, three_figures(load)), change]
+                })
+                .collect();
+            rows.push(context! { turbine => name.to_owned(), channel => channel.clone(), cells });
+        }
+    }
+    rows
 }
 
 /// What every run cost.

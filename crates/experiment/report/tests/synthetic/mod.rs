@@ -127,7 +127,7 @@ fn run(recipe: &Recipe) -> RunRecords {
                 shear_exponent: 0.1,
                 seed: 1,
                 rotor_diameter: DIAMETER,
-                cells_per_diameter: 16.0,
+                cells_per_diameter: Some(16.0),
                 interval: 0.125,
                 spin_up: SPIN_UP,
                 duration: DURATION,

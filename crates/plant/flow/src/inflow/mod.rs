@@ -79,7 +79,9 @@ pub enum InflowError {
         up: [f64; 2],
     },
     /// A record of wind that is over.
-    #[error("the wind's record of {length:.1} s does not repeat, and the run asks for its {time:.1} s; make a longer record, or one that repeats")]
+    #[error(
+        "the wind's record of {length:.1} s does not repeat, and the run asks for its {time:.1} s; make a longer record, or one that repeats"
+    )]
     Ended {
         /// Length of the record (s).
         length: f64,

@@ -9,7 +9,15 @@ fn thin(drag: f64) -> impl Fn(f64) -> SectionCoefficients {
 }
 
 fn annulus(radius: f64, chord: f64, section_pitch: f64) -> Annulus {
-    Annulus { n_blades: 3, radius, hub_radius: 2.0, tip_radius: 60.0, chord, section_pitch, lean: 0.0 }
+    Annulus {
+        n_blades: 3,
+        radius,
+        hub_radius: 2.0,
+        tip_radius: 60.0,
+        chord,
+        section_pitch,
+        lean: 0.0,
+    }
 }
 
 const NO_LOSS: Theory = Theory { tip_loss: false, hub_loss: false, drag_in_induction: true };
@@ -154,7 +162,8 @@ fn a_leaning_blade_slows_the_air_along_the_shaft() {
     let (wind, rotation) = (9.0, 45.0);
     let inflow = solve(&ring, wind * lean.cos(), rotation, thin(0.01), NO_LOSS);
     let [normal, _] = inflow.forces(1.2, ring.chord);
-    let mass_flow = 1.2 * wind * lean.cos() * (1.0 - inflow.axial_induction) * 2.0 * PI * ring.radius;
+    let mass_flow =
+        1.2 * wind * lean.cos() * (1.0 - inflow.axial_induction) * 2.0 * PI * ring.radius;
     let slowing = 2.0 * inflow.axial_induction * wind;
     assert!((3.0 * normal * lean.cos() / (mass_flow * slowing) - 1.0).abs() < 1e-9);
     assert!(inflow.axial_induction < 0.4);
