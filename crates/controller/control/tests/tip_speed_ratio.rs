@@ -234,7 +234,7 @@ fn a_table_that_is_too_low_gives_roscos_rotor_speeds() {
         rotor_radius: radius,
         optimal_tip_speed_ratio: 9.0,
         torque_gain: 3.2e7,
-        minimum_rotor_speed: 0.5236,
+        minimum_rotor_speed: 5.0 * rpm,
         rated_rotor_speed: 0.79168,
         rated_torque: 19_786_767.5,
         rated_power: 15e6,

@@ -60,7 +60,7 @@ pub enum StudyError {
         /// Run.
         run: String,
         /// Where and when.
-        source: FlowError,
+        source: Box<FlowError>,
         /// Last good checkpoint, if there is one.
         checkpoint: Option<PathBuf>,
         /// Series up to that time.

@@ -276,7 +276,7 @@ impl<'a> Simulation<'a> {
         let checkpoint = self.folder.checkpoint_path();
         StudyError::Diverged {
             run: run.name.clone(),
-            source,
+            source: Box::new(source),
             checkpoint: checkpoint.exists().then_some(checkpoint),
             series: kept.then(|| self.series.part_path().to_owned()),
         }

@@ -192,8 +192,8 @@ fn first_that_breaks(entries: &[f64]) -> Option<usize> {
 fn place(axis: &[f64], value: f64) -> Place {
     let low = axis.partition_point(|entry| *entry <= value).clamp(1, axis.len() - 1) - 1;
     let share = (value - axis[low]) / (axis[low + 1] - axis[low]);
-    // max before min: a share that is no number becomes zero.
-    Place { low, share: share.max(0.0).min(1.0) }
+    let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
+    Place { low, share }
 }
 
 #[cfg(test)]

@@ -147,9 +147,9 @@ impl Estimator {
         self.rotor_speed += gain[0] * error;
         self.turbulence += gain[1] * error;
         self.mean = (self.mean + gain[2] * error).max(LEAST_WIND_SPEED);
-        for i in 0..3 {
-            for j in 0..3 {
-                self.covariance[i][j] -= gain[i] * p[0][j];
+        for (row, gain) in self.covariance.iter_mut().zip(gain) {
+            for (entry, first) in row.iter_mut().zip(p[0]) {
+                *entry -= gain * first;
             }
         }
     }

@@ -76,7 +76,7 @@ fn a_plane_that_is_gone_is_named() {
         write(&path, &stored([9, 4, 3])).unwrap();
         let mut planes = open(&path).unwrap();
         fs::write(&path, b"").unwrap();
-        let error = planes.read(5, &mut vec![[0.0; 3]; 12]).unwrap_err().to_string();
+        let error = planes.read(5, &mut [[0.0; 3]; 12]).unwrap_err().to_string();
         assert!(error.contains("plane 5") && error.contains(name), "{error}");
     }
 }

@@ -100,7 +100,6 @@ impl Induction {
 
     /// Moves `induced` on by `interval` (s), to the instant at which the wind without induction is `onset` at a blade in
     /// `annulus`, which is `ring`'s at that instant, with sections of `polar`. `decay` is the two-constant model's, unused by others.
-    #[expect(clippy::too_many_arguments, reason = "the kernel of a rotor's step")]
     pub fn advance(
         &self,
         interval: f64,
