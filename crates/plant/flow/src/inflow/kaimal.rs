@@ -106,7 +106,7 @@ pub fn peak_memory([n_x, n_y, n_z]: [usize; 3]) -> u64 {
 /// negative are set to zero: [`clipped_share`] measures how much that is.
 ///
 /// The box repeats in x, that is in time; in y and z it does not: its first and last points are as far apart as they look.
-/// Source: [Veers1988] SAND88-0152; [Dietrich1997] SIAM J. Sci. Comput. 18 (1997) 1088-1107; spectra and coherence [`Kaimal`].
+/// Source: Veers (1988) SAND88-0152; Dietrich, Newsam (1997) SIAM J. Sci. Comput. 18 (1997) 1088-1107; spectra and coherence [`Kaimal`].
 ///
 /// # Errors
 /// [`InflowError`] for settings out of range, or a box that memory cannot hold.
