@@ -6,7 +6,6 @@ pub mod aero;
 pub mod blockage;
 pub mod bodies;
 pub mod definition;
-pub mod drivetrain;
 pub mod lifting_line;
 pub mod loading;
 pub mod motion;
