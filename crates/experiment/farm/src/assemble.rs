@@ -103,7 +103,7 @@ pub fn controller(
 }
 
 /// The farm of one run, at time zero: the turbines that are there in it, in the case's order, in `air`. `models` holds one
-/// entry per turbine of the case, in its order; the farm's machines are those of [`Run::present`].
+/// entry per turbine of the case, in its order, each [equipped](Model::equipped) for the case; the farm's machines are those of [`Run::present`].
 ///
 /// # Errors
 /// [`StructureError`] when a model's masses, stiffnesses or mode shapes make no structure.
@@ -116,8 +116,7 @@ pub fn farm(
 ) -> Result<Farm<Air>, StructureError> {
     let mut machines = Vec::with_capacity(models.len());
     for index in run.present() {
-        let equipped = models[index].equipped(case.flow.solver, case.wind.air_density);
-        let model = &*equipped;
+        let model = &models[index];
         let settings = turbine::Settings {
             induction: induction(case, plan),
             flexible: case.turbines[index].flexible,

@@ -92,8 +92,13 @@ impl Setup {
             .map(|(name, model)| (name.clone(), model.footprint(case.wind.speed)))
             .collect();
         let plan = plan(&case, &footprints)?;
+        // Once a model, not once a machine and run: a table of coefficients takes a fraction of a second.
+        let equip =
+            |model: &Model| model.equipped(case.flow.solver, case.wind.air_density).into_owned();
+        let equipped: BTreeMap<&String, Model> =
+            loaded.iter().map(|(name, model)| (name, equip(model))).collect();
         let models =
-            case.turbines.iter().map(|placement| loaded[&placement.model].clone()).collect();
+            case.turbines.iter().map(|placement| equipped[&placement.model].clone()).collect();
         let warnings = warnings(&case, &plan);
         let inflow = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
         let turbine_texts = BTreeMap::new();

@@ -201,11 +201,11 @@ impl<'a> Simulation<'a> {
 
     fn step(&mut self) -> Result<(), StepError> {
         let plan = &self.setup.plan;
-        let mut wind = [Vector3::ZERO];
-        self.farm.flow().sample(&[self.probe], &mut wind);
-        self.row.start(self.farm.time(), wind[0]);
         let kept = self.farm.step().is_multiple_of(plan.row_stride);
         if kept {
+            let mut wind = [Vector3::ZERO];
+            self.farm.flow().sample(&[self.probe], &mut wind);
+            self.row.start(self.farm.time(), wind[0]);
             for (index, machine) in self.farm.machines().iter().enumerate() {
                 self.row.loads(index, &machine.turbine);
             }
