@@ -64,6 +64,14 @@ fn main() {
             );
         }
     }
+    // A box that stays in the cache tells what the arithmetic alone allows.
+    let cached = [256, 6, 6];
+    for n_threads in [1, cores] {
+        let speed = (0..n_repeats)
+            .map(|_| updates_per_second(cached, n_threads, Backend::detect(), false))
+            .fold(0.0, f64::max);
+        println!("{n_threads} threads on {cached:?} cells, in the cache: {:.0} M updates/s", speed / 1e6);
+    }
     let air = lattice(n_cells, 1, Backend::detect(), true);
     let cells = n_cells.iter().product::<usize>() as f64;
     println!("memory {:.1} bytes a cell", air.memory() as f64 / cells);

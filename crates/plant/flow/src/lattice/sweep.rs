@@ -10,7 +10,7 @@ use super::ends::{self, RowEnds};
 use super::forces::ForceBlock;
 use super::layout::{Layout, Parity, read_direction, write_direction};
 use super::simd::{MAXIMUM_LANES, Simd};
-use super::stencil::Stencil;
+use super::stencil::{Moments, Stencil};
 use std::ops::Range;
 
 /// What all rows of a step share, in lattice units.
@@ -185,20 +185,30 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
     let times = step.relaxation_times.as_ptr();
     let force = [force[0].as_ptr(), force[1].as_ptr(), force[2].as_ptr()];
     let mut x = range.start;
-    while x + S::LANES <= range.end {
-        // SAFETY: a whole vector of cells of the row.
-        unsafe {
-            let after = vector::<S, L, Q, ODD, FORCED>(&places, x, times, subgrid, &force);
+    // SAFETY: whole vectors of cells of the row; its padding makes the last one readable, and only cells of the row are written.
+    unsafe {
+        if x + S::LANES <= range.end {
+            // The state of the next vector is found before this one is written back: the two share no address, and
+            // what one waits for (divisions, roots) the other fills.
+            let mut now = before::<S, L, Q, ODD>(&places, x, times, subgrid);
+            while x + 2 * S::LANES <= range.end {
+                let next = before::<S, L, Q, ODD>(&places, x + S::LANES, times, subgrid);
+                let after = after::<S, L, Q, FORCED>(&now, x, &force);
+                for slot in 0..Q {
+                    after[write_direction(parity::<ODD>(), slot)].store(places[slot].add(x));
+                }
+                now = next;
+                x += S::LANES;
+            }
+            let after = after::<S, L, Q, FORCED>(&now, x, &force);
             for slot in 0..Q {
                 after[write_direction(parity::<ODD>(), slot)].store(places[slot].add(x));
             }
+            x += S::LANES;
         }
-        x += S::LANES;
-    }
-    if x < range.end {
-        // SAFETY: the row's padding makes a whole vector readable; only cells of the row are written.
-        unsafe {
-            let after = vector::<S, L, Q, ODD, FORCED>(&places, x, times, subgrid, &force);
+        if x < range.end {
+            let state = before::<S, L, Q, ODD>(&places, x, times, subgrid);
+            let after = after::<S, L, Q, FORCED>(&state, x, &force);
             for slot in 0..Q {
                 let mut lanes = [0.0; MAXIMUM_LANES];
                 after[write_direction(parity::<ODD>(), slot)].store(lanes.as_mut_ptr());
@@ -210,15 +220,14 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
     }
 }
 
-/// Populations after the collision of the cells from `x`.
+/// State of the cells from `x` before the collision, and the rate at which their stress relaxes.
 #[inline(always)]
-unsafe fn vector<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const FORCED: bool>(
+unsafe fn before<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool>(
     places: &[*mut f32; Q],
     x: usize,
     times: *const f32,
     subgrid: S,
-    force: &[*const f32; 3],
-) -> [S; Q] {
+) -> (Moments<S>, S) {
     // SAFETY: the caller promises whole readable vectors.
     unsafe {
         let mut populations = [S::splat(0.0); Q];
@@ -226,16 +235,27 @@ unsafe fn vector<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const 
             populations[read_direction(parity::<ODD>(), slot)] = S::load(places[slot].add(x));
         }
         let relaxation = Relaxation { time: S::load(times.add(x)), subgrid };
-        let force = if FORCED {
-            let [fx, fy, fz] = *force;
-            Some([S::load(fx.add(x)), S::load(fy.add(x)), S::load(fz.add(x))])
-        } else {
-            None
-        };
-        let before = L::moments(&populations);
-        let rate = relaxation_rate(&before, &relaxation);
-        L::populations(&collide(&before, rate, force))
+        let state = L::moments(&populations);
+        let rate = relaxation_rate(&state, &relaxation);
+        (state, rate)
     }
+}
+
+/// Populations after the collision of the cells from `x`.
+#[inline(always)]
+unsafe fn after<S: Simd, L: Stencil<Q>, const Q: usize, const FORCED: bool>(
+    (state, rate): &(Moments<S>, S),
+    x: usize,
+    force: &[*const f32; 3],
+) -> [S; Q] {
+    let force = if FORCED {
+        let [fx, fy, fz] = *force;
+        // SAFETY: the caller promises whole readable vectors.
+        unsafe { Some([S::load(fx.add(x)), S::load(fy.add(x)), S::load(fz.add(x))]) }
+    } else {
+        None
+    };
+    L::populations(&collide(state, *rate, force))
 }
 
 #[inline(always)]
