@@ -1,7 +1,8 @@
-//! What an engineer reads from records: means with their uncertainty, spectra, fatigue, delivered pitch, wakes.
+//! What an engineer reads from records: means with their uncertainty, spectra, fatigue, delivered pitch, phases, wakes.
 
 pub mod fatigue;
 pub mod line;
+pub mod phase;
 pub mod pitch;
 pub mod spectra;
 pub mod statistics;
@@ -56,6 +57,38 @@ pub enum AnalysisError {
     TooFewBlades {
         /// Blades (–).
         n_blades: usize,
+    },
+    /// Lines over a disc that do not make a fixed frame.
+    #[error("{n_lines} lines have no tilt and yaw, 3 are needed")]
+    TooFewLines {
+        /// Lines (–).
+        n_lines: usize,
+    },
+    /// Times that do not keep one distance.
+    #[error("the times are not evenly spaced: sample {index} follows after {step} s, the others after {interval} s")]
+    UnevenTimes {
+        /// The first sample with another distance to the one before, the first of all is 0.
+        index: usize,
+        /// That distance (s).
+        step: f64,
+        /// The mean distance (s).
+        interval: f64,
+    },
+    /// A frequency that the sampling does not resolve.
+    #[error("{frequency} Hz is not below {nyquist} Hz, half the sampling rate")]
+    AboveNyquist {
+        /// What was asked for (Hz).
+        frequency: f64,
+        /// Half the sampling rate (Hz).
+        nyquist: f64,
+    },
+    /// A band that holds no frequency.
+    #[error("no frequency lies above zero and between {low} and {high} Hz")]
+    Band {
+        /// Its lower end (Hz).
+        low: f64,
+        /// Its upper end (Hz).
+        high: f64,
     },
     /// A plane with the wrong axes.
     #[error("plane {name} spans {found:?}, {needed} is needed")]
