@@ -128,7 +128,8 @@ fn run(asked: &Asked<'_>) -> Run {
     let controller = TurbineController::new(Baseline::new(file.controller), excitation);
     let wind = PrescribedWind::everywhere(Arc::new(MeanProfile::Uniform { speed: asked.wind }));
     let air = Air::Prescribed(Box::new(wind));
-    let mut farm = Farm::new(vec![Machine::new(turbine, controller)], air, INTERVAL);
+    let mut farm = Farm::new(vec![Machine::new(turbine, controller)], air, INTERVAL, 1)
+        .expect("one turbine needs no threads");
     let mut values = vec![0.0; n_channels];
     let mut result = Run { power: 0.0, thrust: 0.0, samples: Default::default() };
     while farm.time() < asked.window[1] {

@@ -14,6 +14,17 @@ use turbine::aero::{self, rotor};
 use turbine::structure::StructureError;
 use turbine::{Definition, Induction, Turbine};
 
+/// Why no farm could be put together.
+#[derive(Debug, thiserror::Error)]
+pub enum AssemblyError {
+    /// A model's masses, stiffnesses or mode shapes make no structure.
+    #[error(transparent)]
+    Structure(#[from] StructureError),
+    /// The system has no more threads to give.
+    #[error("no threads for the turbines")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
 /// A turbine model with the constants of its controller.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -106,14 +117,14 @@ pub fn controller(
 /// entry per turbine of the case, in its order, each [equipped](Model::equipped) for the case; the farm's machines are those of [`Run::present`].
 ///
 /// # Errors
-/// [`StructureError`] when a model's masses, stiffnesses or mode shapes make no structure.
+/// [`AssemblyError`].
 pub fn farm(
     case: &Case,
     run: &Run,
     plan: &Plan,
     models: &[Model],
     air: Air,
-) -> Result<Farm<Air>, StructureError> {
+) -> Result<Farm<Air>, AssemblyError> {
     let mut machines = Vec::with_capacity(models.len());
     for index in run.present() {
         let model = &models[index];
@@ -129,7 +140,8 @@ pub fn farm(
         let control = controller(&run.control[index], model, case.wind.speed, plan.diameter);
         machines.push(Machine::new(turbine, control));
     }
-    Ok(Farm::new(machines, air, plan.interval))
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    Ok(Farm::new(machines, air, plan.interval, case.flow.threads.unwrap_or(cores))?)
 }
 
 /// Who solves the induction: the lattice itself, or momentum theory with dynamic inflow, skewed wake and dynamic stall.

@@ -1,8 +1,10 @@
 //! The loop: read, decide, sample, move rotors, move air.
 
-use basis::{Commands, Measurements, PointForce, Vector3};
+use basis::{Commands, Measurements, PerBlade, PointForce, Vector3};
 use control::{Controller, TurbineController};
 use flow::{FlowError, FlowSolver};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use turbine::Turbine;
 
 /// Watches a run: files, statistics, live plots.
@@ -18,13 +20,22 @@ pub struct Machine {
     /// What decides for it; sees only measurements.
     pub controller: TurbineController,
     winds: Vec<Vector3>,
+    commands: Commands,
 }
 
 impl Machine {
     /// A turbine under `controller`.
     pub fn new(turbine: Turbine, controller: TurbineController) -> Self {
         let winds = vec![Vector3::ZERO; turbine.stations().len()];
-        Self { turbine, controller, winds }
+        let pitch = PerBlade::splat(turbine.definition().n_blades, 0.0);
+        let commands = Commands { pitch, generator_torque: 0.0 };
+        Self { turbine, controller, winds, commands }
+    }
+
+    /// Feels the wind of `flow` where the blades are, and moves on by `interval` (s) under the last commands.
+    fn advance(&mut self, interval: f64, flow: &impl FlowSolver) {
+        flow.sample(self.turbine.stations(), &mut self.winds);
+        self.turbine.advance(interval, &self.winds, &self.commands);
     }
 }
 
@@ -35,13 +46,37 @@ pub struct Farm<Flow> {
     forces: Vec<PointForce>,
     interval: f64,
     step: u64,
+    /// Threads that turbines share; none for a single turbine or a single thread.
+    threads: Option<ThreadPool>,
 }
 
-impl<Flow: FlowSolver> Farm<Flow> {
-    /// A farm at time zero that moves on in steps of `interval` (s).
-    pub fn new(machines: Vec<Machine>, flow: Flow, interval: f64) -> Self {
+impl<Flow: FlowSolver + Sync> Farm<Flow> {
+    /// A farm at time zero that moves on in steps of `interval` (s), its turbines on at most `n_threads` threads; their
+    /// number changes no bit of the result.
+    ///
+    /// # Errors
+    /// [`ThreadPoolBuildError`] when the system has no more threads to give.
+    pub fn new(
+        machines: Vec<Machine>,
+        flow: Flow,
+        interval: f64,
+        n_threads: usize,
+    ) -> Result<Self, ThreadPoolBuildError> {
         let n_forces = machines.iter().map(|machine| machine.turbine.stations().len()).sum();
-        Self { machines, flow, forces: Vec::with_capacity(n_forces), interval, step: 0 }
+        let n_threads = n_threads.min(machines.len());
+        let threads = if n_threads > 1 {
+            Some(ThreadPoolBuilder::new().num_threads(n_threads).build()?)
+        } else {
+            None
+        };
+        Ok(Self {
+            machines,
+            flow,
+            forces: Vec::with_capacity(n_forces),
+            interval,
+            step: 0,
+            threads,
+        })
     }
 
     /// The same farm after `step` steps, as a checkpoint is taken up; its states are restored one by one.
@@ -59,10 +94,17 @@ impl<Flow: FlowSolver> Farm<Flow> {
         self.forces.clear();
         for (index, machine) in self.machines.iter_mut().enumerate() {
             let measurements = machine.turbine.measurements(time, self.interval);
-            let commands = machine.controller.update(&measurements);
-            recorder.record(index, &measurements, &commands);
-            self.flow.sample(machine.turbine.stations(), &mut machine.winds);
-            machine.turbine.advance(self.interval, &machine.winds, &commands);
+            machine.commands = machine.controller.update(&measurements);
+            recorder.record(index, &measurements, &machine.commands);
+        }
+        let (flow, interval) = (&self.flow, self.interval);
+        match &self.threads {
+            Some(threads) => threads.install(|| {
+                self.machines.par_iter_mut().for_each(|machine| machine.advance(interval, flow));
+            }),
+            None => self.machines.iter_mut().for_each(|machine| machine.advance(interval, flow)),
+        }
+        for machine in &self.machines {
             self.forces.extend_from_slice(machine.turbine.forces());
         }
         self.flow.advance(self.interval, &self.forces)?;

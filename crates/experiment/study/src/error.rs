@@ -1,6 +1,7 @@
 //! Why a study could not be made.
 
 use analysis::AnalysisError;
+use farm::assemble::AssemblyError;
 use farm::plan::PlanError;
 use farm::self_check::SelfCheckError;
 use flow::FlowError;
@@ -13,7 +14,6 @@ use miette::Diagnostic;
 use report::ReportError;
 use std::path::PathBuf;
 use thiserror::Error;
-use turbine::structure::StructureError;
 
 /// Why a study could not be made.
 #[derive(Debug, Error, Diagnostic)]
@@ -38,9 +38,9 @@ pub enum StudyError {
     /// The turbulence cannot be made.
     #[error("the turbulence cannot be made")]
     Inflow(#[from] InflowError),
-    /// A turbine's masses, stiffnesses or mode shapes make no structure.
+    /// The turbines cannot be put together.
     #[error(transparent)]
-    Structure(#[from] StructureError),
+    Assembly(#[from] AssemblyError),
     /// The self-check cannot be made.
     #[error(transparent)]
     SelfCheck(#[from] SelfCheckError),
