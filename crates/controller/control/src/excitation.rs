@@ -23,7 +23,8 @@
 mod helix;
 mod pulse;
 
-pub use helix::{Helix, Sense};
+pub use basis::Sense;
+pub use helix::Helix;
 pub use pulse::Pulse;
 
 use basis::{Measurements, PerBlade};

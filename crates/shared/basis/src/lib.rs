@@ -19,10 +19,12 @@ pub mod blades;
 pub mod force;
 pub mod mbc;
 pub mod records;
+mod sense;
 pub mod signals;
 
 pub use blades::PerBlade;
 pub use force::PointForce;
 pub use glam::{DMat3 as Matrix3, DVec3 as Vector3};
 pub use mbc::FixedFrame;
+pub use sense::Sense;
 pub use signals::{Commands, Measurements};

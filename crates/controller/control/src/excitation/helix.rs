@@ -2,38 +2,8 @@
 
 use super::{excitation_rate, fade_in};
 use basis::mbc::to_blades;
-use basis::{FixedFrame, PerBlade};
+use basis::{FixedFrame, PerBlade, Sense};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::FRAC_PI_2;
-use std::fmt;
-
-/// Which way the helix winds, told by the frequency in the blade's frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Sense {
-    /// Clockwise: blades pitch at rotor minus excitation frequency.
-    Clockwise,
-    /// Counter-clockwise: blades pitch at rotor plus excitation frequency.
-    CounterClockwise,
-}
-
-impl Sense {
-    /// Lead of the yaw command over the tilt command (rad): π/2 for ccw, −π/2 for cw.
-    pub fn yaw_lead(self) -> f64 {
-        match self {
-            Self::Clockwise => -FRAC_PI_2,
-            Self::CounterClockwise => FRAC_PI_2,
-        }
-    }
-}
-
-impl fmt::Display for Sense {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Clockwise => "cw",
-            Self::CounterClockwise => "ccw",
-        })
-    }
-}
 
 /// The helix as it runs on one turbine; it has no state, its phase follows from time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

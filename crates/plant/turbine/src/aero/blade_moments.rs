@@ -12,6 +12,7 @@ use super::section::{Section, sections};
 use crate::actuator_line::{Element, Onset};
 use crate::definition::Definition;
 use basis::PerBlade;
+use basis::mbc::blade_azimuth;
 use serde::{Deserialize, Serialize};
 
 /// The model; parameters only.
@@ -146,6 +147,57 @@ impl BladeMoments {
         })
     }
 
+    /// The [`BladeMoments::moments`] and how fast each grows with its own blade's wind (N m/(m/s)), the wake held.
+    ///
+    /// A blade's moment hangs on no other blade's wind while the wake is held, so this is the whole Jacobian. Slopes are
+    /// those of the polars' straight lines, and step at their rows.
+    pub fn moments_with_slopes(
+        &self,
+        conditions: &Conditions,
+        wake: &Wake,
+    ) -> (PerBlade<f64>, PerBlade<f64>) {
+        let mut slopes = PerBlade::splat(self.n_blades, 0.0);
+        let moments = PerBlade::from_fn(self.n_blades, |blade| {
+            let induced = &wake.induced[blade * self.parts.len()..];
+            let (mut moment, mut slope) = (0.0, 0.0);
+            for (part, induced) in self.parts.iter().zip(induced) {
+                let with_slope = part.moment_with_slope(conditions, blade, induced);
+                moment += with_slope[0];
+                slope += with_slope[1];
+            }
+            slopes[blade] = slope * 0.5 * self.air_density;
+            moment * 0.5 * self.air_density
+        });
+        (moments, slopes)
+    }
+
+    /// Hands the blades the induction of sectors that stand still in the air.
+    ///
+    /// `still` is a wake whose blade k stands for the air at azimuth 2π k/n, advanced with the winds and pitch found there.
+    /// On return `met` holds what each blade meets when blade 1 stands at `azimuth` (rad): the average, tilt and yaw
+    /// components of the sectors' induced velocities at that blade's place.
+    pub fn meet(&self, still: &Wake, azimuth: f64, met: &mut Wake) {
+        let n_blades = self.n_blades;
+        let n_parts = self.parts.len();
+        for blade in 0..n_blades {
+            let place = blade_azimuth(azimuth, blade, n_blades);
+            let weights = PerBlade::from_fn(n_blades, |sector| {
+                let between = place - blade_azimuth(0.0, sector, n_blades);
+                (1.0 + 2.0 * between.cos()) / n_blades as f64
+            });
+            for part in 0..n_parts {
+                let sum = |of: fn(&Induced) -> f64| -> f64 {
+                    let sectors = (0..n_blades).map(|sector| sector * n_parts + part);
+                    sectors.zip(weights.iter()).map(|(at, w)| w * of(&still.induced[at])).sum()
+                };
+                let induced = &mut met.induced[blade * n_parts + part];
+                induced.normal.velocity = sum(|induced| induced.normal.velocity);
+                induced.tangential.velocity = sum(|induced| induced.tangential.velocity);
+            }
+        }
+        met.mean_induction = still.mean_induction;
+    }
+
     fn mean_induction(&self, wake: &Wake, conditions: &Conditions) -> f64 {
         let (mut taken, mut offered) = (0.0, 0.0);
         for (index, induced) in wake.induced.iter().enumerate() {
@@ -176,6 +228,33 @@ impl Part {
         let speed = through.hypot(along);
         let force = annulus.chord * speed * (section.lift * along + section.drag * through);
         force * self.section.width * self.lever
+    }
+
+    /// [`Part::moment`] and its slope over the blade's wind (m⁴/s).
+    fn moment_with_slope(
+        &self,
+        conditions: &Conditions,
+        blade: usize,
+        induced: &Induced,
+    ) -> [f64; 2] {
+        let Onset { normal, tangential } = self.onset(conditions, blade);
+        let through = normal - induced.normal.velocity;
+        let along = tangential + induced.tangential.velocity;
+        let annulus = &self.section.ring.annulus;
+        let angle = through.atan2(along) - annulus.section_pitch - conditions.pitch[blade];
+        let section = self.section.polar.at(angle);
+        let turned = self.section.polar.slopes_at(angle);
+        let speed = through.hypot(along);
+        let load = section.lift * along + section.drag * through;
+        let scale = annulus.chord * self.section.width * self.lever;
+        if speed == 0.0 {
+            return [0.0; 2];
+        }
+        // Over the wind through the disc: the speed grows by its share, the angle turns by along/speed².
+        let turning = along / speed * (turned.lift * along + turned.drag * through);
+        let slope = through / speed * load + turning + speed * section.drag;
+        let moment = annulus.chord * speed * load * self.section.width * self.lever;
+        [moment, scale * slope * self.cosine]
     }
 }
 

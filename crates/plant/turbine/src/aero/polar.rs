@@ -214,6 +214,28 @@ impl Polar {
 
     /// Coefficients at `angle_of_attack` (rad, any turn).
     pub fn at(&self, angle_of_attack: f64) -> SectionCoefficients {
+        let (low, high, angle) = self.around(angle_of_attack);
+        let share = (angle - low.angle) * low.per_width;
+        SectionCoefficients {
+            lift: low.lift + share * (high.lift - low.lift),
+            drag: low.drag + share * (high.drag - low.drag),
+            moment: low.moment + share * (high.moment - low.moment),
+        }
+    }
+
+    /// Slopes of the coefficients over the angle of attack (1/rad) at `angle_of_attack` (rad, any turn): those of the
+    /// straight line between the table's rows.
+    pub fn slopes_at(&self, angle_of_attack: f64) -> SectionCoefficients {
+        let (low, high, _) = self.around(angle_of_attack);
+        SectionCoefficients {
+            lift: (high.lift - low.lift) * low.per_width,
+            drag: (high.drag - low.drag) * low.per_width,
+            moment: (high.moment - low.moment) * low.per_width,
+        }
+    }
+
+    /// Rows on either side of `angle_of_attack` (rad, any turn), and that angle within the table.
+    fn around(&self, angle_of_attack: f64) -> (&Knot, &Knot, f64) {
         let angle = if (-PI..PI).contains(&angle_of_attack) {
             angle_of_attack
         } else {
@@ -224,13 +246,7 @@ impl Polar {
         while row + 2 < self.knots.len() && angle >= self.knots[row + 1].angle {
             row += 1;
         }
-        let (low, high) = (&self.knots[row], &self.knots[row + 1]);
-        let share = (angle - low.angle) * low.per_width;
-        SectionCoefficients {
-            lift: low.lift + share * (high.lift - low.lift),
-            drag: low.drag + share * (high.drag - low.drag),
-            moment: low.moment + share * (high.moment - low.moment),
-        }
+        (&self.knots[row], &self.knots[row + 1], angle)
     }
 
     /// The table, row by row: angle of attack (rad) and coefficients (–).

@@ -107,3 +107,47 @@ fn moments_overshoot_after_pitching_and_the_wake_restores_them() {
     assert!((at_last / steady - 1.0).abs() < 1e-6);
     assert!(at_first < at_last && at_last < model.moments(&before, &model.settled(&before))[0]);
 }
+
+#[test]
+fn slopes_are_those_of_the_moments() {
+    let (_, model) = model(Induction::SnelSchepers(SnelSchepers::default()));
+    for wind in [4.0, 7.3, 9.0, 13.0] {
+        let now = conditions([wind, wind + 0.7, wind - 0.4], 0.02);
+        let wake = model.settled(&now);
+        let (moments, slopes) = model.moments_with_slopes(&now, &wake);
+        assert_eq!(moments, model.moments(&now, &wake));
+        // Short enough that hardly any section passes a row of its polar.
+        let step = 1e-7;
+        for blade in 0..3 {
+            let beside = |sign: f64| {
+                let mut beside = now;
+                beside.winds[blade] += 0.5 * sign * step;
+                model.moments(&beside, &wake)[blade]
+            };
+            let expected = (beside(1.0) - beside(-1.0)) / step;
+            assert!((slopes[blade] / expected - 1.0).abs() < 1e-5, "{wind} {blade}");
+        }
+    }
+}
+
+/// Sectors that all hold the same hand it to every blade; one whose tilt differs is met above, not below.
+#[test]
+fn blades_meet_the_sectors_that_they_stand_in() {
+    let (_, model) = model(Induction::SnelSchepers(SnelSchepers::default()));
+    let uniform = model.settled(&conditions([9.0; 3], 0.0));
+    let mut met = uniform.clone();
+    model.meet(&uniform, 1.234, &mut met);
+    for (met, still) in met.induced.iter().zip(&uniform.induced) {
+        assert!((met.normal.velocity - still.normal.velocity).abs() < 1e-12);
+    }
+    let tilted = model.settled(&conditions([10.0, 8.5, 8.5], 0.0));
+    let n_parts = model.parts.len();
+    for blade in 0..3 {
+        // That blade stands up, where sector 1 is.
+        model.meet(&tilted, -blade_azimuth(0.0, blade, 3), &mut met);
+        for part in 0..n_parts {
+            let got = met.induced[blade * n_parts + part].normal.velocity;
+            assert!((got - tilted.induced[part].normal.velocity).abs() < 1e-12);
+        }
+    }
+}
