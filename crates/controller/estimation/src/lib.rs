@@ -4,6 +4,14 @@
 //! [`Estimator::update`]. Parameters are made once from the case; the belief itself is plain data, so that a run that
 //! was killed goes on with the same bits.
 
+pub mod phase_locked;
+
+mod error;
+pub mod helix;
+
+pub use error::EstimationError;
+pub use helix::{HelixEstimate, HelixEstimator};
+
 use basis::Measurements;
 
 /// Turns measurements into a belief, one control instant at a time.

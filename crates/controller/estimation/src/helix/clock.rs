@@ -1,0 +1,73 @@
+//! Which instants and readings can be used.
+
+use super::filter::Readings;
+use basis::{Measurements, PerBlade};
+use serde::{Deserialize, Serialize};
+
+/// Share of the rated rotor speed below which the model says nothing (–).
+const LEAST_SPEED: f64 = 0.2;
+
+/// What is remembered of the last instant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Clock {
+    /// Time of the last update (s); none before the first.
+    last: Option<f64>,
+    /// Moments at the last control instant (N m): a reading that repeats itself to the last bit is an instrument that
+    /// shows its last value.
+    moments: PerBlade<f64>,
+    /// Control instants since the last update (–).
+    waited: usize,
+}
+
+/// What an instant is good for.
+pub(super) enum Use {
+    /// Nothing: no time has passed, or the next update is still to come.
+    Nothing,
+    /// The belief goes on by itself for the interval (s): where the rotor stands is not known.
+    Blind(f64),
+    /// All of the rotor is known, and the moments as far as they are told; interval (s) since the last update.
+    Seen(f64, Readings),
+}
+
+impl Clock {
+    pub(super) fn new(n_blades: usize) -> Self {
+        Self { last: None, moments: PerBlade::splat(n_blades, 0.0), waited: 0 }
+    }
+
+    /// What `measurements` are good for, at every `every`-th control instant, on a rotor rated at `rated_speed` (rad/s).
+    pub(super) fn look(
+        &mut self,
+        measurements: &Measurements,
+        every: usize,
+        rated_speed: f64,
+    ) -> Use {
+        let n_blades = self.moments.len();
+        let readings = PerBlade::from_fn(n_blades, |blade| {
+            let reading = measurements.flap_moments.get(blade).copied().unwrap_or(f64::NAN);
+            if !reading.is_finite() || reading == self.moments[blade] {
+                return None;
+            }
+            self.moments[blade] = reading;
+            Some(reading)
+        });
+        let Measurements { time, interval, azimuth, rotor_speed, pitch, .. } = measurements;
+        if !time.is_finite() {
+            return Use::Nothing;
+        }
+        self.waited += 1;
+        let interval = match self.last {
+            None => *interval,
+            Some(last) if *time <= last => return Use::Nothing,
+            Some(_) if self.waited < every => return Use::Nothing,
+            Some(last) => time - last,
+        };
+        self.waited = 0;
+        self.last = Some(*time);
+        let known = azimuth.is_finite()
+            && *rotor_speed > LEAST_SPEED * rated_speed
+            && rotor_speed.is_finite()
+            && pitch.len() == n_blades
+            && pitch.iter().all(|pitch| pitch.is_finite());
+        if known { Use::Seen(interval, readings) } else { Use::Blind(interval) }
+    }
+}

@@ -1,0 +1,350 @@
+//! The Kalman filter proper: states move on, moments correct them, noise is learnt.
+
+use super::belief::{BIAS, Belief, MEAN_WIND, N_STATES, PASSING, RATE, Vector, WAVE};
+use super::options::{Adaptation, Measurement, Options};
+use super::rotor::{Expected, WINDS};
+use super::trust::Watch;
+use super::wave::Axis;
+use basis::angle::wrap_to_half_turn;
+use basis::mbc::{blade_azimuth, to_fixed_frame};
+use basis::{FixedFrame, PerBlade, Sense};
+use serde::{Deserialize, Serialize};
+
+/// Innovations beyond this many of their standard deviations count with less weight, after Huber (–).
+const DOUBTFUL: f64 = 3.0;
+/// Standard deviation of the mean wind at the start (m/s).
+const INITIAL_WIND: f64 = 1.0;
+/// Standard deviation of the lasting tilt and yaw at the start over the mean wind (–).
+const INITIAL_BIAS: f64 = 0.15;
+/// Standard deviation of the excitation rate at the start over the nominal rate (–).
+const INITIAL_RATE: f64 = 0.03;
+/// Standard deviation of a phase of which nothing is known (rad).
+const INITIAL_PHASE: f64 = 1.8;
+
+/// Parameters.
+#[derive(Clone, Debug)]
+pub(super) struct Filter {
+    pub(super) options: Options,
+    pub(super) sense: Sense,
+    /// Excitation rate (rad/s).
+    pub(super) rate: f64,
+    /// Rotor diameter (m).
+    pub(super) diameter: f64,
+}
+
+/// What time changes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct FilterState {
+    pub(super) belief: Belief,
+    pub(super) watch: Watch,
+    /// Learnt variance of the moments over that of the options (–).
+    measurement: f64,
+    /// Learnt variance of the eddies (m²/s²).
+    eddies: f64,
+    /// Learnt wandering of the wave over that of the options (–).
+    wandering: f64,
+    /// Wind as the blades tell it now (m/s).
+    pub(super) told: FixedFrame,
+}
+
+/// Slopes of the wind's average, tilt and yaw over the states.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WindSlopes {
+    average: Vector,
+    tilt: Vector,
+    yaw: Vector,
+}
+
+/// When and where readings are taken, and the wind that was expected.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Instant {
+    /// Time since the last update (s).
+    pub(super) interval: f64,
+    /// Angle of the excitation (rad).
+    pub(super) angle: f64,
+    /// Azimuth of blade 1 (rad).
+    pub(super) azimuth: f64,
+    /// Wind in the fixed frame (m/s).
+    pub(super) wind: FixedFrame,
+}
+
+/// What the blades say: moment (N m) where it can be used.
+pub(super) type Readings = PerBlade<Option<f64>>;
+
+impl Filter {
+    pub(super) fn blank(&self) -> FilterState {
+        FilterState {
+            belief: Belief::zero(),
+            watch: Watch::default(),
+            measurement: 1.0,
+            eddies: self.options.eddies.map_or(0.0, |eddies| eddies.deviation.powi(2)),
+            wandering: 1.0,
+            told: FixedFrame::default(),
+        }
+    }
+
+    /// The belief when nothing but the mean `wind` (m/s) is known.
+    pub(super) fn start(&self, wind: f64) -> Belief {
+        let Options { form, noise, bias, rate, .. } = self.options;
+        let mut belief = Belief::zero();
+        let mut variances = [0.0; N_STATES];
+        belief.mean[MEAN_WIND] = wind;
+        variances[MEAN_WIND] = INITIAL_WIND.powi(2);
+        let amplitude = noise.initial_amplitude;
+        for index in (0..4).filter(|index| form.is_used(*index)) {
+            let phase = form.is_phase(index);
+            variances[WAVE + index] = if phase { INITIAL_PHASE } else { amplitude }.powi(2);
+            // A phase has no slope where there is no amplitude to begin with.
+            if !phase && form.is_phase(1) {
+                belief.mean[WAVE + index] = amplitude;
+            }
+        }
+        if bias.is_some() {
+            variances[BIAS..BIAS + 2].fill((INITIAL_BIAS * wind).powi(2));
+        }
+        if let Some(eddies) = self.options.eddies {
+            variances[PASSING..PASSING + 2].fill(eddies.deviation.powi(2));
+        }
+        if rate.is_some() {
+            variances[RATE] = (INITIAL_RATE * self.rate).powi(2);
+        }
+        let pairs = self.pairs(|index| variances[WAVE + index]);
+        belief.spread(&variances, &pairs);
+        belief
+    }
+
+    /// Moves the belief on by `interval` (s).
+    pub(super) fn predict(&self, interval: f64, state: &mut FilterState) {
+        let Options { form, noise, bias, eddies, rate, .. } = self.options;
+        let mut incoming = [0.0; N_STATES];
+        if rate.is_some() {
+            self.turn(interval, &mut state.belief);
+        }
+        incoming[MEAN_WIND] = noise.mean_wind * interval;
+        for index in (0..4).filter(|index| form.is_used(*index)) {
+            let density = if form.is_phase(index) { noise.phase } else { noise.amplitude };
+            incoming[WAVE + index] = state.wandering * density * interval;
+        }
+        incoming[BIAS..BIAS + 2].fill(bias.unwrap_or(0.0) * interval);
+        incoming[RATE] = rate.unwrap_or(0.0) * interval;
+        if let Some(eddies) = eddies {
+            let wind = state.belief.mean[MEAN_WIND].max(WINDS[0]);
+            let kept = (-interval * wind / (eddies.time_constant * self.diameter)).exp();
+            for index in [PASSING, PASSING + 1] {
+                state.belief.mean[index] *= kept;
+                for other in 0..N_STATES {
+                    state.belief.covariance[index][other] *= kept;
+                    state.belief.covariance[other][index] *= kept;
+                }
+                incoming[index] = state.eddies * (1.0 - kept * kept);
+            }
+        }
+        let pairs = self.pairs(|index| incoming[WAVE + index]);
+        state.belief.spread(&incoming, &pairs);
+    }
+
+    /// The fixed frame's wind (m/s) at `angle` (rad) of the excitation where the states are `mean`, and its slopes.
+    pub(super) fn wind(&self, mean: &Vector, angle: f64) -> (FixedFrame, WindSlopes) {
+        let swing = self.options.form.swing(self.sense, &mean[WAVE..WAVE + 4], angle);
+        let mut slopes =
+            WindSlopes { average: [0.0; N_STATES], tilt: [0.0; N_STATES], yaw: [0.0; N_STATES] };
+        slopes.average[MEAN_WIND] = 1.0;
+        slopes.tilt[WAVE..WAVE + 4].copy_from_slice(&swing.tilt_slopes);
+        slopes.yaw[WAVE..WAVE + 4].copy_from_slice(&swing.yaw_slopes);
+        for lasting in [BIAS, PASSING] {
+            slopes.tilt[lasting] = 1.0;
+            slopes.yaw[lasting + 1] = 1.0;
+        }
+        let wind = FixedFrame {
+            average: mean[MEAN_WIND],
+            tilt: swing.tilt + mean[BIAS] + mean[PASSING],
+            yaw: swing.yaw + mean[BIAS + 1] + mean[PASSING + 1],
+        };
+        (wind, slopes)
+    }
+
+    /// Corrects `state` by what the blades say `now`, where `expected` was expected with `slopes` over the states; gives how
+    /// many blades were heard.
+    pub(super) fn correct(
+        &self,
+        now: &Instant,
+        expected: &Expected,
+        slopes: &PerBlade<Vector>,
+        readings: &Readings,
+        state: &mut FilterState,
+    ) -> usize {
+        let n_blades = readings.len();
+        let mean_moment = expected.moments.mean().abs();
+        let nominal = match self.options.noise.measurement {
+            Measurement::Moment(deviation) => deviation.powi(2),
+            Measurement::Share(share) => (share * mean_moment).powi(2),
+        }
+        .max(f64::MIN_POSITIVE);
+        let variance = nominal * state.measurement;
+        let before = state.belief.mean;
+        let (mut n_heard, mut square, mut left) = (0, 0.0, 0.0);
+        for blade in 0..n_blades {
+            let Some(reading) = readings[blade] else { continue };
+            let slopes = &slopes[blade];
+            let moved: f64 =
+                (0..N_STATES).map(|k| slopes[k] * (state.belief.mean[k] - before[k])).sum();
+            let innovation = reading - expected.moments[blade] - moved;
+            let spread = state.belief.variance_along(slopes);
+            let total = spread + variance;
+            let distance = innovation.abs() / total.sqrt();
+            let doubt = (distance / DOUBTFUL).max(1.0);
+            let believed = doubt * total - spread;
+            state.belief.correct(slopes, innovation, believed);
+            n_heard += 1;
+            square += (distance * distance).min(1e6);
+            // Posterior residual and what of the state is still unknown: together the reading's own noise.
+            let residual = (innovation * believed / (doubt * total)).abs();
+            let doubtful = DOUBTFUL * variance.sqrt();
+            left +=
+                (residual.min(doubtful).powi(2) + state.belief.variance_along(slopes)) / nominal;
+        }
+        if n_heard == 0 {
+            return 0;
+        }
+        self.options.form.tidy(&mut state.belief);
+        state.belief.mean[MEAN_WIND] = state.belief.mean[MEAN_WIND].clamp(WINDS[0], WINDS[1]);
+        if n_heard == n_blades {
+            self.hear(now, expected, readings, state);
+        }
+        let n = n_heard as f64;
+        state.watch.compare(now.interval, self.rate, square / n);
+        if let Some(adaptation) = self.options.adaptation {
+            self.learn(now.interval, adaptation, left / n, &before, state);
+        }
+        n_heard
+    }
+
+    /// Slopes of each blade's moment over the states, by the chain rule, blade 1 at `azimuth` (rad).
+    pub(super) fn blade_slopes(
+        azimuth: f64,
+        expected: &Expected,
+        wind: &WindSlopes,
+    ) -> PerBlade<Vector> {
+        let n_blades = expected.slopes.len();
+        PerBlade::from_fn(n_blades, |blade| {
+            let (sine, cosine) = blade_azimuth(azimuth, blade, n_blades).sin_cos();
+            let mut slopes = [0.0; N_STATES];
+            for (index, slope) in slopes.iter_mut().enumerate() {
+                let along =
+                    wind.average[index] + wind.tilt[index] * cosine + wind.yaw[index] * sine;
+                *slope = expected.slopes[blade] * along;
+            }
+            slopes
+        })
+    }
+
+    pub(super) fn axes(&self, belief: &Belief) -> [Axis; 2] {
+        self.options.form.axes(belief)
+    }
+
+    /// Takes down the wind that the blades tell `now`: the expected one and what their moments are over the expected ones.
+    fn hear(
+        &self,
+        now: &Instant,
+        expected: &Expected,
+        readings: &Readings,
+        state: &mut FilterState,
+    ) {
+        let over = PerBlade::from_fn(readings.len(), |blade| {
+            let over = readings[blade].map_or(0.0, |reading| reading - expected.moments[blade]);
+            if expected.slopes[blade] > 0.0 { over / expected.slopes[blade] } else { 0.0 }
+        });
+        let over = to_fixed_frame(now.azimuth, &over);
+        state.told = FixedFrame {
+            average: now.wind.average + over.average,
+            tilt: now.wind.tilt + over.tilt,
+            yaw: now.wind.yaw + over.yaw,
+        };
+        let bias = &state.belief.mean[BIAS..BIAS + 2];
+        let passing = FixedFrame {
+            tilt: state.told.tilt - bias[0],
+            yaw: state.told.yaw - bias[1],
+            ..state.told
+        };
+        state.watch.see(now.interval, self.rate, now.angle, passing);
+    }
+
+    /// Learns noise: `left` is the mean of the readings' own noise squared over the nominal variance (–), `before` the states
+    /// before the correction.
+    fn learn(
+        &self,
+        interval: f64,
+        adaptation: Adaptation,
+        left: f64,
+        before: &Vector,
+        state: &mut FilterState,
+    ) {
+        let share = 1.0 - (-interval / adaptation.time_constant).exp();
+        let bound = adaptation.bound * adaptation.bound;
+        state.measurement += share * (left - state.measurement);
+        state.measurement = state.measurement.clamp(1.0 / bound, bound);
+        let Belief { mean, covariance } = &state.belief;
+        if let Some(eddies) = self.options.eddies {
+            // What the eddies' states are expected to be, squared: their mean's square and their variance.
+            let square = |k: usize| mean[k] * mean[k] + covariance[k][k];
+            let seen = 0.5 * (square(PASSING) + square(PASSING + 1));
+            let nominal = eddies.deviation * eddies.deviation;
+            state.eddies += share * (seen - state.eddies);
+            state.eddies = state.eddies.clamp(nominal / bound, nominal * bound);
+        }
+        if adaptation.wave {
+            // In a steady filter corrections have the variance of what comes in.
+            let noise = self.options.noise;
+            let (mut sum, mut n) = (0.0, 0.0);
+            for index in (0..4).filter(|index| self.options.form.is_used(*index)) {
+                let phase = self.options.form.is_phase(index);
+                let density = if phase { noise.phase } else { noise.amplitude };
+                let step = wrap_if(phase, mean[WAVE + index] - before[WAVE + index]);
+                sum += step * step / (density * interval);
+                n += 1.0;
+            }
+            state.wandering += share * (sum / n - state.wandering);
+            state.wandering = state.wandering.clamp(1.0 / bound, bound);
+        }
+    }
+
+    /// Covariances of what comes in on tilt and on yaw, where `variance` is that of each state of the wave.
+    fn pairs(&self, variance: impl Fn(usize) -> f64) -> [(usize, usize, f64); 2] {
+        let mut pairs = [(WAVE, WAVE + 1, 0.0); 2];
+        for (pair, (a, b)) in pairs.iter_mut().zip(self.options.form.pairs()) {
+            let covariance = self.options.roundness * (variance(*a) * variance(*b)).sqrt();
+            *pair = (WAVE + a, WAVE + b, covariance);
+        }
+        pairs
+    }
+
+    /// Turns the wave ahead by its own rate over the nominal one, for `interval` (s).
+    fn turn(&self, interval: f64, belief: &mut Belief) {
+        let form = self.options.form;
+        let angle = belief.mean[RATE] * interval;
+        let mut transition = [[0.0; N_STATES]; N_STATES];
+        for (index, row) in transition.iter_mut().enumerate() {
+            row[index] = 1.0;
+        }
+        form.turn(&mut belief.mean[WAVE..WAVE + 4], angle);
+        if form.is_phase(1) {
+            transition[WAVE + 1][RATE] = interval;
+            transition[WAVE + 2][RATE] = interval;
+        } else {
+            let (sine, cosine) = angle.sin_cos();
+            for first in [WAVE, WAVE + 2] {
+                transition[first][first] = cosine;
+                transition[first][first + 1] = -sine;
+                transition[first + 1][first] = sine;
+                transition[first + 1][first + 1] = cosine;
+                transition[first][RATE] = -belief.mean[first + 1] * interval;
+                transition[first + 1][RATE] = belief.mean[first] * interval;
+            }
+        }
+        belief.carry(&transition);
+    }
+}
+
+fn wrap_if(phase: bool, angle: f64) -> f64 {
+    if phase { wrap_to_half_turn(angle) } else { angle }
+}

@@ -1,0 +1,247 @@
+//! The measurement function: from the wind in the fixed frame to the moments at the blade roots.
+
+use super::flap::{Flap, Tip};
+use super::options::{self, Options};
+use basis::mbc::{to_blades, to_fixed_frame};
+use basis::{FixedFrame, Measurements, PerBlade};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use turbine::Definition;
+use turbine::actuator_line::ActuatorLine;
+use turbine::aero::Induction;
+use turbine::aero::blade_element::Theory;
+use turbine::aero::blade_moments::{BladeMoments, Conditions, Wake};
+use turbine::aero::induction::SnelSchepers;
+
+/// Least and largest mean wind that the model is asked for (m/s).
+pub(super) const WINDS: [f64; 2] = [1.0, 50.0];
+/// Steps, and their length (s), in which a wake comes to rest at the start.
+const N_SETTLING: usize = 120;
+const SETTLING: f64 = 2.0;
+/// Share of the way that a step of the search for the first wind goes (–).
+const CAUTION: f64 = 0.3;
+/// Wind in which the wake is laid out before anything has been read (m/s).
+const NOMINAL_WIND: f64 = 9.0;
+
+/// Parameters.
+#[derive(Clone, Debug)]
+pub(super) struct Rotor {
+    blades: BladeMoments,
+    flap: Option<Flap>,
+    in_air: bool,
+    pitch_azimuth_offset: f64,
+    reading_delay: f64,
+    n_blades: usize,
+    settled: Wake,
+}
+
+/// What time changes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct State {
+    /// Induction of the blades, or of sectors that stand in the air.
+    wake: Wake,
+    tips: PerBlade<Tip>,
+}
+
+/// Working memory.
+#[derive(Clone, Debug)]
+pub(super) struct Memory {
+    met: Wake,
+}
+
+/// What turns and pitches, as measured, and where it stood when the moments were read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Posture {
+    pub(super) azimuth: f64,
+    pub(super) rotor_speed: f64,
+    pub(super) pitch: PerBlade<f64>,
+}
+
+/// Moments at the blade roots (N m) and how each grows with its blade's wind (N m/(m/s)).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Expected {
+    pub(super) moments: PerBlade<f64>,
+    pub(super) slopes: PerBlade<f64>,
+}
+
+impl Rotor {
+    pub(super) fn new(
+        definition: &Arc<Definition>,
+        n_elements: usize,
+        air_density: f64,
+        options: &Options,
+    ) -> Self {
+        let radius = definition.rotor_radius();
+        let line =
+            ActuatorLine::new(Arc::clone(definition), n_elements, air_density, 0.1 * radius, 0.0);
+        let induction = match options.rotor.wake {
+            options::Wake::Static => Induction::QuasiSteady,
+            options::Wake::WithBlades { time_factor } | options::Wake::InAir { time_factor } => {
+                Induction::SnelSchepers(SnelSchepers { time_factor })
+            }
+        };
+        let elements = line.elements();
+        let blades =
+            BladeMoments::new(definition, elements, induction, Theory::default(), air_density);
+        let n_blades = definition.n_blades;
+        let settled = blades.settled(&Conditions {
+            winds: PerBlade::splat(n_blades, NOMINAL_WIND),
+            rotor_speed: 0.8 * definition.rated_rotor_speed,
+            pitch: PerBlade::splat(n_blades, 0.0),
+        });
+        Self {
+            flap: options.rotor.flexible.then(|| Flap::new(definition)),
+            in_air: matches!(options.rotor.wake, options::Wake::InAir { .. }),
+            pitch_azimuth_offset: options.rotor.pitch_azimuth_offset,
+            reading_delay: options.rotor.reading_delay,
+            n_blades,
+            settled,
+            blades,
+        }
+    }
+
+    pub(super) fn start(&self) -> State {
+        State { wake: self.settled.clone(), tips: PerBlade::splat(self.n_blades, Tip::default()) }
+    }
+
+    pub(super) fn memory(&self) -> Memory {
+        Memory { met: self.settled.clone() }
+    }
+
+    pub(super) fn n_blades(&self) -> usize {
+        self.n_blades
+    }
+
+    /// How the rotor stood when the moments of `measurements` were made.
+    pub(super) fn posture(&self, measurements: &Measurements) -> Posture {
+        let azimuth = measurements.azimuth - self.reading_delay * measurements.rotor_speed;
+        let pitch = if self.pitch_azimuth_offset == 0.0 {
+            measurements.pitch
+        } else {
+            let fixed = to_fixed_frame(measurements.azimuth, &measurements.pitch);
+            to_blades(azimuth - self.pitch_azimuth_offset, fixed, self.n_blades)
+        };
+        Posture { azimuth, rotor_speed: measurements.rotor_speed, pitch }
+    }
+
+    /// Finds the uniform wind (m/s) that makes the `mean_moment` (N m); on return `state` has come to rest in it.
+    pub(super) fn settle(
+        &self,
+        mean_moment: f64,
+        posture: &Posture,
+        state: &mut State,
+        memory: &mut Memory,
+    ) -> f64 {
+        let mut wind = NOMINAL_WIND;
+        for _ in 0..N_SETTLING {
+            let fixed = FixedFrame { average: wind, ..FixedFrame::default() };
+            self.move_wake(SETTLING, fixed, posture, state, memory);
+            let expected = self.still(fixed, posture, state, memory);
+            let (mut moment, mut slope) = (expected.moments.mean(), expected.slopes.mean());
+            if let Some(flap) = &self.flap {
+                let share = flap.lasting_share(posture.rotor_speed);
+                (moment, slope) = (share * moment, share * slope);
+            }
+            // The wake's answer makes the lasting slope smaller than the one at once.
+            if slope > 0.0 {
+                let change = CAUTION * (mean_moment - moment) / slope;
+                wind = (wind + change.clamp(-1.0, 1.0)).clamp(WINDS[0], WINDS[1]);
+            }
+        }
+        let fixed = FixedFrame { average: wind, ..FixedFrame::default() };
+        let expected = self.still(fixed, posture, state, memory);
+        if let Some(flap) = &self.flap {
+            let tip = |moment: f64| flap.settled(posture.rotor_speed, moment);
+            state.tips = expected.moments.map(tip);
+        }
+        wind
+    }
+
+    /// Moves `state` on by `interval` (s) to the instant of `posture`, at which the fixed frame's wind is `wind` (m/s);
+    /// gives what is expected of the blade roots.
+    pub(super) fn advance(
+        &self,
+        interval: f64,
+        wind: FixedFrame,
+        posture: &Posture,
+        state: &mut State,
+        memory: &mut Memory,
+    ) -> Expected {
+        self.move_wake(interval, wind, posture, state, memory);
+        let mut expected = self.still(wind, posture, state, memory);
+        if let Some(flap) = &self.flap {
+            let share = flap.lasting_share(posture.rotor_speed);
+            for blade in 0..self.n_blades {
+                let (moment, slope) = (expected.moments[blade], expected.slopes[blade]);
+                let tip = &mut state.tips[blade];
+                expected.moments[blade] =
+                    flap.advance(interval, posture.rotor_speed, moment, slope, tip);
+                expected.slopes[blade] = share * slope;
+            }
+        }
+        expected
+    }
+
+    /// Moments (N m) that a lasting `wind` (m/s) would make of the wake as it is, for differences between neighbouring winds.
+    pub(super) fn moments_beside(
+        &self,
+        wind: FixedFrame,
+        posture: &Posture,
+        memory: &Memory,
+        state: &State,
+    ) -> PerBlade<f64> {
+        let conditions = self.conditions(wind, posture);
+        let moments = self.blades.moments(&conditions, self.met(state, memory));
+        let share = self.flap.as_ref().map_or(1.0, |flap| flap.lasting_share(posture.rotor_speed));
+        moments.map(|moment| share * moment)
+    }
+
+    /// Moments of blades that do not bend, in the wake as it is.
+    fn still(
+        &self,
+        wind: FixedFrame,
+        posture: &Posture,
+        state: &State,
+        memory: &Memory,
+    ) -> Expected {
+        let conditions = self.conditions(wind, posture);
+        let (moments, slopes) =
+            self.blades.moments_with_slopes(&conditions, self.met(state, memory));
+        Expected { moments, slopes }
+    }
+
+    fn conditions(&self, wind: FixedFrame, posture: &Posture) -> Conditions {
+        Conditions {
+            winds: to_blades(posture.azimuth, wind, self.n_blades),
+            rotor_speed: posture.rotor_speed,
+            pitch: posture.pitch,
+        }
+    }
+
+    fn met<'a>(&self, state: &'a State, memory: &'a Memory) -> &'a Wake {
+        if self.in_air { &memory.met } else { &state.wake }
+    }
+
+    fn move_wake(
+        &self,
+        interval: f64,
+        wind: FixedFrame,
+        posture: &Posture,
+        state: &mut State,
+        memory: &mut Memory,
+    ) {
+        if self.in_air {
+            // Each sector answers to the wind where it stands, and to a blade pitched as one that passes there.
+            let pitch = to_fixed_frame(posture.azimuth, &posture.pitch);
+            let conditions = Conditions {
+                winds: to_blades(0.0, wind, self.n_blades),
+                rotor_speed: posture.rotor_speed,
+                pitch: to_blades(0.0, pitch, self.n_blades),
+            };
+            self.blades.advance(interval, &conditions, &mut state.wake);
+            self.blades.meet(&state.wake, posture.azimuth, &mut memory.met);
+        } else {
+            self.blades.advance(interval, &self.conditions(wind, posture), &mut state.wake);
+        }
+    }
+}
