@@ -1,0 +1,72 @@
+//! Whether a loop has locked: small phase error, and an oscillation that stands out of the rest.
+
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Root mean square of the phase error below which a loop locks (rad).
+const LOCKS_BELOW: f64 = 0.35;
+/// Root mean square of the phase error above which it has lost the lock (rad).
+const LOSES_ABOVE: f64 = 0.7;
+/// Least power of the oscillation, A²/2, over that of what is neither oscillation nor offset (–); half of it loses the lock.
+const LEAST_POWER_RATIO: f64 = 0.5;
+
+/// Lock detection; means are exponential over one period of the oscillation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Lock {
+    /// Mean square of the phase error (rad²).
+    phase: f64,
+    /// Mean square of the residual (squared unit).
+    residual: f64,
+    /// Share of the time at a frequency limit (–).
+    limited: f64,
+    /// Phase turned since the beginning or since the lock was lost (rad).
+    turned: f64,
+    locked: bool,
+}
+
+impl Lock {
+    pub(super) fn new() -> Self {
+        Self { phase: 1.0, residual: 0.0, limited: 0.0, turned: 0.0, locked: false }
+    }
+
+    /// Takes in one instant: `turned` (rad) since the one before, phase error (rad), residual and amplitude (one unit),
+    /// whether the rate is at a limit.
+    pub(super) fn update(
+        &mut self,
+        turned: f64,
+        error: f64,
+        residual: f64,
+        amplitude: f64,
+        limited: bool,
+    ) {
+        let share = (turned / TAU).min(1.0);
+        self.phase += share * (error * error - self.phase);
+        self.residual += share * (residual * residual - self.residual);
+        self.limited += share * (f64::from(limited) - self.limited);
+        self.turned += turned;
+        let slack = if self.locked { 2.0 } else { 1.0 };
+        let steady = self.phase < if self.locked { LOSES_ABOVE } else { LOCKS_BELOW }.powi(2);
+        let stands_out = slack * amplitude * amplitude > 2.0 * LEAST_POWER_RATIO * self.residual;
+        let free = self.limited < if self.locked { 0.9 } else { 0.5 };
+        let holds = steady && stands_out && free && amplitude > 0.0;
+        if self.locked && !holds {
+            self.turned = 0.0;
+        }
+        // A lock counts from one period on, when the means have something to say.
+        self.locked = holds && (self.locked || self.turned > TAU);
+    }
+
+    /// Takes in an instant without a sample: after a period of them nothing is believed any more.
+    pub(super) fn miss(&mut self, turned: f64) {
+        let share = (turned / TAU).min(1.0);
+        self.phase += share * (1.0 - self.phase);
+        if self.phase >= LOSES_ABOVE.powi(2) {
+            self.locked = false;
+            self.turned = 0.0;
+        }
+    }
+
+    pub(super) fn is_locked(&self) -> bool {
+        self.locked
+    }
+}

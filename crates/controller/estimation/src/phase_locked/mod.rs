@@ -1,0 +1,109 @@
+//! Phase-locked loops: frequency, phase, amplitude and offset of a slow, wandering oscillation such as a wake's meandering.
+//!
+//! ```text
+//!            ┌───────────┐ A sin θ   ┌─────────────┐ θ̃  ┌─────────────┐
+//!  sample ──>│ generator │──────────>│ phase error │───>│ loop filter │──┬──> rate ω̂
+//!            │  at ω̂     │ −A cos θ  └─────────────┘    └─────────────┘  │
+//!            └───────────┘                  ^ θ̂                          v
+//!              ^      └──> amplitude,       └──────────────────── ∫ ω̂ (oscillator) ──> phase
+//!              └───────── ω̂      offset
+//! ```
+//!
+//! [`PhaseLockedLoop`] follows one signal, [`TwoAxisLoop`] a rotor's tilt and yaw moments as an [`Estimator`](crate::Estimator);
+//! [`follow`] takes a whole record. `docs/phase-locked-loops.md` has the theory.
+//!
+//! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, chapter 2.
+
+mod complex;
+mod generator;
+mod lock;
+mod oscillator;
+mod record;
+mod single;
+mod transfer;
+mod two_axis;
+
+pub use generator::{Generator, Kind, dc_gain};
+pub use oscillator::{Gains, LoopSettings, Order, Oscillator, Pole};
+pub use record::{FEWEST_PERIODS, follow};
+pub use single::{Estimate, PhaseLockedLoop, Settings};
+pub use transfer::{Response, Transfer, transfer};
+pub use two_axis::{Axis, Leader, TwoAxisEstimate, TwoAxisLoop, TwoAxisSettings};
+
+/// What keeps a phase-locked loop from being built, or a record from being followed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PhaseLockedError {
+    /// Rates do not span a range above zero.
+    #[error("rates from {lowest} to {highest} rad/s do not make a range above zero")]
+    Rates {
+        /// Lowest rate (rad/s).
+        lowest: f64,
+        /// Highest rate (rad/s).
+        highest: f64,
+    },
+    /// Too few samples a period.
+    #[error(
+        "samples every {interval} s are too far apart for the highest rate; at most {longest:.3} s will do"
+    )]
+    Interval {
+        /// Interval asked for (s).
+        interval: f64,
+        /// Longest that will do (s).
+        longest: f64,
+    },
+    /// Damping of a generator out of range.
+    #[error("damping {damping} of the generator does not lie between 0 and {most:.4}")]
+    Damping {
+        /// Damping asked for (–).
+        damping: f64,
+        /// Where the range ends (–).
+        most: f64,
+    },
+    /// Ratio of poles out of range.
+    #[error("ratio {pole_ratio} of the offset's pole to the oscillation's is not positive")]
+    PoleRatio {
+        /// Ratio asked for (–).
+        pole_ratio: f64,
+    },
+    /// Gain of the offset out of range.
+    #[error("gain {dc_gain} of the generator's offset is not positive")]
+    DcGain {
+        /// Gain asked for (–).
+        dc_gain: f64,
+    },
+    /// A number of the loop out of range.
+    #[error("{name} of the loop is {value}, not positive")]
+    LoopSetting {
+        /// Which number, with its unit.
+        name: &'static str,
+        /// What it is (unit as in `name`).
+        value: f64,
+    },
+    /// Gains with which errors grow.
+    #[error(
+        "the loop is unstable at {rate:.4} rad/s: a pole at {pole}; lower its natural rate or raise its damping"
+    )]
+    Unstable {
+        /// The pole furthest to the right.
+        pole: Pole,
+        /// Rate at which it stands there (rad/s).
+        rate: f64,
+    },
+    /// Too few samples to follow anything.
+    #[error("{n_samples} samples are too few, {needed} make three periods of the lowest rate")]
+    TooShort {
+        /// Samples given (–).
+        n_samples: usize,
+        /// Samples needed (–).
+        needed: usize,
+    },
+    /// Nothing to follow.
+    #[error("none of the {n_samples} samples differs from the others")]
+    Constant {
+        /// Samples given (–).
+        n_samples: usize,
+    },
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,333 @@
+//! Generators against their transfer functions, loops against tones, ramps, jumps and bad samples.
+
+use super::*;
+use basis::angle::wrap_to_half_turn;
+use basis::{FixedFrame, Sense};
+use proptest::prelude::*;
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+const INTERVAL: f64 = 0.1;
+/// Rates of St 0.15 to 0.3 in 9 to 10.5 m/s past 240 m (rad/s), and what a loop is given to look in.
+const BAND: [f64; 2] = [TAU * 0.15 * 9.0 / 240.0, TAU * 0.3 * 10.5 / 240.0];
+const RATES: [f64; 2] = [0.6 * BAND[0], 1.3 * BAND[1]];
+
+fn kinds() -> [Kind; 3] {
+    [Kind::Second, Kind::extended(SQRT_2, 1.0).unwrap(), Kind::Mixed]
+}
+
+fn settings(generator: Kind) -> Settings {
+    Settings { generator, ..Settings::between(RATES) }
+}
+
+/// Distance of a loop's belief from 3 + 2 sin(0.4 + ∫ω dt): of the phase (rad), the rate and the amplitude (–).
+fn distance(estimate: &Estimate, phase: f64, rate: f64) -> [f64; 3] {
+    let phase = wrap_to_half_turn(estimate.phase - phase);
+    [phase.abs(), (estimate.rate / rate - 1.0).abs(), (estimate.amplitude / 2.0 - 1.0).abs()]
+}
+
+#[test]
+fn gain_of_the_offset_places_the_poles() {
+    for m in [0.5, 1.0, 2.0] {
+        for k in [0.5, 1.0, SQRT_2] {
+            let gain = dc_gain(k, m).unwrap();
+            // Symbols of Eq. 2-13: α from the first relation, β² from the second; the third must then hold.
+            let alpha = (k + gain) / (m + 2.0);
+            let beta_squared = 1.0 - (2.0 * m + 1.0) * alpha * alpha;
+            let left = m * alpha * (alpha * alpha + beta_squared);
+            assert!((left - gain).abs() < 1e-14, "k {k}, m {m}: {left} and {gain}");
+        }
+    }
+    assert!(matches!(dc_gain(SQRT_2, 0.0), Err(PhaseLockedError::PoleRatio { .. })));
+    assert!(matches!(dc_gain(2.2, 1.0), Err(PhaseLockedError::Damping { .. })));
+}
+
+/// In-phase, quadrature and offset of a generator at `centre` fed with a sine at `ratio` times that, as gain and phase.
+fn measured(kind: Kind, centre: f64, ratio: f64) -> [Response; 3] {
+    let mut generator = Generator::new(kind, SQRT_2).unwrap();
+    let rate = ratio * centre;
+    let n_period = (TAU / (rate * INTERVAL)).round();
+    // A whole number of samples a period, so that sums over it are exact.
+    let interval = TAU / rate / n_period;
+    let mut sums = [[0.0; 2]; 3];
+    for step in 0..30 * n_period as usize {
+        let (sine, cosine) = (rate * interval * step as f64).sin_cos();
+        generator.update(centre * interval, sine);
+        if step >= 29 * n_period as usize {
+            let outputs = [generator.in_phase(), generator.quadrature(), generator.offset()];
+            for (sum, output) in sums.iter_mut().zip(outputs) {
+                sum[0] += output * sine * 2.0 / n_period;
+                sum[1] += output * cosine * 2.0 / n_period;
+            }
+        }
+    }
+    sums.map(|[re, im]| Response { gain: re.hypot(im), phase: im.atan2(re) })
+}
+
+#[test]
+fn generators_have_their_transfer_functions() {
+    for kind in kinds() {
+        for centre in [BAND[0], BAND[1]] {
+            for ratio in [0.3, 0.7, 0.95, 1.0, 1.3, 2.0, 4.0] {
+                let closed = transfer(kind, SQRT_2, ratio);
+                let expected = [closed.in_phase, closed.quadrature, closed.offset];
+                for (measured, expected) in measured(kind, centre, ratio).into_iter().zip(expected)
+                {
+                    let (gain, phase) = (measured.gain, expected.phase - measured.phase);
+                    assert!((gain - expected.gain).abs() <= 0.01 * expected.gain + 1e-9);
+                    let turned = gain * wrap_to_half_turn(phase).abs();
+                    assert!(turned < 0.01 * expected.gain + 1e-9, "{kind:?} {ratio}: {turned}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn at_the_centre_gain_and_phase_are_exact_for_any_interval() {
+    for kind in kinds() {
+        for turned in [0.003, 0.1, 0.9] {
+            let mut generator = Generator::new(kind, SQRT_2).unwrap();
+            let n_steps = (60.0 * TAU / turned) as usize;
+            for step in 0..=n_steps {
+                generator.update(turned, (turned * step as f64).sin());
+            }
+            let phase = turned * n_steps as f64;
+            assert!((generator.in_phase() - phase.sin()).abs() < 1e-9);
+            assert!((generator.quadrature() + phase.cos()).abs() < 1e-9);
+            assert!(generator.offset().abs() < 1e-9);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever the centre does, the state forgets where it came from.
+    #[test]
+    fn generators_forget_while_the_centre_jumps(
+        kind in 0_usize..3, damping in 0.3..1.9_f64, seed in 0.0..100.0_f64, swing in 0.0..2.8_f64,
+    ) {
+        let kind = match kind {
+            1 => Kind::Extended { dc_gain: 0.22 },
+            0 => Kind::Second,
+            _ => Kind::Mixed,
+        };
+        let mut one = Generator::new(kind, damping).unwrap();
+        let mut other = one;
+        one.update(0.1, 7.0);
+        other.update(0.1, -3.0);
+        for step in 0..3000 {
+            // From hardly turning to nearly half a turn a sample.
+            let turned = 0.05 + 0.5 * swing * (1.0 + (seed * f64::from(step * step)).sin());
+            let sample = (0.37 * f64::from(step)).sin();
+            one.update(turned, sample);
+            other.update(turned, sample);
+        }
+        prop_assert!((one.in_phase() - other.in_phase()).abs() < 1e-6);
+        prop_assert!((one.quadrature() - other.quadrature()).abs() < 1e-6);
+        prop_assert!((one.offset() - other.offset()).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_tone_is_followed_exactly_and_its_offset_taken_off() {
+    for kind in &kinds()[1..] {
+        for part in 0..=8 {
+            let rate = BAND[0] + (BAND[1] - BAND[0]) * f64::from(part) / 8.0;
+            let mut follower = PhaseLockedLoop::new(&settings(*kind), INTERVAL).unwrap();
+            let mut phase = 0.4;
+            for step in 0..50_000 {
+                phase = 0.4 + rate * INTERVAL * f64::from(step);
+                follower.update(INTERVAL, 3.0 + 2.0 * phase.sin());
+            }
+            let estimate = follower.estimate();
+            let [phase, rate, amplitude] = distance(&estimate, phase, rate);
+            assert!(phase < 0.1_f64.to_radians() && rate < 1e-3 && amplitude < 1e-6);
+            assert!((estimate.offset - 3.0).abs() < 1e-6, "{kind:?}: {}", estimate.offset);
+            assert!(estimate.locked && !estimate.held);
+        }
+    }
+}
+
+#[test]
+fn the_second_order_generator_is_disturbed_by_an_offset() {
+    let mut worst = 0.0_f64;
+    let mut follower = PhaseLockedLoop::new(&settings(Kind::Second), INTERVAL).unwrap();
+    for step in 0..20_000 {
+        let estimate =
+            follower.update(INTERVAL, 1.0 + 2.0 * (0.05 * INTERVAL * f64::from(step)).sin());
+        if step > 15_000 {
+            worst = worst.max((estimate.rate / 0.05 - 1.0).abs());
+        }
+    }
+    assert!(worst > 0.02, "{worst}");
+}
+
+/// Phase error (rad) after a ramp from one end of the band to the other over `duration` (s).
+fn error_on_a_ramp(order: Order, duration: f64) -> f64 {
+    let mut settings = settings(Kind::Mixed);
+    settings.follower.order = order;
+    let mut follower = PhaseLockedLoop::new(&settings, INTERVAL).unwrap();
+    let growth = (BAND[1] - BAND[0]) / duration;
+    let mut error = 0.0;
+    for step in 0..(duration / INTERVAL) as usize {
+        let time = INTERVAL * step as f64;
+        let phase = BAND[0] * time + 0.5 * growth * time * time;
+        let estimate = follower.update(INTERVAL, 1.0 + 2.0 * phase.sin());
+        error = wrap_to_half_turn(phase - estimate.phase);
+    }
+    error
+}
+
+#[test]
+fn only_type_two_lags_behind_a_ramp() {
+    let duration = 8000.0;
+    let growth = (BAND[1] - BAND[0]) / duration;
+    // Eq. 2-27 without the amplitude, which the half tangent takes off.
+    let lag =
+        growth / Gains::new(Order::Two, settings(Kind::Mixed).follower.natural_rate, 1.0).integral;
+    let two = error_on_a_ramp(Order::Two, duration);
+    assert!((two / lag - 1.0).abs() < 0.01, "{two} and {lag}");
+    assert!(error_on_a_ramp(Order::QuasiTwo, duration).abs() < 1e-3 * lag);
+    assert!(error_on_a_ramp(Order::Three, duration).abs() < 1e-2 * lag);
+}
+
+#[test]
+fn the_two_axes_keep_their_own_amplitudes_offsets_and_phases() {
+    for sense in [Sense::Clockwise, Sense::CounterClockwise] {
+        for leader in [Leader::Tilt, Leader::Yaw, Leader::Both] {
+            let signal = settings(Kind::Mixed);
+            let mut follower =
+                TwoAxisLoop::new(&TwoAxisSettings { signal, sense, leader }, INTERVAL).unwrap();
+            let mut phase = 0.0;
+            for step in 0..30_000 {
+                phase = 0.05 * INTERVAL * f64::from(step);
+                let tilt = 1e6 + 7e6 * phase.sin();
+                let yaw = -2e6 + 1.5e7 * (phase + sense.yaw_lead()).sin();
+                follower.follow(INTERVAL, FixedFrame { average: 0.0, tilt, yaw });
+            }
+            let TwoAxisEstimate { tilt, yaw, locked, .. } = follower.estimate();
+            assert!(locked);
+            assert!((tilt.amplitude - 7e6).abs() < 10.0 && (yaw.amplitude - 1.5e7).abs() < 10.0);
+            assert!((tilt.offset - 1e6).abs() < 10.0 && (yaw.offset + 2e6).abs() < 10.0);
+            assert!(wrap_to_half_turn(tilt.phase - phase).abs() < 1e-6);
+            assert!(wrap_to_half_turn(yaw.phase - phase - sense.yaw_lead()).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn samples_that_are_no_numbers_are_bridged_and_flagged() {
+    for kind in kinds() {
+        let offset = if kind == Kind::Second { 0.0 } else { 3.0 };
+        let mut follower = PhaseLockedLoop::new(&settings(kind), INTERVAL).unwrap();
+        for step in 0..24_000 {
+            let phase = 0.05 * INTERVAL * f64::from(step);
+            let missing = (20_000..20_400).contains(&step);
+            let sample = if missing { f64::NAN } else { offset + 2.0 * phase.sin() };
+            let estimate = follower.update(INTERVAL, sample);
+            assert_eq!(estimate.held, missing);
+            if step > 19_000 {
+                let [phase, rate, amplitude] = distance(&estimate, phase, 0.05);
+                assert!(
+                    phase < 1e-3 && rate < 1e-3 && amplitude < 1e-3,
+                    "{kind:?} at {step}: {phase} {rate} {amplitude}"
+                );
+                assert!(estimate.locked);
+            }
+        }
+        // A whole period without a sample loses the lock; numbers bring it back.
+        for _ in 0..1300 {
+            follower.update(INTERVAL, f64::INFINITY);
+        }
+        assert!(!follower.estimate().locked);
+        for step in 0..15_000 {
+            follower.update(INTERVAL, offset + 2.0 * (0.05 * INTERVAL * f64::from(step)).sin());
+        }
+        assert!(follower.estimate().locked);
+    }
+}
+
+#[test]
+fn noise_alone_does_not_lock() {
+    let mut follower = PhaseLockedLoop::new(&settings(Kind::Mixed), INTERVAL).unwrap();
+    let mut state = 1_u64;
+    for _ in 0..30_000 {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        let sample = (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+        assert!(!follower.update(INTERVAL, sample).locked);
+    }
+}
+
+#[test]
+fn what_cannot_be_built_says_why() {
+    let build = |change: fn(&mut Settings)| {
+        let mut settings = settings(Kind::Mixed);
+        change(&mut settings);
+        PhaseLockedLoop::new(&settings, INTERVAL).unwrap_err()
+    };
+    let crossing = build(|settings| settings.follower.rates = [-0.01, 0.1]);
+    assert!(matches!(crossing, PhaseLockedError::Rates { .. }), "{crossing}");
+    let unstable = build(|settings| settings.follower.natural_rate = 0.08);
+    let PhaseLockedError::Unstable { pole, .. } = unstable else { panic!("{unstable}") };
+    assert!(pole.real > 0.0 && pole.imaginary != 0.0);
+    assert!(unstable.to_string().contains("a pole at +"), "{unstable}");
+    assert!(matches!(build(|s| s.damping = 2.5), PhaseLockedError::Damping { .. }));
+    assert!(matches!(
+        build(|s| s.follower.damping_ratio = 0.0),
+        PhaseLockedError::LoopSetting { .. }
+    ));
+    let seldom = PhaseLockedLoop::new(&settings(Kind::Mixed), 30.0).unwrap_err();
+    assert!(matches!(seldom, PhaseLockedError::Interval { .. }));
+    let few = follow(&[1.0; 50], INTERVAL, &settings(Kind::Mixed)).unwrap_err();
+    assert!(matches!(few, PhaseLockedError::TooShort { .. }), "{few}");
+    for value in [5.0, f64::NAN] {
+        let still = follow(&[value; 20_000], INTERVAL, &settings(Kind::Mixed)).unwrap_err();
+        assert!(matches!(still, PhaseLockedError::Constant { .. }), "{still}");
+    }
+}
+
+/// Routh's condition k_p > τ k_i of the closed loop is where the pole crosses.
+#[test]
+fn the_slowest_pole_crosses_where_routh_says() {
+    let lag = 30.0;
+    let limit = SQRT_2 / lag;
+    for (share, stable) in [(0.99, true), (1.01, false)] {
+        let pole = Gains::new(Order::QuasiTwo, share * limit, 1.0 / SQRT_2).slowest_pole(lag);
+        assert_eq!(pole.real < 0.0, stable, "{pole}");
+    }
+    let gains = Gains::new(Order::Three, 0.01, 1.0 / SQRT_2);
+    assert!(gains.slowest_pole(lag).real < 0.0 && gains.slowest_pole(20.0 * lag).real > 0.0);
+}
+
+#[test]
+fn a_belief_survives_being_written_and_read() {
+    let mut follower = PhaseLockedLoop::new(&settings(Kind::Mixed), INTERVAL).unwrap();
+    let sample = |step: i32| 3.0 + 2.0 * (0.05 * INTERVAL * f64::from(step)).sin();
+    for step in 0..5000 {
+        follower.update(INTERVAL, sample(step));
+    }
+    let bytes = postcard::to_stdvec(&follower).unwrap();
+    let mut resumed: PhaseLockedLoop = postcard::from_bytes(&bytes).unwrap();
+    for step in 5000..6000 {
+        assert_eq!(follower.update(INTERVAL, sample(step)), resumed.update(INTERVAL, sample(step)));
+    }
+}
+
+/// From every phase and rate the half tangent comes home within the same turn; nothing waits at half a turn.
+#[test]
+fn the_loop_locks_from_any_phase() {
+    for part in 0..16 {
+        let first = TAU * f64::from(part) / 16.0 + PI;
+        for rate in [BAND[0], BAND[1]] {
+            let mut follower = PhaseLockedLoop::new(&settings(Kind::Mixed), INTERVAL).unwrap();
+            let mut phase = 0.0;
+            for step in 0..40_000 {
+                phase = first + rate * INTERVAL * f64::from(step);
+                follower.update(INTERVAL, 2.0 * phase.sin());
+            }
+            let [phase, rate, _] = distance(&follower.estimate(), phase, rate);
+            assert!(phase < 1e-4 && rate < 1e-4 && follower.estimate().locked);
+        }
+    }
+}
