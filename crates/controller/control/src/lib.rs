@@ -6,11 +6,14 @@
 
 pub mod baseline;
 mod excitation;
+pub mod phase_sync;
+pub mod meandering;
 mod turbine_controller;
 
 pub use baseline::Baseline;
 pub use excitation::{Excitation, Helix, Pulse, Sense, excitation_rate};
-pub use turbine_controller::TurbineController;
+pub use phase_sync::PhaseSync;
+pub use turbine_controller::{ControllerState, TurbineController};
 
 use basis::{Commands, Measurements};
 

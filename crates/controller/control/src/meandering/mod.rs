@@ -1,0 +1,253 @@
+//! Meandering synchronised: cyclic pitch in phase with a slow oscillation of the rotor's own loads, which it amplifies to mix
+//! the wake or attenuates to spare the turbine.
+//!
+//! A phase-locked loop tells phase, amplitude and offset of tilt and yaw moment. Each axis' amplitude is brought to a factor
+//! α of the baseline's by proportional and integral action, and what that asks for is multiplied with the phase:
+//!
+//! ```text
+//! tilt pitch = −(A_tilt sin(θ + λ) + b_tilt)/g          yaw pitch = −(A_yaw sin(θ ± π/2 + λ) + b_yaw)/g
+//! ```
+//!
+//! with amplitudes A and offsets b that are to be added to the load (N m), the loss g of moment per pitch, the lead λ that
+//! makes up for the load's delay, and the upper sign for a load that circles counter-clockwise looking downwind. The blades'
+//! pitch follows by the inverse multi-blade transformation with an azimuth offset.
+//!
+//! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, Eqs. 2-37 to
+//! 2-40, 4-2; the azimuth offset by [`Decoupling::from_senses`], which the source leaves to trial.
+
+mod axis;
+mod decoupling;
+mod reference;
+
+pub use decoupling::{Answer, Decoupling};
+pub use estimation::phase_locked::{PhaseLockedError, TwoAxisEstimate, TwoAxisSettings};
+pub use reference::Reference;
+
+use axis::AxisLoop;
+use basis::angle::{wrap_to_half_turn, wrap_to_turn};
+use basis::mbc::to_blades;
+use basis::{FixedFrame, Measurements, PerBlade};
+use estimation::Estimator;
+use estimation::phase_locked::TwoAxisLoop;
+use reference::Baseline;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// How the loads are followed, and which way they circle.
+    pub follower: TwoAxisSettings,
+    /// Amplitude asked for over the baseline's, α (–): above one amplifies, below attenuates.
+    pub factor: f64,
+    /// The baseline's amplitudes.
+    pub reference: Reference,
+    /// How pitch acts on the loads.
+    pub decoupling: Decoupling,
+    /// Integral action: amplitude added per time and amplitude missing (1/s).
+    pub bandwidth: f64,
+    /// Proportional action: amplitude added per amplitude missing (–).
+    pub proportional: f64,
+    /// Largest pitch amplitude on either axis (rad).
+    pub maximum_amplitude: f64,
+    /// Largest constant pitch on either axis to bring offsets to zero (rad); 0 leaves offsets alone.
+    pub maximum_offset: f64,
+    /// Time from which it acts (s).
+    pub start: f64,
+}
+
+/// What keeps meandering control from being built.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum MeanderingError {
+    /// The loads cannot be followed so.
+    #[error(transparent)]
+    PhaseLocked(#[from] PhaseLockedError),
+    /// A number out of range.
+    #[error("{name} is {value}, not {expected}")]
+    Setting {
+        /// Which number, with its unit.
+        name: &'static str,
+        /// What it is (unit as in `name`).
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+}
+
+/// Meandering control of one turbine; serialises whole, state included.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Meandering {
+    settings: Settings,
+    follower: TwoAxisLoop,
+    baseline: Baseline,
+    tilt: AxisLoop,
+    yaw: AxisLoop,
+    /// Share of the command that is given (–).
+    authority: f64,
+    /// Tilt and yaw pitch last given (rad).
+    commands: FixedFrame,
+    /// Azimuth (rad) and rotor speed (rad/s) last read, to turn on by where they are not.
+    azimuth: f64,
+    rotor_speed: f64,
+}
+
+impl Meandering {
+    /// Control with `settings` for measurements every `interval` (s).
+    ///
+    /// # Errors
+    /// [`MeanderingError`] names what cannot be used.
+    pub fn new(settings: Settings, interval: f64) -> Result<Self, MeanderingError> {
+        settings.check()?;
+        Ok(Self {
+            settings,
+            follower: TwoAxisLoop::new(&settings.follower, interval)?,
+            baseline: Baseline::default(),
+            tilt: AxisLoop::default(),
+            yaw: AxisLoop::default(),
+            authority: 0.0,
+            commands: FixedFrame::default(),
+            azimuth: 0.0,
+            rotor_speed: 0.0,
+        })
+    }
+
+    /// Takes in `measurements` and adds what is asked of each blade to `pitch` (rad).
+    ///
+    /// Begins without a step, and fades out over a period whenever the loop loses its lock.
+    pub fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
+        let estimate = self.follower.update(measurements);
+        let interval = measurements.interval;
+        self.turn(measurements);
+        self.learn(measurements, &estimate);
+        let Settings { reference, factor, start, .. } = self.settings;
+        let amplitudes = self.baseline.amplitudes(estimate.rate, reference);
+        let acts = estimate.locked && measurements.time >= start && amplitudes.is_some();
+        let slew = interval * estimate.rate / TAU;
+        self.authority = (self.authority + if acts { slew } else { -slew }).clamp(0.0, 1.0);
+        if let Some([tilt, yaw]) = amplitudes
+            && acts
+            && !estimate.held
+        {
+            self.tilt.update(interval, &estimate.tilt, factor * tilt, &self.settings);
+            self.yaw.update(interval, &estimate.yaw, factor * yaw, &self.settings);
+        }
+        if self.authority == 0.0 {
+            self.commands = FixedFrame::default();
+            return;
+        }
+        self.commands = self.asked(&estimate);
+        let azimuth = self.azimuth + self.settings.decoupling.azimuth_offset;
+        let added = to_blades(azimuth, self.commands, pitch.len());
+        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
+            *pitch += added;
+        }
+    }
+
+    /// Tilt and yaw pitch (rad) of the loops' sums. van Veldhoven (2024), Eq. 2-40.
+    fn asked(&self, estimate: &TwoAxisEstimate) -> FixedFrame {
+        let Settings { follower, decoupling, .. } = &self.settings;
+        let angle = estimate.phase + decoupling.delay * estimate.rate;
+        let pitch = |axis: &AxisLoop, lead: f64| {
+            let load = axis.added_amplitude() * (angle + lead).sin() + axis.added_offset();
+            -self.authority * load / decoupling.gain
+        };
+        FixedFrame {
+            average: 0.0,
+            tilt: pitch(&self.tilt, 0.0),
+            yaw: pitch(&self.yaw, follower.sense.yaw_lead()),
+        }
+    }
+
+    /// Where the rotor stands; it turns on at its last speed where the encoder gives no number.
+    fn turn(&mut self, measurements: &Measurements) {
+        if measurements.rotor_speed.is_finite() {
+            self.rotor_speed = measurements.rotor_speed;
+        }
+        self.azimuth = if measurements.azimuth.is_finite() {
+            measurements.azimuth
+        } else {
+            wrap_to_turn(self.azimuth + self.rotor_speed * measurements.interval)
+        };
+    }
+
+    /// Keeps the baseline's amplitudes up while the loop is locked.
+    fn learn(&mut self, measurements: &Measurements, estimate: &TwoAxisEstimate) {
+        let Settings { reference, start, .. } = self.settings;
+        let early = match reference {
+            Reference::Learned { duration } => measurements.time < start - duration,
+            Reference::Given { .. } | Reference::Observed => false,
+        };
+        if early || !estimate.locked || estimate.held {
+            return;
+        }
+        let lead = self.settings.follower.sense.yaw_lead();
+        let ahead = [
+            wrap_to_half_turn(estimate.tilt.phase - estimate.phase),
+            wrap_to_half_turn(estimate.yaw.phase - estimate.phase - lead),
+        ];
+        let added = [&self.tilt, &self.yaw].map(|axis| self.authority * axis.added_amplitude());
+        let axes = [&estimate.tilt, &estimate.yaw];
+        let interval = measurements.interval;
+        self.baseline.update(interval, estimate.rate, reference, axes, added, ahead);
+    }
+
+    /// What is believed of the loads.
+    pub fn estimate(&self) -> TwoAxisEstimate {
+        self.follower.estimate()
+    }
+
+    /// Amplitudes of tilt and yaw moment that it takes for the baseline's (N m); nothing while they are being learned.
+    pub fn baseline(&self) -> Option<[f64; 2]> {
+        self.baseline.amplitudes(self.estimate().rate, self.settings.reference)
+    }
+
+    /// Tilt and yaw pitch last added (rad).
+    pub fn commands(&self) -> FixedFrame {
+        self.commands
+    }
+
+    /// What is asked for.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// In words: "meandering × 0.75 cw".
+    pub fn describe(&self) -> String {
+        format!("meandering × {} {}", self.settings.factor, self.settings.follower.sense)
+    }
+}
+
+impl Settings {
+    fn check(&self) -> Result<(), MeanderingError> {
+        let check = |name, value: f64, good: bool, expected| {
+            if good && value.is_finite() {
+                Ok(())
+            } else {
+                Err(MeanderingError::Setting { name, value, expected })
+            }
+        };
+        let positive = |name, value: f64| check(name, value, value > 0.0, "positive");
+        let not_negative = |name, value: f64| check(name, value, value >= 0.0, "zero or more");
+        not_negative("factor of the baseline's amplitude (–)", self.factor)?;
+        positive("moment lost per pitch (N m/rad)", self.decoupling.gain)?;
+        let offset = self.decoupling.azimuth_offset;
+        check("azimuth offset (rad)", offset, true, "a number")?;
+        check("delay of the load behind pitch (s)", self.decoupling.delay, true, "a number")?;
+        positive("bandwidth of the integral action (1/s)", self.bandwidth)?;
+        not_negative("proportional action (–)", self.proportional)?;
+        positive("largest pitch amplitude (rad)", self.maximum_amplitude)?;
+        not_negative("largest constant pitch (rad)", self.maximum_offset)?;
+        check("start (s)", self.start, true, "a number")?;
+        match self.reference {
+            Reference::Given { tilt, yaw } => {
+                positive("baseline amplitude of the tilt moment (N m)", tilt)?;
+                positive("baseline amplitude of the yaw moment (N m)", yaw)
+            }
+            Reference::Learned { duration } => positive("duration of learning (s)", duration),
+            Reference::Observed => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,270 @@
+//! Control of loads that answer to pitch at once or late, turned or not, against what was asked for.
+
+use super::*;
+use basis::mbc::to_fixed_frame;
+use basis::{PerBlade, Sense};
+use estimation::phase_locked::{Leader, Settings as Signal};
+use std::collections::VecDeque;
+use std::f64::consts::FRAC_PI_3;
+
+const INTERVAL: f64 = 0.2;
+const RATE: f64 = 0.08;
+const ROTOR_SPEED: f64 = 0.7;
+const GAIN: f64 = 2.5e8;
+/// Amplitudes and offsets of the disturbance's tilt and yaw (N m).
+const AMPLITUDES: [f64; 2] = [7e6, 1.5e7];
+const OFFSETS: [f64; 2] = [-1e6, 2e6];
+
+/// A rotor whose loads follow pitch late and turned by an angle.
+struct Rotor {
+    sense: Sense,
+    azimuth_offset: f64,
+    /// Tilt and yaw pitch of the steps before, oldest first.
+    pitch: VecDeque<FixedFrame>,
+}
+
+impl Rotor {
+    fn new(sense: Sense, n_late: usize, azimuth_offset: f64) -> Self {
+        Self { sense, azimuth_offset, pitch: vec![FixedFrame::default(); n_late + 1].into() }
+    }
+
+    fn moments(&self, time: f64) -> FixedFrame {
+        let phase = RATE * time;
+        let (sine, cosine) = self.azimuth_offset.sin_cos();
+        let pitch = self.pitch[0];
+        let [tilt, yaw] =
+            [pitch.tilt * cosine - pitch.yaw * sine, pitch.tilt * sine + pitch.yaw * cosine];
+        FixedFrame {
+            average: 5e7,
+            tilt: OFFSETS[0] + AMPLITUDES[0] * phase.sin() - GAIN * tilt,
+            yaw: OFFSETS[1] + AMPLITUDES[1] * (phase + self.sense.yaw_lead()).sin() - GAIN * yaw,
+        }
+    }
+
+    fn measurements(&self, step: usize) -> Measurements {
+        let time = INTERVAL * step as f64;
+        let azimuth = wrap_to_turn(ROTOR_SPEED * time);
+        Measurements {
+            time,
+            interval: INTERVAL,
+            azimuth,
+            rotor_speed: ROTOR_SPEED,
+            generator_speed: ROTOR_SPEED,
+            pitch: PerBlade::splat(3, 0.0),
+            generator_torque: 0.0,
+            power: 0.0,
+            thrust: 0.0,
+            aerodynamic_torque: 0.0,
+            rotor_wind_speed: 9.0,
+            flap_moments: to_blades(azimuth, self.moments(time), 3),
+            edge_moments: PerBlade::splat(3, 0.0),
+            tower_top_acceleration: 0.0,
+        }
+    }
+
+    /// One step under `control`; gives what the blades were told (rad).
+    fn step(&mut self, step: usize, control: &mut Meandering) -> PerBlade<f64> {
+        let measurements = self.measurements(step);
+        let mut pitch = PerBlade::splat(3, 0.1);
+        control.add_to(&mut pitch, &measurements);
+        self.pitch.pop_front();
+        self.pitch.push_back(to_fixed_frame(measurements.azimuth, &pitch));
+        pitch
+    }
+}
+
+fn settings(sense: Sense, factor: f64) -> Settings {
+    let signal = Signal::between([0.05, 0.13]);
+    Settings {
+        follower: TwoAxisSettings { signal, sense, leader: Leader::Both },
+        factor,
+        reference: Reference::Given { tilt: AMPLITUDES[0], yaw: AMPLITUDES[1] },
+        decoupling: Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: GAIN },
+        bandwidth: 0.01,
+        proportional: 0.1,
+        maximum_amplitude: 0.1,
+        maximum_offset: 0.0,
+        start: 400.0,
+    }
+}
+
+/// Amplitudes over the baseline's (–) and offsets (N m) that are left after 3000 s.
+fn settled(rotor: &mut Rotor, settings: Settings) -> ([f64; 2], [f64; 2]) {
+    let mut control = Meandering::new(settings, INTERVAL).unwrap();
+    for step in 0..15_000 {
+        rotor.step(step, &mut control);
+    }
+    let TwoAxisEstimate { tilt, yaw, locked, .. } = control.estimate();
+    assert!(locked);
+    ([tilt.amplitude / AMPLITUDES[0], yaw.amplitude / AMPLITUDES[1]], [tilt.offset, yaw.offset])
+}
+
+#[test]
+fn the_factor_asked_for_is_reached_on_both_axes() {
+    for sense in [Sense::Clockwise, Sense::CounterClockwise] {
+        for factor in [1.25, 0.75, 0.35, 2.0] {
+            let mut rotor = Rotor::new(sense, 1, 0.0);
+            let (reached, offsets) = settled(&mut rotor, settings(sense, factor));
+            for (reached, (offset, expected)) in
+                reached.into_iter().zip(offsets.into_iter().zip(OFFSETS))
+            {
+                assert!((reached / factor - 1.0).abs() < 0.005, "{sense} {factor}: {reached}");
+                assert!((offset - expected).abs() < 2e4, "{offset}");
+            }
+        }
+    }
+}
+
+#[test]
+fn amplitudes_that_are_learned_or_observed_do_as_well() {
+    for reference in [Reference::Learned { duration: 300.0 }, Reference::Observed] {
+        let sense = Sense::Clockwise;
+        for factor in [1.25, 0.5] {
+            let mut asked = settings(sense, factor);
+            asked.reference = reference;
+            asked.start = 900.0;
+            let (reached, _) = settled(&mut Rotor::new(sense, 1, 0.0), asked);
+            for reached in reached {
+                assert!((reached / factor - 1.0).abs() < 0.02, "{reference:?} {factor}: {reached}");
+            }
+        }
+    }
+}
+
+#[test]
+fn offsets_are_taken_away_where_asked() {
+    let sense = Sense::CounterClockwise;
+    let mut asked = settings(sense, 0.75);
+    asked.maximum_offset = 0.05;
+    let (reached, offsets) = settled(&mut Rotor::new(sense, 1, 0.0), asked);
+    assert!(reached.iter().all(|reached| (reached / 0.75 - 1.0).abs() < 0.005));
+    assert!(offsets.iter().all(|offset| offset.abs() < 1e4), "{offsets:?}");
+}
+
+/// What a helix of small amplitude does to the tilt moment of `rotor`, by correlation over whole periods.
+fn answer(sense: Sense, n_late: usize, azimuth_offset: f64) -> Answer {
+    let mut rotor = Rotor::new(sense, n_late, azimuth_offset);
+    let rate = std::f64::consts::TAU / 400.0 / INTERVAL;
+    let amplitude = 0.01;
+    let (mut sine_sum, mut cosine_sum) = (0.0, 0.0);
+    for step in 0..1200 {
+        // Only what pitch changes: the disturbance at time zero is a constant.
+        let change = rotor.moments(0.0).tilt - OFFSETS[0];
+        let angle = rate * INTERVAL * f64::from(step);
+        if step >= 800 {
+            sine_sum -= change * angle.sin() / 200.0;
+            cosine_sum -= change * angle.cos() / 200.0;
+        }
+        rotor.pitch.pop_front();
+        rotor.pitch.push_back(FixedFrame {
+            average: 0.0,
+            tilt: amplitude * angle.sin(),
+            yaw: amplitude * (angle + sense.yaw_lead()).sin(),
+        });
+    }
+    Answer { gain: sine_sum.hypot(cosine_sum) / amplitude, lead: cosine_sum.atan2(sine_sum) }
+}
+
+#[test]
+fn two_helices_tell_azimuth_offset_delay_and_gain() {
+    let (n_late, turned) = (9, FRAC_PI_3);
+    let rate = std::f64::consts::TAU / 400.0 / INTERVAL;
+    let [ccw, cw] =
+        [Sense::CounterClockwise, Sense::Clockwise].map(|sense| answer(sense, n_late, turned));
+    let decoupling = Decoupling::from_senses(rate, ccw, cw);
+    assert!((decoupling.azimuth_offset - turned).abs() < 1e-9, "{decoupling:?}");
+    // The pitch is applied from the step after on.
+    assert!((decoupling.delay - INTERVAL * (n_late + 1) as f64).abs() < 1e-6, "{decoupling:?}");
+    assert!((decoupling.gain / GAIN - 1.0).abs() < 1e-9);
+    for sense in [Sense::Clockwise, Sense::CounterClockwise] {
+        let mut asked = settings(sense, 0.5);
+        asked.decoupling = decoupling;
+        let (reached, _) = settled(&mut Rotor::new(sense, n_late, turned), asked);
+        assert!(reached.iter().all(|reached| (reached / 0.5 - 1.0).abs() < 0.01), "{reached:?}");
+    }
+}
+
+#[test]
+fn control_begins_without_a_step_and_stays_within_its_bounds() {
+    let sense = Sense::Clockwise;
+    let mut asked = settings(sense, 3.0);
+    asked.maximum_amplitude = 0.02;
+    asked.proportional = 0.5;
+    let mut control = Meandering::new(asked, INTERVAL).unwrap();
+    let mut rotor = Rotor::new(sense, 1, 0.0);
+    let mut before = FixedFrame::default();
+    for step in 0..10_000 {
+        let pitch = rotor.step(step, &mut control);
+        let commands = control.commands();
+        if INTERVAL * step as f64 <= asked.start - INTERVAL {
+            assert!(pitch.iter().all(|pitch| *pitch == 0.1));
+        }
+        // The steepest that a sine of the largest amplitude can be, and a little for growing.
+        let steepest = 1.2 * 0.02 * RATE * INTERVAL;
+        assert!((commands.tilt - before.tilt).abs() < steepest);
+        assert!((commands.yaw - before.yaw).abs() < steepest);
+        assert!(commands.tilt.abs() < 0.020_01 && commands.yaw.abs() < 0.020_01);
+        before = commands;
+    }
+    // The bound is let go of at once when less is asked for: the integral has not wound up.
+    control.settings.factor = 1.0;
+    for step in 10_000..10_000 + (8.0 / asked.bandwidth / INTERVAL) as usize {
+        rotor.step(step, &mut control);
+    }
+    let reached = control.estimate().tilt.amplitude / AMPLITUDES[0];
+    assert!((reached - 1.0).abs() < 0.03, "{reached}");
+}
+
+#[test]
+fn bad_readings_are_bridged() {
+    let sense = Sense::CounterClockwise;
+    let mut control = Meandering::new(settings(sense, 0.75), INTERVAL).unwrap();
+    let mut rotor = Rotor::new(sense, 1, 0.0);
+    let mut before = 0.1;
+    for step in 0..15_000 {
+        let mut measurements = rotor.measurements(step);
+        match step % 500 {
+            3 => measurements.azimuth = f64::NAN,
+            77 => measurements.flap_moments[1] = f64::NAN,
+            200 => measurements.rotor_speed = f64::INFINITY,
+            _ => {}
+        }
+        let azimuth = rotor.measurements(step).azimuth;
+        let mut pitch = PerBlade::splat(3, 0.1);
+        control.add_to(&mut pitch, &measurements);
+        assert_eq!(control.estimate().held, [3, 77].contains(&(step % 500)));
+        assert!((pitch[0] - before).abs() < 0.01);
+        before = pitch[0];
+        rotor.pitch.pop_front();
+        rotor.pitch.push_back(to_fixed_frame(azimuth, &pitch));
+    }
+    let reached = control.estimate().yaw.amplitude / AMPLITUDES[1];
+    assert!((reached / 0.75 - 1.0).abs() < 0.01, "{reached}");
+}
+
+#[test]
+fn control_survives_being_written_and_read() {
+    let sense = Sense::Clockwise;
+    let mut control = Meandering::new(settings(sense, 1.25), INTERVAL).unwrap();
+    let mut rotor = Rotor::new(sense, 1, 0.0);
+    for step in 0..4000 {
+        rotor.step(step, &mut control);
+    }
+    let bytes = postcard::to_stdvec(&control).unwrap();
+    let resumed: Meandering = postcard::from_bytes(&bytes).unwrap();
+    assert_eq!(control, resumed);
+}
+
+#[test]
+fn what_cannot_be_built_says_why() {
+    let build = |change: fn(&mut Settings)| {
+        let mut settings = settings(Sense::Clockwise, 1.25);
+        change(&mut settings);
+        Meandering::new(settings, INTERVAL).unwrap_err().to_string()
+    };
+    assert!(build(|s| s.factor = -1.0).contains("zero or more"));
+    assert!(build(|s| s.decoupling.gain = 0.0).contains("positive"));
+    assert!(build(|s| s.start = f64::NAN).contains("start"));
+    assert!(build(|s| s.reference = Reference::Learned { duration: 0.0 }).contains("learning"));
+    assert!(build(|s| s.follower.signal.follower.rates = [0.0, 0.1]).contains("above zero"));
+}
