@@ -65,7 +65,9 @@ pub enum AnalysisError {
         n_lines: usize,
     },
     /// Times that do not keep one distance.
-    #[error("the times are not evenly spaced: sample {index} follows after {step} s, the others after {interval} s")]
+    #[error(
+        "the times are not evenly spaced: sample {index} follows after {step} s, the others after {interval} s"
+    )]
     UnevenTimes {
         /// The first sample with another distance to the one before, the first of all is 0.
         index: usize,

@@ -4,11 +4,17 @@
 
 mod centre;
 mod disc;
+mod phase_average;
 mod profile;
+mod recentred;
+mod swing;
 
 pub use centre::{centre, centre_line};
 pub use disc::{Disc, disc_average};
+pub use phase_average::{PhaseAverage, PhasePlane};
 pub use profile::{Profile, along_first, along_second, velocity_at};
+pub use recentred::recentred_deficit;
+pub use swing::{Orbit, Swing, orbit, swing};
 
 use crate::AnalysisError;
 use basis::records::{Plane, PlaneAxes};
@@ -78,5 +84,7 @@ fn expect_axes(
     }
 }
 
+#[cfg(test)]
+mod phase_tests;
 #[cfg(test)]
 mod tests;

@@ -29,28 +29,19 @@ pub use moments::fixed_frame_moments;
 pub use truth::{AxisWind, GroundTruth, ground_truth};
 
 use crate::AnalysisError;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use basis::Sense;
+use std::f64::consts::TAU;
 
 /// What phases are measured against: the upstream turbine's excitation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
     /// Excitation rate ω_e in the fixed frame (rad/s).
     pub rate: f64,
-    /// Lead of the yaw over the tilt component (rad): π/2 for a ccw helix, −π/2 for a cw one.
-    pub yaw_lead: f64,
+    /// Which way the helix winds; its yaw leads its tilt by [`Sense::yaw_lead`].
+    pub sense: Sense,
 }
 
 impl Reference {
-    /// A counter-clockwise helix of `rate` (rad/s).
-    pub fn counter_clockwise(rate: f64) -> Self {
-        Self { rate, yaw_lead: FRAC_PI_2 }
-    }
-
-    /// A clockwise helix of `rate` (rad/s).
-    pub fn clockwise(rate: f64) -> Self {
-        Self { rate, yaw_lead: -FRAC_PI_2 }
-    }
-
     /// Excitation frequency (Hz).
     pub fn frequency(&self) -> f64 {
         self.rate / TAU
@@ -63,7 +54,7 @@ impl Reference {
 
     /// Yaw wind (m/s) of `amplitude` (m/s) and `phase` (rad) at `time` (s).
     pub fn yaw_wind(&self, time: f64, amplitude: f64, phase: f64) -> f64 {
-        amplitude * (self.rate * time + self.yaw_lead + phase).sin()
+        amplitude * (self.rate * time + self.sense.yaw_lead() + phase).sin()
     }
 }
 

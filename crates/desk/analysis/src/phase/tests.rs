@@ -12,7 +12,7 @@ const PERIOD: f64 = 240.0 / 2.625;
 const N_SAMPLES: usize = 5400;
 
 fn reference() -> Reference {
-    Reference::counter_clockwise(TAU / PERIOD)
+    Reference { rate: TAU / PERIOD, sense: Sense::CounterClockwise }
 }
 
 fn winds(reference: &Reference, start: f64, tilt: [f64; 2], yaw: [f64; 2]) -> Vec<FixedFrame> {
@@ -43,8 +43,8 @@ proptest! {
         tilt in -3.1..3.1_f64, yaw in -3.1..3.1_f64, start in 0.0..900.0_f64, ccw: bool,
         amplitudes in (0.2..2.0_f64, 0.2..2.0_f64),
     ) {
-        let rate = TAU / PERIOD;
-        let reference = if ccw { Reference::counter_clockwise(rate) } else { Reference::clockwise(rate) };
+        let sense = if ccw { Sense::CounterClockwise } else { Sense::Clockwise };
+        let reference = Reference { sense, ..reference() };
         let winds = winds(&reference, start, [amplitudes.0, tilt], [amplitudes.1, yaw]);
         let truth = truth(&winds, start, &reference);
         let inner = (11.0 * PERIOD / INTERVAL) as usize;
@@ -93,7 +93,7 @@ fn the_reference_is_equation_20() {
     let angle = reference.rate * time + 0.4;
     assert!((reference.tilt_wind(time, 2.0, 0.4) - 2.0 * angle.sin()).abs() < 1e-12);
     assert!((reference.yaw_wind(time, 2.0, 0.4) - 2.0 * angle.cos()).abs() < 1e-12);
-    let cw = Reference::clockwise(reference.rate);
+    let cw = Reference { sense: Sense::Clockwise, ..reference };
     assert!((cw.yaw_wind(time, 2.0, 0.4) + 2.0 * angle.cos()).abs() < 1e-12);
 }
 

@@ -87,7 +87,7 @@ pub fn ground_truth(
         interval,
         average: winds.iter().map(|wind| wind.average).collect(),
         tilt: component(|wind| wind.tilt, 0.0)?,
-        yaw: component(|wind| wind.yaw, reference.yaw_lead)?,
+        yaw: component(|wind| wind.yaw, reference.sense.yaw_lead())?,
         trusted: forgotten.min(end)..end,
     })
 }
