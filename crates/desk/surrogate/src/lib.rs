@@ -1,0 +1,1 @@
+//! Surrogates: a few expensive results made into a curve with its uncertainty.
