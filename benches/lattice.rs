@@ -70,7 +70,10 @@ fn main() {
         let speed = (0..n_repeats)
             .map(|_| updates_per_second(cached, n_threads, Backend::detect(), false))
             .fold(0.0, f64::max);
-        println!("{n_threads} threads on {cached:?} cells, in the cache: {:.0} M updates/s", speed / 1e6);
+        println!(
+            "{n_threads} threads on {cached:?} cells, in the cache: {:.0} M updates/s",
+            speed / 1e6
+        );
     }
     let air = lattice(n_cells, 1, Backend::detect(), true);
     let cells = n_cells.iter().product::<usize>() as f64;

@@ -27,12 +27,13 @@ pub use basis::Sense;
 pub use helix::Helix;
 pub use pulse::Pulse;
 
+use crate::phase_sync::{PhaseSync, SyncState};
 use basis::{Measurements, PerBlade};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
 /// What is added to the baseline's pitch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default)]
 pub enum Excitation {
     /// Nothing.
     #[default]
@@ -41,19 +42,34 @@ pub enum Excitation {
     Helix(Helix),
     /// Collective pitch, periodic.
     Pulse(Pulse),
+    /// Individual pitch that joins the helix that comes from upstream.
+    PhaseSync(Box<PhaseSync>),
+}
+
+/// Everything of an excitation that time changes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum ExcitationState {
+    /// It follows from time alone.
+    #[default]
+    None,
+    /// Of [`Excitation::PhaseSync`].
+    PhaseSync(SyncState),
 }
 
 impl Excitation {
     /// Adds the excitation at `measurements.time` to `pitch` (rad); amplitude zero leaves every bit as it was.
-    pub fn add_to(&self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
-        if self.amplitude() == 0.0 {
-            return;
-        }
+    pub fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
+        let silent = self.amplitude() == 0.0;
         let added = match self {
+            Self::PhaseSync(sync) => sync.pitch(measurements),
+            _ if silent => return,
             Self::None => return,
             Self::Helix(helix) => helix.pitch(measurements.time, measurements.azimuth, pitch.len()),
             Self::Pulse(pulse) => PerBlade::splat(pitch.len(), pulse.pitch(measurements.time)),
         };
+        if silent {
+            return;
+        }
         for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
             *pitch += added;
         }
@@ -65,6 +81,7 @@ impl Excitation {
             Self::None => 0.0,
             Self::Helix(helix) => helix.amplitude,
             Self::Pulse(pulse) => pulse.amplitude,
+            Self::PhaseSync(sync) => sync.settings().amplitude,
         }
     }
 
@@ -74,10 +91,11 @@ impl Excitation {
             Self::None => 0.0,
             Self::Helix(helix) => helix.rate,
             Self::Pulse(pulse) => pulse.rate,
+            Self::PhaseSync(sync) => sync.settings().rate,
         }
     }
 
-    /// In words: "baseline", "helix ccw 4.0° St 0.25", "pulse 2.5° St 0.25".
+    /// In words: "baseline", "helix ccw 4.0° St 0.25", "pulse 2.5° St 0.25", "synchronised ccw 4.0° at 150°".
     pub fn describe(&self) -> String {
         let words = |kind: &str, amplitude: f64, strouhal: f64| {
             format!("{kind} {:.1}° St {strouhal:.2}", amplitude.to_degrees())
@@ -88,6 +106,22 @@ impl Excitation {
                 words(&format!("helix {}", helix.sense), helix.amplitude, helix.strouhal)
             }
             Self::Pulse(pulse) => words("pulse", pulse.amplitude, pulse.strouhal),
+            Self::PhaseSync(sync) => sync.describe(),
+        }
+    }
+
+    /// Everything that time changes, for a checkpoint.
+    pub fn state(&self) -> ExcitationState {
+        match self {
+            Self::PhaseSync(sync) => ExcitationState::PhaseSync(sync.state()),
+            Self::None | Self::Helix(_) | Self::Pulse(_) => ExcitationState::None,
+        }
+    }
+
+    /// Continues from `state`, which an excitation of the same settings gave; a state of another kind changes nothing.
+    pub fn restore(&mut self, state: ExcitationState) {
+        if let (Self::PhaseSync(sync), ExcitationState::PhaseSync(state)) = (self, state) {
+            sync.restore(state);
         }
     }
 }
@@ -100,7 +134,7 @@ pub fn excitation_rate(strouhal: f64, wind_speed: f64, diameter: f64) -> f64 {
 
 /// Share of the amplitude (–) at `time` (s): nothing up to `start` (s), then a raised cosine over one period of
 /// `rate` (rad/s), then all. Steps to all at `start` when `rate` is zero.
-fn fade_in(time: f64, start: f64, rate: f64) -> f64 {
+pub(crate) fn fade_in(time: f64, start: f64, rate: f64) -> f64 {
     let turns = (time - start) * rate.abs() / TAU;
     if time <= start {
         0.0

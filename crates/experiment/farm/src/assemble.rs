@@ -1,11 +1,14 @@
 //! From case to farm: turbines, controllers and air put together.
 
 use crate::air::Air;
-use crate::case::{Case, Control, Ground, Run, Sides, Solver};
+use crate::case::{Case, Control, Ground, PhaseEstimator, Run, Sides, Solver};
 use crate::plan::{Footprint, Plan};
 use crate::{Farm, Machine};
+use basis::angle::wrap_to_turn;
 use control::baseline::{Baseline, Constants};
-use control::{Excitation, Helix, Pulse, TurbineController};
+use control::phase_sync::{self, SyncSettings};
+use control::{Excitation, Helix, PhaseSync, Pulse, TurbineController, excitation_rate};
+use estimation::{EstimationError, HelixEstimator};
 use flow::lattice;
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
@@ -20,6 +23,9 @@ pub enum AssemblyError {
     /// A model's masses, stiffnesses or mode shapes make no structure.
     #[error(transparent)]
     Structure(#[from] StructureError),
+    /// The phase of a helix cannot be sought as asked.
+    #[error("the phase of the helix cannot be estimated")]
+    Estimation(#[from] EstimationError),
     /// The system has no more threads to give.
     #[error("no threads for the turbines")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -85,14 +91,18 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
     settings
 }
 
-/// What runs on a turbine of `model`; Strouhal numbers are taken with the case's wind speed and the
-/// first turbine's diameter (`diameter`, m).
+/// What runs on a turbine of `model`, at time steps of `plan`; Strouhal numbers are taken with the case's wind speed and the
+/// first turbine's diameter.
+///
+/// # Errors
+/// [`EstimationError`] when the phase of a helix cannot be sought as asked.
 pub fn controller(
     control: &Control,
     model: &Model,
-    wind_speed: f64,
-    diameter: f64,
-) -> TurbineController {
+    case: &Case,
+    plan: &Plan,
+) -> Result<TurbineController, EstimationError> {
+    let (wind_speed, diameter) = (case.wind.speed, plan.diameter);
     let excitation = match control {
         Control::Baseline | Control::Absent => Excitation::None,
         Control::Helix(asked) => {
@@ -109,8 +119,34 @@ pub fn controller(
             pulse.start = asked.start;
             Excitation::Pulse(pulse)
         }
+        Control::PhaseSync(asked) => {
+            let rate = excitation_rate(asked.strouhal, wind_speed, diameter);
+            let setting = estimation::helix::Setting {
+                sense: asked.sense,
+                rate,
+                interval: plan.interval,
+                air_density: case.wind.air_density,
+                n_elements: estimation::helix::Setting::N_ELEMENTS,
+            };
+            let options = match asked.estimator {
+                PhaseEstimator::Robust => estimation::helix::Options::default(),
+                PhaseEstimator::Published => estimation::helix::Options::published(),
+            };
+            let estimator = HelixEstimator::new(&model.definition, &setting, options)?;
+            let settings = SyncSettings {
+                sense: asked.sense,
+                amplitude: asked.amplitude,
+                strouhal: asked.strouhal,
+                rate,
+                offset: wrap_to_turn(asked.offset),
+                azimuth_offset: asked.azimuth_offset,
+                start: asked.start,
+                trust: asked.fallback.then_some(phase_sync::TRUST),
+            };
+            Excitation::PhaseSync(Box::new(PhaseSync::new(settings, estimator)))
+        }
     };
-    TurbineController::new(Baseline::new(model.constants.clone()), excitation)
+    Ok(TurbineController::new(Baseline::new(model.constants.clone()), excitation))
 }
 
 /// The farm of one run, at time zero: the turbines that are there in it, in the case's order, in `air`. `models` holds one
@@ -137,7 +173,7 @@ pub fn farm(
             pitch: model.constants.fine_pitch,
         };
         let turbine = Turbine::new(Arc::clone(&model.definition), plan.positions[index], settings)?;
-        let control = controller(&run.control[index], model, case.wind.speed, plan.diameter);
+        let control = controller(&run.control[index], model, case, plan)?;
         machines.push(Machine::new(turbine, control));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

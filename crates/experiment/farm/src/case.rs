@@ -177,6 +177,8 @@ pub enum Control {
     Helix(Helix),
     /// The pulse: collective pitch, periodic.
     Pulse(Pulse),
+    /// The helix in step with the one that comes from upstream.
+    PhaseSync(PhaseSync),
     /// The turbine is not there in this run.
     Absent,
 }
@@ -211,6 +213,36 @@ pub struct Pulse {
     pub start: f64,
 }
 
+/// Settings of a turbine that joins the helix that comes from upstream.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PhaseSync {
+    /// Which way the helix winds that it joins.
+    pub sense: Sense,
+    /// Pitch amplitude (rad); 0 is the baseline that watches.
+    pub amplitude: f64,
+    /// Strouhal number of the helix that it joins (–).
+    pub strouhal: f64,
+    /// Lead of the pitch over the wind that meets the rotor (rad, any turn).
+    pub offset: f64,
+    /// Azimuth offset of the inverse multi-blade transformation (rad).
+    pub azimuth_offset: f64,
+    /// Time at which it fades in (s).
+    pub start: f64,
+    /// What finds the phase.
+    pub estimator: PhaseEstimator,
+    /// Whether it fades to the baseline where the estimate cannot be trusted.
+    pub fallback: bool,
+}
+
+/// What finds the phase of a helix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PhaseEstimator {
+    /// The extended Kalman filter with states for what its model lacks.
+    Robust,
+    /// The extended Kalman filter as it was published.
+    Published,
+}
+
 /// What is kept of a run, beside series and summary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
@@ -221,6 +253,8 @@ pub struct Output {
     pub plane_interval: Option<f64>,
     /// Crosswind planes at these distances behind the first turbine (diameters).
     pub crosswind_diameters: Vec<f64>,
+    /// Places in [`Case::turbines`] of the turbines where runs without them keep the wind along radial lines over the disc.
+    pub lines_at: Vec<usize>,
     /// Time between volume snapshots, VTK (s); none when absent.
     pub volume_interval: Option<f64>,
     /// Checkpoint every so many seconds of wall time (s).

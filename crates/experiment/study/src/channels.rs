@@ -1,6 +1,8 @@
 //! The channels of a run's series, one row a control instant.
 
-use basis::{Commands, Measurements, Vector3};
+use basis::{Commands, FixedFrame, Measurements, Vector3};
+use control::{Excitation, PhaseSync};
+use farm::Machine;
 use farm::farm::Recorder;
 use turbine::Turbine;
 
@@ -29,30 +31,50 @@ pub(crate) const LOADS: [&str; 18] = [
     "TTDspSS",
 ];
 
+/// What a turbine that seeks a helix believes, behind its measurements.
+const ESTIMATES: [&str; 9] = [
+    "estimated_wind_m_s",
+    "estimated_tilt_wind_m_s",
+    "estimated_yaw_wind_m_s",
+    "estimated_tilt_amplitude_m_s",
+    "estimated_yaw_amplitude_m_s",
+    "estimated_tilt_phase_rad",
+    "estimated_yaw_phase_rad",
+    "estimate_trust",
+    "sync_share",
+];
+
 /// Gathers one row of the series from the turbines' signals.
 ///
 /// A row is: time, wind at the hub-height probe upstream of the first turbine, then for each
-/// turbine what it measured, what it was told, and its loads.
+/// turbine what it measured, what it was told, its loads, and what it believes where it seeks a helix; then the wind along
+/// radial lines at the places of turbines that are not there.
 pub(crate) struct Row {
     names: Vec<String>,
     values: Vec<f64>,
     offsets: Vec<usize>,
     /// Of each turbine: where its loads begin, and places among its channels with the factor to the unit in the name.
     loads: Vec<(usize, Vec<(usize, f64)>)>,
+    /// Of each turbine that seeks a helix: where its beliefs begin.
+    estimates: Vec<Option<usize>>,
+    /// Where the winds along lines begin.
+    lines: usize,
     /// All channels of one turbine.
     channels: Vec<f64>,
 }
 
 impl Row {
-    /// The row for `turbines`, each with its name; `all_loads` or a choice of them.
+    /// The row for `machines`, each with its name, and for lines at the places `lines`; `all_loads` or a choice of them.
     pub(crate) fn new<'a>(
-        turbines: impl Iterator<Item = (&'a str, &'a Turbine)>,
+        machines: impl Iterator<Item = (&'a str, &'a Machine)>,
+        lines: &[&str],
         all_loads: bool,
     ) -> Self {
         let mut names: Vec<String> = SHARED.iter().map(|&name| name.to_owned()).collect();
-        let (mut offsets, mut loads) = (Vec::new(), Vec::new());
+        let (mut offsets, mut loads, mut estimates) = (Vec::new(), Vec::new(), Vec::new());
         let mut n_channels = 0;
-        for (name, turbine) in turbines {
+        for (name, machine) in machines {
+            let turbine = &machine.turbine;
             let n_blades = turbine.definition().n_blades;
             offsets.push(names.len());
             let scalars = [
@@ -84,9 +106,19 @@ impl Row {
                 format!("{name}.{}_{}", channel.name, channel.unit)
             }));
             loads.push((first, kept.iter().map(|&i| (i, channels[i].scale)).collect()));
+            estimates.push(estimate(machine).map(|_| names.len()));
+            if estimate(machine).is_some() {
+                names.extend(ESTIMATES.iter().map(|channel| format!("{name}.{channel}")));
+            }
+        }
+        let first_line = names.len();
+        for place in lines {
+            let channels = ["average", "tilt", "yaw"];
+            names.extend(channels.map(|channel| format!("{place}.lines_{channel}_m_s")));
         }
         let values = vec![0.0; names.len()];
-        Self { names, values, offsets, loads, channels: vec![0.0; n_channels] }
+        let channels = vec![0.0; n_channels];
+        Self { names, values, offsets, loads, estimates, lines: first_line, channels }
     }
 
     /// Takes the loads of turbine number `index` in, as they are before it moves on.
@@ -97,6 +129,29 @@ impl Row {
         for (value, (channel, scale)) in self.values[*first..].iter_mut().zip(kept) {
             *value = channels[*channel] * scale;
         }
+    }
+
+    /// Takes in what `machine` number `index` believes after its last decision.
+    pub(crate) fn beliefs(&mut self, index: usize, machine: &Machine) {
+        let (Some(first), Some(sync)) = (self.estimates[index], estimate(machine)) else { return };
+        let Some(belief) = sync.estimate() else { return };
+        self.values[first..first + ESTIMATES.len()].copy_from_slice(&[
+            belief.mean_wind,
+            belief.helix.tilt,
+            belief.helix.yaw,
+            belief.tilt.amplitude,
+            belief.yaw.amplitude,
+            belief.tilt.phase,
+            belief.yaw.phase,
+            belief.trust.overall(),
+            sync.share(),
+        ]);
+    }
+
+    /// Takes in the `wind` (m/s) along the lines at place number `index`.
+    pub(crate) fn lines(&mut self, index: usize, wind: FixedFrame) {
+        let first = self.lines + 3 * index;
+        self.values[first..first + 3].copy_from_slice(&[wind.average, wind.tilt, wind.yaw]);
     }
 
     /// Names of the channels, in the order of [`Self::values`].
@@ -112,6 +167,14 @@ impl Row {
     /// Starts the row of `time` (s) with the probe's `wind` (m/s).
     pub(crate) fn start(&mut self, time: f64, wind: Vector3) {
         self.values[..SHARED.len()].copy_from_slice(&[time, wind.x, wind.y, wind.z]);
+    }
+}
+
+/// What seeks a helix on `machine`.
+fn estimate(machine: &Machine) -> Option<&PhaseSync> {
+    match &machine.controller.excitation {
+        Excitation::PhaseSync(sync) => Some(sync),
+        _ => None,
     }
 }
 

@@ -5,6 +5,7 @@
 mod air;
 mod channels;
 mod error;
+mod lines;
 mod loads;
 mod outb;
 mod prepare;

@@ -2,6 +2,7 @@
 
 use crate::StudyError;
 use crate::watcher::{Estimate, Watcher};
+use basis::angle::wrap_to_turn;
 use farm::assemble::Model;
 use farm::case::{Case, Control, Solver};
 use farm::self_check::{Tunnel, self_check};
@@ -13,6 +14,7 @@ use flow::inflow::{MeanProfile, TurbulentInflow, mann, size_box};
 use formats::turbine_file::TurbineFile;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use turbine::blockage::equivalent_speed_ratio;
@@ -311,6 +313,19 @@ fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
             let strouhal = match control {
                 Control::Helix(helix) => helix.strouhal,
                 Control::Pulse(pulse) => pulse.strouhal,
+                Control::PhaseSync(sync) => {
+                    if !(0.0..TAU).contains(&sync.offset) {
+                        let (asked, taken) = (sync.offset, wrap_to_turn(sync.offset));
+                        warnings.push(format!(
+                            "run {}: {}'s offset of {:.0}° is taken as {:.0}°",
+                            run.name,
+                            placement.name,
+                            asked.to_degrees(),
+                            taken.to_degrees()
+                        ));
+                    }
+                    sync.strouhal
+                }
                 Control::Baseline | Control::Absent => continue,
             };
             let period = plan.diameter / (strouhal * case.wind.speed);

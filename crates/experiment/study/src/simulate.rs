@@ -3,12 +3,13 @@
 use crate::StudyError;
 use crate::air;
 use crate::channels::Row;
+use crate::lines::{self, WindLines};
 use crate::outb;
 use crate::prepare::Setup;
 use crate::watcher::{Progress, Watcher};
 use basis::Vector3;
 use basis::records::{Cost, Plane, PlaneAxes};
-use control::TurbineController;
+use control::ControllerState;
 use farm::case::Run;
 use farm::{Air, Farm, assemble};
 use flow::inflow::prescribed::Clock;
@@ -49,7 +50,7 @@ struct RunState {
     wall_time: f64,
     series_bytes: u64,
     turbines: Vec<turbine::State>,
-    controllers: Vec<TurbineController>,
+    controllers: Vec<ControllerState>,
     averages: Vec<PlaneAverageState>,
     n_plane_instants: u64,
     n_volumes: u64,
@@ -66,6 +67,7 @@ struct Simulation<'a> {
     n_plane_instants: u64,
     n_volumes: u64,
     probe: Vector3,
+    lines: Vec<WindLines>,
     started: Instant,
     wall_time_before: f64,
     first_step: u64,
@@ -131,8 +133,10 @@ impl<'a> Simulation<'a> {
         let air = air::begin(setup)?;
         let farm = assemble::farm(&setup.case, run, &setup.plan, &setup.models, air)?;
         let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
-        let turbines = farm.machines().iter().map(|machine| &machine.turbine);
-        let row = Row::new(names.zip(turbines), setup.case.flow.solver.is_prescribed());
+        let lines = lines::of(setup, run);
+        let places: Vec<&str> = lines.iter().map(|lines| lines.name.as_str()).collect();
+        let all_loads = setup.case.flow.solver.is_prescribed();
+        let row = Row::new(names.zip(farm.machines()), &places, all_loads);
         let averages = match farm.flow().lattice() {
             Some(lattice) => slices(setup)
                 .into_iter()
@@ -160,6 +164,7 @@ impl<'a> Simulation<'a> {
                 n_plane_instants: 0,
                 n_volumes: 0,
                 probe,
+                lines,
                 started,
                 wall_time_before: 0.0,
                 first_step: 0,
@@ -175,6 +180,7 @@ impl<'a> Simulation<'a> {
             n_plane_instants: state.n_plane_instants,
             n_volumes: state.n_volumes,
             probe,
+            lines,
             started,
             wall_time_before: state.wall_time,
             first_step: state.step,
@@ -187,7 +193,7 @@ impl<'a> Simulation<'a> {
             .zip(state.turbines.into_iter().zip(state.controllers))
         {
             machine.turbine.restore(turbine);
-            machine.controller = controller;
+            machine.controller.restore(controller);
         }
         for (average, stored) in simulation.averages.iter_mut().zip(state.averages) {
             average.restore(stored)?;
@@ -209,9 +215,15 @@ impl<'a> Simulation<'a> {
             for (index, machine) in self.farm.machines().iter().enumerate() {
                 self.row.loads(index, &machine.turbine);
             }
+            for (index, lines) in self.lines.iter_mut().enumerate() {
+                self.row.lines(index, lines.wind(self.farm.flow()));
+            }
         }
         self.farm.advance(&mut self.row).map_err(StepError::Flow)?;
         if kept {
+            for (index, machine) in self.farm.machines().iter().enumerate() {
+                self.row.beliefs(index, machine);
+            }
             self.series.write(self.row.values())?;
         }
         let step = self.farm.step();
@@ -254,7 +266,7 @@ impl<'a> Simulation<'a> {
             wall_time: self.wall_time(),
             series_bytes,
             turbines: self.farm.machines().iter().map(|m| m.turbine.state().clone()).collect(),
-            controllers: self.farm.machines().iter().map(|m| m.controller.clone()).collect(),
+            controllers: self.farm.machines().iter().map(|m| m.controller.state()).collect(),
             averages: self.averages.iter().map(PlaneAverage::state).collect(),
             n_plane_instants: self.n_plane_instants,
             n_volumes: self.n_volumes,

@@ -9,7 +9,7 @@ use analysis::statistics::{BLOCK_LENGTH, gain, statistic};
 use basis::records::{
     Conditions, Cost, DeliveredPitch, SCHEMA_VERSION, Series, Statistic, Summary, TurbineSummary,
 };
-use farm::assemble::controller;
+use farm::assemble::{AssemblyError, controller};
 use farm::case::{Control, Run};
 
 /// Share of clipped control instants beyond which a reader must know (–).
@@ -78,8 +78,8 @@ pub(crate) fn summarise(
         let placement = &setup.case.turbines[index];
         let name = &placement.name;
         let control = &run.control[index];
-        let wind_speed = setup.case.wind.speed;
-        let runs = controller(control, &setup.models[index], wind_speed, setup.plan.diameter);
+        let runs = controller(control, &setup.models[index], &setup.case, &setup.plan)
+            .map_err(AssemblyError::from)?;
         let delivered_pitch =
             delivered_pitch(&analysed, name, control, setup, clipped_shares[machine])?;
         warn_of_clipping(name, &run.name, delivered_pitch, clipped_shares[machine], &mut warnings);
@@ -155,6 +155,7 @@ fn delivered_pitch(
     let (motion, amplitude, strouhal, start) = match control {
         Control::Helix(helix) => (Motion::Cyclic, helix.amplitude, helix.strouhal, helix.start),
         Control::Pulse(pulse) => (Motion::Collective, pulse.amplitude, pulse.strouhal, pulse.start),
+        Control::PhaseSync(sync) => (Motion::Cyclic, sync.amplitude, sync.strouhal, sync.start),
         Control::Baseline | Control::Absent => return Ok(None),
     };
     if amplitude == 0.0 {

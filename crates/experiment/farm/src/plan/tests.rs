@@ -49,6 +49,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         output: Output {
             interval: None,
             plane_interval: None,
+            lines_at: Vec::new(),
             crosswind_diameters: Vec::new(),
             volume_interval: None,
             checkpoint_interval: 60.0,

@@ -7,8 +7,8 @@ use super::section::{Findings, Section, list};
 use super::spelling::nearest;
 use super::table::Table;
 use farm::case::{
-    Case, Control, Flow, Ground, Helix, Output, Placement, Pulse, Run, Sense, Sides, Solver, Time,
-    TurbulenceModel, Wind,
+    Case, Control, Flow, Ground, Helix, Output, PhaseEstimator, PhaseSync, Placement, Pulse, Run,
+    Sense, Sides, Solver, Time, TurbulenceModel, Wind,
 };
 
 /// The case that `entries` describe.
@@ -42,7 +42,7 @@ fn case_of(root: &Section) -> Case {
     let time = time_of(&root.section_or_missing("time", &keys::TIME));
     let turbines = turbines_of(root);
     let runs = runs_of(root, &turbines, time);
-    let output = output_of(&root.section("output", &keys::OUTPUT));
+    let output = output_of(&root.section("output", &keys::OUTPUT), &turbines);
     Case { name, description, wind, flow, time, turbines, runs, output }
 }
 
@@ -219,23 +219,27 @@ fn controls_of(run: &Section, turbines: &[Placement], time: Time) -> Vec<Control
         );
         return controls;
     };
-    for entry in entries {
+    // Those downstream last: they may join what those upstream do.
+    let mut entries: Vec<(&Entry, Option<usize>)> = entries
+        .iter()
+        .map(|entry| (entry, turbines.iter().position(|turbine| turbine.name == entry.key)))
+        .collect();
+    let downwind = |index: Option<usize>| {
+        index.map_or(f64::NEG_INFINITY, |i| turbines[i].position_diameters[0])
+    };
+    entries.sort_by(|a, b| downwind(a.1).total_cmp(&downwind(b.1)));
+    for (entry, index) in entries {
         let path = format!("{}.{}", run.key_path("control"), entry.key);
-        let Some(index) = turbines.iter().position(|turbine| turbine.name == entry.key) else {
-            let names = || turbines.iter().map(|turbine| turbine.name.as_str());
-            let kind = ProblemKind::UnknownName {
-                key: path,
-                what: "turbine",
-                name: entry.key.clone(),
-                known: list(names()),
-            };
-            let fix = nearest(&entry.key, names()).map(|name| format!("did you mean `{name}`?"));
-            run.findings().note(entry.key_span.clone(), kind, fix);
+        let Some(index) = index else {
+            note_unknown_turbine(run, path, &entry.key, entry.key_span.clone(), turbines);
             continue;
         };
         match &entry.node.value {
             Value::Table(inner) => {
-                controls[index] = control_of(run.findings(), inner, &entry.node, path, time);
+                let upstream = helix_upstream(index, turbines, &controls);
+                let name = &turbines[index].name;
+                let place = Place { name, upstream, path };
+                controls[index] = control_of(run.findings(), inner, &entry.node, place, time);
             }
             _ => {
                 let kind = ProblemKind::WrongType {
@@ -254,7 +258,7 @@ fn control_of(
     findings: &Findings,
     entries: &[Entry],
     node: &Node,
-    path: String,
+    Place { name: turbine, upstream, path }: Place,
     time: Time,
 ) -> Control {
     let kind = entries.iter().find(|entry| entry.key == "kind").map(|entry| &entry.node.value);
@@ -282,11 +286,7 @@ fn control_of(
     };
     match *name {
         "helix" => Control::Helix(Helix {
-            sense: if section.choice("sense") == "cw" {
-                Sense::Clockwise
-            } else {
-                Sense::CounterClockwise
-            },
+            sense: sense_of(&section),
             amplitude: section.number("amplitude_deg").to_radians(),
             strouhal: section.number("strouhal"),
             phase: section.number("phase_deg").to_radians(),
@@ -299,13 +299,105 @@ fn control_of(
             phase: section.number("phase_deg").to_radians(),
             start: start(),
         }),
+        "phase-sync" => Control::PhaseSync(phase_sync_of(&section, turbine, upstream, start())),
         "absent" => Control::Absent,
         _ => Control::Baseline,
     }
 }
 
-fn output_of(section: &Section) -> Output {
+/// Whose control is read.
+struct Place<'a> {
+    name: &'a str,
+    /// Sense and Strouhal number of the helix that comes from upstream.
+    upstream: Option<(Sense, f64)>,
+    path: String,
+}
+
+/// Sense and Strouhal number of the helix on the nearest turbine upstream of turbine `index` that has one.
+fn helix_upstream(
+    index: usize,
+    turbines: &[Placement],
+    controls: &[Control],
+) -> Option<(Sense, f64)> {
+    let x = |index: usize| turbines[index].position_diameters[0];
+    (0..turbines.len())
+        .filter(|&other| x(other) < x(index))
+        .filter_map(|other| match controls[other] {
+            Control::Helix(helix) => Some((other, (helix.sense, helix.strouhal))),
+            Control::PhaseSync(sync) => Some((other, (sync.sense, sync.strouhal))),
+            _ => None,
+        })
+        .max_by(|(a, _), (b, _)| x(*a).total_cmp(&x(*b)))
+        .map(|(_, helix)| helix)
+}
+
+fn phase_sync_of(
+    section: &Section,
+    turbine: &str,
+    upstream: Option<(Sense, f64)>,
+    start: f64,
+) -> PhaseSync {
+    let own_sense = section.has("sense").then(|| sense_of(section));
+    let own_strouhal = section.optional_number("strouhal");
+    let sense = own_sense.or(upstream.map(|(sense, _)| sense));
+    let strouhal = own_strouhal.or(upstream.map(|(_, strouhal)| strouhal));
+    if sense.is_none() || strouhal.is_none() {
+        let kind = ProblemKind::NothingToJoin { turbine: turbine.to_owned() };
+        let fix = "give a turbine upstream a helix, or say which helix it is: sense = \"ccw\", strouhal = 0.25";
+        section.findings().note(section.span_of("kind"), kind, Some(fix.into()));
+    }
+    PhaseSync {
+        sense: sense.unwrap_or(Sense::CounterClockwise),
+        amplitude: section.number("amplitude_deg").to_radians(),
+        strouhal: strouhal.unwrap_or(f64::NAN),
+        offset: section.number("offset_deg").to_radians(),
+        azimuth_offset: section.number("azimuth_offset_deg").to_radians(),
+        start,
+        estimator: if section.choice("estimator") == "published" {
+            PhaseEstimator::Published
+        } else {
+            PhaseEstimator::Robust
+        },
+        fallback: section.choice("fallback") != "none",
+    }
+}
+
+fn sense_of(section: &Section) -> Sense {
+    if section.choice("sense") == "cw" { Sense::Clockwise } else { Sense::CounterClockwise }
+}
+
+/// Places in `turbines` of those that the list `key` names.
+fn turbines_named(section: &Section, key: &str, turbines: &[Placement]) -> Vec<usize> {
+    let names = section.names(key);
+    names
+        .into_iter()
+        .filter_map(|(name, span)| {
+            let index = turbines.iter().position(|turbine| turbine.name == name);
+            if index.is_none() {
+                note_unknown_turbine(section, section.key_path(key), &name, span, turbines);
+            }
+            index
+        })
+        .collect()
+}
+
+fn note_unknown_turbine(
+    section: &Section,
+    key: String,
+    name: &str,
+    span: std::ops::Range<usize>,
+    turbines: &[Placement],
+) {
+    let names = || turbines.iter().map(|turbine| turbine.name.as_str());
+    let known = list(names());
+    let kind = ProblemKind::UnknownName { key, what: "turbine", name: name.to_owned(), known };
+    let fix = nearest(name, names()).map(|name| format!("did you mean `{name}`?"));
+    section.findings().note(span, kind, fix);
+}
+
+fn output_of(section: &Section, turbines: &[Placement]) -> Output {
     Output {
+        lines_at: turbines_named(section, "lines_at", turbines),
         interval: section.optional_number("interval"),
         plane_interval: section.optional_number("plane_interval"),
         crosswind_diameters: section.numbers("crosswind_diameters"),

@@ -224,6 +224,12 @@ pub enum ProblemKind {
         /// End (s).
         duration: f64,
     },
+    /// A turbine that shall join a helix where none comes from upstream.
+    #[error("{turbine} shall join a helix, but no turbine upstream of it has one in this run")]
+    NothingToJoin {
+        /// The turbine.
+        turbine: String,
+    },
     /// A run compared with itself.
     #[error("run `{name}` is compared with itself")]
     ComparedWithItself {
@@ -270,6 +276,7 @@ impl ProblemKind {
             Self::Overlap { .. } => "too close",
             Self::NothingAnalysed { .. } => "too short",
             Self::StartsTooLate { .. } => "too late",
+            Self::NothingToJoin { .. } => "joins what?",
             Self::ComparedWithItself { .. } => "itself",
             Self::ComparedWithLater { .. } => "comes later",
             Self::NobodyThere { .. } => "nobody there",

@@ -237,11 +237,16 @@ pub(super) static RUN: Table = Table {
 };
 
 /// Kinds of control, with the keys of each.
-pub(super) static CONTROLS: &[(&str, &Table)] =
-    &[("baseline", &BASELINE), ("helix", &HELIX), ("pulse", &PULSE), ("absent", &ABSENT)];
+pub(super) static CONTROLS: &[(&str, &Table)] = &[
+    ("baseline", &BASELINE),
+    ("helix", &HELIX),
+    ("pulse", &PULSE),
+    ("phase-sync", &PHASE_SYNC),
+    ("absent", &ABSENT),
+];
 
 /// Names of [`CONTROLS`].
-pub(super) const CONTROL_KINDS: &[&str] = &["baseline", "helix", "pulse", "absent"];
+pub(super) const CONTROL_KINDS: &[&str] = &["baseline", "helix", "pulse", "phase-sync", "absent"];
 
 const KIND: Key =
     key("kind", Kind::Choice(CONTROL_KINDS), "", Required, "What runs on the turbine.");
@@ -322,6 +327,65 @@ pub(super) static PULSE: Table = Table {
     ],
 };
 
+/// `kind = "phase-sync"`.
+pub(super) static PHASE_SYNC: Table = Table {
+    heading: "control.T2 = { kind = \"phase-sync\", … }",
+    about: "The helix in step with the one that comes from upstream: its phase is found in the blade loads, and the pitch follows it with an offset.",
+    keys: &[
+        KIND,
+        key(
+            "offset_deg",
+            from(-3600.0, 3600.0),
+            "deg",
+            Required,
+            "Lead of the pitch over the wind that meets the rotor, 0 to 360. 0: pitch rises where the wind does and takes load off; 180: it falls where the wind rises and adds load. Other angles are turned into the circle, with a warning.",
+        ),
+        key(
+            "amplitude_deg",
+            from(0.0, 10.0),
+            "deg",
+            Required,
+            "Pitch amplitude of a blade; 0 is the baseline, bit for bit, with the estimate in the series.",
+        ),
+        key(
+            "sense",
+            Kind::Choice(&["cw", "ccw"]),
+            "",
+            Otherwise("that of the nearest turbine upstream with a helix"),
+            "Which way the helix winds that it joins.",
+        ),
+        key(
+            "strouhal",
+            above(0.0, 2.0),
+            "–",
+            Otherwise("that of the nearest turbine upstream with a helix"),
+            "Strouhal number of the helix that it joins, with `wind.speed` and the diameter of the first turbine.",
+        ),
+        key(
+            "azimuth_offset_deg",
+            PHASE_RANGE,
+            "deg",
+            Value("0"),
+            "Azimuth offset of the inverse multi-blade transformation.",
+        ),
+        key(
+            "estimator",
+            Kind::Choice(&["robust", "published"]),
+            "",
+            Value("\"robust\""),
+            "`robust`: extended Kalman filter with states for shear, eddies and what else its model lacks. `published`: the four states of van Vondelen et al. (2025).",
+        ),
+        key(
+            "fallback",
+            Kind::Choice(&["baseline", "none"]),
+            "",
+            Value("\"baseline\""),
+            "What it does where the estimate cannot be trusted. `baseline`: it fades out, and comes back with the helix. `none`: it goes on.",
+        ),
+        START,
+    ],
+};
+
 /// `[output]`.
 pub(super) static OUTPUT: Table = Table {
     heading: "[output]",
@@ -347,6 +411,13 @@ pub(super) static OUTPUT: Table = Table {
             "D",
             Value("[]"),
             "Crosswind planes at these distances behind the first turbine.",
+        ),
+        key(
+            "lines_at",
+            Kind::Turbines,
+            "",
+            Value("[]"),
+            "Turbines at whose places runs without them keep the wind along 36 radial lines over the disc, as average, tilt and yaw: the true phase of a helix.",
         ),
         key(
             "volume_interval",

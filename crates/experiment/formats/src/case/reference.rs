@@ -47,6 +47,7 @@ fn holds(key: &Key) -> String {
             words.iter().map(|w| format!("`\"{w}\"`")).collect::<Vec<_>>().join(", ")
         }
         Kind::Pair(range) => format!("`[x, y]`, {} to {}", range.low, range.high),
+        Kind::Turbines => "list of turbines' names".to_owned(),
         Kind::Numbers(range) => format!("list, each {} to {}", range.low, range.high),
         Kind::Ground(_) => "`\"slip\"` or a table".into(),
         Kind::Table(_) => "table".into(),
@@ -99,6 +100,7 @@ fn schema_of_key(key: &Key) -> Value {
         Kind::Pair(range) => {
             json!({ "type": "array", "items": number(range), "minItems": 2, "maxItems": 2 })
         }
+        Kind::Turbines => json!({ "type": "array", "items": { "type": "string" } }),
         Kind::Numbers(range) => json!({ "type": "array", "items": number(range) }),
         Kind::Ground(table) => {
             json!({ "anyOf": [{ "const": "slip" }, Value::Object(schema_of(table))] })

@@ -262,6 +262,26 @@ impl<'a> Section<'a> {
         items.iter().map(|item| self.number_in(key, range, item)).collect()
     }
 
+    /// Any count of names, each with its place.
+    pub(super) fn names(&self, key: &str) -> Vec<(String, ops::Range<usize>)> {
+        let expected = "a list of names, such as [\"T2\"]";
+        let Some(entry) = self.entry(key) else { return Vec::new() };
+        let Value::List(items) = &entry.node.value else {
+            self.wrong_type(key, &entry.node, expected);
+            return Vec::new();
+        };
+        items
+            .iter()
+            .filter_map(|item| match &item.value {
+                Value::Text(name) => Some((name.clone(), item.span.clone())),
+                _ => {
+                    self.wrong_type(key, item, expected);
+                    None
+                }
+            })
+            .collect()
+    }
+
     /// Notes that the value of `key` is no `expected`.
     pub(super) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
         let found = match &node.value {

@@ -52,6 +52,8 @@ pub(super) enum Kind {
     Pair(Range),
     /// Any count of numbers in a range.
     Numbers(Range),
+    /// Any count of names of turbines of the layout.
+    Turbines,
     /// `"slip"` or a table with a roughness length.
     Ground(&'static Table),
     /// One table.

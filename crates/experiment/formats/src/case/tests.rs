@@ -133,8 +133,18 @@ fn errors_name_file_line_key_and_fix() {
         ("strouhal = 0.25", "strouhal = -0.25", "0 < strouhal <= 2"),
         (
             "\"helix\", sense",
-            "\"phase-sync\", sense",
-            "`run.helix.control.T1.kind` = \"phase-sync\" does not exist; what exists is \"baseline\", \"helix\", \"pulse\", \"absent\"",
+            "\"phase-lock\", sense",
+            "`run.helix.control.T1.kind` = \"phase-lock\" does not exist; what exists is \"baseline\", \"helix\", \"pulse\", \"phase-sync\", \"absent\"",
+        ),
+        (
+            "\"helix\", sense = \"ccw\"",
+            "\"phase-sync\", offset_deg = 90",
+            "T1 shall join a helix, but no turbine upstream of it has one in this run; give a turbine upstream a helix",
+        ),
+        (
+            "[time]",
+            "[output]\nlines_at = [\"T9\"]\n[time]",
+            "`output.lines_at` names the turbine `T9`, which the file does not have",
         ),
         (
             "\"helix\", sense",

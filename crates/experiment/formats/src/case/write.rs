@@ -1,6 +1,6 @@
 //! A case as text: every key written out, defaults included.
 
-use farm::case::{Case, Control, Ground, Sense, Sides, Solver, TurbulenceModel};
+use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides, Solver, TurbulenceModel};
 use std::fmt::Write;
 
 /// The case file that reads back as `case`, with every default written out.
@@ -91,6 +91,9 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         writeln!(text, "plane_interval = {interval:?}")?;
     }
     writeln!(text, "crosswind_diameters = {:?}", output.crosswind_diameters)?;
+    let names: Vec<&str> =
+        output.lines_at.iter().map(|&index| case.turbines[index].name.as_str()).collect();
+    writeln!(text, "lines_at = {names:?}")?;
     if let Some(interval) = output.volume_interval {
         writeln!(text, "volume_interval = {interval:?}")?;
     }
@@ -119,6 +122,22 @@ fn control_text(control: &Control) -> String {
             degrees(pulse.phase),
             pulse.start,
         ),
+        Control::PhaseSync(sync) => {
+            let sense = if sync.sense == Sense::Clockwise { "cw" } else { "ccw" };
+            let estimator = match sync.estimator {
+                PhaseEstimator::Robust => "robust",
+                PhaseEstimator::Published => "published",
+            };
+            let fallback = if sync.fallback { "baseline" } else { "none" };
+            format!(
+                "{{ kind = \"phase-sync\", offset_deg = {:?}, amplitude_deg = {:?}, sense = \"{sense}\", strouhal = {:?}, azimuth_offset_deg = {:?}, estimator = \"{estimator}\", fallback = \"{fallback}\", start = {:?} }}",
+                degrees(sync.offset),
+                degrees(sync.amplitude),
+                sync.strouhal,
+                degrees(sync.azimuth_offset),
+                sync.start,
+            )
+        }
     }
 }
 

@@ -1,0 +1,54 @@
+//! The wind along radial lines at the place of a turbine that is not there: the ground truth of a helix's phase.
+
+use crate::Setup;
+use analysis::phase::{Lines, lines_to_fixed_frame};
+use basis::{FixedFrame, Vector3};
+use farm::case::{Control, Run};
+use flow::WindField;
+
+/// Radial lines over the disc (–). van Vondelen et al. (2025), §3.3.1.
+const N_LINES: usize = 36;
+/// Points on each line (–).
+const N_POINTS: usize = 24;
+
+/// Lines at one place, with room to work in.
+pub(crate) struct WindLines {
+    /// Name of the turbine that is not there.
+    pub(crate) name: String,
+    lines: Lines,
+    positions: Vec<Vector3>,
+    velocities: Vec<Vector3>,
+    means: Vec<f64>,
+}
+
+/// The lines that the case asks for and `run` leaves room for.
+pub(crate) fn of(setup: &Setup, run: &Run) -> Vec<WindLines> {
+    let places = setup.case.output.lines_at.iter().copied();
+    places
+        .filter(|&index| run.control[index] == Control::Absent)
+        .map(|index| {
+            let rotor = &setup.models[index].definition;
+            let center =
+                setup.plan.positions[index] + Vector3::new(0.0, 0.0, rotor.rotor.hub_height);
+            let radius = rotor.rotor_radius();
+            let lines = Lines { center, radius, n_lines: N_LINES, n_points: N_POINTS };
+            let positions = lines.positions();
+            WindLines {
+                name: setup.case.turbines[index].name.clone(),
+                velocities: vec![Vector3::ZERO; positions.len()],
+                means: vec![0.0; N_LINES],
+                lines,
+                positions,
+            }
+        })
+        .collect()
+}
+
+impl WindLines {
+    /// Average, tilt and yaw of the wind (m/s) now.
+    pub(crate) fn wind(&mut self, field: &impl WindField) -> FixedFrame {
+        field.sample(&self.positions, &mut self.velocities);
+        self.lines.means(&self.velocities, &mut self.means);
+        lines_to_fixed_frame(&self.means)
+    }
+}
