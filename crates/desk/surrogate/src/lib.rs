@@ -1,1 +1,81 @@
 //! Surrogates: a few expensive results made into a curve with its uncertainty.
+//!
+//! [`GaussianProcess`] is exact Gaussian-process regression: a covariance of neighbouring inputs, noise that is known, found
+//! or both, hyperparameters of greatest marginal likelihood. Power over a phase offset is one circle and a handful of
+//! runs; its kernel is [`Shape::Periodic`].
+//!
+//! ```
+//! use surrogate::{GaussianProcess, Observations, Settings, Shape};
+//! use std::f64::consts::TAU;
+//! // Eight offsets, a gain that has one summit at 150°.
+//! let offsets: Vec<f64> = (0..8).map(|i| TAU * f64::from(i) / 8.0).collect();
+//! let gains = offsets.iter().map(|o| 0.1 * (o - 150_f64.to_radians()).cos()).collect();
+//! let observations = Observations::of_curve(offsets, gains);
+//! let process = GaussianProcess::fit(Shape::Periodic { period: TAU }, observations, &Settings::default())?;
+//! let [low, high] = process.predict(&[150_f64.to_radians()])?.band_95();
+//! assert!(low < 0.1 && 0.1 < high && high - low < 0.02);
+//! # Ok::<(), surrogate::SurrogateError>(())
+//! ```
+
+mod factor;
+mod fit;
+mod kernel;
+mod likelihood;
+mod observations;
+mod process;
+mod sample;
+
+pub use fit::{Noise, Settings};
+pub use kernel::{Hyperparameters, Shape};
+pub use likelihood::Mean;
+pub use observations::Observations;
+pub use process::{GaussianProcess, LeftOut, Prediction};
+
+use thiserror::Error;
+
+/// Why there is no surrogate.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SurrogateError {
+    /// Too few observations.
+    #[error("{n} observations are too few, {needed} are needed")]
+    TooFew {
+        /// Observations given (–).
+        n: usize,
+        /// Fewest that would do (–).
+        needed: usize,
+    },
+    /// Parts of the data that do not belong together.
+    #[error("{what} has {found} numbers, {needed} are needed")]
+    Lengths {
+        /// Which part, in words.
+        what: &'static str,
+        /// Numbers found (–).
+        found: usize,
+        /// Numbers needed (–).
+        needed: usize,
+    },
+    /// An infinite number, or none.
+    #[error("number {index} of {what} is not finite")]
+    NotFinite {
+        /// Which part, in words.
+        what: &'static str,
+        /// Its place, the first is 0.
+        index: usize,
+    },
+    /// A quantity that has to be positive.
+    #[error("{what} must be positive, not {value}")]
+    NotPositive {
+        /// Which quantity, in words.
+        what: &'static str,
+        /// What was given, in its unit.
+        value: f64,
+    },
+    /// A covariance that is none, as when two noiseless observations share their input.
+    #[error(
+        "the covariance of {n} observations is not positive definite; allow for noise or remove repeated inputs"
+    )]
+    NotPositiveDefinite {
+        /// Observations (–).
+        n: usize,
+    },
+}

@@ -1,0 +1,185 @@
+//! Hyperparameters of greatest marginal likelihood: limited-memory BFGS from several starts, inside bounds.
+
+use crate::likelihood::{Likelihood, Mean};
+use crate::sample::Normals;
+use crate::{Hyperparameters, Observations, Shape, SurrogateError};
+use argmin::core::{CostFunction, Error, Executor, Gradient};
+use argmin::solver::linesearch::MoreThuenteLineSearch;
+use argmin::solver::quasinewton::LBFGS;
+use std::cell::RefCell;
+
+/// What is left to find about the noise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Noise {
+    /// One variance for all observations, beside what is known of each.
+    #[default]
+    Found,
+    /// What is known of each observation is all; without known variances the curve goes through every value.
+    Known,
+}
+
+/// How a process is fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// What the process returns to far from observations.
+    pub mean: Mean,
+    /// What is left to find about the noise.
+    pub noise: Noise,
+    /// Starts of the search (–); the first is fixed, the others drawn.
+    pub n_starts: usize,
+    /// Seed of the starts.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { mean: Mean::default(), noise: Noise::default(), n_starts: 8, seed: 1 }
+    }
+}
+
+/// Iterations of one search at most; a handful of parameters settle within a few dozen.
+const MAXIMUM_ITERATIONS: u64 = 200;
+
+/// The hyperparameters under which `observations` are most probable.
+///
+/// Each is sought between bounds that are wide against the data: the signal's variance within 10⁻⁴ to 10⁴ of the
+/// values' own, lengths from a hundredth of the inputs' range to a hundred times it (0.05 to 50 for a periodic
+/// kernel), the noise's variance within 10⁻⁸ to 10² of the values'. The search runs over the logit of each
+/// logarithm's place between its bounds, so that no step leaves them.
+pub(crate) fn hyperparameters(
+    shape: Shape,
+    observations: &Observations,
+    settings: &Settings,
+) -> Result<Hyperparameters, SurrogateError> {
+    let search = Search::new(shape, observations, settings);
+    let mut normals = Normals::new(settings.seed);
+    let n_parameters = search.bounds.len();
+    for start in 0..settings.n_starts.max(1) {
+        let place = match start {
+            0 => search.first_place(),
+            _ => (0..n_parameters).map(|_| normals.next()).collect(),
+        };
+        let line_search = MoreThuenteLineSearch::new();
+        let solver = LBFGS::new(line_search, 7);
+        // A search that cannot go on has still left its best place behind.
+        let _ = Executor::new(&search, solver)
+            .configure(|state| state.param(place).max_iters(MAXIMUM_ITERATIONS))
+            .timer(false)
+            .run();
+    }
+    let best = search.best.borrow_mut().take();
+    let n = observations.len();
+    best.map(|(_, parameters)| parameters).ok_or(SurrogateError::NotPositiveDefinite { n })
+}
+
+struct Search<'a> {
+    shape: Shape,
+    observations: &'a Observations,
+    mean: Mean,
+    /// Logarithms of the ends within which each parameter is sought.
+    bounds: Vec<[f64; 2]>,
+    /// Noise variance where none is sought.
+    fixed_noise: Option<f64>,
+    best: RefCell<Option<(f64, Hyperparameters)>>,
+}
+
+impl<'a> Search<'a> {
+    fn new(shape: Shape, observations: &'a Observations, settings: &Settings) -> Self {
+        let n = observations.len() as f64;
+        let values = &observations.values;
+        let center = match settings.mean {
+            Mean::Zero => 0.0,
+            Mean::Constant => values.iter().sum::<f64>() / n,
+        };
+        let spread = values.iter().map(|value| (value - center).powi(2)).sum::<f64>() / n;
+        // Values that are all the same still have a scale.
+        let spread = if spread > 0.0 { spread } else { 1e-12 * center * center + 1e-24 };
+        let mut bounds = vec![[1e-4 * spread, 1e4 * spread]];
+        for dimension in 0..observations.n_dimensions {
+            let along =
+                observations.inputs.iter().skip(dimension).step_by(observations.n_dimensions);
+            let (low, high) = along
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), input| {
+                    (low.min(*input), high.max(*input))
+                });
+            let range = if high > low { high - low } else { 1.0 };
+            bounds.push(match shape {
+                Shape::Periodic { .. } => [0.05, 50.0],
+                _ => [1e-2 * range, 1e2 * range],
+            });
+        }
+        let fixed_noise = match settings.noise {
+            Noise::Found => {
+                bounds.push([1e-8 * spread, 1e2 * spread]);
+                None
+            }
+            // Enough to factorise by, too little to see.
+            Noise::Known => Some(1e-10 * spread),
+        };
+        let bounds = bounds.into_iter().map(|ends| ends.map(f64::ln)).collect();
+        let best = RefCell::new(None);
+        Self { shape, observations, mean: settings.mean, bounds, fixed_noise, best }
+    }
+
+    /// Signal as large as the spread, lengths of a third of the range (one for a periodic kernel), noise of a hundredth.
+    fn first_place(&self) -> Vec<f64> {
+        let shares = |index: usize, [low, high]: [f64; 2]| {
+            let wanted = match (index, self.shape) {
+                (0, _) => 0.5,
+                (index, Shape::Periodic { .. }) if index <= self.observations.n_dimensions => {
+                    -low / (high - low)
+                }
+                (index, _) if index <= self.observations.n_dimensions => 0.38,
+                _ => 0.6,
+            };
+            (wanted / (1.0 - wanted)).ln()
+        };
+        self.bounds.iter().enumerate().map(|(index, ends)| shares(index, *ends)).collect()
+    }
+
+    /// Parameters at `place`, and how fast the logarithm of each moves with it.
+    fn parameters(&self, place: &[f64]) -> (Hyperparameters, Vec<f64>) {
+        let (mut values, mut speeds) = (Vec::new(), Vec::new());
+        for (place, [low, high]) in place.iter().zip(&self.bounds) {
+            let share = 1.0 / (1.0 + (-place).exp());
+            values.push((low + share * (high - low)).exp());
+            speeds.push((high - low) * share * (1.0 - share));
+        }
+        let noise_variance = self.fixed_noise.or_else(|| values.pop()).unwrap_or(0.0);
+        let lengths = values.split_off(1);
+        (Hyperparameters { signal_variance: values[0], lengths, noise_variance }, speeds)
+    }
+
+    fn likelihood(&self, parameters: &Hyperparameters) -> Option<Likelihood> {
+        let found = Likelihood::new(self.shape, parameters, self.observations, self.mean).ok()?;
+        found.log.is_finite().then_some(found)
+    }
+}
+
+impl CostFunction for &Search<'_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, place: &Vec<f64>) -> Result<f64, Error> {
+        let (parameters, _) = self.parameters(place);
+        // Where the covariance does not factorise nothing is probable; the line search turns back.
+        let Some(found) = self.likelihood(&parameters) else { return Ok(f64::MAX.sqrt()) };
+        let mut best = self.best.borrow_mut();
+        if best.as_ref().is_none_or(|(log, _)| found.log > *log) {
+            *best = Some((found.log, parameters));
+        }
+        Ok(-found.log)
+    }
+}
+
+impl Gradient for &Search<'_> {
+    type Param = Vec<f64>;
+    type Gradient = Vec<f64>;
+
+    fn gradient(&self, place: &Vec<f64>) -> Result<Vec<f64>, Error> {
+        let (parameters, speeds) = self.parameters(place);
+        let Some(found) = self.likelihood(&parameters) else { return Ok(vec![0.0; place.len()]) };
+        let slopes = found.slopes(self.shape, &parameters, self.observations);
+        Ok(slopes.iter().zip(&speeds).map(|(slope, speed)| -slope * speed).collect())
+    }
+}
