@@ -31,6 +31,9 @@ enum Command {
     Inflow(commands::inflow::InflowCommand),
     /// Damage-equivalent loads of channels in OpenFAST output, CSV or the records of a run
     Fatigue(commands::fatigue::FatigueArguments),
+    /// Analyse the records of runs: the phase of a helix
+    #[command(subcommand)]
+    Analyse(commands::analyse::AnalyseCommand),
     /// Repeat recorded validations and print measured against expected
     Validate(commands::validate::ValidateArguments),
     /// Print the JSON Schema of the case file, for editors
@@ -45,6 +48,7 @@ fn main() -> ExitCode {
         Command::Turbine(command) => commands::turbine::run(command),
         Command::Inflow(command) => commands::inflow::run(command),
         Command::Fatigue(arguments) => commands::fatigue::run(&arguments),
+        Command::Analyse(command) => commands::analyse::run(&command),
         Command::Validate(arguments) => return commands::validate::run(&arguments),
         Command::Schema => {
             println!("{}", wakemix::formats::case::schema());

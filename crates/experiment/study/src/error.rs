@@ -93,6 +93,38 @@ pub enum StudyError {
         /// Its folder.
         directory: PathBuf,
     },
+    /// No turbine of a run, or not the asked one, seeks a helix.
+    #[error("{}", nobody(run, asked))]
+    #[diagnostic(help("its turbines are {}; name one with --turbine", turbines.join(", ")))]
+    NobodySeeks {
+        /// Run.
+        run: String,
+        /// Asked turbine.
+        asked: Option<String>,
+        /// Turbines of the case.
+        turbines: Vec<String>,
+    },
+    /// No helix comes from upstream.
+    #[error(
+        "no helix comes from upstream of {turbine} in run {run}: there is no phase to be found"
+    )]
+    NoHelix {
+        /// Run.
+        run: String,
+        /// Turbine.
+        turbine: String,
+    },
+    /// No run holds the true wind at a turbine's place.
+    #[error("no run in {} holds the true wind at the place of {turbine}", directory.display())]
+    #[diagnostic(help(
+        "run the case with `output.lines_at = [\"{turbine}\"]` and a run in which {turbine} is absent, or name one with --truth"
+    ))]
+    NoTruth {
+        /// Turbine.
+        turbine: String,
+        /// Folder of the study.
+        directory: PathBuf,
+    },
     /// The machine has too little memory.
     #[error("the study needs {needed:.1} GiB of memory, {available:.1} GiB are free")]
     #[diagnostic(help(
@@ -111,6 +143,13 @@ pub enum StudyError {
         /// Channel.
         channel: String,
     },
+}
+
+fn nobody(run: &str, asked: &Option<String>) -> String {
+    match asked {
+        Some(name) => format!("run {run} has no turbine called `{name}`"),
+        None => format!("no turbine of run {run} seeks a helix"),
+    }
 }
 
 fn kept(checkpoint: &Option<PathBuf>, series: &Option<PathBuf>) -> String {

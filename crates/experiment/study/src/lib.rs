@@ -8,12 +8,14 @@ mod error;
 mod lines;
 mod loads;
 mod outb;
+mod phase;
 mod prepare;
 mod simulate;
 mod summarise;
 mod watcher;
 
 pub use error::StudyError;
+pub use phase::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase};
 pub use prepare::Setup;
 pub use watcher::{Estimate, Progress, Watcher};
 

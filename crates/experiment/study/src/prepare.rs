@@ -265,7 +265,7 @@ impl Setup {
 }
 
 /// The turbine of the library called `model`, or that in the file of this path, relative to `folder`; with its text.
-fn turbine(model: &str, folder: &Path) -> Result<(String, TurbineFile), StudyError> {
+pub(crate) fn turbine(model: &str, folder: &Path) -> Result<(String, TurbineFile), StudyError> {
     if let Some(text) = formats::library::text(model) {
         return Ok((text.to_owned(), formats::library::load(model)?));
     }

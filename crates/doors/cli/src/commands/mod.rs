@@ -1,5 +1,6 @@
 //! One module per command.
 
+pub(crate) mod analyse;
 pub(crate) mod fatigue;
 pub(crate) mod inflow;
 pub(crate) mod report;

@@ -1,0 +1,141 @@
+//! `wakemix analyse`: what the records of runs tell.
+
+use clap::{Args, Subcommand, ValueEnum};
+use miette::{IntoDiagnostic, Result};
+use serde_json::json;
+use std::path::PathBuf;
+use wakemix::farm::case::PhaseEstimator;
+use wakemix::study::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase};
+
+/// What to analyse.
+#[derive(Subcommand)]
+pub(crate) enum AnalyseCommand {
+    /// How well a turbine finds the phase of the helix that meets it, against the true wind of a run without it
+    Phase(PhaseArguments),
+}
+
+/// Arguments of `wakemix analyse phase`.
+#[derive(Args)]
+pub(crate) struct PhaseArguments {
+    /// Folder of a run, such as runs/synchronised-helix/offset-150
+    run: PathBuf,
+    /// Turbine that the helix meets; the first that seeks one when left out
+    #[arg(long, value_name = "NAME")]
+    turbine: Option<String>,
+    /// Folder of a run without that turbine, with the wind along lines at its place; one beside RUN when left out
+    #[arg(long, value_name = "RUN")]
+    truth: Option<PathBuf>,
+    /// Run this estimator over the records, instead of reading what the run itself believed
+    #[arg(long, value_name = "NAME")]
+    estimator: Option<Choice>,
+    /// First time that counts (s); the end of the spin-up when left out
+    #[arg(long, value_name = "T")]
+    from: Option<f64>,
+    /// Print JSON on stdout instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+/// Estimators.
+#[derive(Clone, Copy, ValueEnum)]
+enum Choice {
+    /// With states for what its model lacks
+    Robust,
+    /// The four states of van Vondelen et al. (2025)
+    Published,
+}
+
+/// Prints the answer; data goes to stdout.
+///
+/// # Errors
+/// Records that cannot be read or do not hold what is asked for.
+pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
+    let AnalyseCommand::Phase(arguments) = command;
+    let answer = phase(&PhaseQuestion {
+        run: arguments.run.clone(),
+        turbine: arguments.turbine.clone(),
+        truth: arguments.truth.clone(),
+        estimator: arguments.estimator.map(|choice| match choice {
+            Choice::Robust => PhaseEstimator::Robust,
+            Choice::Published => PhaseEstimator::Published,
+        }),
+        from: arguments.from,
+    })?;
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&json(&answer)).into_diagnostic()?);
+    } else {
+        print!("{}", text(&answer));
+    }
+    Ok(())
+}
+
+fn text(answer: &PhaseAnswer) -> String {
+    let [estimated, truth] = answer.mean_winds;
+    let span = match (answer.times.first(), answer.times.last()) {
+        (Some(first), Some(last)) => format!("{first:.0} to {last:.0} s"),
+        _ => "no time".to_owned(),
+    };
+    let mut text = format!(
+        "{} in {}, against the wind of {} at its place; {span}\nmean wind {estimated:.2} m/s estimated, {truth:.2} m/s true; trust {:.2}\n",
+        answer.turbine, answer.run, answer.truth, answer.trust
+    );
+    text += &format!(
+        "{:<6} {:>14} {:>10} {:>10} {:>16} {:>10} {:>9} {:>11}\n",
+        "axis",
+        "amplitude m/s",
+        "true m/s",
+        "RMSE deg",
+        "bias deg",
+        "spread deg",
+        "locking",
+        "coherence"
+    );
+    for (name, axis) in [("tilt", &answer.tilt), ("yaw", &answer.yaw)] {
+        let agreement = &axis.agreement;
+        let bias = match agreement.bias_half_width_95 {
+            Some(half) => format!("{:.1} ± {:.1}", agreement.bias.to_degrees(), half.to_degrees()),
+            None => format!("{:.1}", agreement.bias.to_degrees()),
+        };
+        let coherence =
+            axis.coherence.map_or("–".to_owned(), |found| format!("{:.3}", found.coherence));
+        text += &format!(
+            "{name:<6} {:>14.2} {:>10.2} {:>10.1} {bias:>16} {:>10.1} {:>9.3} {coherence:>11}\n",
+            axis.amplitude,
+            axis.true_amplitude,
+            agreement.rmse.to_degrees(),
+            agreement.spread.to_degrees(),
+            agreement.locking,
+        );
+    }
+    text
+}
+
+fn json(answer: &PhaseAnswer) -> serde_json::Value {
+    let axis = |axis: &PhaseAxis| {
+        let agreement = &axis.agreement;
+        json!({
+            "amplitude_m_s": axis.amplitude,
+            "true_amplitude_m_s": axis.true_amplitude,
+            "rmse_deg": agreement.rmse.to_degrees(),
+            "bias_deg": agreement.bias.to_degrees(),
+            "bias_half_width_95_deg": agreement.bias_half_width_95.map(f64::to_degrees),
+            "spread_deg": agreement.spread.to_degrees(),
+            "locking": agreement.locking,
+            "coherence": axis.coherence.map(|found| found.coherence),
+            "coherence_95": axis.coherence.map(|found| found.coherence_95),
+            "phase_error_deg": axis.coherence.map(|found| found.phase_error.to_degrees()),
+        })
+    };
+    json!({
+        "run": answer.run,
+        "turbine": answer.turbine,
+        "truth": answer.truth,
+        "from_s": answer.times.first(),
+        "to_s": answer.times.last(),
+        "mean_wind_m_s": answer.mean_winds[0],
+        "true_mean_wind_m_s": answer.mean_winds[1],
+        "trust": answer.trust,
+        "tilt": axis(&answer.tilt),
+        "yaw": axis(&answer.yaw),
+    })
+}
