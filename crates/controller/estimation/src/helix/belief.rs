@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// States, at most; those that a form does not use have no variance and stay where they are.
-pub(super) const N_STATES: usize = 10;
+pub(super) const N_STATES: usize = 12;
 /// Mean wind over the rotor (m/s).
 pub(super) const MEAN_WIND: usize = 0;
 /// First of the four parameters of the wave.
@@ -14,6 +14,8 @@ pub(super) const BIAS: usize = 5;
 pub(super) const PASSING: usize = 7;
 /// Excitation rate over the nominal one (rad/s).
 pub(super) const RATE: usize = 9;
+/// What the model makes too little of the rotor's own pitch: in phase and a quarter turn ahead (–).
+pub(super) const RESPONSE: usize = 10;
 
 /// One value for each state.
 pub(super) type Vector = [f64; N_STATES];
@@ -146,7 +148,7 @@ mod tests {
         #[test]
         fn josephs_form_is_the_short_one(
             root in prop::collection::vec(-1.0..1.0_f64, N_STATES * N_STATES),
-            slopes in prop::array::uniform10(-2.0..2.0_f64), direction in prop::array::uniform10(-1.0..1.0_f64),
+            slopes in prop::array::uniform12(-2.0..2.0_f64), direction in prop::array::uniform12(-1.0..1.0_f64),
             innovation in -3.0..3.0_f64, variance in 1e-3..10.0_f64,
         ) {
             let before = belief(&root);
@@ -169,7 +171,7 @@ mod tests {
 
     #[test]
     fn carrying_by_the_identity_changes_nothing_and_by_a_factor_its_square() {
-        let root: Vec<f64> = (0..100).map(|k| (f64::from(k) * 1.7).sin()).collect();
+        let root: Vec<f64> = (0..144).map(|k| (f64::from(k) * 1.7).sin()).collect();
         let before = belief(&root);
         let mut after = before.clone();
         let mut transition = [[0.0; N_STATES]; N_STATES];

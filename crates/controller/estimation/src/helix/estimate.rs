@@ -55,7 +55,7 @@ impl HelixEstimate {
     pub(super) fn of(filter: &Filter, state: &FilterState, angle: f64, status: Status) -> Self {
         let belief = &state.belief;
         let [tilt, yaw] = filter.axes(belief);
-        let (wind, _) = filter.wind(&belief.mean, angle);
+        let (wind, _) = filter.wind(&belief.mean, angle, [0.0; 2]);
         let other = FixedFrame {
             average: 0.0,
             tilt: belief.mean[BIAS] + belief.mean[PASSING],

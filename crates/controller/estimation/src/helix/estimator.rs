@@ -125,13 +125,14 @@ impl HelixEstimator {
         let angle = self.angle(measurements);
         let Self { filter, rotor, memory, state, .. } = self;
         filter.predict(interval, &mut state.filter);
-        let (wind, wind_slopes) = filter.wind(&state.filter.belief.mean, angle);
+        let own = rotor.worth(&posture);
+        let (wind, wind_slopes) = filter.wind(&state.filter.belief.mean, angle, own);
         let expected = rotor.advance(interval, wind, &posture, &mut state.rotor, memory);
         let slopes = match filter.options.jacobian {
             Jacobian::Analytic => Filter::blade_slopes(posture.azimuth, &expected, &wind_slopes),
             Jacobian::CentralDifferences { step } => self.differences(step, angle, &posture),
         };
-        let now = Instant { interval, angle, azimuth: posture.azimuth, wind };
+        let now = Instant { interval, angle, azimuth: posture.azimuth, wind, own };
         let n_heard = {
             let Self { filter, state, .. } = self;
             filter.correct(&now, &expected, &slopes, readings, &mut state.filter)
@@ -153,12 +154,13 @@ impl HelixEstimator {
     /// van Vondelen et al. (2025), Eq. 18.
     fn differences(&self, step: f64, angle: f64, posture: &Posture) -> PerBlade<Vector> {
         let mean = &self.state.filter.belief.mean;
+        let own = self.rotor.worth(posture);
         let mut slopes = PerBlade::splat(self.rotor.n_blades(), [0.0; N_STATES]);
         for index in 0..N_STATES {
             let beside = |distance: f64| {
                 let mut beside = *mean;
                 beside[index] += distance;
-                let (wind, _) = self.filter.wind(&beside, angle);
+                let (wind, _) = self.filter.wind(&beside, angle, own);
                 self.rotor.moments_beside(wind, posture, &self.memory, &self.state.rotor)
             };
             let (up, down) = (beside(0.5 * step), beside(-0.5 * step));
@@ -193,7 +195,7 @@ impl Estimator for HelixEstimator {
     }
 }
 
-fn check(
+pub(super) fn check(
     definition: &Definition,
     setting: &Setting,
     options: &Options,

@@ -1,6 +1,6 @@
 //! The Kalman filter proper: states move on, moments correct them, noise is learnt.
 
-use super::belief::{BIAS, Belief, MEAN_WIND, N_STATES, PASSING, RATE, Vector, WAVE};
+use super::belief::{BIAS, Belief, MEAN_WIND, N_STATES, PASSING, RATE, RESPONSE, Vector, WAVE};
 use super::options::{Adaptation, Measurement, Options};
 use super::rotor::{Expected, WINDS};
 use super::trust::Watch;
@@ -66,6 +66,8 @@ pub(super) struct Instant {
     pub(super) azimuth: f64,
     /// Wind in the fixed frame (m/s).
     pub(super) wind: FixedFrame,
+    /// Tilt and yaw that the rotor's pitch is worth (m/s).
+    pub(super) own: [f64; 2],
 }
 
 /// What the blades say: moment (N m) where it can be used.
@@ -105,6 +107,9 @@ impl Filter {
         if let Some(eddies) = self.options.eddies {
             variances[PASSING..PASSING + 2].fill(eddies.deviation.powi(2));
         }
+        if let Some(response) = self.options.response {
+            variances[RESPONSE..RESPONSE + 2].fill(response * response);
+        }
         if rate.is_some() {
             variances[RATE] = (INITIAL_RATE * self.rate).powi(2);
         }
@@ -143,8 +148,14 @@ impl Filter {
         state.belief.spread(&incoming, &pairs);
     }
 
-    /// The fixed frame's wind (m/s) at `angle` (rad) of the excitation where the states are `mean`, and its slopes.
-    pub(super) fn wind(&self, mean: &Vector, angle: f64) -> (FixedFrame, WindSlopes) {
+    /// The fixed frame's wind (m/s) at `angle` (rad) of the excitation where the states are `mean`, and its slopes; `own` is
+    /// what the rotor's pitch is worth in tilt and yaw (m/s).
+    pub(super) fn wind(
+        &self,
+        mean: &Vector,
+        angle: f64,
+        own: [f64; 2],
+    ) -> (FixedFrame, WindSlopes) {
         let swing = self.options.form.swing(self.sense, &mean[WAVE..WAVE + 4], angle);
         let mut slopes =
             WindSlopes { average: [0.0; N_STATES], tilt: [0.0; N_STATES], yaw: [0.0; N_STATES] };
@@ -155,10 +166,16 @@ impl Filter {
             slopes.tilt[lasting] = 1.0;
             slopes.yaw[lasting + 1] = 1.0;
         }
+        slopes.tilt[RESPONSE..RESPONSE + 2].copy_from_slice(&[own[0], -own[1]]);
+        slopes.yaw[RESPONSE..RESPONSE + 2].copy_from_slice(&[own[1], own[0]]);
+        let missed = [
+            mean[RESPONSE] * own[0] - mean[RESPONSE + 1] * own[1],
+            mean[RESPONSE] * own[1] + mean[RESPONSE + 1] * own[0],
+        ];
         let wind = FixedFrame {
             average: mean[MEAN_WIND],
-            tilt: swing.tilt + mean[BIAS] + mean[PASSING],
-            yaw: swing.yaw + mean[BIAS + 1] + mean[PASSING + 1],
+            tilt: swing.tilt + mean[BIAS] + mean[PASSING] + missed[0],
+            yaw: swing.yaw + mean[BIAS + 1] + mean[PASSING + 1] + missed[1],
         };
         (wind, slopes)
     }
@@ -260,10 +277,11 @@ impl Filter {
             tilt: now.wind.tilt + over.tilt,
             yaw: now.wind.yaw + over.yaw,
         };
-        let bias = &state.belief.mean[BIAS..BIAS + 2];
+        let mean = &state.belief.mean;
+        let (own, missed) = (now.own, &mean[RESPONSE..RESPONSE + 2]);
         let passing = FixedFrame {
-            tilt: state.told.tilt - bias[0],
-            yaw: state.told.yaw - bias[1],
+            tilt: state.told.tilt - mean[BIAS] - missed[0] * own[0] + missed[1] * own[1],
+            yaw: state.told.yaw - mean[BIAS + 1] - missed[0] * own[1] - missed[1] * own[0],
             ..state.told
         };
         state.watch.see(now.interval, self.rate, now.angle, passing);

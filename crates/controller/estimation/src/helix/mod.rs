@@ -11,6 +11,7 @@ mod estimate;
 mod estimator;
 mod filter;
 mod flap;
+mod model;
 mod options;
 mod rotor;
 mod trust;
@@ -18,6 +19,7 @@ mod wave;
 
 pub use estimate::{HelixEstimate, Status};
 pub use estimator::{HelixEstimator, Setting, State};
+pub use model::MeasurementModel;
 pub use options::{Adaptation, Eddies, Jacobian, Measurement, Noise, Options, Rotor, Wake};
 pub use trust::Trust;
 pub use wave::{Axis, Form};

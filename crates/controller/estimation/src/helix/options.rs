@@ -18,6 +18,9 @@ pub struct Options {
     pub bias: Option<f64>,
     /// Tilt and yaw of passing eddies; none without such states.
     pub eddies: Option<Eddies>,
+    /// How wrong the model's answer to the rotor's own pitch may be at first (–, a standard deviation over the wind that the
+    /// pitch is worth), learnt as the pitch begins or changes; none where the model is believed.
+    pub response: Option<f64>,
     /// How fast the excitation rate wanders ((rad/s)²/s); none where it is taken to be the nominal one.
     pub rate: Option<f64>,
     /// Noise learnt from the innovation; none where it stays as it is.
@@ -58,6 +61,8 @@ pub enum Wake {
     InAir {
         /// Factor on the model's time constant (–).
         time_factor: f64,
+        /// Share of momentum theory's induction that a tilt or yaw of the load makes (–).
+        share: f64,
     },
 }
 
@@ -122,7 +127,7 @@ impl Default for Options {
         Self {
             form: Form::Quadrature,
             rotor: Rotor {
-                wake: Wake::InAir { time_factor: 1.0 },
+                wake: Wake::InAir { time_factor: 0.4, share: 0.6 },
                 flexible: true,
                 pitch_azimuth_offset: 0.0,
                 reading_delay: 0.0,
@@ -136,6 +141,7 @@ impl Default for Options {
             },
             bias: Some(1e-5),
             eddies: Some(Eddies { deviation: 0.3, time_constant: 0.5 }),
+            response: Some(0.05),
             rate: None,
             adaptation: Some(Adaptation { time_constant: 200.0, bound: 5.0, wave: false }),
             roundness: 0.7,
@@ -169,6 +175,7 @@ impl Options {
             },
             bias: None,
             eddies: None,
+            response: None,
             rate: None,
             adaptation: None,
             roundness: 0.0,
@@ -212,8 +219,16 @@ impl Options {
             }
             within("roundness (–)", self.roundness, false, "from 0 to below 1")?;
         }
-        if let Wake::WithBlades { time_factor } | Wake::InAir { time_factor } = self.rotor.wake {
+        if let Wake::WithBlades { time_factor } | Wake::InAir { time_factor, .. } = self.rotor.wake
+        {
             positive("factor on the wake's time constant (–)", time_factor)?;
+        }
+        if let Wake::InAir { share, .. } = self.rotor.wake {
+            let good = (0.0..=1.5).contains(&share);
+            within("share of the induction (–)", share, good, "from 0 to 1.5")?;
+        }
+        if let Some(response) = self.response {
+            positive_variance("process", "initial deviation of the pitch's effect", response)?;
         }
         let delay = self.rotor.reading_delay;
         within(

@@ -20,6 +20,8 @@ const N_SETTLING: usize = 120;
 const SETTLING: f64 = 2.0;
 /// Share of the way that a step of the search for the first wind goes (–).
 const CAUTION: f64 = 0.3;
+/// Radius over the rotor's at which most of a blade's moment is made (–).
+const EFFECTIVE_RADIUS: f64 = 0.75;
 /// Wind in which the wake is laid out before anything has been read (m/s).
 const NOMINAL_WIND: f64 = 9.0;
 
@@ -28,10 +30,12 @@ const NOMINAL_WIND: f64 = 9.0;
 pub(super) struct Rotor {
     blades: BladeMoments,
     flap: Option<Flap>,
-    in_air: bool,
+    /// Share of tilt and yaw of the induction, where sectors of air hold it (–).
+    in_air: Option<f64>,
     pitch_azimuth_offset: f64,
     reading_delay: f64,
     n_blades: usize,
+    radius: f64,
     settled: Wake,
 }
 
@@ -76,7 +80,8 @@ impl Rotor {
             ActuatorLine::new(Arc::clone(definition), n_elements, air_density, 0.1 * radius, 0.0);
         let induction = match options.rotor.wake {
             options::Wake::Static => Induction::QuasiSteady,
-            options::Wake::WithBlades { time_factor } | options::Wake::InAir { time_factor } => {
+            options::Wake::WithBlades { time_factor }
+            | options::Wake::InAir { time_factor, .. } => {
                 Induction::SnelSchepers(SnelSchepers { time_factor })
             }
         };
@@ -91,10 +96,14 @@ impl Rotor {
         });
         Self {
             flap: options.rotor.flexible.then(|| Flap::new(definition)),
-            in_air: matches!(options.rotor.wake, options::Wake::InAir { .. }),
+            in_air: match options.rotor.wake {
+                options::Wake::InAir { share, .. } => Some(share),
+                _ => None,
+            },
             pitch_azimuth_offset: options.rotor.pitch_azimuth_offset,
             reading_delay: options.rotor.reading_delay,
             n_blades,
+            radius,
             settled,
             blades,
         }
@@ -115,13 +124,21 @@ impl Rotor {
     /// How the rotor stood when the moments of `measurements` were made.
     pub(super) fn posture(&self, measurements: &Measurements) -> Posture {
         let azimuth = measurements.azimuth - self.reading_delay * measurements.rotor_speed;
-        let pitch = if self.pitch_azimuth_offset == 0.0 {
+        let pitch = if self.pitch_azimuth_offset == 0.0 && self.reading_delay == 0.0 {
             measurements.pitch
         } else {
             let fixed = to_fixed_frame(measurements.azimuth, &measurements.pitch);
             to_blades(azimuth - self.pitch_azimuth_offset, fixed, self.n_blades)
         };
         Posture { azimuth, rotor_speed: measurements.rotor_speed, pitch }
+    }
+
+    /// Tilt and yaw of the wind (m/s) that the pitch of `posture` is about worth: the angle times the speed of the blades
+    /// where most of their moment is made.
+    pub(super) fn worth(&self, posture: &Posture) -> [f64; 2] {
+        let fixed = to_fixed_frame(posture.azimuth, &posture.pitch);
+        let speed = EFFECTIVE_RADIUS * self.radius * posture.rotor_speed;
+        [-speed * fixed.tilt, -speed * fixed.yaw]
     }
 
     /// Finds the uniform wind (m/s) that makes the `mean_moment` (N m); on return `state` has come to rest in it.
@@ -149,12 +166,30 @@ impl Rotor {
             }
         }
         let fixed = FixedFrame { average: wind, ..FixedFrame::default() };
-        let expected = self.still(fixed, posture, state, memory);
+        self.rest_tips(fixed, posture, state, memory);
+        wind
+    }
+
+    /// On return `state` has come to rest in `wind` (m/s).
+    pub(super) fn rest(
+        &self,
+        wind: FixedFrame,
+        posture: &Posture,
+        state: &mut State,
+        memory: &mut Memory,
+    ) {
+        for _ in 0..N_SETTLING {
+            self.move_wake(SETTLING, wind, posture, state, memory);
+        }
+        self.rest_tips(wind, posture, state, memory);
+    }
+
+    fn rest_tips(&self, wind: FixedFrame, posture: &Posture, state: &mut State, memory: &Memory) {
+        let expected = self.still(wind, posture, state, memory);
         if let Some(flap) = &self.flap {
             let tip = |moment: f64| flap.settled(posture.rotor_speed, moment);
             state.tips = expected.moments.map(tip);
         }
-        wind
     }
 
     /// Moves `state` on by `interval` (s) to the instant of `posture`, at which the fixed frame's wind is `wind` (m/s);
@@ -219,7 +254,7 @@ impl Rotor {
     }
 
     fn met<'a>(&self, state: &'a State, memory: &'a Memory) -> &'a Wake {
-        if self.in_air { &memory.met } else { &state.wake }
+        if self.in_air.is_some() { &memory.met } else { &state.wake }
     }
 
     fn move_wake(
@@ -230,7 +265,7 @@ impl Rotor {
         state: &mut State,
         memory: &mut Memory,
     ) {
-        if self.in_air {
+        if let Some(share) = self.in_air {
             // Each sector answers to the wind where it stands, and to a blade pitched as one that passes there.
             let pitch = to_fixed_frame(posture.azimuth, &posture.pitch);
             let conditions = Conditions {
@@ -239,7 +274,7 @@ impl Rotor {
                 pitch: to_blades(0.0, pitch, self.n_blades),
             };
             self.blades.advance(interval, &conditions, &mut state.wake);
-            self.blades.meet(&state.wake, posture.azimuth, &mut memory.met);
+            self.blades.meet(&state.wake, posture.azimuth, share, &mut memory.met);
         } else {
             self.blades.advance(interval, &self.conditions(wind, posture), &mut state.wake);
         }

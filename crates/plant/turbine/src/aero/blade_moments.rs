@@ -175,15 +175,15 @@ impl BladeMoments {
     ///
     /// `still` is a wake whose blade k stands for the air at azimuth 2π k/n, advanced with the winds and pitch found there.
     /// On return `met` holds what each blade meets when blade 1 stands at `azimuth` (rad): the average, tilt and yaw
-    /// components of the sectors' induced velocities at that blade's place.
-    pub fn meet(&self, still: &Wake, azimuth: f64, met: &mut Wake) {
+    /// components of the sectors' induced velocities at that blade's place, tilt and yaw times `share` (–).
+    pub fn meet(&self, still: &Wake, azimuth: f64, share: f64, met: &mut Wake) {
         let n_blades = self.n_blades;
         let n_parts = self.parts.len();
         for blade in 0..n_blades {
             let place = blade_azimuth(azimuth, blade, n_blades);
             let weights = PerBlade::from_fn(n_blades, |sector| {
                 let between = place - blade_azimuth(0.0, sector, n_blades);
-                (1.0 + 2.0 * between.cos()) / n_blades as f64
+                (1.0 + 2.0 * share * between.cos()) / n_blades as f64
             });
             for part in 0..n_parts {
                 let sum = |of: fn(&Induced) -> f64| -> f64 {

@@ -136,7 +136,7 @@ fn blades_meet_the_sectors_that_they_stand_in() {
     let (_, model) = model(Induction::SnelSchepers(SnelSchepers::default()));
     let uniform = model.settled(&conditions([9.0; 3], 0.0));
     let mut met = uniform.clone();
-    model.meet(&uniform, 1.234, &mut met);
+    model.meet(&uniform, 1.234, 0.6, &mut met);
     for (met, still) in met.induced.iter().zip(&uniform.induced) {
         assert!((met.normal.velocity - still.normal.velocity).abs() < 1e-12);
     }
@@ -144,7 +144,7 @@ fn blades_meet_the_sectors_that_they_stand_in() {
     let n_parts = model.parts.len();
     for blade in 0..3 {
         // That blade stands up, where sector 1 is.
-        model.meet(&tilted, -blade_azimuth(0.0, blade, 3), &mut met);
+        model.meet(&tilted, -blade_azimuth(0.0, blade, 3), 1.0, &mut met);
         for part in 0..n_parts {
             let got = met.induced[blade * n_parts + part].normal.velocity;
             assert!((got - tilted.induced[part].normal.velocity).abs() < 1e-12);
