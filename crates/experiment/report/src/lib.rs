@@ -9,6 +9,11 @@ mod trace;
 mod words;
 
 use basis::records::{Plane, Series, Summary};
+pub use figures::synchronisation::{
+    CentreLine, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure, OffsetPanel,
+    OffsetPoint, SliceFigure, SlicePanel, SpectrumFigure, SpectrumLine, Synchronisation,
+    TrackFigure, TrackLine, TrackRow,
+};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -91,8 +96,27 @@ pub fn write(study: &StudyRecords, directory: &Path) -> Result<(), ReportError> 
     let digest = study::Study::new(study)?;
     let figures = figures::all(&digest);
     let page = page::render(&digest, &figures)?;
+    write_figures(&figures, directory)?;
+    write_whole(&directory.join("report.html"), page.as_bytes())
+}
+
+/// Writes the figures of a phase synchronisation into `directory`/figures, as SVG and PNG; gives their names.
+///
+/// # Errors
+/// [`ReportError::Write`] when the disk says no.
+pub fn write_synchronisation(
+    records: &Synchronisation,
+    directory: &Path,
+) -> Result<Vec<String>, ReportError> {
+    let figures = figures::synchronisation::all(records);
+    write_figures(&figures, directory)?;
+    Ok(figures.into_iter().map(|figure| figure.name).collect())
+}
+
+/// Draws every figure in both forms, then writes them into `directory`/figures.
+fn write_figures(figures: &[draw::Figure], directory: &Path) -> Result<(), ReportError> {
     let mut files = Vec::with_capacity(2 * figures.len());
-    for figure in &figures {
+    for figure in figures {
         let failed = |source| ReportError::Picture { figure: figure.name.clone(), source };
         files.push((format!("{}.svg", figure.name), draw::svg::document(figure).map_err(failed)?));
         files.push((format!("{}.png", figure.name), draw::raster::png(figure).map_err(failed)?));
@@ -103,7 +127,7 @@ pub fn write(study: &StudyRecords, directory: &Path) -> Result<(), ReportError> 
     for (name, bytes) in &files {
         write_whole(&folder.join(name), bytes)?;
     }
-    write_whole(&directory.join("report.html"), page.as_bytes())
+    Ok(())
 }
 
 /// Writes `bytes` beside `path`, brings them to the disk, then puts them in place.

@@ -6,6 +6,7 @@ mod power;
 mod profiles;
 mod sheet;
 mod slices;
+pub(crate) mod synchronisation;
 
 use crate::draw::colour::Ink;
 use crate::draw::font::Face;

@@ -1,0 +1,224 @@
+//! Figures of phase synchronisation: offsets, phases, moments, and what becomes of the wake.
+//!
+//! All of them draw plain data: whoever reads the records fits curves, takes spectra and finds centre lines first.
+
+mod deficits;
+mod marks;
+mod offsets;
+mod slices;
+mod spectra;
+mod tracks;
+
+use crate::draw::Figure;
+use basis::records::{Plane, Statistic};
+
+/// What a study of phase synchronisation has to show; what is empty is left out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Synchronisation {
+    /// Changes over the phase offset: of power, of loads.
+    pub offsets: Vec<OffsetFigure>,
+    /// Signals over time, estimates beside the truth.
+    pub tracks: Vec<TrackFigure>,
+    /// Amplitudes over frequency around the excitation.
+    pub spectra: Vec<SpectrumFigure>,
+    /// The wake from above at one phase, with its centre line.
+    pub slices: Option<SliceFigure>,
+    /// Deficits about the wake's own centre.
+    pub deficits: Option<DeficitFigure>,
+}
+
+/// How a quantity changes with the phase offset, a panel for each turbine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OffsetFigure {
+    /// Name of the figure's files, such as `power-over-offset`.
+    pub name: String,
+    /// Title.
+    pub title: String,
+    /// What changes and against what, such as `power against the run bl-helix (%)`.
+    pub label: String,
+    /// The panels, on one scale.
+    pub panels: Vec<OffsetPanel>,
+}
+
+/// One turbine's changes, and the curve through them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OffsetPanel {
+    /// Title, such as `T3` or `T2 + T3`.
+    pub title: String,
+    /// What was simulated.
+    pub points: Vec<OffsetPoint>,
+    /// A curve through the points at ascending offsets; may be empty.
+    pub curve: Vec<CurvePoint>,
+}
+
+/// The change at one offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OffsetPoint {
+    /// Offset (rad, [0, 2π)).
+    pub offset: f64,
+    /// Change relative to the compared run (–).
+    pub change: Statistic,
+}
+
+/// The curve at one offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// Offset (rad, [0, 2π]).
+    pub offset: f64,
+    /// Most probable change (–).
+    pub mean: f64,
+    /// Where it lies with 95 % (–).
+    pub band_95: [f64; 2],
+}
+
+/// Signals over time, one row of axes below the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackFigure {
+    /// Name of the figure's files.
+    pub name: String,
+    /// Title.
+    pub title: String,
+    /// What to look for.
+    pub caption: String,
+    /// The rows.
+    pub rows: Vec<TrackRow>,
+    /// An instant to mark (s), such as that at which the synchronisation starts.
+    pub mark: Option<f64>,
+}
+
+/// One row of signals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackRow {
+    /// What it shows, with its unit; that of angles is the degree.
+    pub label: String,
+    /// Whether the values are angles (rad), shown about the first line's mean direction.
+    pub is_angle: bool,
+    /// The signals.
+    pub lines: Vec<TrackLine>,
+}
+
+/// One signal over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackLine {
+    /// Name in the legend.
+    pub name: String,
+    /// Its colour: 0 is that of the run which others compare with.
+    pub colour: usize,
+    /// Times (s).
+    pub times: Vec<f64>,
+    /// Values (unit of the row; rad for angles), as many.
+    pub values: Vec<f64>,
+}
+
+/// Amplitude over frequency, cases overlaid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpectrumFigure {
+    /// Name of the figure's files.
+    pub name: String,
+    /// Title.
+    pub title: String,
+    /// What it shows, with its unit.
+    pub label: String,
+    /// Excitation frequency (Hz), in the figure's middle.
+    pub excitation_frequency: f64,
+    /// The spectra.
+    pub lines: Vec<SpectrumLine>,
+}
+
+/// One spectrum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpectrumLine {
+    /// Name in the legend.
+    pub name: String,
+    /// Its colour: 0 is that of the run which others compare with.
+    pub colour: usize,
+    /// Distance of its frequencies, the first at zero (Hz).
+    pub frequency_step: f64,
+    /// Values (unit of the figure).
+    pub values: Vec<f64>,
+}
+
+/// The wake at one phase of the excitation, from above, and the centre lines of all cases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SliceFigure {
+    /// Rotor diameter (m).
+    pub diameter: f64,
+    /// Free-stream speed at hub height (m/s).
+    pub free_stream: f64,
+    /// Places of the rotors, x and y (m).
+    pub rotors: Vec<[f64; 2]>,
+    /// Cases whose velocity is shown.
+    pub planes: Vec<SlicePanel>,
+    /// Cases of which the centre line is shown.
+    pub centre_lines: Vec<CentreLine>,
+    /// Which phase it is, in words, such as `t = 0 Te`.
+    pub phase: String,
+}
+
+/// One case from above.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlicePanel {
+    /// Title.
+    pub title: String,
+    /// Its colour.
+    pub colour: usize,
+    /// Horizontal plane of mean velocity at the phase.
+    pub plane: Plane,
+    /// Its centre line: x and y (m); may be empty.
+    pub centre_line: Vec<[f64; 2]>,
+}
+
+/// One case's centre line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CentreLine {
+    /// Name in the legend.
+    pub name: String,
+    /// Its colour.
+    pub colour: usize,
+    /// x and y (m).
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Deficits over the distance from the wake's own centre, at several distances downstream.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeficitFigure {
+    /// Rotor diameter (m).
+    pub diameter: f64,
+    /// Free-stream speed at hub height (m/s).
+    pub free_stream: f64,
+    /// A panel for each distance.
+    pub panels: Vec<DeficitPanel>,
+}
+
+/// Deficits at one distance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeficitPanel {
+    /// Title, such as `2 D behind T2`.
+    pub title: String,
+    /// The cases.
+    pub lines: Vec<DeficitLine>,
+}
+
+/// One case's deficit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeficitLine {
+    /// Name in the legend.
+    pub name: String,
+    /// Its colour.
+    pub colour: usize,
+    /// Distance from the centre (m, positive to the left).
+    pub offsets: Vec<f64>,
+    /// Deficit (m/s), as many.
+    pub deficits: Vec<f64>,
+}
+
+/// Every figure that `records` allow, in the order of a page.
+pub(crate) fn all(records: &Synchronisation) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    figures.extend(records.tracks.iter().filter_map(tracks::tracks));
+    figures.extend(records.offsets.iter().filter_map(offsets::offsets));
+    figures.extend(records.spectra.iter().filter_map(spectra::spectra));
+    figures.extend(records.slices.as_ref().and_then(slices::slices));
+    figures.extend(records.deficits.as_ref().and_then(deficits::deficits));
+    figures
+}

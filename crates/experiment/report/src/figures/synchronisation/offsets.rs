@@ -1,0 +1,111 @@
+//! Changes over the phase offset with the curve through them and its band.
+
+use super::marks::{degree_columns, degrees, upright};
+use super::{CurvePoint, OffsetFigure, OffsetPanel, OffsetPoint};
+use crate::draw::axes::{Frame, Scale};
+use crate::draw::colour::Ink;
+use crate::draw::{Figure, Look, Role, Shape, polyline, segment};
+use crate::figures::WIDTH;
+
+const HEIGHT: f64 = 270.0;
+const LEFT: f64 = 66.0;
+const GAP: f64 = 26.0;
+/// Colours of the points' marks and of the curve.
+const POINT: Ink = Ink::Text;
+const CURVE: Ink = Ink::Run(2);
+
+/// A panel for each turbine, all on one scale.
+pub(super) fn offsets(figure: &OffsetFigure) -> Option<Figure> {
+    let panels: Vec<&OffsetPanel> =
+        figure.panels.iter().filter(|panel| !panel.points.is_empty()).collect();
+    let n_panels = panels.len();
+    if n_panels == 0 {
+        return None;
+    }
+    let scale = Scale::around(panels.iter().flat_map(|panel| extremes(panel)), 0.06);
+    let width = (WIDTH - LEFT - 24.0 - GAP * (n_panels - 1) as f64) / n_panels as f64;
+    let mut shapes = Vec::new();
+    for (index, panel) in panels.iter().enumerate() {
+        let left = LEFT + (width + GAP) * index as f64;
+        let frame =
+            Frame { area: [left, 40.0, width, HEIGHT], x: Scale::linear(0.0, 360.0), y: scale };
+        frame.rows(6, index == 0, &mut shapes);
+        degree_columns(&frame, if n_panels > 2 { 90.0 } else { 60.0 }, &mut shapes);
+        frame.title(&panel.title, &mut shapes);
+        frame.x_label("phase offset (°)", &mut shapes);
+        if index == 0 {
+            frame.y_label(&figure.label, 44.0, &mut shapes);
+        }
+        let zero = [frame.point([0.0, 0.0]), frame.point([360.0, 0.0])];
+        shapes.push(segment(zero[0], zero[1], Look::line(Ink::Axis, 1.0)));
+        let mut inner = curve(panel, &frame);
+        if let Some(best) = panel.curve.iter().max_by(|a, b| a.mean.total_cmp(&b.mean)) {
+            upright(&frame, best.offset.to_degrees(), &degrees(best.offset), &mut inner);
+        }
+        inner.extend(panel.points.iter().flat_map(|point| mark(point, &frame)));
+        shapes.push(frame.panel(inner, ["°", "%"]));
+    }
+    let has_curve = panels.iter().any(|panel| !panel.curve.is_empty());
+    let of_curve = "; line and band: Gaussian process through them and where it lies with 95\u{a0}%, \
+                    dashed: its highest place";
+    Some(Figure {
+        name: figure.name.clone(),
+        title: figure.title.clone(),
+        caption: format!(
+            "Dots: simulated, whiskers: their 95\u{a0}% intervals{}.",
+            if has_curve { of_curve } else { "" }
+        ),
+        width: WIDTH,
+        height: 40.0 + HEIGHT + 50.0,
+        shapes,
+    })
+}
+
+/// Values (%) that the scale has to hold.
+fn extremes(panel: &OffsetPanel) -> impl Iterator<Item = f64> + '_ {
+    let points = panel.points.iter().flat_map(|point| {
+        let half = point.change.half_width_95.unwrap_or(0.0);
+        [point.change.mean - half, point.change.mean + half]
+    });
+    let curve = panel.curve.iter().flat_map(|point| point.band_95);
+    points.chain(curve).chain([0.0]).map(|share| 100.0 * share)
+}
+
+fn curve(panel: &OffsetPanel, frame: &Frame) -> Vec<Shape> {
+    let along = |value: fn(&CurvePoint) -> f64| -> Vec<[f64; 2]> {
+        panel.curve.iter().map(|p| [p.offset.to_degrees(), 100.0 * value(p)]).collect()
+    };
+    if panel.curve.is_empty() {
+        return Vec::new();
+    }
+    let mut band = frame.points(&along(|point| point.band_95[0]));
+    band.extend(frame.points(&along(|point| point.band_95[1])).into_iter().rev());
+    let look = Look::fill(CURVE).opacity(0.16);
+    vec![
+        Shape::Path { points: band, closed: true, look },
+        frame.line(&along(|point| point.mean), Look::line(CURVE, 2.0)),
+    ]
+}
+
+/// A dot with its whiskers; an offset of zero stands at both ends.
+fn mark(point: &OffsetPoint, frame: &Frame) -> Vec<Shape> {
+    let look = Look::line(POINT, 1.4);
+    let mut shapes = Vec::new();
+    let offset = point.offset.to_degrees();
+    let places = if offset == 0.0 { vec![0.0, 360.0] } else { vec![offset] };
+    for place in places {
+        let center = frame.point([place, 100.0 * point.change.mean]);
+        if !center[1].is_finite() {
+            continue;
+        }
+        if let Some(half) = point.change.half_width_95 {
+            let ends = [-half, half].map(|h| frame.point([place, 100.0 * (point.change.mean + h)]));
+            shapes.push(polyline(ends.to_vec(), look));
+            for [x, y] in ends {
+                shapes.push(segment([x - 4.0, y], [x + 4.0, y], look));
+            }
+        }
+        shapes.push(Shape::Circle { center, radius: 4.0, look: Look::fill(POINT) });
+    }
+    vec![Shape::Group { role: Role::Plain, clip: None, shapes }]
+}

@@ -1,0 +1,189 @@
+//! The wake from above at one phase of the excitation: deficits of single cases, centre lines of all.
+
+use super::marks::{case_line, free_stream, names};
+use super::{SliceFigure, SlicePanel};
+use crate::draw::axes::{Frame, MEDIUM, SMALL, Scale, legend};
+use crate::draw::colour::{Ink, Map};
+use crate::draw::field::Picture;
+use crate::draw::{Figure, Look, Role, Setting, Shape, polyline, rectangle, segment, text};
+use crate::figures::WIDTH;
+use crate::study::sample;
+use crate::words::number;
+
+const LEFT: f64 = 62.0;
+const RIGHT: f64 = 84.0;
+/// Height of the panel with the centre lines.
+const LINES: f64 = 210.0;
+/// Half width of a plane that is shown (diameters).
+const HALF_WIDTH: f64 = 1.5;
+
+/// A field for each panel, then all centre lines.
+pub(super) fn slices(figure: &SliceFigure) -> Option<Figure> {
+    let diameter = figure.diameter;
+    let ends = extent(figure)?;
+    let width = WIDTH - LEFT - RIGHT;
+    let scale = Scale::linear(ends[0] / diameter, ends[1] / diameter);
+    let height = (width * 2.0 * HALF_WIDTH * diameter / (ends[1] - ends[0])).clamp(80.0, 260.0);
+    let center = figure.rotors.first().map_or(0.0, |rotor| rotor[1] / diameter);
+    let across = Scale::linear(center - HALF_WIDTH, center + HALF_WIDTH);
+    let range = range(figure);
+    let mut shapes = Vec::new();
+    let mut top = 34.0;
+    for (index, panel) in figure.planes.iter().enumerate() {
+        let frame = Frame { area: [LEFT, top, width, height], x: scale, y: across };
+        field(figure, panel, range, &frame, &mut shapes);
+        frame.columns(12, index + 1 == figure.planes.len(), &mut shapes);
+        heights(&frame, &mut shapes);
+        frame.y_label("y/D", 40.0, &mut shapes);
+        top += height + 40.0;
+    }
+    if !figure.planes.is_empty() {
+        let bar = [WIDTH - RIGHT + 22.0, 34.0, 14.0, height];
+        colour_bar(bar, range, &mut shapes);
+    }
+    if figure.centre_lines.iter().any(|line| !line.points.is_empty()) {
+        let named = figure.centre_lines.iter().map(|line| (line.colour, line.name.as_str()));
+        top +=
+            4.0 + legend([LEFT, top], WIDTH - 100.0, |_| Role::Plain, &names(named), &mut shapes);
+        let lines: Vec<Vec<[f64; 2]>> = figure
+            .centre_lines
+            .iter()
+            .map(|line| line.points.iter().map(|p| [p[0] / diameter, p[1] / diameter]).collect())
+            .collect();
+        let frame = Frame {
+            area: [LEFT, top, width, LINES],
+            x: scale,
+            y: Scale::around(lines.iter().flatten().map(|point| point[1]), 0.1),
+        };
+        frame.rows(5, true, &mut shapes);
+        frame.columns(12, true, &mut shapes);
+        frame.y_label("y/D of the centre", 46.0, &mut shapes);
+        let mut inner = uprights(figure, &frame);
+        for (line, points) in figure.centre_lines.iter().zip(&lines) {
+            inner.push(frame.line(points, case_line(line.colour, 2.0)));
+        }
+        shapes.push(frame.panel(inner, ["D", "D"]));
+        top += LINES + 40.0;
+    }
+    let setting = Setting::plain(Ink::Muted, MEDIUM).anchored(0.5);
+    shapes.push(text([LEFT + 0.5 * width, top - 2.0], "x/D", setting));
+    Some(Figure {
+        name: "phase-averaged-wake".to_owned(),
+        title: format!("The wake by phase of the excitation, {}", figure.phase),
+        caption: format!(
+            "Streamwise velocity at hub height averaged at one phase, seen from above, with the wake's centre; below, the \
+             centres of all cases on a stretched scale. {}.",
+            free_stream(figure.free_stream)
+        ),
+        width: WIDTH,
+        height: top + 10.0,
+        shapes,
+    })
+}
+
+/// Lowest and highest x (m) of everything that is drawn.
+fn extent(figure: &SliceFigure) -> Option<[f64; 2]> {
+    let planes = figure.planes.iter().flat_map(|panel| {
+        let plane = &panel.plane;
+        let length = plane.spacing[0] * plane.n_points[0].saturating_sub(1) as f64;
+        [plane.origin[0], plane.origin[0] + length]
+    });
+    let lines = figure.centre_lines.iter().flat_map(|line| line.points.iter().map(|p| p[0]));
+    let (low, high) = planes
+        .chain(lines)
+        .filter(|x| x.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    (low < high).then_some([low, high])
+}
+
+/// Ends of the colours: round, without the outermost hundredths.
+fn range(figure: &SliceFigure) -> [f64; 2] {
+    let mut values: Vec<f64> = figure
+        .planes
+        .iter()
+        .flat_map(|panel| panel.plane.velocity[0].iter().step_by(7))
+        .map(|u| f64::from(*u) / figure.free_stream)
+        .filter(|value| value.is_finite())
+        .collect();
+    values.sort_by(f64::total_cmp);
+    let at = |share: f64| values.get((share * values.len() as f64) as usize).copied();
+    let low = (10.0 * at(0.005).unwrap_or(0.0)).floor() / 10.0;
+    let high = (10.0 * at(0.995).unwrap_or(1.0)).ceil() / 10.0;
+    [low, high.max(low + 0.1)]
+}
+
+fn field(
+    figure: &SliceFigure,
+    panel: &SlicePanel,
+    range: [f64; 2],
+    frame: &Frame,
+    shapes: &mut Vec<Shape>,
+) {
+    let [left, top, width, height] = frame.area;
+    let size = [width.round() as usize, height.round() as usize];
+    let diameter = figure.diameter;
+    let picture = Picture::new(size, Map::Sequential, range, |column, row| {
+        let share = [(column as f64 + 0.5) / size[0] as f64, (row as f64 + 0.5) / size[1] as f64];
+        let x = frame.x.low + share[0] * (frame.x.high - frame.x.low);
+        let y = frame.y.high + share[1] * (frame.y.low - frame.y.high);
+        sample(&panel.plane, x * diameter, y * diameter)
+            .map_or(f64::NAN, |speed| speed / figure.free_stream)
+    });
+    shapes.push(Shape::Field { area: frame.area, picture });
+    let look = Look::fill(Ink::Run(panel.colour));
+    shapes.push(Shape::Circle { center: [left + 5.0, top - 13.5], radius: 4.5, look });
+    let setting = Setting::plain(Ink::Text, MEDIUM).bold();
+    shapes.push(text([left + 16.0, top - 9.0], panel.title.as_str(), setting));
+    let mut inner = Vec::new();
+    for [x, y] in &figure.rotors {
+        let ends = [-0.5, 0.5].map(|side| frame.point([x / diameter, y / diameter + side]));
+        for look in [Look::line(Ink::FieldHalo, 5.0).opacity(0.75), Look::line(Ink::OnField, 2.4)] {
+            inner.push(segment(ends[0], ends[1], look));
+        }
+    }
+    let centres: Vec<[f64; 2]> =
+        panel.centre_line.iter().map(|p| [p[0] / diameter, p[1] / diameter]).collect();
+    for look in
+        [Look::line(Ink::FieldHalo, 4.5).opacity(0.8), Look::line(Ink::Run(panel.colour), 2.4)]
+    {
+        inner.push(polyline(frame.points(&centres), look));
+    }
+    shapes.push(Shape::Group { role: Role::Plain, clip: Some(frame.area), shapes: inner });
+}
+
+/// Dashed lines where the rotors stand.
+fn uprights(figure: &SliceFigure, frame: &Frame) -> Vec<Shape> {
+    let mut shapes = Vec::new();
+    for [x, _] in &figure.rotors {
+        super::marks::upright(frame, x / figure.diameter, "", &mut shapes);
+    }
+    shapes
+}
+
+/// Values left of a field, without lines across it.
+fn heights(frame: &Frame, shapes: &mut Vec<Shape>) {
+    let (ticks, decimals) = frame.y.ticks(4);
+    let left = frame.area[0];
+    for tick in ticks {
+        let [_, y] = frame.point([frame.x.low, tick]);
+        shapes.push(segment([left - 4.0, y], [left, y], Look::line(Ink::Axis, 1.0)));
+        let setting = Setting::plain(Ink::Muted, SMALL).anchored(1.0);
+        shapes.push(text([left - 7.0, y + 4.0], number(tick, decimals), setting));
+    }
+}
+
+fn colour_bar(area: [f64; 4], [low, high]: [f64; 2], shapes: &mut Vec<Shape>) {
+    let frame = Frame { area, x: Scale::linear(0.0, 1.0), y: Scale::linear(low, high) };
+    let picture = Picture::new([1, 256], Map::Sequential, [255.0, 0.0], |_, row| row as f64);
+    shapes.push(Shape::Field { area, picture });
+    shapes.push(rectangle(area, Look::line(Ink::Axis, 0.8)));
+    let (ticks, decimals) = frame.y.ticks(5);
+    let right = area[0] + area[2];
+    for tick in ticks {
+        let [_, y] = frame.point([1.0, tick]);
+        shapes.push(segment([right, y], [right + 4.0, y], Look::line(Ink::Axis, 1.0)));
+        let setting = Setting::plain(Ink::Muted, SMALL);
+        shapes.push(text([right + 7.0, y + 4.0], number(tick, decimals), setting));
+    }
+    shapes.push(text([area[0] - 4.0, area[1] - 10.0], "u/U∞", Setting::plain(Ink::Muted, MEDIUM)));
+}
