@@ -27,6 +27,17 @@ pub enum EstimationError {
         /// Its value.
         value: f64,
     },
+    /// A record without a whole excitation period after the settling.
+    #[error("{found} samples are too few to calibrate with, {needed} are needed")]
+    RecordTooShort {
+        /// Samples given (–).
+        found: usize,
+        /// Fewest samples that would do (–).
+        needed: usize,
+    },
+    /// A record of a rotor that did not pitch.
+    #[error("the rotor of the record does not pitch at the excitation's rate: there is nothing to calibrate")]
+    NothingToCalibrate,
     /// The samples are too few for what is to be seen.
     #[error(
         "an excitation of {rate:.4} rad/s on a rotor that turns with up to {rotor_speed:.3} rad/s cannot be seen in samples {interval} s apart, which end at {nyquist:.3} rad/s; update more often"

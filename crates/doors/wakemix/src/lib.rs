@@ -6,6 +6,7 @@
 pub use analysis;
 pub use basis;
 pub use control;
+pub use estimation;
 pub use farm;
 pub use flow;
 pub use formats;

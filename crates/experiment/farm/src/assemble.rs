@@ -1,6 +1,7 @@
 //! From case to farm: turbines, controllers and air put together.
 
 use crate::air::Air;
+use crate::case::PhaseSync as PhaseSyncSettings;
 use crate::case::{Case, Control, Ground, PhaseEstimator, Run, Sides, Solver};
 use crate::plan::{Footprint, Plan};
 use crate::{Farm, Machine};
@@ -8,6 +9,7 @@ use basis::angle::wrap_to_turn;
 use control::baseline::{Baseline, Constants};
 use control::phase_sync::{self, SyncSettings};
 use control::{Excitation, Helix, PhaseSync, Pulse, TurbineController, excitation_rate};
+use estimation::helix::{Calibration, Options, Setting};
 use estimation::{EstimationError, HelixEstimator};
 use flow::lattice;
 use std::sync::Arc;
@@ -29,6 +31,29 @@ pub enum AssemblyError {
     /// The system has no more threads to give.
     #[error("no threads for the turbines")]
     Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// The calibration of one turbine's phase estimator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibrated {
+    /// Place of the turbine in the case.
+    pub turbine: usize,
+    /// What it shall do.
+    pub sync: PhaseSyncSettings,
+    /// What was found.
+    pub calibration: Calibration,
+}
+
+impl Calibrated {
+    /// Whether it is that of turbine `index` under `control`; offset, start and fallback change nothing of it.
+    pub fn fits(&self, control: &Control, index: usize) -> bool {
+        matches!(control, Control::PhaseSync(sync) if self.turbine == index && self.sync == key(sync))
+    }
+}
+
+/// What a calibration depends on: the same for all offsets and starts.
+pub fn key(sync: &PhaseSyncSettings) -> PhaseSyncSettings {
+    PhaseSyncSettings { offset: 0.0, start: 0.0, fallback: true, ..*sync }
 }
 
 /// A turbine model with the constants of its controller.
@@ -91,17 +116,18 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
     settings
 }
 
-/// What runs on a turbine of `model`, at time steps of `plan`; Strouhal numbers are taken with the case's wind speed and the
-/// first turbine's diameter.
+/// What runs on a turbine of `model`, at time steps of `plan`, its phase estimator with `calibration`; Strouhal numbers are
+/// taken with the case's wind speed and the first turbine's diameter.
 ///
 /// # Errors
-/// [`EstimationError`] when the phase of a helix cannot be sought as asked.
+/// [`AssemblyError::Estimation`] when the phase of a helix cannot be sought as asked.
 pub fn controller(
     control: &Control,
     model: &Model,
     case: &Case,
     plan: &Plan,
-) -> Result<TurbineController, EstimationError> {
+    calibration: Option<&Calibration>,
+) -> Result<TurbineController, AssemblyError> {
     let (wind_speed, diameter) = (case.wind.speed, plan.diameter);
     let excitation = match control {
         Control::Baseline | Control::Absent => Excitation::None,
@@ -120,24 +146,15 @@ pub fn controller(
             Excitation::Pulse(pulse)
         }
         Control::PhaseSync(asked) => {
-            let rate = excitation_rate(asked.strouhal, wind_speed, diameter);
-            let setting = estimation::helix::Setting {
-                sense: asked.sense,
-                rate,
-                interval: plan.interval,
-                air_density: case.wind.air_density,
-                n_elements: estimation::helix::Setting::N_ELEMENTS,
-            };
-            let options = match asked.estimator {
-                PhaseEstimator::Robust => estimation::helix::Options::default(),
-                PhaseEstimator::Published => estimation::helix::Options::published(),
-            };
+            let setting = estimator_setting(asked, case, plan);
+            let options = estimator_options(asked.estimator);
+            let options = calibration.map_or(options, |found| found.apply(options));
             let estimator = HelixEstimator::new(&model.definition, &setting, options)?;
             let settings = SyncSettings {
                 sense: asked.sense,
                 amplitude: asked.amplitude,
                 strouhal: asked.strouhal,
-                rate,
+                rate: setting.rate,
                 offset: wrap_to_turn(asked.offset),
                 azimuth_offset: asked.azimuth_offset,
                 start: asked.start,
@@ -149,8 +166,44 @@ pub fn controller(
     Ok(TurbineController::new(Baseline::new(model.constants.clone()), excitation))
 }
 
+/// What the phase estimator of `sync` is told.
+pub fn estimator_setting(sync: &PhaseSyncSettings, case: &Case, plan: &Plan) -> Setting {
+    Setting {
+        sense: sync.sense,
+        rate: excitation_rate(sync.strouhal, case.wind.speed, plan.diameter),
+        interval: plan.interval,
+        air_density: case.wind.air_density,
+        n_elements: Setting::N_ELEMENTS,
+    }
+}
+
+/// Choices of an estimator, before calibration.
+pub fn estimator_options(estimator: PhaseEstimator) -> Options {
+    match estimator {
+        PhaseEstimator::Robust => Options::default(),
+        PhaseEstimator::Published => Options::published(),
+    }
+}
+
+/// How a turbine of `model` stands in the air when time begins.
+pub(crate) fn turbine_settings(
+    case: &Case,
+    plan: &Plan,
+    model: &Model,
+    flexible: bool,
+) -> turbine::Settings {
+    turbine::Settings {
+        induction: induction(case, plan),
+        flexible,
+        air_density: case.wind.air_density,
+        rotor_speed: model.rotor_speed(case.wind.speed),
+        azimuth: 0.0,
+        pitch: model.constants.fine_pitch,
+    }
+}
+
 /// The farm of one run, at time zero: the turbines that are there in it, in the case's order, in `air`. `models` holds one
-/// entry per turbine of the case, in its order, each [equipped](Model::equipped) for the case; the farm's machines are those of [`Run::present`].
+/// entry per turbine of the case, in its order, each [equipped](Model::equipped) for the case, `calibrations` what was found for phase estimators; the farm's machines are those of [`Run::present`].
 ///
 /// # Errors
 /// [`AssemblyError`].
@@ -159,21 +212,17 @@ pub fn farm(
     run: &Run,
     plan: &Plan,
     models: &[Model],
+    calibrations: &[Calibrated],
     air: Air,
 ) -> Result<Farm<Air>, AssemblyError> {
     let mut machines = Vec::with_capacity(models.len());
     for index in run.present() {
         let model = &models[index];
-        let settings = turbine::Settings {
-            induction: induction(case, plan),
-            flexible: case.turbines[index].flexible,
-            air_density: case.wind.air_density,
-            rotor_speed: model.rotor_speed(case.wind.speed),
-            azimuth: 0.0,
-            pitch: model.constants.fine_pitch,
-        };
+        let settings = turbine_settings(case, plan, model, case.turbines[index].flexible);
         let turbine = Turbine::new(Arc::clone(&model.definition), plan.positions[index], settings)?;
-        let control = controller(&run.control[index], model, case, plan)?;
+        let calibration = calibrations.iter().find(|found| found.fits(&run.control[index], index));
+        let calibration = calibration.map(|found| &found.calibration);
+        let control = controller(&run.control[index], model, case, plan, calibration)?;
         machines.push(Machine::new(turbine, control));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

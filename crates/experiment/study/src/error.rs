@@ -2,6 +2,7 @@
 
 use analysis::AnalysisError;
 use farm::assemble::AssemblyError;
+use farm::pitch_response::CalibrationError;
 use farm::plan::PlanError;
 use farm::self_check::SelfCheckError;
 use flow::FlowError;
@@ -41,6 +42,9 @@ pub enum StudyError {
     /// The turbines cannot be put together.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
+    /// A phase estimator cannot be calibrated.
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
     /// The self-check cannot be made.
     #[error(transparent)]
     SelfCheck(#[from] SelfCheckError),

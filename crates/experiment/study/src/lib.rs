@@ -110,6 +110,7 @@ pub fn run(
         return Ok(Outcome::Estimated);
     }
     if !open.is_empty() {
+        setup.calibrate(&open, watcher)?;
         setup.make_turbulence(watcher)?;
     }
     for (place, &index) in open.iter().enumerate() {

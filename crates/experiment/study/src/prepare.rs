@@ -3,8 +3,9 @@
 use crate::StudyError;
 use crate::watcher::{Estimate, Watcher};
 use basis::angle::wrap_to_turn;
-use farm::assemble::Model;
-use farm::case::{Case, Control, Solver};
+use farm::assemble::{Calibrated, Model, key};
+use farm::case::{Case, Control, PhaseEstimator, Solver};
+use farm::pitch_response::calibration;
 use farm::self_check::{Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -54,6 +55,8 @@ pub struct Setup {
     folder: PathBuf,
     /// What a reader of the numbers must know.
     pub warnings: Vec<String>,
+    /// Calibrations of phase estimators, once [made](Self::calibrate).
+    pub calibrations: Vec<Calibrated>,
 }
 
 impl Setup {
@@ -105,8 +108,17 @@ impl Setup {
         let inflow = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
         let turbine_texts = BTreeMap::new();
         let folder = PathBuf::new();
-        let mut setup =
-            Self { case, case_text, models, turbine_texts, plan, inflow, folder, warnings };
+        let mut setup = Self {
+            case,
+            case_text,
+            models,
+            turbine_texts,
+            plan,
+            inflow,
+            folder,
+            warnings,
+            calibrations: Vec::new(),
+        };
         setup.inflow = Arc::new(setup.profile());
         let size = setup.needs_box().then(|| size_box(&setup.turbulence_need()));
         if let Some(size) = size.filter(|size| !size.covers) {
@@ -208,6 +220,36 @@ impl Setup {
             slowest = Some(slowest.map_or(speed, |slowest| slowest.min(speed)));
         }
         Ok(slowest)
+    }
+
+    /// Calibrates the phase estimator of every turbine that joins a helix in one of `runs`.
+    ///
+    /// # Errors
+    /// [`StudyError::Calibration`] when it cannot be made.
+    pub fn calibrate(
+        &mut self,
+        runs: &[usize],
+        watcher: &mut dyn Watcher,
+    ) -> Result<(), StudyError> {
+        for run in runs.iter().map(|&run| &self.case.runs[run]) {
+            for (index, control) in run.control.iter().enumerate() {
+                let Control::PhaseSync(sync) = control else { continue };
+                let known = self.calibrations.iter().any(|found| found.fits(control, index));
+                let published = sync.estimator == PhaseEstimator::Published;
+                if known || published || sync.amplitude == 0.0 {
+                    continue;
+                }
+                let name = &self.case.turbines[index].name;
+                let what = format!("calibrating the estimator of {name}");
+                let model = &self.models[index];
+                let mut told = |share| watcher.preparing(&what, share);
+                let found = calibration(&self.case, &self.plan, model, index, sync, &mut told)?;
+                watcher.calibrated(name, &found);
+                let sync = key(sync);
+                self.calibrations.push(Calibrated { turbine: index, sync, calibration: found });
+            }
+        }
+        Ok(())
     }
 
     /// What the inlet needs of the turbulence: the box of air at the start, then a plane for every later step.

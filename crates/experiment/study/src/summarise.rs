@@ -9,7 +9,7 @@ use analysis::statistics::{BLOCK_LENGTH, gain, statistic};
 use basis::records::{
     Conditions, Cost, DeliveredPitch, SCHEMA_VERSION, Series, Statistic, Summary, TurbineSummary,
 };
-use farm::assemble::{AssemblyError, controller};
+use farm::assemble::controller;
 use farm::case::{Control, Run};
 
 /// Share of clipped control instants beyond which a reader must know (–).
@@ -78,8 +78,7 @@ pub(crate) fn summarise(
         let placement = &setup.case.turbines[index];
         let name = &placement.name;
         let control = &run.control[index];
-        let runs = controller(control, &setup.models[index], &setup.case, &setup.plan)
-            .map_err(AssemblyError::from)?;
+        let runs = controller(control, &setup.models[index], &setup.case, &setup.plan, None)?;
         let delivered_pitch =
             delivered_pitch(&analysed, name, control, setup, clipped_shares[machine])?;
         warn_of_clipping(name, &run.name, delivered_pitch, clipped_shares[machine], &mut warnings);

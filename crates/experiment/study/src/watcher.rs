@@ -1,6 +1,7 @@
 //! Watching a study: what it will cost, how far it is, what it found.
 
 use basis::records::Summary;
+use estimation::helix::Calibration;
 use farm::self_check::SelfCheck;
 
 /// What a study will cost, known before it starts.
@@ -65,6 +66,8 @@ pub trait Watcher {
     fn preparing(&mut self, _what: &str, _share: f64) {}
     /// A rotor was checked against blade-element momentum.
     fn checked(&mut self, _check: &SelfCheck) {}
+    /// The phase estimator on the turbine called `turbine` was calibrated.
+    fn calibrated(&mut self, _turbine: &str, _calibration: &Calibration) {}
     /// A run moved on.
     fn advanced(&mut self, _progress: &Progress) {}
     /// A run is complete.

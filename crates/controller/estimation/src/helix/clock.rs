@@ -7,6 +7,11 @@ use serde::{Deserialize, Serialize};
 /// Share of the rated rotor speed below which the model says nothing (–).
 const LEAST_SPEED: f64 = 0.2;
 
+/// Share of the nominal interval below which no time has passed (–).
+const LEAST_INTERVAL: f64 = 1e-3;
+/// Interval beyond which waiting longer makes nothing less certain (s).
+const LONGEST_INTERVAL: f64 = 3600.0;
+
 /// What is remembered of the last instant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Clock {
@@ -34,11 +39,13 @@ impl Clock {
         Self { last: None, moments: PerBlade::splat(n_blades, 0.0), waited: 0 }
     }
 
-    /// What `measurements` are good for, at every `every`-th control instant, on a rotor rated at `rated_speed` (rad/s).
+    /// What `measurements` are good for, at every `every`-th control instant, a `nominal` interval (s) apart, on a rotor rated
+    /// at `rated_speed` (rad/s).
     pub(super) fn look(
         &mut self,
         measurements: &Measurements,
         every: usize,
+        nominal: f64,
         rated_speed: f64,
     ) -> Use {
         let n_blades = self.moments.len();
@@ -50,16 +57,16 @@ impl Clock {
             self.moments[blade] = reading;
             Some(reading)
         });
-        let Measurements { time, interval, azimuth, rotor_speed, pitch, .. } = measurements;
+        let Measurements { time, azimuth, rotor_speed, pitch, .. } = measurements;
         if !time.is_finite() {
             return Use::Nothing;
         }
         self.waited += 1;
         let interval = match self.last {
-            None => *interval,
-            Some(last) if *time <= last => return Use::Nothing,
+            None => nominal * every as f64,
+            Some(last) if time - last < LEAST_INTERVAL * nominal => return Use::Nothing,
             Some(_) if self.waited < every => return Use::Nothing,
-            Some(last) => time - last,
+            Some(last) => (time - last).min(LONGEST_INTERVAL),
         };
         self.waited = 0;
         self.last = Some(*time);

@@ -42,6 +42,8 @@ pub struct HelixEstimator {
     filter: Filter,
     rotor: Rotor,
     rated_speed: f64,
+    /// Control interval (s).
+    interval: f64,
     memory: rotor::Memory,
     state: State,
 }
@@ -81,7 +83,8 @@ impl HelixEstimator {
             status: Status::Waiting,
         };
         let memory = rotor.memory();
-        Ok(Self { filter, rotor, rated_speed: definition.rated_rotor_speed, memory, state })
+        let (rated_speed, interval) = (definition.rated_rotor_speed, setting.interval);
+        Ok(Self { filter, rotor, rated_speed, interval, memory, state })
     }
 
     /// Everything that time changes, for a checkpoint.
@@ -177,7 +180,8 @@ impl Estimator for HelixEstimator {
 
     fn update(&mut self, measurements: &Measurements) -> HelixEstimate {
         let every = self.filter.options.update_every;
-        match self.state.clock.look(measurements, every, self.rated_speed) {
+        let look = self.state.clock.look(measurements, every, self.interval, self.rated_speed);
+        match look {
             Use::Nothing => {}
             Use::Blind(interval) => {
                 if self.state.status != Status::Waiting {

@@ -284,7 +284,10 @@ impl Filter {
             yaw: state.told.yaw - mean[BIAS + 1] - missed[0] * own[1] - missed[1] * own[0],
             ..state.told
         };
-        state.watch.see(now.interval, self.rate, now.angle, passing);
+        // Moments that no wind makes would blind the watch for periods.
+        if passing.tilt.abs().max(passing.yaw.abs()) < WINDS[1] {
+            state.watch.see(now.interval, self.rate, now.angle, passing);
+        }
     }
 
     /// Learns noise: `left` is the mean of the readings' own noise squared over the nominal variance (–), `before` the states

@@ -6,6 +6,7 @@
 //! those are the measured ones. Pitch is an input of the model, so the rotor may pitch as it likes meanwhile.
 
 mod belief;
+mod calibration;
 mod clock;
 mod estimate;
 mod estimator;
@@ -17,6 +18,7 @@ mod rotor;
 mod trust;
 mod wave;
 
+pub use calibration::{Calibration, calibrate};
 pub use estimate::{HelixEstimate, Status};
 pub use estimator::{HelixEstimator, Setting, State};
 pub use model::MeasurementModel;

@@ -40,6 +40,8 @@ pub struct Rotor {
     pub wake: Wake,
     /// Whether its blades bend: first flapwise mode, with the air's damping.
     pub flexible: bool,
+    /// Factor on tilt and yaw of the pitch (–): what the blades make of it over what the model makes of it.
+    pub pitch_gain: f64,
     /// Angle by which a blade runs ahead of its pitch (rad): the pitch that acts is that measured this much of a turn
     /// before. For lags that neither the wake nor the blades' bending make.
     pub pitch_azimuth_offset: f64,
@@ -129,6 +131,7 @@ impl Default for Options {
             rotor: Rotor {
                 wake: Wake::InAir { time_factor: 0.4, share: 0.6 },
                 flexible: true,
+                pitch_gain: 1.0,
                 pitch_azimuth_offset: 0.0,
                 reading_delay: 0.0,
             },
@@ -163,6 +166,7 @@ impl Options {
             rotor: Rotor {
                 wake: Wake::WithBlades { time_factor: 1.0 },
                 flexible: false,
+                pitch_gain: 1.0,
                 pitch_azimuth_offset: 0.0,
                 reading_delay: 0.0,
             },
@@ -238,6 +242,7 @@ impl Options {
             "from 0 to below 10",
         )?;
         let offset = self.rotor.pitch_azimuth_offset;
+        positive("gain of the pitch (–)", self.rotor.pitch_gain)?;
         within("azimuth offset of the pitch (rad)", offset, offset.is_finite(), "a finite number")?;
         if let Jacobian::CentralDifferences { step } = self.jacobian {
             within("step of the differences", step, (1e-9..1.0).contains(&step), "from 1e-9 to 1")?;

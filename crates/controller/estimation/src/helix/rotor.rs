@@ -32,6 +32,7 @@ pub(super) struct Rotor {
     flap: Option<Flap>,
     /// Share of tilt and yaw of the induction, where sectors of air hold it (–).
     in_air: Option<f64>,
+    pitch_gain: f64,
     pitch_azimuth_offset: f64,
     reading_delay: f64,
     n_blades: usize,
@@ -100,6 +101,7 @@ impl Rotor {
                 options::Wake::InAir { share, .. } => Some(share),
                 _ => None,
             },
+            pitch_gain: options.rotor.pitch_gain,
             pitch_azimuth_offset: options.rotor.pitch_azimuth_offset,
             reading_delay: options.rotor.reading_delay,
             n_blades,
@@ -124,10 +126,16 @@ impl Rotor {
     /// How the rotor stood when the moments of `measurements` were made.
     pub(super) fn posture(&self, measurements: &Measurements) -> Posture {
         let azimuth = measurements.azimuth - self.reading_delay * measurements.rotor_speed;
-        let pitch = if self.pitch_azimuth_offset == 0.0 && self.reading_delay == 0.0 {
+        let untouched = self.pitch_gain == 1.0
+            && self.pitch_azimuth_offset == 0.0
+            && self.reading_delay == 0.0;
+        let pitch = if untouched {
             measurements.pitch
         } else {
-            let fixed = to_fixed_frame(measurements.azimuth, &measurements.pitch);
+            let FixedFrame { average, tilt, yaw } =
+                to_fixed_frame(measurements.azimuth, &measurements.pitch);
+            let (tilt, yaw) = (self.pitch_gain * tilt, self.pitch_gain * yaw);
+            let fixed = FixedFrame { average, tilt, yaw };
             to_blades(azimuth - self.pitch_azimuth_offset, fixed, self.n_blades)
         };
         Posture { azimuth, rotor_speed: measurements.rotor_speed, pitch }

@@ -300,6 +300,53 @@ fn the_slowest_pole_crosses_where_routh_says() {
     assert!(gains.slowest_pole(lag).real < 0.0 && gains.slowest_pole(20.0 * lag).real > 0.0);
 }
 
+/// Whether a loop of `natural_rate` (rad/s) that starts one sample off a tone comes closer to it.
+fn comes_closer(kind: Kind, natural_rate: f64, rate: f64) -> bool {
+    let mut settings = settings(kind);
+    settings.follower.rates = [0.5 * rate, 1.5 * rate];
+    settings.follower.natural_rate = natural_rate;
+    let mut generator = Generator::new(kind, SQRT_2).unwrap();
+    let mut oscillator = oscillator::Oscillator::new(&settings.follower);
+    let interval = TAU / rate / 400.0;
+    let mut errors = [0.0_f64; 2];
+    for step in 0..400 * 60 {
+        let turned = oscillator.turn(interval);
+        let sample = (rate * interval * f64::from(step)).sin();
+        generator.update(turned, sample);
+        if step == 0 {
+            // In lock but for the phase.
+            generator = settled_on_a_tone(kind, rate * interval);
+        }
+        oscillator.follow(interval, generator.in_phase(), generator.quadrature());
+        let error = (oscillator.rate() / rate - 1.0).abs();
+        let early = (400 * 5..400 * 10).contains(&step);
+        let late = step >= 400 * 55;
+        errors[0] = errors[0].max(if early { error } else { 0.0 });
+        errors[1] = errors[1].max(if late { error } else { 0.0 });
+    }
+    errors[1] < errors[0]
+}
+
+/// A generator that has followed sin θ up to θ = 0, its centre turning by `turned` (rad) a sample.
+fn settled_on_a_tone(kind: Kind, turned: f64) -> Generator {
+    let mut generator = Generator::new(kind, SQRT_2).unwrap();
+    for step in -400 * 30..=0 {
+        generator.update(turned, (turned * f64::from(step)).sin());
+    }
+    generator
+}
+
+/// The design model, a lag of the phase alone, tells where the whole loop loses its stability.
+#[test]
+fn the_whole_loop_is_stable_where_the_design_model_says() {
+    let rate = 0.05;
+    for kind in kinds() {
+        let limit = SQRT_2 * rate / kind.lag(SQRT_2);
+        assert!(comes_closer(kind, 0.75 * limit, rate), "{kind:?} below its limit");
+        assert!(!comes_closer(kind, 1.25 * limit, rate), "{kind:?} above its limit");
+    }
+}
+
 #[test]
 fn a_belief_survives_being_written_and_read() {
     let mut follower = PhaseLockedLoop::new(&settings(Kind::Mixed), INTERVAL).unwrap();

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use wakemix::basis::records::Summary;
+use wakemix::estimation::helix::Calibration;
 use wakemix::farm::self_check::{SelfCheck, TOLERANCE};
 use wakemix::study::{self, Estimate, Options, Outcome, Progress, StudyError, Watcher};
 
@@ -173,6 +174,16 @@ impl Watcher for Screen {
             100.0 * check.power_error(),
             100.0 * check.thrust_error(),
             if check.passes() { String::new() } else { format!("  (beyond {:.0} %)", 100.0 * TOLERANCE) },
+        ));
+    }
+
+    fn calibrated(&mut self, turbine: &str, calibration: &Calibration) {
+        self.say(&format!(
+            "calibrated: {turbine}'s estimator takes its own pitch times {:.3}, {:+.1}° on; of it {:.2} m/s were taken for wind, {:.2} m/s still are",
+            calibration.gain,
+            calibration.azimuth_offset.to_degrees(),
+            calibration.before,
+            calibration.after,
         ));
     }
 

@@ -1,0 +1,129 @@
+//! What the model makes too much or too little of its own rotor's pitch, found on a record without a helix in the wind.
+//!
+//! A rotor that pitches at the rate at which it looks for a helix takes for wind whatever its model misses of its own
+//! pitch: a few percent of four degrees are as much wind as a helix brings over five diameters. In a steady wind there is no
+//! helix, so all that the filter finds is that mistake. It grows in proportion to the factor on the pitch, a complex one:
+//! gain and azimuth offset. Two trials tell the factor with which nothing is left.
+//!
+//! The paper identifies an azimuth offset for the same end (van Vondelen et al., 2025, §2.4) and names calibration against
+//! experiments as a remedy for its biases (§4.2).
+
+use super::estimator::{HelixEstimator, Setting};
+use super::options::Options;
+use crate::{EstimationError, Estimator};
+use basis::{Measurements, Sense};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use turbine::Definition;
+
+/// Step of the factor between the two trials (–).
+const TRIAL: f64 = 0.1;
+/// Rounds; the mistake is all but linear in the factor.
+const N_ROUNDS: usize = 2;
+
+/// Factor on the pitch, and what it leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Calibration {
+    /// Factor on tilt and yaw of the pitch (–).
+    pub gain: f64,
+    /// Angle by which a blade runs ahead of its pitch (rad).
+    pub azimuth_offset: f64,
+    /// Amplitude of the helix that the filter found where there was none, before (m/s).
+    pub before: f64,
+    /// The same after (m/s).
+    pub after: f64,
+}
+
+impl Calibration {
+    /// `options` with this calibration.
+    pub fn apply(&self, options: Options) -> Options {
+        let mut options = options;
+        options.rotor.pitch_gain = self.gain;
+        options.rotor.pitch_azimuth_offset = self.azimuth_offset;
+        options
+    }
+}
+
+/// A complex number: real and imaginary part.
+type Complex = [f64; 2];
+
+/// Calibrates `options` on `record`: measurements at every [`Setting::interval`] of a rotor that pitches a helix of the
+/// setting's rate and sense in a steady wind. The first `settling` (s) teach the filter, whole periods after it count.
+///
+/// # Errors
+/// Those of [`HelixEstimator::new`]; [`EstimationError::RecordTooShort`] without a whole period after the settling;
+/// [`EstimationError::NothingToCalibrate`] when the rotor did not pitch.
+pub fn calibrate(
+    definition: &Arc<Definition>,
+    setting: &Setting,
+    options: Options,
+    record: &[Measurements],
+    settling: f64,
+) -> Result<Calibration, EstimationError> {
+    let period = TAU / setting.rate;
+    let n_settling = (settling / setting.interval).ceil() as usize;
+    let n_left = record.len().saturating_sub(n_settling);
+    let n_period = period / setting.interval;
+    let n_counted = ((n_left as f64 / n_period).floor() * n_period).round() as usize;
+    if n_counted == 0 {
+        let (found, needed) = (record.len(), n_settling + n_period.ceil() as usize);
+        return Err(EstimationError::RecordTooShort { found, needed });
+    }
+    let found = |factor: Complex| -> Result<Complex, EstimationError> {
+        let options = with_factor(options, setting.sense, factor);
+        let mut estimator = HelixEstimator::new(definition, setting, options)?;
+        let mut sum = [0.0; 2];
+        for (index, measurements) in record.iter().take(n_settling + n_counted).enumerate() {
+            let estimate = estimator.update(measurements);
+            if index < n_settling {
+                continue;
+            }
+            for axis in [estimate.tilt, estimate.yaw] {
+                let (sine, cosine) = axis.phase.sin_cos();
+                sum[0] += 0.5 * axis.amplitude * cosine;
+                sum[1] += 0.5 * axis.amplitude * sine;
+            }
+        }
+        Ok(sum.map(|sum| sum / n_counted as f64))
+    };
+    let mut factor = [1.0, 0.0];
+    let mut left = found(factor)?;
+    let before = left[0].hypot(left[1]);
+    for _ in 0..N_ROUNDS {
+        let beside = found([factor[0] + TRIAL, factor[1]])?;
+        let slope = [(beside[0] - left[0]) / TRIAL, (beside[1] - left[1]) / TRIAL];
+        let size = slope[0].hypot(slope[1]);
+        if size.is_nan() || size < f64::EPSILON {
+            return Err(EstimationError::NothingToCalibrate);
+        }
+        let change = quotient(left, slope);
+        factor = [factor[0] - change[0], factor[1] - change[1]];
+        left = found(factor)?;
+    }
+    let rotor = with_factor(options, setting.sense, factor).rotor;
+    Ok(Calibration {
+        gain: rotor.pitch_gain,
+        azimuth_offset: rotor.pitch_azimuth_offset,
+        before,
+        after: left[0].hypot(left[1]),
+    })
+}
+
+/// `options` with a complex `factor` on the pitch's phasor: turning tilt and yaw by an azimuth takes it from a ccw
+/// helix's phase and adds it to a cw one's.
+fn with_factor(options: Options, sense: Sense, factor: Complex) -> Options {
+    let turned = factor[1].atan2(factor[0]);
+    let mut options = options;
+    options.rotor.pitch_gain = factor[0].hypot(factor[1]);
+    options.rotor.pitch_azimuth_offset = match sense {
+        Sense::CounterClockwise => -turned,
+        Sense::Clockwise => turned,
+    };
+    options
+}
+
+fn quotient(a: Complex, b: Complex) -> Complex {
+    let size = b[0] * b[0] + b[1] * b[1];
+    [(a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size]
+}
