@@ -25,19 +25,31 @@ pub use reference::Reference;
 
 use axis::AxisLoop;
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
-use basis::mbc::to_blades;
+use basis::mbc::{to_blades, to_fixed_frame};
 use basis::{FixedFrame, Measurements, PerBlade};
-use estimation::Estimator;
-use estimation::phase_locked::TwoAxisLoop;
+use estimation::phase_locked::{Axis, TwoAxisLoop};
 use reference::Baseline;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+
+/// What the phase-locked loop is locked to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Followed {
+    /// The loads as they are, what pitch adds among them, as the source has it. The phase then answers to the control that
+    /// it commands, the more the less is left of the load; deep attenuation oscillates or loses the lock.
+    #[default]
+    Load,
+    /// The loads less what pitch adds to them: the wake's own part, which stays however little is left of the sum.
+    Wake,
+}
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// How the loads are followed, and which way they circle.
     pub follower: TwoAxisSettings,
+    /// What is followed.
+    pub followed: Followed,
     /// Amplitude asked for over the baseline's, α (–): above one amplifies, below attenuates.
     pub factor: f64,
     /// The baseline's amplitudes.
@@ -115,8 +127,14 @@ impl Meandering {
     ///
     /// Begins without a step, and fades out over a period whenever the loop loses its lock.
     pub fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
-        let estimate = self.follower.update(measurements);
         let interval = measurements.interval;
+        let moments = to_fixed_frame(measurements.azimuth, &measurements.flap_moments);
+        let own = match self.settings.followed {
+            Followed::Load => FixedFrame::default(),
+            Followed::Wake => self.own(self.follower.estimate().phase),
+        };
+        let [tilt, yaw] = [moments.tilt - own.tilt, moments.yaw - own.yaw];
+        let estimate = self.follower.follow(interval, FixedFrame { average: 0.0, tilt, yaw });
         self.turn(measurements);
         self.learn(measurements, &estimate);
         let Settings { reference, factor, start, .. } = self.settings;
@@ -128,8 +146,9 @@ impl Meandering {
             && acts
             && !estimate.held
         {
-            self.tilt.update(interval, &estimate.tilt, factor * tilt, &self.settings);
-            self.yaw.update(interval, &estimate.yaw, factor * yaw, &self.settings);
+            let loads = self.loads(&estimate);
+            self.tilt.update(interval, &loads[0], factor * tilt, &self.settings);
+            self.yaw.update(interval, &loads[1], factor * yaw, &self.settings);
         }
         if self.authority == 0.0 {
             self.commands = FixedFrame::default();
@@ -143,19 +162,47 @@ impl Meandering {
         }
     }
 
-    /// Tilt and yaw pitch (rad) of the loops' sums. van Veldhoven (2024), Eq. 2-40.
-    fn asked(&self, estimate: &TwoAxisEstimate) -> FixedFrame {
-        let Settings { follower, decoupling, .. } = &self.settings;
-        let angle = estimate.phase + decoupling.delay * estimate.rate;
-        let pitch = |axis: &AxisLoop, lead: f64| {
-            let load = axis.added_amplitude() * (angle + lead).sin() + axis.added_offset();
-            -self.authority * load / decoupling.gain
+    /// What pitch adds to tilt and yaw moment (N m) when it is meant to be at `phase` (rad).
+    fn own(&self, phase: f64) -> FixedFrame {
+        let lead = self.settings.follower.sense.yaw_lead();
+        let load = |axis: &AxisLoop, angle: f64| {
+            self.authority * (axis.added_amplitude() * angle.sin() + axis.added_offset())
         };
-        FixedFrame {
-            average: 0.0,
-            tilt: pitch(&self.tilt, 0.0),
-            yaw: pitch(&self.yaw, follower.sense.yaw_lead()),
+        let (tilt, yaw) = (load(&self.tilt, phase), load(&self.yaw, phase + lead));
+        FixedFrame { average: 0.0, tilt, yaw }
+    }
+
+    /// Tilt and yaw pitch (rad) that adds it `delay` later. van Veldhoven (2024), Eq. 2-40.
+    fn asked(&self, estimate: &TwoAxisEstimate) -> FixedFrame {
+        let Decoupling { delay, gain, .. } = self.settings.decoupling;
+        let load = self.own(estimate.phase + delay * estimate.rate);
+        FixedFrame { average: 0.0, tilt: -load.tilt / gain, yaw: -load.yaw / gain }
+    }
+
+    /// Lead of each axis' own phase over the one that its pitch is meant for (rad).
+    fn ahead(&self, estimate: &TwoAxisEstimate) -> [f64; 2] {
+        let lead = self.settings.follower.sense.yaw_lead();
+        [estimate.tilt.phase - estimate.phase, estimate.yaw.phase - estimate.phase - lead]
+            .map(wrap_to_half_turn)
+    }
+
+    /// The load on each axis, its own part and what pitch adds together.
+    fn loads(&self, estimate: &TwoAxisEstimate) -> [Axis; 2] {
+        let believed = [estimate.tilt, estimate.yaw];
+        if self.settings.followed == Followed::Load {
+            return believed;
         }
+        let (added, ahead) = ([&self.tilt, &self.yaw], self.ahead(estimate));
+        std::array::from_fn(|index| {
+            let Axis { amplitude, offset, phase } = believed[index];
+            let (sine, cosine) = ahead[index].sin_cos();
+            let along = amplitude * cosine + self.authority * added[index].added_amplitude();
+            Axis {
+                amplitude: along.hypot(amplitude * sine),
+                offset: offset + self.authority * added[index].added_offset(),
+                phase,
+            }
+        })
     }
 
     /// Where the rotor stands; it turns on at its last speed where the encoder gives no number.
@@ -180,18 +227,19 @@ impl Meandering {
         if early || !estimate.locked || estimate.held {
             return;
         }
-        let lead = self.settings.follower.sense.yaw_lead();
-        let ahead = [
-            wrap_to_half_turn(estimate.tilt.phase - estimate.phase),
-            wrap_to_half_turn(estimate.yaw.phase - estimate.phase - lead),
-        ];
-        let added = [&self.tilt, &self.yaw].map(|axis| self.authority * axis.added_amplitude());
+        let added = match self.settings.followed {
+            Followed::Load => {
+                [&self.tilt, &self.yaw].map(|axis| self.authority * axis.added_amplitude())
+            }
+            Followed::Wake => [0.0; 2],
+        };
+        let ahead = self.ahead(estimate);
         let axes = [&estimate.tilt, &estimate.yaw];
         let interval = measurements.interval;
         self.baseline.update(interval, estimate.rate, reference, axes, added, ahead);
     }
 
-    /// What is believed of the loads.
+    /// What is believed of what is [`Followed`].
     pub fn estimate(&self) -> TwoAxisEstimate {
         self.follower.estimate()
     }

@@ -77,6 +77,7 @@ fn settings(sense: Sense, factor: f64) -> Settings {
     let signal = Signal::between([0.05, 0.13]);
     Settings {
         follower: TwoAxisSettings { signal, sense, leader: Leader::Both },
+        followed: Followed::Load,
         factor,
         reference: Reference::Given { tilt: AMPLITUDES[0], yaw: AMPLITUDES[1] },
         decoupling: Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: GAIN },
@@ -94,8 +95,9 @@ fn settled(rotor: &mut Rotor, settings: Settings) -> ([f64; 2], [f64; 2]) {
     for step in 0..15_000 {
         rotor.step(step, &mut control);
     }
-    let TwoAxisEstimate { tilt, yaw, locked, .. } = control.estimate();
-    assert!(locked);
+    let estimate = control.estimate();
+    assert!(estimate.locked);
+    let [tilt, yaw] = control.loads(&estimate);
     ([tilt.amplitude / AMPLITUDES[0], yaw.amplitude / AMPLITUDES[1]], [tilt.offset, yaw.offset])
 }
 
@@ -126,6 +128,23 @@ fn amplitudes_that_are_learned_or_observed_do_as_well() {
             let (reached, _) = settled(&mut Rotor::new(sense, 1, 0.0), asked);
             for reached in reached {
                 assert!((reached / factor - 1.0).abs() < 0.02, "{reference:?} {factor}: {reached}");
+            }
+        }
+    }
+}
+
+/// The wake's own part is followed into full attenuation, with a gain that is a quarter off.
+#[test]
+fn a_load_can_be_taken_away_whole_when_the_wake_is_followed() {
+    for sense in [Sense::Clockwise, Sense::CounterClockwise] {
+        for factor in [0.0, 0.1, 0.35, 2.0] {
+            let mut asked = settings(sense, factor);
+            asked.followed = Followed::Wake;
+            asked.decoupling.gain *= 0.8;
+            asked.reference = Reference::Given { tilt: AMPLITUDES[0], yaw: AMPLITUDES[1] };
+            let (reached, _) = settled(&mut Rotor::new(sense, 1, 0.0), asked);
+            for reached in reached {
+                assert!((reached - factor).abs() < 0.02, "{sense} {factor}: {reached}");
             }
         }
     }
