@@ -3,8 +3,8 @@
     python3 -m venv .venv && .venv/bin/pip install numpy==2.4.6 scikit-learn==1.9.1
     .venv/bin/python validation/scripts/gaussian_process_by_scikit_learn.py > validation/data/surrogate/scikit-learn.txt
 
-Four data sets, made up from a fixed seed: gains over the eight published phase offsets with one period and with the published
-squared exponential, and two surfaces over two inputs. For each, the log marginal likelihood and its slopes at hyperparameters that
+Five fits of two data sets, made up from a fixed seed: gains over the eight published phase offsets with one period, with known noise
+and with the published squared exponential, and a surface over two inputs with two kernels. For each, the log marginal likelihood and its slopes at hyperparameters that
 are far from the best, then the best ones of forty starts, and the curve there. All means are zero. Deviations are those of one
 more observation, which is what scikit-learn gives for a kernel with a white part. Slopes and hyperparameters stand in the order
 signal variance, lengths, noise variance; slopes are by their logarithms.

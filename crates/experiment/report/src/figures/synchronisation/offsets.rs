@@ -9,7 +9,7 @@ use crate::figures::WIDTH;
 
 const HEIGHT: f64 = 270.0;
 const LEFT: f64 = 66.0;
-const GAP: f64 = 26.0;
+const GAP: f64 = 40.0;
 /// Colours of the points' marks and of the curve.
 const POINT: Ink = Ink::Text;
 const CURVE: Ink = Ink::Run(2);
@@ -42,8 +42,9 @@ pub(super) fn offsets(figure: &OffsetFigure) -> Option<Figure> {
         if let Some(best) = panel.curve.iter().max_by(|a, b| a.mean.total_cmp(&b.mean)) {
             upright(&frame, best.offset.to_degrees(), &degrees(best.offset), &mut inner);
         }
-        inner.extend(panel.points.iter().flat_map(|point| mark(point, &frame)));
         shapes.push(frame.panel(inner, ["°", "%"]));
+        // Over the frame's edges, which would cut the marks at zero and at a whole turn.
+        shapes.extend(panel.points.iter().map(|point| mark(point, &frame)));
     }
     let has_curve = panels.iter().any(|panel| !panel.curve.is_empty());
     let of_curve = "; line and band: Gaussian process through them and where it lies with 95\u{a0}%, \
@@ -88,7 +89,7 @@ fn curve(panel: &OffsetPanel, frame: &Frame) -> Vec<Shape> {
 }
 
 /// A dot with its whiskers; an offset of zero stands at both ends.
-fn mark(point: &OffsetPoint, frame: &Frame) -> Vec<Shape> {
+fn mark(point: &OffsetPoint, frame: &Frame) -> Shape {
     let look = Look::line(POINT, 1.4);
     let mut shapes = Vec::new();
     let offset = point.offset.to_degrees();
@@ -107,5 +108,5 @@ fn mark(point: &OffsetPoint, frame: &Frame) -> Vec<Shape> {
         }
         shapes.push(Shape::Circle { center, radius: 4.0, look: Look::fill(POINT) });
     }
-    vec![Shape::Group { role: Role::Plain, clip: None, shapes }]
+    Shape::Group { role: Role::Plain, clip: None, shapes }
 }
