@@ -4,6 +4,7 @@ use super::belief::{MEAN_WIND, N_STATES, Vector};
 use super::clock::{Clock, Use};
 use super::estimate::{HelixEstimate, Status};
 use super::filter::{Filter, FilterState, Instant, Readings};
+use super::flap::Bend;
 use super::options::{Jacobian, Options, positive};
 use super::rotor::{self, Posture, Rotor};
 use crate::{EstimationError, Estimator};
@@ -75,7 +76,7 @@ impl HelixEstimator {
             rate: setting.rate,
             diameter: definition.rotor_diameter(),
         };
-        let rotor = Rotor::new(definition, setting.n_elements, setting.air_density, &options);
+        let rotor = Rotor::new(definition, setting, &options);
         let state = State {
             filter: filter.blank(),
             rotor: rotor.start(),
@@ -133,7 +134,9 @@ impl HelixEstimator {
         let expected = rotor.advance(interval, wind, &posture, &mut state.rotor, memory);
         let slopes = match filter.options.jacobian {
             Jacobian::Analytic => Filter::blade_slopes(posture.azimuth, &expected, &wind_slopes),
-            Jacobian::CentralDifferences { step } => self.differences(step, angle, &posture),
+            Jacobian::CentralDifferences { step } => {
+                self.differences(step, angle, &posture, &expected.bend)
+            }
         };
         let now = Instant { interval, angle, azimuth: posture.azimuth, wind, own };
         let n_heard = {
@@ -155,7 +158,13 @@ impl HelixEstimator {
 
     /// Slopes of each blade's moment over the states by central differences of the whole measurement function, wake held.
     /// van Vondelen et al. (2025), Eq. 18.
-    fn differences(&self, step: f64, angle: f64, posture: &Posture) -> PerBlade<Vector> {
+    fn differences(
+        &self,
+        step: f64,
+        angle: f64,
+        posture: &Posture,
+        bend: &Bend,
+    ) -> PerBlade<Vector> {
         let mean = &self.state.filter.belief.mean;
         let own = self.rotor.worth(posture);
         let mut slopes = PerBlade::splat(self.rotor.n_blades(), [0.0; N_STATES]);
@@ -164,7 +173,7 @@ impl HelixEstimator {
                 let mut beside = *mean;
                 beside[index] += distance;
                 let (wind, _) = self.filter.wind(&beside, angle, own);
-                self.rotor.moments_beside(wind, posture, &self.memory, &self.state.rotor)
+                self.rotor.moments_beside(wind, posture, bend, &self.memory, &self.state.rotor)
             };
             let (up, down) = (beside(0.5 * step), beside(-0.5 * step));
             for ((slopes, up), down) in slopes.iter_mut().zip(up.iter()).zip(down.iter()) {

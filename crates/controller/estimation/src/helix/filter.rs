@@ -243,16 +243,21 @@ impl Filter {
         wind: &WindSlopes,
     ) -> PerBlade<Vector> {
         let n_blades = expected.slopes.len();
-        PerBlade::from_fn(n_blades, |blade| {
-            let (sine, cosine) = blade_azimuth(azimuth, blade, n_blades).sin_cos();
-            let mut slopes = [0.0; N_STATES];
-            for (index, slope) in slopes.iter_mut().enumerate() {
-                let along =
-                    wind.average[index] + wind.tilt[index] * cosine + wind.yaw[index] * sine;
-                *slope = expected.slopes[blade] * along;
+        let places =
+            PerBlade::from_fn(n_blades, |blade| blade_azimuth(azimuth, blade, n_blades).sin_cos());
+        let mut slopes = PerBlade::splat(n_blades, [0.0; N_STATES]);
+        for index in 0..N_STATES {
+            let [average, tilt, yaw] = [wind.average[index], wind.tilt[index], wind.yaw[index]];
+            let still = PerBlade::from_fn(n_blades, |blade| {
+                let (sine, cosine) = places[blade];
+                expected.slopes[blade] * (average + tilt * cosine + yaw * sine)
+            });
+            let bent = expected.bend.apply(&still);
+            for (slopes, bent) in slopes.iter_mut().zip(bent.iter()) {
+                slopes[index] = *bent;
             }
-            slopes
-        })
+        }
+        slopes
     }
 
     pub(super) fn axes(&self, belief: &Belief) -> [Axis; 2] {
@@ -268,8 +273,12 @@ impl Filter {
         state: &mut FilterState,
     ) {
         let over = PerBlade::from_fn(readings.len(), |blade| {
-            let over = readings[blade].map_or(0.0, |reading| reading - expected.moments[blade]);
-            if expected.slopes[blade] > 0.0 { over / expected.slopes[blade] } else { 0.0 }
+            readings[blade].map_or(0.0, |reading| reading - expected.moments[blade])
+        });
+        let over = expected.bend.undo(&over);
+        let over = PerBlade::from_fn(over.len(), |blade| {
+            let slope = expected.slopes[blade];
+            if slope > 0.0 { over[blade] / slope } else { 0.0 }
         });
         let over = to_fixed_frame(now.azimuth, &over);
         state.told = FixedFrame {

@@ -1,8 +1,8 @@
-//! The first flapwise mode of a blade, which delays and shares out what the air does to its root.
+//! The first flapwise mode of a blade, which delays what the air does to its root.
 //!
 //! Symbols: q deflection of the tip downwind, φ mode shape, s span from the root, r distance from the shaft, μ mass per
 //! length, Ω rotor speed, M moment of the air on a blade that does not move, U its wind, g chord × r, which the force's
-//! slope over the wind goes with.
+//! slope over the wind goes with, ω rate of what the blade feels.
 //!
 //! ```text
 //! m q̈ + d q̇ + k q = a M               m = ∫ μ φ² ds,   a = ∫ g φ ds / ∫ g s ds,
@@ -10,8 +10,13 @@
 //! root moment = M − ∂M/∂U b q̇ − i q̈ − Ω² c q
 //!                                       b = ∫ g φ s ds / ∫ g s ds,   i = ∫ μ φ s ds,   c = ∫ μ r φ ds
 //! ```
+//!
+//! What tilt and yaw make of it swings in the blade at the rotor's rate and the helix's; the response at that rate is a gain
+//! and a lag, which turn tilt and yaw together. They are taken at once: an estimate that trembles must not make the model's
+//! blades tremble.
 
-use serde::{Deserialize, Serialize};
+use basis::PerBlade;
+use basis::mbc::{blade_azimuth, to_fixed_frame};
 use turbine::Definition;
 
 /// Points of the integrals over a blade.
@@ -33,13 +38,13 @@ pub(super) struct Flap {
     tension: f64,
 }
 
-/// Tip of one blade.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Tip {
-    /// Deflection downwind (m), its rate (m/s) and acceleration (m/s²).
-    deflection: f64,
-    rate: f64,
-    acceleration: f64,
+/// What bending makes of moments: a gain of their average, a gain and a turn of their tilt and yaw.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bend {
+    azimuth: f64,
+    average: f64,
+    /// Gain and lead of tilt − i yaw: real and imaginary part.
+    swing: [f64; 2],
 }
 
 impl Flap {
@@ -91,42 +96,63 @@ impl Flap {
         flap
     }
 
-    /// The tip where the air has always made `moment` (N m).
-    pub(super) fn settled(&self, rotor_speed: f64, moment: f64) -> Tip {
-        Tip { deflection: self.drive * moment / self.held(rotor_speed), ..Tip::default() }
-    }
-
-    /// Moves `tip` on by `interval` (s) to the instant at which the air makes `moment` (N m) on a still blade, growing with
-    /// the wind by `slope` (N m/(m/s)); gives the moment at the root (N m). Average acceleration: any interval will do.
-    pub(super) fn advance(
-        &self,
-        interval: f64,
-        rotor_speed: f64,
-        moment: f64,
-        slope: f64,
-        tip: &mut Tip,
-    ) -> f64 {
-        let (stiffness, damping) = (self.held(rotor_speed), self.damping * slope.max(0.0));
-        let half = 0.5 * interval;
-        let rate = tip.rate + half * tip.acceleration;
-        let deflection = tip.deflection + interval * tip.rate + half * half * tip.acceleration;
-        let free = self.drive * moment - damping * rate - stiffness * deflection;
-        tip.acceleration = free / (self.mass + half * damping + half * half * stiffness);
-        tip.rate = rate + half * tip.acceleration;
-        tip.deflection = deflection + half * half * tip.acceleration;
-        moment
-            - slope * self.relief * tip.rate
-            - self.inertia * tip.acceleration
-            - rotor_speed * rotor_speed * self.tension * tip.deflection
-    }
-
-    /// Share of the air's moment that reaches the root when it lasts (–).
-    pub(super) fn lasting_share(&self, rotor_speed: f64) -> f64 {
-        1.0 - rotor_speed * rotor_speed * self.tension * self.drive / self.held(rotor_speed)
+    /// What bending makes of moments that swing with `rate` (rad/s) in the blade at `azimuth` (rad) of blade 1, where they grow
+    /// with the wind by `slope` (N m/(m/s)).
+    pub(super) fn bend(&self, rate: f64, rotor_speed: f64, azimuth: f64, slope: f64) -> Bend {
+        let (held, square) = (self.held(rotor_speed), rotor_speed * rotor_speed);
+        let slope = slope.max(0.0);
+        // Deflection per moment is drive over this; with what it takes from the root on top.
+        let below = [held - rate * rate * self.mass, rate * self.damping * slope];
+        let above =
+            [rate * rate * self.inertia - square * self.tension, -rate * self.relief * slope];
+        let scale = self.drive / (below[0] * below[0] + below[1] * below[1]);
+        Bend {
+            azimuth,
+            average: 1.0 - square * self.tension * self.drive / held,
+            swing: [
+                1.0 + scale * (above[0] * below[0] + above[1] * below[1]),
+                scale * (above[1] * below[0] - above[0] * below[1]),
+            ],
+        }
     }
 
     fn held(&self, rotor_speed: f64) -> f64 {
         self.stiffness + rotor_speed * rotor_speed * self.centrifugal
+    }
+}
+
+impl Bend {
+    /// Of blades that do not bend.
+    pub(super) fn none(azimuth: f64) -> Self {
+        Self { azimuth, average: 1.0, swing: [1.0, 0.0] }
+    }
+
+    /// What reaches the roots of `moments` on still blades.
+    pub(super) fn apply(&self, moments: &PerBlade<f64>) -> PerBlade<f64> {
+        self.times(moments, self.average, self.swing)
+    }
+
+    /// The moments on still blades of which `moments` reach the roots.
+    pub(super) fn undo(&self, moments: &PerBlade<f64>) -> PerBlade<f64> {
+        let [real, imaginary] = self.swing;
+        let square = real * real + imaginary * imaginary;
+        self.times(moments, 1.0 / self.average, [real / square, -imaginary / square])
+    }
+
+    fn times(&self, moments: &PerBlade<f64>, average: f64, swing: [f64; 2]) -> PerBlade<f64> {
+        if average == 1.0 && swing == [1.0, 0.0] {
+            return *moments;
+        }
+        let fixed = to_fixed_frame(self.azimuth, moments);
+        let more = (average - 1.0) * fixed.average;
+        let [real, imaginary] = [swing[0] - 1.0, swing[1]];
+        let tilt = real * fixed.tilt + imaginary * fixed.yaw;
+        let yaw = real * fixed.yaw - imaginary * fixed.tilt;
+        PerBlade::from_fn(moments.len(), |blade| {
+            let azimuth = blade_azimuth(self.azimuth, blade, moments.len());
+            let (sine, cosine) = azimuth.sin_cos();
+            moments[blade] + more + tilt * cosine + yaw * sine
+        })
     }
 }
 
@@ -156,4 +182,68 @@ fn stiffness_at(definition: &Definition, span: f64) -> f64 {
 
 fn chord_at(definition: &Definition, span: f64) -> f64 {
     between(definition.blade.iter().map(|row| (row.span, row.chord)), span)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use basis::FixedFrame;
+    use basis::mbc::to_blades;
+
+    fn flap() -> Flap {
+        Flap {
+            mass: 1.3e4,
+            stiffness: 9e4,
+            centrifugal: 2e4,
+            drive: 0.013,
+            damping: 0.009,
+            relief: 0.7,
+            inertia: 1.2e6,
+            tension: 1.2e6,
+        }
+    }
+
+    /// The gain is that of the equations, stepped through time.
+    #[test]
+    fn the_bend_is_the_response_of_the_equations() {
+        let (flap, rotor_speed, rate, slope) = (flap(), 0.7, 0.77, 7e6);
+        let (mut q, mut velocity, step) = (0.0, 0.0, 1e-3);
+        let (mut cosine, mut sine, n) = (0.0, 0.0, 400_000);
+        let turns = |k: usize| rate * step * k as f64;
+        let last_turn = n - (std::f64::consts::TAU / rate / step).round() as usize;
+        for k in 0..n {
+            let moment = turns(k).cos();
+            let free = flap.drive * moment - flap.damping * slope * velocity;
+            let acceleration = (free - flap.held(rotor_speed) * q) / flap.mass;
+            let root = moment
+                - slope * flap.relief * velocity
+                - flap.inertia * acceleration
+                - rotor_speed * rotor_speed * flap.tension * q;
+            velocity += step * acceleration;
+            q += step * velocity;
+            if k >= last_turn {
+                cosine += 2.0 * root * turns(k).cos() / (n - last_turn) as f64;
+                sine += 2.0 * root * turns(k).sin() / (n - last_turn) as f64;
+            }
+        }
+        let bend = flap.bend(rate, rotor_speed, 0.0, slope);
+        // The real part of (gain e^(i ω t)) is gain's real part × cosine − its imaginary part × sine.
+        assert!((bend.swing[0] - cosine).abs() < 2e-3, "{bend:?} {cosine}");
+        assert!((bend.swing[1] + sine).abs() < 2e-3, "{bend:?} {sine}");
+        assert!(bend.swing[1] < 0.0, "a blade lags");
+    }
+
+    #[test]
+    fn undone_it_is_as_before_and_a_lag_turns_tilt_towards_yaw() {
+        let bend = flap().bend(0.75, 0.7, 2.2, 7e6);
+        let moments = PerBlade::from_fn(3, |blade| 5.0 + blade as f64 * blade as f64);
+        let back = bend.undo(&bend.apply(&moments));
+        for (back, moment) in back.iter().zip(moments.iter()) {
+            assert!((back - moment).abs() < 1e-12);
+        }
+        let tilt = to_blades(2.2, FixedFrame { tilt: 1.0, ..FixedFrame::default() }, 3);
+        let after = to_fixed_frame(2.2, &bend.apply(&tilt));
+        // A blade that lags shows most after it has passed the top, at azimuths above zero.
+        assert!(after.yaw > 0.05 && after.average.abs() < 1e-12, "{after:?}");
+    }
 }

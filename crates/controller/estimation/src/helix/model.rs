@@ -28,7 +28,7 @@ impl MeasurementModel {
         options: &Options,
     ) -> Result<Self, EstimationError> {
         check(definition, setting, options)?;
-        let rotor = Rotor::new(definition, setting.n_elements, setting.air_density, options);
+        let rotor = Rotor::new(definition, setting, options);
         let (state, memory) = (rotor.start(), rotor.memory());
         Ok(Self { rotor, state, memory, settled: false })
     }

@@ -1,9 +1,10 @@
 //! The measurement function: from the wind in the fixed frame to the moments at the blade roots.
 
-use super::flap::{Flap, Tip};
+use super::estimator::Setting;
+use super::flap::{Bend, Flap};
 use super::options::{self, Options};
 use basis::mbc::{to_blades, to_fixed_frame};
-use basis::{FixedFrame, Measurements, PerBlade};
+use basis::{FixedFrame, Measurements, PerBlade, Sense};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use turbine::Definition;
@@ -33,6 +34,8 @@ pub(super) struct Rotor {
     /// Share of tilt and yaw of the induction, where sectors of air hold it (–).
     in_air: Option<f64>,
     pitch_gain: f64,
+    /// Rate of the helix in the blade over the rotor's (rad/s): positive for ccw.
+    swing_rate: f64,
     pitch_azimuth_offset: f64,
     reading_delay: f64,
     n_blades: usize,
@@ -45,7 +48,6 @@ pub(super) struct Rotor {
 pub(super) struct State {
     /// Induction of the blades, or of sectors that stand in the air.
     wake: Wake,
-    tips: PerBlade<Tip>,
 }
 
 /// Working memory.
@@ -62,20 +64,20 @@ pub(super) struct Posture {
     pub(super) pitch: PerBlade<f64>,
 }
 
-/// Moments at the blade roots (N m) and how each grows with its blade's wind (N m/(m/s)).
+/// What is expected of the blades.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected {
+    /// Moments at the roots (N m).
     pub(super) moments: PerBlade<f64>,
+    /// How the moment of the air on each still blade grows with its wind (N m/(m/s)).
     pub(super) slopes: PerBlade<f64>,
+    /// What bending makes of the air's moments.
+    pub(super) bend: Bend,
 }
 
 impl Rotor {
-    pub(super) fn new(
-        definition: &Arc<Definition>,
-        n_elements: usize,
-        air_density: f64,
-        options: &Options,
-    ) -> Self {
+    pub(super) fn new(definition: &Arc<Definition>, setting: &Setting, options: &Options) -> Self {
+        let Setting { n_elements, air_density, .. } = *setting;
         let radius = definition.rotor_radius();
         let line =
             ActuatorLine::new(Arc::clone(definition), n_elements, air_density, 0.1 * radius, 0.0);
@@ -102,6 +104,10 @@ impl Rotor {
                 _ => None,
             },
             pitch_gain: options.rotor.pitch_gain,
+            swing_rate: match setting.sense {
+                Sense::CounterClockwise => setting.rate,
+                Sense::Clockwise => -setting.rate,
+            },
             pitch_azimuth_offset: options.rotor.pitch_azimuth_offset,
             reading_delay: options.rotor.reading_delay,
             n_blades,
@@ -112,7 +118,7 @@ impl Rotor {
     }
 
     pub(super) fn start(&self) -> State {
-        State { wake: self.settled.clone(), tips: PerBlade::splat(self.n_blades, Tip::default()) }
+        State { wake: self.settled.clone() }
     }
 
     pub(super) fn memory(&self) -> Memory {
@@ -126,9 +132,8 @@ impl Rotor {
     /// How the rotor stood when the moments of `measurements` were made.
     pub(super) fn posture(&self, measurements: &Measurements) -> Posture {
         let azimuth = measurements.azimuth - self.reading_delay * measurements.rotor_speed;
-        let untouched = self.pitch_gain == 1.0
-            && self.pitch_azimuth_offset == 0.0
-            && self.reading_delay == 0.0;
+        let untouched =
+            self.pitch_gain == 1.0 && self.pitch_azimuth_offset == 0.0 && self.reading_delay == 0.0;
         let pitch = if untouched {
             measurements.pitch
         } else {
@@ -162,19 +167,14 @@ impl Rotor {
             let fixed = FixedFrame { average: wind, ..FixedFrame::default() };
             self.move_wake(SETTLING, fixed, posture, state, memory);
             let expected = self.still(fixed, posture, state, memory);
-            let (mut moment, mut slope) = (expected.moments.mean(), expected.slopes.mean());
-            if let Some(flap) = &self.flap {
-                let share = flap.lasting_share(posture.rotor_speed);
-                (moment, slope) = (share * moment, share * slope);
-            }
+            let moment = expected.moments.mean();
+            let slope = expected.bend.apply(&expected.slopes).mean();
             // The wake's answer makes the lasting slope smaller than the one at once.
             if slope > 0.0 {
                 let change = CAUTION * (mean_moment - moment) / slope;
                 wind = (wind + change.clamp(-1.0, 1.0)).clamp(WINDS[0], WINDS[1]);
             }
         }
-        let fixed = FixedFrame { average: wind, ..FixedFrame::default() };
-        self.rest_tips(fixed, posture, state, memory);
         wind
     }
 
@@ -189,15 +189,6 @@ impl Rotor {
         for _ in 0..N_SETTLING {
             self.move_wake(SETTLING, wind, posture, state, memory);
         }
-        self.rest_tips(wind, posture, state, memory);
-    }
-
-    fn rest_tips(&self, wind: FixedFrame, posture: &Posture, state: &mut State, memory: &Memory) {
-        let expected = self.still(wind, posture, state, memory);
-        if let Some(flap) = &self.flap {
-            let tip = |moment: f64| flap.settled(posture.rotor_speed, moment);
-            state.tips = expected.moments.map(tip);
-        }
     }
 
     /// Moves `state` on by `interval` (s) to the instant of `posture`, at which the fixed frame's wind is `wind` (m/s);
@@ -211,35 +202,23 @@ impl Rotor {
         memory: &mut Memory,
     ) -> Expected {
         self.move_wake(interval, wind, posture, state, memory);
-        let mut expected = self.still(wind, posture, state, memory);
-        if let Some(flap) = &self.flap {
-            let share = flap.lasting_share(posture.rotor_speed);
-            for blade in 0..self.n_blades {
-                let (moment, slope) = (expected.moments[blade], expected.slopes[blade]);
-                let tip = &mut state.tips[blade];
-                expected.moments[blade] =
-                    flap.advance(interval, posture.rotor_speed, moment, slope, tip);
-                expected.slopes[blade] = share * slope;
-            }
-        }
-        expected
+        self.still(wind, posture, state, memory)
     }
 
-    /// Moments (N m) that a lasting `wind` (m/s) would make of the wake as it is, for differences between neighbouring winds.
+    /// Moments (N m) that `wind` (m/s) would make in the wake as it is, blades bending by `bend`.
     pub(super) fn moments_beside(
         &self,
         wind: FixedFrame,
         posture: &Posture,
+        bend: &Bend,
         memory: &Memory,
         state: &State,
     ) -> PerBlade<f64> {
         let conditions = self.conditions(wind, posture);
-        let moments = self.blades.moments(&conditions, self.met(state, memory));
-        let share = self.flap.as_ref().map_or(1.0, |flap| flap.lasting_share(posture.rotor_speed));
-        moments.map(|moment| share * moment)
+        bend.apply(&self.blades.moments(&conditions, self.met(state, memory)))
     }
 
-    /// Moments of blades that do not bend, in the wake as it is.
+    /// What is expected in the wake as it is.
     fn still(
         &self,
         wind: FixedFrame,
@@ -250,7 +229,14 @@ impl Rotor {
         let conditions = self.conditions(wind, posture);
         let (moments, slopes) =
             self.blades.moments_with_slopes(&conditions, self.met(state, memory));
-        Expected { moments, slopes }
+        let Posture { azimuth, rotor_speed, .. } = *posture;
+        let bend = match &self.flap {
+            Some(flap) => {
+                flap.bend(rotor_speed + self.swing_rate, rotor_speed, azimuth, slopes.mean())
+            }
+            None => Bend::none(azimuth),
+        };
+        Expected { moments: bend.apply(&moments), slopes, bend }
     }
 
     fn conditions(&self, wind: FixedFrame, posture: &Posture) -> Conditions {

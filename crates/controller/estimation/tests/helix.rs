@@ -1,0 +1,399 @@
+//! The helix estimator on blade moments that its own model makes, with noise and turbulence.
+
+mod machine;
+
+use basis::Sense;
+use basis::angle::wrap_to_half_turn;
+use estimation::helix::*;
+use estimation::{EstimationError, Estimator, HelixEstimate, HelixEstimator};
+use machine::*;
+use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+const SENSES: [Sense; 2] = [Sense::CounterClockwise, Sense::Clockwise];
+/// Three helix periods.
+const CONVERGED: f64 = 3.0 * PERIOD;
+
+/// Runs `duration` (s) in a world that `change` may change at each step; gives each instant's world and estimate.
+fn run(
+    options: Options,
+    world: World,
+    duration: f64,
+    mut change: impl FnMut(f64, &mut World, &mut Dice),
+) -> Vec<(f64, World, HelixEstimate)> {
+    let definition = definition();
+    let mut model = model(&definition, world.sense, &options);
+    let mut estimator = HelixEstimator::new(&definition, &setting(world.sense), options).unwrap();
+    let (mut world, mut noise) = (world, Dice(7));
+    (0..(duration / INTERVAL) as usize)
+        .map(|step| {
+            let time = step as f64 * INTERVAL;
+            change(time, &mut world, &mut noise);
+            let measurements = world.read(step, &mut model, &mut noise);
+            (time, world, estimator.update(&measurements))
+        })
+        .collect()
+}
+
+/// Errors of tilt's and yaw's phase (deg) from `from` (s) on.
+fn errors(record: &[(f64, World, HelixEstimate)], from: f64) -> [Vec<f64>; 2] {
+    [0, 1].map(|axis| {
+        let error = |(_, world, estimate): &(f64, World, HelixEstimate)| {
+            let phase = [estimate.tilt, estimate.yaw][axis].phase;
+            wrap_to_half_turn(phase - world.phases[axis]).to_degrees()
+        };
+        record.iter().filter(|(time, ..)| *time >= from).map(error).collect()
+    })
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+fn still(_: f64, _: &mut World, _: &mut Dice) {}
+
+#[test]
+fn finds_any_phase_within_two_degrees_after_three_periods_while_its_own_rotor_pitches() {
+    for sense in SENSES {
+        let mut biases = Vec::new();
+        for k in 0..12 {
+            let phase = TAU * f64::from(k) / 12.0;
+            let mut world = World::new(sense, phase);
+            world.own = (0.07, phase + 2.5 * f64::from(k));
+            let errors = errors(&run(Options::default(), world, 550.0, still), CONVERGED);
+            for errors in &errors {
+                assert!(rms(errors) < 2.0, "{sense} {k}: {}", rms(errors));
+                biases.push(mean(errors));
+            }
+        }
+        assert!(mean(&biases).abs() < 0.5, "{sense}: {}", mean(&biases));
+    }
+}
+
+#[test]
+fn the_published_form_and_separate_amplitudes_find_the_phase_too() {
+    let separate = Options {
+        form: Form::SeparateAmplitudes,
+        noise: Options::published().noise,
+        ..Options::published()
+    };
+    for options in [Options::published(), separate] {
+        for sense in SENSES {
+            let mut world = World::new(sense, 1.0);
+            world.own = (0.07, 3.0);
+            for errors in errors(&run(options, world, 550.0, still), CONVERGED) {
+                assert!(rms(&errors) < 4.0, "{sense} {:?}: {}", options.form, rms(&errors));
+            }
+        }
+    }
+}
+
+/// In a world that is as the filter believes, its own variances tell its errors, and innovations are white.
+#[test]
+fn innovations_and_errors_keep_within_their_chi_square_bounds() {
+    let density = 2e-4;
+    let eddies = Eddies { deviation: 0.3, time_constant: 0.5 };
+    let base = Options::default();
+    let options = Options {
+        noise: Noise { amplitude: density, mean_wind: 1e-3, ..base.noise },
+        eddies: Some(eddies),
+        adaptation: None,
+        response: None,
+        roundness: 0.0,
+        ..base
+    };
+    let n_runs = 24;
+    let (mut errors, mut innovations) = (0.0, Vec::new());
+    let definition = definition();
+    for seed in 0..n_runs {
+        let mut model = model(&definition, Sense::CounterClockwise, &options);
+        let set = setting(Sense::CounterClockwise);
+        let mut estimator = HelixEstimator::new(&definition, &set, options).unwrap();
+        let mut noise = Dice(1 + seed);
+        let mut world = World::new(Sense::CounterClockwise, 0.0);
+        // Sine and cosine components, which wander; eddies, which forget themselves.
+        let mut parts = [0.9, 0.4, 0.9, 0.4];
+        let bias = [0.3 * noise.normal(), 0.3 * noise.normal()];
+        let mut passing = [0.0; 2];
+        for step in 0..(5.0 * PERIOD / INTERVAL) as usize {
+            let kept = (-INTERVAL * 9.0 / (0.5 * 240.0)).exp();
+            parts.iter_mut().for_each(|part| *part += (density * INTERVAL).sqrt() * noise.normal());
+            world.mean_wind += (1e-3 * INTERVAL).sqrt() * noise.normal();
+            for (passing, (other, bias)) in passing.iter_mut().zip(world.other.iter_mut().zip(bias))
+            {
+                *passing = kept * *passing + 0.3 * (1.0 - kept * kept).sqrt() * noise.normal();
+                *other = bias + *passing;
+            }
+            world.amplitudes = [parts[0].hypot(parts[1]), parts[2].hypot(parts[3])];
+            world.phases = [parts[1].atan2(parts[0]), parts[3].atan2(parts[2])];
+            let estimate = estimator.update(&world.read(step, &mut model, &mut noise));
+            if (step + 1) % (PERIOD / INTERVAL) as usize == 0
+                && step as f64 * INTERVAL > 2.0 * PERIOD
+            {
+                innovations.push(estimate.innovation);
+            }
+            if step + 1 == (5.0 * PERIOD / INTERVAL) as usize {
+                for (axis, truth) in [estimate.tilt, estimate.yaw].iter().zip(world.phases) {
+                    errors += wrap_to_half_turn(axis.phase - truth).powi(2) / axis.phase_variance;
+                }
+            }
+        }
+    }
+    // Wilson and Hilferty's cube: 99.9 % bounds of a chi-square of n degrees of freedom over n.
+    let bounds = |n: f64| {
+        let cube = |z: f64| (1.0 - 2.0 / (9.0 * n) + z * (2.0 / (9.0 * n)).sqrt()).powi(3);
+        cube(-3.29)..cube(3.29)
+    };
+    let n = 2.0 * n_runs as f64;
+    assert!(bounds(n).contains(&(errors / n)), "{} not in {:?}", errors / n, bounds(n));
+    // An exponential mean over a period of n readings weighs as many as two periods in a plain mean.
+    let n = 2.0 * 3.0 * PERIOD / INTERVAL * innovations.len() as f64;
+    let innovation = mean(&innovations);
+    assert!(bounds(n).contains(&innovation), "{innovation} not in {:?}", bounds(n));
+}
+
+#[test]
+fn eddies_leave_the_phase_within_ten_degrees_and_are_known_to() {
+    let mut passing = [0.0; 2];
+    let record = run(
+        Options::default(),
+        World::new(Sense::CounterClockwise, 2.0),
+        2000.0,
+        |_, world, noise| {
+            let kept = (-INTERVAL / 15.0_f64).exp();
+            for passing in &mut passing {
+                *passing = kept * *passing + 0.4 * (1.0 - kept * kept).sqrt() * noise.normal();
+            }
+            world.other = [1.0 + passing[0], passing[1]];
+        },
+    );
+    let errors = errors(&record, CONVERGED);
+    let believed = |index: usize| {
+        let late = record.iter().filter(|(time, ..)| *time >= CONVERGED);
+        let deviation: Vec<f64> =
+            late.map(|(.., e)| [e.tilt, e.yaw][index].phase_variance.sqrt().to_degrees()).collect();
+        mean(&deviation)
+    };
+    for (index, errors) in errors.iter().enumerate() {
+        assert!(rms(errors) < 10.0, "{}", rms(errors));
+        // The filter's own deviation tells the error within a factor of two.
+        assert!((0.5..2.0).contains(&(rms(errors) / believed(index))), "{}", believed(index));
+    }
+    // Shear is found as what lasts.
+    let tilts: Vec<f64> =
+        record.iter().filter(|(t, ..)| *t > CONVERGED).map(|r| r.2.other.tilt).collect();
+    assert!((mean(&tilts) - 1.0).abs() < 0.2, "{}", mean(&tilts));
+}
+
+#[test]
+fn goes_on_through_dropouts_and_says_so() {
+    let definition = definition();
+    let options = Options::default();
+    let mut model = model(&definition, Sense::Clockwise, &options);
+    let mut estimator =
+        HelixEstimator::new(&definition, &setting(Sense::Clockwise), options).unwrap();
+    let (world, mut noise) = (World::new(Sense::Clockwise, 4.0), Dice(3));
+    let mut shown = [0.0; 3];
+    let (mut errors, mut partial) = (Vec::new(), 0);
+    let mut variance = 0.0;
+    for step in 0..(600.0 / INTERVAL) as usize {
+        let mut measurements = world.read(step, &mut model, &mut noise);
+        let time = measurements.time;
+        for (moment, shown) in measurements.flap_moments.iter_mut().zip(&mut shown) {
+            if noise.uniform() < 0.1 {
+                *moment = if noise.uniform() < 0.5 { f64::NAN } else { *shown };
+            }
+            *shown = *moment;
+        }
+        let silent = (450.0..500.0).contains(&time);
+        if silent {
+            measurements.flap_moments.iter_mut().for_each(|moment| *moment = f64::NAN);
+        }
+        let estimate = estimator.update(&measurements);
+        if silent {
+            assert_eq!(estimate.status, Status::Holding);
+            assert!(estimate.tilt.phase_variance >= variance);
+            variance = estimate.tilt.phase_variance;
+        }
+        if time > CONVERGED {
+            partial += usize::from(estimate.status == Status::Partial);
+            errors.push(wrap_to_half_turn(estimate.yaw.phase - 4.0).to_degrees());
+        }
+    }
+    assert!(partial > 200, "{partial}");
+    assert!(rms(&errors) < 2.5, "{}", rms(&errors));
+}
+
+#[test]
+fn a_step_of_the_wind_does_not_turn_the_phase() {
+    let record = run(
+        Options::default(),
+        World::new(Sense::CounterClockwise, 1.0),
+        600.0,
+        |time, world, _| {
+            world.mean_wind = if time > 350.0 { 11.0 } else { 9.0 };
+        },
+    );
+    for errors in errors(&record, CONVERGED) {
+        assert!(errors.iter().all(|error| error.abs() < 12.0));
+    }
+    let last = record.last().unwrap().2;
+    assert!((last.mean_wind - 11.0).abs() < 0.6, "{}", last.mean_wind);
+}
+
+#[test]
+fn trust_goes_with_the_helix_and_comes_back() {
+    let mut passing = [0.0; 2];
+    let record = run(
+        Options::default(),
+        World::new(Sense::CounterClockwise, 1.0),
+        2000.0,
+        |time, world, noise| {
+            let kept = (-INTERVAL / 15.0_f64).exp();
+            for passing in &mut passing {
+                *passing = kept * *passing + 0.3 * (1.0 - kept * kept).sqrt() * noise.normal();
+            }
+            world.other = passing;
+            world.amplitudes = if (600.0..1300.0).contains(&time) { [0.0; 2] } else { [1.0; 2] };
+        },
+    );
+    let trust = |at: f64| record[(at / INTERVAL) as usize].2.trust.overall();
+    assert!(trust(590.0) > 0.6, "{}", trust(590.0));
+    assert!(trust(1290.0) < 0.3, "{}", trust(1290.0));
+    assert!(trust(1990.0) > 0.5, "{}", trust(1990.0));
+    for errors in errors(&record, 1300.0 + CONVERGED) {
+        assert!(rms(&errors) < 12.0, "{}", rms(&errors));
+    }
+}
+
+#[test]
+fn chain_rule_and_differences_give_the_same_filter() {
+    let world = World::new(Sense::CounterClockwise, 5.0);
+    let by = |jacobian| run(Options { jacobian, ..Options::default() }, world, 60.0, still);
+    let (exact, tried) = (by(Jacobian::Analytic), by(Jacobian::CentralDifferences { step: 1e-5 }));
+    for ((.., exact), (.., tried)) in exact.iter().zip(&tried) {
+        assert!((exact.mean_wind - tried.mean_wind).abs() < 1e-3);
+        assert!((exact.helix.tilt - tried.helix.tilt).abs() < 1e-3);
+        assert!((exact.helix.yaw - tried.helix.yaw).abs() < 1e-3);
+        let ratio = exact.tilt.phase_variance / tried.tilt.phase_variance;
+        assert!((ratio - 1.0).abs() < 1e-2, "{ratio}");
+    }
+}
+
+#[test]
+fn a_rate_that_is_not_the_nominal_one_is_found() {
+    let mut world = World::new(Sense::CounterClockwise, 1.0);
+    world.rate *= 1.02;
+    let options = Options { rate: Some(1e-10), ..Options::default() };
+    let record = run(options, world, 1500.0, still);
+    let last = record.last().unwrap().2;
+    assert!((last.rate / world.rate - 1.0).abs() < 2e-3, "{}", last.rate / world.rate);
+    // Phases are told against the nominal excitation, on which the helix gains.
+    let truth = 1.0 + 0.02 * TAU / PERIOD * 1499.8;
+    assert!(wrap_to_half_turn(last.tilt.phase - truth).abs() < 0.05);
+}
+
+#[test]
+fn eight_elements_are_enough() {
+    let definition = definition();
+    let options = Options::default();
+    let reading = |n_elements: usize| {
+        let setting = Setting { n_elements, ..setting(Sense::CounterClockwise) };
+        let mut model = MeasurementModel::new(&definition, &setting, &options).unwrap();
+        let world = World { noise: 0.0, ..World::new(Sense::CounterClockwise, 0.0) };
+        (0..100).map(|step| world.read(step, &mut model, &mut Dice(1)).flap_moments).last().unwrap()
+    };
+    let (few, many) = (reading(Setting::N_ELEMENTS), reading(60));
+    for (few, many) in few.iter().zip(many.iter()) {
+        assert!((few / many - 1.0).abs() < 0.02, "{}", few / many);
+    }
+}
+
+#[test]
+fn a_resumed_estimator_goes_on_with_the_same_bits() {
+    let definition = definition();
+    let options = Options::default();
+    let mut model = model(&definition, Sense::Clockwise, &options);
+    let world = World { own: (0.05, 1.0), ..World::new(Sense::Clockwise, 2.0) };
+    let mut noise = Dice(5);
+    let record: Vec<_> = (0..400).map(|step| world.read(step, &mut model, &mut noise)).collect();
+    let new = || HelixEstimator::new(&definition, &setting(Sense::Clockwise), options).unwrap();
+    let mut whole = new();
+    record[..200].iter().for_each(|measurements| _ = whole.update(measurements));
+    let bytes = postcard::to_stdvec(whole.state()).unwrap();
+    let mut resumed = new();
+    resumed.restore(postcard::from_bytes(&bytes).unwrap());
+    assert_eq!(whole.state(), resumed.state());
+    for measurements in &record[200..] {
+        assert_eq!(whole.update(measurements), resumed.update(measurements));
+    }
+    assert_eq!(whole.state(), resumed.state());
+}
+
+#[test]
+fn what_cannot_work_is_said_at_once() {
+    let definition = definition();
+    let good = setting(Sense::Clockwise);
+    let error = |setting: Setting, options: Options| {
+        HelixEstimator::new(&definition, &setting, options).unwrap_err()
+    };
+    let options = Options::default();
+    let slow = error(Setting { interval: 4.0, ..good }, options);
+    assert!(matches!(slow, EstimationError::AboveNyquist { .. }), "{slow}");
+    let fast = error(Setting { rate: 20.0, ..good }, options);
+    assert!(matches!(fast, EstimationError::AboveNyquist { .. }), "{fast}");
+    let rare = error(good, Options { update_every: 30, ..options });
+    assert!(matches!(rare, EstimationError::AboveNyquist { .. }), "{rare}");
+    let noise = Noise { amplitude: -1e-4, ..options.noise };
+    let negative = error(good, Options { noise, ..options });
+    assert!(negative.to_string().contains("not positive definite"), "{negative}");
+    let noise = Noise { measurement: Measurement::Moment(0.0), ..options.noise };
+    let silent = error(good, Options { noise, ..options });
+    assert!(matches!(silent, EstimationError::NotPositiveDefinite { name: "measurement", .. }));
+    let round = error(good, Options { roundness: 1.0, ..options });
+    assert!(matches!(round, EstimationError::NotPositiveDefinite { name: "process", .. }));
+    let none = error(Setting { rate: f64::NAN, ..good }, options);
+    assert!(matches!(none, EstimationError::Setting { .. }), "{none}");
+    let mut two = (*definition).clone();
+    two.n_blades = 2;
+    let two = HelixEstimator::new(&two.into(), &good, options).unwrap_err();
+    assert_eq!(two, EstimationError::FewBlades { n_blades: 2 });
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+    /// Whatever instruments show, every number of the estimate is finite and phases lie on the circle.
+    #[test]
+    fn no_reading_brings_it_down(
+        odd in prop::collection::vec((0..8_usize, any::<f64>()), 30),
+    ) {
+        let definition = definition();
+        let options = Options::default();
+        let mut model = model(&definition, Sense::Clockwise, &options);
+        let mut estimator = HelixEstimator::new(&definition, &setting(Sense::Clockwise), options).unwrap();
+        let (world, mut noise) = (World::new(Sense::Clockwise, 2.0), Dice(9));
+        for (step, (what, value)) in odd.into_iter().enumerate() {
+            let mut measurements = world.read(step, &mut model, &mut noise);
+            match what {
+                0..=2 => measurements.flap_moments[what] = value,
+                3 => measurements.azimuth = value,
+                4 => measurements.rotor_speed = value,
+                5 => measurements.pitch[1] = value,
+                6 => measurements.time = value,
+                _ => measurements.interval = value,
+            }
+            let estimate = estimator.update(&measurements);
+            for axis in [estimate.tilt, estimate.yaw] {
+                prop_assert!((0.0..TAU).contains(&axis.phase), "{estimate:?}");
+                prop_assert!(axis.amplitude.is_finite() && axis.phase_variance.is_finite());
+                prop_assert!(axis.phase_variance <= PI * PI / 3.0 + 1e-12);
+            }
+            prop_assert!(estimate.mean_wind.is_finite());
+            prop_assert!((0.0..=1.0).contains(&estimate.trust.overall()), "{estimate:?}");
+        }
+    }
+}

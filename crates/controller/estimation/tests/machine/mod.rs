@@ -1,0 +1,227 @@
+//! A large turbine for trials, and a world that is what the estimator's model says it is.
+
+#![allow(dead_code)]
+
+use basis::angle::wrap_to_turn;
+use basis::mbc::to_blades;
+use basis::{FixedFrame, Measurements, PerBlade, Sense, Vector3};
+use estimation::helix::{MeasurementModel, Options, Setting};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+use turbine::actuators::PitchActuator;
+use turbine::definition::*;
+use turbine::{Definition, Polar};
+
+/// Period of the helix (s).
+pub(crate) const PERIOD: f64 = 91.4;
+/// Control interval (s).
+pub(crate) const INTERVAL: f64 = 0.2;
+/// Rotor speed (rad/s).
+pub(crate) const ROTOR_SPEED: f64 = 0.68;
+
+fn polar(lift: impl Fn(f64) -> f64, drag: impl Fn(f64) -> f64) -> Polar {
+    let angles: Vec<f64> = (-360..=360).map(|k| f64::from(k) * PI / 360.0).collect();
+    let lift: Vec<f64> = angles.iter().map(|angle| lift(*angle)).collect();
+    let drag: Vec<f64> = angles.iter().map(|angle| drag(*angle)).collect();
+    Polar::new("sample", &angles, &lift, &drag, &vec![0.0; angles.len()]).unwrap()
+}
+
+fn aerofoil() -> Polar {
+    let attached = |angle: f64| 1.0 / (1.0 + ((angle.abs() - 0.28) / 0.03).exp());
+    polar(
+        |angle| {
+            let share = attached(angle);
+            share * TAU * (angle + 0.05).sin() + (1.0 - share) * 1.1 * (2.0 * angle).sin()
+        },
+        |angle| 0.008 + 1.3 * angle.sin().powi(2) * (1.0 - attached(angle)),
+    )
+}
+
+/// A rotor of 120 m with soft blades.
+pub(crate) fn definition() -> Arc<Definition> {
+    let mode = Mode { coefficients: [1.0, 0.0, 0.0, 0.0, 0.0], damping_ratio: 0.005 };
+    let section = |k: usize| {
+        let share = k as f64 / 20.0;
+        BladeSection {
+            span: 117.0 * share,
+            twist: 0.0,
+            mass: 2800.0 - 2700.0 * share,
+            flap_stiffness: 2e11 * (1.0 - share).powi(3) + 1e7,
+            edge_stiffness: 2e11,
+        }
+    };
+    let station = |k: usize| {
+        let radius = 3.0 + 117.0 * k as f64 / 39.0;
+        let inflow = 2.0 / 3.0 * (120.0 / (9.0 * radius)).atan();
+        let chord = (16.0 * PI * radius / (3.0 * 4.5) * (1.0 - inflow.cos())).clamp(1.0, 6.0);
+        BladeStation {
+            span: radius - 3.0,
+            chord,
+            twist: (inflow - 0.09).min(0.25),
+            prebend: 0.0,
+            sweep: 0.0,
+            polar: usize::from(k > 5),
+        }
+    };
+    Arc::new(Definition {
+        name: "sample".into(),
+        n_blades: 3,
+        rotor: RotorGeometry {
+            hub_radius: 3.0,
+            tip_radius: 120.0,
+            precone: 0.0,
+            shaft_tilt: 0.0,
+            overhang: 10.0,
+            hub_height: 150.0,
+        },
+        blade: (0..40).map(station).collect(),
+        polars: vec![polar(|_| 0.0, |_| 0.5), aerofoil()],
+        blade_structure: BladeStructure {
+            sections: (0..=20).map(section).collect(),
+            flap_modes: [mode, mode],
+            edge_mode: mode,
+        },
+        tower: Tower {
+            base_height: 0.0,
+            top_height: 145.0,
+            top_to_shaft: 5.0,
+            profile: vec![],
+            sections: vec![],
+            fore_aft_modes: [mode, mode],
+            side_to_side_modes: [mode, mode],
+        },
+        hub: Hub { mass: 1e5, inertia: 1e6 },
+        nacelle: Nacelle {
+            mass: 5e5,
+            yaw_inertia: 1e7,
+            center_of_mass: Vector3::ZERO,
+            yaw_bearing_mass: 0.0,
+        },
+        drive_train: DriveTrain {
+            gear_ratio: 1.0,
+            generator_inertia: 1e6,
+            gearbox_efficiency: 1.0,
+            generator_efficiency: 0.95,
+            stiffness: 1e10,
+            damping: 1e8,
+        },
+        pitch_actuator: PitchActuator {
+            natural_frequency: 3.0,
+            damping_ratio: 0.7,
+            maximum_rate: 0.1,
+            minimum_pitch: -0.1,
+            maximum_pitch: 1.5,
+        },
+        rated_power: 15e6,
+        rated_rotor_speed: 0.8,
+    })
+}
+
+/// What is looked for.
+pub(crate) fn setting(sense: Sense) -> Setting {
+    let (rate, interval) = (TAU / PERIOD, INTERVAL);
+    Setting { sense, rate, interval, air_density: 1.225, n_elements: Setting::N_ELEMENTS }
+}
+
+/// Random numbers.
+pub(crate) struct Dice(pub(crate) u64);
+
+impl Dice {
+    pub(crate) fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    }
+
+    pub(crate) fn normal(&mut self) -> f64 {
+        let (radius, angle) = ((-2.0 * self.uniform().ln()).sqrt(), self.uniform());
+        radius * (TAU * angle).cos()
+    }
+}
+
+/// Wind and pitch at one instant.
+#[derive(Clone, Copy)]
+pub(crate) struct World {
+    pub(crate) sense: Sense,
+    pub(crate) rate: f64,
+    pub(crate) mean_wind: f64,
+    /// Amplitudes (m/s) and phases (rad) of tilt and yaw.
+    pub(crate) amplitudes: [f64; 2],
+    pub(crate) phases: [f64; 2],
+    /// Tilt and yaw besides (m/s).
+    pub(crate) other: [f64; 2],
+    /// Amplitude (rad) of the rotor's own pitch and its phase (rad).
+    pub(crate) own: (f64, f64),
+    /// Noise of the moments over their mean (–).
+    pub(crate) noise: f64,
+}
+
+impl World {
+    pub(crate) fn new(sense: Sense, phase: f64) -> Self {
+        Self {
+            sense,
+            rate: TAU / PERIOD,
+            mean_wind: 9.0,
+            amplitudes: [1.0; 2],
+            phases: [phase; 2],
+            other: [0.0; 2],
+            own: (0.0, 0.0),
+            noise: 0.05,
+        }
+    }
+
+    fn wind(&self, time: f64) -> FixedFrame {
+        let angle = self.rate * time;
+        let [tilt, yaw] = self.amplitudes;
+        FixedFrame {
+            average: self.mean_wind,
+            tilt: self.other[0] + tilt * (angle + self.phases[0]).sin(),
+            yaw: self.other[1] + yaw * (angle + self.sense.yaw_lead() + self.phases[1]).sin(),
+        }
+    }
+
+    /// What a rotor like `model` reads at `step`.
+    pub(crate) fn read(
+        &self,
+        step: usize,
+        model: &mut MeasurementModel,
+        dice: &mut Dice,
+    ) -> Measurements {
+        let time = step as f64 * INTERVAL;
+        let azimuth = ROTOR_SPEED * time;
+        let angle = self.rate * time + self.own.1;
+        let own = FixedFrame {
+            average: 0.0,
+            tilt: self.own.0 * angle.sin(),
+            yaw: self.own.0 * (angle + self.sense.yaw_lead()).sin(),
+        };
+        let pitch = to_blades(azimuth, own, 3);
+        let moments = model.moments(INTERVAL, self.wind(time), azimuth, ROTOR_SPEED, &pitch);
+        let scale = self.noise * moments.mean();
+        Measurements {
+            time,
+            interval: INTERVAL,
+            azimuth: wrap_to_turn(azimuth),
+            rotor_speed: ROTOR_SPEED,
+            generator_speed: ROTOR_SPEED,
+            pitch,
+            generator_torque: 0.0,
+            power: 0.0,
+            thrust: 0.0,
+            aerodynamic_torque: 0.0,
+            rotor_wind_speed: self.mean_wind,
+            flap_moments: moments.map(|moment| moment + scale * dice.normal()),
+            edge_moments: PerBlade::splat(3, 0.0),
+            tower_top_acceleration: 0.0,
+        }
+    }
+}
+
+/// The model of an estimator with `options`, with finer blades.
+pub(crate) fn model(
+    definition: &Arc<Definition>,
+    sense: Sense,
+    options: &Options,
+) -> MeasurementModel {
+    let setting = Setting { n_elements: 12, ..setting(sense) };
+    MeasurementModel::new(definition, &setting, options).unwrap()
+}
