@@ -168,6 +168,19 @@ impl Run {
     }
 }
 
+impl Case {
+    /// Sense and Strouhal number of the helix furthest upstream in `run`.
+    pub fn first_helix(&self, run: &Run) -> Option<(Sense, f64)> {
+        let x = |index: usize| self.turbines[index].position_diameters[0];
+        let helices = run.control.iter().enumerate().filter_map(|(index, control)| match control {
+            Control::Helix(helix) => Some((x(index), (helix.sense, helix.strouhal))),
+            Control::PhaseSync(sync) => Some((x(index), (sync.sense, sync.strouhal))),
+            _ => None,
+        });
+        helices.min_by(|a, b| a.0.total_cmp(&b.0)).map(|found| found.1)
+    }
+}
+
 /// What runs on a turbine, on top of torque and collective pitch control.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Control {
@@ -253,6 +266,8 @@ pub struct Output {
     pub plane_interval: Option<f64>,
     /// Crosswind planes at these distances behind the first turbine (diameters).
     pub crosswind_diameters: Vec<f64>,
+    /// Phases of the first helix in the row by which the hub-height plane is averaged (–); none when absent.
+    pub helix_phases: Option<usize>,
     /// Places in [`Case::turbines`] of the turbines where runs without them keep the wind along radial lines over the disc.
     pub lines_at: Vec<usize>,
     /// Time between volume snapshots, VTK (s); none when absent.

@@ -7,13 +7,14 @@ use crate::lines::{self, WindLines};
 use crate::outb;
 use crate::prepare::Setup;
 use crate::watcher::{Progress, Watcher};
+use analysis::wake::PhaseAverage;
 use basis::Vector3;
 use basis::records::{Cost, Plane, PlaneAxes};
-use control::ControllerState;
+use control::{ControllerState, excitation_rate};
 use farm::case::Run;
 use farm::{Air, Farm, assemble};
 use flow::inflow::prescribed::Clock;
-use flow::lattice::{PlaneAverage, PlaneAverageState};
+use flow::lattice::{Lattice, PlaneAverage, PlaneAverageState};
 use flow::{FlowError, WindField};
 use formats::checkpoint::{CheckpointReader, CheckpointWriter};
 use formats::records::{self, RunFolder, SeriesWriter};
@@ -52,6 +53,7 @@ struct RunState {
     turbines: Vec<turbine::State>,
     controllers: Vec<ControllerState>,
     averages: Vec<PlaneAverageState>,
+    phases: Option<PhaseAverage>,
     n_plane_instants: u64,
     n_volumes: u64,
 }
@@ -64,6 +66,8 @@ struct Simulation<'a> {
     row: Row,
     series: SeriesWriter,
     averages: Vec<PlaneAverage>,
+    /// The hub-height plane by phase of the helix.
+    phases: Option<PhaseAverage>,
     n_plane_instants: u64,
     n_volumes: u64,
     probe: Vector3,
@@ -145,6 +149,7 @@ impl<'a> Simulation<'a> {
                 .collect(),
             None => Vec::new(),
         };
+        let phases = phases(setup, run, &farm);
         let checkpoint = folder.checkpoint_path();
         let stored = if resume && checkpoint.exists() {
             Some(CheckpointReader::open(&checkpoint, &setup.case_text, &run.name)?)
@@ -162,6 +167,7 @@ impl<'a> Simulation<'a> {
                 row,
                 series,
                 averages,
+                phases,
                 n_plane_instants: 0,
                 n_volumes: 0,
                 probe,
@@ -178,6 +184,7 @@ impl<'a> Simulation<'a> {
             row,
             series: SeriesWriter::resume(&folder.series_path(), state.series_bytes)?,
             averages,
+            phases: state.phases,
             n_plane_instants: state.n_plane_instants,
             n_volumes: state.n_volumes,
             probe,
@@ -235,6 +242,9 @@ impl<'a> Simulation<'a> {
                 for average in &mut self.averages {
                     average.add(lattice);
                 }
+                if let Some(phases) = &mut self.phases {
+                    phases.add(&hub_height(self.setup, lattice))?;
+                }
             }
             let due = |every: Option<f64>| {
                 every.is_some_and(|every| since.is_multiple_of(whole_steps(every, plan.interval)))
@@ -269,6 +279,7 @@ impl<'a> Simulation<'a> {
             turbines: self.farm.machines().iter().map(|m| m.turbine.state().clone()).collect(),
             controllers: self.farm.machines().iter().map(|m| m.controller.state()).collect(),
             averages: self.averages.iter().map(PlaneAverage::state).collect(),
+            phases: self.phases.clone(),
             n_plane_instants: self.n_plane_instants,
             n_volumes: self.n_volumes,
         };
@@ -342,6 +353,9 @@ impl<'a> Simulation<'a> {
                 records::write_mean_plane(self.folder, &mean)?;
             }
         }
+        for phase in self.phases.iter().flat_map(PhaseAverage::planes) {
+            records::write_phase_plane(self.folder, phase.phase, &phase.plane)?;
+        }
         let clipped_shares = self
             .farm
             .machines()
@@ -369,6 +383,20 @@ fn probe(setup: &Setup) -> Vector3 {
     }
     let distance = (PROBE_DISTANCE * plan.diameter).min(0.5 * (foot.x - plan.origin.x));
     Vector3::new(foot.x - distance, foot.y, plan.hub_height)
+}
+
+/// The plane at hub height now.
+fn hub_height(setup: &Setup, lattice: &Lattice) -> Plane {
+    lattice.plane("hub-height", PlaneAxes::Horizontal, setup.plan.hub_height)
+}
+
+/// Averages by phase, where the case asks for them and `run` has a helix.
+fn phases(setup: &Setup, run: &Run, farm: &Farm<Air>) -> Option<PhaseAverage> {
+    let count = setup.case.output.helix_phases?;
+    let (_, strouhal) = setup.case.first_helix(run)?;
+    let rate = excitation_rate(strouhal, setup.case.wind.speed, setup.plan.diameter);
+    let plane = hub_height(setup, farm.flow().lattice()?);
+    Some(PhaseAverage::new(&plane, rate, count))
 }
 
 /// Planes that are averaged and kept: name, axes, position across them (m).

@@ -398,6 +398,9 @@ fn note_unknown_turbine(
 fn output_of(section: &Section, turbines: &[Placement]) -> Output {
     Output {
         lines_at: turbines_named(section, "lines_at", turbines),
+        helix_phases: section
+            .optional_whole("helix_phases")
+            .and_then(|count| usize::try_from(count).ok()),
         interval: section.optional_number("interval"),
         plane_interval: section.optional_number("plane_interval"),
         crosswind_diameters: section.numbers("crosswind_diameters"),

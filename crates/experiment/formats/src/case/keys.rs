@@ -413,6 +413,13 @@ pub(super) static OUTPUT: Table = Table {
             "Crosswind planes at these distances behind the first turbine.",
         ),
         key(
+            "helix_phases",
+            Kind::Whole { least: 4, most: 360 },
+            "–",
+            Otherwise("no averages by phase"),
+            "Phases of the first helix in the row by which the hub-height plane of the analysed time is averaged; 36 is one every ten degrees.",
+        ),
+        key(
             "lines_at",
             Kind::Turbines,
             "",

@@ -91,6 +91,9 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         writeln!(text, "plane_interval = {interval:?}")?;
     }
     writeln!(text, "crosswind_diameters = {:?}", output.crosswind_diameters)?;
+    if let Some(count) = output.helix_phases {
+        writeln!(text, "helix_phases = {count}")?;
+    }
     let names: Vec<&str> =
         output.lines_at.iter().map(|&index| case.turbines[index].name.as_str()).collect();
     writeln!(text, "lines_at = {names:?}")?;

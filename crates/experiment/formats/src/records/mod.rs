@@ -147,6 +147,14 @@ pub fn write_last_plane(folder: &RunFolder, plane: &Plane) -> Result<(), FileErr
     write_plane(folder, &format!("{}-last.nc", plane.name), plane)
 }
 
+/// Writes the mean of a plane at one `phase` (rad) of the excitation: `planes/NAME-phase-010.nc`, the phase in degrees.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn write_phase_plane(folder: &RunFolder, phase: f64, plane: &Plane) -> Result<(), FileError> {
+    write_plane(folder, &format!("{}-phase-{:03.0}.nc", plane.name, phase.to_degrees()), plane)
+}
+
 fn write_plane(folder: &RunFolder, name: &str, plane: &Plane) -> Result<(), FileError> {
     netcdf::write_plane(&folder.planes_path().join(name), &folder.run(), plane)
 }

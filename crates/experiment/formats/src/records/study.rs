@@ -38,6 +38,8 @@ pub struct RunRecords {
     pub mean_planes: Vec<Plane>,
     /// The same planes at the run's last instant.
     pub last_planes: Vec<Plane>,
+    /// Planes averaged at phases of the excitation, by phase (rad).
+    pub phase_planes: Vec<(f64, Plane)>,
     /// Files of planes at earlier instants, by name and time.
     pub instant_paths: Vec<PathBuf>,
     /// Files of volumes, by time.
@@ -109,6 +111,12 @@ fn warnings(runs: &[RunRecords], latest: &Manifest) -> Vec<String> {
     runs.iter().filter(differs).map(warn).collect()
 }
 
+/// The phase (rad) in a file's `name` such as `hub-height-phase-010.nc`.
+fn phase_of(name: &str) -> Option<f64> {
+    let (_, degrees) = name.strip_suffix(".nc")?.rsplit_once("-phase-")?;
+    degrees.parse().ok().map(f64::to_radians)
+}
+
 fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileError> {
     let mut records = RunRecords {
         summary: read_summary(folder)?,
@@ -116,6 +124,7 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
         series: read_series(&folder.series_path())?,
         mean_planes: Vec::new(),
         last_planes: Vec::new(),
+        phase_planes: Vec::new(),
         instant_paths: Vec::new(),
         volume_paths: Vec::new(),
     };
@@ -126,6 +135,8 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
         }
         if name.ends_with("-mean.nc") {
             records.mean_planes.push(netcdf::read_plane(&path)?);
+        } else if let Some(phase) = phase_of(&name) {
+            records.phase_planes.push((phase, netcdf::read_plane(&path)?));
         } else if name.ends_with("-last.nc") {
             records.last_planes.push(netcdf::read_plane(&path)?);
         } else {
