@@ -10,7 +10,7 @@ mod error;
 pub mod helix;
 
 pub use error::EstimationError;
-pub use helix::{HelixEstimate, HelixEstimator};
+pub use helix::{HelixEstimate, HelixEstimator, LinearEstimator};
 
 use basis::Measurements;
 

@@ -297,6 +297,77 @@ fn a_rate_that_is_not_the_nominal_one_is_found() {
     assert!(wrap_to_half_turn(last.tilt.phase - truth).abs() < 0.05);
 }
 
+/// Where the rotor does not pitch and the wake answers at once the earlier method serves; with a rotor that pitches in a
+/// wake that takes its time it is out several times as far as the extended filter.
+#[test]
+fn the_linear_filter_serves_at_its_point_alone() {
+    let (definition, sense) = (definition(), Sense::CounterClockwise);
+    let still = Options {
+        rotor: Rotor { wake: Wake::Static, flexible: false, ..Options::default().rotor },
+        ..Options::default()
+    };
+    let errors = |truth: Options, own: f64| {
+        let mut model = model(&definition, sense, &truth);
+        let point = OperatingPoint { wind: 9.0, rotor_speed: ROTOR_SPEED, pitch: 0.0 };
+        let mut linear = LinearEstimator::new(&definition, &setting(sense), point, truth).unwrap();
+        let mut extended = HelixEstimator::new(&definition, &setting(sense), truth).unwrap();
+        let mut world = World::new(sense, 1.0);
+        world.own = (own, 3.0);
+        let (mut dice, mut errors) = (Dice(4), [Vec::new(), Vec::new()]);
+        for step in 0..(600.0 / INTERVAL) as usize {
+            let read = world.read(step, &mut model, &mut dice);
+            for (errors, estimate) in
+                errors.iter_mut().zip([linear.update(&read), extended.update(&read)])
+            {
+                if read.time > CONVERGED {
+                    errors.push(wrap_to_half_turn(estimate.tilt.phase - 1.0).to_degrees());
+                }
+            }
+        }
+        errors.map(|errors| rms(&errors))
+    };
+    let [linear, _] = errors(still, 0.0);
+    assert!(linear < 5.0, "{linear}");
+    let [linear, extended] = errors(Options::default(), 0.07);
+    assert!(extended < 2.0 && linear > 4.0 * extended, "{linear} {extended}");
+}
+
+#[test]
+fn tuning_finds_the_noise_and_a_scale_that_serves() {
+    let definition = definition();
+    let options = Options::published();
+    let sense = Sense::CounterClockwise;
+    let mut model = model(&definition, sense, &options);
+    let (mut world, mut dice) = (World::new(sense, 1.0), Dice(11));
+    let (mut record, mut tilt, mut yaw) = (Vec::new(), Vec::new(), Vec::new());
+    for step in 0..(8.0 * PERIOD / INTERVAL) as usize {
+        let angle = world.rate * step as f64 * INTERVAL;
+        world.phases = [1.0 + 0.3 * (angle / 5.0).sin(); 2];
+        tilt.push((angle + world.phases[0]).sin());
+        yaw.push((angle + sense.yaw_lead() + world.phases[1]).sin());
+        record.push(world.read(step, &mut model, &mut dice));
+    }
+    let truth = [&tilt[..], &yaw[..]];
+    let tuned = tuning::tune(&definition, &setting(sense), options, &record, truth).unwrap();
+    assert!(tuned.error.to_degrees() < 8.0, "{}", tuned.error.to_degrees());
+    let Measurement::Moment(deviation) = tuned.options.noise.measurement else { panic!() };
+    let expected = 0.05 * record[50].flap_moments.mean();
+    assert!((0.8..1.3).contains(&(deviation / expected)), "{}", deviation / expected);
+    // A gap, another interval, a lost azimuth and a truth of another length are told.
+    let tune = |record: &[_], truth| {
+        tuning::tune(&definition, &setting(sense), options, record, truth).unwrap_err()
+    };
+    let gap: Vec<_> = record.iter().enumerate().filter(|(k, _)| *k != 500).map(|r| *r.1).collect();
+    assert!(matches!(tune(&gap, truth), EstimationError::Sample { index: 500, .. }));
+    let every_other: Vec<_> = record.iter().step_by(2).copied().collect();
+    assert!(matches!(tune(&every_other, truth), EstimationError::Sample { index: 1, .. }));
+    let mut blind = record.clone();
+    blind[7].azimuth = f64::NAN;
+    assert!(matches!(tune(&blind, truth), EstimationError::Sample { index: 7, .. }));
+    let short = [&tilt[..9], &yaw[..9]];
+    assert!(matches!(tune(&record, short), EstimationError::Length { .. }));
+}
+
 #[test]
 fn eight_elements_are_enough() {
     let definition = definition();
@@ -365,7 +436,7 @@ fn what_cannot_work_is_said_at_once() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
     /// Whatever instruments show, every number of the estimate is finite and phases lie on the circle.
     #[test]
     fn no_reading_brings_it_down(

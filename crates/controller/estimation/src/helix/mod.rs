@@ -12,15 +12,18 @@ mod estimate;
 mod estimator;
 mod filter;
 mod flap;
+mod linear;
 mod model;
 mod options;
 mod rotor;
 mod trust;
+pub mod tuning;
 mod wave;
 
 pub use calibration::{Calibration, calibrate};
 pub use estimate::{HelixEstimate, Status};
 pub use estimator::{HelixEstimator, Setting, State};
+pub use linear::{LinearEstimator, LinearState, OperatingPoint};
 pub use model::MeasurementModel;
 pub use options::{Adaptation, Eddies, Jacobian, Measurement, Noise, Options, Rotor, Wake};
 pub use trust::Trust;

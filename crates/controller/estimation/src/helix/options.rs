@@ -144,7 +144,7 @@ impl Default for Options {
             },
             bias: Some(1e-5),
             eddies: Some(Eddies { deviation: 0.3, time_constant: 0.5 }),
-            response: Some(0.03),
+            response: None,
             rate: None,
             adaptation: Some(Adaptation { time_constant: 200.0, bound: 5.0, wave: false }),
             roundness: 0.7,
