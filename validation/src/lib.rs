@@ -8,6 +8,7 @@ pub mod blade_element;
 pub mod flow;
 pub mod helix;
 pub mod inflow;
+pub mod meandering;
 pub mod resume;
 pub mod row;
 
@@ -86,6 +87,24 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "changes of power and loads by a helix of 1 to 4° in steady prescribed wind against OpenFAST",
         minutes: "under 1",
         run: aeroelastic::openfast_helix,
+    },
+    Validation {
+        name: "meandering-loops",
+        about: "phase-locked loops on tones, ramps and steps, against closed forms and the published claims",
+        minutes: "under 1",
+        run: meandering::loops,
+    },
+    Validation {
+        name: "meandering-bench",
+        about: "loops closed around three masses on springs: steps, ramp, offset, noise, attenuation, beside the source",
+        minutes: "under 1",
+        run: meandering::bench,
+    },
+    Validation {
+        name: "meandering-disk",
+        about: "the flexible turbine in a rotating disk, loads amplified and attenuated, beside published tables",
+        minutes: "2",
+        run: meandering::disk,
     },
     Validation {
         name: "resume",

@@ -39,7 +39,8 @@ pub enum Followed {
     /// it commands, the more the less is left of the load; deep attenuation oscillates or loses the lock.
     #[default]
     Load,
-    /// The loads less what pitch adds to them: the wake's own part, which stays however little is left of the sum.
+    /// The loads less what pitch adds to them: the wake's own part, which stays however little is left of the sum. Each axis'
+    /// pitch then goes with that axis' own phase.
     Wake,
 }
 
@@ -131,7 +132,10 @@ impl Meandering {
         let moments = to_fixed_frame(measurements.azimuth, &measurements.flap_moments);
         let own = match self.settings.followed {
             Followed::Load => FixedFrame::default(),
-            Followed::Wake => self.own(self.follower.estimate().phase),
+            Followed::Wake => {
+                let before = self.follower.estimate();
+                self.own(self.angles(&before, before.rate * interval))
+            }
         };
         let [tilt, yaw] = [moments.tilt - own.tilt, moments.yaw - own.yaw];
         let estimate = self.follower.follow(interval, FixedFrame { average: 0.0, tilt, yaw });
@@ -162,46 +166,45 @@ impl Meandering {
         }
     }
 
-    /// What pitch adds to tilt and yaw moment (N m) when it is meant to be at `phase` (rad).
-    fn own(&self, phase: f64) -> FixedFrame {
-        let lead = self.settings.follower.sense.yaw_lead();
+    /// Angles (rad) that pitch on tilt and yaw is meant for, `further` (rad) than what is believed: a quarter period apart,
+    /// or, where the wake's own part is followed, each axis its own.
+    fn angles(&self, estimate: &TwoAxisEstimate, further: f64) -> [f64; 2] {
+        let angles = match self.settings.followed {
+            Followed::Load => {
+                [estimate.phase, estimate.phase + self.settings.follower.sense.yaw_lead()]
+            }
+            Followed::Wake => [estimate.tilt.phase, estimate.yaw.phase],
+        };
+        angles.map(|angle| angle + further)
+    }
+
+    /// What pitch adds to tilt and yaw moment (N m) when it is meant for `angles` (rad).
+    fn own(&self, angles: [f64; 2]) -> FixedFrame {
         let load = |axis: &AxisLoop, angle: f64| {
             self.authority * (axis.added_amplitude() * angle.sin() + axis.added_offset())
         };
-        let (tilt, yaw) = (load(&self.tilt, phase), load(&self.yaw, phase + lead));
+        let (tilt, yaw) = (load(&self.tilt, angles[0]), load(&self.yaw, angles[1]));
         FixedFrame { average: 0.0, tilt, yaw }
     }
 
     /// Tilt and yaw pitch (rad) that adds it `delay` later. van Veldhoven (2024), Eq. 2-40.
     fn asked(&self, estimate: &TwoAxisEstimate) -> FixedFrame {
         let Decoupling { delay, gain, .. } = self.settings.decoupling;
-        let load = self.own(estimate.phase + delay * estimate.rate);
+        let load = self.own(self.angles(estimate, delay * estimate.rate));
         FixedFrame { average: 0.0, tilt: -load.tilt / gain, yaw: -load.yaw / gain }
     }
 
-    /// Lead of each axis' own phase over the one that its pitch is meant for (rad).
-    fn ahead(&self, estimate: &TwoAxisEstimate) -> [f64; 2] {
-        let lead = self.settings.follower.sense.yaw_lead();
-        [estimate.tilt.phase - estimate.phase, estimate.yaw.phase - estimate.phase - lead]
-            .map(wrap_to_half_turn)
-    }
-
-    /// The load on each axis, its own part and what pitch adds together.
+    /// The load on each axis, the wake's part and what pitch adds together; below zero where pitch adds more than it should.
     fn loads(&self, estimate: &TwoAxisEstimate) -> [Axis; 2] {
         let believed = [estimate.tilt, estimate.yaw];
         if self.settings.followed == Followed::Load {
             return believed;
         }
-        let (added, ahead) = ([&self.tilt, &self.yaw], self.ahead(estimate));
-        std::array::from_fn(|index| {
-            let Axis { amplitude, offset, phase } = believed[index];
-            let (sine, cosine) = ahead[index].sin_cos();
-            let along = amplitude * cosine + self.authority * added[index].added_amplitude();
-            Axis {
-                amplitude: along.hypot(amplitude * sine),
-                offset: offset + self.authority * added[index].added_offset(),
-                phase,
-            }
+        let added = [&self.tilt, &self.yaw];
+        std::array::from_fn(|index| Axis {
+            amplitude: believed[index].amplitude + self.authority * added[index].added_amplitude(),
+            offset: believed[index].offset + self.authority * added[index].added_offset(),
+            phase: believed[index].phase,
         })
     }
 
@@ -233,7 +236,9 @@ impl Meandering {
             }
             Followed::Wake => [0.0; 2],
         };
-        let ahead = self.ahead(estimate);
+        let angles = self.angles(estimate, 0.0);
+        let ahead = [estimate.tilt.phase - angles[0], estimate.yaw.phase - angles[1]]
+            .map(wrap_to_half_turn);
         let axes = [&estimate.tilt, &estimate.yaw];
         let interval = measurements.interval;
         self.baseline.update(interval, estimate.rate, reference, axes, added, ahead);

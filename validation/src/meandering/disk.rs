@@ -1,0 +1,157 @@
+//! The source's section 4-2-1: the aeroelastic turbine in the rotating disk, loads brought to factors of their own amplitude.
+
+use super::identify::decoupling;
+use super::judge::{Record, Table};
+use super::rig::{INTERVAL, Reading, Rig};
+use crate::Row;
+use basis::Sense;
+use control::meandering::{Decoupling, Followed, Meandering, Reference, Settings, TwoAxisSettings};
+use estimation::Estimator;
+use estimation::phase_locked::{Leader, Settings as Signal, TwoAxisLoop};
+use flow::inflow::deterministic::Event;
+use flow::inflow::deterministic::RotatingDisk;
+use flow::inflow::{DeterministicWind, MeanProfile};
+
+/// Wind outside the disk (m/s).
+const AMBIENT: f64 = 16.0;
+/// Rotor diameter and hub height that the disk is made for (m).
+const DIAMETER: f64 = 240.0;
+const HUB_HEIGHT: f64 = 150.0;
+/// Rotor speed at the beginning (rad/s).
+const ROTOR_SPEED: f64 = 0.75;
+/// Beginning of control, of what is judged, and end (s).
+const START: f64 = 400.0;
+const JUDGED: f64 = 600.0;
+const END: f64 = 1500.0;
+/// Width of the disk's edge (m), that of the grid which the source's wind stands on.
+const EDGE: f64 = 14.0;
+/// Factors asked for: the source's four, and those above that it tries in its second wind.
+const FACTORS: [f64; 7] = [2.0, 1.75, 1.5, 1.25, 0.75, 0.5, 0.35];
+/// Factors asked for when the wake's own part is followed and its amplitude observed.
+const DEEP_FACTORS: [f64; 5] = [1.25, 0.75, 0.35, 0.2, 0.0];
+
+/// The source's table 4-4: factor, changes (%) of the seven deviations and of power.
+const PUBLISHED: [(f64, [f64; 8]); 4] = [
+    (1.25, [1.3, 13.3, 19.4, 5.9, 28.0, -0.3, 22.3, 0.1]),
+    (0.75, [-0.5, -10.8, -16.3, -0.2, -22.6, -2.6, -0.8, -0.9]),
+    (0.5, [-0.9, -22.0, -34.3, -2.5, -47.0, -6.1, -15.4, -2.7]),
+    (0.35, [-1.0, -27.9, -43.5, -2.8, -60.9, -8.0, -16.0, -4.0]),
+];
+
+/// Everything; prints the table with intervals, gives what is claimed as rows.
+pub fn disk() -> Vec<Row> {
+    let circling =
+        RotatingDisk { edge: EDGE, ..RotatingDisk::of_wake(DIAMETER, HUB_HEIGHT, AMBIENT, true) };
+    let calm = DeterministicWind::steady(MeanProfile::Uniform { speed: AMBIENT }, HUB_HEIGHT);
+    let wind = DeterministicWind { event: Event::RotatingDisk(circling), ..calm };
+    let rig = Rig::new(wind, ROTOR_SPEED);
+
+    let mut follower = TwoAxisLoop::new(&following(), INTERVAL).expect("a sound loop");
+    let mut amplitudes = [0.0; 2];
+    let (mut off_rate, mut n) = (0.0_f64, 0.0);
+    let mut all = Vec::new();
+    let mut baseline = Record::new(circling);
+    let mut machine = rig.clone();
+    for _ in 0..n_steps(END) {
+        let mut belief = follower.estimate();
+        let reading = machine.advance(|_, measurements| belief = follower.update(measurements));
+        if reading.time >= JUDGED {
+            amplitudes[0] += belief.tilt.amplitude;
+            amplitudes[1] += belief.yaw.amplitude;
+            n += 1.0;
+            let true_rate = std::f64::consts::TAU * circling.frequency(reading.time);
+            off_rate = off_rate.max((belief.rate / true_rate - 1.0).abs());
+            baseline.take(&reading);
+        }
+        all.push(reading.loads);
+    }
+    let [tilt, yaw] = amplitudes.map(|sum| sum / n);
+    let decoupling = decoupling(&rig, &all);
+    let Decoupling { azimuth_offset, delay, gain } = decoupling;
+    println!(
+        "azimuth offset {:.1}°, delay {delay:.2} s, {:.0} MN m/rad",
+        azimuth_offset.to_degrees(),
+        1e-6 * gain
+    );
+    println!("baseline amplitudes: tilt {:.2}, yaw {:.2} MN m", 1e-6 * tilt, 1e-6 * yaw);
+
+    let mut rows = vec![Row {
+        what: "baseline: rate believed in off the disk's, at worst".to_owned(),
+        measured: off_rate,
+        expected: 0.0,
+        tolerance: 0.05,
+        unit: "–",
+    }];
+    let given = Reference::Given { tilt, yaw };
+    let kinds: [(_, &str, _, &[f64]); 3] = [
+        (Followed::Load, "load followed", given, &FACTORS),
+        (Followed::Wake, "wake followed", given, &FACTORS[3..]),
+        (
+            Followed::Wake,
+            "wake followed, its amplitude observed",
+            Reference::Observed,
+            &DEEP_FACTORS,
+        ),
+    ];
+    for (followed, name, reference, factors) in kinds {
+        let mut table = Table::new(name, &baseline);
+        for factor in factors {
+            let asked = settings(*factor, followed, reference, decoupling);
+            let record = controlled(&rig, asked, circling);
+            rows.extend(table.add(*factor, record));
+        }
+        table.print();
+        let is_given = reference == given;
+        rows.extend(table.claims(if is_given { &PUBLISHED } else { &[] }));
+    }
+    rows
+}
+
+/// A run of `rig` under meandering control with `asked`.
+fn controlled(rig: &Rig, asked: Settings, circling: RotatingDisk) -> Record {
+    let mut control = Meandering::new(asked, INTERVAL).expect("sound settings");
+    let mut record = Record::new(circling);
+    let mut machine = rig.clone();
+    for _ in 0..n_steps(END) {
+        let reading: Reading =
+            machine.advance(|pitch, measurements| control.add_to(pitch, measurements));
+        if reading.time >= JUDGED {
+            record.take(&reading);
+        }
+    }
+    record
+}
+
+fn n_steps(duration: f64) -> usize {
+    (duration / INTERVAL).round() as usize
+}
+
+/// How the loads are followed: St 0.12 to 0.3 of the ambient wind, the disk being clockwise.
+fn following() -> TwoAxisSettings {
+    let rates = [0.12, 0.3].map(|strouhal| std::f64::consts::TAU * strouhal * AMBIENT / DIAMETER);
+    TwoAxisSettings {
+        signal: Signal::between(rates),
+        sense: Sense::Clockwise,
+        leader: Leader::Both,
+    }
+}
+
+fn settings(
+    factor: f64,
+    followed: Followed,
+    reference: Reference,
+    decoupling: Decoupling,
+) -> Settings {
+    Settings {
+        follower: following(),
+        followed,
+        factor,
+        reference,
+        decoupling,
+        bandwidth: 0.02,
+        proportional: 0.0,
+        maximum_amplitude: 6.0_f64.to_radians(),
+        maximum_offset: 0.0,
+        start: START,
+    }
+}
