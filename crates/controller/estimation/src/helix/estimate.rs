@@ -3,7 +3,7 @@
 use super::belief::{BIAS, MEAN_WIND, PASSING, RATE};
 use super::filter::{Filter, FilterState};
 use super::trust::Trust;
-use super::wave::Axis;
+use super::wave::{Axis, UNKNOWN_PHASE};
 use basis::FixedFrame;
 use serde::{Deserialize, Serialize};
 
@@ -64,7 +64,13 @@ impl HelixEstimate {
         let trust = if status == Status::Waiting {
             Trust::default()
         } else {
-            state.watch.trust(tilt.phase_variance.max(yaw.phase_variance))
+            // What the model may get wrong of the rotor's own pitch looks like a helix.
+            let wrong = filter.options.doubt * state.own[0].hypot(state.own[1]);
+            let variance = |axis: &Axis| {
+                let turned = wrong / axis.amplitude.max(f64::MIN_POSITIVE);
+                axis.phase_variance + (turned * turned).min(UNKNOWN_PHASE)
+            };
+            state.watch.trust(variance(&tilt).max(variance(&yaw)))
         };
         Self {
             mean_wind: belief.mean[MEAN_WIND],

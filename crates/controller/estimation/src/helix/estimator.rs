@@ -30,8 +30,9 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// Elements of each blade with which the moments of a rotor of this century are those of many within a percent (–).
-    pub const N_ELEMENTS: usize = 8;
+    /// Elements of each blade (–) with which what the pitch of a rotor of this century does to its moments is right to well
+    /// within a percent: an error there counts several times in the phase, as pitch does more to the moments than the helix.
+    pub const N_ELEMENTS: usize = 16;
 }
 
 /// Finds mean wind, amplitude and phases of a helix in the moments at the blade roots, while its own rotor pitches.

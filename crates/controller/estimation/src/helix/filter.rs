@@ -45,6 +45,8 @@ pub(super) struct FilterState {
     wandering: f64,
     /// Wind as the blades tell it now (m/s).
     pub(super) told: FixedFrame,
+    /// Tilt and yaw that the rotor's own pitch was worth last (m/s).
+    pub(super) own: [f64; 2],
 }
 
 /// Slopes of the wind's average, tilt and yaw over the states.
@@ -82,6 +84,7 @@ impl Filter {
             eddies: self.options.eddies.map_or(0.0, |eddies| eddies.deviation.powi(2)),
             wandering: 1.0,
             told: FixedFrame::default(),
+            own: [0.0; 2],
         }
     }
 
@@ -190,6 +193,7 @@ impl Filter {
         readings: &Readings,
         state: &mut FilterState,
     ) -> usize {
+        state.own = now.own;
         let n_blades = readings.len();
         let mean_moment = expected.moments.mean().abs();
         let nominal = match self.options.noise.measurement {

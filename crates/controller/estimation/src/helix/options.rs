@@ -21,6 +21,9 @@ pub struct Options {
     /// How wrong the model's answer to the rotor's own pitch may be at first (–, a standard deviation over the wind that the
     /// pitch is worth), learnt as the pitch begins or changes; none where the model is believed.
     pub response: Option<f64>,
+    /// How wrong the model's answer to the rotor's own pitch is taken to be when trust is judged (–, a standard deviation over
+    /// the wind that the pitch is worth): it does not shrink with time, as what noise does, and changes no estimate.
+    pub doubt: f64,
     /// How fast the excitation rate wanders ((rad/s)²/s); none where it is taken to be the nominal one.
     pub rate: Option<f64>,
     /// Noise learnt from the innovation; none where it stays as it is.
@@ -60,6 +63,11 @@ pub enum Wake {
         time_factor: f64,
     },
     /// With the same delay, which runs in the air that the blades cross.
+    ///
+    /// A load that swings from side to side of the rotor moves less induction, and sooner, than one that changes everywhere
+    /// alike (as in Pitt and Peters's inflow, whose tilt and yaw have half the average's time constant). In large-eddy
+    /// records of rotors that pitch a helix in a wind without one, a factor of 0.4 and a share of 0.6 leave the least helix
+    /// that is not there; docs/phase-estimation.md has the table.
     InAir {
         /// Factor on the model's time constant (–).
         time_factor: f64,
@@ -145,6 +153,7 @@ impl Default for Options {
             bias: Some(1e-5),
             eddies: Some(Eddies { deviation: 0.3, time_constant: 0.5 }),
             response: None,
+            doubt: 0.03,
             rate: None,
             adaptation: Some(Adaptation { time_constant: 200.0, bound: 5.0, wave: false }),
             roundness: 0.7,
@@ -158,8 +167,8 @@ impl Options {
     /// The form of van Vondelen et al. (2025): mean wind, one amplitude, two phases; a wake with delay; fixed noise; slopes
     /// by central differences.
     ///
-    /// The paper gives no numbers for its noise; these were scaled on records of a turbine in turbulence, as its
-    /// Algorithm 1 asks.
+    /// The paper gives no numbers for its noise; with these the filter converges within about two periods on its own model.
+    /// [`tuning`](super::tuning) finds others from records.
     pub fn published() -> Self {
         Self {
             form: Form::SharedAmplitude,
@@ -180,6 +189,7 @@ impl Options {
             bias: None,
             eddies: None,
             response: None,
+            doubt: 0.03,
             rate: None,
             adaptation: None,
             roundness: 0.0,
@@ -231,6 +241,8 @@ impl Options {
             let good = (0.0..=1.5).contains(&share);
             within("share of the induction (–)", share, good, "from 0 to 1.5")?;
         }
+        let sane = (0.0..1.0).contains(&self.doubt);
+        within("doubt of the pitch's effect (–)", self.doubt, sane, "from 0 to below 1")?;
         if let Some(response) = self.response {
             positive_variance("process", "initial deviation of the pitch's effect", response)?;
         }

@@ -12,8 +12,8 @@ const JUDGING: f64 = 4.0;
 /// How far the phases can be trusted; all numbers from 0, not at all, to 1, fully.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Trust {
-    /// exp(−σ²/2) of the less certain axis, σ² the variance of its phase (–): the length that the mean of a unit vector
-    /// of that phase keeps.
+    /// exp(−σ²/2) of the less certain axis, σ² the variance of its phase by noise and by what the model may get wrong of the
+    /// rotor's own pitch (–): the length that the mean of a unit vector of that phase keeps.
     pub certainty: f64,
     /// How steadily the wind's component at the excitation rate keeps its phase against the excitation (–): near 1 for a
     /// helix, near 0 for turbulence alone.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Variance of a phase of which nothing is known, uniform on the circle (rad²).
-const UNKNOWN_PHASE: f64 = PI * PI / 3.0;
+pub(super) const UNKNOWN_PHASE: f64 = PI * PI / 3.0;
 
 /// What the wave's states are.
 ///

@@ -222,6 +222,6 @@ pub(crate) fn model(
     sense: Sense,
     options: &Options,
 ) -> MeasurementModel {
-    let setting = Setting { n_elements: 12, ..setting(sense) };
+    let setting = Setting { n_elements: 24, ..setting(sense) };
     MeasurementModel::new(definition, &setting, options).unwrap()
 }
