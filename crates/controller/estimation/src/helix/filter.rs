@@ -129,9 +129,12 @@ impl Filter {
             self.turn(interval, &mut state.belief);
         }
         incoming[MEAN_WIND] = noise.mean_wind * interval;
+        // The wave is taken to wander as the eddies are strong, so that the time over which the filter looks for it stays
+        // the same: learnt eddies alone would make it ever slower, and a slow filter takes the helix for eddies.
+        let stirred = eddies.map_or(1.0, |eddies| state.eddies / eddies.deviation.powi(2));
         for index in (0..4).filter(|index| form.is_used(*index)) {
             let density = if form.is_phase(index) { noise.phase } else { noise.amplitude };
-            incoming[WAVE + index] = state.wandering * density * interval;
+            incoming[WAVE + index] = stirred * state.wandering * density * interval;
         }
         incoming[BIAS..BIAS + 2].fill(bias.unwrap_or(0.0) * interval);
         incoming[RATE] = rate.unwrap_or(0.0) * interval;

@@ -16,7 +16,8 @@ pub struct Options {
     /// Lasting tilt and yaw that the model knows nothing of, as shear, gravity and the shaft's tilt make: how fast they
     /// wander ((m/s)²/s, a variance per time); none without such states.
     pub bias: Option<f64>,
-    /// Tilt and yaw of passing eddies; none without such states.
+    /// Tilt and yaw of passing eddies; none without such states. With them the wave's wandering grows and falls with their
+    /// variance as it is learnt.
     pub eddies: Option<Eddies>,
     /// How wrong the model's answer to the rotor's own pitch may be at first (–, a standard deviation over the wind that the
     /// pitch is worth), learnt as the pitch begins or changes; none where the model is believed.
@@ -146,12 +147,12 @@ impl Default for Options {
             noise: Noise {
                 measurement: Measurement::Share(0.05),
                 mean_wind: 0.02,
-                amplitude: 2e-4,
+                amplitude: 8e-4,
                 phase: 1e-3,
                 initial_amplitude: 1.5,
             },
             bias: Some(1e-5),
-            eddies: Some(Eddies { deviation: 0.3, time_constant: 0.5 }),
+            eddies: Some(Eddies { deviation: 0.6, time_constant: 0.5 }),
             response: None,
             doubt: 0.03,
             rate: None,
