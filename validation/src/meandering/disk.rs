@@ -129,11 +129,8 @@ fn n_steps(duration: f64) -> usize {
 /// How the loads are followed: St 0.12 to 0.3 of the ambient wind, the disk being clockwise.
 fn following() -> TwoAxisSettings {
     let rates = [0.12, 0.3].map(|strouhal| std::f64::consts::TAU * strouhal * AMBIENT / DIAMETER);
-    TwoAxisSettings {
-        signal: Signal::between(rates),
-        sense: Sense::Clockwise,
-        leader: Leader::Both,
-    }
+    let signal = Signal::between(rates);
+    TwoAxisSettings { signal, sense: Sense::Clockwise, leader: Leader::Both }
 }
 
 fn settings(

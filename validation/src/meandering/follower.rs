@@ -50,11 +50,11 @@ pub(super) struct Instant {
     pub(super) reference: f64,
 }
 
-/// Settings of the loop around a generator of `kind`: between St 0.11 and 0.33, ω_n = 0.01 rad/s, ξ = 1/√2, k = √2.
+/// Settings of the loop around a generator of `kind`: between St 0.14 and 0.33, ω_n = 0.01 rad/s, ξ = 1/√2, k = √2.
 ///
 /// The source gives ξ and k, and ω_n only as less than ω₀.
 pub(super) fn settings(kind: Kind) -> Settings {
-    let rates = [rate_of(0.11), rate_of(0.33)];
+    let rates = [rate_of(0.14), rate_of(0.33)];
     let follower = LoopSettings {
         order: Order::QuasiTwo,
         natural_rate: 0.01,

@@ -29,7 +29,7 @@ impl Record {
 
     /// Takes in one instant.
     pub(super) fn take(&mut self, reading: &Reading) {
-        if self.samples[0].len() % block() == 0 {
+        if self.samples[0].len().is_multiple_of(block()) {
             self.fits.push(Default::default());
         }
         let values = reading.moments.iter().chain([&reading.power]);

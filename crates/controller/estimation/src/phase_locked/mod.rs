@@ -22,6 +22,7 @@ mod record;
 mod single;
 mod transfer;
 mod two_axis;
+mod whole;
 
 pub use generator::{Generator, Kind, dc_gain};
 pub use oscillator::{Gains, LoopSettings, Order, Oscillator, Pole};

@@ -119,10 +119,10 @@ pub struct LoopSettings {
 }
 
 impl LoopSettings {
-    /// A quasi-type-2 loop between `rates` (rad/s) that starts at their middle, with ξ = 1/√2 and ω_n 0.4 times the lowest
-    /// rate: about half of what would be unstable there.
+    /// A quasi-type-2 loop between `rates` (rad/s) that starts at their middle, with ξ = 1/√2 and ω_n 0.3 times the lowest
+    /// rate: two thirds of what would be unstable there with any generator of k = √2.
     pub fn between(rates: [f64; 2]) -> Self {
-        let natural_rate = 0.4 * rates[0];
+        let natural_rate = 0.3 * rates[0];
         Self { order: Order::QuasiTwo, natural_rate, damping_ratio: FRAC_1_SQRT_2, rates }
     }
 

@@ -3,7 +3,8 @@
 use super::PhaseLockedError;
 use super::generator::{Generator, Kind};
 use super::lock::Lock;
-use super::oscillator::{LoopSettings, Oscillator};
+use super::oscillator::{LoopSettings, Oscillator, Pole};
+use super::whole::growth;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::SQRT_2;
 
@@ -31,7 +32,18 @@ impl Settings {
     /// Those of [`Generator::new`] and [`LoopSettings::check`].
     pub(super) fn checked(&self, interval: f64) -> Result<Generator, PhaseLockedError> {
         let generator = Generator::new(self.generator, self.damping)?;
-        self.follower.check(self.generator.lag(self.damping), interval)?;
+        let lag = self.generator.lag(self.damping);
+        self.follower.check(lag, interval)?;
+        // The generator is slowest at the lowest rate.
+        let rate = self.follower.rates[0];
+        let growth = growth(&self.follower, &generator, rate);
+        if growth >= 0.0 {
+            let Pole { imaginary, .. } = self.follower.gains().slowest_pole(lag / rate);
+            return Err(PhaseLockedError::Unstable {
+                pole: Pole { real: growth, imaginary },
+                rate,
+            });
+        }
         Ok(generator)
     }
 }
