@@ -150,6 +150,7 @@ impl<'a> Table<'a> {
 
     /// Prints all changes with their intervals.
     pub(super) fn print(&self) {
+        println!("\n{}:\n", self.name);
         let line =
             |name: String, cells: Vec<String>| println!("| {name} | {} |", cells.join(" | "));
         let cells = |of: &dyn Fn(usize) -> String| (0..self.runs.len()).map(of).collect();
