@@ -9,6 +9,7 @@ pub mod flow;
 pub mod helix;
 pub mod inflow;
 pub mod meandering;
+pub mod phase_estimator;
 pub mod resume;
 pub mod row;
 
@@ -105,6 +106,12 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "the flexible turbine in a rotating disk, loads amplified and attenuated, beside published tables",
         minutes: "2",
         run: meandering::disk,
+    },
+    Validation {
+        name: "phase-estimator",
+        about: "the helix's phase from blade moments: on the estimator's own model, and on an aeroelastic turbine in turbulence",
+        minutes: "3",
+        run: phase_estimator::phase_estimator,
     },
     Validation {
         name: "resume",

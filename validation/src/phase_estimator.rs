@@ -1,0 +1,404 @@
+//! The estimator of the helix's phase: on its own model's blade moments, and on an aeroelastic turbine in known winds.
+//!
+//! The aeroelastic turbine knows nothing of the estimator's shortcuts: its blades, tower and drive train bend, sections
+//! stall dynamically, the wake is skewed, the wind is sheared and turbulent. Its momentum theory keeps the wake's delay with
+//! each blade, so the estimator is told the same of the wake; in a solved flow it keeps its default.
+
+mod rig;
+mod wind;
+
+use crate::Row;
+use basis::{FixedFrame, Measurements, PerBlade, Sense, Vector3};
+use estimation::helix::{
+    Form, HelixEstimator, MeasurementModel, Options, Rotor, Setting, Wake, calibrate,
+};
+use estimation::{EstimationError, Estimator};
+use flow::Inflow;
+use rig::{AIR_DENSITY, Asked, Errors, INTERVAL, Instruments, Noise, SETTLED};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use turbine::{Definition, Polar};
+use wind::{HelixWind, Swing, degrees, pitch, turbulent};
+
+/// Period of the helix (s): St 0.25 in 10.5 m/s past 240 m.
+const PERIOD: f64 = 91.4;
+/// Mean wind at the hub (m/s), power-law exponent (–) and the rotor speed that goes with them (rad/s).
+const SPEED: f64 = 9.0;
+const SHEAR: f64 = 0.15;
+const ROTOR_SPEED: f64 = 0.68;
+/// Amplitude of the helix in the wind (m/s) and of the rotor's own pitch (rad).
+const AMPLITUDE: f64 = 0.7;
+const OWN: f64 = 0.07;
+/// Aims: error (deg) on the estimator's own model, and on a turbine in turbulence.
+const SYNTHETIC_AIM: f64 = 2.0;
+const AIM: f64 = 20.0;
+/// Phase of the helix in the wind (rad).
+const PHASE: f64 = 1.0;
+
+/// The machine under trial.
+struct Machine {
+    definition: Arc<Definition>,
+    constants: control::baseline::Constants,
+}
+
+impl Machine {
+    fn estimator(
+        &self,
+        model: &Arc<Definition>,
+        sense: Sense,
+        options: Options,
+    ) -> Result<HelixEstimator, EstimationError> {
+        HelixEstimator::new(model, &setting(sense), options)
+    }
+
+    fn hub(&self) -> Vector3 {
+        let rotor = &self.definition.rotor;
+        Vector3::new(-rotor.overhang, 0.0, rotor.hub_height)
+    }
+
+    fn wind(&self, swing: Swing, sense: Sense, mean: Arc<dyn Inflow>) -> HelixWind {
+        HelixWind {
+            swing,
+            sense,
+            rate: TAU / PERIOD,
+            phase: PHASE,
+            hub: self.hub(),
+            radius: self.definition.rotor_radius(),
+            mean,
+            present: [0.0, f64::INFINITY],
+            gust: (f64::INFINITY, 0.0),
+        }
+    }
+
+    /// Wind of `intensity` (–) that carries a swinging gradient.
+    fn gradient(&self, sense: Sense, intensity: f64) -> HelixWind {
+        let mean = turbulent(SPEED, SHEAR, intensity, self.hub(), 1);
+        self.wind(Swing::Gradient(AMPLITUDE), sense, mean)
+    }
+
+    /// The robust form, calibrated where the turbine's own pitch is all that swings: a steady, sheared wind.
+    fn calibrated(
+        &self,
+        model: &Arc<Definition>,
+        sense: Sense,
+    ) -> Result<HelixEstimator, EstimationError> {
+        let calm =
+            self.wind(Swing::Gradient(0.0), sense, turbulent(SPEED, SHEAR, 0.0, self.hub(), 1));
+        let asked = asked(calm, OWN, Instruments::default(), SETTLED + 3.5 * PERIOD);
+        let mut record = Vec::new();
+        rig::drive(&self.definition, &self.constants, &asked, |read| record.push(*read));
+        let calibration = calibrate(model, &setting(sense), robust(), &record, SETTLED)?;
+        self.estimator(model, sense, calibration.apply(robust()))
+    }
+
+    fn run(&self, asked: &Asked, estimators: &mut [HelixEstimator]) -> Vec<Errors> {
+        rig::run(&self.definition, &self.constants, asked, estimators)
+    }
+}
+
+fn setting(sense: Sense) -> Setting {
+    Setting {
+        sense,
+        rate: TAU / PERIOD,
+        interval: INTERVAL,
+        air_density: AIR_DENSITY,
+        n_elements: Setting::N_ELEMENTS,
+    }
+}
+
+/// The robust form with the wake that a turbine in prescribed wind has.
+fn robust() -> Options {
+    let options = Options::default();
+    let wake = Wake::WithBlades { time_factor: 1.0 };
+    Options { rotor: Rotor { wake, ..options.rotor }, ..options }
+}
+
+/// The published form with the same wake and bending blades.
+fn published_on_bending_blades() -> Options {
+    let options = Options::published();
+    Options { rotor: Rotor { flexible: true, ..options.rotor }, ..options }
+}
+
+fn asked(wind: HelixWind, own: f64, instruments: Instruments, duration: f64) -> Asked {
+    let (flexible, rotor_speed) = (true, ROTOR_SPEED);
+    Asked { wind, flexible, own: (own, 2.1), instruments, duration, rotor_speed }
+}
+
+/// All of it, IEA 15 MW.
+pub fn phase_estimator() -> Vec<Row> {
+    let file = formats::library::load("iea-15mw").expect("the library's own turbines are readable");
+    let machine = Machine { definition: Arc::new(file.definition), constants: file.controller };
+    let mut rows = Vec::new();
+    let done = synthetic(&machine, &mut rows)
+        .and_then(|()| turbulence(&machine, &mut rows))
+        .and_then(|()| options(&machine, &mut rows))
+        .and_then(|()| robustness(&machine, &mut rows));
+    if let Err(error) = done {
+        eprintln!("the estimator could not be made: {error}");
+        rows.push(Row {
+            what: "the estimator is made".to_owned(),
+            measured: f64::NAN,
+            expected: 0.0,
+            tolerance: 0.0,
+            unit: "–",
+        });
+    }
+    rows
+}
+
+fn row(what: String, measured: f64, tolerance: f64, unit: &'static str) -> Row {
+    Row { what, measured, expected: 0.0, tolerance, unit }
+}
+
+/// Its own model's moments with 5 % of noise, own pitch at twelve offsets.
+fn synthetic(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
+    for sense in [Sense::CounterClockwise, Sense::Clockwise] {
+        let (mut worst, mut sum, mut innovation) = (0.0_f64, 0.0, 0.0);
+        for offset in 0..12_u32 {
+            let ahead = TAU * f64::from(offset) / 12.0;
+            let errors = own_model(machine, sense, ahead, u64::from(offset))?;
+            worst = worst.max(errors.worst());
+            sum += (errors.mean[0] + errors.mean[1]) / 24.0;
+            innovation += errors.innovation / 12.0;
+        }
+        let name = format!("own model, 5 % noise, {sense}, own pitch 4° at 12 offsets");
+        rows.push(row(
+            format!("{name}: worst rms error after three periods"),
+            worst,
+            SYNTHETIC_AIM,
+            "deg",
+        ));
+        rows.push(row(format!("{name}: mean error"), sum, 0.5, "deg"));
+        rows.push(Row {
+            what: format!("{name}: normalised innovation"),
+            measured: innovation,
+            expected: 1.0,
+            tolerance: 0.1,
+            unit: "–",
+        });
+    }
+    Ok(())
+}
+
+fn own_model(
+    machine: &Machine,
+    sense: Sense,
+    ahead: f64,
+    seed: u64,
+) -> Result<Errors, EstimationError> {
+    let options = Options::default();
+    let finer = Setting { n_elements: 32, ..setting(sense) };
+    let mut model = MeasurementModel::new(&machine.definition, &finer, &options)?;
+    let mut estimator = machine.estimator(&machine.definition, sense, options)?;
+    let calm = machine.gradient(sense, 0.0);
+    let (mut noise, mut errors) = (Noise(1 + seed), Errors::default());
+    let instruments = Instruments { noise: 0.05, dropouts: 0.0 };
+    let mut shown = PerBlade::splat(3, 0.0);
+    for step in 0..(600.0 / INTERVAL) as usize {
+        let time = step as f64 * INTERVAL;
+        let (azimuth, angle) = (ROTOR_SPEED * time, calm.rate * time + PHASE);
+        let wind =
+            FixedFrame { average: SPEED, tilt: angle.sin(), yaw: (angle + sense.yaw_lead()).sin() };
+        let pitch = pitch(&calm, time, azimuth, OWN, ahead, 3);
+        let moments = model.moments(INTERVAL, wind, azimuth, ROTOR_SPEED, &pitch);
+        let truth = reading(time, azimuth, pitch, moments);
+        let estimate = estimator.update(&rig::read(&truth, instruments, &mut shown, &mut noise));
+        if time > SETTLED {
+            errors.add(&estimate, [PHASE; 2]);
+        }
+    }
+    Ok(errors.finish())
+}
+
+fn reading(time: f64, azimuth: f64, pitch: PerBlade<f64>, moments: PerBlade<f64>) -> Measurements {
+    Measurements {
+        time,
+        interval: INTERVAL,
+        azimuth: basis::angle::wrap_to_turn(azimuth),
+        rotor_speed: ROTOR_SPEED,
+        generator_speed: ROTOR_SPEED,
+        pitch,
+        generator_torque: 0.0,
+        power: 0.0,
+        thrust: 0.0,
+        aerodynamic_torque: 0.0,
+        rotor_wind_speed: SPEED,
+        flap_moments: moments,
+        edge_moments: PerBlade::splat(3, 0.0),
+        tower_top_acceleration: 0.0,
+    }
+}
+
+/// An aeroelastic turbine in shear and turbulence of 2 to 12 %, with and without own pitch.
+fn turbulence(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
+    let ccw = Sense::CounterClockwise;
+    let cases = [
+        (0.0, ccw, 0.0),
+        (0.0, ccw, OWN),
+        (0.0, Sense::Clockwise, OWN),
+        (0.02, ccw, OWN),
+        (0.06, ccw, 0.0),
+        (0.06, ccw, OWN),
+        (0.06, Sense::Clockwise, OWN),
+        (0.12, ccw, OWN),
+    ];
+    for (intensity, sense, own) in cases {
+        let forms = [
+            ("robust", robust()),
+            ("published", Options::published()),
+            ("published, blades bend", published_on_bending_blades()),
+        ];
+        let mut estimators = Vec::new();
+        for (_, options) in forms {
+            estimators.push(machine.estimator(&machine.definition, sense, options)?);
+        }
+        estimators.push(machine.calibrated(&machine.definition, sense)?);
+        let calm = Instruments::default();
+        let asked = asked(machine.gradient(sense, intensity), own, calm, 1200.0);
+        let errors = machine.run(&asked, &mut estimators);
+        let name = format!(
+            "turbine, {sense}, turbulence {:.0} %, own pitch {:.0}°",
+            100.0 * intensity,
+            own.to_degrees()
+        );
+        for ((form, _), errors) in forms.iter().zip(&errors) {
+            let aim = if *form == "robust" { AIM } else { 180.0 };
+            rows.push(row(format!("{name}, {form}: tilt, rms error"), errors.rms[0], aim, "deg"));
+            rows.push(row(format!("{name}, {form}: yaw, rms error"), errors.rms[1], aim, "deg"));
+        }
+        for (axis, rms) in ["tilt", "yaw"].iter().zip(errors[3].rms) {
+            rows.push(row(
+                format!("{name}, robust, calibrated: {axis}, rms error"),
+                rms,
+                AIM,
+                "deg",
+            ));
+        }
+        rows.push(row(
+            format!("{name}, robust: mean error of tilt and yaw"),
+            0.5 * (errors[0].mean[0] + errors[0].mean[1]),
+            AIM,
+            "deg",
+        ));
+    }
+    Ok(())
+}
+
+/// Each choice of the robust form against what it replaces, turbulence 6 %, own pitch.
+fn options(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
+    let base = robust();
+    let wake = |wake| Options { rotor: Rotor { wake, ..base.rotor }, ..base };
+    let forms = [
+        ("as it is", base),
+        ("without lasting tilt and yaw", Options { bias: None, ..base }),
+        ("without eddies", Options { eddies: None, ..base }),
+        ("without adaptation", Options { adaptation: None, ..base }),
+        ("tilt and yaw apart", Options { roundness: 0.0, ..base }),
+        ("amplitude and phase for each axis", Options { form: Form::SeparateAmplitudes, ..base }),
+        ("with an excitation rate of its own", Options { rate: Some(1e-9), ..base }),
+        ("learning its own pitch", Options { response: Some(0.03), ..base }),
+        ("blades stiff", Options { rotor: Rotor { flexible: false, ..base.rotor }, ..base }),
+        ("wake at once", wake(Wake::Static)),
+        ("wake in the air", Options::default()),
+        ("every fifth instant", Options { update_every: 5, ..base }),
+    ];
+    let ccw = Sense::CounterClockwise;
+    let mut estimators = Vec::new();
+    for (_, options) in forms {
+        estimators.push(machine.estimator(&machine.definition, ccw, options)?);
+    }
+    let asked = asked(machine.gradient(ccw, 0.06), OWN, Instruments::default(), 1200.0);
+    let errors = machine.run(&asked, &mut estimators);
+    for ((name, _), errors) in forms.iter().zip(errors) {
+        let what = format!("turbulence 6 %, own pitch, robust form {name}: worse axis, rms error");
+        rows.push(row(what, errors.worst(), 180.0, "deg"));
+    }
+    Ok(())
+}
+
+/// Wrong polars, poor instruments, a wake half beside the rotor, a gust, a helix that goes and comes.
+fn robustness(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
+    let ccw = Sense::CounterClockwise;
+    let poor = Instruments { noise: 0.05, dropouts: 0.1 };
+    let fine = Instruments::default();
+    let gusty = HelixWind { gust: (500.0, 1.5), ..machine.gradient(ccw, 0.06) };
+    let coming = HelixWind { present: [450.0, f64::INFINITY], ..machine.gradient(ccw, 0.06) };
+    let wake = |aside: f64| {
+        let mean = turbulent(SPEED, SHEAR, 0.05, machine.hub(), 2);
+        machine.wind(Swing::Wake { depth: 3.5, width: 70.0, offset: 25.0, aside }, ccw, mean)
+    };
+    let more = scaled(&machine.definition, 1.1);
+    let less = scaled(&machine.definition, 0.9);
+    let right = &machine.definition;
+    let cases = [
+        ("lift and drag 10 % too large", machine.gradient(ccw, 0.06), fine, &more),
+        ("lift and drag 10 % too small", machine.gradient(ccw, 0.06), fine, &less),
+        ("noise 5 %, one reading in ten lost", machine.gradient(ccw, 0.06), poor, right),
+        ("wind 1.5 m/s up at once", gusty, fine, right),
+        ("a wake that circles", wake(0.0), fine, right),
+        ("a wake that circles a quarter diameter aside", wake(60.0), fine, right),
+        ("a wake that circles half a diameter aside", wake(120.0), fine, right),
+    ];
+    for (name, wind, instruments, model) in cases {
+        let mut estimators =
+            [machine.estimator(model, ccw, robust())?, machine.calibrated(model, ccw)?];
+        let errors = machine.run(&asked(wind, OWN, instruments, 1200.0), &mut estimators);
+        for (form, errors) in ["", ", calibrated"].iter().zip(&errors) {
+            for (axis, rms) in ["tilt", "yaw"].iter().zip(errors.rms) {
+                rows.push(row(format!("{name}{form}: {axis}, rms error"), rms, AIM, "deg"));
+            }
+        }
+        let errors = errors[1];
+        rows.push(Row {
+            what: format!("{name}, calibrated: mean trust"),
+            measured: errors.trust,
+            expected: 0.5,
+            tolerance: 0.5,
+            unit: "–",
+        });
+    }
+    // Without a helix nothing is trusted; three periods after it has come the phase is found.
+    let mut estimators = [machine.estimator(right, ccw, robust())?];
+    let truth = coming.truth();
+    let asked = asked(coming, 0.0, fine, 1500.0);
+    let (mut before, mut after) = ((0.0, 0.0), Errors::default());
+    rig::follow(
+        &machine.definition,
+        &machine.constants,
+        &asked,
+        &mut estimators,
+        |time, _, estimate| {
+            if (SETTLED..450.0).contains(&time) {
+                before = (before.0 + estimate.trust.overall(), before.1 + 1.0);
+            } else if time > 450.0 + 3.0 * PERIOD {
+                after.add(estimate, truth);
+            }
+        },
+    );
+    let after = after.finish();
+    let what = "no helix yet, turbulence 6 %: mean trust".to_owned();
+    rows.push(row(what, before.0 / before.1, 0.3, "–"));
+    let what = "three periods after it has come: worse axis, rms error".to_owned();
+    rows.push(row(what, after.worst(), AIM, "deg"));
+    let largest = after.mean.map(|mean| degrees(mean.to_radians()).abs());
+    let what = "three periods after it has come: larger mean error".to_owned();
+    rows.push(row(what, largest[0].max(largest[1]), AIM, "deg"));
+    Ok(())
+}
+
+/// The same turbine with lift and drag times `factor` (–).
+fn scaled(definition: &Definition, factor: f64) -> Arc<Definition> {
+    let mut scaled = definition.clone();
+    for polar in &mut scaled.polars {
+        let column = |of: fn(&turbine::aero::SectionCoefficients) -> f64| -> Vec<f64> {
+            polar.rows().map(|(_, row)| of(&row)).collect()
+        };
+        let angles: Vec<f64> = polar.rows().map(|(angle, _)| angle).collect();
+        let [lift, drag] = [column(|row| row.lift), column(|row| row.drag)]
+            .map(|column| column.iter().map(|value| factor * value).collect::<Vec<_>>());
+        let moment = column(|row| row.moment);
+        *polar = Polar::new(polar.name.clone(), &angles, &lift, &drag, &moment)
+            .expect("a polar stays one when its coefficients are scaled");
+    }
+    Arc::new(scaled)
+}
