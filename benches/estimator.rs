@@ -24,7 +24,7 @@ fn main() {
     let differences = Jacobian::CentralDifferences { step: 1e-5 };
     let cases = [
         ("robust", Options::default(), Setting::N_ELEMENTS),
-        ("robust, 16 elements", Options::default(), 16),
+        ("robust, 32 elements", Options::default(), 32),
         (
             "robust, by differences",
             Options { jacobian: differences, ..Options::default() },

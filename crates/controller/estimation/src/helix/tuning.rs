@@ -53,7 +53,8 @@ pub fn check_record(record: &[Measurements], interval: f64) -> Result<(), Estima
         }
         if index > 0 {
             let step = measurements.time - record[index - 1].time;
-            if !((step / interval - 1.0).abs() < UNEVEN) {
+            let uneven = (step / interval - 1.0).abs();
+            if uneven.is_nan() || uneven >= UNEVEN {
                 let expected = "samples an equal interval apart, that of the estimator";
                 return bad("the step of time (s)", step, expected);
             }
