@@ -9,7 +9,7 @@ use basis::angle::wrap_to_turn;
 use control::baseline::{Baseline, Constants};
 use control::phase_sync::{self, SyncSettings};
 use control::{Excitation, Helix, PhaseSync, Pulse, TurbineController, excitation_rate};
-use estimation::helix::{Calibration, Options, Setting};
+use estimation::helix::{Calibration, Options, Setting, Wake};
 use estimation::{EstimationError, HelixEstimator};
 use flow::lattice;
 use std::sync::Arc;
@@ -147,7 +147,7 @@ pub fn controller(
         }
         Control::PhaseSync(asked) => {
             let setting = estimator_setting(asked, case, plan);
-            let options = estimator_options(asked.estimator);
+            let options = estimator_options(asked.estimator, case.flow.solver);
             let options = calibration.map_or(options, |found| found.apply(options));
             let estimator = HelixEstimator::new(&model.definition, &setting, options)?;
             let settings = SyncSettings {
@@ -177,9 +177,15 @@ pub fn estimator_setting(sync: &PhaseSyncSettings, case: &Case, plan: &Plan) -> 
     }
 }
 
-/// Choices of an estimator, before calibration.
-pub fn estimator_options(estimator: PhaseEstimator) -> Options {
+/// Choices of an estimator in the air of `solver`, before calibration.
+pub fn estimator_options(estimator: PhaseEstimator, solver: Solver) -> Options {
     match estimator {
+        PhaseEstimator::Robust if solver.is_prescribed() => {
+            // Momentum theory keeps the wake's delay with the blade, solved air where the blade has passed.
+            let mut options = Options::default();
+            options.rotor.wake = Wake::WithBlades { time_factor: 1.0 };
+            options
+        }
         PhaseEstimator::Robust => Options::default(),
         PhaseEstimator::Published => Options::published(),
     }

@@ -93,7 +93,7 @@ pub fn calibration(
         progress((step + 1) as f64 / (n_settling + n_counted) as f64);
     }
     let setting = assemble::estimator_setting(sync, case, plan);
-    let options = assemble::estimator_options(PhaseEstimator::Robust);
+    let options = assemble::estimator_options(PhaseEstimator::Robust, case.flow.solver);
     let settling = PERIODS[0] * period;
     Ok(calibrate(&model.definition, &setting, options, &record.measurements, settling)?)
 }

@@ -11,8 +11,8 @@ mod words;
 use basis::records::{Plane, Series, Summary};
 pub use figures::synchronisation::{
     CentreLine, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure, OffsetPanel,
-    OffsetPoint, SliceFigure, SlicePanel, SpectrumFigure, SpectrumLine, Synchronisation,
-    TrackFigure, TrackLine, TrackRow,
+    OffsetPoint, PhaseNumbers, PhaseRow, SliceFigure, SlicePanel, SpectrumFigure, SpectrumLine,
+    Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -29,6 +29,8 @@ pub struct StudyRecords {
     pub case_text: String,
     /// The runs, in the case file's order.
     pub runs: Vec<RunRecords>,
+    /// What there is to show of phase synchronisation, where a turbine joins a helix.
+    pub synchronisation: Option<Synchronisation>,
     /// Version of the program that ran it.
     pub version: String,
 }

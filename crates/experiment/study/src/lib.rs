@@ -12,6 +12,7 @@ mod phase;
 mod prepare;
 mod simulate;
 mod summarise;
+mod synchronisation;
 mod watcher;
 
 pub use error::StudyError;
@@ -147,6 +148,7 @@ pub fn run(
 /// [`StudyError::File`] for records that cannot be read, [`StudyError::Report`] for a report that cannot be written.
 pub fn report(directory: &Path) -> Result<(Vec<Summary>, PathBuf), StudyError> {
     let study = records::read_study(directory)?;
+    let synchronisation = synchronisation::synchronisation(directory, &study)?;
     let mut runs = Vec::with_capacity(study.runs.len());
     let mut summaries = Vec::with_capacity(study.runs.len());
     for run in study.runs {
@@ -165,6 +167,7 @@ pub fn report(directory: &Path) -> Result<(Vec<Summary>, PathBuf), StudyError> {
         description: study.description,
         case_text: study.case_text,
         runs,
+        synchronisation,
         version: study.version,
     };
     report::write(&study, directory)?;

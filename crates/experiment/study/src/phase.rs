@@ -9,7 +9,7 @@ use analysis::phase::{
 use basis::records::Series;
 use basis::{FixedFrame, Measurements, PerBlade};
 use control::excitation_rate;
-use estimation::helix::{Options, Setting};
+use estimation::helix::Setting;
 use estimation::{Estimator, HelixEstimator};
 use farm::case::{Case, Control, PhaseEstimator};
 use formats::case;
@@ -298,10 +298,7 @@ fn replay(
         air_density: case.wind.air_density,
         n_elements: Setting::N_ELEMENTS,
     };
-    let options = match estimator {
-        PhaseEstimator::Robust => Options::default(),
-        PhaseEstimator::Published => Options::published(),
-    };
+    let options = farm::assemble::estimator_options(estimator, case.flow.solver);
     let mut estimator = HelixEstimator::new(&definition, &setting, options)
         .map_err(farm::assemble::AssemblyError::from)?;
     let name = &case.turbines[index].name;

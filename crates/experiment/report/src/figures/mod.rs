@@ -32,6 +32,7 @@ pub(crate) fn all(study: &Study) -> Vec<Figure> {
     figures.extend(profiles::centre_line(study));
     figures.extend(pitch::pitch(study));
     figures.extend(power::rotor_speed(study));
+    figures.extend(study.records.synchronisation.iter().flat_map(synchronisation::all));
     let conditions = sentence::study_line(study);
     figures.iter_mut().for_each(|figure| sign(figure, &conditions));
     figures

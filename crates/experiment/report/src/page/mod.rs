@@ -52,6 +52,7 @@ pub(crate) fn render(study: &Study, figures: &[Figure]) -> Result<String, Report
         conditions_line => sentence::conditions_line(study, None),
         small_print => small_print(study),
         parts => parts(figures)?,
+        phases => tables::phases(study),
         costs => tables::costs(study),
         case_text => records.case_text.clone(),
     })?;
@@ -179,10 +180,22 @@ fn parts(figures: &[Figure]) -> Result<Vec<Value>, ReportError> {
         ),
         ("Blades and rotor", "", &["pitch", "rotor-speed"]),
     ];
+    const JOINED: (&str, &str) = (
+        "Phase synchronisation",
+        "A turbine finds the helix that meets it in its blade loads, and joins it with a phase offset: the lead of its \
+         pitch over the wind that meets it.",
+    );
+    let place = |figure: &Figure| {
+        let name = figure.name.as_str();
+        PARTS.iter().position(|(_, _, names)| names.contains(&name))
+    };
+    let headings = PARTS.iter().map(|(title, lead, _)| (*title, *lead)).chain([JOINED]);
     let mut parts = Vec::new();
-    for (title, lead, names) in PARTS {
+    for (index, (title, lead)) in headings.enumerate() {
         let mut drawings = Vec::new();
-        for figure in figures.iter().filter(|figure| names.contains(&figure.name.as_str())) {
+        // What stands in no other part belongs to the last.
+        let is_here = |figure: &&Figure| place(figure).unwrap_or(PARTS.len()) == index;
+        for figure in figures.iter().filter(is_here) {
             let drawn = svg::inline(figure)
                 .map_err(|source| ReportError::Picture { figure: figure.name.clone(), source })?;
             drawings.push(context! {

@@ -10,6 +10,28 @@ use minijinja::{Value, context};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
+/// How well each run found the phases of the helix, a row for each axis.
+pub(crate) fn phases(study: &Study) -> Vec<Value> {
+    let degrees = |angle: f64| number(angle.to_degrees(), 1);
+    let found = study.records.synchronisation.iter().flat_map(|found| &found.phases);
+    let rows = found.flat_map(|row| [(row, "tilt", &row.tilt), (row, "yaw", &row.yaw)]);
+    rows.map(|(row, axis, numbers)| {
+        context! {
+            run => row.run.clone(),
+            offset => row.offset.map_or("watches".to_owned(), |offset| number(offset.to_degrees(), 0)),
+            axis,
+            rmse => degrees(numbers.rmse),
+            bias => degrees(numbers.bias),
+            spread => degrees(numbers.spread),
+            locking => number(numbers.locking, 2),
+            coherence => numbers.coherence.map_or("–".to_owned(), |found| number(found, 2)),
+            amplitude => number(numbers.amplitude, 2),
+            true_amplitude => number(numbers.true_amplitude, 2),
+        }
+    })
+    .collect()
+}
+
 /// The conditions that all runs share.
 pub(crate) fn conditions(study: &Study) -> Vec<Value> {
     let summary = &study.runs()[0].summary;
@@ -37,11 +59,14 @@ pub(crate) fn conditions(study: &Study) -> Vec<Value> {
             format!("turbulence seed {}", conditions.seed),
         ),
     ];
-    let mut models: Vec<String> = summary.turbines.iter().map(|t| t.model.clone()).collect();
+    // A run may leave turbines out.
+    let turbines = |run: &&RunRecords| run.summary.turbines.len();
+    let fullest = study.runs().iter().max_by_key(turbines).map_or(summary, |run| &run.summary);
+    let mut models: Vec<String> = fullest.turbines.iter().map(|t| t.model.clone()).collect();
     models.dedup();
     facts.push(fact(
         "Turbines",
-        format!("{} × {}", summary.turbines.len(), models.join(", ")),
+        format!("{} × {}", fullest.turbines.len(), models.join(", ")),
         format!("rotor diameter D = {}{SPACE}m", number(conditions.rotor_diameter, 1)),
     ));
     if let Some(spacing) = sentence::spacing(study) {

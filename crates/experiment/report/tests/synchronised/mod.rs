@@ -18,6 +18,7 @@ const CASES: [(&str, usize, f64); 3] =
 /// Everything at once.
 pub(crate) fn all() -> Synchronisation {
     Synchronisation {
+        phases: Vec::new(),
         offsets: vec![power()],
         tracks: vec![estimates(), responses()],
         spectra: vec![moments()],

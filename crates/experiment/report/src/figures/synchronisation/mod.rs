@@ -15,6 +15,8 @@ use basis::records::{Plane, Statistic};
 /// What a study of phase synchronisation has to show; what is empty is left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Synchronisation {
+    /// How well each run found the phases of the helix.
+    pub phases: Vec<PhaseRow>,
     /// Changes over the phase offset: of power, of loads.
     pub offsets: Vec<OffsetFigure>,
     /// Signals over time, estimates beside the truth.
@@ -25,6 +27,40 @@ pub struct Synchronisation {
     pub slices: Option<SliceFigure>,
     /// Deficits about the wake's own centre.
     pub deficits: Option<DeficitFigure>,
+}
+
+/// How well one run found the phases of the helix.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhaseRow {
+    /// Name of the run.
+    pub run: String,
+    /// Phase offset (rad, [0, 2π)); absent where the turbine only watched.
+    pub offset: Option<f64>,
+    /// Tilt.
+    pub tilt: PhaseNumbers,
+    /// Yaw.
+    pub yaw: PhaseNumbers,
+    /// Mean trust (–).
+    pub trust: f64,
+}
+
+/// One axis of an estimate against the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhaseNumbers {
+    /// Root mean square of the phase error (rad).
+    pub rmse: f64,
+    /// Its circular mean (rad).
+    pub bias: f64,
+    /// Root mean square about that mean (rad).
+    pub spread: f64,
+    /// Phase locking (–).
+    pub locking: f64,
+    /// Coherence at the excitation's frequency (–); absent in short records.
+    pub coherence: Option<f64>,
+    /// Mean estimated amplitude (m/s).
+    pub amplitude: f64,
+    /// Mean true amplitude (m/s).
+    pub true_amplitude: f64,
 }
 
 /// How a quantity changes with the phase offset, a panel for each turbine.

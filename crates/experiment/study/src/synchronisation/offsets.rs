@@ -1,0 +1,172 @@
+//! Power and loads over the phase offset, with the curve that a Gaussian process puts through them.
+
+use super::{Joined, Synchronised};
+use crate::StudyError;
+use analysis::statistics::{BLOCK_LENGTH, gain};
+use basis::records::{Statistic, TurbineSummary};
+use report::{CurvePoint, OffsetFigure, OffsetPanel, OffsetPoint};
+use std::f64::consts::TAU;
+use surrogate::{GaussianProcess, Observations, Settings, Shape};
+
+/// Fewest offsets through which a curve is drawn (–).
+const FEWEST: usize = 4;
+/// Points of a curve (–).
+const N_CURVE: usize = 121;
+/// Half width of a 95 % interval over the standard deviation (–).
+const HALF_WIDTH: f64 = 1.96;
+/// Loads that are shown, by the channel that a summary's load begins with, and their titles.
+const LOADS: [(&str, &str); 4] = [
+    ("RootMyc1", "blade root flapwise"),
+    ("RootMxc1", "blade root edgewise"),
+    ("TwrBsMyt", "tower base fore-aft"),
+    ("TwrBsMxt", "tower base side-side"),
+];
+
+/// The figures.
+pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, StudyError> {
+    let joined: Vec<&Joined> = study
+        .runs
+        .iter()
+        .filter(|run| run.offset().is_some() && compared(study, run).is_some())
+        .collect();
+    if joined.is_empty() {
+        return Ok(Vec::new());
+    }
+    let against =
+        compared(study, joined[0]).map(|run| run.manifest.run.clone()).unwrap_or_default();
+    let x = |index: usize| study.case.turbines[index].position_diameters[0];
+    let own = x(study.turbine);
+    let mut places: Vec<usize> =
+        (0..study.case.turbines.len()).filter(|&index| x(index) >= own).collect();
+    places.sort_by(|a, b| x(*a).total_cmp(&x(*b)));
+    let names: Vec<&str> =
+        places.iter().map(|&index| study.case.turbines[index].name.as_str()).collect();
+    let mut power: Vec<OffsetPanel> = Vec::new();
+    for name in &names {
+        let points = joined.iter().filter_map(|run| {
+            let change = turbine(study, run, name)?.power_gain?;
+            Some(OffsetPoint { offset: run.offset()?, change })
+        });
+        power.push(panel((*name).to_owned(), points.collect()));
+    }
+    if names.len() > 1 {
+        let mut points = Vec::new();
+        for run in &joined {
+            let (Some(offset), Some(change)) = (run.offset(), together(study, run, &names)?) else {
+                continue;
+            };
+            points.push(OffsetPoint { offset, change });
+        }
+        power.push(panel(names.join(" + "), points));
+    }
+    let mut figures = vec![OffsetFigure {
+        name: "power-over-offset".into(),
+        title: "Power over the phase offset".into(),
+        label: format!("power against the run {against} (%)"),
+        panels: power,
+    }];
+    for (channel, title) in LOADS {
+        let panels: Vec<OffsetPanel> = names
+            .iter()
+            .map(|name| {
+                let points = joined.iter().filter_map(|run| {
+                    let own = load(turbine(study, run, name)?, channel)?;
+                    let other = compared(study, run)?.summary.turbines.iter();
+                    let other = other.clone().find(|turbine| turbine.name == *name)?;
+                    let change = own / load(other, channel)? - 1.0;
+                    let change = Statistic {
+                        mean: change,
+                        standard_deviation: 0.0,
+                        half_width_95: None,
+                        n_blocks: 1,
+                    };
+                    Some(OffsetPoint { offset: run.offset()?, change })
+                });
+                panel((*name).to_owned(), points.collect())
+            })
+            .collect();
+        if panels.iter().all(|panel| panel.points.is_empty()) {
+            continue;
+        }
+        figures.push(OffsetFigure {
+            name: format!("load-over-offset-{channel}"),
+            title: format!("Fatigue over the phase offset: {title}"),
+            label: format!("1-Hz equivalent load, {title}, against the run {against} (%)"),
+            panels,
+        });
+    }
+    Ok(figures)
+}
+
+/// The points with the curve of most probable changes through them.
+fn panel(title: String, points: Vec<OffsetPoint>) -> OffsetPanel {
+    let curve = curve(&points).unwrap_or_default();
+    OffsetPanel { title, points, curve }
+}
+
+/// Nothing where the points are too few, or allow no curve.
+fn curve(points: &[OffsetPoint]) -> Option<Vec<CurvePoint>> {
+    if points.len() < FEWEST {
+        return None;
+    }
+    let inputs = points.iter().map(|point| point.offset).collect();
+    let values = points.iter().map(|point| point.change.mean).collect();
+    let observations = Observations::of_curve(inputs, values);
+    let deviations: Option<Vec<f64>> = points
+        .iter()
+        .map(|point| point.change.half_width_95.map(|half| half / HALF_WIDTH))
+        .collect();
+    let observations = match deviations {
+        Some(deviations) => observations.with_deviations(&deviations),
+        None => observations,
+    };
+    let shape = Shape::Periodic { period: TAU };
+    let process = GaussianProcess::fit(shape, observations, &Settings::default()).ok()?;
+    (0..N_CURVE)
+        .map(|index| {
+            let offset = TAU * index as f64 / (N_CURVE - 1) as f64;
+            let found = process.predict(&[offset]).ok()?;
+            Some(CurvePoint { offset, mean: found.mean, band_95: found.band_95() })
+        })
+        .collect()
+}
+
+/// The run that `run`'s gains compare with.
+fn compared<'a>(study: &'a Synchronised, run: &Joined) -> Option<&'a formats::records::RunRecords> {
+    let name = study.records.runs[run.run].summary.compare_with.as_deref()?;
+    study.records.runs.iter().find(|other| other.manifest.run == name)
+}
+
+fn turbine<'a>(study: &'a Synchronised, run: &Joined, name: &str) -> Option<&'a TurbineSummary> {
+    study.records.runs[run.run].summary.turbines.iter().find(|turbine| turbine.name == name)
+}
+
+fn load(turbine: &TurbineSummary, channel: &str) -> Option<f64> {
+    let mut loads = turbine.damage_equivalent_loads.iter();
+    loads.find(|(name, _)| name.starts_with(channel)).map(|(_, load)| *load)
+}
+
+/// Change of the power of the turbines called `names` together.
+fn together(
+    study: &Synchronised,
+    run: &Joined,
+    names: &[&str],
+) -> Result<Option<Statistic>, StudyError> {
+    let Some(other) = compared(study, run) else { return Ok(None) };
+    let sum = |run: &formats::records::RunRecords| -> Option<(Vec<f64>, f64)> {
+        let times = run.series.column("time_s")?;
+        let first = times.iter().position(|time| *time >= study.case.time.spin_up)?;
+        let mut total = vec![0.0; times.len() - first];
+        for name in names {
+            let power = run.series.column(&format!("{name}.power_w"))?;
+            total.iter_mut().zip(&power[first..]).for_each(|(sum, power)| *sum += power);
+        }
+        Some((total, times.get(1)? - times.first()?))
+    };
+    match (sum(&study.records.runs[run.run]), sum(other)) {
+        (Some((own, interval)), Some((other, _))) => {
+            Ok(Some(gain(&own, &other, interval, BLOCK_LENGTH)?))
+        }
+        _ => Ok(None),
+    }
+}

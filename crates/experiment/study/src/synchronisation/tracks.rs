@@ -1,0 +1,187 @@
+//! Signals over time and over frequency: estimates beside the truth, and what the rotor makes of its pitch.
+
+use super::{Joined, Synchronised};
+use crate::StudyError;
+use analysis::phase::{Band, fixed_frame_moments, narrowband};
+use analysis::spectra::amplitude;
+use basis::PerBlade;
+use basis::mbc::to_fixed_frame;
+use basis::records::Series;
+use report::{PhaseRow, SpectrumFigure, SpectrumLine, TrackFigure, TrackLine, TrackRow};
+
+/// Cases that one figure of signals shows at most (–).
+const MOST_CASES: usize = 5;
+
+/// How well each run found its phases.
+pub(super) fn table(study: &Synchronised) -> Vec<PhaseRow> {
+    let rows = study.runs.iter().filter_map(|run| {
+        let answer = run.answer.as_ref()?;
+        let axis = |axis: &crate::phase::PhaseAxis| report::PhaseNumbers {
+            rmse: axis.agreement.rmse,
+            bias: axis.agreement.bias,
+            spread: axis.agreement.spread,
+            locking: axis.agreement.locking,
+            coherence: axis.coherence.map(|found| found.coherence),
+            amplitude: axis.amplitude,
+            true_amplitude: axis.true_amplitude,
+        };
+        Some(PhaseRow {
+            run: run.name.clone(),
+            offset: run.offset(),
+            tilt: axis(&answer.tilt),
+            yaw: axis(&answer.yaw),
+            trust: answer.trust,
+        })
+    });
+    rows.collect()
+}
+
+/// Estimated and true phases, and the answer to the pitch.
+pub(super) fn tracks(study: &Synchronised) -> Result<Vec<TrackFigure>, StudyError> {
+    let name = &study.case.turbines[study.turbine].name;
+    let mut figures: Vec<TrackFigure> =
+        study.runs.iter().filter_map(|run| estimate(study, run, name)).collect();
+    figures.extend(answer(study, name)?);
+    Ok(figures)
+}
+
+fn estimate(study: &Synchronised, run: &Joined, name: &str) -> Option<TrackFigure> {
+    let answer = run.answer.as_ref()?;
+    let row = |label: &str, axis: &crate::phase::PhaseAxis| {
+        let line = |name: &str, colour: usize, values: &[f64]| TrackLine {
+            name: name.to_owned(),
+            colour,
+            times: answer.times.clone(),
+            values: values.to_vec(),
+        };
+        let lines = vec![line("true", 0, &axis.true_phase), line("estimated", 1, &axis.phase)];
+        TrackRow { label: label.to_owned(), is_angle: true, lines }
+    };
+    let start = (run.sync.amplitude > 0.0 && run.sync.start > answer.times.first().copied()?)
+        .then_some(run.sync.start);
+    Some(TrackFigure {
+        name: format!("phases-{}", run.name),
+        title: format!("Phase of the helix at {name}, estimated and true: {}", run.name),
+        caption: format!(
+            "True phases are those of the wind at {name}'s place in the run {}, band-passed around the excitation.",
+            answer.truth
+        ),
+        rows: vec![
+            row("phase of tilt (deg)", &answer.tilt),
+            row("phase of yaw (deg)", &answer.yaw),
+        ],
+        mark: (study.case.time.spin_up < run.sync.start).then_some(start).flatten(),
+    })
+}
+
+/// Runs that signals are shown of: the watching one first, then offsets a quarter turn apart where there are.
+fn shown<'a>(study: &'a Synchronised) -> Vec<&'a Joined> {
+    let watching = study.runs.iter().filter(|run| run.offset().is_none());
+    let quarter = |run: &&Joined| {
+        run.offset().is_some_and(|offset| {
+            let quarters = offset.to_degrees() / 90.0;
+            (quarters - quarters.round()).abs() < 1e-6
+        })
+    };
+    watching.chain(study.runs.iter().filter(quarter)).take(MOST_CASES).collect()
+}
+
+/// Estimated wind, pitch and moment of the tilt axis around the excitation.
+fn answer(study: &Synchronised, name: &str) -> Result<Option<TrackFigure>, StudyError> {
+    let band = Band::around(study.reference.frequency(), Band::RATIO);
+    let mut rows: Vec<TrackRow> =
+        ["estimated tilt wind (m/s)", "tilt pitch (deg)", "tilt moment (MN m)"]
+            .into_iter()
+            .map(|label| TrackRow { label: label.to_owned(), is_angle: false, lines: Vec::new() })
+            .collect();
+    for (colour, run) in shown(study).into_iter().enumerate() {
+        let series = &study.records.runs[run.run].series;
+        let Some((first, times, interval)) = analysed(study, series) else { continue };
+        let cut = |channel: &str| series.column(&format!("{name}.{channel}")).map(|c| &c[first..]);
+        let (Some(wind), Some(azimuth)) = (cut("estimated_tilt_wind_m_s"), cut("azimuth_rad"))
+        else {
+            continue;
+        };
+        let (Some(pitch), Some(moment)) = (
+            columns(series, name, "pitch_#_rad", first),
+            columns(series, name, "flap_moment_#_nm", first),
+        ) else {
+            continue;
+        };
+        let tilt_pitch: Vec<f64> = (0..times.len())
+            .map(|row| {
+                let blades = PerBlade::from_fn(pitch.len(), |blade| pitch[blade][row]);
+                to_fixed_frame(azimuth[row], &blades).tilt.to_degrees()
+            })
+            .collect();
+        let moments = fixed_frame_moments(azimuth, &moment)?;
+        let tilt_moment: Vec<f64> = moments.iter().map(|moment| 1e-6 * moment.tilt).collect();
+        for (row, values) in rows.iter_mut().zip([wind.to_vec(), tilt_pitch, tilt_moment]) {
+            let wave = narrowband(&values, interval, band)?.wave;
+            let times = times.to_vec();
+            row.lines.push(TrackLine { name: run.name.clone(), colour, times, values: wave });
+        }
+    }
+    Ok((!rows[0].lines.is_empty()).then(|| TrackFigure {
+        name: "answer-to-pitch".into(),
+        title: format!("What {name} makes of the helix that meets it: tilt, around the excitation"),
+        caption: "Pitch in step with the wind (offset 0) takes load off where it blows, against it (180°) adds load.".into(),
+        rows,
+        mark: None,
+    }))
+}
+
+/// Spectra of the tilt moment.
+pub(super) fn spectra(study: &Synchronised) -> Result<Vec<SpectrumFigure>, StudyError> {
+    let name = &study.case.turbines[study.turbine].name;
+    let mut lines = Vec::new();
+    for (colour, run) in shown(study).into_iter().enumerate() {
+        let series = &study.records.runs[run.run].series;
+        let Some((first, _, interval)) = analysed(study, series) else { continue };
+        let Some(azimuth) = series.column(&format!("{name}.azimuth_rad")) else { continue };
+        let Some(moment) = columns(series, name, "flap_moment_#_nm", first) else { continue };
+        let moments = fixed_frame_moments(&azimuth[first..], &moment)?;
+        let tilt: Vec<f64> = moments.iter().map(|moment| 1e-6 * moment.tilt).collect();
+        let spectrum = amplitude(&tilt, interval)?;
+        lines.push(SpectrumLine {
+            name: run.name.clone(),
+            colour,
+            frequency_step: spectrum.frequency_step,
+            values: spectrum.values,
+        });
+    }
+    if lines.is_empty() {
+        return Ok(Vec::new());
+    }
+    Ok(vec![SpectrumFigure {
+        name: "tilt-moment-spectra".into(),
+        title: format!("Tilt moment of {name} around the helix's frequency"),
+        label: "amplitude of the tilt moment (MN m)".into(),
+        excitation_frequency: study.reference.frequency(),
+        lines,
+    }])
+}
+
+/// First analysed row, the times from it on, and their distance (s).
+fn analysed<'a>(study: &Synchronised, series: &'a Series) -> Option<(usize, &'a [f64], f64)> {
+    let times = series.column("time_s")?;
+    let first = times.iter().position(|time| *time >= study.case.time.spin_up)?;
+    let rest = &times[first..];
+    let (begin, end) = (rest.first()?, rest.last()?);
+    (rest.len() > 1).then(|| (first, rest, (end - begin) / (rest.len() - 1) as f64))
+}
+
+/// One column per blade from row `first` on, the blade's number for `#`.
+fn columns<'a>(
+    series: &'a Series,
+    name: &str,
+    channel: &str,
+    first: usize,
+) -> Option<Vec<&'a [f64]>> {
+    let of_blade = |blade: usize| {
+        let channel = channel.replace('#', &blade.to_string());
+        series.column(&format!("{name}.{channel}")).map(|column| &column[first..])
+    };
+    let columns: Vec<&[f64]> = (1..).map_while(of_blade).collect();
+    (columns.len() >= 3).then_some(columns)
+}

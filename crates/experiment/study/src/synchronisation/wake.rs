@@ -1,0 +1,139 @@
+//! The wake by phase of the helix: seen from above with its centre line, and its deficit about its own centre.
+
+use super::{Joined, Synchronised};
+use crate::StudyError;
+use analysis::AnalysisError;
+use analysis::wake::{PhasePlane, centre_line, recentred_deficit};
+use basis::records::Plane;
+use report::{CentreLine, DeficitFigure, DeficitLine, DeficitPanel, SliceFigure, SlicePanel};
+
+/// Width of the Gaussian that finds a centre (rotor diameters).
+const WIDTH: f64 = 0.5;
+/// Distances behind the synchronised turbine at which deficits are shown (rotor diameters).
+const DISTANCES: [f64; 4] = [2.0, 3.0, 4.0, 4.75];
+/// Half width of a recentred profile (rotor diameters), and its points (–).
+const HALF_WIDTH: f64 = 1.25;
+const N_POINTS: usize = 81;
+
+/// Both figures; none where no planes were averaged by phase.
+pub(super) fn wake(
+    study: &Synchronised,
+) -> Result<(Option<SliceFigure>, Option<DeficitFigure>), StudyError> {
+    let (Some(best), Some(worst)) = (ranked(study, true), ranked(study, false)) else {
+        return Ok((None, None));
+    };
+    let cases: Vec<(usize, String, &[(f64, Plane)])> = [best, worst]
+        .into_iter()
+        .map(|run| (run.run, run.name.clone()))
+        .enumerate()
+        .map(|(place, (run, name))| (place + 1, name, planes(study, run)))
+        .collect();
+    if cases.iter().any(|(_, _, planes)| planes.is_empty()) {
+        return Ok((None, None));
+    }
+    let free_stream = |_: f64| study.case.wind.speed;
+    let width = WIDTH * study.diameter;
+    // Ends of the plane are left out: upstream of the first rotor there is no wake.
+    let x = |index: usize| study.case.turbines[index].position_diameters[0] * study.diameter;
+    let line_of = |plane: &Plane| -> Result<Vec<[f64; 2]>, AnalysisError> {
+        let line = centre_line(plane, free_stream, width)?;
+        Ok(line.into_iter().filter(|[at, _]| *at > x(0) + 0.5 * study.diameter).collect())
+    };
+    let mut panels = Vec::new();
+    let mut lines = Vec::new();
+    for (colour, name, planes) in &cases {
+        let plane = planes[0].1.clone();
+        let line = line_of(&plane)?;
+        lines.push(CentreLine { name: name.clone(), colour: *colour, points: line.clone() });
+        panels.push(SlicePanel { title: name.clone(), colour: *colour, plane, centre_line: line });
+    }
+    // Beside them the run that they compare with, and the helix of the first turbine alone.
+    let others = study.records.runs.iter().enumerate().filter(|(_, run)| {
+        let compared = study.records.runs[best.run].summary.compare_with.as_deref();
+        run.summary.turbines.len() == 1 || compared == Some(run.manifest.run.as_str())
+    });
+    for (place, (run, records)) in others.enumerate() {
+        let Some((_, plane)) = planes(study, run).first() else { continue };
+        let colour = if place == 0 { 0 } else { cases.len() + place };
+        let points = line_of(plane)?;
+        lines.push(CentreLine { name: records.manifest.run.clone(), colour, points });
+    }
+    let rotors = (0..study.case.turbines.len())
+        .map(|index| study.case.turbines[index].position_diameters.map(|d| d * study.diameter));
+    let slices = SliceFigure {
+        diameter: study.diameter,
+        free_stream: study.case.wind.speed,
+        rotors: rotors.collect(),
+        planes: panels,
+        centre_lines: lines,
+        phase: "t = 0 Te".into(),
+    };
+    Ok((Some(slices), deficits(study, &cases, width)?))
+}
+
+fn deficits(
+    study: &Synchronised,
+    cases: &[(usize, String, &[(f64, Plane)])],
+    width: f64,
+) -> Result<Option<DeficitFigure>, StudyError> {
+    let turbine = &study.case.turbines[study.turbine];
+    let half = HALF_WIDTH * study.diameter;
+    let offsets: Vec<f64> =
+        (0..N_POINTS).map(|k| half * (2.0 * k as f64 / (N_POINTS - 1) as f64 - 1.0)).collect();
+    let mut panels = Vec::new();
+    for distance in DISTANCES {
+        let x = (turbine.position_diameters[0] + distance) * study.diameter;
+        let mut lines = Vec::new();
+        for (colour, name, planes) in cases {
+            let planes: Vec<PhasePlane> = planes
+                .iter()
+                .map(|(phase, plane)| PhasePlane {
+                    phase: *phase,
+                    n_instants: 1,
+                    plane: plane.clone(),
+                })
+                .collect();
+            let speed = |_: f64| study.case.wind.speed;
+            match recentred_deficit(&planes, speed, width, x, &offsets) {
+                Ok(deficits) => lines.push(DeficitLine {
+                    name: name.clone(),
+                    colour: *colour,
+                    offsets: offsets.clone(),
+                    deficits,
+                }),
+                // Beyond the domain there is nothing to show.
+                Err(AnalysisError::OutsidePlane { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        if !lines.is_empty() {
+            panels.push(DeficitPanel {
+                title: format!("{distance} D behind {}", turbine.name),
+                lines,
+            });
+        }
+    }
+    let (diameter, free_stream) = (study.diameter, study.case.wind.speed);
+    Ok((!panels.is_empty()).then_some(DeficitFigure { diameter, free_stream, panels }))
+}
+
+/// The joined run with the greatest, or least, gain of the turbines downstream.
+fn ranked<'a>(study: &'a Synchronised, best: bool) -> Option<&'a Joined> {
+    let own = study.case.turbines[study.turbine].position_diameters[0];
+    let gain = |run: &Joined| -> Option<f64> {
+        let turbines = &study.records.runs[run.run].summary.turbines;
+        let last = study.case.turbines.iter().filter(|turbine| turbine.position_diameters[0] > own);
+        let last =
+            last.max_by(|a, b| a.position_diameters[0].total_cmp(&b.position_diameters[0]))?;
+        turbines.iter().find(|turbine| turbine.name == last.name)?.power_gain.map(|gain| gain.mean)
+    };
+    let ranked = study.runs.iter().filter(|run| run.offset().is_some());
+    let ranked = ranked.filter_map(|run| Some((gain(run)?, run)));
+    let sign = if best { 1.0 } else { -1.0 };
+    ranked.max_by(|a, b| (sign * a.0).total_cmp(&(sign * b.0))).map(|found| found.1)
+}
+
+/// Planes of a run by phase, in the order of the phases.
+fn planes<'a>(study: &'a Synchronised, run: usize) -> &'a [(f64, Plane)] {
+    &study.records.runs[run].phase_planes
+}
