@@ -16,7 +16,7 @@ mod synchronisation;
 mod watcher;
 
 pub use error::StudyError;
-pub use phase::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase};
+pub use phase::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase, tune};
 pub use prepare::Setup;
 pub use watcher::{Estimate, Progress, Watcher};
 

@@ -9,14 +9,17 @@ use analysis::phase::{
 use basis::records::Series;
 use basis::{FixedFrame, Measurements, PerBlade};
 use control::excitation_rate;
+use estimation::HelixEstimator;
 use estimation::helix::Setting;
-use estimation::{Estimator, HelixEstimator};
+use estimation::helix::tuning::{self, Tuned};
+use farm::assemble::{AssemblyError, estimator_options};
 use farm::case::{Case, Control, PhaseEstimator};
 use formats::case;
 use formats::records::{self, Manifest, RunFolder};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use turbine::Definition;
 
 /// Excitation periods in a segment of the cross-spectrum (–).
 const SEGMENT_PERIODS: f64 = 4.0;
@@ -288,9 +291,75 @@ fn replay(
     estimator: PhaseEstimator,
     interval: f64,
 ) -> Result<Estimates, StudyError> {
+    let (definition, setting) = seeker(case, index, reference, interval)?;
+    let options = estimator_options(estimator, case.flow.solver);
+    let mut estimator =
+        HelixEstimator::new(&definition, &setting, options).map_err(AssemblyError::from)?;
+    let record = record(case, series, index, definition.n_blades, interval)?;
+    let replayed =
+        tuning::replay(&mut estimator, &record, interval).map_err(AssemblyError::from)?;
+    let mut estimates = Estimates {
+        wind: Vec::new(),
+        tilt: Wave::default(),
+        yaw: Wave::default(),
+        trust: Vec::new(),
+    };
+    for estimate in replayed {
+        estimates.wind.push(estimate.mean_wind);
+        for (wave, axis) in
+            [(&mut estimates.tilt, estimate.tilt), (&mut estimates.yaw, estimate.yaw)]
+        {
+            wave.amplitude.push(axis.amplitude);
+            wave.phase.push(axis.phase);
+        }
+        estimates.trust.push(estimate.trust.overall());
+    }
+    Ok(estimates)
+}
+
+/// Noise for the estimator that `question` names, tuned on its record against the true wind.
+///
+/// Source: van Vondelen et al. (2025), Algorithm 1.
+///
+/// # Errors
+/// As [`phase`].
+pub fn tune(question: &PhaseQuestion) -> Result<Tuned, StudyError> {
+    let folder = folder_of(&question.run);
+    let manifest = records::read_manifest(&folder)?;
+    let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
+    let index = turbine_of(question, &case, &manifest)?;
+    let name = &case.turbines[index].name;
+    let reference = reference(&case, &manifest, index)?;
+    let series = records::read_series(&folder.series_path())?;
+    let times = column(&series, "time_s")?;
+    let interval = uniform_interval(times)?;
+    let (_, truth) = truth(question, &folder, name, &reference)?;
+    let from = question.from.unwrap_or(case.time.spin_up);
+    let (definition, setting) = seeker(&case, index, &reference, interval)?;
+    let whole = record(&case, &series, index, definition.n_blades, interval)?;
+    let (mut measured, mut tilt, mut yaw) = (Vec::new(), Vec::new(), Vec::new());
+    for measurements in whole {
+        let at = truth.index_at(measurements.time).filter(|at| truth.trusted.contains(at));
+        if let (Some(at), true) = (at, measurements.time >= from) {
+            measured.push(measurements);
+            tilt.push(truth.tilt.wind[at]);
+            yaw.push(truth.yaw.wind[at]);
+        }
+    }
+    let estimator = question.estimator.unwrap_or(PhaseEstimator::Robust);
+    let options = estimator_options(estimator, case.flow.solver);
+    let tuned = tuning::tune(&definition, &setting, options, &measured, [&tilt, &yaw]);
+    Ok(tuned.map_err(AssemblyError::from)?)
+}
+
+/// The rotor of turbine `index`, and what its estimator is told.
+fn seeker(
+    case: &Case,
+    index: usize,
+    reference: &Reference,
+    interval: f64,
+) -> Result<(Arc<Definition>, Setting), StudyError> {
     let (_, file) = turbine(&case.turbines[index].model, Path::new(""))?;
-    let definition = Arc::new(file.definition);
-    let n_blades = definition.n_blades;
     let setting = Setting {
         sense: reference.sense,
         rate: reference.rate,
@@ -298,9 +367,17 @@ fn replay(
         air_density: case.wind.air_density,
         n_elements: Setting::N_ELEMENTS,
     };
-    let options = farm::assemble::estimator_options(estimator, case.flow.solver);
-    let mut estimator = HelixEstimator::new(&definition, &setting, options)
-        .map_err(farm::assemble::AssemblyError::from)?;
+    Ok((Arc::new(file.definition), setting))
+}
+
+/// What turbine `index` measured, row by row.
+fn record(
+    case: &Case,
+    series: &Series,
+    index: usize,
+    n_blades: usize,
+    interval: f64,
+) -> Result<Vec<Measurements>, StudyError> {
     let name = &case.turbines[index].name;
     let channel = |what: &str| column(series, &format!("{name}.{what}"));
     let per_blade = |what: &str| {
@@ -312,39 +389,22 @@ fn replay(
     let azimuth = channel("azimuth_rad")?;
     let rotor_speed = channel("rotor_speed_rad_s")?;
     let (pitch, flap) = (per_blade("pitch_#_rad")?, per_blade("flap_moment_#_nm")?);
-    let zero = PerBlade::splat(n_blades, 0.0);
-    let mut estimates = Estimates {
-        wind: Vec::new(),
-        tilt: Wave::default(),
-        yaw: Wave::default(),
-        trust: Vec::new(),
+    let measurements = |row: usize| Measurements {
+        time: times[row],
+        interval,
+        azimuth: azimuth[row],
+        rotor_speed: rotor_speed[row],
+        generator_speed: rotor_speed[row],
+        pitch: PerBlade::from_fn(n_blades, |blade| pitch[blade][row]),
+        // The estimator asks for nothing of what follows but the moments.
+        generator_torque: 0.0,
+        power: 0.0,
+        thrust: 0.0,
+        aerodynamic_torque: 0.0,
+        rotor_wind_speed: 0.0,
+        flap_moments: PerBlade::from_fn(n_blades, |blade| flap[blade][row]),
+        edge_moments: PerBlade::splat(n_blades, 0.0),
+        tower_top_acceleration: 0.0,
     };
-    for row in 0..times.len() {
-        let measurements = Measurements {
-            time: times[row],
-            interval,
-            azimuth: azimuth[row],
-            rotor_speed: rotor_speed[row],
-            generator_speed: rotor_speed[row],
-            pitch: PerBlade::from_fn(n_blades, |blade| pitch[blade][row]),
-            generator_torque: 0.0,
-            power: 0.0,
-            thrust: 0.0,
-            aerodynamic_torque: 0.0,
-            rotor_wind_speed: 0.0,
-            flap_moments: PerBlade::from_fn(n_blades, |blade| flap[blade][row]),
-            edge_moments: zero,
-            tower_top_acceleration: 0.0,
-        };
-        let estimate = estimator.update(&measurements);
-        estimates.wind.push(estimate.mean_wind);
-        for (wave, axis) in
-            [(&mut estimates.tilt, estimate.tilt), (&mut estimates.yaw, estimate.yaw)]
-        {
-            wave.amplitude.push(axis.amplitude);
-            wave.phase.push(axis.phase);
-        }
-        estimates.trust.push(estimate.trust.overall());
-    }
-    Ok(estimates)
+    Ok((0..times.len()).map(measurements).collect())
 }

@@ -14,6 +14,8 @@ use farm::case::{Control, Run};
 
 /// Share of clipped control instants beyond which a reader must know (–).
 const CLIPPED_SHARE: f64 = 0.01;
+/// Share of the time without a trusted phase beyond which a reader must know (–).
+const FADED_SHARE: f64 = 0.02;
 /// Share of the asked amplitude that must arrive at the blades (–).
 const DELIVERED_SHARE: f64 = 0.95;
 
@@ -82,6 +84,7 @@ pub(crate) fn summarise(
         let delivered_pitch =
             delivered_pitch(&analysed, name, control, setup, clipped_shares[machine])?;
         warn_of_clipping(name, &run.name, delivered_pitch, clipped_shares[machine], &mut warnings);
+        warn_of_fading(&analysed, name, control, &run.name, &mut warnings)?;
         let power_gain = match compared {
             Some((other, other_series)) if other.present().any(|there| there == index) => {
                 let other = Analysed::new(other_series, setup);
@@ -155,7 +158,8 @@ fn delivered_pitch(
         Control::Helix(helix) => (Motion::Cyclic, helix.amplitude, helix.strouhal, helix.start),
         Control::Pulse(pulse) => (Motion::Collective, pulse.amplitude, pulse.strouhal, pulse.start),
         Control::PhaseSync(sync) => (Motion::Cyclic, sync.amplitude, sync.strouhal, sync.start),
-        Control::Baseline | Control::Absent => return Ok(None),
+        // The amplitude of meandering control is no constant.
+        Control::Meandering(_) | Control::Baseline | Control::Absent => return Ok(None),
     };
     if amplitude == 0.0 {
         return Ok(None);
@@ -195,6 +199,30 @@ fn warn_of_clipping(
             100.0 * clipped_share
         ));
     }
+}
+
+/// Notes where a turbine that shall join a helix could not trust its estimate.
+fn warn_of_fading(
+    analysed: &Analysed,
+    name: &str,
+    control: &Control,
+    run: &str,
+    warnings: &mut Vec<String>,
+) -> Result<(), StudyError> {
+    let Control::PhaseSync(sync) = control else { return Ok(()) };
+    if sync.amplitude == 0.0 {
+        return Ok(());
+    }
+    let share = analysed.column(&format!("{name}.sync_share"))?;
+    let faded =
+        share.iter().filter(|share| **share < 0.5).count() as f64 / share.len().max(1) as f64;
+    if faded > FADED_SHARE {
+        warnings.push(format!(
+            "{run}: {name} could not trust the phase that it found {:.0} % of the time, and ran baseline meanwhile",
+            100.0 * faded
+        ));
+    }
+    Ok(())
 }
 
 fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyError> {

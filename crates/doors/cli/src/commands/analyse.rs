@@ -4,17 +4,21 @@ use clap::{Args, Subcommand, ValueEnum};
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
 use std::path::PathBuf;
+use wakemix::estimation::helix::Measurement;
+use wakemix::estimation::helix::tuning::Tuned;
 use wakemix::farm::case::PhaseEstimator;
-use wakemix::study::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase};
+use wakemix::study::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase, tune};
 
 /// What to analyse.
 #[derive(Subcommand)]
 pub(crate) enum AnalyseCommand {
     /// How well a turbine finds the phase of the helix that meets it, against the true wind of a run without it
     Phase(PhaseArguments),
+    /// Noise for the phase estimator from the record of a run and the true wind of another, after Algorithm 1 of van Vondelen et al. (2025)
+    Tune(PhaseArguments),
 }
 
-/// Arguments of `wakemix analyse phase`.
+/// Arguments of `wakemix analyse phase` and `wakemix analyse tune`.
 #[derive(Args)]
 pub(crate) struct PhaseArguments {
     /// Folder of a run, such as runs/synchronised-helix/offset-150
@@ -50,8 +54,8 @@ enum Choice {
 /// # Errors
 /// Records that cannot be read or do not hold what is asked for.
 pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
-    let AnalyseCommand::Phase(arguments) = command;
-    let answer = phase(&PhaseQuestion {
+    let (AnalyseCommand::Phase(arguments) | AnalyseCommand::Tune(arguments)) = command;
+    let question = PhaseQuestion {
         run: arguments.run.clone(),
         turbine: arguments.turbine.clone(),
         truth: arguments.truth.clone(),
@@ -60,7 +64,13 @@ pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
             Choice::Published => PhaseEstimator::Published,
         }),
         from: arguments.from,
-    })?;
+    };
+    if matches!(command, AnalyseCommand::Tune(_)) {
+        let tuned = tune(&question)?;
+        print!("{}", if arguments.json { tuned_json(&tuned)? } else { tuned_text(&tuned) });
+        return Ok(());
+    }
+    let answer = phase(&question)?;
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&json(&answer)).into_diagnostic()?);
     } else {
@@ -138,4 +148,42 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
         "tilt": axis(&answer.tilt),
         "yaw": axis(&answer.yaw),
     })
+}
+
+/// Standard deviation of a moment, with its unit.
+fn measurement(tuned: &Tuned) -> (f64, &'static str) {
+    match tuned.options.noise.measurement {
+        Measurement::Moment(deviation) => (deviation, "N m"),
+        Measurement::Share(share) => (share, "of the mean moment"),
+    }
+}
+
+fn tuned_text(tuned: &Tuned) -> String {
+    let noise = &tuned.options.noise;
+    let (deviation, unit) = measurement(tuned);
+    format!(
+        "R: standard deviation of a blade's moment {deviation:.4e} {unit}\n\
+         Q: amplitude {:.3e} (m/s)²/s, phase {:.3e} rad²/s, mean wind {:.3e} (m/s)²/s; scaled by {:.3}\n\
+         phase error {:.1}° on this record\n",
+        noise.amplitude,
+        noise.phase,
+        noise.mean_wind,
+        tuned.scale,
+        tuned.error.to_degrees(),
+    )
+}
+
+fn tuned_json(tuned: &Tuned) -> Result<String> {
+    let noise = &tuned.options.noise;
+    let (deviation, unit) = measurement(tuned);
+    let value = json!({
+        "measurement_deviation": deviation,
+        "measurement_unit": unit,
+        "amplitude_wandering_m2_s3": noise.amplitude,
+        "phase_wandering_rad2_s": noise.phase,
+        "mean_wind_wandering_m2_s3": noise.mean_wind,
+        "scale": tuned.scale,
+        "phase_error_deg": tuned.error.to_degrees(),
+    });
+    Ok(serde_json::to_string_pretty(&value).into_diagnostic()? + "\n")
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use surrogate::{GaussianProcess, Observations, Settings, Shape};
 
 /// Fewest offsets through which a curve is drawn (–).
-const FEWEST: usize = 4;
+const FEWEST: usize = 6;
 /// Points of a curve (–).
 const N_CURVE: usize = 121;
 /// Half width of a 95 % interval over the standard deviation (–).
