@@ -157,7 +157,7 @@ impl Bend {
 }
 
 /// Straight line through `rows` of span (m) and value at `span`.
-fn between(rows: impl Iterator<Item = (f64, f64)>, span: f64) -> f64 {
+pub(super) fn between(rows: impl Iterator<Item = (f64, f64)>, span: f64) -> f64 {
     let mut before: Option<(f64, f64)> = None;
     for (place, value) in rows {
         match before {
@@ -171,7 +171,7 @@ fn between(rows: impl Iterator<Item = (f64, f64)>, span: f64) -> f64 {
     before.map_or(0.0, |(_, value)| value)
 }
 
-fn mass_at(definition: &Definition, span: f64) -> f64 {
+pub(super) fn mass_at(definition: &Definition, span: f64) -> f64 {
     between(definition.blade_structure.sections.iter().map(|row| (row.span, row.mass)), span)
 }
 

@@ -19,6 +19,7 @@ mod rotor;
 mod trust;
 pub mod tuning;
 mod wave;
+mod weight;
 
 pub use calibration::{Calibration, calibrate};
 pub use estimate::{HelixEstimate, Status};

@@ -3,6 +3,7 @@
 use super::estimator::Setting;
 use super::flap::{Bend, Flap};
 use super::options::{self, Options};
+use super::weight::Weight;
 use basis::mbc::{to_blades, to_fixed_frame};
 use basis::{FixedFrame, Measurements, PerBlade, Sense};
 use serde::{Deserialize, Serialize};
@@ -30,6 +31,7 @@ const NOMINAL_WIND: f64 = 9.0;
 #[derive(Clone, Debug)]
 pub(super) struct Rotor {
     blades: BladeMoments,
+    weight: Weight,
     flap: Option<Flap>,
     /// Share of tilt and yaw of the induction, where sectors of air hold it (–).
     in_air: Option<f64>,
@@ -98,6 +100,7 @@ impl Rotor {
             pitch: PerBlade::splat(n_blades, 0.0),
         });
         Self {
+            weight: Weight::new(definition),
             flap: options.rotor.flexible.then(|| Flap::new(definition)),
             in_air: match options.rotor.wake {
                 options::Wake::InAir { share, .. } => Some(share),
@@ -215,7 +218,9 @@ impl Rotor {
         state: &State,
     ) -> PerBlade<f64> {
         let conditions = self.conditions(wind, posture);
-        bend.apply(&self.blades.moments(&conditions, self.met(state, memory)))
+        let weight = self.weight.moment(posture.rotor_speed);
+        let moments = self.blades.moments(&conditions, self.met(state, memory));
+        bend.apply(&moments.map(|moment| moment + weight))
     }
 
     /// What is expected in the wake as it is.
@@ -236,7 +241,8 @@ impl Rotor {
             }
             None => Bend::none(azimuth),
         };
-        Expected { moments: bend.apply(&moments), slopes, bend }
+        let weight = self.weight.moment(rotor_speed);
+        Expected { moments: bend.apply(&moments.map(|moment| moment + weight)), slopes, bend }
     }
 
     fn conditions(&self, wind: FixedFrame, posture: &Posture) -> Conditions {
