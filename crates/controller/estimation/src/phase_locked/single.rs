@@ -72,7 +72,8 @@ pub struct Estimate {
 /// // 3 + 2 sin(0.05 t) sampled ten times a second, looked for between 0.03 and 0.08 rad/s
 /// let interval = 0.1;
 /// let mut follower = PhaseLockedLoop::new(&Settings::between([0.03, 0.08]), interval)?;
-/// for step in 0..20_000 {
+/// // 60 periods: what is left of the first error fades with exp(−0.3 · 0.03 rad/s · t/√2)
+/// for step in 0..75_400 {
 ///     follower.update(interval, 3.0 + 2.0 * (0.05 * interval * f64::from(step)).sin());
 /// }
 /// let estimate = follower.estimate();
