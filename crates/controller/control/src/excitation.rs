@@ -27,6 +27,7 @@ pub use basis::Sense;
 pub use helix::Helix;
 pub use pulse::Pulse;
 
+use crate::meandering::Meandering;
 use crate::phase_sync::{PhaseSync, SyncState};
 use basis::{Measurements, PerBlade};
 use serde::{Deserialize, Serialize};
@@ -44,6 +45,8 @@ pub enum Excitation {
     Pulse(Pulse),
     /// Individual pitch that joins the helix that comes from upstream.
     PhaseSync(Box<PhaseSync>),
+    /// Individual pitch that amplifies or attenuates a slow oscillation of the turbine's own loads.
+    Meandering(Box<Meandering>),
 }
 
 /// Everything of an excitation that time changes.
@@ -54,6 +57,8 @@ pub enum ExcitationState {
     None,
     /// Of [`Excitation::PhaseSync`].
     PhaseSync(SyncState),
+    /// Of [`Excitation::Meandering`].
+    Meandering(Box<Meandering>),
 }
 
 impl Excitation {
@@ -62,6 +67,7 @@ impl Excitation {
         let silent = self.amplitude() == 0.0;
         let added = match self {
             Self::PhaseSync(sync) => sync.pitch(measurements),
+            Self::Meandering(meandering) => return meandering.add_to(pitch, measurements),
             _ if silent => return,
             Self::None => return,
             Self::Helix(helix) => helix.pitch(measurements.time, measurements.azimuth, pitch.len()),
@@ -75,27 +81,30 @@ impl Excitation {
         }
     }
 
-    /// Pitch amplitude (rad).
+    /// Pitch amplitude (rad); the largest allowed where it varies.
     pub fn amplitude(&self) -> f64 {
         match self {
             Self::None => 0.0,
             Self::Helix(helix) => helix.amplitude,
             Self::Pulse(pulse) => pulse.amplitude,
             Self::PhaseSync(sync) => sync.settings().amplitude,
+            Self::Meandering(meandering) => meandering.settings().maximum_amplitude,
         }
     }
 
-    /// Excitation rate ω_e in the fixed frame (rad/s); zero without an excitation.
+    /// Excitation rate ω_e in the fixed frame (rad/s), that believed in where it is estimated; zero without an excitation.
     pub fn rate(&self) -> f64 {
         match self {
             Self::None => 0.0,
             Self::Helix(helix) => helix.rate,
             Self::Pulse(pulse) => pulse.rate,
             Self::PhaseSync(sync) => sync.settings().rate,
+            Self::Meandering(meandering) => meandering.estimate().rate,
         }
     }
 
-    /// In words: "baseline", "helix ccw 4.0° St 0.25", "pulse 2.5° St 0.25", "synchronised ccw 4.0° at 150°".
+    /// In words: "baseline", "helix ccw 4.0° St 0.25", "pulse 2.5° St 0.25", "synchronised ccw 4.0° at 150°",
+    /// "meandering × 1.5".
     pub fn describe(&self) -> String {
         let words = |kind: &str, amplitude: f64, strouhal: f64| {
             format!("{kind} {:.1}° St {strouhal:.2}", amplitude.to_degrees())
@@ -107,6 +116,7 @@ impl Excitation {
             }
             Self::Pulse(pulse) => words("pulse", pulse.amplitude, pulse.strouhal),
             Self::PhaseSync(sync) => sync.describe(),
+            Self::Meandering(meandering) => meandering.describe(),
         }
     }
 
@@ -114,14 +124,19 @@ impl Excitation {
     pub fn state(&self) -> ExcitationState {
         match self {
             Self::PhaseSync(sync) => ExcitationState::PhaseSync(sync.state()),
+            Self::Meandering(meandering) => ExcitationState::Meandering(meandering.clone()),
             Self::None | Self::Helix(_) | Self::Pulse(_) => ExcitationState::None,
         }
     }
 
     /// Continues from `state`, which an excitation of the same settings gave; a state of another kind changes nothing.
     pub fn restore(&mut self, state: ExcitationState) {
-        if let (Self::PhaseSync(sync), ExcitationState::PhaseSync(state)) = (self, state) {
-            sync.restore(state);
+        match (self, state) {
+            (Self::PhaseSync(sync), ExcitationState::PhaseSync(state)) => sync.restore(state),
+            (Self::Meandering(meandering), ExcitationState::Meandering(state)) => {
+                *meandering = state;
+            }
+            _ => {}
         }
     }
 }

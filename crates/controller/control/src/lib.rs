@@ -6,12 +6,13 @@
 
 pub mod baseline;
 mod excitation;
-pub mod phase_sync;
 pub mod meandering;
+pub mod phase_sync;
 mod turbine_controller;
 
 pub use baseline::Baseline;
 pub use excitation::{Excitation, Helix, Pulse, Sense, excitation_rate};
+pub use meandering::Meandering;
 pub use phase_sync::PhaseSync;
 pub use turbine_controller::{ControllerState, TurbineController};
 

@@ -1,15 +1,20 @@
 //! From case to farm: turbines, controllers and air put together.
 
 use crate::air::Air;
+use crate::case::Meandering as MeanderingSettings;
 use crate::case::PhaseSync as PhaseSyncSettings;
 use crate::case::{Case, Control, Ground, PhaseEstimator, Run, Sides, Solver};
 use crate::plan::{Footprint, Plan};
 use crate::{Farm, Machine};
 use basis::angle::wrap_to_turn;
 use control::baseline::{Baseline, Constants};
+use control::meandering::{self, Decoupling, MeanderingError, TwoAxisSettings};
 use control::phase_sync::{self, SyncSettings};
-use control::{Excitation, Helix, PhaseSync, Pulse, TurbineController, excitation_rate};
+use control::{
+    Excitation, Helix, Meandering, PhaseSync, Pulse, TurbineController, excitation_rate,
+};
 use estimation::helix::{Calibration, Options, Setting, Wake};
+use estimation::phase_locked;
 use estimation::{EstimationError, HelixEstimator};
 use flow::lattice;
 use std::sync::Arc;
@@ -28,6 +33,12 @@ pub enum AssemblyError {
     /// The phase of a helix cannot be sought as asked.
     #[error("the phase of the helix cannot be estimated")]
     Estimation(#[from] EstimationError),
+    /// Meandering cannot be followed as asked.
+    #[error("the meandering cannot be followed")]
+    Meandering(#[from] MeanderingError),
+    /// Nobody found how pitch acts on the loads.
+    #[error("how pitch acts on the loads was neither given nor found before")]
+    NotDecoupled,
     /// The system has no more threads to give.
     #[error("no threads for the turbines")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -120,7 +131,8 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
 /// taken with the case's wind speed and the first turbine's diameter.
 ///
 /// # Errors
-/// [`AssemblyError::Estimation`] when the phase of a helix cannot be sought as asked.
+/// [`AssemblyError::Estimation`] when the phase of a helix cannot be sought as asked, [`AssemblyError::Meandering`] and
+/// [`AssemblyError::NotDecoupled`] when meandering cannot be followed.
 pub fn controller(
     control: &Control,
     model: &Model,
@@ -162,8 +174,41 @@ pub fn controller(
             };
             Excitation::PhaseSync(Box::new(PhaseSync::new(settings, estimator)))
         }
+        Control::Meandering(asked) => {
+            let settings = meandering_settings(asked, case, plan)?;
+            Excitation::Meandering(Box::new(Meandering::new(settings, plan.interval)?))
+        }
     };
     Ok(TurbineController::new(Baseline::new(model.constants.clone()), excitation))
+}
+
+/// What meandering control is told.
+fn meandering_settings(
+    asked: &MeanderingSettings,
+    case: &Case,
+    plan: &Plan,
+) -> Result<meandering::Settings, AssemblyError> {
+    let rate = |strouhal| excitation_rate(strouhal, case.wind.speed, plan.diameter);
+    let signal = phase_locked::Settings::between(asked.strouhal.map(rate));
+    let watches = asked.amplitude == 0.0;
+    let decoupling = match asked.decoupling {
+        Some(decoupling) => decoupling,
+        // Nothing is pitched.
+        None if watches => Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: 1.0 },
+        None => return Err(AssemblyError::NotDecoupled),
+    };
+    Ok(meandering::Settings {
+        follower: TwoAxisSettings { signal, sense: asked.sense, leader: asked.leader },
+        followed: asked.followed,
+        factor: asked.factor,
+        reference: asked.reference,
+        decoupling,
+        bandwidth: asked.bandwidth,
+        proportional: 0.0,
+        maximum_amplitude: asked.amplitude,
+        maximum_offset: if watches { 0.0 } else { asked.offset },
+        start: asked.start,
+    })
 }
 
 /// What the phase estimator of `sync` is told.

@@ -1,6 +1,7 @@
 //! One study as plain data: what the case file says, in SI units.
 
 pub use control::Sense;
+pub use control::meandering::{Decoupling, Followed, Leader, Reference};
 
 use serde::{Deserialize, Serialize};
 
@@ -192,6 +193,8 @@ pub enum Control {
     Pulse(Pulse),
     /// The helix in step with the one that comes from upstream.
     PhaseSync(PhaseSync),
+    /// Meandering of the wake that meets it, amplified or attenuated.
+    Meandering(Meandering),
     /// The turbine is not there in this run.
     Absent,
 }
@@ -254,6 +257,33 @@ pub enum PhaseEstimator {
     Robust,
     /// The extended Kalman filter as it was published.
     Published,
+}
+
+/// Settings of a turbine that amplifies or attenuates the meandering of the wake that meets it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Meandering {
+    /// Amplitude of the loads asked for over that of the baseline, α (–).
+    pub factor: f64,
+    /// Largest pitch amplitude on either axis (rad); 0 is the baseline that watches, whatever `offset` says.
+    pub amplitude: f64,
+    /// Largest constant pitch on either axis, to bring the loads' means to zero (rad).
+    pub offset: f64,
+    /// Lowest and highest Strouhal number f D / U that is followed (–).
+    pub strouhal: [f64; 2],
+    /// Way the loads circle.
+    pub sense: Sense,
+    /// Which moment the oscillator follows.
+    pub leader: Leader,
+    /// Loads as they are, or the wake's own part of them.
+    pub followed: Followed,
+    /// Where the baseline's amplitudes come from.
+    pub reference: Reference,
+    /// Integral action: amplitude added per time and amplitude missing (1/s).
+    pub bandwidth: f64,
+    /// How pitch acts on the loads; found before the runs when absent.
+    pub decoupling: Option<Decoupling>,
+    /// Time at which it starts (s).
+    pub start: f64,
 }
 
 /// What is kept of a run, beside series and summary.

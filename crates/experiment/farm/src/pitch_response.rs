@@ -1,13 +1,16 @@
-//! A turbine alone in a steady wind that pitches a helix: the record on which a phase estimator is calibrated.
+//! A turbine alone in a steady wind that pitches a helix: the record on which a phase estimator is calibrated, and which
+//! tells meandering control how pitch acts on the loads.
 
 use crate::air::Air;
 use crate::assemble::{self, AssemblyError, Model};
-use crate::case::{Case, Control, Helix, PhaseEstimator, PhaseSync};
+use crate::case::{Case, Control, Decoupling, Helix, Meandering, PhaseEstimator, PhaseSync, Sense};
 use crate::farm::Recorder;
 use crate::plan::Plan;
 use crate::{Farm, Machine};
+use basis::mbc::to_fixed_frame;
 use basis::{Commands, Measurements, Vector3};
 use control::excitation_rate;
+use control::meandering::Answer;
 use estimation::EstimationError;
 use estimation::helix::{Calibration, calibrate};
 use flow::FlowError;
@@ -26,6 +29,8 @@ const TUNNEL: [f64; 3] = [3.0, 3.0, 5.0];
 const SETTLING: f64 = 8.0;
 /// Excitation periods for the filter to settle, and counted after them (–).
 const PERIODS: [f64; 2] = [2.0, 2.0];
+/// Amplitude of the helices that tell how pitch acts on the loads (rad): a degree.
+pub const PROBE: f64 = std::f64::consts::PI / 180.0;
 
 /// Why no calibration could be made.
 #[derive(Debug, Error)]
@@ -59,20 +64,98 @@ pub fn calibration(
     sync: &PhaseSync,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Calibration, CalibrationError> {
+    let helix = Helix {
+        sense: sync.sense,
+        amplitude: sync.amplitude,
+        strouhal: sync.strouhal,
+        phase: 0.0,
+        azimuth_offset: sync.azimuth_offset,
+        start: 0.0,
+    };
+    let record = pitching(case, plan, model, index, helix, progress)?;
+    let setting = assemble::estimator_setting(sync, case, plan);
+    let options = assemble::estimator_options(PhaseEstimator::Robust, case.flow.solver);
+    let settling = PERIODS[0] * TAU / setting.rate;
+    Ok(calibrate(&model.definition, &setting, options, &record, settling)?)
+}
+
+/// How pitch acts on tilt and yaw moment of turbine number `index` of `case` in the middle of what `asked` follows.
+///
+/// The turbine stands as in [`calibration`] and pitches a helix of [`PROBE`], first counter-clockwise, then clockwise; what
+/// either takes off the moments is told by [`Decoupling::from_senses`]; `progress` is told the share done.
+///
+/// # Errors
+/// [`CalibrationError`].
+pub fn decoupling(
+    case: &Case,
+    plan: &Plan,
+    model: &Model,
+    index: usize,
+    asked: &Meandering,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Decoupling, CalibrationError> {
+    let strouhal = 0.5 * (asked.strouhal[0] + asked.strouhal[1]);
+    let rate = excitation_rate(strouhal, case.wind.speed, plan.diameter);
+    let mut answer = |sense, done: f64| {
+        let helix = Helix {
+            sense,
+            amplitude: PROBE,
+            strouhal,
+            phase: 0.0,
+            azimuth_offset: 0.0,
+            start: 0.0,
+        };
+        let mut told = |share: f64| progress(done + 0.5 * share);
+        let record = pitching(case, plan, model, index, helix, &mut told)?;
+        let n_counted = (PERIODS[1] * TAU / rate / plan.interval).round() as usize;
+        let counted = &record[record.len().saturating_sub(n_counted)..];
+        Ok::<_, CalibrationError>(answer_to(counted, sense, rate))
+    };
+    let counter_clockwise = answer(Sense::CounterClockwise, 0.0)?;
+    let clockwise = answer(Sense::Clockwise, 0.5)?;
+    Ok(Decoupling::from_senses(rate, counter_clockwise, clockwise))
+}
+
+/// What a helix of [`PROBE`] at `rate` (rad/s) takes off the moments in `record`, whole periods of it in a steady wind: both
+/// axes correlated with their command and with the same a quarter period earlier.
+fn answer_to(record: &[Measurements], sense: Sense, rate: f64) -> Answer {
+    let moments = |of: &Measurements| to_fixed_frame(of.azimuth, &of.flap_moments);
+    let n = record.len().max(1) as f64;
+    let mean = record
+        .iter()
+        .map(moments)
+        .fold([0.0; 2], |[tilt, yaw], moments| [tilt + moments.tilt / n, yaw + moments.yaw / n]);
+    let (mut with, mut earlier) = (0.0, 0.0);
+    for measurements in record {
+        let moments = moments(measurements);
+        let angle = rate * measurements.time;
+        let lost = [mean[0] - moments.tilt, mean[1] - moments.yaw];
+        for (lost, angle) in lost.into_iter().zip([angle, angle + sense.yaw_lead()]) {
+            let (sine, cosine) = angle.sin_cos();
+            with += lost * sine / n;
+            earlier += lost * cosine / n;
+        }
+    }
+    Answer { gain: with.hypot(earlier) / PROBE, lead: earlier.atan2(with) }
+}
+
+/// What a turbine of `model` measures, alone in a steady wind as turbine number `index` of `case`, while it pitches `helix`:
+/// [`PERIODS`] of it, after the near wake has settled.
+fn pitching(
+    case: &Case,
+    plan: &Plan,
+    model: &Model,
+    index: usize,
+    helix: Helix,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Vec<Measurements>, CalibrationError> {
     let diameter = model.definition.rotor_diameter();
-    let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
+    let rate = excitation_rate(helix.strouhal, case.wind.speed, plan.diameter);
     let mut alone = case.clone();
     alone.wind.speed = WAKE_SPEED * case.wind.speed;
     // The same rate in the slower wind, and its diameters are this rotor's.
     let strouhal = rate * plan.diameter / (TAU * alone.wind.speed);
-    let helix = Control::Helix(Helix {
-        sense: sync.sense,
-        amplitude: sync.amplitude,
-        strouhal,
-        phase: 0.0,
-        azimuth_offset: sync.azimuth_offset,
-        start: 0.0,
-    });
+    let helix = Control::Helix(Helix { strouhal, ..helix });
     let settings = assemble::turbine_settings(&alone, plan, model, alone.turbines[index].flexible);
     let foot = Vector3::new(0.0, 0.0, -model.definition.rotor.hub_height);
     let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)
@@ -92,10 +175,7 @@ pub fn calibration(
         farm.advance(&mut record)?;
         progress((step + 1) as f64 / (n_settling + n_counted) as f64);
     }
-    let setting = assemble::estimator_setting(sync, case, plan);
-    let options = assemble::estimator_options(PhaseEstimator::Robust, case.flow.solver);
-    let settling = PERIODS[0] * period;
-    Ok(calibrate(&model.definition, &setting, options, &record.measurements, settling)?)
+    Ok(record.measurements)
 }
 
 /// Steady wind around the origin.

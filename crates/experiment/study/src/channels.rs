@@ -1,7 +1,7 @@
 //! The channels of a run's series, one row a control instant.
 
 use basis::{Commands, FixedFrame, Measurements, Vector3};
-use control::{Excitation, PhaseSync};
+use control::{Excitation, Meandering, PhaseSync};
 use farm::Machine;
 use farm::farm::Recorder;
 use turbine::Turbine;
@@ -44,10 +44,45 @@ const ESTIMATES: [&str; 9] = [
     "sync_share",
 ];
 
+/// What a turbine that follows meandering believes and asks for, behind its measurements.
+const MEANDERING: [&str; 14] = [
+    "meandering_rate_rad_s",
+    "meandering_phase_rad",
+    "meandering_tilt_amplitude_nm",
+    "meandering_yaw_amplitude_nm",
+    "meandering_tilt_phase_rad",
+    "meandering_yaw_phase_rad",
+    "meandering_tilt_offset_nm",
+    "meandering_yaw_offset_nm",
+    "meandering_tilt_reference_nm",
+    "meandering_yaw_reference_nm",
+    "meandering_lock",
+    "meandering_share",
+    "meandering_tilt_pitch_rad",
+    "meandering_yaw_pitch_rad",
+];
+
+/// What the controller of a machine believes.
+enum Belief<'a> {
+    /// Of a helix from upstream.
+    Helix(&'a PhaseSync),
+    /// Of its loads' slow oscillation.
+    Meandering(&'a Meandering),
+}
+
+impl Belief<'_> {
+    fn names(&self) -> &'static [&'static str] {
+        match self {
+            Self::Helix(_) => &ESTIMATES,
+            Self::Meandering(_) => &MEANDERING,
+        }
+    }
+}
+
 /// Gathers one row of the series from the turbines' signals.
 ///
 /// A row is: time, wind at the hub-height probe upstream of the first turbine, then for each
-/// turbine what it measured, what it was told, its loads, and what it believes where it seeks a helix; then the wind along
+/// turbine what it measured, what it was told, its loads, and what it believes where it seeks a helix or meandering; then the wind along
 /// radial lines at the places of turbines that are not there.
 pub(crate) struct Row {
     names: Vec<String>,
@@ -55,7 +90,7 @@ pub(crate) struct Row {
     offsets: Vec<usize>,
     /// Of each turbine: where its loads begin, and places among its channels with the factor to the unit in the name.
     loads: Vec<(usize, Vec<(usize, f64)>)>,
-    /// Of each turbine that seeks a helix: where its beliefs begin.
+    /// Of each turbine that seeks a helix or meandering: where its beliefs begin.
     estimates: Vec<Option<usize>>,
     /// Where the winds along lines begin.
     lines: usize,
@@ -106,9 +141,10 @@ impl Row {
                 format!("{name}.{}_{}", channel.name, channel.unit)
             }));
             loads.push((first, kept.iter().map(|&i| (i, channels[i].scale)).collect()));
-            estimates.push(estimate(machine).map(|_| names.len()));
-            if estimate(machine).is_some() {
-                names.extend(ESTIMATES.iter().map(|channel| format!("{name}.{channel}")));
+            let belief = belief(machine);
+            estimates.push(belief.as_ref().map(|_| names.len()));
+            if let Some(belief) = belief {
+                names.extend(belief.names().iter().map(|channel| format!("{name}.{channel}")));
             }
         }
         let first_line = names.len();
@@ -133,7 +169,15 @@ impl Row {
 
     /// Takes in what `machine` number `index` believes after its last decision.
     pub(crate) fn beliefs(&mut self, index: usize, machine: &Machine) {
-        let (Some(first), Some(sync)) = (self.estimates[index], estimate(machine)) else { return };
+        let Some(first) = self.estimates[index] else { return };
+        match belief(machine) {
+            Some(Belief::Helix(sync)) => self.helix(first, sync),
+            Some(Belief::Meandering(meandering)) => self.meandering(first, meandering),
+            None => {}
+        }
+    }
+
+    fn helix(&mut self, first: usize, sync: &PhaseSync) {
         let Some(belief) = sync.estimate() else { return };
         self.values[first..first + ESTIMATES.len()].copy_from_slice(&[
             belief.mean_wind,
@@ -145,6 +189,29 @@ impl Row {
             belief.yaw.phase,
             belief.trust.overall(),
             sync.share(),
+        ]);
+    }
+
+    fn meandering(&mut self, first: usize, meandering: &Meandering) {
+        let belief = meandering.estimate();
+        // Zero while it is not known yet.
+        let [tilt_reference, yaw_reference] = meandering.baseline().unwrap_or_default();
+        let commands = meandering.commands();
+        self.values[first..first + MEANDERING.len()].copy_from_slice(&[
+            belief.rate,
+            belief.phase,
+            belief.tilt.amplitude,
+            belief.yaw.amplitude,
+            belief.tilt.phase,
+            belief.yaw.phase,
+            belief.tilt.offset,
+            belief.yaw.offset,
+            tilt_reference,
+            yaw_reference,
+            f64::from(u8::from(belief.locked)),
+            meandering.authority(),
+            commands.tilt,
+            commands.yaw,
         ]);
     }
 
@@ -170,11 +237,12 @@ impl Row {
     }
 }
 
-/// What seeks a helix on `machine`.
-fn estimate(machine: &Machine) -> Option<&PhaseSync> {
+/// What the controller of `machine` believes, if it seeks anything.
+fn belief(machine: &Machine) -> Option<Belief<'_>> {
     match &machine.controller.excitation {
-        Excitation::PhaseSync(sync) => Some(sync),
-        _ => None,
+        Excitation::PhaseSync(sync) => Some(Belief::Helix(sync)),
+        Excitation::Meandering(meandering) => Some(Belief::Meandering(meandering)),
+        Excitation::None | Excitation::Helix(_) | Excitation::Pulse(_) => None,
     }
 }
 

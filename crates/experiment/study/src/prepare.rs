@@ -4,8 +4,8 @@ use crate::StudyError;
 use crate::watcher::{Estimate, Watcher};
 use basis::angle::wrap_to_turn;
 use farm::assemble::{Calibrated, Model, key};
-use farm::case::{Case, Control, PhaseEstimator, Solver};
-use farm::pitch_response::calibration;
+use farm::case::{Case, Control, Decoupling, Meandering, PhaseEstimator, Solver};
+use farm::pitch_response::{calibration, decoupling};
 use farm::self_check::{Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -222,7 +222,8 @@ impl Setup {
         Ok(slowest)
     }
 
-    /// Calibrates the phase estimator of every turbine that joins a helix in one of `runs`.
+    /// Calibrates the phase estimator of every turbine that joins a helix in one of `runs`, and finds how pitch acts on the
+    /// loads of every one that acts on meandering and is not told.
     ///
     /// # Errors
     /// [`StudyError::Calibration`] when it cannot be made.
@@ -247,6 +248,44 @@ impl Setup {
                 watcher.calibrated(name, &found);
                 let sync = key(sync);
                 self.calibrations.push(Calibrated { turbine: index, sync, calibration: found });
+            }
+        }
+        self.decouple(runs, watcher)
+    }
+
+    /// Finds how pitch acts on the loads where meandering control needs it, once for turbines that are alike.
+    fn decouple(&mut self, runs: &[usize], watcher: &mut dyn Watcher) -> Result<(), StudyError> {
+        let mut known: Vec<(usize, [f64; 2], Decoupling)> = Vec::new();
+        for &run in runs {
+            for index in 0..self.case.turbines.len() {
+                let Control::Meandering(asked) = self.case.runs[run].control[index] else {
+                    continue;
+                };
+                if asked.decoupling.is_some() || asked.amplitude == 0.0 {
+                    continue;
+                }
+                let turbines = &self.case.turbines;
+                let alike = |other: usize| {
+                    turbines[other].model == turbines[index].model
+                        && turbines[other].flexible == turbines[index].flexible
+                };
+                let before = known.iter().find(|known| alike(known.0) && known.1 == asked.strouhal);
+                let found = match before {
+                    Some(&(_, _, found)) => found,
+                    None => {
+                        let name = &turbines[index].name;
+                        let what = format!("probing how pitch acts on the loads of {name}");
+                        let mut told = |share| watcher.preparing(&what, share);
+                        let model = &self.models[index];
+                        let found =
+                            decoupling(&self.case, &self.plan, model, index, &asked, &mut told)?;
+                        watcher.decoupled(name, &found);
+                        known.push((index, asked.strouhal, found));
+                        found
+                    }
+                };
+                self.case.runs[run].control[index] =
+                    Control::Meandering(Meandering { decoupling: Some(found), ..asked });
             }
         }
         Ok(())
@@ -368,6 +407,8 @@ fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
                     }
                     sync.strouhal
                 }
+                // The slowest that it may follow.
+                Control::Meandering(meandering) => meandering.strouhal[0],
                 Control::Baseline | Control::Absent => continue,
             };
             let period = plan.diameter / (strouhal * case.wind.speed);

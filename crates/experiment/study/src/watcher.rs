@@ -2,6 +2,7 @@
 
 use basis::records::Summary;
 use estimation::helix::Calibration;
+use farm::case::Decoupling;
 use farm::self_check::SelfCheck;
 
 /// What a study will cost, known before it starts.
@@ -68,6 +69,8 @@ pub trait Watcher {
     fn checked(&mut self, _check: &SelfCheck) {}
     /// The phase estimator on the turbine called `turbine` was calibrated.
     fn calibrated(&mut self, _turbine: &str, _calibration: &Calibration) {}
+    /// It was found how pitch acts on the loads of the turbine called `turbine`.
+    fn decoupled(&mut self, _turbine: &str, _decoupling: &Decoupling) {}
     /// A run moved on.
     fn advanced(&mut self, _progress: &Progress) {}
     /// A run is complete.

@@ -20,7 +20,7 @@ mod decoupling;
 mod reference;
 
 pub use decoupling::{Answer, Decoupling};
-pub use estimation::phase_locked::{PhaseLockedError, TwoAxisEstimate, TwoAxisSettings};
+pub use estimation::phase_locked::{Leader, PhaseLockedError, TwoAxisEstimate, TwoAxisSettings};
 pub use reference::Reference;
 
 use axis::AxisLoop;
@@ -61,7 +61,7 @@ pub struct Settings {
     pub bandwidth: f64,
     /// Proportional action: amplitude added per amplitude missing (–).
     pub proportional: f64,
-    /// Largest pitch amplitude on either axis (rad).
+    /// Largest pitch amplitude on either axis (rad); 0, with no constant pitch either, only watches.
     pub maximum_amplitude: f64,
     /// Largest constant pitch on either axis to bring offsets to zero (rad); 0 leaves offsets alone.
     pub maximum_offset: f64,
@@ -143,7 +143,9 @@ impl Meandering {
         self.learn(measurements, &estimate);
         let Settings { reference, factor, start, .. } = self.settings;
         let amplitudes = self.baseline.amplitudes(estimate.rate, reference);
-        let acts = estimate.locked && measurements.time >= start && amplitudes.is_some();
+        let watches = self.settings.only_watches();
+        let acts =
+            estimate.locked && !watches && measurements.time >= start && amplitudes.is_some();
         let slew = interval * estimate.rate / TAU;
         self.authority = (self.authority + if acts { slew } else { -slew }).clamp(0.0, 1.0);
         if let Some([tilt, yaw]) = amplitudes
@@ -259,6 +261,11 @@ impl Meandering {
         self.commands
     }
 
+    /// Share of the command that is given (–), up to one while the loop is locked.
+    pub fn authority(&self) -> f64 {
+        self.authority
+    }
+
     /// What is asked for.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -266,11 +273,19 @@ impl Meandering {
 
     /// In words: "meandering × 0.75 cw".
     pub fn describe(&self) -> String {
+        if self.settings.only_watches() {
+            return "baseline, watching for meandering".to_owned();
+        }
         format!("meandering × {} {}", self.settings.factor, self.settings.follower.sense)
     }
 }
 
 impl Settings {
+    /// Whether no pitch is allowed, so that the loads are followed and nothing else.
+    pub fn only_watches(&self) -> bool {
+        self.maximum_amplitude == 0.0 && self.maximum_offset == 0.0
+    }
+
     fn check(&self) -> Result<(), MeanderingError> {
         let check = |name, value: f64, good: bool, expected| {
             if good && value.is_finite() {
@@ -288,7 +303,7 @@ impl Settings {
         check("delay of the load behind pitch (s)", self.decoupling.delay, true, "a number")?;
         positive("bandwidth of the integral action (1/s)", self.bandwidth)?;
         not_negative("proportional action (–)", self.proportional)?;
-        positive("largest pitch amplitude (rad)", self.maximum_amplitude)?;
+        not_negative("largest pitch amplitude (rad)", self.maximum_amplitude)?;
         not_negative("largest constant pitch (rad)", self.maximum_offset)?;
         check("start (s)", self.start, true, "a number")?;
         match self.reference {

@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use wakemix::basis::records::Summary;
 use wakemix::estimation::helix::Calibration;
+use wakemix::farm::case::Decoupling;
 use wakemix::farm::self_check::{SelfCheck, TOLERANCE};
 use wakemix::study::{self, Estimate, Options, Outcome, Progress, StudyError, Watcher};
 
@@ -184,6 +185,15 @@ impl Watcher for Screen {
             calibration.azimuth_offset.to_degrees(),
             calibration.before,
             calibration.after,
+        ));
+    }
+
+    fn decoupled(&mut self, turbine: &str, found: &Decoupling) {
+        self.say(&format!(
+            "probed: {turbine} loses {:.2} MN m per degree of cyclic pitch, {:+.1}° of azimuth and {:.2} s after it",
+            1e-6 * found.gain * 1f64.to_radians(),
+            found.azimuth_offset.to_degrees(),
+            found.delay,
         ));
     }
 

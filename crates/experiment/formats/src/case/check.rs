@@ -3,6 +3,7 @@
 use super::document::{Entry, Node, Sources, Value};
 use super::error::{Problem, ProblemKind};
 use super::keys::{self, CONTROLS};
+use super::meandering::meandering_of;
 use super::section::{Findings, Section, list};
 use super::spelling::nearest;
 use super::table::Table;
@@ -300,6 +301,7 @@ fn control_of(
             start: start(),
         }),
         "phase-sync" => Control::PhaseSync(phase_sync_of(&section, turbine, upstream, start())),
+        "meandering" => Control::Meandering(meandering_of(&section, start())),
         "absent" => Control::Absent,
         _ => Control::Baseline,
     }
@@ -362,7 +364,7 @@ fn phase_sync_of(
     }
 }
 
-fn sense_of(section: &Section) -> Sense {
+pub(super) fn sense_of(section: &Section) -> Sense {
     if section.choice("sense") == "cw" { Sense::Clockwise } else { Sense::CounterClockwise }
 }
 

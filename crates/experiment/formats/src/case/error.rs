@@ -230,6 +230,24 @@ pub enum ProblemKind {
         /// The turbine.
         turbine: String,
     },
+    /// Strouhal numbers that are no range.
+    #[error("`{key}` = {low} is not below `strouhal_high` = {high}")]
+    NoRange {
+        /// The lower end's key, dotted.
+        key: String,
+        /// Lower end (–).
+        low: f64,
+        /// Upper end (–).
+        high: f64,
+    },
+    /// A key that another key's value leaves without use.
+    #[error("`{key}` is of no use here: {why}")]
+    NoUse {
+        /// The key, dotted.
+        key: String,
+        /// Why.
+        why: String,
+    },
     /// A run compared with itself.
     #[error("run `{name}` is compared with itself")]
     ComparedWithItself {
@@ -277,6 +295,8 @@ impl ProblemKind {
             Self::NothingAnalysed { .. } => "too short",
             Self::StartsTooLate { .. } => "too late",
             Self::NothingToJoin { .. } => "joins what?",
+            Self::NoRange { .. } => "not below the other",
+            Self::NoUse { .. } => "of no use",
             Self::ComparedWithItself { .. } => "itself",
             Self::ComparedWithLater { .. } => "comes later",
             Self::NobodyThere { .. } => "nobody there",

@@ -242,11 +242,13 @@ pub(super) static CONTROLS: &[(&str, &Table)] = &[
     ("helix", &HELIX),
     ("pulse", &PULSE),
     ("phase-sync", &PHASE_SYNC),
+    ("meandering", &MEANDERING),
     ("absent", &ABSENT),
 ];
 
 /// Names of [`CONTROLS`].
-pub(super) const CONTROL_KINDS: &[&str] = &["baseline", "helix", "pulse", "phase-sync", "absent"];
+pub(super) const CONTROL_KINDS: &[&str] =
+    &["baseline", "helix", "pulse", "phase-sync", "meandering", "absent"];
 
 const KIND: Key =
     key("kind", Kind::Choice(CONTROL_KINDS), "", Required, "What runs on the turbine.");
@@ -381,6 +383,128 @@ pub(super) static PHASE_SYNC: Table = Table {
             "",
             Value("\"baseline\""),
             "What it does where the estimate cannot be trusted. `baseline`: it fades out, and comes back with the helix. `none`: it goes on.",
+        ),
+        START,
+    ],
+};
+
+/// `kind = "meandering"`.
+pub(super) static MEANDERING: Table = Table {
+    heading: "control.T2 = { kind = \"meandering\", … }",
+    about: "Cyclic pitch in phase with the meandering of the wake that comes from upstream, found in the tilt and yaw moments of the blades by a phase-locked loop (`docs/phase-locked-loops.md`): it amplifies their slow oscillation, or attenuates it.",
+    keys: &[
+        KIND,
+        key(
+            "factor",
+            from(0.0, 10.0),
+            "–",
+            Required,
+            "Amplitude of the oscillation asked for over that of the baseline, α: above 1 amplifies and mixes the wake, below 1 attenuates and spares the turbine.",
+        ),
+        key(
+            "amplitude_deg",
+            from(0.0, 10.0),
+            "deg",
+            Required,
+            "Largest cyclic pitch on either axis; 0 is the baseline, bit for bit, with the estimate in the series.",
+        ),
+        key(
+            "strouhal_low",
+            above(0.0, 2.0),
+            "–",
+            Value("0.15"),
+            "Lowest Strouhal number f D / U that is followed, with `wind.speed` and the diameter of the first turbine.",
+        ),
+        key(
+            "strouhal_high",
+            above(0.0, 2.0),
+            "–",
+            Value("0.3"),
+            "Highest Strouhal number that is followed; the loop starts at the middle.",
+        ),
+        key(
+            "sense",
+            Kind::Choice(&["cw", "ccw"]),
+            "",
+            Value("\"cw\""),
+            "Way the load circles, looking downwind: the yaw moment a quarter period after the tilt moment (`cw`) or before it (`ccw`).",
+        ),
+        key(
+            "leader",
+            Kind::Choice(&["both", "tilt", "yaw"]),
+            "",
+            Value("\"both\""),
+            "Moment that the loop is locked to. `both` takes them for one oscillation of the `sense` given; `yaw` is for a wake that meanders sideways.",
+        ),
+        key(
+            "followed",
+            Kind::Choice(&["wake", "load"]),
+            "",
+            Value("\"wake\""),
+            "`wake`: the loads less what the pitch adds to them, each axis with its own phase. `load`: the loads as they are, as published; below a factor of about 0.5 the loop answers to its own pitch.",
+        ),
+        key(
+            "reference",
+            Kind::Choice(&["observed", "learned", "given"]),
+            "",
+            Value("\"observed\""),
+            "Where the baseline's amplitudes come from. `observed`: from the loads less what the pitch adds, all the time. `learned`: from the loads before `start`. `given`: from a baseline run, as `reference_tilt_mnm` and `reference_yaw_mnm`.",
+        ),
+        key(
+            "learning_time",
+            above(0.0, 1e6),
+            "s",
+            Otherwise("300 with `reference = \"learned\"`"),
+            "How long the baseline's amplitudes are learned, locked, before it acts.",
+        ),
+        key(
+            "reference_tilt_mnm",
+            above(0.0, 1e4),
+            "MN m",
+            Otherwise("none; needed with `reference = \"given\"`"),
+            "Amplitude of the tilt moment's oscillation in the baseline.",
+        ),
+        key(
+            "reference_yaw_mnm",
+            above(0.0, 1e4),
+            "MN m",
+            Otherwise("none; needed with `reference = \"given\"`"),
+            "Amplitude of the yaw moment's oscillation in the baseline.",
+        ),
+        key(
+            "integral_gain",
+            above(0.0, 1.0),
+            "1/s",
+            Value("0.01"),
+            "Amplitude added per second and amplitude missing.",
+        ),
+        key(
+            "constant_pitch_deg",
+            from(0.0, 10.0),
+            "deg",
+            Value("0"),
+            "Largest constant pitch on either axis, to bring the means of tilt and yaw moment to zero; 0 leaves them.",
+        ),
+        key(
+            "azimuth_offset_deg",
+            PHASE_RANGE,
+            "deg",
+            Otherwise("found before the runs, by a helix of a degree in either sense"),
+            "Azimuth offset of the inverse multi-blade transformation, with which tilt pitch answers in the tilt moment alone; with `delay` and `moment_per_degree_mnm`.",
+        ),
+        key(
+            "delay",
+            from(-100.0, 100.0),
+            "s",
+            Otherwise("found with `azimuth_offset_deg`"),
+            "Time by which the moments lag behind cyclic pitch.",
+        ),
+        key(
+            "moment_per_degree_mnm",
+            above(0.0, 1e4),
+            "MN m",
+            Otherwise("found with `azimuth_offset_deg`"),
+            "Tilt or yaw moment lost per degree of cyclic pitch.",
         ),
         START,
     ],

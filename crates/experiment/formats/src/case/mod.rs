@@ -7,6 +7,7 @@ mod check;
 mod document;
 mod error;
 mod keys;
+mod meandering;
 mod reference;
 mod section;
 mod spelling;

@@ -1,7 +1,7 @@
 //! What the case file's users see: good files read, bad ones told where and how to mend.
 
 use super::*;
-use farm::case::{Control, Ground, Sense, Sides};
+use farm::case::{Control, Followed, Ground, Leader, Meandering, Reference, Sense, Sides};
 use proptest::prelude::*;
 use std::fs;
 
@@ -58,6 +58,40 @@ fn a_small_case_gets_the_documented_defaults() {
     assert_eq!(helix.sense, Sense::CounterClockwise);
     assert_eq!(helix.amplitude, 4f64.to_radians());
     assert_eq!(helix.start, 0.0);
+}
+
+/// The meandering control of a small case that says `keys` beside factor and amplitude, after it was written and read.
+fn meandering(keys: &str) -> Meandering {
+    let control = format!("kind = \"meandering\", factor = 1.5, amplitude_deg = 4{keys}");
+    let case = small(&[&format!("run.helix.control.T1={{ {control} }}")]);
+    let case = case.unwrap_or_else(|error| panic!("{}", error.to_lines()));
+    assert_eq!(parse("again", &write(&case), &[]).unwrap(), case, "{keys}");
+    let Control::Meandering(meandering) = case.runs[1].control[0] else { panic!("no meandering") };
+    meandering
+}
+
+#[test]
+fn meandering_needs_little_to_be_said() {
+    let usual = meandering("");
+    assert_eq!((usual.factor, usual.amplitude, usual.offset), (1.5, 4f64.to_radians(), 0.0));
+    assert_eq!(usual.strouhal, [0.15, 0.3]);
+    assert_eq!((usual.sense, usual.leader), (Sense::Clockwise, Leader::Both));
+    assert_eq!((usual.followed, usual.reference), (Followed::Wake, Reference::Observed));
+    assert_eq!((usual.bandwidth, usual.decoupling, usual.start), (0.01, None, 0.0));
+
+    let learned = meandering(", reference = \"learned\", followed = \"load\", leader = \"yaw\"");
+    assert_eq!(learned.reference, Reference::Learned { duration: 300.0 });
+    assert_eq!((learned.followed, learned.leader), (Followed::Load, Leader::Yaw));
+
+    let given = meandering(
+        ", reference = \"given\", reference_tilt_mnm = 7.77, reference_yaw_mnm = 10.87, \
+         azimuth_offset_deg = 38.4, delay = 0.99, moment_per_degree_mnm = 4.2, sense = \"ccw\"",
+    );
+    assert_eq!(given.reference, Reference::Given { tilt: 7.77e6, yaw: 10.87e6 });
+    let decoupling = given.decoupling.unwrap();
+    assert_eq!((decoupling.azimuth_offset, decoupling.delay), (38.4f64.to_radians(), 0.99));
+    assert!((decoupling.gain * 1f64.to_radians() - 4.2e6).abs() < 1e-3);
+    assert_eq!(given.sense, Sense::CounterClockwise);
 }
 
 #[test]
@@ -134,12 +168,37 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense",
             "\"phase-lock\", sense",
-            "`run.helix.control.T1.kind` = \"phase-lock\" does not exist; what exists is \"baseline\", \"helix\", \"pulse\", \"phase-sync\", \"absent\"",
+            "`run.helix.control.T1.kind` = \"phase-lock\" does not exist; what exists is \"baseline\", \"helix\", \"pulse\", \"phase-sync\", \"meandering\", \"absent\"",
         ),
         (
             "\"helix\", sense = \"ccw\"",
             "\"phase-sync\", offset_deg = 90",
             "T1 shall join a helix, but no turbine upstream of it has one in this run; give a turbine upstream a helix",
+        ),
+        (
+            "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
+            "\"meandering\", factor = 1.5, amplitude_deg = 4.0, strouhal_low = 0.3",
+            "`run.helix.control.T1.strouhal_low` = 0.3 is not below `strouhal_high` = 0.3; meandering wanders",
+        ),
+        (
+            "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
+            "\"meandering\", factor = 1.5, amplitude_deg = 4.0, reference = \"given\", reference_tilt_mnm = 7",
+            "`run.helix.control.T1.reference_yaw_mnm` is missing; reference = \"given\" needs the amplitudes",
+        ),
+        (
+            "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
+            "\"meandering\", factor = 1.5, amplitude_deg = 4.0, learning_time = 60",
+            "`run.helix.control.T1.learning_time` is of no use here: it goes with reference = \"learned\", not \"observed\"; leave it out",
+        ),
+        (
+            "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
+            "\"meandering\", factor = 1.5, amplitude_deg = 4.0, azimuth_offset_deg = 38, delay = 1",
+            "`run.helix.control.T1.moment_per_degree_mnm` is missing; azimuth_offset_deg, delay and moment_per_degree_mnm go together",
+        ),
+        (
+            "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
+            "\"meandering\", factor = -1, amplitude_deg = 4.0",
+            "`run.helix.control.T1.factor` = -1 is out of range: 0 <= factor <= 10",
         ),
         (
             "[time]",

@@ -1,5 +1,6 @@
 //! A case as text: every key written out, defaults included.
 
+use super::meandering::meandering_text;
 use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides, Solver, TurbulenceModel};
 use std::fmt::Write;
 
@@ -125,6 +126,7 @@ fn control_text(control: &Control) -> String {
             degrees(pulse.phase),
             pulse.start,
         ),
+        Control::Meandering(meandering) => meandering_text(meandering),
         Control::PhaseSync(sync) => {
             let sense = if sync.sense == Sense::Clockwise { "cw" } else { "ccw" };
             let estimator = match sync.estimator {
@@ -145,12 +147,16 @@ fn control_text(control: &Control) -> String {
 }
 
 /// The degrees with the fewest digits that give `angle` (rad) back, bit for bit where any do.
-fn degrees(angle: f64) -> f64 {
-    let exact = angle.to_degrees();
+pub(super) fn degrees(angle: f64) -> f64 {
+    shortest(angle, angle.to_degrees(), f64::to_radians)
+}
+
+/// The number near `exact` with the fewest digits that `back` makes `value` of again, bit for bit where any does.
+pub(super) fn shortest(value: f64, exact: f64, back: impl Fn(f64) -> f64) -> f64 {
     (0..17)
         .filter_map(|digits| format!("{exact:.digits$e}").parse::<f64>().ok())
         .chain([exact, exact.next_up(), exact.next_down()])
-        .find(|degrees| degrees.to_radians() == angle)
+        .find(|number| back(*number) == value)
         .unwrap_or(exact)
 }
 
