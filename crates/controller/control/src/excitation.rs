@@ -56,7 +56,7 @@ pub enum ExcitationState {
     #[default]
     None,
     /// Of [`Excitation::PhaseSync`].
-    PhaseSync(SyncState),
+    PhaseSync(Box<SyncState>),
     /// Of [`Excitation::Meandering`].
     Meandering(Box<Meandering>),
 }
@@ -123,7 +123,7 @@ impl Excitation {
     /// Everything that time changes, for a checkpoint.
     pub fn state(&self) -> ExcitationState {
         match self {
-            Self::PhaseSync(sync) => ExcitationState::PhaseSync(sync.state()),
+            Self::PhaseSync(sync) => ExcitationState::PhaseSync(Box::new(sync.state())),
             Self::Meandering(meandering) => ExcitationState::Meandering(meandering.clone()),
             Self::None | Self::Helix(_) | Self::Pulse(_) => ExcitationState::None,
         }
@@ -132,7 +132,7 @@ impl Excitation {
     /// Continues from `state`, which an excitation of the same settings gave; a state of another kind changes nothing.
     pub fn restore(&mut self, state: ExcitationState) {
         match (self, state) {
-            (Self::PhaseSync(sync), ExcitationState::PhaseSync(state)) => sync.restore(state),
+            (Self::PhaseSync(sync), ExcitationState::PhaseSync(state)) => sync.restore(*state),
             (Self::Meandering(meandering), ExcitationState::Meandering(state)) => {
                 *meandering = state;
             }

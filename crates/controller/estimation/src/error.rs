@@ -36,7 +36,9 @@ pub enum EstimationError {
         needed: usize,
     },
     /// A record of a rotor that did not pitch.
-    #[error("the rotor of the record does not pitch at the excitation's rate: there is nothing to calibrate")]
+    #[error(
+        "the rotor of the record does not pitch at the excitation's rate: there is nothing to calibrate"
+    )]
     NothingToCalibrate,
     /// The samples are too few for what is to be seen.
     #[error(

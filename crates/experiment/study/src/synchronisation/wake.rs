@@ -15,6 +15,14 @@ const DISTANCES: [f64; 4] = [2.0, 3.0, 4.0, 4.75];
 const HALF_WIDTH: f64 = 1.25;
 const N_POINTS: usize = 81;
 
+/// One of the two cases that are shown.
+struct Shown<'a> {
+    colour: usize,
+    name: String,
+    /// Planes by phase (rad), in the order of the phases.
+    planes: &'a [(f64, Plane)],
+}
+
 /// Both figures; none where no planes were averaged by phase.
 pub(super) fn wake(
     study: &Synchronised,
@@ -22,13 +30,13 @@ pub(super) fn wake(
     let (Some(best), Some(worst)) = (ranked(study, true), ranked(study, false)) else {
         return Ok((None, None));
     };
-    let cases: Vec<(usize, String, &[(f64, Plane)])> = [best, worst]
-        .into_iter()
-        .map(|run| (run.run, run.name.clone()))
-        .enumerate()
-        .map(|(place, (run, name))| (place + 1, name, planes(study, run)))
-        .collect();
-    if cases.iter().any(|(_, _, planes)| planes.is_empty()) {
+    let shown = |(place, run): (usize, &Joined)| Shown {
+        colour: place + 1,
+        name: run.name.clone(),
+        planes: planes(study, run.run),
+    };
+    let cases: Vec<Shown> = [best, worst].into_iter().enumerate().map(shown).collect();
+    if cases.iter().any(|case| case.planes.is_empty()) {
         return Ok((None, None));
     }
     let free_stream = |_: f64| study.case.wind.speed;
@@ -41,7 +49,7 @@ pub(super) fn wake(
     };
     let mut panels = Vec::new();
     let mut lines = Vec::new();
-    for (colour, name, planes) in &cases {
+    for Shown { colour, name, planes } in &cases {
         let plane = planes[0].1.clone();
         let line = line_of(&plane)?;
         lines.push(CentreLine { name: name.clone(), colour: *colour, points: line.clone() });
@@ -73,7 +81,7 @@ pub(super) fn wake(
 
 fn deficits(
     study: &Synchronised,
-    cases: &[(usize, String, &[(f64, Plane)])],
+    cases: &[Shown],
     width: f64,
 ) -> Result<Option<DeficitFigure>, StudyError> {
     let turbine = &study.case.turbines[study.turbine];
@@ -84,7 +92,7 @@ fn deficits(
     for distance in DISTANCES {
         let x = (turbine.position_diameters[0] + distance) * study.diameter;
         let mut lines = Vec::new();
-        for (colour, name, planes) in cases {
+        for Shown { colour, name, planes } in cases {
             let planes: Vec<PhasePlane> = planes
                 .iter()
                 .map(|(phase, plane)| PhasePlane {
