@@ -212,3 +212,58 @@ impl Recorder for Record {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use basis::mbc::to_blades;
+    use basis::{FixedFrame, PerBlade};
+
+    /// Measurements of a rotor whose moments lose `gain` (N m/rad) of a helix, `lead` (rad) ahead of it, beside constants and
+    /// an oscillation at three times the rotor's frequency.
+    fn record(sense: Sense, rate: f64, gain: f64, lead: f64) -> Vec<Measurements> {
+        let (interval, rotor_speed) = (0.2, 0.61);
+        let n = (PERIODS[1] * TAU / rate / interval).round() as usize;
+        (1000..1000 + n)
+            .map(|step| {
+                let time = interval * step as f64;
+                let azimuth = rotor_speed * time;
+                let angle = rate * time + lead;
+                let third = 4e5 * (3.0 * azimuth).sin();
+                let moments = FixedFrame {
+                    average: 3e7,
+                    tilt: 2e6 + third - gain * PROBE * angle.sin(),
+                    yaw: -1e6 + third - gain * PROBE * (angle + sense.yaw_lead()).sin(),
+                };
+                Measurements {
+                    time,
+                    interval,
+                    azimuth,
+                    rotor_speed,
+                    generator_speed: rotor_speed,
+                    pitch: PerBlade::splat(3, 0.0),
+                    generator_torque: 0.0,
+                    power: 0.0,
+                    thrust: 0.0,
+                    aerodynamic_torque: 0.0,
+                    rotor_wind_speed: 8.0,
+                    flap_moments: to_blades(azimuth, moments, 3),
+                    edge_moments: PerBlade::splat(3, 0.0),
+                    tower_top_acceleration: 0.0,
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_helix_of_either_sense_tells_gain_and_lead() {
+        let rate = TAU / 100.0;
+        for sense in [Sense::CounterClockwise, Sense::Clockwise] {
+            for lead in [-2.5, -0.7, 0.0, 0.6] {
+                let found = answer_to(&record(sense, rate, 1.6e8, lead), sense, rate);
+                assert!((found.gain / 1.6e8 - 1.0).abs() < 5e-3, "{sense}: {found:?}");
+                assert!((found.lead - lead).abs() < 5e-3, "{sense} {lead}: {found:?}");
+            }
+        }
+    }
+}
