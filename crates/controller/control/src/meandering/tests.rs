@@ -1,6 +1,7 @@
 //! Control of loads that answer to pitch at once or late, turned or not, against what was asked for.
 
 use super::*;
+use crate::Excitation;
 use basis::mbc::to_fixed_frame;
 use basis::{PerBlade, Sense};
 use estimation::phase_locked::{Leader, Settings as Signal};
@@ -286,4 +287,48 @@ fn what_cannot_be_built_says_why() {
     assert!(build(|s| s.start = f64::NAN).contains("start"));
     assert!(build(|s| s.reference = Reference::Learned { duration: 0.0 }).contains("learning"));
     assert!(build(|s| s.follower.signal.follower.rates = [0.0, 0.1]).contains("above zero"));
+}
+
+#[test]
+fn watching_leaves_every_bit_of_the_pitch() {
+    let sense = Sense::Clockwise;
+    let mut asked = settings(sense, 1.5);
+    asked.maximum_amplitude = 0.0;
+    asked.start = 0.0;
+    let mut control = Meandering::new(asked, INTERVAL).unwrap();
+    let rotor = Rotor::new(sense, 1, 0.0);
+    for step in 0..5000 {
+        let measurements = rotor.measurements(step);
+        let mut pitch = PerBlade::splat(3, -0.0);
+        control.add_to(&mut pitch, &measurements);
+        assert!(pitch.iter().all(|pitch| pitch.to_bits() == (-0.0_f64).to_bits()));
+    }
+    assert!(control.estimate().locked);
+    assert_eq!(control.authority(), 0.0);
+    assert_eq!(control.describe(), "baseline, watching for meandering");
+}
+
+#[test]
+fn an_excitation_goes_on_from_its_state_with_the_same_bits() {
+    let sense = Sense::CounterClockwise;
+    let new = || {
+        Excitation::Meandering(Box::new(Meandering::new(settings(sense, 0.5), INTERVAL).unwrap()))
+    };
+    let pitched = |excitation: &mut Excitation, step: usize| {
+        let mut pitch = PerBlade::splat(3, 0.1);
+        excitation.add_to(&mut pitch, &Rotor::new(sense, 1, 0.0).measurements(step));
+        pitch
+    };
+    let mut excitation = new();
+    for step in 0..3000 {
+        pitched(&mut excitation, step);
+    }
+    let stored = postcard::to_stdvec(&excitation.state()).unwrap();
+    let mut resumed = new();
+    resumed.restore(postcard::from_bytes(&stored).unwrap());
+    for step in 3000..3500 {
+        let pitch = pitched(&mut excitation, step);
+        assert_eq!(pitch, pitched(&mut resumed, step));
+        assert!(step < 3010 || pitch != PerBlade::splat(3, 0.1));
+    }
 }
