@@ -173,6 +173,8 @@ fn mean(values: &[f64]) -> f64 {
 
 /// The run in the folder `path`.
 fn folder_of(path: &Path) -> RunFolder {
+    // A bare name has no parent to look for other runs in.
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
     RunFolder::new(path.parent().unwrap_or(Path::new("")), &name.unwrap_or_default())
 }
