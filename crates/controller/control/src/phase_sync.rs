@@ -46,6 +46,9 @@ pub struct SyncSettings {
 /// [`Trust::overall`](estimation::helix::Trust::overall) lies near 0 in turbulence without a helix and above a half in one.
 pub const TRUST: [f64; 2] = [0.05, 0.15];
 
+/// Excitation periods over which the found phases are steadied before they pitch (–).
+const STEADY: f64 = 1.0 / 16.0;
+
 /// The controller, with what it believes.
 #[derive(Clone, Debug)]
 pub struct PhaseSync {
@@ -54,6 +57,7 @@ pub struct PhaseSync {
     estimate: Option<HelixEstimate>,
     trusted: bool,
     share: f64,
+    steady: [Phasor; 2],
 }
 
 /// Everything of it that time changes.
@@ -62,12 +66,39 @@ pub struct SyncState {
     estimator: EstimatorState,
     trusted: bool,
     share: f64,
+    steady: [Phasor; 2],
+}
+
+/// A direction: cosine and sine, no longer than one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Phasor([f64; 2]);
+
+impl Phasor {
+    /// Moves by `share` (–) of the way towards `phase` (rad).
+    fn lean(&mut self, share: f64, phase: f64) {
+        let (sine, cosine) = phase.sin_cos();
+        for (own, target) in self.0.iter_mut().zip([cosine, sine]) {
+            *own += share * (target - *own);
+        }
+    }
+
+    /// Its direction (rad).
+    fn phase(self) -> f64 {
+        self.0[1].atan2(self.0[0])
+    }
 }
 
 impl PhaseSync {
     /// Joins what `estimator` finds.
     pub fn new(settings: SyncSettings, estimator: HelixEstimator) -> Self {
-        Self { settings, estimator, estimate: None, trusted: false, share: 0.0 }
+        Self {
+            settings,
+            estimator,
+            estimate: None,
+            trusted: false,
+            share: 0.0,
+            steady: Default::default(),
+        }
     }
 
     /// Settings.
@@ -90,19 +121,24 @@ impl PhaseSync {
         let estimate = self.estimator.update(measurements);
         self.follow_trust(estimate.trust.overall(), measurements.interval);
         self.estimate = Some(estimate);
+        // Passing blades make the found phases tremble three times a turn; pitch must not.
+        let share = 1.0 - (-measurements.interval * self.settings.rate / (TAU * STEADY)).exp();
+        for (steady, axis) in self.steady.iter_mut().zip([estimate.tilt, estimate.yaw]) {
+            steady.lean(share, axis.phase);
+        }
         let azimuth = measurements.azimuth + self.settings.azimuth_offset;
-        to_blades(azimuth, self.commands(measurements.time, &estimate), measurements.pitch.len())
+        to_blades(azimuth, self.commands(measurements.time), measurements.pitch.len())
     }
 
     /// Tilt and yaw commands (rad) at `time` (s). van Vondelen et al. (2025), Eq. 22.
-    fn commands(&self, time: f64, estimate: &HelixEstimate) -> FixedFrame {
+    fn commands(&self, time: f64) -> FixedFrame {
         let SyncSettings { sense, amplitude, rate, offset, start, .. } = self.settings;
         let amplitude = amplitude * self.share * fade_in(time, start, rate);
         let angle = rate * time + offset;
         FixedFrame {
             average: 0.0,
-            tilt: amplitude * (angle + estimate.tilt.phase).sin(),
-            yaw: amplitude * (angle + sense.yaw_lead() + estimate.yaw.phase).sin(),
+            tilt: amplitude * (angle + self.steady[0].phase()).sin(),
+            yaw: amplitude * (angle + sense.yaw_lead() + self.steady[1].phase()).sin(),
         }
     }
 
@@ -125,13 +161,14 @@ impl PhaseSync {
             estimator: self.estimator.state().clone(),
             trusted: self.trusted,
             share: self.share,
+            steady: self.steady,
         }
     }
 
     /// Continues from `state`, which a controller of the same settings gave.
     pub fn restore(&mut self, state: SyncState) {
         self.estimator.restore(state.estimator);
-        (self.trusted, self.share) = (state.trusted, state.share);
+        (self.trusted, self.share, self.steady) = (state.trusted, state.share, state.steady);
     }
 
     /// In words: "synchronised ccw 4.0° at 150°".

@@ -8,6 +8,8 @@ pub use student::student_97_5;
 
 /// Length of the blocks whose means are taken as independent (s): ten minutes, the field's averaging time.
 pub const BLOCK_LENGTH: f64 = 600.0;
+/// Share of one block that may be missing of all together (–).
+const SHORT: f64 = 0.01;
 
 /// Mean of `samples` (any unit, every `interval` s), standard deviation, and the half width of the 95 % interval
 /// of the mean from blocks of `block_length` (s).
@@ -112,8 +114,11 @@ pub fn block_means(
     };
     positive("the sampling interval", interval)?;
     positive("the block length", block_length)?;
-    let n_samples = (block_length / interval).round().max(1.0) as usize;
-    Ok(samples.chunks_exact(n_samples).map(mean).collect())
+    let whole = (block_length / interval).round().max(1.0) as usize;
+    // Steps rarely divide a block: a sample short of the last one must not cost it.
+    let n_blocks = (samples.len() as f64 / whole as f64 + SHORT).floor() as usize;
+    let n_samples = whole.min(samples.len() / n_blocks.max(1)).max(1);
+    Ok(samples.chunks_exact(n_samples).take(n_blocks).map(mean).collect())
 }
 
 /// Half width of the 95 % interval of the mean of `blocks`; none with fewer than two.

@@ -112,3 +112,14 @@ proptest! {
         prop_assert!(near(moved.half_width_95.unwrap(), scale * plain.half_width_95.unwrap()));
     }
 }
+
+#[test]
+fn a_sample_short_of_the_last_block_does_not_cost_it() {
+    let samples: Vec<f64> = (0..3767).map(|k| f64::from(k / 1256)).collect();
+    let blocks = block_means(&samples, 0.4776, 600.0).unwrap();
+    assert_eq!(blocks.len(), 3);
+    assert!((blocks[2] - 2.0).abs() < 2e-3);
+    // But a block that misses more is none.
+    assert_eq!(block_means(&samples[..3700], 0.4776, 600.0).unwrap().len(), 2);
+    assert_eq!(block_means(&samples[..1000], 0.4776, 600.0).unwrap().len(), 0);
+}

@@ -91,7 +91,7 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, StudyEr
         figures.push(OffsetFigure {
             name: format!("load-over-offset-{channel}"),
             title: format!("Fatigue over the phase offset: {title}"),
-            label: format!("1-Hz equivalent load, {title}, against the run {against} (%)"),
+            label: format!("equivalent load against {against} (%)"),
             panels,
         });
     }
