@@ -175,7 +175,7 @@ impl PhaseSync {
     pub fn describe(&self) -> String {
         let SyncSettings { sense, amplitude, offset, .. } = self.settings;
         if amplitude == 0.0 {
-            return format!("baseline, watching for a {sense} helix");
+            return "baseline, watching".to_owned();
         }
         format!(
             "synchronised {sense} {:.1}° at {:.0}°",
