@@ -83,7 +83,10 @@ pub(crate) fn summarise(
         let runs = controller(control, &setup.models[index], &setup.case, &setup.plan, None)?;
         let delivered_pitch =
             delivered_pitch(&analysed, name, control, setup, clipped_shares[machine])?;
-        warn_of_clipping(name, &run.name, delivered_pitch, clipped_shares[machine], &mut warnings);
+        // A phase that follows the wind spreads the line: what is missing of it was not held back.
+        let steady = !matches!(control, Control::PhaseSync(_));
+        let share = clipped_shares[machine];
+        warn_of_clipping(name, &run.name, delivered_pitch, share, steady, &mut warnings);
         warn_of_fading(&analysed, name, control, &run.name, &mut warnings)?;
         let power_gain = match compared {
             Some((other, other_series)) if other.present().any(|there| there == index) => {
@@ -188,12 +191,14 @@ fn warn_of_clipping(
     run: &str,
     pitch: Option<DeliveredPitch>,
     clipped_share: f64,
+    steady: bool,
     warnings: &mut Vec<String>,
 ) {
     let Some(pitch) = pitch else { return };
     let asked = pitch.commanded_amplitude_deg;
     let arrived = pitch.delivered_amplitude_deg;
-    if arrived < DELIVERED_SHARE * asked || clipped_share > CLIPPED_SHARE {
+    let missing = steady && arrived < DELIVERED_SHARE * asked;
+    if missing || clipped_share > CLIPPED_SHARE {
         warnings.push(format!(
             "{run}: {name} was asked for {asked:.2}° and delivered {arrived:.2}°; a pitch limit held it back {:.0} % of the time",
             100.0 * clipped_share
