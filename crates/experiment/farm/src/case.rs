@@ -173,13 +173,25 @@ impl Case {
     /// Sense and Strouhal number of the helix furthest upstream in `run`.
     pub fn first_helix(&self, run: &Run) -> Option<(Sense, f64)> {
         let x = |index: usize| self.turbines[index].position_diameters[0];
-        let helices = run.control.iter().enumerate().filter_map(|(index, control)| match control {
-            Control::Helix(helix) => Some((x(index), (helix.sense, helix.strouhal))),
-            Control::PhaseSync(sync) => Some((x(index), (sync.sense, sync.strouhal))),
-            _ => None,
-        });
+        let helices = run.control.iter().enumerate();
+        let helices = helices.filter_map(|(index, control)| Some((x(index), control.helix()?)));
         helices.min_by(|a, b| a.0.total_cmp(&b.0)).map(|found| found.1)
     }
+}
+
+/// Sense and Strouhal number of the helix on the nearest of `turbines` upstream of turbine `index` that has one under
+/// `controls`.
+pub fn helix_upstream(
+    index: usize,
+    turbines: &[Placement],
+    controls: &[Control],
+) -> Option<(Sense, f64)> {
+    let x = |index: usize| turbines[index].position_diameters[0];
+    (0..turbines.len())
+        .filter(|&other| x(other) < x(index))
+        .filter_map(|other| Some((x(other), controls[other].helix()?)))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|found| found.1)
 }
 
 /// What runs on a turbine, on top of torque and collective pitch control.
@@ -197,6 +209,17 @@ pub enum Control {
     Meandering(Meandering),
     /// The turbine is not there in this run.
     Absent,
+}
+
+impl Control {
+    /// Sense and Strouhal number of the helix that a turbine makes, or joins.
+    pub fn helix(&self) -> Option<(Sense, f64)> {
+        match self {
+            Self::Helix(helix) => Some((helix.sense, helix.strouhal)),
+            Self::PhaseSync(sync) => Some((sync.sense, sync.strouhal)),
+            Self::Baseline | Self::Pulse(_) | Self::Meandering(_) | Self::Absent => None,
+        }
+    }
 }
 
 /// Settings of the helix.

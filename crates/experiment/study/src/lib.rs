@@ -148,7 +148,7 @@ pub fn run(
 /// [`StudyError::File`] for records that cannot be read, [`StudyError::Report`] for a report that cannot be written.
 pub fn report(directory: &Path) -> Result<(Vec<Summary>, PathBuf), StudyError> {
     let study = records::read_study(directory)?;
-    let synchronisation = synchronisation::synchronisation(directory, &study)?;
+    let synchronisation = synchronisation::synchronisation(&study)?;
     let mut runs = Vec::with_capacity(study.runs.len());
     let mut summaries = Vec::with_capacity(study.runs.len());
     for run in study.runs {

@@ -3,8 +3,8 @@
 use crate::StudyError;
 use crate::prepare::turbine;
 use analysis::phase::{
-    Agreement, Band, Coherence, GroundTruth, Reference, agreement, coherence, ground_truth,
-    uniform_interval,
+    Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
+    ground_truth, uniform_interval,
 };
 use basis::records::Series;
 use basis::{FixedFrame, Measurements, PerBlade};
@@ -13,7 +13,7 @@ use estimation::HelixEstimator;
 use estimation::helix::Setting;
 use estimation::helix::tuning::{self, Tuned};
 use farm::assemble::{AssemblyError, estimator_options};
-use farm::case::{Case, Control, PhaseEstimator};
+use farm::case::{Case, Control, PhaseEstimator, helix_upstream};
 use formats::case;
 use formats::records::{self, Manifest, RunFolder};
 use std::f64::consts::TAU;
@@ -79,7 +79,7 @@ pub struct PhaseAnswer {
 }
 
 /// Estimates over the time of a series.
-struct Estimates {
+pub(crate) struct Estimates {
     wind: Vec<f64>,
     tilt: Wave,
     yaw: Wave,
@@ -92,38 +92,54 @@ struct Wave {
     phase: Vec<f64>,
 }
 
+/// The wind where the turbine would stand, in a run without it.
+pub(crate) struct Truth {
+    /// Name of the run.
+    pub(crate) run: String,
+    wind: GroundTruth,
+}
+
 /// How well the phase of the helix was estimated in the run that `question` names.
 ///
 /// # Errors
 /// [`StudyError`] for records that cannot be read, lack a channel, have gaps, or hold no helix.
 pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
-    let folder = folder_of(&question.run);
-    let manifest = records::read_manifest(&folder)?;
-    let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
-    let index = turbine_of(question, &case, &manifest)?;
-    let name = case.turbines[index].name.clone();
-    let reference = reference(&case, &manifest, index)?;
-    let series = records::read_series(&folder.series_path())?;
-    let times = column(&series, "time_s")?;
-    let interval = uniform_interval(times)?;
-    let (truth_run, truth) = truth(question, &folder, &name, &reference)?;
+    let asked = Asked::read(question)?;
+    let Asked { case, index, reference, series, truth, .. } = &asked;
     let estimates = match question.estimator {
-        Some(estimator) => replay(&case, &series, index, &reference, estimator, interval)?,
-        None => recorded(&series, &name)?,
+        Some(estimator) => replay(case, series, *index, reference, estimator)?,
+        None => recorded(series, asked.name())?,
     };
     let from = question.from.unwrap_or(case.time.spin_up);
+    compare(&asked.run, asked.name(), series, &estimates, truth, reference, from)
+}
+
+/// What `estimates` over the rows of `series` are worth against `truth`, from the time `from` (s) on.
+///
+/// # Errors
+/// [`StudyError::Analysis`] for records that are too short or have gaps.
+pub(crate) fn compare(
+    run: &str,
+    turbine: &str,
+    series: &Series,
+    estimates: &Estimates,
+    Truth { run: truth_run, wind: truth }: &Truth,
+    reference: &Reference,
+    from: f64,
+) -> Result<PhaseAnswer, StudyError> {
+    let times = column(series, "time_s")?;
+    let interval = uniform_interval(times)?;
     let places: Vec<(usize, usize)> = (0..times.len())
         .filter(|&row| times[row] >= from)
         .filter_map(|row| Some((row, truth.index_at(times[row])?)))
         .filter(|(_, place)| truth.trusted.contains(place))
         .collect();
+    let pick = |values: &[f64]| places.iter().map(|(row, _)| values[*row]).collect::<Vec<_>>();
+    let pick_true = |values: &[f64]| places.iter().map(|(_, at)| values[*at]).collect::<Vec<_>>();
     let block = TAU / reference.rate * SEGMENT_PERIODS;
-    let axis = |estimate: &Wave, truth: &analysis::phase::AxisWind, lead: f64| {
-        let pick = |values: &[f64]| places.iter().map(|(row, _)| values[*row]).collect::<Vec<_>>();
-        let pick_true =
-            |values: &[f64]| places.iter().map(|(_, at)| values[*at]).collect::<Vec<_>>();
+    let n_segment = (block / interval).round() as usize;
+    let axis = |estimate: &Wave, truth: &AxisWind, lead: f64| {
         let (phase, true_phase) = (pick(&estimate.phase), pick_true(&truth.phase));
-        let amplitude = pick(&estimate.amplitude);
         let wind: Vec<f64> = places
             .iter()
             .map(|(row, _)| {
@@ -131,20 +147,14 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
                 estimate.amplitude[*row] * angle.sin()
             })
             .collect();
-        let n_segment = (block / interval).round() as usize;
-        let coherence = (wind.len() >= 2 * n_segment)
-            .then(|| {
-                coherence(
-                    &wind,
-                    &pick_true(&truth.wind),
-                    interval,
-                    reference.frequency(),
-                    n_segment,
-                )
-            })
-            .transpose()?;
+        let coherence = if wind.len() >= 2 * n_segment {
+            let true_wind = pick_true(&truth.wind);
+            Some(coherence(&wind, &true_wind, interval, reference.frequency(), n_segment)?)
+        } else {
+            None
+        };
         Ok::<PhaseAxis, StudyError>(PhaseAxis {
-            amplitude: mean(&amplitude),
+            amplitude: mean(&pick(&estimate.amplitude)),
             true_amplitude: mean(&pick_true(&truth.amplitude)),
             agreement: agreement(&phase, &true_phase, interval, block)?,
             coherence,
@@ -153,17 +163,14 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
         })
     };
     Ok(PhaseAnswer {
-        run: manifest.run,
-        turbine: name,
-        truth: truth_run,
+        run: run.to_owned(),
+        turbine: turbine.to_owned(),
+        truth: truth_run.clone(),
         tilt: axis(&estimates.tilt, &truth.tilt, 0.0)?,
         yaw: axis(&estimates.yaw, &truth.yaw, reference.sense.yaw_lead())?,
-        mean_winds: [
-            mean(&places.iter().map(|(row, _)| estimates.wind[*row]).collect::<Vec<_>>()),
-            mean(&places.iter().map(|(_, at)| truth.average[*at]).collect::<Vec<_>>()),
-        ],
-        trust: mean(&places.iter().map(|(row, _)| estimates.trust[*row]).collect::<Vec<_>>()),
-        times: places.iter().map(|(row, _)| times[*row]).collect(),
+        mean_winds: [mean(&pick(&estimates.wind)), mean(&pick_true(&truth.average))],
+        trust: mean(&pick(&estimates.trust)),
+        times: pick(times),
     })
 }
 
@@ -203,72 +210,91 @@ fn turbine_of(
     })
 }
 
-/// The helix that meets turbine `index`: the one that it joins, or that of the nearest turbine upstream.
-fn reference(case: &Case, manifest: &Manifest, index: usize) -> Result<Reference, StudyError> {
-    let control = &case.runs[manifest.run_index].control;
-    let x = |turbine: usize| case.turbines[turbine].position_diameters[0];
-    let own = match control[index] {
-        Control::PhaseSync(sync) => Some((sync.sense, sync.strouhal)),
-        _ => None,
-    };
-    let upstream = (0..control.len())
-        .filter(|&other| x(other) < x(index))
-        .filter_map(|other| match control[other] {
-            Control::Helix(helix) => Some((x(other), (helix.sense, helix.strouhal))),
-            _ => None,
-        })
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|found| found.1);
-    let (sense, strouhal) = own.or(upstream).ok_or_else(|| StudyError::NoHelix {
-        run: manifest.run.clone(),
-        turbine: case.turbines[index].name.clone(),
-    })?;
-    let (_, first) = turbine(&case.turbines[0].model, Path::new(""))?;
-    let diameter = first.definition.rotor_diameter();
-    let rate = excitation_rate(strouhal, case.wind.speed, diameter);
-    Ok(Reference { rate, sense })
+/// What a question is about, read.
+struct Asked {
+    /// Name of the run.
+    run: String,
+    case: Case,
+    /// Place of the turbine in the case.
+    index: usize,
+    reference: Reference,
+    series: Series,
+    truth: Truth,
 }
 
-/// Name of the run with the true wind at the place of turbine `name`, and that wind's phases.
-fn truth(
-    question: &PhaseQuestion,
-    folder: &RunFolder,
-    name: &str,
-    reference: &Reference,
-) -> Result<(String, GroundTruth), StudyError> {
-    let study = folder.path().parent().unwrap_or(Path::new("")).to_owned();
-    let channel = format!("{name}.lines_average_m_s");
-    let candidates: Vec<RunFolder> = match &question.truth {
-        Some(path) => vec![folder_of(path)],
-        None => {
-            let mut names: Vec<PathBuf> = std::fs::read_dir(&study)
-                .map(|entries| entries.flatten().map(|entry| entry.path()).collect())
-                .unwrap_or_default();
-            names.sort();
-            names.iter().map(|path| folder_of(path)).filter(RunFolder::is_complete).collect()
-        }
-    };
-    for candidate in candidates {
-        let series = records::read_series(&candidate.series_path())?;
-        if series.column(&channel).is_none() {
-            continue;
-        }
-        let times = column(&series, "time_s")?;
-        let interval = uniform_interval(times)?;
-        let part = |axis: &str| column(&series, &format!("{name}.lines_{axis}_m_s"));
-        let (average, tilt, yaw) = (part("average")?, part("tilt")?, part("yaw")?);
-        let winds: Vec<FixedFrame> = (0..times.len())
-            .map(|row| FixedFrame { average: average[row], tilt: tilt[row], yaw: yaw[row] })
-            .collect();
-        let band = Band::around(reference.frequency(), Band::RATIO);
-        let truth = ground_truth(&winds, times[0], interval, reference, band)?;
-        return Ok((candidate.run(), truth));
+impl Asked {
+    fn read(question: &PhaseQuestion) -> Result<Self, StudyError> {
+        let folder = folder_of(&question.run);
+        let manifest = records::read_manifest(&folder)?;
+        let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
+        let index = turbine_of(question, &case, &manifest)?;
+        let name = case.turbines[index].name.clone();
+        let control = &case.runs[manifest.run_index].control;
+        let helix = control[index].helix().or(helix_upstream(index, &case.turbines, control));
+        let (sense, strouhal) = helix.ok_or_else(|| StudyError::NoHelix {
+            run: manifest.run.clone(),
+            turbine: name.clone(),
+        })?;
+        let diameter = records::read_summary(&folder)?.conditions.rotor_diameter;
+        let rate = excitation_rate(strouhal, case.wind.speed, diameter);
+        let reference = Reference { rate, sense };
+        let study = folder.path().parent().unwrap_or(Path::new("")).to_owned();
+        let without = match &question.truth {
+            Some(path) => Some(folder_of(path)),
+            None => case
+                .runs
+                .iter()
+                .filter(|run| {
+                    run.control[index] == Control::Absent && case.output.lines_at.contains(&index)
+                })
+                .map(|run| RunFolder::new(&study, &run.name))
+                .find(RunFolder::is_complete),
+        };
+        let truth = match without {
+            Some(without) => {
+                let series = records::read_series(&without.series_path())?;
+                truth(&without.run(), &name, &series, &reference)?
+            }
+            None => None,
+        };
+        let truth = truth.ok_or(StudyError::NoTruth { turbine: name, directory: study })?;
+        let series = records::read_series(&folder.series_path())?;
+        Ok(Self { run: manifest.run, case, index, reference, series, truth })
     }
-    Err(StudyError::NoTruth { turbine: name.to_owned(), directory: study })
+
+    /// Name of the turbine.
+    fn name(&self) -> &str {
+        &self.case.turbines[self.index].name
+    }
+}
+
+/// The true wind at the place of turbine `name` in the `series` of `run`; nothing where that was not kept.
+///
+/// # Errors
+/// [`StudyError::Analysis`] for a record that is too short or has gaps.
+pub(crate) fn truth(
+    run: &str,
+    name: &str,
+    series: &Series,
+    reference: &Reference,
+) -> Result<Option<Truth>, StudyError> {
+    let part = |axis: &str| series.column(&format!("{name}.lines_{axis}_m_s"));
+    let (Some(average), Some(tilt), Some(yaw)) = (part("average"), part("tilt"), part("yaw"))
+    else {
+        return Ok(None);
+    };
+    let times = column(series, "time_s")?;
+    let interval = uniform_interval(times)?;
+    let winds: Vec<FixedFrame> = (0..times.len())
+        .map(|row| FixedFrame { average: average[row], tilt: tilt[row], yaw: yaw[row] })
+        .collect();
+    let band = Band::around(reference.frequency(), Band::RATIO);
+    let wind = ground_truth(&winds, times[0], interval, reference, band)?;
+    Ok(Some(Truth { run: run.to_owned(), wind }))
 }
 
 /// What turbine `name` believed during the run.
-fn recorded(series: &Series, name: &str) -> Result<Estimates, StudyError> {
+pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, StudyError> {
     let channel = |what: &str| column(series, &format!("{name}.{what}")).map(<[f64]>::to_vec);
     let wave = |axis: &str| {
         Ok::<Wave, StudyError>(Wave {
@@ -291,8 +317,8 @@ fn replay(
     index: usize,
     reference: &Reference,
     estimator: PhaseEstimator,
-    interval: f64,
 ) -> Result<Estimates, StudyError> {
+    let interval = uniform_interval(column(series, "time_s")?)?;
     let (definition, setting) = seeker(case, index, reference, interval)?;
     let options = estimator_options(estimator, case.flow.solver);
     let mut estimator =
@@ -326,16 +352,9 @@ fn replay(
 /// # Errors
 /// As [`phase`].
 pub fn tune(question: &PhaseQuestion) -> Result<Tuned, StudyError> {
-    let folder = folder_of(&question.run);
-    let manifest = records::read_manifest(&folder)?;
-    let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
-    let index = turbine_of(question, &case, &manifest)?;
-    let name = &case.turbines[index].name;
-    let reference = reference(&case, &manifest, index)?;
-    let series = records::read_series(&folder.series_path())?;
-    let times = column(&series, "time_s")?;
-    let interval = uniform_interval(times)?;
-    let (_, truth) = truth(question, &folder, name, &reference)?;
+    let Asked { case, index, reference, series, truth, .. } = Asked::read(question)?;
+    let truth = truth.wind;
+    let interval = uniform_interval(column(&series, "time_s")?)?;
     let from = question.from.unwrap_or(case.time.spin_up);
     let (definition, setting) = seeker(&case, index, &reference, interval)?;
     let whole = record(&case, &series, index, definition.n_blades, interval)?;

@@ -8,15 +8,14 @@ mod tracks;
 mod wake;
 
 use crate::StudyError;
-use crate::phase::{PhaseAnswer, PhaseQuestion, phase};
+use crate::phase::{PhaseAnswer, compare, recorded, truth};
 use analysis::phase::Reference;
 use basis::angle::wrap_to_turn;
 use control::excitation_rate;
 use farm::case::{Case, Control, PhaseSync};
 use formats::case;
-use formats::records::{RunFolder, StudyRecords};
+use formats::records::StudyRecords;
 use report::Synchronisation;
-use std::path::Path;
 
 /// One run in which a turbine joins a helix, or watches for one.
 struct Joined {
@@ -52,7 +51,6 @@ struct Synchronised<'a> {
 /// # Errors
 /// [`StudyError`] for records that cannot be analysed.
 pub(crate) fn synchronisation(
-    directory: &Path,
     records: &StudyRecords,
 ) -> Result<Option<Synchronisation>, StudyError> {
     let case = case::parse("the manifest's case", &records.case_text, &[])?;
@@ -63,27 +61,39 @@ pub(crate) fn synchronisation(
             _ => None,
         })
     };
+    let joined = records.runs.iter().enumerate().filter_map(|(place, run)| {
+        let (turbine, sync) = joins(run.manifest.run_index)?;
+        Some((place, run, turbine, sync))
+    });
+    let joined: Vec<_> = joined.collect();
+    let Some(&(_, first, turbine, sync)) = joined.first() else { return Ok(None) };
+    let diameter = first.summary.conditions.rotor_diameter;
+    let rate = excitation_rate(sync.strouhal, case.wind.speed, diameter);
+    let reference = Reference { rate, sense: sync.sense };
+    let name = &case.turbines[turbine].name;
+    // Without a true wind there is nothing to compare with; a short run says nothing of phases.
+    let mut truths = records
+        .runs
+        .iter()
+        .filter_map(|run| truth(&run.manifest.run, name, &run.series, &reference).ok().flatten());
+    let truth = truths.next();
+    let from = case.time.spin_up;
     let mut runs = Vec::new();
-    let mut found = None;
-    for (place, run) in records.runs.iter().enumerate() {
-        let Some((turbine, sync)) = joins(run.manifest.run_index) else { continue };
-        if *found.get_or_insert(turbine) != turbine {
-            continue;
-        }
-        let name = run.manifest.run.clone();
-        let folder = RunFolder::new(directory, &name).path().to_owned();
-        let answer = match phase(&PhaseQuestion { run: folder, ..PhaseQuestion::default() }) {
-            Ok(answer) => Some(answer),
-            // Without a true wind there is nothing to compare with; a short run says nothing of phases.
-            Err(StudyError::NoTruth { .. } | StudyError::Analysis(_)) => None,
-            Err(error) => return Err(error),
+    for (place, run, _, sync) in joined.into_iter().filter(|joined| joined.2 == turbine) {
+        let (series, own) = (&run.series, &run.manifest.run);
+        let answer = match &truth {
+            Some(truth) => {
+                let estimates = recorded(series, name)?;
+                match compare(own, name, series, &estimates, truth, &reference, from) {
+                    Ok(answer) => Some(answer),
+                    Err(StudyError::Analysis(_)) => None,
+                    Err(error) => return Err(error),
+                }
+            }
+            None => None,
         };
-        runs.push(Joined { run: place, name, sync, answer });
+        runs.push(Joined { run: place, name: own.clone(), sync, answer });
     }
-    let (Some(turbine), Some(first)) = (found, runs.first()) else { return Ok(None) };
-    let diameter = records.runs[first.run].summary.conditions.rotor_diameter;
-    let rate = excitation_rate(first.sync.strouhal, case.wind.speed, diameter);
-    let reference = Reference { rate, sense: first.sync.sense };
     let study = Synchronised { case: &case, records, runs, turbine, reference, diameter };
     let (slices, deficits) = wake::wake(&study)?;
     Ok(Some(Synchronisation {

@@ -9,7 +9,7 @@ use super::spelling::nearest;
 use super::table::Table;
 use farm::case::{
     Case, Control, Flow, Ground, Helix, Output, PhaseEstimator, PhaseSync, Placement, Pulse, Run,
-    Sense, Sides, Solver, Time, TurbulenceModel, Wind,
+    Sense, Sides, Solver, Time, TurbulenceModel, Wind, helix_upstream,
 };
 
 /// The case that `entries` describe.
@@ -313,24 +313,6 @@ struct Place<'a> {
     /// Sense and Strouhal number of the helix that comes from upstream.
     upstream: Option<(Sense, f64)>,
     path: String,
-}
-
-/// Sense and Strouhal number of the helix on the nearest turbine upstream of turbine `index` that has one.
-fn helix_upstream(
-    index: usize,
-    turbines: &[Placement],
-    controls: &[Control],
-) -> Option<(Sense, f64)> {
-    let x = |index: usize| turbines[index].position_diameters[0];
-    (0..turbines.len())
-        .filter(|&other| x(other) < x(index))
-        .filter_map(|other| match controls[other] {
-            Control::Helix(helix) => Some((other, (helix.sense, helix.strouhal))),
-            Control::PhaseSync(sync) => Some((other, (sync.sense, sync.strouhal))),
-            _ => None,
-        })
-        .max_by(|(a, _), (b, _)| x(*a).total_cmp(&x(*b)))
-        .map(|(_, helix)| helix)
 }
 
 fn phase_sync_of(
