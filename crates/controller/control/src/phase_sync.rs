@@ -27,8 +27,6 @@ pub struct SyncSettings {
     pub sense: Sense,
     /// Pitch amplitude (rad).
     pub amplitude: f64,
-    /// Strouhal number that `rate` was made from (–).
-    pub strouhal: f64,
     /// Excitation rate of the turbine upstream (rad/s).
     pub rate: f64,
     /// Lead φ_off of the pitch over the wind (rad).
@@ -43,7 +41,8 @@ pub struct SyncSettings {
 
 /// Trust below which the excitation fades out, and above which it comes back (–).
 ///
-/// [`Trust::overall`](estimation::helix::Trust::overall) lies near 0 in turbulence without a helix and above a half in one.
+/// [`Trust::overall`](estimation::helix::Trust::overall) lies near 0 in turbulence without a helix; five diameters behind one it was
+/// 0.2 to 0.5 in large-eddy flow (docs/validation/synchronised-helix.md).
 pub const TRUST: [f64; 2] = [0.05, 0.15];
 
 /// Excitation periods over which the found phases are steadied before they pitch (–).

@@ -13,7 +13,7 @@ use control::phase_sync::{self, SyncSettings};
 use control::{
     Excitation, Helix, Meandering, PhaseSync, Pulse, TurbineController, excitation_rate,
 };
-use estimation::helix::{Calibration, Options, Setting, Wake};
+use estimation::helix::{Options, Setting, Wake};
 use estimation::phase_locked;
 use estimation::{EstimationError, HelixEstimator};
 use flow::lattice;
@@ -42,29 +42,6 @@ pub enum AssemblyError {
     /// The system has no more threads to give.
     #[error("no threads for the turbines")]
     Threads(#[from] rayon::ThreadPoolBuildError),
-}
-
-/// The calibration of one turbine's phase estimator.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Calibrated {
-    /// Place of the turbine in the case.
-    pub turbine: usize,
-    /// What it shall do.
-    pub sync: PhaseSyncSettings,
-    /// What was found.
-    pub calibration: Calibration,
-}
-
-impl Calibrated {
-    /// Whether it is that of turbine `index` under `control`; offset, start and fallback change nothing of it.
-    pub fn fits(&self, control: &Control, index: usize) -> bool {
-        matches!(control, Control::PhaseSync(sync) if self.turbine == index && self.sync == key(sync))
-    }
-}
-
-/// What a calibration depends on: the same for all offsets and starts.
-pub fn key(sync: &PhaseSyncSettings) -> PhaseSyncSettings {
-    PhaseSyncSettings { offset: 0.0, start: 0.0, fallback: true, ..*sync }
 }
 
 /// A turbine model with the constants of its controller.
@@ -127,8 +104,7 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
     settings
 }
 
-/// What runs on a turbine of `model`, at time steps of `plan`, its phase estimator with `calibration`; Strouhal numbers are
-/// taken with the case's wind speed and the first turbine's diameter.
+/// What runs on a turbine of `model`, at time steps of `plan`; Strouhal numbers are taken with the case's wind speed and the first turbine's diameter.
 ///
 /// # Errors
 /// [`AssemblyError::Estimation`] when the phase of a helix cannot be sought as asked, [`AssemblyError::Meandering`] and
@@ -138,7 +114,6 @@ pub fn controller(
     model: &Model,
     case: &Case,
     plan: &Plan,
-    calibration: Option<&Calibration>,
 ) -> Result<TurbineController, AssemblyError> {
     let (wind_speed, diameter) = (case.wind.speed, plan.diameter);
     let excitation = match control {
@@ -160,12 +135,11 @@ pub fn controller(
         Control::PhaseSync(asked) => {
             let setting = estimator_setting(asked, case, plan);
             let options = estimator_options(asked.estimator, case.flow.solver);
-            let options = calibration.map_or(options, |found| found.apply(options));
+            let options = asked.calibration.map_or(options, |found| found.apply(options));
             let estimator = HelixEstimator::new(&model.definition, &setting, options)?;
             let settings = SyncSettings {
                 sense: asked.sense,
                 amplitude: asked.amplitude,
-                strouhal: asked.strouhal,
                 rate: setting.rate,
                 offset: wrap_to_turn(asked.offset),
                 azimuth_offset: asked.azimuth_offset,
@@ -254,7 +228,7 @@ pub(crate) fn turbine_settings(
 }
 
 /// The farm of one run, at time zero: the turbines that are there in it, in the case's order, in `air`. `models` holds one
-/// entry per turbine of the case, in its order, each [equipped](Model::equipped) for the case, `calibrations` what was found for phase estimators; the farm's machines are those of [`Run::present`].
+/// entry per turbine of the case, in its order, each [equipped](Model::equipped) for the case; the farm's machines are those of [`Run::present`].
 ///
 /// # Errors
 /// [`AssemblyError`].
@@ -263,7 +237,6 @@ pub fn farm(
     run: &Run,
     plan: &Plan,
     models: &[Model],
-    calibrations: &[Calibrated],
     air: Air,
 ) -> Result<Farm<Air>, AssemblyError> {
     let mut machines = Vec::with_capacity(models.len());
@@ -271,9 +244,7 @@ pub fn farm(
         let model = &models[index];
         let settings = turbine_settings(case, plan, model, case.turbines[index].flexible);
         let turbine = Turbine::new(Arc::clone(&model.definition), plan.positions[index], settings)?;
-        let calibration = calibrations.iter().find(|found| found.fits(&run.control[index], index));
-        let calibration = calibration.map(|found| &found.calibration);
-        let control = controller(&run.control[index], model, case, plan, calibration)?;
+        let control = controller(&run.control[index], model, case, plan)?;
         machines.push(Machine::new(turbine, control));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

@@ -3,6 +3,7 @@
 pub use control::Sense;
 pub use control::meandering::{Decoupling, Followed, Leader, Reference};
 
+use estimation::helix::Calibration;
 use serde::{Deserialize, Serialize};
 
 /// A study: one wind, one row of turbines, several runs to compare.
@@ -271,6 +272,8 @@ pub struct PhaseSync {
     pub estimator: PhaseEstimator,
     /// Whether it fades to the baseline where the estimate cannot be trusted.
     pub fallback: bool,
+    /// What the estimator makes of the turbine's own pitch; found [before the runs](crate::pitch_response::calibration).
+    pub calibration: Option<Calibration>,
 }
 
 /// What finds the phase of a helix.

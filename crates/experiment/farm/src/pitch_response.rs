@@ -161,7 +161,7 @@ fn pitching(
     let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)
         .map_err(AssemblyError::from)?
         .without_bodies();
-    let controller = assemble::controller(&helix, model, &alone, plan, None)?;
+    let controller = assemble::controller(&helix, model, &alone, plan)?;
     let air = tunnel(&alone, plan, diameter)?;
     let mut farm = Farm::new(vec![Machine::new(turbine, controller)], air, plan.interval, 1)
         .map_err(AssemblyError::from)?;

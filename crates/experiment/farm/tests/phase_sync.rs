@@ -30,7 +30,6 @@ fn sync(sense: Sense, offset: f64) -> PhaseSync {
     let settings = SyncSettings {
         sense,
         amplitude: AMPLITUDE,
-        strouhal: 0.25,
         rate: TAU / PERIOD,
         offset,
         azimuth_offset: 0.0,

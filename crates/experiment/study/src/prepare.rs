@@ -3,8 +3,9 @@
 use crate::StudyError;
 use crate::watcher::{Estimate, Watcher};
 use basis::angle::wrap_to_turn;
-use farm::assemble::{Calibrated, Model, key};
-use farm::case::{Case, Control, Decoupling, Meandering, PhaseEstimator, Solver};
+use estimation::helix::Calibration;
+use farm::assemble::Model;
+use farm::case::{Case, Control, Decoupling, Meandering, PhaseEstimator, PhaseSync, Solver};
 use farm::pitch_response::{calibration, decoupling};
 use farm::self_check::{Tunnel, self_check};
 use farm::{Plan, plan};
@@ -55,8 +56,6 @@ pub struct Setup {
     folder: PathBuf,
     /// What a reader of the numbers must know.
     pub warnings: Vec<String>,
-    /// Calibrations of phase estimators, once [made](Self::calibrate).
-    pub calibrations: Vec<Calibrated>,
 }
 
 impl Setup {
@@ -108,17 +107,8 @@ impl Setup {
         let inflow = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
         let turbine_texts = BTreeMap::new();
         let folder = PathBuf::new();
-        let mut setup = Self {
-            case,
-            case_text,
-            models,
-            turbine_texts,
-            plan,
-            inflow,
-            folder,
-            warnings,
-            calibrations: Vec::new(),
-        };
+        let mut setup =
+            Self { case, case_text, models, turbine_texts, plan, inflow, folder, warnings };
         setup.inflow = Arc::new(setup.profile());
         let size = setup.needs_box().then(|| size_box(&setup.turbulence_need()));
         if let Some(size) = size.filter(|size| !size.covers) {
@@ -222,35 +212,56 @@ impl Setup {
         Ok(slowest)
     }
 
-    /// Calibrates the phase estimator of every turbine that joins a helix in one of `runs`, and finds how pitch acts on the
-    /// loads of every one that acts on meandering and is not told.
+    /// On return the case knows, for `runs`, what the phase estimator of every turbine that joins a helix makes of its own
+    /// pitch, and how pitch acts on the loads of every turbine that acts on meandering and is not told.
     ///
     /// # Errors
-    /// [`StudyError::Calibration`] when it cannot be made.
+    /// [`StudyError::Calibration`] when it cannot be found.
     pub fn calibrate(
         &mut self,
         runs: &[usize],
         watcher: &mut dyn Watcher,
     ) -> Result<(), StudyError> {
-        for run in runs.iter().map(|&run| &self.case.runs[run]) {
-            for (index, control) in run.control.iter().enumerate() {
-                let Control::PhaseSync(sync) = control else { continue };
-                let known = self.calibrations.iter().any(|found| found.fits(control, index));
-                let published = sync.estimator == PhaseEstimator::Published;
-                if known || published || sync.amplitude == 0.0 {
+        self.calibrate_estimators(runs, watcher)?;
+        self.decouple(runs, watcher)
+    }
+
+    /// Calibrates phase estimators, once for a turbine: offset, start and fallback change nothing of it.
+    fn calibrate_estimators(
+        &mut self,
+        runs: &[usize],
+        watcher: &mut dyn Watcher,
+    ) -> Result<(), StudyError> {
+        let mut known: Vec<(usize, PhaseSync, Calibration)> = Vec::new();
+        for &run in runs {
+            for index in 0..self.case.turbines.len() {
+                let Control::PhaseSync(asked) = self.case.runs[run].control[index] else {
+                    continue;
+                };
+                if asked.estimator == PhaseEstimator::Published || asked.amplitude == 0.0 {
                     continue;
                 }
-                let name = &self.case.turbines[index].name;
-                let what = format!("calibrating the estimator of {name}");
-                let model = &self.models[index];
-                let mut told = |share| watcher.preparing(&what, share);
-                let found = calibration(&self.case, &self.plan, model, index, sync, &mut told)?;
-                watcher.calibrated(name, &found);
-                let sync = key(sync);
-                self.calibrations.push(Calibrated { turbine: index, sync, calibration: found });
+                let alike = PhaseSync { offset: 0.0, start: 0.0, fallback: true, ..asked };
+                let before = known.iter().find(|known| known.0 == index && known.1 == alike);
+                let found = match before {
+                    Some(&(_, _, found)) => found,
+                    None => {
+                        let name = &self.case.turbines[index].name;
+                        let what = format!("calibrating the estimator of {name}");
+                        let mut told = |share| watcher.preparing(&what, share);
+                        let model = &self.models[index];
+                        let found =
+                            calibration(&self.case, &self.plan, model, index, &asked, &mut told)?;
+                        watcher.calibrated(name, &found);
+                        known.push((index, alike, found));
+                        found
+                    }
+                };
+                self.case.runs[run].control[index] =
+                    Control::PhaseSync(PhaseSync { calibration: Some(found), ..asked });
             }
         }
-        self.decouple(runs, watcher)
+        Ok(())
     }
 
     /// Finds how pitch acts on the loads where meandering control needs it, once for turbines that are alike.

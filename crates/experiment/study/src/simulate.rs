@@ -135,8 +135,7 @@ impl<'a> Simulation<'a> {
         resume: bool,
     ) -> Result<Self, StudyError> {
         let air = air::begin(setup)?;
-        let farm =
-            assemble::farm(&setup.case, run, &setup.plan, &setup.models, &setup.calibrations, air)?;
+        let farm = assemble::farm(&setup.case, run, &setup.plan, &setup.models, air)?;
         let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
         let lines = lines::of(setup, run);
         let places: Vec<&str> = lines.iter().map(|lines| lines.name.as_str()).collect();

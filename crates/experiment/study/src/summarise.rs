@@ -80,7 +80,7 @@ pub(crate) fn summarise(
         let placement = &setup.case.turbines[index];
         let name = &placement.name;
         let control = &run.control[index];
-        let runs = controller(control, &setup.models[index], &setup.case, &setup.plan, None)?;
+        let runs = controller(control, &setup.models[index], &setup.case, &setup.plan)?;
         let delivered_pitch =
             delivered_pitch(&analysed, name, control, setup, clipped_shares[machine])?;
         // A phase that follows the wind spreads the line: what is missing of it was not held back.

@@ -343,6 +343,7 @@ fn phase_sync_of(
             PhaseEstimator::Robust
         },
         fallback: section.choice("fallback") != "none",
+        calibration: None,
     }
 }
 
