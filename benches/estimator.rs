@@ -5,7 +5,7 @@
 
 use basis::angle::wrap_to_turn;
 use basis::mbc::to_blades;
-use basis::{FixedFrame, Measurements, PerBlade, Sense};
+use basis::{FixedFrame, Measurements, Sense};
 use estimation::Estimator;
 use estimation::helix::{HelixEstimator, Jacobian, MeasurementModel, Options, Setting};
 use std::f64::consts::TAU;
@@ -83,14 +83,9 @@ fn record(
                 rotor_speed: ROTOR_SPEED,
                 generator_speed: ROTOR_SPEED,
                 pitch,
-                generator_torque: 0.0,
-                power: 0.0,
-                thrust: 0.0,
-                aerodynamic_torque: 0.0,
                 rotor_wind_speed: 9.0,
                 flap_moments: moments,
-                edge_moments: PerBlade::splat(3, 0.0),
-                tower_top_acceleration: 0.0,
+                ..Measurements::at_rest(3)
             }
         })
         .collect()

@@ -59,20 +59,12 @@ fn two_axes(settings: &Settings) -> f64 {
         Err(error) => panic!("the bench's own settings: {error}"),
     };
     let mut measurements = Measurements {
-        time: 0.0,
         interval: INTERVAL,
-        azimuth: 0.0,
         rotor_speed: 0.7,
         generator_speed: 0.7,
-        pitch: PerBlade::splat(3, 0.0),
-        generator_torque: 0.0,
-        power: 0.0,
-        thrust: 0.0,
-        aerodynamic_torque: 0.0,
         rotor_wind_speed: 9.0,
         flap_moments: PerBlade::splat(3, 5e7),
-        edge_moments: PerBlade::splat(3, 0.0),
-        tower_top_acceleration: 0.0,
+        ..Measurements::at_rest(3)
     };
     let start = Instant::now();
     for step in 0..N_UPDATES {

@@ -218,14 +218,9 @@ fn reading(time: f64, azimuth: f64, pitch: PerBlade<f64>, moments: PerBlade<f64>
         rotor_speed: ROTOR_SPEED,
         generator_speed: ROTOR_SPEED,
         pitch,
-        generator_torque: 0.0,
-        power: 0.0,
-        thrust: 0.0,
-        aerodynamic_torque: 0.0,
         rotor_wind_speed: SPEED,
         flap_moments: moments,
-        edge_moments: PerBlade::splat(3, 0.0),
-        tower_top_acceleration: 0.0,
+        ..Measurements::at_rest(3)
     }
 }
 

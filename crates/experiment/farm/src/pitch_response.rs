@@ -6,6 +6,7 @@ use crate::assemble::{self, AssemblyError, Model};
 use crate::case::{Case, Control, Decoupling, Helix, Meandering, PhaseEstimator, PhaseSync, Sense};
 use crate::farm::Recorder;
 use crate::plan::Plan;
+use crate::self_check::Tunnel;
 use crate::{Farm, Machine};
 use basis::mbc::to_fixed_frame;
 use basis::{Commands, Measurements, Vector3};
@@ -15,7 +16,7 @@ use estimation::EstimationError;
 use estimation::helix::{Calibration, calibrate};
 use flow::FlowError;
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::lattice::{self, Lattice};
+use flow::lattice;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use thiserror::Error;
@@ -23,10 +24,6 @@ use turbine::Turbine;
 
 /// Wind of the record over the case's (–): about what is left in a wake.
 const WAKE_SPEED: f64 = 0.75;
-/// Inlet to rotor, rotor to outlet, width and height of the tunnel (diameters).
-const TUNNEL: [f64; 3] = [3.0, 3.0, 5.0];
-/// Time for the near wake to settle (diameters over wind speed).
-const SETTLING: f64 = 8.0;
 /// Excitation periods for the filter to settle, and counted after them (–).
 const PERIODS: [f64; 2] = [2.0, 2.0];
 /// Amplitude of the helices that tell how pitch acts on the loads (rad): a degree.
@@ -162,10 +159,16 @@ fn pitching(
         .map_err(AssemblyError::from)?
         .without_bodies();
     let controller = assemble::controller(&helix, model, &alone, plan)?;
-    let air = tunnel(&alone, plan, diameter)?;
+    let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
+    let air = if alone.flow.solver.is_prescribed() {
+        let profile = MeanProfile::Uniform { speed: alone.wind.speed };
+        Air::Prescribed(Box::new(PrescribedWind::everywhere(Arc::new(profile))))
+    } else {
+        Air::Lattice(Box::new(tunnel.air(&alone.wind, diameter, alone.flow.threads)?))
+    };
     let mut farm = Farm::new(vec![Machine::new(turbine, controller)], air, plan.interval, 1)
         .map_err(AssemblyError::from)?;
-    let settling = SETTLING * diameter / alone.wind.speed;
+    let settling = tunnel.settling * diameter / alone.wind.speed;
     let period = TAU / rate;
     let n_settling = (settling / plan.interval).ceil() as u64;
     let n_counted = ((PERIODS[0] + PERIODS[1]) * period / plan.interval).ceil() as u64 + 1;
@@ -176,27 +179,6 @@ fn pitching(
         progress((step + 1) as f64 / (n_settling + n_counted) as f64);
     }
     Ok(record.measurements)
-}
-
-/// Steady wind around the origin.
-fn tunnel(case: &Case, plan: &Plan, diameter: f64) -> Result<Air, lattice::SettingsError> {
-    let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
-    if case.flow.solver.is_prescribed() {
-        return Ok(Air::Prescribed(Box::new(PrescribedWind::everywhere(profile))));
-    }
-    let [upstream, downstream, width] = TUNNEL;
-    let cells = |diameters: f64| (diameters * diameter / plan.spacing).round() as usize;
-    let n_across = cells(width);
-    let n_cells = [cells(upstream + downstream), n_across, n_across];
-    let half_width = 0.5 * n_across as f64 * plan.spacing;
-    let origin = Vector3::new(-upstream * diameter, -half_width, -half_width);
-    let mut settings =
-        lattice::Settings::new(origin, plan.spacing, n_cells, plan.interval, case.wind.speed);
-    settings.air_density = case.wind.air_density;
-    settings.kinematic_viscosity = case.wind.kinematic_viscosity;
-    settings.ground = lattice::Ground::Periodic;
-    settings.threads = case.flow.threads;
-    Ok(Air::Lattice(Box::new(Lattice::new(settings, profile)?)))
 }
 
 /// Keeps what was measured.
@@ -217,7 +199,7 @@ impl Recorder for Record {
 mod tests {
     use super::*;
     use basis::mbc::to_blades;
-    use basis::{FixedFrame, PerBlade};
+    use basis::FixedFrame;
 
     /// Measurements of a rotor whose moments lose `gain` (N m/rad) of a helix, `lead` (rad) ahead of it, beside constants and
     /// an oscillation at three times the rotor's frequency.
@@ -241,15 +223,9 @@ mod tests {
                     azimuth,
                     rotor_speed,
                     generator_speed: rotor_speed,
-                    pitch: PerBlade::splat(3, 0.0),
-                    generator_torque: 0.0,
-                    power: 0.0,
-                    thrust: 0.0,
-                    aerodynamic_torque: 0.0,
                     rotor_wind_speed: 8.0,
                     flap_moments: to_blades(azimuth, moments, 3),
-                    edge_moments: PerBlade::splat(3, 0.0),
-                    tower_top_acceleration: 0.0,
+                    ..Measurements::at_rest(3)
                 }
             })
             .collect()

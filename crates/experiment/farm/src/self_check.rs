@@ -81,6 +81,37 @@ impl Tunnel {
         let [upstream, downstream, width] = [4.0, 4.0, 6.0];
         Self { upstream, downstream, width, settling: 10.0, averaging: 1.0, spacing, interval }
     }
+
+    /// The one in which a turbine's pitch is probed: smaller, since walls change little of what pitch does. What is averaged
+    /// is counted in periods of the pitch instead.
+    pub fn of_probe(spacing: f64, interval: f64) -> Self {
+        let [upstream, downstream, width] = [3.0, 3.0, 5.0];
+        Self { upstream, downstream, width, settling: 8.0, averaging: 0.0, spacing, interval }
+    }
+
+    /// The steady speed of `wind` in the tunnel, a rotor of `diameter` (m) at its origin.
+    ///
+    /// # Errors
+    /// [`lattice::SettingsError`] when the air cannot be set up.
+    pub fn air(
+        &self,
+        wind: &Wind,
+        diameter: f64,
+        threads: Option<usize>,
+    ) -> Result<Lattice, lattice::SettingsError> {
+        let cells = |diameters: f64| (diameters * diameter / self.spacing).round() as usize;
+        let n_across = cells(self.width);
+        let n_cells = [cells(self.upstream + self.downstream), n_across, n_across];
+        let half_width = 0.5 * n_across as f64 * self.spacing;
+        let origin = Vector3::new(-self.upstream * diameter, -half_width, -half_width);
+        let mut settings =
+            lattice::Settings::new(origin, self.spacing, n_cells, self.interval, wind.speed);
+        settings.air_density = wind.air_density;
+        settings.kinematic_viscosity = wind.kinematic_viscosity;
+        settings.ground = lattice::Ground::Periodic;
+        settings.threads = threads;
+        Lattice::new(settings, Arc::new(MeanProfile::Uniform { speed: wind.speed }))
+    }
 }
 
 /// Checks `model` in the steady speed of `wind` in `tunnel`, rotor speed held at its optimum (or rated), pitch at its
@@ -100,18 +131,8 @@ pub fn self_check(
 ) -> Result<SelfCheck, SelfCheckError> {
     let definition = &model.definition;
     let diameter = definition.rotor_diameter();
-    let Tunnel { spacing, interval, .. } = *tunnel;
-    let cells = |diameters: f64| (diameters * diameter / spacing).round() as usize;
-    let n_across = cells(tunnel.width);
-    let n_cells = [cells(tunnel.upstream + tunnel.downstream), n_across, n_across];
-    let half_width = 0.5 * n_across as f64 * spacing;
-    let origin = Vector3::new(-tunnel.upstream * diameter, -half_width, -half_width);
-    let mut settings = lattice::Settings::new(origin, spacing, n_cells, interval, wind.speed);
-    settings.air_density = wind.air_density;
-    settings.kinematic_viscosity = wind.kinematic_viscosity;
-    settings.ground = lattice::Ground::Periodic;
-    settings.threads = threads;
-    let mut air = Lattice::new(settings, Arc::new(MeanProfile::Uniform { speed: wind.speed }))?;
+    let interval = tunnel.interval;
+    let mut air = tunnel.air(wind, diameter, threads)?;
 
     let pitch = model.constants.fine_pitch;
     let rotor_speed = model.rotor_speed(wind.speed);
@@ -120,8 +141,8 @@ pub fn self_check(
         Vector3::new(0.0, 0.0, -definition.rotor.hub_height),
         turbine::Settings {
             induction: Induction::ByFlow {
-                smearing_length: SMEARING_CELLS * spacing,
-                sample_spacing: spacing,
+                smearing_length: SMEARING_CELLS * tunnel.spacing,
+                sample_spacing: tunnel.spacing,
             },
             flexible: false,
             air_density: wind.air_density,
@@ -154,7 +175,9 @@ pub fn self_check(
     }
     let wall_time = started.elapsed().as_secs_f64();
 
-    let area_ratio = definition.rotor_area() / (2.0 * half_width).powi(2);
+    let n_cells = air.n_cells();
+    let width = n_cells[1] as f64 * tunnel.spacing;
+    let area_ratio = definition.rotor_area() / (width * width);
     let expected = expectation(definition, wind, rotor_speed, pitch, area_ratio);
     Ok(SelfCheck {
         model: definition.name.clone(),

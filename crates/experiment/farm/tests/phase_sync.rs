@@ -75,14 +75,9 @@ impl Loop {
             rotor_speed: ROTOR_SPEED,
             generator_speed: ROTOR_SPEED,
             pitch: self.pitch,
-            generator_torque: 0.0,
-            power: 0.0,
-            thrust: 0.0,
-            aerodynamic_torque: 0.0,
             rotor_wind_speed: 9.0,
             flap_moments: moments.map(|moment| moment + scale * self.dice.normal()),
-            edge_moments: PerBlade::splat(3, 0.0),
-            tower_top_acceleration: 0.0,
+            ..Measurements::at_rest(3)
         }
     }
 

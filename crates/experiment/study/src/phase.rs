@@ -417,15 +417,8 @@ fn record(
         rotor_speed: rotor_speed[row],
         generator_speed: rotor_speed[row],
         pitch: PerBlade::from_fn(n_blades, |blade| pitch[blade][row]),
-        // The estimator asks for nothing of what follows but the moments.
-        generator_torque: 0.0,
-        power: 0.0,
-        thrust: 0.0,
-        aerodynamic_torque: 0.0,
-        rotor_wind_speed: 0.0,
         flap_moments: PerBlade::from_fn(n_blades, |blade| flap[blade][row]),
-        edge_moments: PerBlade::splat(n_blades, 0.0),
-        tower_top_acceleration: 0.0,
+        ..Measurements::at_rest(n_blades)
     };
     Ok((0..times.len()).map(measurements).collect())
 }

@@ -36,6 +36,29 @@ pub struct Measurements {
     pub tower_top_acceleration: f64,
 }
 
+impl Measurements {
+    /// What a machine of `n_blades` at rest in still air reads at time zero: zeros, to be overwritten by what a trial is about.
+    pub fn at_rest(n_blades: usize) -> Self {
+        let none = PerBlade::splat(n_blades, 0.0);
+        Self {
+            time: 0.0,
+            interval: 0.0,
+            azimuth: 0.0,
+            rotor_speed: 0.0,
+            generator_speed: 0.0,
+            pitch: none,
+            generator_torque: 0.0,
+            power: 0.0,
+            thrust: 0.0,
+            aerodynamic_torque: 0.0,
+            rotor_wind_speed: 0.0,
+            flap_moments: none,
+            edge_moments: none,
+            tower_top_acceleration: 0.0,
+        }
+    }
+}
+
 /// What a controller asks of its turbine until the next control instant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Commands {

@@ -1,7 +1,7 @@
 //! A rotor with a known power coefficient on a shaft, its constants, and figures of its runs.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
-use basis::{Measurements, PerBlade};
+use basis::Measurements;
 use control::Controller;
 use control::baseline::{
     CoefficientTable, Constants, PitchGains, SetPointSmoothing, TorqueGains,
@@ -142,20 +142,10 @@ pub(crate) struct Rotor {
 impl Rotor {
     pub(crate) fn new(interval: f64, rotor_speed: f64) -> Self {
         let measurements = Measurements {
-            time: 0.0,
             interval,
-            azimuth: 0.0,
             rotor_speed,
             generator_speed: rotor_speed,
-            pitch: PerBlade::splat(3, 0.0),
-            generator_torque: 0.0,
-            power: 0.0,
-            thrust: 0.0,
-            aerodynamic_torque: 0.0,
-            rotor_wind_speed: 0.0,
-            flap_moments: PerBlade::splat(3, 0.0),
-            edge_moments: PerBlade::splat(3, 0.0),
-            tower_top_acceleration: 0.0,
+            ..Measurements::at_rest(3)
         };
         Self { coefficient: slootweg, interval, measurements }
     }

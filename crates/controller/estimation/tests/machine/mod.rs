@@ -4,7 +4,7 @@
 
 use basis::angle::wrap_to_turn;
 use basis::mbc::to_blades;
-use basis::{FixedFrame, Measurements, PerBlade, Sense, Vector3};
+use basis::{FixedFrame, Measurements, Sense, Vector3};
 use estimation::helix::{MeasurementModel, Options, Setting};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -204,14 +204,9 @@ impl World {
             rotor_speed: ROTOR_SPEED,
             generator_speed: ROTOR_SPEED,
             pitch,
-            generator_torque: 0.0,
-            power: 0.0,
-            thrust: 0.0,
-            aerodynamic_torque: 0.0,
             rotor_wind_speed: self.mean_wind,
             flap_moments: moments.map(|moment| moment + scale * dice.normal()),
-            edge_moments: PerBlade::splat(3, 0.0),
-            tower_top_acceleration: 0.0,
+            ..Measurements::at_rest(3)
         }
     }
 }

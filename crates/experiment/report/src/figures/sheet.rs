@@ -74,7 +74,8 @@ impl Sheet<'_> {
             }
         }
         let base = 34.0 + step * (n_rows - 1) as f64 + height;
-        self.colour_bar([WIDTH - RIGHT + 22.0, 34.0, 14.0, (base - 34.0).min(300.0)], &mut shapes);
+        let bar = [WIDTH - RIGHT + 22.0, 34.0, 14.0, (base - 34.0).min(300.0)];
+        colour_bar(bar, self.range, self.map, 6, self.bar, &mut shapes);
         let free_stream = number(self.study.free_stream(), 1);
         Figure {
             name: name.to_owned(),
@@ -138,24 +139,30 @@ impl Sheet<'_> {
         }
         shapes
     }
+}
 
-    fn colour_bar(&self, area: [f64; 4], shapes: &mut Vec<Shape>) {
-        let [low, high] = self.range;
-        let frame = Frame { area, x: Scale::linear(0.0, 1.0), y: Scale::linear(low, high) };
-        let picture = Picture::new([1, 256], self.map, [255.0, 0.0], |_, row| row as f64);
-        shapes.push(Shape::Field { area, picture });
-        shapes.push(rectangle(area, Look::line(Ink::Axis, 0.8)));
-        let (ticks, decimals) = frame.y.ticks(6);
-        let right = area[0] + area[2];
-        for tick in ticks {
-            let [_, y] = frame.point([1.0, tick]);
-            shapes.push(segment([right, y], [right + 4.0, y], Look::line(Ink::Axis, 1.0)));
-            let setting = Setting::plain(Ink::Muted, SMALL);
-            shapes.push(text([right + 7.0, y + 4.0], number(tick, decimals), setting));
-        }
-        let setting = Setting::plain(Ink::Muted, MEDIUM);
-        shapes.push(text([area[0] - 4.0, area[1] - 10.0], self.bar, setting));
+/// A bar of the colours of `map` over `range` in `area`, with about `n_ticks` ticks on its right and `title` above.
+pub(super) fn colour_bar(
+    area: [f64; 4],
+    [low, high]: [f64; 2],
+    map: Map,
+    n_ticks: usize,
+    title: &str,
+    shapes: &mut Vec<Shape>,
+) {
+    let frame = Frame { area, x: Scale::linear(0.0, 1.0), y: Scale::linear(low, high) };
+    let picture = Picture::new([1, 256], map, [255.0, 0.0], |_, row| row as f64);
+    shapes.push(Shape::Field { area, picture });
+    shapes.push(rectangle(area, Look::line(Ink::Axis, 0.8)));
+    let (ticks, decimals) = frame.y.ticks(n_ticks);
+    let right = area[0] + area[2];
+    for tick in ticks {
+        let [_, y] = frame.point([1.0, tick]);
+        shapes.push(segment([right, y], [right + 4.0, y], Look::line(Ink::Axis, 1.0)));
+        let setting = Setting::plain(Ink::Muted, SMALL);
+        shapes.push(text([right + 7.0, y + 4.0], number(tick, decimals), setting));
     }
+    shapes.push(text([area[0] - 4.0, area[1] - 10.0], title, Setting::plain(Ink::Muted, MEDIUM)));
 }
 
 /// Tick labels left of a field, without grid lines across it.

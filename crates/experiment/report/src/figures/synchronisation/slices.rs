@@ -5,8 +5,9 @@ use super::{SliceFigure, SlicePanel};
 use crate::draw::axes::{Frame, MEDIUM, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, Map};
 use crate::draw::field::Picture;
-use crate::draw::{Figure, Look, Role, Setting, Shape, polyline, rectangle, segment, text};
+use crate::draw::{Figure, Look, Role, Setting, Shape, polyline, segment, text};
 use crate::figures::WIDTH;
+use crate::figures::sheet::colour_bar;
 use crate::study::sample;
 use crate::words::number;
 
@@ -39,7 +40,7 @@ pub(super) fn slices(figure: &SliceFigure) -> Option<Figure> {
     }
     if !figure.planes.is_empty() {
         let bar = [WIDTH - RIGHT + 22.0, 34.0, 14.0, height];
-        colour_bar(bar, range, &mut shapes);
+        colour_bar(bar, range, Map::Sequential, 5, "u/U∞", &mut shapes);
     }
     if figure.centre_lines.iter().any(|line| !line.points.is_empty()) {
         let named = figure.centre_lines.iter().map(|line| (line.colour, line.name.as_str()));
@@ -170,20 +171,4 @@ fn heights(frame: &Frame, shapes: &mut Vec<Shape>) {
         let setting = Setting::plain(Ink::Muted, SMALL).anchored(1.0);
         shapes.push(text([left - 7.0, y + 4.0], number(tick, decimals), setting));
     }
-}
-
-fn colour_bar(area: [f64; 4], [low, high]: [f64; 2], shapes: &mut Vec<Shape>) {
-    let frame = Frame { area, x: Scale::linear(0.0, 1.0), y: Scale::linear(low, high) };
-    let picture = Picture::new([1, 256], Map::Sequential, [255.0, 0.0], |_, row| row as f64);
-    shapes.push(Shape::Field { area, picture });
-    shapes.push(rectangle(area, Look::line(Ink::Axis, 0.8)));
-    let (ticks, decimals) = frame.y.ticks(5);
-    let right = area[0] + area[2];
-    for tick in ticks {
-        let [_, y] = frame.point([1.0, tick]);
-        shapes.push(segment([right, y], [right + 4.0, y], Look::line(Ink::Axis, 1.0)));
-        let setting = Setting::plain(Ink::Muted, SMALL);
-        shapes.push(text([right + 7.0, y + 4.0], number(tick, decimals), setting));
-    }
-    shapes.push(text([area[0] - 4.0, area[1] - 10.0], "u/U∞", Setting::plain(Ink::Muted, MEDIUM)));
 }
