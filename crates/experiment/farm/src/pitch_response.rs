@@ -198,8 +198,8 @@ impl Recorder for Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use basis::mbc::to_blades;
     use basis::FixedFrame;
+    use basis::mbc::to_blades;
 
     /// Measurements of a rotor whose moments lose `gain` (N m/rad) of a helix, `lead` (rad) ahead of it, beside constants and
     /// an oscillation at three times the rotor's frequency.
