@@ -1,21 +1,21 @@
 //! How well the phase of a helix is estimated on the turbine that it meets: records in, agreement with the true wind out.
 
+mod asked;
+
 use crate::StudyError;
 use crate::prepare::turbine;
 use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
-    ground_truth, uniform_interval,
+    fixed_frame_moments, ground_truth, uniform_interval,
 };
+use asked::Asked;
 use basis::records::Series;
 use basis::{FixedFrame, Measurements, PerBlade};
-use control::excitation_rate;
 use estimation::HelixEstimator;
 use estimation::helix::Setting;
 use estimation::helix::tuning::{self, Tuned};
 use farm::assemble::{AssemblyError, estimator_options};
-use farm::case::{Case, Control, PhaseEstimator, helix_upstream};
-use formats::case;
-use formats::records::{self, Manifest, RunFolder};
+use farm::case::{Case, PhaseEstimator};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -76,6 +76,9 @@ pub struct PhaseAnswer {
     pub yaw: PhaseAxis,
     /// Mean trust (–).
     pub trust: f64,
+    /// Tilt and yaw phase of the turbine's own blade moments through the filter of the truth, which knows the future: what
+    /// its loads hold, beside what an estimator made of them in time. Absent where the turbine pitched a helix of its own.
+    pub hindsight: Option<[Agreement; 2]>,
 }
 
 /// Estimates over the time of a series.
@@ -111,7 +114,42 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
         None => recorded(series, asked.name())?,
     };
     let from = question.from.unwrap_or(case.time.spin_up);
-    compare(&asked.run, asked.name(), series, &estimates, truth, reference, from)
+    let compared = |estimates: &Estimates| {
+        compare(&asked.run, asked.name(), series, estimates, truth, reference, from)
+    };
+    let hindsight = if asked.pitches {
+        None
+    } else {
+        let definition = seeker(case, *index, reference, 1.0)?.0;
+        let looked_back =
+            compared(&hindsight(series, asked.name(), definition.n_blades, reference)?)?;
+        Some([looked_back.tilt.agreement, looked_back.yaw.agreement])
+    };
+    Ok(PhaseAnswer { hindsight, ..compared(&estimates)? })
+}
+
+/// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m) stand for winds.
+fn hindsight(
+    series: &Series,
+    name: &str,
+    n_blades: usize,
+    reference: &Reference,
+) -> Result<Estimates, StudyError> {
+    let channel = |what: &str| column(series, &format!("{name}.{what}"));
+    let blades = (1..=n_blades)
+        .map(|blade| channel(&format!("flap_moment_{blade}_nm")))
+        .collect::<Result<Vec<_>, _>>()?;
+    let moments = fixed_frame_moments(channel("azimuth_rad")?, &blades)?;
+    let times = column(series, "time_s")?;
+    let band = Band::around(reference.frequency(), Band::RATIO);
+    let told = ground_truth(&moments, times[0], uniform_interval(times)?, reference, band)?;
+    let wave = |axis: AxisWind| Wave { amplitude: axis.amplitude, phase: axis.phase };
+    Ok(Estimates {
+        trust: vec![1.0; told.average.len()],
+        wind: told.average,
+        tilt: wave(told.tilt),
+        yaw: wave(told.yaw),
+    })
 }
 
 /// What `estimates` over the rows of `series` are worth against `truth`, from the time `from` (s) on.
@@ -171,6 +209,7 @@ pub(crate) fn compare(
         mean_winds: [mean(&pick(&estimates.wind)), mean(&pick_true(&truth.average))],
         trust: mean(&pick(&estimates.trust)),
         times: pick(times),
+        hindsight: None,
     })
 }
 
@@ -178,94 +217,9 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The run in the folder `path`.
-fn folder_of(path: &Path) -> RunFolder {
-    // A bare name has no parent to look for other runs in.
-    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-    RunFolder::new(path.parent().unwrap_or(Path::new("")), &name.unwrap_or_default())
-}
-
 fn column<'a>(series: &'a Series, channel: &str) -> Result<&'a [f64], StudyError> {
     let missing = || StudyError::MissingChannel { channel: channel.to_owned() };
     series.column(channel).ok_or_else(missing)
-}
-
-/// The turbine that `question` is about.
-fn turbine_of(
-    question: &PhaseQuestion,
-    case: &Case,
-    manifest: &Manifest,
-) -> Result<usize, StudyError> {
-    let names: Vec<String> = case.turbines.iter().map(|turbine| turbine.name.clone()).collect();
-    let control = &case.runs[manifest.run_index].control;
-    let found = match &question.turbine {
-        Some(name) => names.iter().position(|other| other == name),
-        None => control.iter().position(|control| matches!(control, Control::PhaseSync(_))),
-    };
-    found.ok_or_else(|| StudyError::NobodySeeks {
-        run: manifest.run.clone(),
-        asked: question.turbine.clone(),
-        turbines: names,
-    })
-}
-
-/// What a question is about, read.
-struct Asked {
-    /// Name of the run.
-    run: String,
-    case: Case,
-    /// Place of the turbine in the case.
-    index: usize,
-    reference: Reference,
-    series: Series,
-    truth: Truth,
-}
-
-impl Asked {
-    fn read(question: &PhaseQuestion) -> Result<Self, StudyError> {
-        let folder = folder_of(&question.run);
-        let manifest = records::read_manifest(&folder)?;
-        let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
-        let index = turbine_of(question, &case, &manifest)?;
-        let name = case.turbines[index].name.clone();
-        let control = &case.runs[manifest.run_index].control;
-        let helix = control[index].helix().or(helix_upstream(index, &case.turbines, control));
-        let (sense, strouhal) = helix.ok_or_else(|| StudyError::NoHelix {
-            run: manifest.run.clone(),
-            turbine: name.clone(),
-        })?;
-        let diameter = records::read_summary(&folder)?.conditions.rotor_diameter;
-        let rate = excitation_rate(strouhal, case.wind.speed, diameter);
-        let reference = Reference { rate, sense };
-        let study = folder.path().parent().unwrap_or(Path::new("")).to_owned();
-        let without = match &question.truth {
-            Some(path) => Some(folder_of(path)),
-            None => case
-                .runs
-                .iter()
-                .filter(|run| {
-                    run.control[index] == Control::Absent && case.output.lines_at.contains(&index)
-                })
-                .map(|run| RunFolder::new(&study, &run.name))
-                .find(RunFolder::is_complete),
-        };
-        let truth = match without {
-            Some(without) => {
-                let series = records::read_series(&without.series_path())?;
-                truth(&without.run(), &name, &series, &reference)?
-            }
-            None => None,
-        };
-        let truth = truth.ok_or(StudyError::NoTruth { turbine: name, directory: study })?;
-        let series = records::read_series(&folder.series_path())?;
-        Ok(Self { run: manifest.run, case, index, reference, series, truth })
-    }
-
-    /// Name of the turbine.
-    fn name(&self) -> &str {
-        &self.case.turbines[self.index].name
-    }
 }
 
 /// The true wind at the place of turbine `name` in the `series` of `run`; nothing where that was not kept.

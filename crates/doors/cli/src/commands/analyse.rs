@@ -117,6 +117,14 @@ fn text(answer: &PhaseAnswer) -> String {
             agreement.locking,
         );
     }
+    if let Some([tilt, yaw]) = answer.hindsight {
+        let [tilt, yaw] =
+            [tilt, yaw].map(|found| (found.spread.to_degrees(), found.bias.to_degrees()));
+        text += &format!(
+            "in hindsight, the same blade moments through the filter of the truth: spread {:.1}° about {:+.1}° in tilt, {:.1}° about {:+.1}° in yaw\n",
+            tilt.0, tilt.1, yaw.0, yaw.1
+        );
+    }
     text
 }
 
@@ -147,6 +155,10 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
         "trust": answer.trust,
         "tilt": axis(&answer.tilt),
         "yaw": axis(&answer.yaw),
+        "hindsight": answer.hindsight.map(|axes| axes.map(|found| json!({
+            "spread_deg": found.spread.to_degrees(),
+            "bias_deg": found.bias.to_degrees(),
+        }))),
     })
 }
 

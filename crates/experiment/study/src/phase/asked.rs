@@ -1,0 +1,103 @@
+//! The records that a question about phases is put to.
+
+use super::{PhaseQuestion, Truth, truth};
+use crate::StudyError;
+use analysis::phase::Reference;
+use basis::records::Series;
+use control::excitation_rate;
+use farm::case::{Case, Control, helix_upstream};
+use formats::case;
+use formats::records::{self, Manifest, RunFolder};
+use std::path::Path;
+
+/// What a question is about, read.
+pub(super) struct Asked {
+    /// Name of the run.
+    pub(super) run: String,
+    pub(super) case: Case,
+    /// Place of the turbine in the case.
+    pub(super) index: usize,
+    pub(super) reference: Reference,
+    /// Whether it pitches a helix of its own.
+    pub(super) pitches: bool,
+    pub(super) series: Series,
+    pub(super) truth: Truth,
+}
+
+impl Asked {
+    pub(super) fn read(question: &PhaseQuestion) -> Result<Self, StudyError> {
+        let folder = folder_of(&question.run);
+        let manifest = records::read_manifest(&folder)?;
+        let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
+        let index = turbine_of(question, &case, &manifest)?;
+        let name = case.turbines[index].name.clone();
+        let control = &case.runs[manifest.run_index].control;
+        let helix = control[index].helix().or(helix_upstream(index, &case.turbines, control));
+        let (sense, strouhal) = helix.ok_or_else(|| StudyError::NoHelix {
+            run: manifest.run.clone(),
+            turbine: name.clone(),
+        })?;
+        let diameter = records::read_summary(&folder)?.conditions.rotor_diameter;
+        let rate = excitation_rate(strouhal, case.wind.speed, diameter);
+        let reference = Reference { rate, sense };
+        let study = folder.path().parent().unwrap_or(Path::new("")).to_owned();
+        let without = match &question.truth {
+            Some(path) => Some(folder_of(path)),
+            None => case
+                .runs
+                .iter()
+                .filter(|run| {
+                    run.control[index] == Control::Absent && case.output.lines_at.contains(&index)
+                })
+                .map(|run| RunFolder::new(&study, &run.name))
+                .find(RunFolder::is_complete),
+        };
+        let truth = match without {
+            Some(without) => {
+                let series = records::read_series(&without.series_path())?;
+                truth(&without.run(), &name, &series, &reference)?
+            }
+            None => None,
+        };
+        let truth = truth.ok_or(StudyError::NoTruth { turbine: name, directory: study })?;
+        let series = records::read_series(&folder.series_path())?;
+        let pitches = match control[index] {
+            Control::Helix(helix) => helix.amplitude != 0.0,
+            Control::PhaseSync(sync) => sync.amplitude != 0.0,
+            _ => false,
+        };
+        Ok(Self { run: manifest.run, case, index, reference, pitches, series, truth })
+    }
+
+    /// Name of the turbine.
+    pub(super) fn name(&self) -> &str {
+        &self.case.turbines[self.index].name
+    }
+}
+
+/// The turbine that `question` is about.
+fn turbine_of(
+    question: &PhaseQuestion,
+    case: &Case,
+    manifest: &Manifest,
+) -> Result<usize, StudyError> {
+    let names: Vec<String> = case.turbines.iter().map(|turbine| turbine.name.clone()).collect();
+    let control = &case.runs[manifest.run_index].control;
+    let found = match &question.turbine {
+        Some(name) => names.iter().position(|other| other == name),
+        None => control.iter().position(|control| matches!(control, Control::PhaseSync(_))),
+    };
+    found.ok_or_else(|| StudyError::NobodySeeks {
+        run: manifest.run.clone(),
+        asked: question.turbine.clone(),
+        turbines: names,
+    })
+}
+
+/// The run in the folder `path`.
+fn folder_of(path: &Path) -> RunFolder {
+    // A bare name has no parent to look for other runs in.
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    RunFolder::new(path.parent().unwrap_or(Path::new("")), &name.unwrap_or_default())
+}
