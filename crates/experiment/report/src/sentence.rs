@@ -5,6 +5,9 @@ use crate::study::{Excitation, Kind, Study, gain_of};
 use crate::words::{self, SPACE, number, percent};
 use basis::records::{Statistic, TurbineSummary};
 
+/// Changes of power below this (–) are not told: they print as zero.
+const LEAST_TOLD: f64 = 5e-4;
+
 /// The result in one sentence: what was done, what each turbine lost or won, and all together.
 pub(crate) fn headline(study: &Study) -> String {
     match study.best() {
@@ -35,7 +38,7 @@ pub(crate) fn confidence(study: &Study) -> String {
 
 /// The gain of one run: "A counter-clockwise helix of 4.0° on T1 cost T1 2.1 % …".
 pub(crate) fn gain_sentence(study: &Study, run: &RunRecords) -> String {
-    let excitations = study.excitations(run);
+    let excitations = study.changed_excitations(run);
     let subject = if excitations.is_empty() {
         format!("The run “{}”", run.summary.run)
     } else {
@@ -51,11 +54,14 @@ pub(crate) fn gain_sentence(study: &Study, run: &RunRecords) -> String {
         .iter()
         .filter_map(|turbine| Some((turbine, turbine.power_gain?.mean)))
         .collect();
+    let told = |gain: &f64| gain.abs() >= LEAST_TOLD;
     let says = |(turbine, gain): &(&TurbineSummary, f64)| {
         format!("{} {}", turbine.name, percent(gain.abs()))
     };
-    let losses: Vec<String> = gains.iter().filter(|gain| gain.1 < 0.0).map(says).collect();
-    let wins: Vec<String> = gains.iter().filter(|gain| gain.1 >= 0.0).map(says).collect();
+    let losses: Vec<String> =
+        gains.iter().filter(|gain| told(&gain.1) && gain.1 < 0.0).map(says).collect();
+    let wins: Vec<String> =
+        gains.iter().filter(|gain| told(&gain.1) && gain.1 > 0.0).map(says).collect();
     let mut clauses = Vec::new();
     if !losses.is_empty() {
         clauses.push(format!("cost {} of its power", words::list(&losses)));
@@ -67,7 +73,7 @@ pub(crate) fn gain_sentence(study: &Study, run: &RunRecords) -> String {
         clauses.push(format!("gave {} more", words::list(&wins)));
     }
     if clauses.is_empty() {
-        clauses.push("changed the power".to_owned());
+        clauses.push("left the power as it was".to_owned());
     }
     let total = run.summary.array_power_gain.map(|gain| words::gain(&gain)).unwrap_or_default();
     let whole = match gains.len() {
@@ -82,7 +88,7 @@ pub(crate) fn short_gain(study: &Study, run: &RunRecords) -> Option<String> {
     gain_of(run)?;
     let gain = run.summary.array_power_gain?;
     let done: Vec<String> = study
-        .excitations(run)
+        .changed_excitations(run)
         .iter()
         .map(|excitation| format!("{} on {}", words_of(excitation), excitation.turbine.name))
         .collect();
@@ -110,6 +116,9 @@ fn power_sentence(run: &RunRecords) -> String {
 /// "a counter-clockwise helix of 4.0°".
 pub(crate) fn words_of(excitation: &Excitation) -> String {
     let amplitude = number(excitation.pitch.commanded_amplitude_deg, 1);
+    if let Some(offset) = excitation.in_step_at() {
+        return format!("a helix of {amplitude}° in step at {offset}");
+    }
     match excitation.kind {
         Kind::CounterClockwise => format!("a counter-clockwise helix of {amplitude}°"),
         Kind::Clockwise => format!("a clockwise helix of {amplitude}°"),
@@ -153,8 +162,10 @@ pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<Stri
                 Kind::Pulse => "pulse",
                 Kind::Other => excitation.turbine.control.as_str(),
             };
+            let in_step = excitation.in_step_at().map(|offset| format!(" in step at {offset}"));
             format!(
-                "{kind} on {}, {}° asked, {}° delivered, St{SPACE}{}",
+                "{kind}{} on {}, {}° asked, {}° delivered, St{SPACE}{}",
+                in_step.unwrap_or_default(),
                 excitation.turbine.name,
                 number(excitation.pitch.commanded_amplitude_deg, 1),
                 number(excitation.pitch.delivered_amplitude_deg, 1),

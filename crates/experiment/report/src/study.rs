@@ -30,6 +30,14 @@ pub(crate) struct Excitation<'a> {
     pub(crate) strouhal: f64,
 }
 
+impl<'a> Excitation<'a> {
+    /// The phase offset in words, "90°", where it is in step with a helix that comes in.
+    pub(crate) fn in_step_at(&self) -> Option<&'a str> {
+        let control = self.turbine.control.as_str();
+        control.strip_prefix("synchronised")?.split_once(" at ").map(|(_, offset)| offset)
+    }
+}
+
 /// Where a turbine stands.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Place {
@@ -145,6 +153,23 @@ impl<'a> Study<'a> {
             })
             .filter(|excitation| excitation.pitch.commanded_amplitude_deg > 0.0)
             .collect()
+    }
+
+    /// Those of them that the run which `run` is compared with did not have; all where that tells nothing apart.
+    pub(crate) fn changed_excitations(&self, run: &'a RunRecords) -> Vec<Excitation<'a>> {
+        let measure = run.summary.compare_with.as_deref();
+        let before = self.runs().iter().find(|other| Some(other.summary.run.as_str()) == measure);
+        let same = |excitation: &Excitation| {
+            before.is_some_and(|before| {
+                before.summary.turbines.iter().any(|turbine| {
+                    turbine.name == excitation.turbine.name
+                        && turbine.control == excitation.turbine.control
+                })
+            })
+        };
+        let all = self.excitations(run);
+        let changed: Vec<Excitation> = all.iter().filter(|now| !same(now)).copied().collect();
+        if changed.is_empty() { all } else { changed }
     }
 
     /// Distances between neighbours along the row (diameters).

@@ -37,6 +37,25 @@ fn the_page_says_what_the_numbers_say_and_under_which_conditions() {
 }
 
 #[test]
+fn a_turbine_in_step_is_said_to_be_and_what_both_runs_do_goes_without_saying() {
+    let mut study = synthetic::two_runs();
+    let helix = study.runs[1].summary.turbines[0].clone();
+    study.runs[0].summary.turbines[0].control = helix.control;
+    study.runs[0].summary.turbines[0].delivered_pitch = helix.delivered_pitch;
+    let summary = &mut study.runs[1].summary;
+    summary.turbines[0].power_gain.as_mut().expect("a gain").mean = 0.0002;
+    summary.turbines[1].control = "synchronised ccw 4.0° at 90°".into();
+    summary.turbines[1].delivered_pitch = helix.delivered_pitch;
+    let page = page(&study);
+    for expected in [
+        "A helix of 4.0° in step at 90° on T2 gave T2 14.2 % more: +5.3 % ± 1.2 % for the two together.",
+        "ccw helix in step at 90° on T2, 4.0° asked, 3.9° delivered",
+    ] {
+        assert!(page.contains(expected), "`{expected}` is missing");
+    }
+}
+
+#[test]
 fn the_page_stands_alone_and_its_elements_close() {
     let page = page(&synthetic::two_runs());
     for attribute in ["src=", "href="] {
