@@ -12,6 +12,7 @@ pub mod meandering;
 pub mod phase_estimator;
 pub mod resume;
 pub mod row;
+pub mod structure;
 
 pub use row::Row;
 
@@ -76,6 +77,12 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "recovery of the wake without and with a helix, beside published large-eddy figures",
         minutes: "5",
         run: helix::centre_line,
+    },
+    Validation {
+        name: "structure",
+        about: "natural frequencies beside published ones, energy of free motion, loads of a spinning rotor in closed form",
+        minutes: "under 1",
+        run: structure::structure,
     },
     Validation {
         name: "openfast-steady",
