@@ -61,15 +61,14 @@ pub fn calibration(
     sync: &PhaseSync,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Calibration, CalibrationError> {
-    let helix = Helix {
+    let pitch = Pitching {
+        wind_speed: WAKE_SPEED * case.wind.speed,
+        rate: excitation_rate(sync.strouhal, case.wind.speed, plan.diameter),
         sense: sync.sense,
         amplitude: sync.amplitude,
-        strouhal: sync.strouhal,
-        phase: 0.0,
         azimuth_offset: sync.azimuth_offset,
-        start: 0.0,
     };
-    let record = pitching(case, plan, model, index, helix, progress)?;
+    let record = pitching(case, plan, model, index, &pitch, progress)?;
     let setting = assemble::estimator_setting(sync, case, plan);
     let options = assemble::estimator_options(PhaseEstimator::Robust, case.flow.solver);
     let settling = PERIODS[0] * TAU / setting.rate;
@@ -93,24 +92,35 @@ pub fn decoupling(
 ) -> Result<Decoupling, CalibrationError> {
     let strouhal = 0.5 * (asked.strouhal[0] + asked.strouhal[1]);
     let rate = excitation_rate(strouhal, case.wind.speed, plan.diameter);
+    let wind_speed = WAKE_SPEED * case.wind.speed;
+    let [counter_clockwise, clockwise] =
+        answers(case, plan, model, index, wind_speed, rate, progress)?;
+    Ok(Decoupling::from_senses(rate, counter_clockwise, clockwise))
+}
+
+/// What a counter-clockwise and a clockwise helix of [`PROBE`] at `rate` (rad/s) take off the moments of turbine number `index`
+/// of `case`, alone in a steady wind of `wind_speed` (m/s); `progress` is told the share done.
+///
+/// # Errors
+/// [`CalibrationError`].
+pub fn answers(
+    case: &Case,
+    plan: &Plan,
+    model: &Model,
+    index: usize,
+    wind_speed: f64,
+    rate: f64,
+    progress: &mut dyn FnMut(f64),
+) -> Result<[Answer; 2], CalibrationError> {
     let mut answer = |sense, done: f64| {
-        let helix = Helix {
-            sense,
-            amplitude: PROBE,
-            strouhal,
-            phase: 0.0,
-            azimuth_offset: 0.0,
-            start: 0.0,
-        };
+        let pitch = Pitching { wind_speed, rate, sense, amplitude: PROBE, azimuth_offset: 0.0 };
         let mut told = |share: f64| progress(done + 0.5 * share);
-        let record = pitching(case, plan, model, index, helix, &mut told)?;
+        let record = pitching(case, plan, model, index, &pitch, &mut told)?;
         let n_counted = (PERIODS[1] * TAU / rate / plan.interval).round() as usize;
         let counted = &record[record.len().saturating_sub(n_counted)..];
         Ok::<_, CalibrationError>(answer_to(counted, sense, rate))
     };
-    let counter_clockwise = answer(Sense::CounterClockwise, 0.0)?;
-    let clockwise = answer(Sense::Clockwise, 0.5)?;
-    Ok(Decoupling::from_senses(rate, counter_clockwise, clockwise))
+    Ok([answer(Sense::CounterClockwise, 0.0)?, answer(Sense::Clockwise, 0.5)?])
 }
 
 /// What a helix of [`PROBE`] at `rate` (rad/s) takes off the moments in `record`, whole periods of it in a steady wind: both
@@ -136,23 +146,42 @@ fn answer_to(record: &[Measurements], sense: Sense, rate: f64) -> Answer {
     Answer { gain: with.hypot(earlier) / PROBE, lead: earlier.atan2(with) }
 }
 
-/// What a turbine of `model` measures, alone in a steady wind as turbine number `index` of `case`, while it pitches `helix`:
-/// [`PERIODS`] of it, after the near wake has settled.
+/// What a turbine does while it is recorded.
+struct Pitching {
+    /// Steady wind that it stands in (m/s).
+    wind_speed: f64,
+    /// Rate of the helix (rad/s).
+    rate: f64,
+    sense: Sense,
+    /// Amplitude of the helix (rad).
+    amplitude: f64,
+    /// Azimuth offset of its inverse multi-blade transformation (rad).
+    azimuth_offset: f64,
+}
+
+/// What a turbine of `model` measures, alone in a steady wind as turbine number `index` of `case`, while it pitches as `pitch`
+/// has it: [`PERIODS`] of it, after the near wake has settled.
 fn pitching(
     case: &Case,
     plan: &Plan,
     model: &Model,
     index: usize,
-    helix: Helix,
+    pitch: &Pitching,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Vec<Measurements>, CalibrationError> {
     let diameter = model.definition.rotor_diameter();
-    let rate = excitation_rate(helix.strouhal, case.wind.speed, plan.diameter);
+    let rate = pitch.rate;
     let mut alone = case.clone();
-    alone.wind.speed = WAKE_SPEED * case.wind.speed;
-    // The same rate in the slower wind, and its diameters are this rotor's.
-    let strouhal = rate * plan.diameter / (TAU * alone.wind.speed);
-    let helix = Control::Helix(Helix { strouhal, ..helix });
+    alone.wind.speed = pitch.wind_speed;
+    let helix = Control::Helix(Helix {
+        sense: pitch.sense,
+        amplitude: pitch.amplitude,
+        // Diameters of a case are its plan's.
+        strouhal: rate * plan.diameter / (TAU * alone.wind.speed),
+        phase: 0.0,
+        azimuth_offset: pitch.azimuth_offset,
+        start: 0.0,
+    });
     let settings = assemble::turbine_settings(&alone, plan, model, alone.turbines[index].flexible);
     let foot = Vector3::new(0.0, 0.0, -model.definition.rotor.hub_height);
     let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)

@@ -3,6 +3,7 @@
 //! Reading order: [`run`], then `prepare` (what all runs share), `simulate` (one run), `summarise` (its numbers).
 
 mod air;
+mod azimuth_offset;
 mod channels;
 mod error;
 mod lines;
@@ -15,6 +16,7 @@ mod summarise;
 mod synchronisation;
 mod watcher;
 
+pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;
 pub use phase::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase, tune};
 pub use prepare::Setup;

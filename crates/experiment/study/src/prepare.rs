@@ -86,7 +86,7 @@ impl Setup {
         Ok(setup)
     }
 
-    fn new(
+    pub(crate) fn new(
         case: Case,
         case_text: String,
         loaded: &BTreeMap<String, Model>,

@@ -43,3 +43,39 @@ impl Decoupling {
         }
     }
 }
+
+/// Element of the relative gain array (–) that pairs tilt pitch with the tilt moment, and yaw with yaw, when the inverse
+/// multi-blade transformation has `azimuth_offset` (rad), from what either sense does; its real part.
+///
+/// 1 where each axis answers for itself alone, 1/2 where both answer both, 0 where tilt pitch moves only the yaw moment. For a
+/// rotor alike in all directions moments follow pitch by [[a, −b], [b, a]], of which helices see a ∓ jb; the element is
+/// a² / (a² + b²). It cannot become 1 by any offset where the two senses gain differently.
+///
+/// Source: Bristol, "On a new measure of interaction for multivariable process control", IEEE Trans. Autom. Control 11, 1966.
+pub fn relative_gain(counter_clockwise: Answer, clockwise: Answer, azimuth_offset: f64) -> f64 {
+    let apart = 0.5 * wrap_to_half_turn(clockwise.lead - counter_clockwise.lead) - azimuth_offset;
+    let (one, other) = (counter_clockwise.gain, clockwise.gain);
+    let (sine, cosine) = apart.sin_cos();
+    (((one + other) * cosine).powi(2) - ((other - one) * sine).powi(2)) / (4.0 * one * other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_4;
+
+    #[test]
+    fn the_offset_of_the_two_senses_makes_the_relative_gain_one() {
+        let ccw = Answer { gain: 2.0, lead: -0.9 };
+        let cw = Answer { gain: 2.0, lead: 0.1 };
+        let found = Decoupling::from_senses(0.07, ccw, cw);
+        assert!((found.azimuth_offset - 0.5).abs() < 1e-12, "{found:?}");
+        assert!((relative_gain(ccw, cw, found.azimuth_offset) - 1.0).abs() < 1e-12);
+        assert!((relative_gain(ccw, cw, 0.0) - 0.5f64.cos().powi(2)).abs() < 1e-12);
+        let half = relative_gain(ccw, cw, found.azimuth_offset + FRAC_PI_4);
+        assert!((half - 0.5).abs() < 1e-12, "{half}");
+        // Gains of 3 and 1: (4)² / (4 · 3).
+        let uneven = relative_gain(Answer { gain: 3.0, ..ccw }, Answer { gain: 1.0, ..cw }, 0.5);
+        assert!((uneven - 4.0 / 3.0).abs() < 1e-12, "{uneven}");
+    }
+}

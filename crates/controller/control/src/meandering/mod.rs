@@ -19,7 +19,7 @@ mod axis;
 mod decoupling;
 mod reference;
 
-pub use decoupling::{Answer, Decoupling};
+pub use decoupling::{Answer, Decoupling, relative_gain};
 pub use estimation::phase_locked::{Leader, PhaseLockedError, TwoAxisEstimate, TwoAxisSettings};
 pub use reference::Reference;
 

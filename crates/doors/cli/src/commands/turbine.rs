@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use wakemix::formats::turbine_file::{self, TurbineFile};
 use wakemix::formats::{atomic, library, openfast, windio};
+use wakemix::study::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 use wakemix::turbine::aero::blade_element::Theory;
 use wakemix::turbine::steady::SteadyRotor;
 
@@ -50,6 +51,20 @@ pub(crate) enum TurbineCommand {
         /// Pitch angles (degrees), FROM:TO:COUNT or one value
         #[arg(long, value_name = "A:B:N", default_value = "0", allow_hyphen_values = true)]
         pitch: Range,
+    },
+    /// Find the azimuth offset that makes tilt and yaw pitch answer each for itself, over wind speed, as CSV
+    Offset {
+        /// Name of the library, or path of a turbine file
+        name: String,
+        /// Steady wind speeds (m/s), FROM:TO:COUNT or one value
+        #[arg(long, value_name = "A:B:N", default_value = "9")]
+        wind: Range,
+        /// Strouhal number of the probing helices, with the wind and the rotor's diameter
+        #[arg(long, value_name = "ST", default_value_t = 0.25)]
+        strouhal: f64,
+        /// Blades and tower that do not bend
+        #[arg(long)]
+        rigid: bool,
     },
 }
 
@@ -118,6 +133,9 @@ pub(crate) fn run(command: TurbineCommand) -> Result<()> {
             import(&file, &output, &options)
         }
         TurbineCommand::Steady { name, tsr, pitch } => steady(&library::load(&name)?, tsr, pitch),
+        TurbineCommand::Offset { name, wind, strouhal, rigid } => {
+            offset(&name, wind, strouhal, !rigid)
+        }
     }
 }
 
@@ -296,4 +314,23 @@ mod tests {
             assert!(bad.parse::<Range>().is_err(), "{bad}");
         }
     }
+}
+
+fn offset(name: &str, wind: Range, strouhal: f64, flexible: bool) -> Result<()> {
+    let mut head = "wind_speed_m_s,azimuth_offset_deg,delay_s,moment_per_degree_mnm,\
+                    relative_gain_without,relative_gain_with\n";
+    for wind_speed in wind.values() {
+        let question = OffsetQuestion { model: name.to_owned(), wind_speed, strouhal, flexible };
+        let OffsetAnswer { decoupling, relative_gain: [without, with] } =
+            azimuth_offset(&question, &mut |_| ())?;
+        // Not before there is something to say: a question that cannot be answered leaves nothing.
+        print(std::mem::take(&mut head))?;
+        print(&format!(
+            "{wind_speed},{:.2},{:.3},{:.4},{without:.4},{with:.4}\n",
+            decoupling.azimuth_offset.to_degrees(),
+            decoupling.delay,
+            1e-6 * decoupling.gain.to_radians(),
+        ))?;
+    }
+    Ok(())
 }
