@@ -300,22 +300,6 @@ fn steady(file: &TurbineFile, tsr: Range, pitch: Range) -> Result<()> {
     print(&String::from_utf8_lossy(&bytes))
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ranges_include_both_ends() {
-        let range: Range = "6:11:11".parse().unwrap();
-        let values: Vec<f64> = range.values().collect();
-        assert_eq!((values.len(), values[0], values[1], values[10]), (11, 6.0, 6.5, 11.0));
-        assert_eq!("-2".parse::<Range>().unwrap().values().collect::<Vec<_>>(), [-2.0]);
-        for bad in ["6:11", "a", "6:11:0", "6:11:1.5", "1:2:3:4"] {
-            assert!(bad.parse::<Range>().is_err(), "{bad}");
-        }
-    }
-}
-
 fn offset(name: &str, wind: Range, strouhal: f64, flexible: bool) -> Result<()> {
     let mut head = "wind_speed_m_s,azimuth_offset_deg,delay_s,moment_per_degree_mnm,\
                     relative_gain_without,relative_gain_with\n";
@@ -333,4 +317,20 @@ fn offset(name: &str, wind: Range, strouhal: f64, flexible: bool) -> Result<()> 
         ))?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_include_both_ends() {
+        let range: Range = "6:11:11".parse().unwrap();
+        let values: Vec<f64> = range.values().collect();
+        assert_eq!((values.len(), values[0], values[1], values[10]), (11, 6.0, 6.5, 11.0));
+        assert_eq!("-2".parse::<Range>().unwrap().values().collect::<Vec<_>>(), [-2.0]);
+        for bad in ["6:11", "a", "6:11:0", "6:11:1.5", "1:2:3:4"] {
+            assert!(bad.parse::<Range>().is_err(), "{bad}");
+        }
+    }
 }
