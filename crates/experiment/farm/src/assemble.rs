@@ -17,6 +17,7 @@ use estimation::helix::{Options, Setting, Wake};
 use estimation::phase_locked;
 use estimation::{EstimationError, HelixEstimator};
 use flow::lattice;
+use sensing::{InstrumentError, Sensing};
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
 use turbine::aero::induction::TwoConstant;
@@ -39,6 +40,9 @@ pub enum AssemblyError {
     /// Nobody found how pitch acts on the loads.
     #[error("how pitch acts on the loads was neither given nor found before")]
     NotDecoupled,
+    /// A turbine's instruments cannot be.
+    #[error(transparent)]
+    Instruments(#[from] InstrumentError),
     /// The system has no more threads to give.
     #[error("no threads for the turbines")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -245,7 +249,9 @@ pub fn farm(
         let settings = turbine_settings(case, plan, model, case.turbines[index].flexible);
         let turbine = Turbine::new(Arc::clone(&model.definition), plan.positions[index], settings)?;
         let control = controller(&run.control[index], model, case, plan)?;
-        machines.push(Machine::new(turbine, control));
+        let seed = sensing::seed_of_turbine(case.wind.seed, index);
+        let sensing = Sensing::new(case.turbines[index].instruments, seed)?;
+        machines.push(Machine::new(turbine, control).with_instruments(sensing));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     Ok(Farm::new(machines, air, plan.interval, case.flow.threads.unwrap_or(cores))?)

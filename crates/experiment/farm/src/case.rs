@@ -2,6 +2,7 @@
 
 pub use control::Sense;
 pub use control::meandering::{Decoupling, Followed, Leader, Reference};
+pub use sensing::{Instrument, Instruments, Lag};
 
 use estimation::helix::Calibration;
 use serde::{Deserialize, Serialize};
@@ -148,6 +149,8 @@ pub struct Placement {
     pub position_diameters: [f64; 2],
     /// Whether blades, tower and drive train bend.
     pub flexible: bool,
+    /// What its controller sees of it.
+    pub instruments: Instruments,
 }
 
 /// One run: who does what.

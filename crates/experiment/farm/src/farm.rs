@@ -5,31 +5,48 @@ use control::{Controller, TurbineController};
 use flow::{FlowError, FlowSolver};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use sensing::Sensing;
 use turbine::Turbine;
 
 /// Watches a run: files, statistics, live plots.
 pub trait Recorder {
-    /// Takes what turbine number `turbine` measured and was told at one control instant.
-    fn record(&mut self, turbine: usize, measurements: &Measurements, commands: &Commands);
+    /// Takes how turbine number `turbine` fared and what it was told at one control instant: the truth, whatever its
+    /// instruments showed of it.
+    fn record(&mut self, turbine: usize, truth: &Measurements, commands: &Commands);
 }
 
 /// One turbine with what runs on it.
 pub struct Machine {
     /// The machine in the air.
     pub turbine: Turbine,
-    /// What decides for it; sees only measurements.
+    /// What stands between it and its controller.
+    pub sensing: Sensing,
+    /// What decides for it; sees only what the instruments show.
     pub controller: TurbineController,
     winds: Vec<Vector3>,
     commands: Commands,
 }
 
 impl Machine {
-    /// A turbine under `controller`.
+    /// A turbine under `controller`, with perfect instruments.
     pub fn new(turbine: Turbine, controller: TurbineController) -> Self {
         let winds = vec![Vector3::ZERO; turbine.stations().len()];
         let pitch = PerBlade::splat(turbine.definition().n_blades, 0.0);
         let commands = Commands { pitch, generator_torque: 0.0 };
-        Self { turbine, controller, winds, commands }
+        Self { turbine, sensing: Sensing::perfect(), controller, winds, commands }
+    }
+
+    /// The same with other instruments.
+    pub fn with_instruments(self, sensing: Sensing) -> Self {
+        Self { sensing, ..self }
+    }
+
+    /// Reads the instruments at `time` (s) and decides for an `interval` (s); gives the truth that was read.
+    fn decide(&mut self, time: f64, interval: f64) -> Measurements {
+        let truth = self.turbine.measurements(time, interval);
+        let shown = self.sensing.read(&truth);
+        self.commands = self.controller.update(&shown);
+        truth
     }
 
     /// Feels the wind of `flow` where the blades are, and moves on by `interval` (s) under the last commands.
@@ -93,9 +110,8 @@ impl<Flow: FlowSolver + Sync> Farm<Flow> {
         let time = self.time();
         self.forces.clear();
         for (index, machine) in self.machines.iter_mut().enumerate() {
-            let measurements = machine.turbine.measurements(time, self.interval);
-            machine.commands = machine.controller.update(&measurements);
-            recorder.record(index, &measurements, &machine.commands);
+            let truth = machine.decide(time, self.interval);
+            recorder.record(index, &truth, &machine.commands);
         }
         let (flow, interval) = (&self.flow, self.interval);
         match &self.threads {

@@ -49,7 +49,7 @@ pub enum CalibrationError {
 /// Calibrates the estimator of `sync` on turbine number `index` of `case`: gain and azimuth offset of its own pitch.
 ///
 /// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in prescribed wind
-/// as the case has it, and pitches the helix that it shall pitch; `progress` is told the share done.
+/// as the case has it, with perfect instruments, and pitches the helix that it shall pitch; `progress` is told the share done.
 ///
 /// # Errors
 /// [`CalibrationError`].

@@ -82,7 +82,7 @@ impl Belief<'_> {
 /// Gathers one row of the series from the turbines' signals.
 ///
 /// A row is: time, wind at the hub-height probe upstream of the first turbine, then for each
-/// turbine what it measured, what it was told, its loads, and what it believes where it seeks a helix or meandering; then the wind along
+/// turbine how it truly fared, whatever its instruments showed, what it was told, its loads, and what it believes where it seeks a helix or meandering; then the wind along
 /// radial lines at the places of turbines that are not there.
 pub(crate) struct Row {
     names: Vec<String>,

@@ -202,6 +202,12 @@ impl<'a> Simulation<'a> {
             machine.turbine.restore(turbine);
             machine.controller.restore(controller);
         }
+        if simulation.has_instruments() {
+            let stored: Vec<sensing::State> = reader.state("instruments")?;
+            for (machine, stored) in simulation.farm.machines_mut().iter_mut().zip(stored) {
+                machine.sensing.restore(stored);
+            }
+        }
         for (average, stored) in simulation.averages.iter_mut().zip(state.averages) {
             average.restore(stored)?;
         }
@@ -264,6 +270,11 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
+    /// Whether any instrument errs, and so has a state that a checkpoint must hold.
+    fn has_instruments(&self) -> bool {
+        self.farm.machines().iter().any(|machine| !machine.sensing.instruments().are_perfect())
+    }
+
     fn wall_time(&self) -> f64 {
         self.wall_time_before + self.started.elapsed().as_secs_f64()
     }
@@ -285,6 +296,11 @@ impl<'a> Simulation<'a> {
         let path = self.folder.checkpoint_path();
         let mut writer = CheckpointWriter::create(&path, &self.setup.case_text, &run.name)?;
         writer.state("run", &state)?;
+        if self.has_instruments() {
+            let sensing: Vec<sensing::State> =
+                self.farm.machines().iter().map(|machine| *machine.sensing.state()).collect();
+            writer.state("instruments", &sensing)?;
+        }
         match self.farm.flow_mut() {
             Air::Lattice(lattice) => writer.stream("air", |bytes| lattice.write_state(bytes))?,
             Air::Prescribed(wind) => writer.state("wind", &wind.state())?,

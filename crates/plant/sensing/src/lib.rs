@@ -44,6 +44,19 @@ pub struct Instruments {
     pub edge_moments: Instrument,
 }
 
+impl Instruments {
+    /// Whether all of them show the truth, bit for bit.
+    pub fn are_perfect(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// The seed of the noise of turbine number `turbine` of a layout in a wind of `seed`: another wind and another turbine
+/// have other noise.
+pub fn seed_of_turbine(seed: u64, turbine: usize) -> u64 {
+    noise::mixed(noise::mixed(seed).wrapping_add(turbine as u64))
+}
+
 /// An instrument that cannot be.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("instrument {instrument}: {figure} must be {expected}, it is {found}")]
@@ -67,7 +80,7 @@ pub struct Sensing {
 }
 
 /// Everything of instruments that time changes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     n_readings: u64,
     channels: [Channel; N_CHANNELS],
@@ -92,8 +105,17 @@ impl Sensing {
         ] {
             instrument.check(name)?;
         }
-        let state = State { n_readings: 0, channels: [Channel::default(); N_CHANNELS] };
-        Ok(Self { instruments, seed, state })
+        Ok(Self { instruments, seed, state: State::default() })
+    }
+
+    /// Instruments that show the truth.
+    pub fn perfect() -> Self {
+        Self { instruments: Instruments::default(), seed: 0, state: State::default() }
+    }
+
+    /// Which instruments they are.
+    pub fn instruments(&self) -> &Instruments {
+        &self.instruments
     }
 
     /// What the instruments show of `truth`.

@@ -1,6 +1,6 @@
 //! Perfect by default, and what each fault does, against its definition.
 
-use crate::{Instrument, Instruments, Lag, Sensing};
+use crate::{Instrument, Instruments, Lag, Sensing, seed_of_turbine};
 use basis::{Measurements, PerBlade};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -124,6 +124,17 @@ fn stored_and_restored_it_goes_on_with_the_same_bits() {
     assert_eq!(read(&mut one, 100, 200), read(&mut other, 100, 200));
     let mut reseeded = Sensing::new(faulty(), 8).expect("such instruments can be");
     assert_ne!(read(&mut sensing(faulty()), 0, 9), read(&mut reseeded, 0, 9));
+}
+
+#[test]
+fn winds_and_turbines_have_their_own_seeds() {
+    let seeds: std::collections::BTreeSet<u64> = (0..40)
+        .flat_map(|wind| (0..40).map(move |turbine| seed_of_turbine(wind, turbine)))
+        .collect();
+    assert_eq!(seeds.len(), 1600);
+    assert!(Instruments::default().are_perfect() && !faulty().are_perfect());
+    let perfect = Sensing::perfect();
+    assert_eq!(perfect.instruments(), &Instruments::default());
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::case::{
-    Control, Flow, Ground, Output, Placement, Run, Sides, Solver, Time, TurbulenceModel, Wind,
+    Control, Flow, Ground, Instruments, Output, Placement, Run, Sides, Solver, Time,
+    TurbulenceModel, Wind,
 };
 
 fn case(positions: &[[f64; 2]]) -> Case {
@@ -11,6 +12,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         model: "model".to_owned(),
         position_diameters: position,
         flexible: true,
+        instruments: Instruments::default(),
     };
     Case {
         name: "test".to_owned(),

@@ -2,6 +2,7 @@
 
 use super::document::{Entry, Node, Sources, Value};
 use super::error::{Problem, ProblemKind};
+use super::instruments::instruments_of;
 use super::keys::{self, CONTROLS};
 use super::meandering::meandering_of;
 use super::section::{Findings, Section, list};
@@ -145,6 +146,7 @@ fn turbines_of(root: &Section) -> Vec<Placement> {
             model: section.text("model"),
             position_diameters: section.pair("position_diameters"),
             flexible: section.choice("structure") != "rigid",
+            instruments: instruments_of(section),
         };
         if section.has("name") && turbines.iter().any(|other| other.name == placement.name) {
             note_duplicate(section, "turbine", &placement.name);

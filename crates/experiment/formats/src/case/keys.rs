@@ -1,8 +1,12 @@
 //! The one table of keys: what the reader accepts, what the reference prints, what the schema says.
 
 mod control;
+mod instruments;
 
 pub(super) use control::{BASELINE, CONTROLS};
+pub(super) use instruments::{
+    ACCELERATION, ANGLE, INSTRUMENT_KINDS, INSTRUMENTS, MOMENT, POWER, SPEED,
+};
 
 use super::table::Default::{Otherwise, Required, Value};
 use super::table::{Kind, Range, Slip, Table, above, from, key};
@@ -207,6 +211,13 @@ pub(super) static TURBINE: Table = Table {
             "",
             Value("\"flexible\""),
             "`flexible`: blades, tower and drive train bend. `rigid`: only the rotor turns.",
+        ),
+        key(
+            "instruments",
+            Kind::Table(&INSTRUMENTS),
+            "",
+            Otherwise("perfect instruments"),
+            "What its controller sees of it: lag, bias, noise, resolution and drop-outs of each instrument.",
         ),
     ],
 };

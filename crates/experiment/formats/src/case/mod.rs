@@ -6,6 +6,7 @@
 mod check;
 mod document;
 mod error;
+mod instruments;
 mod keys;
 mod meandering;
 mod reference;

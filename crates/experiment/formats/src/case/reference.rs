@@ -1,6 +1,8 @@
 //! The table of keys as a page for people and as a schema for editors.
 
-use super::keys::{CONTROLS, FLOW, GROUND, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND};
+use super::keys::{
+    CONTROLS, FLOW, GROUND, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND,
+};
 use super::table::{Default, Key, Kind, Table};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -11,9 +13,10 @@ const PREFACE: &str = include_str!("preface.md");
 /// The page docs/case-file.md: how a case file is read, and every key with unit, range and default.
 pub fn reference() -> String {
     let mut page = PREFACE.to_owned();
-    let tables = [&ROOT, &WIND, &FLOW, &GROUND, &TIME, &TURBINE, &RUN];
+    let tables = [&ROOT, &WIND, &FLOW, &GROUND, &TIME, &TURBINE, &INSTRUMENTS];
     let controls = CONTROLS.iter().map(|(_, table)| *table);
-    for table in tables.into_iter().chain(controls).chain([&OUTPUT]) {
+    let rest = INSTRUMENT_KINDS.into_iter().chain([&RUN]).chain(controls).chain([&OUTPUT]);
+    for table in tables.into_iter().chain(rest) {
         // Writing to a string cannot fail.
         let _ = write_table(&mut page, table);
     }

@@ -1,5 +1,6 @@
 //! A case as text: every key written out, defaults included.
 
+use super::instruments::instruments_text;
 use super::meandering::meandering_text;
 use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides, Solver, TurbulenceModel};
 use std::fmt::Write;
@@ -73,6 +74,7 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         writeln!(text, "model = {}\nposition_diameters = [{x:?}, {y:?}]", quoted(&turbine.model))?;
         let structure = if turbine.flexible { "flexible" } else { "rigid" };
         writeln!(text, "structure = \"{structure}\"")?;
+        text.push_str(&instruments_text(&turbine.instruments));
     }
     for run in &case.runs {
         writeln!(text, "\n[[run]]\nname = {}", quoted(&run.name))?;
