@@ -2,6 +2,7 @@
 
 mod synthetic;
 
+use basis::records::PitchDuty;
 use report::{ReportError, StudyRecords};
 use std::fs;
 use std::path::Path;
@@ -204,6 +205,39 @@ fn a_turbine_that_is_absent_in_one_run_is_shown_in_the_others() {
     let page = page(&study);
     assert!(page.contains("T1 made 13.4 ± 0.3 MW in the run “baseline”."));
     assert!(page.contains("<td>T2</td>"));
+    assert_well_formed(&page);
+}
+
+#[test]
+fn what_pitching_cost_stands_in_the_tables_with_its_convention() {
+    let mut study = synthetic::two_runs();
+    assert!(!page(&study).contains("Pitch bearing"));
+    for (run, scale) in [(0, 1.0), (1, 3.5)] {
+        for turbine in &mut study.runs[run].summary.turbines {
+            let loads = (0..36).map(|k| scale * 1e3 * (1.0 + f64::from(k).sin()));
+            turbine.pitch_duty = Some(PitchDuty {
+                travel_deg: scale * 1200.0,
+                travel_in_ten_minutes_deg: scale * 342.0,
+                maximum_rate_deg_s: 2.0,
+                moving_share: 1.0,
+                n_reversals: 12,
+                bearing_slope: 3.0,
+                bearing_loads_kn_m: loads.collect(),
+                convention: "pitch-bearing load: a convention".to_owned(),
+            });
+        }
+    }
+    let page = page(&study);
+    for expected in [
+        "<td>Pitch bearing 1, where it is greatest, m = 3 (kN m)</td><td class=\"n\">2000</td><td class=\"pm\"></td><td class=\"n\">7000</td><td class=\"pm\">+250.0 %</td>",
+        "<td>Pitch travel 1 (° in 10 min)</td><td class=\"n\">342</td><td class=\"pm\"></td><td class=\"n\">1197</td><td class=\"pm\">+250.0 %</td>",
+        "Pitch-bearing load: a convention.",
+        "<td>T2</td><td class=\"n\">0</td><td class=\"n\">1000</td><td class=\"n\">3500</td>",
+        "<td>T1</td><td class=\"n\">350</td>",
+    ] {
+        assert!(page.contains(expected), "`{expected}` is missing");
+    }
+    assert_eq!(page.matches("<td>T1</td><td class=\"n\">").count(), 36);
     assert_well_formed(&page);
 }
 

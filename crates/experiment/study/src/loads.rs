@@ -1,10 +1,12 @@
-//! Damage-equivalent loads of a run.
+//! Damage-equivalent loads of a run, and what its pitching cost.
 
 use crate::StudyError;
 use crate::channels::LOADS;
 use crate::summarise::Analysed;
-use analysis::fatigue::LoadCounter;
-use basis::records::Series;
+use analysis::fatigue::{
+    BEARING_SLOPE, LoadCounter, N_BEARING_POSITIONS, PitchBearing, PitchTravel, duty_convention,
+};
+use basis::records::{PitchDuty, Series};
 use std::collections::BTreeMap;
 
 /// Wöhler's exponent of composite blades (–).
@@ -45,4 +47,89 @@ pub(crate) fn damage_equivalent(
         loads.insert(format!("{channel}, m = {slope} (kN m)"), fatigue.loads[0].load);
     }
     Ok(loads)
+}
+
+/// What pitching did to blade 1 of `turbine` in `series`, in the blade's own frame; None where the series does not tell.
+pub(crate) fn pitch_duty(
+    series: &Series,
+    turbine: &str,
+    analysed: &Analysed<'_>,
+) -> Result<Option<PitchDuty>, StudyError> {
+    let names = ["pitch_1_rad", "RootMyb1_kN-m", "RootMxb1_kN-m"]
+        .map(|channel| format!("{turbine}.{channel}"));
+    if names.iter().any(|name| series.column(name).is_none()) {
+        return Ok(None);
+    }
+    let [pitch, flapwise, edgewise] = &names;
+    let pitch = analysed.column(pitch)?;
+    let (flapwise, edgewise) = (analysed.column(flapwise)?, analysed.column(edgewise)?);
+    if pitch.len() < 2 {
+        return Ok(None);
+    }
+    let mut travel = PitchTravel::new();
+    let mut bearing = PitchBearing::new(BEARING_SLOPE, N_BEARING_POSITIONS)?;
+    for ((&pitch, &flapwise), &edgewise) in pitch.iter().zip(flapwise).zip(edgewise) {
+        travel.push(pitch)?;
+        bearing.push(pitch, flapwise, edgewise)?;
+    }
+    let interval = analysed.interval;
+    let travel = travel.travel(interval)?;
+    let duration = (pitch.len() - 1) as f64 * interval;
+    let loads = bearing.loads(duration)?;
+    Ok(Some(PitchDuty {
+        travel_deg: travel.travel.to_degrees(),
+        travel_in_ten_minutes_deg: 600.0 * travel.mean_rate.to_degrees(),
+        maximum_rate_deg_s: travel.maximum_rate.to_degrees(),
+        moving_share: travel.moving_share,
+        n_reversals: travel.n_reversals,
+        bearing_slope: BEARING_SLOPE,
+        bearing_loads_kn_m: loads.iter().map(|position| position.load).collect(),
+        convention: duty_convention(BEARING_SLOPE, N_BEARING_POSITIONS, interval),
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn series(interval: f64, n: usize) -> Series {
+        let pitch = |time: f64| 2f64.to_radians() * (TAU * 0.125 * time).sin();
+        let times: Vec<f64> = (0..n).map(|k| interval * k as f64).collect();
+        let column = |of: &dyn Fn(f64) -> f64| times.iter().map(|time| of(*time)).collect();
+        let names = ["time_s", "T1.pitch_1_rad", "T1.RootMyb1_kN-m", "T1.RootMxb1_kN-m"];
+        Series {
+            names: names.map(str::to_owned).to_vec(),
+            columns: vec![times.clone(), column(&pitch), column(&|_| 3e4), column(&|_| 4e4)],
+        }
+    }
+
+    /// A sine of 2° and 8 s travels the reference, so that the bearing carries its steady moment where it presses.
+    #[test]
+    fn a_steady_moment_on_a_bearing_that_travels_the_reference_is_its_load() {
+        let series = series(0.01, 6001);
+        let analysed = Analysed::whole(&series, 0.01);
+        let duty = pitch_duty(&series, "T1", &analysed).expect("numbers").expect("all channels");
+        assert!((duty.travel_deg - 60.0).abs() < 0.01, "{}", duty.travel_deg);
+        assert!((duty.travel_in_ten_minutes_deg - 600.0).abs() < 0.1);
+        assert_eq!(duty.bearing_loads_kn_m.len(), 36);
+        for (index, load) in duty.bearing_loads_kn_m.iter().enumerate() {
+            let angle = TAU * index as f64 / 36.0;
+            let expected = (3e4 * angle.cos() + 4e4 * angle.sin()).max(0.0);
+            assert!((load - expected).abs() < 10.0, "{angle}: {load} {expected}");
+        }
+        // atan(4/3) is 53°.
+        let (load, position) = duty.worst_bearing_load().expect("positions");
+        assert!((position.to_degrees() - 50.0).abs() < 1e-9 && (load / 5e4 - 1.0).abs() < 0.01);
+        assert!(duty.convention.contains("m = 3, at 36 positions"), "{}", duty.convention);
+        assert!(duty.convention.ends_with("samples every 0.01 s"), "{}", duty.convention);
+    }
+
+    #[test]
+    fn records_without_the_channels_tell_nothing() {
+        let mut series = series(0.1, 100);
+        assert_eq!(pitch_duty(&series, "T2", &Analysed::whole(&series, 0.1)).ok(), Some(None));
+        series.columns.iter_mut().for_each(|column| column.truncate(1));
+        assert_eq!(pitch_duty(&series, "T1", &Analysed::whole(&series, 0.1)).ok(), Some(None));
+    }
 }

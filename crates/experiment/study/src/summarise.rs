@@ -34,6 +34,12 @@ impl<'a> Analysed<'a> {
         Self { series, first, interval: plan.row_interval() }
     }
 
+    /// All of a series whose rows lie `interval` (s) apart.
+    #[cfg(test)]
+    pub(crate) fn whole(series: &'a Series, interval: f64) -> Self {
+        Self { series, first: 0, interval }
+    }
+
     /// The analysed part of the channel `name`.
     pub(crate) fn column(&self, name: &str) -> Result<&'a [f64], StudyError> {
         let column = self
@@ -109,6 +115,7 @@ pub(crate) fn summarise(
             delivered_pitch,
             power_gain,
             damage_equivalent_loads: loads::damage_equivalent(series, name, &analysed)?,
+            pitch_duty: loads::pitch_duty(series, name, &analysed)?,
         });
     }
     let names: Vec<&str> = turbines.iter().map(|turbine| turbine.name.as_str()).collect();

@@ -34,6 +34,39 @@ pub struct DeliveredPitch {
     pub clipped_share: f64,
 }
 
+/// What pitching did to blade 1: how far its actuator went, and what its bearing carried meanwhile.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PitchDuty {
+    /// Sum of all motion, whichever way (deg).
+    pub travel_deg: f64,
+    /// The same in ten minutes (deg).
+    pub travel_in_ten_minutes_deg: f64,
+    /// Fastest motion between two rows of the series (deg/s).
+    pub maximum_rate_deg_s: f64,
+    /// Share of the time in which pitch moved at all (–).
+    pub moving_share: f64,
+    /// Changes of direction (–).
+    pub n_reversals: usize,
+    /// Slope of the bearing loads (–).
+    pub bearing_slope: f64,
+    /// Equivalent moment of the pitch bearing at equally spaced positions all round its ring (kN m), the first in the direction
+    /// of the flapwise moment, the others towards the edgewise one.
+    pub bearing_loads_kn_m: Vec<f64>,
+    /// In words, what these figures are.
+    pub convention: String,
+}
+
+impl PitchDuty {
+    /// Greatest of the bearing loads (kN m), and the angle of its position (rad).
+    pub fn worst_bearing_load(&self) -> Option<(f64, f64)> {
+        let n_positions = self.bearing_loads_kn_m.len() as f64;
+        let loads = self.bearing_loads_kn_m.iter().copied().enumerate();
+        // The first of equal ones.
+        let (index, load) = loads.rev().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some((load, std::f64::consts::TAU * index as f64 / n_positions))
+    }
+}
+
 /// One turbine over one run's analysed time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TurbineSummary {
@@ -57,6 +90,8 @@ pub struct TurbineSummary {
     pub power_gain: Option<Statistic>,
     /// 1-Hz damage-equivalent loads by channel, slope and unit, such as `RootMyc1, m = 10 (kN m)`.
     pub damage_equivalent_loads: BTreeMap<String, f64>,
+    /// What pitching did to blade 1; absent in records that do not tell.
+    pub pitch_duty: Option<PitchDuty>,
 }
 
 /// What a run cost.

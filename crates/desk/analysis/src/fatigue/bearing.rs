@@ -10,6 +10,24 @@ use std::f64::consts::{PI, TAU};
 /// Source: van der Hoek et al., section 2.4: what a helix of 2° at St 0.25 and 10 m/s travels on the IEA 22 MW turbine.
 pub const REFERENCE_TRAVEL_RATE: f64 = PI / 180.0;
 
+/// Slope of a pitch bearing's equivalent load (–), after the same.
+pub const BEARING_SLOPE: f64 = 3.0;
+
+/// Positions of a pitch bearing's ring that are looked at (–): every 10°, after the same.
+pub const N_BEARING_POSITIONS: usize = 36;
+
+/// The convention of pitch-bearing load and pitch travel in words, for printing beside a figure: moments and pitch of one
+/// blade, sampled every `interval` (s).
+pub fn duty_convention(slope: f64, n_positions: usize, interval: f64) -> String {
+    format!(
+        "pitch-bearing load (van der Hoek et al., Eq. 9): that moment which, over the reference travel of 600° in 10 minutes, does the \
+         damage of max(cos φ M_flap + sin φ M_edge, 0)^m weighted with the pitch travelled since the sample before, m = {slope}, at \
+         {n_positions} positions φ round the ring from the flapwise moment (RootMyb) towards the edgewise one (RootMxb); pitch travel: sum of all \
+         motion; samples every {} s",
+        (1e4 * interval).round() / 1e4
+    )
+}
+
 /// Equivalent load of a bearing at one position of its ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BearingLoad {
@@ -25,7 +43,8 @@ pub struct BearingLoad {
 /// before; where it is relieved, nothing. The equivalent load is that moment which does the same over the reference travel,
 /// [`REFERENCE_TRAVEL_RATE`] × duration.
 ///
-/// Source: van der Hoek et al., Eq. 9 (see [the module](super)), after van Vondelen et al. (2024); there m = 3 and positions every 10°.
+/// Source: van der Hoek et al., Eq. 9 (see [the module](super)), after van Vondelen et al. (2024); there m is [`BEARING_SLOPE`] and
+/// positions are [`N_BEARING_POSITIONS`].
 #[derive(Clone, Debug)]
 pub struct PitchBearing {
     positions: Vec<Position>,

@@ -17,7 +17,10 @@ mod load;
 mod rainflow;
 mod travel;
 
-pub use bearing::{BearingLoad, PitchBearing, REFERENCE_TRAVEL_RATE};
+pub use bearing::{
+    BEARING_SLOPE, BearingLoad, N_BEARING_POSITIONS, PitchBearing, REFERENCE_TRAVEL_RATE,
+    duty_convention,
+};
 pub use bins::RangeBins;
 pub use damage::Damage;
 pub use load::{EquivalentLoad, Fatigue, LoadCounter, damage_equivalent_load};

@@ -5,7 +5,8 @@ use crate::draw::colour::Ink;
 use crate::sentence;
 use crate::study::{Kind, Study};
 use crate::words::{self, SPACE, number, percent, three_figures};
-use basis::records::Statistic;
+use analysis::fatigue;
+use basis::records::{Statistic, TurbineSummary};
 use minijinja::{Value, context};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -216,21 +217,68 @@ fn gain(statistic: Option<&Statistic>) -> Vec<String> {
     vec![words::signed(100.0 * statistic.mean, 1), interval]
 }
 
-/// Whether any turbine has damage-equivalent loads.
-pub(crate) fn has_loads(study: &Study) -> bool {
-    study
-        .runs()
-        .iter()
-        .any(|run| run.summary.turbines.iter().any(|t| !t.damage_equivalent_loads.is_empty()))
+/// What the loads of the study's turbines are, in words: of the equivalent loads, and of what pitching cost.
+pub(crate) fn load_conventions(study: &Study) -> Vec<String> {
+    let turbines = || study.runs().iter().flat_map(|run| &run.summary.turbines);
+    let mut conventions = Vec::new();
+    if turbines().any(|turbine| !turbine.damage_equivalent_loads.is_empty()) {
+        conventions.push(fatigue::convention(None));
+    }
+    conventions.extend(
+        turbines()
+            .find_map(|turbine| turbine.pitch_duty.as_ref())
+            .map(|duty| duty.convention.clone()),
+    );
+    conventions.into_iter().map(|convention| words::capitalised(&convention)).collect()
 }
 
-/// Damage-equivalent loads: a row for each turbine and channel, in it a cell for each run with the load and its change.
+/// Loads of a turbine by channel: damage-equivalent ones, and what its pitching cost.
+fn channels_of(turbine: &TurbineSummary) -> BTreeMap<String, f64> {
+    let mut loads = turbine.damage_equivalent_loads.clone();
+    if let Some(duty) = &turbine.pitch_duty {
+        if let Some((load, _)) = duty.worst_bearing_load() {
+            let slope = duty.bearing_slope;
+            loads
+                .insert(format!("Pitch bearing 1, where it is greatest, m = {slope} (kN m)"), load);
+        }
+        let travel = duty.travel_in_ten_minutes_deg;
+        loads.insert("Pitch travel 1 (° in 10 min)".to_owned(), travel);
+    }
+    loads
+}
+
+/// Pitch-bearing loads: a row for each turbine and position, in it a cell for each run.
+pub(crate) fn bearings(study: &Study) -> Vec<Value> {
+    let mut rows = Vec::new();
+    for name in study.turbines() {
+        let of_run = |run: &RunRecords| {
+            let turbine = run.summary.turbines.iter().find(|turbine| turbine.name == name)?;
+            Some(turbine.pitch_duty.as_ref()?.bearing_loads_kn_m.clone())
+        };
+        let loads: Vec<Vec<f64>> =
+            study.runs().iter().map(|run| of_run(run).unwrap_or_default()).collect();
+        let n_positions = loads.iter().map(Vec::len).max().unwrap_or(0);
+        for index in 0..n_positions {
+            let cell = |loads: &Vec<f64>| {
+                loads.get(index).map_or(String::new(), |&load| number(load, three_figures(load)))
+            };
+            rows.push(context! {
+                turbine => name.to_owned(),
+                position => number(360.0 * index as f64 / n_positions as f64, 0),
+                cells => loads.iter().map(cell).collect::<Vec<_>>(),
+            });
+        }
+    }
+    rows
+}
+
+/// Loads: a row for each turbine and channel, in it a cell for each run with the load and its change.
 pub(crate) fn loads(study: &Study) -> Vec<Value> {
     let mut rows = Vec::new();
     for name in study.turbines() {
         let of_run = |run: &RunRecords| {
             let turbine = run.summary.turbines.iter().find(|turbine| turbine.name == name)?;
-            Some(turbine.damage_equivalent_loads.clone())
+            Some(channels_of(turbine))
         };
         let loads: Vec<_> = study.runs().iter().map(of_run).collect();
         let channels: BTreeSet<&String> = loads.iter().flatten().flat_map(BTreeMap::keys).collect();

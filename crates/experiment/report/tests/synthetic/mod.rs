@@ -113,6 +113,7 @@ fn run(recipe: &Recipe) -> RunRecords {
         }),
         power_gain: gain(recipe.gains[index], [0.004, 0.021][index]),
         damage_equivalent_loads: BTreeMap::new(),
+        pitch_duty: None,
     });
     RunRecords {
         summary: Summary {
