@@ -19,3 +19,6 @@ pub mod vtk;
 pub mod windio;
 
 pub use atomic::FileError;
+
+#[cfg(test)]
+mod fuzz;

@@ -7,6 +7,9 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+/// Parts of an override's key at most (–); tables within each other are walked one by one.
+const DEEPEST: usize = 32;
+
 /// A value with its place in [`Sources`].
 #[derive(Clone, Debug)]
 pub(super) struct Node {
@@ -170,6 +173,9 @@ fn apply(root: &mut Vec<Entry>, text: &str, start: usize) -> Result<(), ProblemK
     let segments: Vec<&str> = path.trim().split('.').map(str::trim).collect();
     if segments.iter().any(|segment| segment.is_empty()) {
         return Err(refuse("a part of its key is empty".into()));
+    }
+    if segments.len() > DEEPEST {
+        return Err(refuse(format!("its key has more than {DEEPEST} parts")));
     }
     insert(root, &segments, node, start..start + path.len()).map_err(refuse)
 }

@@ -8,6 +8,11 @@ use std::ops::Range;
 use std::sync::Arc;
 use thiserror::Error;
 
+/// Longest line (bytes) that is drawn: what draws counts at most 65535 columns, and a tab takes several.
+const LONGEST_DRAWN: usize = 2000;
+/// Lines that are drawn above and below a problem, and one.
+const DRAWN_AROUND: usize = 2;
+
 /// Why a case file cannot be run.
 #[derive(Debug, Error, Diagnostic)]
 pub enum CaseError {
@@ -71,11 +76,13 @@ pub struct Problem {
 impl Problem {
     pub(super) fn new(sources: &Sources, span: Range<usize>, kind: ProblemKind) -> Self {
         let (text, span) = sources.locate(span);
-        Self { kind, text, span, fix: None }
+        let fix = kind.usual_fix();
+        Self { kind, text, span, fix }
     }
 
+    /// The same with a better `fix` than the usual one, where there is one.
     pub(super) fn with_fix(mut self, fix: Option<String>) -> Self {
-        self.fix = fix;
+        self.fix = fix.or(self.fix);
         self
     }
 
@@ -83,6 +90,17 @@ impl Problem {
     pub fn line(&self) -> usize {
         let before = &self.text.inner().as_bytes()[..self.span.start];
         1 + before.iter().filter(|byte| **byte == b'\n').count()
+    }
+
+    /// Whether the lines around it are short enough to be drawn.
+    fn can_be_drawn(&self) -> bool {
+        let (before, after) = self.text.inner().as_bytes().split_at(self.span.start);
+        let is_end = |byte: &u8| *byte == b'\n';
+        let is_short = |line: &[u8]| line.len() <= LONGEST_DRAWN;
+        let n_lines = after[..self.span.len()].iter().filter(|byte| is_end(byte)).count();
+        let above = before.rsplit(is_end).take(1 + DRAWN_AROUND);
+        let below = after.split(is_end).take(1 + n_lines + DRAWN_AROUND);
+        above.chain(below).all(is_short)
     }
 
     /// The file, or `--set` for an override.
@@ -93,7 +111,9 @@ impl Problem {
 
 impl Diagnostic for Problem {
     fn code(&self) -> Option<Box<dyn Display + '_>> {
-        None
+        // Without a drawing the place stands here.
+        let place = || Box::new(format!("{}:{}", self.file(), self.line())) as Box<dyn Display>;
+        (!self.can_be_drawn()).then(place)
     }
 
     fn help(&self) -> Option<Box<dyn Display + '_>> {
@@ -101,7 +121,7 @@ impl Diagnostic for Problem {
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&self.text)
+        self.can_be_drawn().then_some(&self.text as &dyn SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
@@ -279,6 +299,26 @@ pub enum ProblemKind {
 }
 
 impl ProblemKind {
+    /// What mends it where nothing better is known.
+    fn usual_fix(&self) -> Option<String> {
+        Some(match self {
+            Self::Syntax { .. } => {
+                "TOML has `key = value`, text in quotes, and tables under their [heading]"
+                    .to_owned()
+            }
+            Self::WrongType { expected, .. } => format!("write {expected} there"),
+            Self::OutOfRange { range, .. } => format!("take a value of the range, {range}"),
+            Self::UnknownName { known, .. } => format!("name one of {known}"),
+            Self::StartsTooLate { .. } => {
+                "begin earlier, or raise `time.duration`, which counts from the start of the run"
+                    .to_owned()
+            }
+            Self::NobodyThere { .. } => "take `absent` from one of the turbines".to_owned(),
+            Self::Override { .. } => "write key.path=value, such as wind.speed=8".to_owned(),
+            _ => return None,
+        })
+    }
+
     fn label(&self) -> String {
         let words = match self {
             Self::Syntax { .. } => "here",

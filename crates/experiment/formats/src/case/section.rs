@@ -29,6 +29,9 @@ impl<'a> Findings<'a> {
     }
 }
 
+/// Tables under one heading at most (–): what the turbines do in the runs takes memory by the product of both.
+const MOST_TABLES: usize = 1000;
+
 /// One table of the file. Reading notes what is wrong and goes on with a value that passes every further check.
 pub(super) struct Section<'a> {
     table: &'static Table,
@@ -93,6 +96,14 @@ impl<'a> Section<'a> {
         };
         if items.is_empty() {
             self.wrong_type(key, &entry.node, &expected);
+        }
+        if items.len() > MOST_TABLES {
+            let value = format!("{} tables", items.len());
+            let range = format!("at most {MOST_TABLES}");
+            let kind = ProblemKind::OutOfRange { key: self.key_path(key), value, range };
+            let fix = "make several case files of it";
+            self.findings.note(entry.node.span.clone(), kind, Some(fix.into()));
+            return Vec::new();
         }
         let mut sections = Vec::with_capacity(items.len());
         for (index, item) in items.iter().enumerate() {

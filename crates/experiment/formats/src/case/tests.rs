@@ -277,6 +277,19 @@ fn a_drawn_error_points_at_the_value() {
     );
 }
 
+/// Found by fuzzing: what draws errors gave up on columns that 16 bits do not count.
+#[test]
+fn a_problem_on_an_endless_line_is_told_without_a_drawing() {
+    let endless = format!("speed = 900{}# and on\n", " ".repeat(70_000));
+    for text in [SMALL.replace("speed = 9\n", &endless), SMALL.replace("speed = 9", &endless)] {
+        let error = parse("small.toml", &text, &[]).unwrap_err();
+        let mut drawing = String::new();
+        miette::GraphicalReportHandler::new().render_report(&mut drawing, &error).unwrap();
+        assert!(drawing.contains("small.toml:4") && drawing.contains("did you mean 9 m/s?"));
+        assert!(error.to_lines().starts_with("small.toml:4: `wind.speed` = 900"));
+    }
+}
+
 #[test]
 fn overrides_reach_every_key() {
     let case = small(&[

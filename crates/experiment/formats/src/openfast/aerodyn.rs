@@ -4,11 +4,18 @@ use super::deck::{Deck, Table, Value};
 use super::elastodyn::Source;
 use crate::turbine_file::{Airfoils, Blade, PolarTable, Station, TurbineFileError, Unsteady};
 
+/// Airfoil files at most (–): all are held at once, also one that is named again and again.
+const MOST_FILES: usize = 1000;
+
 /// Blade, polars, and the tower's height (m), diameter (m) and drag coefficient (–).
 pub(super) type Aerodynamics = (Blade, Airfoils, Vec<[f64; 3]>);
 
 pub(super) fn read(deck: &Deck, source: &Source) -> Result<Aerodynamics, TurbineFileError> {
-    let count = deck.value("NumAFfiles")?.count()?;
+    let n_files = deck.value("NumAFfiles")?;
+    let count = n_files.count()?;
+    if count > MOST_FILES {
+        return Err(n_files.error(&format!("a number up to {MOST_FILES}")));
+    }
     let columns = [
         column(deck, "InCol_Alfa")?,
         column(deck, "InCol_Cl")?,

@@ -330,12 +330,14 @@ fn column_index(columns: &[&str], word: &str) -> Option<usize> {
     columns.iter().position(|column| normalised(column) == word)
 }
 
-/// A number as Fortran prints it.
+/// A finite number as Fortran prints it.
 fn number_of(text: &str) -> Option<f64> {
     if !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
         return None;
     }
-    text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok())
+    let number: Option<f64> =
+        text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok());
+    number.filter(|number| number.is_finite())
 }
 
 /// A key as it is compared: versions differ in brackets, underscores and capitals.

@@ -65,7 +65,9 @@ fn mode(deck: &Deck, shape: &str, damping: &str) -> Result<Mode, TurbineFileErro
     }
     // Published to a few digits, they seldom add up exactly.
     let sum: f64 = coefficients.iter().sum();
-    if (sum - 1.0).abs() > 0.02 {
+    // Not so of what is not a number, too.
+    let adds_up = (sum - 1.0).abs() <= 0.02;
+    if !adds_up {
         let expected = "coefficients that add up to 1";
         return Err(deck.value(&format!("{shape}(2)"))?.error(expected));
     }

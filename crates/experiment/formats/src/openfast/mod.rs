@@ -84,7 +84,8 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
         });
         let torque_control = document.controller.as_ref().and_then(|known| known.torque_control);
         if torque_control == Some(TorqueControl::TipSpeedRatio) {
-            torque_gain::derive(&mut document, air_density(&main))?;
+            let origin = format!("{} as imported", path.display());
+            torque_gain::derive(&mut document, air_density(&main), &origin)?;
         }
     }
     Ok(document)
@@ -96,4 +97,4 @@ fn air_density(main: &Deck) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -203,6 +203,22 @@ const DISCON: &str = "! ROSCO
 0.0 0.0 0.1    ! PS_BldPitchMin
 ";
 
+/// The deck, file by file.
+pub(crate) fn files() -> [(&'static str, String); 10] {
+    [
+        ("small.fst", MAIN.into()),
+        ("parts/ed.dat", ELASTODYN.into()),
+        ("parts/edblade.dat", ELASTODYN_BLADE.into()),
+        ("parts/tower.dat", tower()),
+        ("parts/ad.dat", AERODYN.into()),
+        ("parts/adblade.dat", AERODYN_BLADE.into()),
+        ("parts/round.dat", ROUND.into()),
+        ("parts/flat.dat", FLAT.into()),
+        ("parts/servo.dat", SERVODYN.into()),
+        ("parts/control.in", DISCON.into()),
+    ]
+}
+
 /// Writes the deck to a folder, with one file changed, and imports it.
 fn import_with(
     changed: &str,
@@ -210,26 +226,13 @@ fn import_with(
     to: &str,
 ) -> (TempDir, Result<Document, TurbineFileError>) {
     let folder = tempfile::tempdir().unwrap();
-    let tower = tower();
-    let files = [
-        ("small.fst", MAIN),
-        ("parts/ed.dat", ELASTODYN),
-        ("parts/edblade.dat", ELASTODYN_BLADE),
-        ("parts/tower.dat", &tower),
-        ("parts/ad.dat", AERODYN),
-        ("parts/adblade.dat", AERODYN_BLADE),
-        ("parts/round.dat", ROUND),
-        ("parts/flat.dat", FLAT),
-        ("parts/servo.dat", SERVODYN),
-        ("parts/control.in", DISCON),
-    ];
     fs::create_dir(folder.path().join("parts")).unwrap();
-    for (name, text) in files {
+    for (name, text) in files() {
         let text = if name == changed {
             assert!(text.contains(from), "{name} has no {from}");
             text.replacen(from, to, 1)
         } else {
-            text.to_owned()
+            text
         };
         fs::write(folder.path().join(name), text).unwrap();
     }

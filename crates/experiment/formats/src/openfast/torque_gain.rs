@@ -10,8 +10,12 @@ const TYPICAL_SHARE: f64 = 0.75;
 
 /// On return the controller of `document` (all groups present) holds the rotor at its optimal tip-speed ratio in air
 /// of `air_density` (kg/m³), by blade-element momentum, and its source says so.
-pub(super) fn derive(document: &mut Document, air_density: f64) -> Result<(), TurbineFileError> {
-    let file = turbine_file::check(document, "the imported turbine")?;
+pub(super) fn derive(
+    document: &mut Document,
+    air_density: f64,
+    origin: &str,
+) -> Result<(), TurbineFileError> {
+    let file = turbine_file::check(document, origin)?;
     let Some(controller) = &mut document.controller else { return Ok(()) };
     let constants = file.controller;
     let (radius, ratio) = (constants.rotor_radius, constants.optimal_tip_speed_ratio);

@@ -35,4 +35,4 @@ const NAME_LENGTH: i16 = 4;
 const SHORT_NAME: usize = 10;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

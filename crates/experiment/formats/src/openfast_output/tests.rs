@@ -46,7 +46,7 @@ fn place() -> (tempfile::TempDir, PathBuf) {
 }
 
 /// A file of kind 1 (listed times) or 2, byte by byte as the format says.
-fn by_hand(kind: i16) -> Vec<u8> {
+pub(crate) fn by_hand(kind: i16) -> Vec<u8> {
     let mut bytes = kind.to_le_bytes().to_vec();
     for count in [2_i32, 3] {
         bytes.extend(count.to_le_bytes());

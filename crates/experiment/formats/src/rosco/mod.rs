@@ -39,4 +39,4 @@ pub fn read(path: &Path) -> Result<Constants, TurbineFileError> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -5,7 +5,7 @@ use control::baseline::{PitchFloor, TorqueControl};
 use std::fs;
 use tempfile::TempDir;
 
-const TABLE: &str = "# ----- Rotor performance tables for a turbine -----
+pub(crate) const TABLE: &str = "# ----- Rotor performance tables for a turbine -----
 # Pitch angle vector, 3 entries - x axis (matrix columns) (deg)
 -1.0   0.0   2.0
 # TSR vector, 2 entries - y axis (matrix rows) (-)
@@ -30,7 +30,7 @@ const TABLE: &str = "# ----- Rotor performance tables for a turbine -----
 ";
 
 /// Version 2.10's keys, on the high-speed side of a gearbox of 50.
-const DISCON: &str = "! Controller parameter input file
+pub(crate) const DISCON: &str = "! Controller parameter input file
 !------- CONTROLLER FLAGS ------
 2                   ! F_LPFType       - 1: first-order, 2: second-order
 1                   ! IPC_ControlMode - individual pitch

@@ -45,12 +45,12 @@ pub enum TurbineFileError {
         fix: String,
     },
     /// A figure that cannot be.
-    #[error("{file}, line {line}, {key}: expected {expected}, found {found}")]
+    #[error("{file}{}, {key}: expected {expected}, found {found}", place(*line))]
     #[diagnostic(code(wakemix::turbine::value))]
     Value {
         /// The file.
         file: Box<str>,
-        /// Line, from 1 (–).
+        /// Line, from 1 (–); 0 of figures that stand in no text.
         line: usize,
         /// Key, as a path through the file.
         key: Box<str>,
@@ -87,6 +87,10 @@ impl TurbineFileError {
             fix: fix.to_owned(),
         }
     }
+}
+
+fn place(line: usize) -> String {
+    if line == 0 { String::new() } else { format!(", line {line}") }
 }
 
 /// Line (from 1) of byte number `place` of `text`.
@@ -127,7 +131,7 @@ impl Place<'_> {
         }
         TurbineFileError::Value {
             file: self.file.into(),
-            line: line_of(self.text, self.byte_of(path)),
+            line: if self.text.is_empty() { 0 } else { line_of(self.text, self.byte_of(path)) },
             key: key.into(),
             expected: expected.into().into(),
             found: found.into().into(),

@@ -101,6 +101,7 @@ fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
         scales,
         from_left: summary.from_left,
     };
+    super::sound(path, WHAT, &packing.grid)?;
     let hub_height = summary.hub_height.unwrap_or(middle);
     Ok((PackedPlanes::new(file, path, WHAT, packing), hub_height))
 }

@@ -125,7 +125,7 @@ pub fn read(path: &Path) -> Result<StoredBox, FileError> {
     let Layout { n_points, spacing, files, x_runs, y_runs } = header.layout;
     let mut velocity: [Vec<f32>; 3] = Default::default();
     for (values, name) in velocity.iter_mut().zip(files) {
-        let mut component = Component::open(&path.with_file_name(name), n_points, x_runs, y_runs)?;
+        let mut component = Component::open(&beside(path, &name)?, n_points, x_runs, y_runs)?;
         let [n_x, n_y, n_z] = n_points;
         values.resize(n_x * n_y * n_z, 0.0);
         for (x, plane) in values.chunks_mut(n_y * n_z).enumerate() {
@@ -194,22 +194,25 @@ fn read_header(path: &Path) -> Result<Header, FileError> {
             "one per height, lowest first",
         );
     }
+    super::sound(path, WHAT, &grid_of(&header))?;
     Ok(header)
 }
 
-/// Planes of the box whose header is at `path`, read one at a time; the middle of its width stands at y = 0.
-///
-/// # Errors
-/// As [`read`].
-pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
-    let header = read_header(path)?;
-    let Layout { n_points, spacing, files, x_runs, y_runs } = header.layout;
-    let open =
-        |name: &String| Component::open(&path.with_file_name(name), n_points, x_runs, y_runs);
-    let components = [open(&files[0])?, open(&files[1])?, open(&files[2])?];
-    let [n_steps, n_y, n_z] = n_points;
+/// The file `name` of a component, which must stand beside the header at `path`.
+fn beside(path: &Path, name: &str) -> Result<PathBuf, FileError> {
+    let component = path.with_file_name(name);
+    if component.is_file() {
+        return Ok(component);
+    }
+    let problem = format!("box.files names `{name}`, and no such file stands beside it");
+    Err(FileError::content(WHAT, path, problem, "copy the file there, or correct box.files"))
+}
+
+/// The planes of the box, of which the middle of the width stands at y = 0.
+fn grid_of(header: &Header) -> PlaneGrid {
+    let Layout { n_points: [n_steps, n_y, n_z], spacing, .. } = header.layout;
     let speed = header.wind.hub_speed;
-    let grid = PlaneGrid {
+    PlaneGrid {
         n_y,
         n_z,
         spacing: [spacing[1], spacing[2]],
@@ -218,7 +221,19 @@ pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
         speed,
         n_steps,
         repeats: true,
-    };
+    }
+}
+
+/// Planes of the box whose header is at `path`, read one at a time; the middle of its width stands at y = 0.
+///
+/// # Errors
+/// As [`read`].
+pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
+    let header = read_header(path)?;
+    let grid = grid_of(&header);
+    let Layout { n_points, files, x_runs, y_runs, .. } = header.layout;
+    let open = |name: &String| Component::open(&beside(path, name)?, n_points, x_runs, y_runs);
+    let components = [open(&files[0])?, open(&files[1])?, open(&files[2])?];
     let mean_speeds = header.wind.mean_speeds.iter().map(|speed| *speed as f32).collect();
     Ok(HawcPlanes { components, mean_speeds, grid })
 }

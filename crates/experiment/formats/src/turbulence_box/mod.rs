@@ -15,7 +15,7 @@ pub use hawc::{Axis, open as open_hawc, read as read_hawc, write as write_hawc};
 pub use turbsim::{open as open_turbsim, read as read_turbsim, write as write_turbsim};
 
 use crate::FileError;
-use flow::inflow::{InflowError, Planes, TurbulenceBox};
+use flow::inflow::{InflowError, PlaneGrid, Planes, TurbulenceBox};
 use std::path::{Path, PathBuf};
 
 /// Fastest wind that a file may hold (m/s); beyond it the bytes mean something else.
@@ -110,6 +110,27 @@ fn kind(path: &Path) -> Result<Kind, FileError> {
     }
 }
 
+/// Distances of points that a file may hold (m); beyond them the bytes mean something else, and planes of wind would crowd
+/// the memory.
+const SPACINGS: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
+
+/// Makes sure that wind can come in over `grid`, which stands in the file of `what` at `path`.
+fn sound(path: &Path, what: &'static str, grid: &PlaneGrid) -> Result<(), FileError> {
+    let fix = "copy the file again, or make it again";
+    let told = |problem: String| FileError::content(what, path, problem, fix);
+    grid.check().map_err(|error| told(error.to_string()))?;
+    let along = grid.speed * grid.interval;
+    for (axis, spacing) in ["x", "y", "z"].iter().zip([along, grid.spacing[0], grid.spacing[1]]) {
+        if !SPACINGS.contains(&spacing) {
+            let [least, most] = [SPACINGS.start(), SPACINGS.end()];
+            return Err(told(format!(
+                "its points stand {spacing} m apart along {axis}; {least} to {most} m is the range"
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// What a flow hears when plane `step` cannot be read.
 fn plane_error(step: usize, error: &FileError) -> InflowError {
     let mut problem = error.to_string();
@@ -127,4 +148,4 @@ fn in_order_of_arrival(place: usize, n_x: usize) -> usize {
 #[cfg(test)]
 mod streaming_tests;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

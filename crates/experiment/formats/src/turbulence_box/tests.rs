@@ -6,7 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 
 /// A box in which every value is another one.
-pub(super) fn stored([n_x, n_y, n_z]: [usize; 3]) -> StoredBox {
+pub(crate) fn stored([n_x, n_y, n_z]: [usize; 3]) -> StoredBox {
     let values = |component: usize| {
         (0..n_x * n_y * n_z).map(|n| ((37 * n + 11 * component) as f32 * 0.7).sin()).collect()
     };

@@ -92,6 +92,7 @@ fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
         scales: header.slopes.map(|slope| 1.0 / f64::from(slope)),
         from_left: false,
     };
+    super::sound(path, WHAT, &packing.grid)?;
     Ok((PackedPlanes::new(file, path, WHAT, packing), header, description))
 }
 

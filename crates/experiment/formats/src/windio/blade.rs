@@ -7,6 +7,11 @@ use std::f64::consts::PI;
 /// How far a polar of the file may end from ±180° (rad); it is extended to there.
 const END_GAP: f64 = 0.02;
 
+/// Stations of a blade and points of a polar at most (–): each station gets a polar with the points of two airfoils, and
+/// more of both would fill the memory.
+const MOST_STATIONS: usize = 500;
+const MOST_ANGLES: usize = 2000;
+
 /// What the file says of a blade.
 pub(super) struct BladeShape {
     pub(super) shape: Blade,
@@ -32,6 +37,10 @@ pub(super) fn read(
 ) -> Result<BladeShape, TurbineFileError> {
     let curve = |key: &str| Curve::read(&shape.get(key)?);
     let (chord, twist, pitch_axis) = (curve("chord")?, curve("twist")?, curve("pitch_axis")?);
+    if chord.grid().len() > MOST_STATIONS {
+        let expected = format!("at most {MOST_STATIONS} points");
+        return Err(shape.get("chord")?.error(&expected, "fewer points"));
+    }
     let axis = shape.get("reference_axis")?;
     let axis = |key: &str| Curve::read(&axis.get(key)?);
     let (x, y, z) = (axis("x")?, axis("y")?, axis("z")?);
@@ -124,6 +133,10 @@ fn airfoil(label: &Node, airfoils: &Node) -> Result<Airfoil, TurbineFileError> {
 fn full_turn(node: &Node) -> Result<Curve, TurbineFileError> {
     let curve = Curve::read(node)?;
     let grid = curve.grid();
+    if grid.len() > MOST_ANGLES {
+        let expected = format!("at most {MOST_ANGLES} angles");
+        return Err(node.get("grid")?.error(&expected, "fewer angles"));
+    }
     let (first, last) = (grid[0], grid[grid.len() - 1]);
     if first > -PI + END_GAP || last < PI - END_GAP {
         return Err(node

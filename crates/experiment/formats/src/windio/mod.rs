@@ -200,4 +200,4 @@ fn controller(
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -2,8 +2,12 @@
 
 use crate::turbine_file::TurbineFileError;
 use saphyr::{LoadableYamlNode, MarkedYaml, YamlData};
+use saphyr_parser::{Event, Parser};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// Lists and groups within each other at most (–); turbines have some ten.
+const DEEPEST: usize = 64;
 
 /// A YAML file.
 pub(super) struct File {
@@ -34,6 +38,7 @@ impl File {
             message,
             fix: "correct the YAML there".to_owned(),
         };
+        check_depth(&self.text).map_err(|(line, message)| error(line, message))?;
         let documents = MarkedYaml::load_from_str(&self.text)
             .map_err(|problem| error(problem.marker().line(), problem.info().to_owned()))?;
         let yaml = documents
@@ -42,6 +47,27 @@ impl File {
             .ok_or_else(|| error(1, "nothing is in the file".to_owned()))?;
         Ok(Node { file, yaml, key: String::new() })
     }
+}
+
+/// Makes sure that the lists and groups of `text` do not lie deeper within each other than what reads them can go down.
+///
+/// # Errors
+/// Line and problem; what is no YAML is not told here.
+fn check_depth(text: &str) -> Result<(), (usize, String)> {
+    let mut depth = 0;
+    for event in Parser::new_from_str(text) {
+        let Ok((event, span)) = event else { return Ok(()) };
+        match event {
+            Event::SequenceStart(..) | Event::MappingStart(..) => depth += 1,
+            Event::SequenceEnd | Event::MappingEnd => depth -= 1,
+            _ => {}
+        }
+        if depth > DEEPEST {
+            let message = format!("lists and groups lie more than {DEEPEST} deep in each other");
+            return Err((span.start.line(), message));
+        }
+    }
+    Ok(())
 }
 
 impl<'a> Node<'a> {
@@ -92,7 +118,8 @@ impl<'a> Node<'a> {
 
     fn as_number(yaml: &MarkedYaml) -> Option<f64> {
         let data = &yaml.data;
-        data.as_floating_point().or_else(|| data.as_integer().map(|whole| whole as f64))
+        let number = data.as_floating_point().or_else(|| data.as_integer().map(|n| n as f64));
+        number.filter(|number| number.is_finite())
     }
 
     /// The number of `key`.

@@ -5,7 +5,7 @@ use crate::turbine_file;
 use std::fs;
 
 /// A made-up turbine with anchors, flow and block style, and a polar that ends a hair before a full turn.
-const FILE: &str = "name: A small made-up machine
+pub(crate) const FILE: &str = "name: A small made-up machine
 assembly:
   number_of_blades: 3
   rated_power: 2.e+6

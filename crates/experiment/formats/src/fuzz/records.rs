@@ -1,0 +1,136 @@
+//! What a run left: summary, manifest, series, planes, checkpoint.
+
+use super::{Refusal, survives};
+use crate::case;
+use crate::checkpoint::{CheckpointReader, CheckpointWriter};
+use crate::records::{self, Manifest, RunFolder, SeriesWriter, read_study};
+use basis::records::{Conditions, Cost, Plane, PlaneAxes, SCHEMA_VERSION, Statistic, Summary};
+use farm::case::Case;
+use std::fs;
+use std::path::Path;
+
+const CASE: &str = include_str!("../../../../../cases/quickstart.toml");
+
+fn summary() -> Summary {
+    let statistic =
+        Statistic { mean: 3e6, standard_deviation: 0.3, half_width_95: None, n_blocks: 2 };
+    Summary {
+        schema_version: SCHEMA_VERSION,
+        case: "quickstart".into(),
+        run: "greedy".into(),
+        compare_with: None,
+        conditions: Conditions {
+            wind_speed: 9.0,
+            turbulence_intensity: 0.05,
+            arriving_wind_speed: 8.9,
+            arriving_turbulence_intensity: 0.04,
+            shear_exponent: 0.1,
+            seed: 1,
+            rotor_diameter: 240.0,
+            cells_per_diameter: Some(16.0),
+            interval: 0.1,
+            spin_up: 300.0,
+            duration: 1500.0,
+        },
+        turbines: Vec::new(),
+        array_power: statistic,
+        array_power_gain: None,
+        cost: Cost::default(),
+        warnings: vec!["a warning".into()],
+    }
+}
+
+fn plane() -> Plane {
+    Plane {
+        name: "hub-height".into(),
+        axes: PlaneAxes::Horizontal,
+        origin: [0.0, 0.0, 150.0],
+        spacing: [15.0, 15.0],
+        n_points: [2, 3],
+        time: 1500.0,
+        averaged: 1200.0,
+        velocity: [vec![9.0; 6], vec![0.0; 6], vec![0.1; 6]],
+    }
+}
+
+/// The files of a study of one run.
+fn study() -> Vec<(&'static str, Vec<u8>)> {
+    let study = tempfile::tempdir().unwrap();
+    let case = case::parse("quickstart.toml", CASE, &[]).unwrap();
+    let folder = RunFolder::new(study.path(), "run");
+    folder.create().unwrap();
+    let manifest = Manifest::start("0.1.0", &case, CASE, 0, [("iea-15mw", "a turbine")]);
+    records::write_manifest(&folder, &manifest).unwrap();
+    let mut series = SeriesWriter::create(&folder.series_path(), &["time_s".into()]).unwrap();
+    series.write(&[0.1]).unwrap();
+    series.finish().unwrap();
+    records::write_mean_plane(&folder, &plane()).unwrap();
+    records::write_phase_plane(&folder, 0.5, &plane()).unwrap();
+    // A run without volumes has an empty folder of them, which a file of another kind keeps here.
+    fs::write(folder.volumes_path().join("kept"), []).unwrap();
+    records::write_summary(&folder, &summary()).unwrap();
+    let files = [
+        "run/manifest.json",
+        "run/summary.json",
+        "run/series.csv",
+        "run/planes/hub-height-mean.nc",
+        "run/planes/hub-height-phase-029.nc",
+        "run/volumes/kept",
+    ];
+    files.map(|name| (name, fs::read(study.path().join(name)).unwrap())).to_vec()
+}
+
+#[test]
+fn studies() {
+    survives(study(), |folder| {
+        read_study(folder)?;
+        Ok(())
+    });
+}
+
+fn checkpoint(state: impl Fn(&mut CheckpointWriter)) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("checkpoint");
+    let mut writer = CheckpointWriter::create(&path, CASE, "helix").unwrap();
+    state(&mut writer);
+    writer.stream("air", |bytes| bytes.write_all(&[1; 300])).unwrap();
+    writer.finish().unwrap();
+    fs::read(path).unwrap()
+}
+
+fn go_on(path: &Path) -> Result<(), Refusal> {
+    let mut reader = CheckpointReader::open(path, CASE, "helix")?;
+    reader.state::<Case>("case")?;
+    reader.stream("air", |bytes| bytes.read_exact(&mut [0; 300]))?;
+    Ok(())
+}
+
+#[test]
+fn checkpoints() {
+    let case = case::parse("quickstart.toml", CASE, &[]).unwrap();
+    let bytes = checkpoint(|writer| writer.state("case", &case).unwrap());
+    survives(vec![("checkpoint", bytes)], |folder| go_on(&folder.join("checkpoint")));
+}
+
+/// Checksums guard against damage, not against another program's state: here they are right, and the state is not.
+#[test]
+fn foreign_states() {
+    let case = case::parse("quickstart.toml", CASE, &[]).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state");
+    let mut writer = CheckpointWriter::create(&path, CASE, "helix").unwrap();
+    writer.state("case", &case).unwrap();
+    writer.finish().unwrap();
+    let mut state = Vec::new();
+    let mut reader = CheckpointReader::open(&path, CASE, "helix").unwrap();
+    reader.stream("case", |bytes| bytes.read_to_end(&mut state).map(|_| ())).unwrap();
+    survives(vec![("state", state)], |folder| {
+        let state = fs::read(folder.join("state")).unwrap_or_default();
+        let write = |writer: &mut CheckpointWriter| {
+            writer.stream("case", |bytes| bytes.write_all(&state)).unwrap();
+        };
+        let path = folder.join("state.checkpoint");
+        fs::write(&path, checkpoint(write)).unwrap();
+        go_on(&path)
+    });
+}
