@@ -3,6 +3,7 @@
 use super::{Refusal, helps, memory};
 use crate::openfast::ImportOptions;
 use crate::{case, openfast, records, turbine_file, windio};
+use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
@@ -23,22 +24,32 @@ fn import(path: &Path) -> Result<(), Refusal> {
     Ok(())
 }
 
+fn read_turbine(path: &Path) -> Result<(), Refusal> {
+    turbine_file::read(path)?;
+    Ok(())
+}
+
+fn read_case(path: &Path) -> Result<(), Refusal> {
+    case::read(path, &[])?;
+    Ok(())
+}
+
+fn read_summary(path: &Path) -> Result<(), Refusal> {
+    let run = path.parent().unwrap_or(path);
+    let name = run.file_name().unwrap_or_default().to_string_lossy();
+    records::read_summary(&records::RunFolder::new(run.parent().unwrap_or(run), &name))?;
+    Ok(())
+}
+
 #[test]
 fn lists_within_lists() {
     let opened = "[".repeat(DEEP);
     let closed = "]".repeat(DEEP);
     for list in [opened.clone(), format!("{opened}{closed}")] {
         refused("deep.yaml", &format!("name: {list}"), import);
-        refused("deep.toml", &format!("name = {list}"), |path| Ok(drop(turbine_file::read(path)?)));
-        refused("case.toml", &format!("name = {list}"), |path| Ok(drop(case::read(path, &[])?)));
-        refused("summary.json", &list, |path| {
-            let run = path.parent().unwrap();
-            let folder = records::RunFolder::new(
-                run.parent().unwrap(),
-                &run.file_name().unwrap().to_string_lossy(),
-            );
-            Ok(drop(records::read_summary(&folder)?))
-        });
+        refused("deep.toml", &format!("name = {list}"), read_turbine);
+        refused("case.toml", &format!("name = {list}"), read_case);
+        refused("summary.json", &list, read_summary);
     }
 }
 
@@ -49,8 +60,8 @@ fn groups_within_groups() {
     refused("deep.yaml", &format!("{}1{}", "{a: ".repeat(DEEP), "}".repeat(DEEP)), import);
     refused("deep.yaml", &"- ".repeat(DEEP), import);
     let keys = vec!["a"; DEEP].join(".");
-    refused("deep.toml", &format!("{keys} = 1"), |path| Ok(drop(turbine_file::read(path)?)));
-    refused("case.toml", &format!("[{keys}]"), |path| Ok(drop(case::read(path, &[])?)));
+    refused("deep.toml", &format!("{keys} = 1"), read_turbine);
+    refused("case.toml", &format!("[{keys}]"), read_case);
 }
 
 /// Nine levels of nine aliases each would be 387 million values.
@@ -72,9 +83,8 @@ fn turbines_times_runs() {
     };
     let turbines: String = (0..1001).map(turbine).collect();
     let runs: String = (0..1001).map(|n| format!("[[run]]\nname = \"r{n}\"\n")).collect();
-    let read = |path: &Path| -> Result<(), Refusal> { Ok(drop(case::read(path, &[])?)) };
-    refused("turbines.toml", &format!("{wind}{turbines}[[run]]\nname = \"r\"\n"), read);
-    refused("runs.toml", &format!("{wind}{}{runs}", turbine(0)), read);
+    refused("turbines.toml", &format!("{wind}{turbines}[[run]]\nname = \"r\"\n"), read_case);
+    refused("runs.toml", &format!("{wind}{}{runs}", turbine(0)), read_case);
 }
 
 #[test]
@@ -90,7 +100,7 @@ fn stations_times_angles() {
     refused("stations.yaml", &sound.replace(chord, &grid(0.0, 1.0, 600)), import);
     let lift = "c_l: {grid: [-3.1416, 0.0, 0.2, 3.1416], values: [0.0, 0.4, 1.6, 0.0]}";
     assert!(sound.contains(lift));
-    let many = grid(-3.1416, 3.1416, 3000).replace('\n', ",");
+    let many = grid(-PI, PI, 3000).replace('\n', ",");
     refused("angles.yaml", &sound.replace(lift, &format!("c_l: {{{many}}}")), import);
 }
 
