@@ -51,6 +51,105 @@ pub struct Wind {
     pub turbulence_model: TurbulenceModel,
     /// File with the planes of wind that [`Solver::Planes`] reads, relative to the case file.
     pub planes: Option<String>,
+    /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at hub height.
+    pub veer: f64,
+    /// What happens in time, with [`Solver::Uniform`]; nothing when absent.
+    pub event: Option<WindEvent>,
+}
+
+/// What happens in time in a wind without turbulence, at all places at once. Times in s since the run's start.
+///
+/// [`deterministic::Event`](flow::inflow::deterministic::Event) gives the equations.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum WindEvent {
+    /// Another hub speed at once.
+    Step {
+        /// Time of the step (s).
+        start: f64,
+        /// Hub speed afterwards (m/s).
+        speed: f64,
+    },
+    /// Another hub speed, linearly over `duration`.
+    Ramp {
+        /// Beginning (s).
+        start: f64,
+        /// How long it takes (s).
+        duration: f64,
+        /// Hub speed afterwards (m/s).
+        speed: f64,
+    },
+    /// Steps of equal rise, each held for `hold`.
+    Staircase {
+        /// Time of the first step (s).
+        start: f64,
+        /// Time between steps (s).
+        hold: f64,
+        /// Rise of the hub speed per step (m/s), negative falls.
+        rise: f64,
+        /// Number of steps (–).
+        n_steps: u32,
+    },
+    /// Extreme operating gust of IEC 61400-1.
+    OperatingGust {
+        /// Beginning (s).
+        start: f64,
+        /// Duration (s).
+        duration: f64,
+        /// Gust V_gust (m/s).
+        gust: f64,
+    },
+    /// Extreme direction change.
+    DirectionChange {
+        /// Beginning (s).
+        start: f64,
+        /// Duration (s).
+        duration: f64,
+        /// Change (rad), counter-clockwise seen from above.
+        change: f64,
+    },
+    /// Extreme coherent gust with direction change.
+    CoherentGust {
+        /// Beginning (s).
+        start: f64,
+        /// Rise time (s).
+        duration: f64,
+        /// Rise of the speed (m/s).
+        rise: f64,
+        /// Change of direction (rad), counter-clockwise seen from above.
+        change: f64,
+    },
+    /// Extreme wind shear over the first turbine's rotor.
+    ExtremeShear {
+        /// Beginning (s).
+        start: f64,
+        /// Duration (s).
+        duration: f64,
+        /// Largest change of speed one radius above the hub (m/s).
+        vertical: f64,
+        /// The same one radius to its left, looking downwind (m/s).
+        horizontal: f64,
+    },
+    /// Slow air that circles around the first turbine's hub.
+    RotatingDisk(CirclingDisk),
+}
+
+/// A disk of slow air that circles, in diameters of the first turbine.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CirclingDisk {
+    /// Speed inside (m/s).
+    pub speed: f64,
+    /// Half-axes along y and z of the ellipse on which its centre runs (diameters).
+    pub offsets_diameters: [f64; 2],
+    /// Radius (diameters).
+    pub radius_diameters: f64,
+    /// Width over which the speed changes at its edge (diameters).
+    pub edge_diameters: f64,
+    /// Strouhal number f D / U of circling at time zero and after the sweep (–).
+    pub strouhal: [f64; 2],
+    /// Duration of the sweep (s).
+    pub sweep: f64,
+    /// Way it goes round, looking downwind.
+    pub sense: Sense,
 }
 
 /// How turbulence is made.

@@ -8,6 +8,7 @@ pub mod pitch_response;
 pub mod plan;
 pub mod self_check;
 pub mod tracking;
+pub mod wind;
 
 pub use air::Air;
 pub use farm::{Farm, Machine, Recorder};

@@ -40,7 +40,8 @@ pub(crate) fn begin(setup: &Setup) -> Result<Air, StudyError> {
         }
         Solver::Turbulence => {
             let (turbulence, lowest) = made(setup)?;
-            let planes = BoxPlanes::new(Arc::new(turbulence), &setup.profile(), lowest)?;
+            let planes = BoxPlanes::new(Arc::new(turbulence), &setup.profile(), lowest)?
+                .veering(case.wind.veer, plan.hub_height);
             prescribed(setup, Box::new(planes))?
         }
         Solver::Planes => {

@@ -10,6 +10,7 @@ use farm::pitch_response::{calibration, decoupling};
 use farm::self_check::{Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
+use flow::inflow::deterministic::Event;
 use flow::inflow::sizing::Need;
 use flow::inflow::turbulent::BLOCKING_HEIGHT;
 use flow::inflow::{MeanProfile, TurbulentInflow, mann, size_box};
@@ -109,7 +110,7 @@ impl Setup {
         let folder = PathBuf::new();
         let mut setup =
             Self { case, case_text, models, turbine_texts, plan, inflow, folder, warnings };
-        setup.inflow = Arc::new(setup.profile());
+        setup.inflow = setup.wind_without_turbulence()?;
         let size = setup.needs_box().then(|| size_box(&setup.turbulence_need()));
         if let Some(size) = size.filter(|size| !size.covers) {
             setup.warnings.push(format!(
@@ -127,11 +128,18 @@ impl Setup {
 
     /// The mean profile that blows in.
     pub(crate) fn profile(&self) -> MeanProfile {
-        MeanProfile::PowerLaw {
-            hub_height: self.plan.hub_height,
-            speed: self.case.wind.speed,
-            exponent: self.case.wind.shear_exponent,
+        farm::wind::profile(&self.case, &self.plan)
+    }
+
+    /// The mean profile, with veer and event where the case has them.
+    fn wind_without_turbulence(&self) -> Result<Arc<dyn Inflow>, StudyError> {
+        let wind = farm::wind::deterministic(&self.case, &self.plan);
+        if wind.veer == 0.0 && wind.event == Event::Steady {
+            // The same wind, found faster.
+            return Ok(Arc::new(wind.profile));
         }
+        wind.check()?;
+        Ok(Arc::new(wind))
     }
 
     /// The cost of `n_runs` runs, the machine's speed not known yet.

@@ -30,6 +30,8 @@ pub(crate) enum InflowCommand {
         /// Box to write; its ending chooses the format
         to: PathBuf,
     },
+    /// Write the wind of a case without turbulence (shear, veer, gusts, steps, rotating disk) as a full field
+    Sample(super::inflow_sample::SampleArguments),
 }
 
 /// What turbulence is drawn from.
@@ -128,6 +130,7 @@ pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
             eprintln!("wrote {}", to.display());
             Ok(())
         }
+        InflowCommand::Sample(arguments) => super::inflow_sample::run(&arguments),
     }
 }
 

@@ -8,9 +8,10 @@ use super::meandering::meandering_of;
 use super::section::{Findings, Section, list};
 use super::spelling::nearest;
 use super::table::Table;
+use super::wind::{check_together, wind_of};
 use farm::case::{
     Case, Control, Flow, Ground, Helix, Output, PhaseEstimator, PhaseSync, Placement, Pulse, Run,
-    Sense, Sides, Solver, Time, TurbulenceModel, Wind, helix_upstream,
+    Sense, Sides, Solver, Time, helix_upstream,
 };
 
 /// The case that `entries` describe.
@@ -38,10 +39,10 @@ fn case_of(root: &Section) -> Case {
     let wind_section = root.section_or_missing("wind", &keys::WIND);
     let wind = wind_of(&wind_section);
     let flow = flow_of(&root.section("flow", &keys::FLOW));
-    if let Some(section) = &wind_section {
-        check_together(section, &wind, &flow);
-    }
     let time = time_of(&root.section_or_missing("time", &keys::TIME));
+    if let Some(section) = &wind_section {
+        check_together(section, &wind, &flow, time.duration);
+    }
     let turbines = turbines_of(root);
     let runs = runs_of(root, &turbines, time);
     let output = output_of(&root.section("output", &keys::OUTPUT), &turbines);
@@ -54,39 +55,6 @@ impl<'a> Section<'a> {
         let is_table = matches!(self.entry(key)?.node.value, Value::Table(_));
         let section = self.section(key, table);
         is_table.then_some(section)
-    }
-}
-
-fn wind_of(section: &Option<Section>) -> Wind {
-    let number = |key| section.as_ref().map_or(f64::NAN, |section| section.number(key));
-    Wind {
-        speed: number("speed"),
-        turbulence_intensity: number("turbulence_intensity"),
-        shear_exponent: number("shear_exponent"),
-        length_scale: number("length_scale"),
-        anisotropy: number("anisotropy"),
-        seed: section.as_ref().map_or(1, |section| section.whole("seed")),
-        air_density: number("air_density"),
-        kinematic_viscosity: number("kinematic_viscosity"),
-        turbulence_model: match section.as_ref().map(|section| section.choice("turbulence_model")) {
-            Some("kaimal") => TurbulenceModel::Kaimal,
-            _ => TurbulenceModel::Mann,
-        },
-        planes: section.as_ref().and_then(|section| section.optional_text("planes")),
-    }
-}
-
-/// Notes where the kind of wind does not suit what moves the air.
-fn check_together(section: &Section, wind: &Wind, flow: &Flow) {
-    if flow.solver == Solver::Planes && wind.planes.is_none() {
-        let kind = ProblemKind::Missing { key: "wind.planes".to_owned() };
-        let fix = "flow.solver = \"planes\" reads the wind from a file: planes = \"field.bts\"";
-        section.findings().note(section.span_of("speed"), kind, Some(fix.into()));
-    }
-    if flow.solver == Solver::Lattice && wind.turbulence_model == TurbulenceModel::Kaimal {
-        let kind = ProblemKind::KaimalInLattice;
-        let fix = "take turbulence_model = \"mann\", or flow.solver = \"turbulence\"";
-        section.findings().note(section.span_of("turbulence_model"), kind, Some(fix.into()));
     }
 }
 

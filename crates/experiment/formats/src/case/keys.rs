@@ -1,9 +1,11 @@
 //! The one table of keys: what the reader accepts, what the reference prints, what the schema says.
 
 mod control;
+mod event;
 mod instruments;
 
 pub(super) use control::{BASELINE, CONTROLS};
+pub(super) use event::{EVENTS, STEP};
 pub(super) use instruments::{
     ACCELERATION, ANGLE, INSTRUMENT_KINDS, INSTRUMENTS, MOMENT, POWER, SPEED,
 };
@@ -64,6 +66,9 @@ pub(super) static WIND: Table = Table {
             .mistaken(&[Slip { unit: "mm²/s", factor: 1e-6 }]),
         key("turbulence_model", Kind::Choice(&["mann", "kaimal"]), "", Value("\"mann\""), "`mann`: Mann's spectral tensor. `kaimal`: Kaimal's spectra with the exponential coherence of IEC 61400-1, with `flow.solver = \"turbulence\"` only: the lattice needs wind that is free of divergence."),
         key("planes", Kind::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. `speed` then only sets the Strouhal numbers and the rotor's first speed."),
+        key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. With `flow.solver = \"uniform\"` or `\"turbulence\"`.")
+            .mistaken(&[Slip { unit: "deg per 100 m", factor: 0.01 }]),
+        key("event", Kind::Event, "", Otherwise("nothing happens"), "With `flow.solver = \"uniform\"`: what happens in time, at all places at once: `event = { kind = \"step\", start = 100.0, speed = 12.0 }`."),
     ],
 };
 
@@ -80,7 +85,7 @@ pub(super) static FLOW: Table = Table {
             Kind::Choice(&["lattice", "uniform", "turbulence", "planes"]),
             "",
             Value("\"lattice\""),
-            "`lattice`: lattice Boltzmann large-eddy simulation with actuator lines; turbines feel each other's wakes. The others prescribe the wind, and each turbine makes its own induction by blade-element momentum, without wakes: `uniform` the steady mean profile, `turbulence` with turbulence on it, `planes` from `wind.planes`. Only `lattice` uses the keys from here to `sides`.",
+            "`lattice`: lattice Boltzmann large-eddy simulation with actuator lines; turbines feel each other's wakes. The others prescribe the wind, and each turbine makes its own induction by blade-element momentum, without wakes: `uniform` the mean profile with `wind.veer_deg_per_m` and `wind.event`, without turbulence, `turbulence` with turbulence on it, `planes` from `wind.planes`. Only `lattice` uses the keys from here to `sides`.",
         ),
         key(
             "cells_per_diameter",

@@ -13,6 +13,7 @@ mod reference;
 mod section;
 mod spelling;
 mod table;
+mod wind;
 mod write;
 
 pub use error::{CaseError, Problem, ProblemKind};
@@ -87,3 +88,5 @@ pub fn fingerprint(text: &str, run: &str) -> [u8; 32] {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wind_tests;

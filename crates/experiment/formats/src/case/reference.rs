@@ -1,7 +1,8 @@
 //! The table of keys as a page for people and as a schema for editors.
 
 use super::keys::{
-    CONTROLS, FLOW, GROUND, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND,
+    CONTROLS, EVENTS, FLOW, GROUND, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME,
+    TURBINE, WIND,
 };
 use super::table::{Default, Key, Kind, Table};
 use serde_json::{Map, Value, json};
@@ -13,10 +14,10 @@ const PREFACE: &str = include_str!("preface.md");
 /// The page docs/case-file.md: how a case file is read, and every key with unit, range and default.
 pub fn reference() -> String {
     let mut page = PREFACE.to_owned();
-    let tables = [&ROOT, &WIND, &FLOW, &GROUND, &TIME, &TURBINE, &INSTRUMENTS];
-    let controls = CONTROLS.iter().map(|(_, table)| *table);
-    let rest = INSTRUMENT_KINDS.into_iter().chain([&RUN]).chain(controls).chain([&OUTPUT]);
-    for table in tables.into_iter().chain(rest) {
+    let [controls, events] = [CONTROLS, EVENTS].map(|kinds| kinds.iter().map(|(_, table)| *table));
+    let air = [&FLOW, &GROUND, &TIME, &TURBINE, &INSTRUMENTS].into_iter().chain(INSTRUMENT_KINDS);
+    let tables = [&ROOT, &WIND].into_iter().chain(events).chain(air).chain([&RUN]).chain(controls);
+    for table in tables.chain([&OUTPUT]) {
         // Writing to a string cannot fail.
         let _ = write_table(&mut page, table);
     }
@@ -55,6 +56,7 @@ fn holds(key: &Key) -> String {
         Kind::Ground(_) => "`\"slip\"` or a table".into(),
         Kind::Table(_) => "table".into(),
         Kind::Tables(_) => "one table or more".into(),
+        Kind::Event => "a table".into(),
         Kind::Control => "tables by turbine".into(),
     }
 }
@@ -112,8 +114,10 @@ fn schema_of_key(key: &Key) -> Value {
         Kind::Tables(table) => {
             json!({ "type": "array", "minItems": 1, "items": Value::Object(schema_of(table)) })
         }
+        Kind::Event => json!({ "oneOf": schemas_of_kinds(EVENTS) }),
         Kind::Control => {
-            json!({ "type": "object", "additionalProperties": { "oneOf": control_schemas() } })
+            let kinds = schemas_of_kinds(CONTROLS);
+            json!({ "type": "object", "additionalProperties": { "oneOf": kinds } })
         }
     };
     if let Value::Object(schema) = &mut schema {
@@ -128,7 +132,8 @@ fn schema_of_key(key: &Key) -> Value {
     schema
 }
 
-fn control_schemas() -> Vec<Value> {
+/// Tables whose key `kind` says which one it is.
+fn schemas_of_kinds(kinds: &[(&str, &'static Table)]) -> Vec<Value> {
     let one = |(name, table): &(&str, &'static Table)| {
         let mut schema = schema_of(table);
         if let Some(kind) = schema.get_mut("properties").and_then(|keys| keys.get_mut("kind")) {
@@ -136,7 +141,7 @@ fn control_schemas() -> Vec<Value> {
         }
         Value::Object(schema)
     };
-    CONTROLS.iter().map(one).collect()
+    kinds.iter().map(one).collect()
 }
 
 /// A default as written in TOML, which for these plain values is JSON too.

@@ -60,6 +60,8 @@ pub(super) enum Kind {
     Table(&'static Table),
     /// One table or more under the same heading.
     Tables(&'static Table),
+    /// A table whose key `kind` says which keys it has.
+    Event,
     /// A table for each turbine that does more than baseline, by the turbine's name.
     Control,
 }

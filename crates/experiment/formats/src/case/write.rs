@@ -2,7 +2,8 @@
 
 use super::instruments::instruments_text;
 use super::meandering::meandering_text;
-use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides, Solver, TurbulenceModel};
+use super::wind::write_wind;
+use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides, Solver};
 use std::fmt::Write;
 
 /// The case file that reads back as `case`, with every default written out.
@@ -18,25 +19,7 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
     if let Some(description) = &case.description {
         writeln!(text, "description = {}", quoted(description))?;
     }
-    let wind = &case.wind;
-    writeln!(text, "\n[wind]")?;
-    writeln!(text, "speed = {:?}", wind.speed)?;
-    writeln!(text, "turbulence_intensity = {:?}", wind.turbulence_intensity)?;
-    writeln!(text, "shear_exponent = {:?}", wind.shear_exponent)?;
-    writeln!(text, "length_scale = {:?}", wind.length_scale)?;
-    writeln!(text, "anisotropy = {:?}", wind.anisotropy)?;
-    writeln!(text, "seed = {}", wind.seed)?;
-    writeln!(text, "air_density = {:?}", wind.air_density)?;
-    writeln!(text, "kinematic_viscosity = {:?}", wind.kinematic_viscosity)?;
-
-    let model = match wind.turbulence_model {
-        TurbulenceModel::Mann => "mann",
-        TurbulenceModel::Kaimal => "kaimal",
-    };
-    writeln!(text, "turbulence_model = \"{model}\"")?;
-    if let Some(planes) = &wind.planes {
-        writeln!(text, "planes = {}", quoted(planes))?;
-    }
+    write_wind(text, &case.wind)?;
 
     let flow = &case.flow;
     let solver = match flow.solver {
@@ -162,6 +145,6 @@ pub(super) fn shortest(value: f64, exact: f64, back: impl Fn(f64) -> f64) -> f64
         .unwrap_or(exact)
 }
 
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }

@@ -72,7 +72,8 @@ pub trait Planes: Send + Sync {
 #[derive(Clone, Debug)]
 pub struct BoxPlanes {
     turbulence: Arc<TurbulenceBox>,
-    mean_speeds: Vec<f32>,
+    /// Mean of u and v at each height (m/s), lowest first.
+    means: Vec<[f32; 2]>,
     grid: PlaneGrid,
 }
 
@@ -102,8 +103,22 @@ impl BoxPlanes {
         };
         grid.check()?;
         let height = |z: usize| lowest_height + z as f64 * up;
-        let mean_speeds = (0..n_z).map(|z| profile.speed(height(z)) as f32).collect();
-        Ok(Self { turbulence, mean_speeds, grid })
+        let means = (0..n_z).map(|z| [profile.speed(height(z)) as f32, 0.0]).collect();
+        Ok(Self { turbulence, means, grid })
+    }
+
+    /// The same, its mean wind turned by `veer` (rad/m) per metre above `hub_height` (m): clockwise seen from above,
+    /// upwards, as [`DeterministicWind::veer`](super::DeterministicWind::veer). The fluctuations are not turned, and all
+    /// is carried along x as before.
+    pub fn veering(mut self, veer: f64, hub_height: f64) -> Self {
+        let PlaneGrid { first, spacing, .. } = self.grid;
+        for (z, mean) in self.means.iter_mut().enumerate() {
+            let height = first[1] + z as f64 * spacing[1];
+            let (sine, cosine) = (-veer * (height - hub_height)).sin_cos();
+            let speed = f64::from(mean[0]);
+            *mean = [(speed * cosine) as f32, (speed * sine) as f32];
+        }
+        self
     }
 }
 
@@ -117,8 +132,8 @@ impl Planes for BoxPlanes {
         let x = (n_x - step % n_x) % n_x;
         let [u, v, w] = [0, 1, 2].map(|component| self.turbulence.plane(component, x));
         for (point, value) in values.iter_mut().enumerate() {
-            let mean = self.mean_speeds[point / self.grid.n_y];
-            *value = [mean + u[point], v[point], w[point]];
+            let [along, across] = self.means[point / self.grid.n_y];
+            *value = [along + u[point], across + v[point], w[point]];
         }
         Ok(())
     }

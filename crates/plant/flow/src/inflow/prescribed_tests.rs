@@ -58,6 +58,26 @@ fn wind(extent: [f64; 2]) -> PrescribedWind {
     PrescribedWind::over_planes(Box::new(planes(true)), placement(extent)).unwrap()
 }
 
+/// The mean turns over height as the closed form has it, the fluctuations stay what they are.
+#[test]
+fn planes_veer_like_the_wind_without_turbulence() {
+    let veer = 2e-3;
+    let mean = DeterministicWind { veer, ..DeterministicWind::steady(profile(), 40.0) };
+    let [mut straight, mut veering] =
+        [(); 2].map(|()| BoxPlanes::new(turbulence([32, 5, 6]), &profile(), 10.0).unwrap());
+    veering = veering.veering(veer, 40.0);
+    let mut values = [[[0.0; 3]; 30]; 2];
+    straight.read(7, &mut values[0]).unwrap();
+    veering.read(7, &mut values[1]).unwrap();
+    for (point, (before, after)) in values[0].iter().zip(&values[1]).enumerate() {
+        let place = Vector3::new(0.0, 0.0, 10.0 + (point / 5) as f64 * 12.0);
+        let turned = mean.wind(0.0, place) - Vector3::X * profile().speed(place.z);
+        for (axis, turned) in turned.to_array().into_iter().enumerate() {
+            assert!((f64::from(after[axis] - before[axis]) - turned).abs() < 2e-6);
+        }
+    }
+}
+
 /// Time runs against x: at time t plane (n − t/Δt) mod n of the box stands at x = 0, on top of the profile.
 #[test]
 fn points_of_the_box_are_met_in_order_of_arrival() {

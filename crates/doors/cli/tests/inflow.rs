@@ -1,0 +1,65 @@
+//! `wakemix inflow sample` from outside: a case in, the wind of its event out, other kinds of wind refused.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const CASE: &str = r#"
+name = "gusty"
+[wind]
+speed = 10.0
+turbulence_intensity = 0.0
+shear_exponent = 0.0
+event = { kind = "step", start = 5.0, speed = 14.0 }
+[flow]
+solver = "uniform"
+[time]
+spin_up = 0
+duration = 9.5
+[[turbine]]
+name = "T1"
+model = "nrel-5mw"
+position_diameters = [0.0, 0.0]
+[[run]]
+name = "baseline"
+"#;
+
+fn wakemix(arguments: &[&str], folder: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_wakemix"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn the_wind_of_a_case_becomes_a_full_field() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("gusty.toml"), CASE).unwrap();
+    let grid = ["--size", "3x5", "--spacing", "20x25", "--time-step", "0.5"];
+    let made = ["inflow", "sample", "gusty.toml", "-o", "gusty.bts"];
+    let output = wakemix(&[&made[..], &grid[..]].concat(), folder.path());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = wakemix(&["inflow", "info", "gusty.bts", "--json"], folder.path());
+    let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(info["n_points"], serde_json::json!([20, 3, 5]));
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    // Ten planes at 10 m/s and ten at 14 m/s, carried along at 10 m/s and centred on the hub at 90 m.
+    assert!((number(&info["hub_speed"]) - 10.0).abs() < 1e-4);
+    assert!((number(&info["lowest_height"]) - 40.0).abs() < 1e-4);
+    assert!((number(&info["mean_speeds"][0]) - 12.0).abs() < 1e-3);
+    assert!((number(&info["turbulence_intensity"]) - 0.2).abs() < 1e-3);
+}
+
+#[test]
+fn turbulence_is_not_sampled() {
+    let folder = tempfile::tempdir().unwrap();
+    let event = "event = { kind = \"step\", start = 5.0, speed = 14.0 }\n";
+    fs::write(folder.path().join("gusty.toml"), CASE.replace(event, "")).unwrap();
+    let arguments =
+        ["inflow", "sample", "gusty.toml", "--set", "flow.solver=turbulence", "-o", "gusty.bts"];
+    let output = wakemix(&arguments, folder.path());
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && told.contains("flow.solver=uniform"), "{told}");
+    assert!(!folder.path().join("gusty.bts").exists());
+}

@@ -1,0 +1,58 @@
+//! The wind of a case without turbulence: profile, veer and event in closed form.
+
+use crate::case::{Case, WindEvent};
+use crate::plan::Plan;
+use flow::inflow::deterministic::{Event, RotatingDisk};
+use flow::inflow::{DeterministicWind, MeanProfile};
+
+/// The mean profile of `case`, with the hub height that `plan` found for its first turbine.
+pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
+    MeanProfile::PowerLaw {
+        hub_height: plan.hub_height,
+        speed: case.wind.speed,
+        exponent: case.wind.shear_exponent,
+    }
+}
+
+/// The wind of `case` without turbulence; lengths in diameters are those of its first turbine in `plan`.
+///
+/// The event's place is that turbine: its hub is the middle of the rotating disk's path and of the extreme shear.
+pub fn deterministic(case: &Case, plan: &Plan) -> DeterministicWind {
+    let event = case.wind.event.map_or(Event::Steady, |event| event_of(&event, case, plan));
+    let profile = profile(case, plan);
+    DeterministicWind { profile, hub_height: plan.hub_height, veer: case.wind.veer, event }
+}
+
+fn event_of(event: &WindEvent, case: &Case, plan: &Plan) -> Event {
+    let diameter = plan.diameter;
+    let hub_y = plan.positions.first().map_or(0.0, |foot| foot.y);
+    match *event {
+        WindEvent::Step { start, speed } => Event::Step { start, speed },
+        WindEvent::Ramp { start, duration, speed } => Event::Ramp { start, duration, speed },
+        WindEvent::Staircase { start, hold, rise, n_steps } => {
+            Event::Staircase { start, hold, rise, n_steps }
+        }
+        WindEvent::OperatingGust { start, duration, gust } => {
+            Event::OperatingGust { start, duration, gust }
+        }
+        WindEvent::DirectionChange { start, duration, change } => {
+            Event::DirectionChange { start, duration, change }
+        }
+        WindEvent::CoherentGust { start, duration, rise, change } => {
+            Event::CoherentGust { start, duration, rise, change }
+        }
+        WindEvent::ExtremeShear { start, duration, vertical, horizontal } => {
+            Event::ExtremeShear { start, duration, diameter, hub_y, vertical, horizontal }
+        }
+        WindEvent::RotatingDisk(disk) => Event::RotatingDisk(RotatingDisk {
+            middle: [hub_y, plan.hub_height],
+            offsets: disk.offsets_diameters.map(|offset| offset * diameter),
+            radius: disk.radius_diameters * diameter,
+            edge: disk.edge_diameters * diameter,
+            speed: disk.speed,
+            frequencies: disk.strouhal.map(|strouhal| strouhal * case.wind.speed / diameter),
+            sweep: disk.sweep,
+            clockwise: disk.sense == crate::case::Sense::Clockwise,
+        }),
+    }
+}

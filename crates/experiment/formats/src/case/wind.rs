@@ -1,0 +1,256 @@
+//! `[wind]`: its keys and what ties them to what moves the air, read and written.
+
+use super::check::sense_of;
+use super::document::{Entry, Node, Value};
+use super::error::ProblemKind;
+use super::keys::{self, EVENTS};
+use super::section::Section;
+use super::write::{degrees, quoted};
+use farm::case::{CirclingDisk, Flow, Sense, Solver, TurbulenceModel, Wind, WindEvent};
+use std::fmt::Write;
+
+/// The wind that `section` describes; not a number where it is missing.
+pub(super) fn wind_of(section: &Option<Section>) -> Wind {
+    let number = |key| section.as_ref().map_or(f64::NAN, |section| section.number(key));
+    Wind {
+        speed: number("speed"),
+        turbulence_intensity: number("turbulence_intensity"),
+        shear_exponent: number("shear_exponent"),
+        length_scale: number("length_scale"),
+        anisotropy: number("anisotropy"),
+        seed: section.as_ref().map_or(1, |section| section.whole("seed")),
+        air_density: number("air_density"),
+        kinematic_viscosity: number("kinematic_viscosity"),
+        turbulence_model: match section.as_ref().map(|section| section.choice("turbulence_model")) {
+            Some("kaimal") => TurbulenceModel::Kaimal,
+            _ => TurbulenceModel::Mann,
+        },
+        planes: section.as_ref().and_then(|section| section.optional_text("planes")),
+        veer: number("veer_deg_per_m").to_radians(),
+        event: section.as_ref().and_then(|section| {
+            let entry = section.entry("event")?;
+            event_of(section, entry, number("speed"))
+        }),
+    }
+}
+
+/// Notes where the wind of `section` does not suit what moves the air, or begins after `duration` (s).
+pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, duration: f64) {
+    let note = |key: &str, kind, fix: &str| {
+        section.findings().note(section.span_of(key), kind, Some(fix.into()));
+    };
+    let no_use = |key: &str, why: &str| ProblemKind::NoUse {
+        key: section.key_path(key),
+        why: why.to_owned(),
+    };
+    if flow.solver == Solver::Planes && wind.planes.is_none() {
+        let kind = ProblemKind::Missing { key: "wind.planes".to_owned() };
+        let fix = "flow.solver = \"planes\" reads the wind from a file: planes = \"field.bts\"";
+        note("speed", kind, fix);
+    }
+    if flow.solver == Solver::Lattice && wind.turbulence_model == TurbulenceModel::Kaimal {
+        let fix = "take turbulence_model = \"mann\", or flow.solver = \"turbulence\"";
+        note("turbulence_model", ProblemKind::KaimalInLattice, fix);
+    }
+    if wind.veer != 0.0 {
+        let why = match flow.solver {
+            Solver::Lattice => Some("the inlet of flow.solver = \"lattice\" blows along x"),
+            Solver::Planes => Some("flow.solver = \"planes\" takes the wind as the file has it"),
+            Solver::Uniform | Solver::Turbulence => None,
+        };
+        if let Some(why) = why {
+            let fix = "leave it out, or take flow.solver = \"uniform\" or \"turbulence\"";
+            note("veer_deg_per_m", no_use("veer_deg_per_m", why), fix);
+        }
+    }
+    if let Some(event) = &wind.event {
+        let why = match flow.solver {
+            Solver::Lattice => {
+                Some("the air of flow.solver = \"lattice\" would answer it with sound")
+            }
+            Solver::Turbulence => Some("flow.solver = \"turbulence\" has chance in it"),
+            Solver::Planes => Some("flow.solver = \"planes\" takes the wind as the file has it"),
+            Solver::Uniform => None,
+        };
+        if let Some(why) = why {
+            note("event", no_use("event", why), "leave it out, or take flow.solver = \"uniform\"");
+        }
+        let start = start_of(event);
+        if start >= duration {
+            let key = section.key_path("event.start");
+            note("event", ProblemKind::StartsTooLate { key, start, duration }, "begin it earlier");
+        }
+    }
+}
+
+/// The event in `entry` of `wind`, whose speed at hub height is `speed` (m/s).
+fn event_of(wind: &Section, entry: &Entry, speed: f64) -> Option<WindEvent> {
+    let Node { value: Value::Table(entries), span } = &entry.node else {
+        let expected = "a table, such as { kind = \"step\", start = 100.0, speed = 12.0 }";
+        wind.wrong_type("event", &entry.node, expected);
+        return None;
+    };
+    let path = wind.key_path("event");
+    let kind = entries.iter().find(|entry| entry.key == "kind").map(|entry| &entry.node.value);
+    let known = match kind {
+        Some(Value::Text(kind)) => EVENTS.iter().find(|(name, _)| name == kind),
+        _ => None,
+    };
+    let Some((name, table)) = known else {
+        // Without a kind no other key can be judged.
+        let only_kind: Vec<Entry> =
+            entries.iter().filter(|entry| entry.key == "kind").cloned().collect();
+        Section::open(&keys::STEP, &only_kind, span.clone(), path, wind.findings()).choice("kind");
+        return None;
+    };
+    let section = Section::open(table, entries, span.clone(), path, wind.findings());
+    let number = |key: &str| section.number(key);
+    let change = || section.number("change_deg").to_radians();
+    // Each kind has its own keys.
+    Some(match *name {
+        "step" => WindEvent::Step { start: number("start"), speed: number("speed") },
+        "ramp" => WindEvent::Ramp {
+            start: number("start"),
+            duration: number("duration"),
+            speed: number("speed"),
+        },
+        "staircase" => staircase_of(&section, speed),
+        "operating-gust" => WindEvent::OperatingGust {
+            start: number("start"),
+            duration: number("duration"),
+            gust: number("gust"),
+        },
+        "direction-change" => WindEvent::DirectionChange {
+            start: number("start"),
+            duration: number("duration"),
+            change: change(),
+        },
+        "coherent-gust" => WindEvent::CoherentGust {
+            start: number("start"),
+            duration: number("duration"),
+            rise: number("rise"),
+            change: change(),
+        },
+        "extreme-shear" => WindEvent::ExtremeShear {
+            start: number("start"),
+            duration: number("duration"),
+            vertical: number("vertical"),
+            horizontal: number("horizontal"),
+        },
+        _ => WindEvent::RotatingDisk(CirclingDisk {
+            speed: number("speed"),
+            offsets_diameters: [number("offset_y_diameters"), number("offset_z_diameters")],
+            radius_diameters: number("radius_diameters"),
+            edge_diameters: number("edge_diameters"),
+            strouhal: [number("strouhal"), number("strouhal_last")],
+            sweep: number("sweep"),
+            sense: sense_of(&section),
+        }),
+    })
+}
+
+/// Steps from `speed` (m/s); notes when they would lead below calm.
+fn staircase_of(section: &Section, speed: f64) -> WindEvent {
+    let (rise, n_steps) = (section.number("rise"), section.whole("n_steps"));
+    let last = speed + rise * n_steps as f64;
+    if last < 0.0 {
+        let kind = ProblemKind::OutOfRange {
+            key: section.key_path("rise"),
+            value: format!("{rise}"),
+            range: format!(
+                "rise >= {:.4} m/s for {n_steps} steps down to calm",
+                -speed / n_steps as f64
+            ),
+        };
+        let fix = "take fewer or smaller steps";
+        section.findings().note(section.span_of("rise"), kind, Some(fix.into()));
+    }
+    WindEvent::Staircase {
+        start: section.number("start"),
+        hold: section.number("hold"),
+        rise,
+        // The table of keys allows a thousand.
+        n_steps: n_steps as u32,
+    }
+}
+
+/// When the event begins (s); the disk circles from time zero.
+fn start_of(event: &WindEvent) -> f64 {
+    match *event {
+        WindEvent::Step { start, .. }
+        | WindEvent::Ramp { start, .. }
+        | WindEvent::Staircase { start, .. }
+        | WindEvent::OperatingGust { start, .. }
+        | WindEvent::DirectionChange { start, .. }
+        | WindEvent::CoherentGust { start, .. }
+        | WindEvent::ExtremeShear { start, .. } => start,
+        WindEvent::RotatingDisk(_) => 0.0,
+    }
+}
+
+/// Writes the section of `wind`. What came in later is written only where it is used, so that the fingerprint of a case
+/// without it stays what it was.
+pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
+    writeln!(text, "\n[wind]")?;
+    writeln!(text, "speed = {:?}", wind.speed)?;
+    writeln!(text, "turbulence_intensity = {:?}", wind.turbulence_intensity)?;
+    writeln!(text, "shear_exponent = {:?}", wind.shear_exponent)?;
+    writeln!(text, "length_scale = {:?}", wind.length_scale)?;
+    writeln!(text, "anisotropy = {:?}", wind.anisotropy)?;
+    writeln!(text, "seed = {}", wind.seed)?;
+    writeln!(text, "air_density = {:?}", wind.air_density)?;
+    writeln!(text, "kinematic_viscosity = {:?}", wind.kinematic_viscosity)?;
+    let model = match wind.turbulence_model {
+        TurbulenceModel::Mann => "mann",
+        TurbulenceModel::Kaimal => "kaimal",
+    };
+    writeln!(text, "turbulence_model = \"{model}\"")?;
+    if let Some(planes) = &wind.planes {
+        writeln!(text, "planes = {}", quoted(planes))?;
+    }
+    if wind.veer != 0.0 {
+        writeln!(text, "veer_deg_per_m = {:?}", degrees(wind.veer))?;
+    }
+    if let Some(event) = &wind.event {
+        writeln!(text, "event = {}", event_text(event))?;
+    }
+    Ok(())
+}
+
+/// The event as a table in a line.
+fn event_text(event: &WindEvent) -> String {
+    match *event {
+        WindEvent::Step { start, speed } => {
+            format!("{{ kind = \"step\", start = {start:?}, speed = {speed:?} }}")
+        }
+        WindEvent::Ramp { start, duration, speed } => format!(
+            "{{ kind = \"ramp\", start = {start:?}, duration = {duration:?}, speed = {speed:?} }}"
+        ),
+        WindEvent::Staircase { start, hold, rise, n_steps } => format!(
+            "{{ kind = \"staircase\", start = {start:?}, hold = {hold:?}, rise = {rise:?}, n_steps = {n_steps} }}"
+        ),
+        WindEvent::OperatingGust { start, duration, gust } => format!(
+            "{{ kind = \"operating-gust\", start = {start:?}, duration = {duration:?}, gust = {gust:?} }}"
+        ),
+        WindEvent::DirectionChange { start, duration, change } => format!(
+            "{{ kind = \"direction-change\", start = {start:?}, duration = {duration:?}, change_deg = {:?} }}",
+            degrees(change)
+        ),
+        WindEvent::CoherentGust { start, duration, rise, change } => format!(
+            "{{ kind = \"coherent-gust\", start = {start:?}, duration = {duration:?}, rise = {rise:?}, change_deg = {:?} }}",
+            degrees(change)
+        ),
+        WindEvent::ExtremeShear { start, duration, vertical, horizontal } => format!(
+            "{{ kind = \"extreme-shear\", start = {start:?}, duration = {duration:?}, vertical = {vertical:?}, horizontal = {horizontal:?} }}"
+        ),
+        WindEvent::RotatingDisk(disk) => {
+            let [y, z] = disk.offsets_diameters;
+            let [first, last] = disk.strouhal;
+            let sense = if disk.sense == Sense::Clockwise { "cw" } else { "ccw" };
+            format!(
+                "{{ kind = \"rotating-disk\", speed = {:?}, offset_y_diameters = {y:?}, offset_z_diameters = {z:?}, radius_diameters = {:?}, edge_diameters = {:?}, strouhal = {first:?}, strouhal_last = {last:?}, sweep = {:?}, sense = \"{sense}\" }}",
+                disk.speed, disk.radius_diameters, disk.edge_diameters, disk.sweep
+            )
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! From `[wind]` in a case file to the wind at a point, and what is refused on the way.
+
+use super::*;
+use basis::Vector3;
+use farm::plan::{Footprint, plan};
+use farm::wind::deterministic;
+use flow::inflow::DeterministicWind;
+use std::collections::BTreeMap;
+
+const DIAMETER: f64 = 200.0;
+const HUB: f64 = 120.0;
+
+/// A case with `keys` under `[wind]` and one turbine, half a diameter to the left.
+fn text(keys: &str) -> String {
+    format!(
+        "name = \"windy\"\n[wind]\nspeed = 10.0\nturbulence_intensity = 0.0\nshear_exponent = 0.2\n{keys}\n\
+         [flow]\nsolver = \"uniform\"\n[time]\nspin_up = 0\nduration = 600\n\
+         [[turbine]]\nname = \"T1\"\nmodel = \"m\"\nposition_diameters = [0.0, 0.5]\n[[run]]\nname = \"r\"\n"
+    )
+}
+
+/// The wind of a case with `keys`, after it was written and read again.
+fn wind(keys: &str) -> DeterministicWind {
+    let case = parse("windy.toml", &text(keys), &[]);
+    let case = case.unwrap_or_else(|error| panic!("{}", error.to_lines()));
+    assert_eq!(parse("again", &write(&case), &[]).unwrap(), case, "{keys}");
+    let footprint = Footprint { diameter: DIAMETER, hub_height: HUB, tip_speed: 80.0 };
+    let plan = plan(&case, &BTreeMap::from([("m".to_owned(), footprint)])).unwrap();
+    let wind = deterministic(&case, &plan);
+    wind.check().unwrap();
+    wind
+}
+
+fn at(wind: &DeterministicWind, time: f64, y: f64, z: f64) -> [f64; 3] {
+    wind.wind(time, Vector3::new(700.0, y, z)).to_array()
+}
+
+fn near(found: [f64; 3], expected: [f64; 3]) {
+    let distance = (Vector3::from_array(found) - Vector3::from_array(expected)).length();
+    assert!(distance < 1e-9, "{found:?} instead of {expected:?}");
+}
+
+#[test]
+fn shear_and_veer_turn_the_wind_over_height() {
+    let still = wind("");
+    near(at(&still, 5.0, 0.0, HUB), [10.0, 0.0, 0.0]);
+    near(at(&still, 5.0, 0.0, 2.0 * HUB), [10.0 * 2_f64.powf(0.2), 0.0, 0.0]);
+    let veering = wind("veer_deg_per_m = 0.05");
+    near(at(&veering, 5.0, 0.0, HUB), [10.0, 0.0, 0.0]);
+    // 100 m up it has turned by 5° clockwise seen from above, to the right looking downwind.
+    let speed = 10.0 * ((HUB + 100.0) / HUB).powf(0.2);
+    let (sine, cosine) = 5_f64.to_radians().sin_cos();
+    near(at(&veering, 5.0, 0.0, HUB + 100.0), [speed * cosine, -speed * sine, 0.0]);
+}
+
+#[test]
+fn events_come_when_and_as_the_file_says() {
+    let hub = |keys: &str, time: f64| at(&wind(&format!("event = {{ {keys} }}")), time, 0.0, HUB);
+    let step = "kind = \"step\", start = 100.0, speed = 12.5";
+    near(hub(step, 99.9), [10.0, 0.0, 0.0]);
+    near(hub(step, 100.0), [12.5, 0.0, 0.0]);
+    let ramp = "kind = \"ramp\", start = 100.0, duration = 50.0, speed = 5.0";
+    near(hub(ramp, 125.0), [7.5, 0.0, 0.0]);
+    let stairs = "kind = \"staircase\", start = 100.0, hold = 10.0, rise = -1.5, n_steps = 4";
+    near(hub(stairs, 115.0), [7.0, 0.0, 0.0]);
+    near(hub(stairs, 500.0), [4.0, 0.0, 0.0]);
+    // A half through, eq. 18 is 0.37 · sin(3π/2) · 2 below the mean: 0.74 V_gust above.
+    let gust = "kind = \"operating-gust\", start = 100.0, gust = 6.0";
+    near(hub(gust, 105.25), [10.0 + 0.74 * 6.0, 0.0, 0.0]);
+    let turn = "kind = \"direction-change\", start = 100.0, change_deg = 30";
+    near(
+        hub(turn, 103.0),
+        [10.0 * 15_f64.to_radians().cos(), 10.0 * 15_f64.to_radians().sin(), 0.0],
+    );
+    let coherent = "kind = \"coherent-gust\", start = 100.0, change_deg = -90";
+    near(hub(coherent, 200.0), [0.0, -25.0, 0.0]);
+}
+
+#[test]
+fn events_with_a_place_stand_at_the_first_turbine() {
+    let (hub_y, radius) = (0.5 * DIAMETER, 0.5 * DIAMETER);
+    let shear = wind("event = { kind = \"extreme-shear\", start = 100.0, horizontal = 4.0 }");
+    near(at(&shear, 106.0, hub_y, HUB), [10.0, 0.0, 0.0]);
+    near(at(&shear, 106.0, hub_y + radius, HUB), [14.0, 0.0, 0.0]);
+    let disk = wind(
+        "event = { kind = \"rotating-disk\", speed = 5.0, strouhal = 0.2, strouhal_last = 0.2, sense = \"ccw\" }",
+    );
+    // A tenth of a diameter above the hub at first; a quarter of a turn later a fifth to the left.
+    let top = HUB + 0.1 * DIAMETER;
+    near(at(&disk, 0.0, hub_y, top + 0.49 * DIAMETER), [5.0, 0.0, 0.0]);
+    assert!(at(&disk, 0.0, hub_y, top + 0.51 * DIAMETER)[0] > 10.0);
+    let quarter = 0.25 * DIAMETER / (0.2 * 10.0);
+    let left = hub_y + 0.2 * DIAMETER;
+    near(at(&disk, quarter, left + 0.49 * DIAMETER, HUB), [5.0, 0.0, 0.0]);
+    near(at(&disk, quarter, left + 0.51 * DIAMETER, HUB), [10.0, 0.0, 0.0]);
+    near(at(&disk, quarter, left - 0.51 * DIAMETER, HUB), [10.0, 0.0, 0.0]);
+}
+
+#[test]
+fn what_cannot_be_is_told_with_its_line() {
+    let step = "event = { kind = \"step\", start = 100.0, speed = 12.0 }";
+    let cases = [
+        ("event = 3", "uniform", "windy.toml:6: `wind.event` must be a table, such as"),
+        (
+            "event = { kind = \"stepp\" }",
+            "uniform",
+            "windy.toml:6: `wind.event.kind` = \"stepp\" does not exist; what exists is \"step\", \"ramp\"",
+        ),
+        ("event = { start = 3 }", "uniform", "`wind.event.kind` is missing"),
+        (
+            "event = { kind = \"step\", start = 3 }",
+            "uniform",
+            "windy.toml:6: `wind.event.speed` is missing",
+        ),
+        (
+            "event = { kind = \"step\", start = 3, sped = 4 }",
+            "uniform",
+            "there is no key `wind.event.sped`; did you mean `speed`?",
+        ),
+        (
+            "event = { kind = \"step\", start = 3, speed = 54 }",
+            "uniform",
+            "did you mean 15 m/s? 54 km/h would be that",
+        ),
+        (
+            "event = { kind = \"step\", start = 600, speed = 4 }",
+            "uniform",
+            "`wind.event.start` = 600 s is not before the end of the run",
+        ),
+        (
+            "event = { kind = \"staircase\", start = 0, hold = 9, rise = -3, n_steps = 4 }",
+            "uniform",
+            "windy.toml:6: `wind.event.rise` = -3 is out of range: rise >= -2.5000 m/s for 4 steps down to calm",
+        ),
+        ("veer_deg_per_m = 5", "uniform", "did you mean 0.05 deg/m? 5 deg per 100 m would be that"),
+        (
+            "veer_deg_per_m = 0.05",
+            "lattice",
+            "windy.toml:6: `wind.veer_deg_per_m` is of no use here: the inlet of flow.solver = \"lattice\" blows along x; leave it out, or take flow.solver = \"uniform\"",
+        ),
+        (
+            step,
+            "lattice",
+            "windy.toml:6: `wind.event` is of no use here: the air of flow.solver = \"lattice\"",
+        ),
+        (step, "turbulence", "`wind.event` is of no use here"),
+    ];
+    for (keys, solver, expected) in cases {
+        let text = text(keys).replace("\"uniform\"", &format!("\"{solver}\""));
+        let told = parse("windy.toml", &text, &[]).unwrap_err().to_lines();
+        assert!(told.contains(expected), "{keys}\nexpected {expected}\ntold     {told}");
+    }
+    let veering = text("veer_deg_per_m = 0.05").replace("\"uniform\"", "\"turbulence\"");
+    assert!(parse("windy.toml", &veering, &[]).is_ok());
+}
