@@ -72,6 +72,8 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
         kinematic_viscosity: 1.5e-5,
         turbulence_model: TurbulenceModel::Mann,
         planes: None,
+        veer: 0.0,
+        event: None,
     };
     let check = self_check(&model, &wind, &tunnel, None, &mut |_| ())
         .expect("a rotor in a steady wind stays finite");
