@@ -4,7 +4,9 @@ use super::belief::{BIAS, MEAN_WIND, PASSING, RATE};
 use super::filter::{Filter, FilterState};
 use super::trust::Trust;
 use super::wave::{Axis, UNKNOWN_PHASE};
-use basis::FixedFrame;
+use crate::{Oscillation, Quantity};
+use basis::angle::wrap_to_turn;
+use basis::{FixedFrame, Sense};
 use serde::{Deserialize, Serialize};
 
 /// Belief about the helix in the wind that meets the rotor, at one control instant.
@@ -24,6 +26,10 @@ pub struct HelixEstimate {
     pub other: FixedFrame,
     /// Wind as the last moments alone tell it (m/s).
     pub told: FixedFrame,
+    /// Which way the helix winds that was looked for.
+    pub sense: Sense,
+    /// Angle of the excitation, against which the phases of tilt and yaw are told (rad, [0, 2π)).
+    pub angle: f64,
     /// Excitation rate (rad/s): the nominal one, unless it is estimated.
     pub rate: f64,
     /// Mean of the normalised innovation squared over an excitation period (–): one in a filter that knows its noise.
@@ -84,10 +90,27 @@ impl HelixEstimate {
             },
             other,
             told: state.told,
+            sense: filter.sense,
+            angle: wrap_to_turn(angle),
             rate: filter.rate + belief.mean[RATE],
             innovation: state.watch.innovation(),
             trust,
             status,
+        }
+    }
+}
+
+impl From<HelixEstimate> for Oscillation {
+    fn from(estimate: HelixEstimate) -> Self {
+        let HelixEstimate { tilt, yaw, sense, angle, rate, .. } = estimate;
+        let yaw_phase = angle + sense.yaw_lead() + yaw.phase;
+        Self {
+            quantity: Quantity::Wind,
+            rate,
+            phases: [angle + tilt.phase, yaw_phase].map(wrap_to_turn),
+            amplitudes: [tilt.amplitude, yaw.amplitude],
+            trust: estimate.trust.overall(),
+            held: matches!(estimate.status, Status::Waiting | Status::Holding),
         }
     }
 }

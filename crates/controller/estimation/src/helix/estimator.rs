@@ -89,16 +89,6 @@ impl HelixEstimator {
         Ok(Self { filter, rotor, rated_speed, interval, memory, state })
     }
 
-    /// Everything that time changes, for a checkpoint.
-    pub fn state(&self) -> &State {
-        &self.state
-    }
-
-    /// Continues from `state`, which an estimator of the same turbine and options gave.
-    pub fn restore(&mut self, state: State) {
-        self.state = state;
-    }
-
     /// Choices.
     pub fn options(&self) -> &Options {
         &self.filter.options
@@ -187,6 +177,7 @@ impl HelixEstimator {
 
 impl Estimator for HelixEstimator {
     type Estimate = HelixEstimate;
+    type State = State;
 
     fn update(&mut self, measurements: &Measurements) -> HelixEstimate {
         let every = self.filter.options.update_every;
@@ -206,6 +197,14 @@ impl Estimator for HelixEstimator {
         let angle = self.filter.rate * measurements.time;
         let angle = if angle.is_finite() { angle } else { 0.0 };
         HelixEstimate::of(&self.filter, &self.state.filter, angle, self.state.status)
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn restore(&mut self, state: State) {
+        self.state = state;
     }
 }
 

@@ -131,16 +131,6 @@ impl LinearEstimator {
         })
     }
 
-    /// Everything that time changes, for a checkpoint.
-    pub fn state(&self) -> &LinearState {
-        &self.state
-    }
-
-    /// Continues from `state`, which an estimator of the same turbine, point and options gave.
-    pub fn restore(&mut self, state: LinearState) {
-        self.state = state;
-    }
-
     fn expected(&self, wind: FixedFrame, measurements: &Measurements) -> Expected {
         let winds = to_blades(measurements.azimuth, wind, measurements.pitch.len());
         let moments = PerBlade::from_fn(winds.len(), |blade| {
@@ -155,6 +145,7 @@ impl LinearEstimator {
 
 impl Estimator for LinearEstimator {
     type Estimate = HelixEstimate;
+    type State = LinearState;
 
     fn update(&mut self, measurements: &Measurements) -> HelixEstimate {
         let every = self.filter.options.update_every;
@@ -197,6 +188,14 @@ impl Estimator for LinearEstimator {
         }
         let angle = if angle.is_finite() { angle } else { 0.0 };
         HelixEstimate::of(&self.filter, &self.state.filter, angle, self.state.status)
+    }
+
+    fn state(&self) -> &LinearState {
+        &self.state
+    }
+
+    fn restore(&mut self, state: LinearState) {
+        self.state = state;
     }
 }
 

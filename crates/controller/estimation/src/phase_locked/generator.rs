@@ -25,6 +25,14 @@
 use super::PhaseLockedError;
 use serde::{Deserialize, Serialize};
 
+/// Magnitude (any unit) from which a sample is taken for no number: beyond, squares overflow.
+const TOO_LARGE: f64 = 1e150;
+
+/// Whether `sample` (any unit) is a number to calculate with.
+pub(super) fn tells(sample: f64) -> bool {
+    sample.abs() < TOO_LARGE
+}
+
 /// Which integrators make the generator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Kind {
@@ -128,7 +136,7 @@ impl Generator {
     /// The first sample is taken for the offset, so that a large one makes no transient. A sample that is no number is
     /// replaced by what the generator expects: it turns on undisturbed and gives false.
     pub fn update(&mut self, turned: f64, sample: f64) -> bool {
-        if !sample.is_finite() {
+        if !tells(sample) {
             self.coast(turned);
             return false;
         }

@@ -26,6 +26,9 @@ use std::fmt;
 /// Largest phase error that the loop filter is given (rad), 2 tan at 143°: with steps in time the true one has no bound.
 const LARGEST_ERROR: f64 = 6.0;
 
+/// Turn of the oscillator from one sample to the next (rad) beyond which the sample says nothing of what was between.
+pub(super) const LONGEST_TURN: f64 = 1.0;
+
 /// Type of the loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Order {
@@ -183,6 +186,8 @@ pub struct Oscillator {
     rate: f64,
     /// θ̃ (rad).
     error: f64,
+    /// Last interval that was a number (s), in place of one that is none.
+    interval: f64,
 }
 
 impl Oscillator {
@@ -198,18 +203,23 @@ impl Oscillator {
             acceleration: 0.0,
             rate,
             error: 0.0,
+            interval: 0.0,
         }
     }
 
-    /// Turns on by `interval` (s); gives by how much (rad).
+    /// Turns on by `interval` (s), or by the last one where this is no number or runs backwards; gives by how much (rad).
     pub(super) fn turn(&mut self, interval: f64) -> f64 {
-        let turned = self.rate * interval;
+        if interval.is_finite() && interval >= 0.0 {
+            self.interval = interval;
+        }
+        let turned = self.rate * self.interval;
         self.phase = wrap_to_turn(self.phase + turned);
         turned
     }
 
-    /// Follows the vector `in_phase` = A sin θ, `quadrature` = −A cos θ (one unit) over the next `interval` (s).
-    pub(super) fn follow(&mut self, interval: f64, in_phase: f64, quadrature: f64) {
+    /// Follows the vector `in_phase` = A sin θ, `quadrature` = −A cos θ (one unit) over the interval that it turned by.
+    pub(super) fn follow(&mut self, in_phase: f64, quadrature: f64) {
+        let interval = self.interval;
         let (sine, cosine) = self.phase.sin_cos();
         // A sin θ̃ and A cos θ̃.
         let across = in_phase * cosine + quadrature * sine;

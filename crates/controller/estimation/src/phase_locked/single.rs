@@ -3,7 +3,7 @@
 use super::PhaseLockedError;
 use super::generator::{Generator, Kind};
 use super::lock::Lock;
-use super::oscillator::{LoopSettings, Oscillator, Pole};
+use super::oscillator::{LONGEST_TURN, LoopSettings, Oscillator, Pole};
 use super::whole::growth;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::SQRT_2;
@@ -106,13 +106,15 @@ impl PhaseLockedLoop {
     /// [`Estimate::held`]; after half a period of them the lock counts as lost.
     pub fn update(&mut self, interval: f64, sample: f64) -> Estimate {
         let turned = self.oscillator.turn(interval);
+        // After a gap the sample says nothing of what was between.
+        let sample = if turned > LONGEST_TURN { f64::NAN } else { sample };
         self.held = !self.generator.update(turned, sample);
         if self.held {
             self.oscillator.coast();
             self.lock.miss(turned);
         } else {
             let generator = &self.generator;
-            self.oscillator.follow(interval, generator.in_phase(), generator.quadrature());
+            self.oscillator.follow(generator.in_phase(), generator.quadrature());
             let (error, limited) = (self.oscillator.error(), self.oscillator.is_limited());
             let (residual, amplitude) = (generator.residual(), generator.amplitude());
             self.lock.update(turned, error, residual, amplitude, limited);

@@ -317,7 +317,7 @@ fn comes_closer(kind: Kind, natural_rate: f64, rate: f64) -> bool {
             // In lock but for the phase.
             generator = settled_on_a_tone(kind, rate * interval);
         }
-        oscillator.follow(interval, generator.in_phase(), generator.quadrature());
+        oscillator.follow(generator.in_phase(), generator.quadrature());
         let error = (oscillator.rate() / rate - 1.0).abs();
         let early = (400 * 5..400 * 10).contains(&step);
         let late = step >= 400 * 55;

@@ -1,11 +1,11 @@
 //! A turbine's own two signals: tilt and yaw moments of its blades, followed by one oscillator.
 
 use super::PhaseLockedError;
-use super::generator::Generator;
+use super::generator::{Generator, tells};
 use super::lock::Lock;
-use super::oscillator::Oscillator;
+use super::oscillator::{LONGEST_TURN, Oscillator};
 use super::single::Settings;
-use crate::Estimator;
+use crate::{Estimator, Oscillation, Quantity};
 use basis::angle::wrap_to_turn;
 use basis::mbc::to_fixed_frame;
 use basis::{FixedFrame, Measurements, Sense};
@@ -95,10 +95,11 @@ impl TwoAxisLoop {
 
     /// Takes in `moments` (N m, fixed frame), `interval` (s) after the ones before.
     ///
-    /// Where either is no number, both axes go on as they turned before, which [`TwoAxisEstimate::held`] tells.
+    /// Where either is no number, or comes after a gap, both axes go on as they turned before, which
+    /// [`TwoAxisEstimate::held`] tells.
     pub fn follow(&mut self, interval: f64, moments: FixedFrame) -> TwoAxisEstimate {
         let turned = self.oscillator.turn(interval);
-        self.held = !(moments.tilt.is_finite() && moments.yaw.is_finite());
+        self.held = turned > LONGEST_TURN || !tells(moments.tilt) || !tells(moments.yaw);
         if self.held {
             self.tilt.coast(turned);
             self.yaw.coast(turned);
@@ -108,7 +109,7 @@ impl TwoAxisLoop {
             self.tilt.update(turned, moments.tilt);
             self.yaw.update(turned, moments.yaw);
             let ([in_phase, quadrature], residual) = self.led();
-            self.oscillator.follow(interval, in_phase, quadrature);
+            self.oscillator.follow(in_phase, quadrature);
             let amplitude = in_phase.hypot(quadrature);
             let (error, limited) = (self.oscillator.error(), self.oscillator.is_limited());
             self.lock.update(turned, error, residual, amplitude, limited);
@@ -156,10 +157,33 @@ impl TwoAxisLoop {
 
 impl Estimator for TwoAxisLoop {
     type Estimate = TwoAxisEstimate;
+    type State = Self;
 
     /// The belief after the blades' out-of-plane moments of this instant.
     fn update(&mut self, measurements: &Measurements) -> TwoAxisEstimate {
         let moments = to_fixed_frame(measurements.azimuth, &measurements.flap_moments);
         self.follow(measurements.interval, moments)
+    }
+
+    fn state(&self) -> &Self {
+        self
+    }
+
+    fn restore(&mut self, state: Self) {
+        *self = state;
+    }
+}
+
+impl From<TwoAxisEstimate> for Oscillation {
+    fn from(estimate: TwoAxisEstimate) -> Self {
+        let TwoAxisEstimate { rate, tilt, yaw, locked, held, .. } = estimate;
+        Self {
+            quantity: Quantity::Load,
+            rate,
+            phases: [tilt.phase, yaw.phase],
+            amplitudes: [tilt.amplitude, yaw.amplitude],
+            trust: f64::from(u8::from(locked)),
+            held,
+        }
     }
 }

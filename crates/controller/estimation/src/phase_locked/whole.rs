@@ -28,7 +28,7 @@ pub(super) fn growth(settings: &LoopSettings, fresh: &Generator, rate: f64) -> f
     oscillator.turn(1e-3 * interval);
     let (mut early, mut late) = (0.0_f64, 0.0_f64);
     for step in 1..=LATE * N_SAMPLES {
-        oscillator.follow(interval, generator.in_phase(), generator.quadrature());
+        oscillator.follow(generator.in_phase(), generator.quadrature());
         let error = (oscillator.rate() / rate - 1.0).abs();
         let period = step / N_SAMPLES;
         if (EARLY - 5..EARLY).contains(&period) {
