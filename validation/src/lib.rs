@@ -110,8 +110,8 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "meandering-disk",
-        about: "the flexible turbine in a rotating disk, loads amplified and attenuated, beside published tables",
-        minutes: "2",
+        about: "the flexible turbine in a rotating disk, in its middle and aside, loads amplified and attenuated, beside published tables",
+        minutes: "4",
         run: meandering::disk,
     },
     Validation {
@@ -119,6 +119,12 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "the helix's phase from blade moments: on the estimator's own model, and on an aeroelastic turbine in turbulence",
         minutes: "3",
         run: phase_estimator::phase_estimator,
+    },
+    Validation {
+        name: "estimators",
+        about: "the Kalman filter and the phase-locked loops on the same blade moments: error, settling, noise, cost",
+        minutes: "1",
+        run: phase_estimator::estimators,
     },
     Validation {
         name: "resume",

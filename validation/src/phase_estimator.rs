@@ -5,7 +5,10 @@
 //! each blade, so the estimator is told the same of the wake; in a solved flow it keeps its default.
 
 mod rig;
+mod side_by_side;
 mod wind;
+
+pub use side_by_side::estimators;
 
 use crate::Row;
 use basis::{FixedFrame, Measurements, PerBlade, Sense, Vector3};
