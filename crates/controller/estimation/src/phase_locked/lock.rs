@@ -10,6 +10,9 @@ const LOSES_ABOVE: f64 = 0.7;
 /// Least power of the oscillation, A²/2, over that of what is neither oscillation nor offset (–); half of it loses the lock.
 const LEAST_POWER_RATIO: f64 = 0.5;
 
+/// Phase (rad) over which missing samples are bridged without a doubt: a single one here and there costs nothing.
+const BRIDGED: f64 = TAU / 50.0;
+
 /// Lock detection; means are exponential over one period of the oscillation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Lock {
@@ -21,12 +24,14 @@ pub(super) struct Lock {
     limited: f64,
     /// Phase turned since the beginning or since the lock was lost (rad).
     turned: f64,
+    /// Phase turned since the last sample (rad).
+    silent: f64,
     locked: bool,
 }
 
 impl Lock {
     pub(super) fn new() -> Self {
-        Self { phase: 1.0, residual: 0.0, limited: 0.0, turned: 0.0, locked: false }
+        Self { phase: 1.0, residual: 0.0, limited: 0.0, turned: 0.0, silent: 0.0, locked: false }
     }
 
     /// Takes in one instant: `turned` (rad) since the one before, phase error (rad), residual and amplitude (one unit),
@@ -39,6 +44,7 @@ impl Lock {
         amplitude: f64,
         limited: bool,
     ) {
+        self.silent = 0.0;
         let share = (turned / TAU).min(1.0);
         self.phase += share * (error * error - self.phase);
         self.residual += share * (residual * residual - self.residual);
@@ -56,8 +62,12 @@ impl Lock {
         self.locked = holds && (self.locked || self.turned > TAU);
     }
 
-    /// Takes in an instant without a sample: after a period of them nothing is believed any more.
+    /// Takes in an instant without a sample: after half a period of them on end nothing is believed any more.
     pub(super) fn miss(&mut self, turned: f64) {
+        self.silent += turned;
+        if self.silent <= BRIDGED {
+            return;
+        }
         let share = (turned / TAU).min(1.0);
         self.phase += share * (1.0 - self.phase);
         if self.phase >= LOSES_ABOVE.powi(2) {

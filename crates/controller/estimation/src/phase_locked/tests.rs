@@ -248,6 +248,23 @@ fn samples_that_are_no_numbers_are_bridged_and_flagged() {
     }
 }
 
+/// Every third sample missing is no reason for doubt; the phase stays right.
+#[test]
+fn scattered_gaps_do_not_cost_the_lock() {
+    for kind in kinds() {
+        let mut follower = PhaseLockedLoop::new(&settings(kind), INTERVAL).unwrap();
+        for step in 0..30_000 {
+            let phase = 0.05 * INTERVAL * f64::from(step);
+            let sample = if step % 3 == 1 { f64::NAN } else { 2.0 * phase.sin() };
+            let estimate = follower.update(INTERVAL, sample);
+            if step > 25_000 {
+                let [phase, ..] = distance(&estimate, phase, 0.05);
+                assert!(estimate.locked && phase < 1e-2, "{kind:?} at {step}: {phase}");
+            }
+        }
+    }
+}
+
 #[test]
 fn noise_alone_does_not_lock() {
     let mut follower = PhaseLockedLoop::new(&settings(Kind::Mixed), INTERVAL).unwrap();
