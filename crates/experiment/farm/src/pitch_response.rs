@@ -24,8 +24,11 @@ use turbine::Turbine;
 
 /// Wind of the record over the case's (–): about what is left in a wake.
 const WAKE_SPEED: f64 = 0.75;
-/// Excitation periods for the filter to settle, and counted after them (–).
+/// Excitation periods for the filter to settle once the near wake has, and counted after them (–).
 const PERIODS: [f64; 2] = [2.0, 2.0];
+/// Excitation periods counted where no filter has to settle (–): moments answer as soon as the near wake has settled, some
+/// periods after the pitch began, so that waiting longer would tell nothing more and cost a third of the probe.
+const COUNTED: f64 = 2.0;
 /// Amplitude of the helices that tell how pitch acts on the loads (rad): a degree.
 pub const PROBE: f64 = std::f64::consts::PI / 180.0;
 
@@ -44,6 +47,77 @@ pub enum CalibrationError {
     /// The record tells nothing.
     #[error("the phase estimator cannot be calibrated")]
     Estimation(#[from] EstimationError),
+}
+
+/// What a probe costs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ProbeCost {
+    /// Cells of the air (–); none in prescribed wind.
+    pub n_cells: usize,
+    /// Steps, those of all its trials together (–).
+    pub n_steps: u64,
+}
+
+impl ProbeCost {
+    /// Cell updates, or steps in prescribed wind (–): what wall time goes with.
+    pub fn work(&self) -> f64 {
+        self.n_cells.max(1) as f64 * self.n_steps as f64
+    }
+}
+
+/// Cost of [`calibration`].
+pub fn calibration_cost(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSync) -> ProbeCost {
+    let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
+    let wind_speed = WAKE_SPEED * case.wind.speed;
+    let periods = PERIODS[0] + PERIODS[1];
+    Course::new(wind_speed, plan, model, rate, periods).cost(case, plan, model, 1)
+}
+
+/// Cost of [`decoupling`].
+pub fn decoupling_cost(case: &Case, plan: &Plan, model: &Model, asked: &Meandering) -> ProbeCost {
+    let rate = excitation_rate(middle(asked), case.wind.speed, plan.diameter);
+    let wind_speed = WAKE_SPEED * case.wind.speed;
+    Course::new(wind_speed, plan, model, rate, COUNTED).cost(case, plan, model, 2)
+}
+
+/// Strouhal number in the middle of what `asked` follows (–).
+fn middle(asked: &Meandering) -> f64 {
+    0.5 * (asked.strouhal[0] + asked.strouhal[1])
+}
+
+/// Steps of one trial: until the near wake has settled, and after it.
+#[derive(Clone, Copy)]
+struct Course {
+    n_settling: u64,
+    n_counted: u64,
+}
+
+impl Course {
+    /// In a wind of `wind_speed` (m/s), with `n_periods` (–) of a pitch of `rate` (rad/s) after the settling.
+    fn new(wind_speed: f64, plan: &Plan, model: &Model, rate: f64, n_periods: f64) -> Self {
+        let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
+        let diameter = model.definition.rotor_diameter();
+        let settling = tunnel.settling * diameter / wind_speed;
+        Self {
+            n_settling: (settling / plan.interval).ceil() as u64,
+            n_counted: (n_periods * TAU / rate / plan.interval).ceil() as u64 + 1,
+        }
+    }
+
+    fn n_steps(self) -> u64 {
+        self.n_settling + self.n_counted
+    }
+
+    /// Of `n_trials` of them.
+    fn cost(self, case: &Case, plan: &Plan, model: &Model, n_trials: u64) -> ProbeCost {
+        let n_cells = if case.flow.solver.is_prescribed() {
+            0
+        } else {
+            let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
+            tunnel.n_cells(model.definition.rotor_diameter()).iter().product()
+        };
+        ProbeCost { n_cells, n_steps: n_trials * self.n_steps() }
+    }
 }
 
 /// Calibrates the estimator of `sync` on turbine number `index` of `case`: gain and azimuth offset of its own pitch.
@@ -67,6 +141,7 @@ pub fn calibration(
         sense: sync.sense,
         amplitude: sync.amplitude,
         azimuth_offset: sync.azimuth_offset,
+        periods: PERIODS[0] + PERIODS[1],
     };
     let record = pitching(case, plan, model, index, &pitch, progress)?;
     let setting = assemble::estimator_setting(sync, case, plan);
@@ -90,7 +165,7 @@ pub fn decoupling(
     asked: &Meandering,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Decoupling, CalibrationError> {
-    let strouhal = 0.5 * (asked.strouhal[0] + asked.strouhal[1]);
+    let strouhal = middle(asked);
     let rate = excitation_rate(strouhal, case.wind.speed, plan.diameter);
     let wind_speed = WAKE_SPEED * case.wind.speed;
     let [counter_clockwise, clockwise] =
@@ -113,10 +188,17 @@ pub fn answers(
     progress: &mut dyn FnMut(f64),
 ) -> Result<[Answer; 2], CalibrationError> {
     let mut answer = |sense, done: f64| {
-        let pitch = Pitching { wind_speed, rate, sense, amplitude: PROBE, azimuth_offset: 0.0 };
+        let pitch = Pitching {
+            wind_speed,
+            rate,
+            sense,
+            amplitude: PROBE,
+            azimuth_offset: 0.0,
+            periods: COUNTED,
+        };
         let mut told = |share: f64| progress(done + 0.5 * share);
         let record = pitching(case, plan, model, index, &pitch, &mut told)?;
-        let n_counted = (PERIODS[1] * TAU / rate / plan.interval).round() as usize;
+        let n_counted = (COUNTED * TAU / rate / plan.interval).round() as usize;
         let counted = &record[record.len().saturating_sub(n_counted)..];
         Ok::<_, CalibrationError>(answer_to(counted, sense, rate))
     };
@@ -157,10 +239,12 @@ struct Pitching {
     amplitude: f64,
     /// Azimuth offset of its inverse multi-blade transformation (rad).
     azimuth_offset: f64,
+    /// Excitation periods recorded (–).
+    periods: f64,
 }
 
 /// What a turbine of `model` measures, alone in a steady wind as turbine number `index` of `case`, while it pitches as `pitch`
-/// has it: [`PERIODS`] of it, after the near wake has settled.
+/// has it, after the near wake has settled.
 fn pitching(
     case: &Case,
     plan: &Plan,
@@ -197,15 +281,14 @@ fn pitching(
     };
     let mut farm = Farm::new(vec![Machine::new(turbine, controller)], air, plan.interval, 1)
         .map_err(AssemblyError::from)?;
-    let settling = tunnel.settling * diameter / alone.wind.speed;
-    let period = TAU / rate;
-    let n_settling = (settling / plan.interval).ceil() as u64;
-    let n_counted = ((PERIODS[0] + PERIODS[1]) * period / plan.interval).ceil() as u64 + 1;
-    let mut record = Record { measurements: Vec::with_capacity(n_counted as usize), on: false };
-    for step in 0..n_settling + n_counted {
-        record.on = step >= n_settling;
+    let course = Course::new(pitch.wind_speed, plan, model, rate, pitch.periods);
+    let n_steps = course.n_steps();
+    let room = course.n_counted as usize;
+    let mut record = Record { measurements: Vec::with_capacity(room), on: false };
+    for step in 0..n_steps {
+        record.on = step >= course.n_settling;
         farm.advance(&mut record)?;
-        progress((step + 1) as f64 / (n_settling + n_counted) as f64);
+        progress((step + 1) as f64 / n_steps as f64);
     }
     Ok(record.measurements)
 }
@@ -234,7 +317,7 @@ mod tests {
     /// an oscillation at three times the rotor's frequency.
     fn record(sense: Sense, rate: f64, gain: f64, lead: f64) -> Vec<Measurements> {
         let (interval, rotor_speed) = (0.2, 0.61);
-        let n = (PERIODS[1] * TAU / rate / interval).round() as usize;
+        let n = (COUNTED * TAU / rate / interval).round() as usize;
         (1000..1000 + n)
             .map(|step| {
                 let time = interval * step as f64;

@@ -89,6 +89,13 @@ impl Tunnel {
         Self { upstream, downstream, width, settling: 8.0, averaging: 0.0, spacing, interval }
     }
 
+    /// Cells along x, y and z around a rotor of `diameter` (m).
+    pub fn n_cells(&self, diameter: f64) -> [usize; 3] {
+        let cells = |diameters: f64| (diameters * diameter / self.spacing).round() as usize;
+        let n_across = cells(self.width);
+        [cells(self.upstream + self.downstream), n_across, n_across]
+    }
+
     /// The steady speed of `wind` in the tunnel, a rotor of `diameter` (m) at its origin.
     ///
     /// # Errors
@@ -99,10 +106,8 @@ impl Tunnel {
         diameter: f64,
         threads: Option<usize>,
     ) -> Result<Lattice, lattice::SettingsError> {
-        let cells = |diameters: f64| (diameters * diameter / self.spacing).round() as usize;
-        let n_across = cells(self.width);
-        let n_cells = [cells(self.upstream + self.downstream), n_across, n_across];
-        let half_width = 0.5 * n_across as f64 * self.spacing;
+        let n_cells = self.n_cells(diameter);
+        let half_width = 0.5 * n_cells[1] as f64 * self.spacing;
         let origin = Vector3::new(-self.upstream * diameter, -half_width, -half_width);
         let mut settings =
             lattice::Settings::new(origin, self.spacing, n_cells, self.interval, wind.speed);

@@ -1,6 +1,6 @@
 //! A study from case file to report: every run of a case, with its files.
 //!
-//! Reading order: [`run`], then `prepare` (what all runs share), `simulate` (one run), `summarise` (its numbers).
+//! Reading order: [`run`], then `prepare` (what all runs share), `probes` (how pitch acts), `simulate` (one run), `summarise` (its numbers).
 
 mod air;
 mod azimuth_offset;
@@ -11,6 +11,7 @@ mod loads;
 mod outb;
 mod phase;
 mod prepare;
+mod probes;
 mod simulate;
 mod summarise;
 mod synchronisation;
@@ -20,7 +21,7 @@ pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;
 pub use phase::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase, tune};
 pub use prepare::Setup;
-pub use watcher::{Estimate, Progress, Watcher};
+pub use watcher::{Estimate, Probing, Progress, Watcher};
 
 use basis::records::{Series, Summary};
 use farm::case::Run;
@@ -99,7 +100,8 @@ pub fn run(
             check_same(&setup, &setup.case.runs[index], &folders[index])?;
         }
     }
-    let mut estimate = setup.estimate(open.len());
+    let probes = setup.open_probes(&open, &directory, options.resume)?;
+    let mut estimate = setup.estimate(open.len(), &probes);
     watcher.estimated(&estimate);
     setup.check_memory(&estimate)?;
     for warning in &setup.warnings {
@@ -113,7 +115,7 @@ pub fn run(
         return Ok(Outcome::Estimated);
     }
     if !open.is_empty() {
-        setup.calibrate(&open, watcher)?;
+        setup.calibrate(&open, &directory, options.resume, watcher)?;
         setup.make_turbulence(watcher)?;
     }
     for (place, &index) in open.iter().enumerate() {

@@ -1,12 +1,11 @@
 //! What all runs of a case share: turbines, domain, wind.
 
 use crate::StudyError;
+use crate::probes::Probe;
 use crate::watcher::{Estimate, Watcher};
 use basis::angle::wrap_to_turn;
-use estimation::helix::Calibration;
 use farm::assemble::Model;
-use farm::case::{Case, Control, Decoupling, Meandering, PhaseEstimator, PhaseSync, Solver};
-use farm::pitch_response::{calibration, decoupling};
+use farm::case::{Case, Control, Solver};
 use farm::self_check::{Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -142,14 +141,17 @@ impl Setup {
         Ok(Arc::new(wind))
     }
 
-    /// The cost of `n_runs` runs, the machine's speed not known yet.
-    pub fn estimate(&self, n_runs: usize) -> Estimate {
+    /// The cost of `n_runs` runs and of `probes` before them, the machine's speed not known yet.
+    pub(crate) fn estimate(&self, n_runs: usize, probes: &[Probe]) -> Estimate {
         let plan = &self.plan;
         let channels = 4 + CHANNELS_PER_TURBINE * self.case.turbines.len() as u64;
         let n_rows = plan.n_steps / plan.row_stride;
         let field = plan.cells() as u64 * CELL_BYTES;
         Estimate {
             n_runs,
+            n_probes: probes.len(),
+            n_probe_steps: probes.iter().map(|probe| probe.cost().n_steps).sum(),
+            probe_work: probes.iter().map(|probe| probe.cost().work()).sum(),
             n_cells: plan.n_cells,
             spacing: plan.spacing,
             interval: plan.interval,
@@ -218,96 +220,6 @@ impl Setup {
             slowest = Some(slowest.map_or(speed, |slowest| slowest.min(speed)));
         }
         Ok(slowest)
-    }
-
-    /// On return the case knows, for `runs`, what the phase estimator of every turbine that joins a helix makes of its own
-    /// pitch, and how pitch acts on the loads of every turbine that acts on meandering and is not told.
-    ///
-    /// # Errors
-    /// [`StudyError::Calibration`] when it cannot be found.
-    pub fn calibrate(
-        &mut self,
-        runs: &[usize],
-        watcher: &mut dyn Watcher,
-    ) -> Result<(), StudyError> {
-        self.calibrate_estimators(runs, watcher)?;
-        self.decouple(runs, watcher)
-    }
-
-    /// Calibrates phase estimators, once for a turbine: offset, start and fallback change nothing of it.
-    fn calibrate_estimators(
-        &mut self,
-        runs: &[usize],
-        watcher: &mut dyn Watcher,
-    ) -> Result<(), StudyError> {
-        let mut known: Vec<(usize, PhaseSync, Calibration)> = Vec::new();
-        for &run in runs {
-            for index in 0..self.case.turbines.len() {
-                let Control::PhaseSync(asked) = self.case.runs[run].control[index] else {
-                    continue;
-                };
-                if asked.estimator == PhaseEstimator::Published || asked.amplitude == 0.0 {
-                    continue;
-                }
-                let alike = PhaseSync { offset: 0.0, start: 0.0, fallback: true, ..asked };
-                let before = known.iter().find(|known| known.0 == index && known.1 == alike);
-                let found = match before {
-                    Some(&(_, _, found)) => found,
-                    None => {
-                        let name = &self.case.turbines[index].name;
-                        let what = format!("calibrating the estimator of {name}");
-                        let mut told = |share| watcher.preparing(&what, share);
-                        let model = &self.models[index];
-                        let found =
-                            calibration(&self.case, &self.plan, model, index, &asked, &mut told)?;
-                        watcher.calibrated(name, &found);
-                        known.push((index, alike, found));
-                        found
-                    }
-                };
-                self.case.runs[run].control[index] =
-                    Control::PhaseSync(PhaseSync { calibration: Some(found), ..asked });
-            }
-        }
-        Ok(())
-    }
-
-    /// Finds how pitch acts on the loads where meandering control needs it, once for turbines that are alike.
-    fn decouple(&mut self, runs: &[usize], watcher: &mut dyn Watcher) -> Result<(), StudyError> {
-        let mut known: Vec<(usize, [f64; 2], Decoupling)> = Vec::new();
-        for &run in runs {
-            for index in 0..self.case.turbines.len() {
-                let Control::Meandering(asked) = self.case.runs[run].control[index] else {
-                    continue;
-                };
-                if asked.decoupling.is_some() || asked.amplitude == 0.0 {
-                    continue;
-                }
-                let turbines = &self.case.turbines;
-                let alike = |other: usize| {
-                    turbines[other].model == turbines[index].model
-                        && turbines[other].flexible == turbines[index].flexible
-                };
-                let before = known.iter().find(|known| alike(known.0) && known.1 == asked.strouhal);
-                let found = match before {
-                    Some(&(_, _, found)) => found,
-                    None => {
-                        let name = &turbines[index].name;
-                        let what = format!("probing how pitch acts on the loads of {name}");
-                        let mut told = |share| watcher.preparing(&what, share);
-                        let model = &self.models[index];
-                        let found =
-                            decoupling(&self.case, &self.plan, model, index, &asked, &mut told)?;
-                        watcher.decoupled(name, &found);
-                        known.push((index, asked.strouhal, found));
-                        found
-                    }
-                };
-                self.case.runs[run].control[index] =
-                    Control::Meandering(Meandering { decoupling: Some(found), ..asked });
-            }
-        }
-        Ok(())
     }
 
     /// What the inlet needs of the turbulence: the box of air at the start, then a plane for every later step.

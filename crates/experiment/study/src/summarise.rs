@@ -3,6 +3,7 @@
 use crate::StudyError;
 use crate::loads;
 use crate::prepare::Setup;
+use crate::probes::response_of;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
 use analysis::statistics::{BLOCK_LENGTH, gain, statistic};
@@ -114,6 +115,7 @@ pub(crate) fn summarise(
             pitch: collective_pitch(&analysed, name, n_blades)?,
             delivered_pitch,
             power_gain,
+            pitch_response: response_of(control),
             damage_equivalent_loads: loads::damage_equivalent(series, name, &analysed)?,
             pitch_duty: loads::pitch_duty(series, name, &analysed)?,
         });

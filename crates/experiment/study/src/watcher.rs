@@ -1,8 +1,6 @@
 //! Watching a study: what it will cost, how far it is, what it found.
 
-use basis::records::Summary;
-use estimation::helix::Calibration;
-use farm::case::Decoupling;
+use basis::records::{PitchResponse, Summary};
 use farm::self_check::SelfCheck;
 
 /// What a study will cost, known before it starts.
@@ -10,6 +8,12 @@ use farm::self_check::SelfCheck;
 pub struct Estimate {
     /// Runs still to be made (–).
     pub n_runs: usize,
+    /// Probes before them of how a turbine's pitch acts (–).
+    pub n_probes: usize,
+    /// Steps of all probes together (–).
+    pub n_probe_steps: u64,
+    /// Cell updates of all probes together (–); steps in prescribed wind.
+    pub probe_work: f64,
     /// Cells along x, y, z (–).
     pub n_cells: [usize; 3],
     /// Edge of a cell (m).
@@ -33,11 +37,33 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Wall time of all runs together (s), once the machine's speed is known.
+    /// Wall time of probes and runs together (s), once the machine's speed is known.
     pub fn wall_time(&self) -> Option<f64> {
         let updates = self.n_cells.iter().product::<usize>() as f64 * self.n_steps as f64;
-        self.updates_per_second.map(|speed| self.n_runs as f64 * updates / speed)
+        let all = self.n_runs as f64 * updates + self.probe_work;
+        self.updates_per_second.map(|speed| all / speed)
     }
+
+    /// Work of the probes over that of one run (–).
+    pub fn probe_share(&self) -> f64 {
+        let cells = self.n_cells.iter().product::<usize>().max(1) as f64;
+        self.probe_work / (cells * self.n_steps as f64)
+    }
+}
+
+/// How far the probes before the runs are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probing<'a> {
+    /// Turbine whose pitch is probed.
+    pub turbine: &'a str,
+    /// Place of the probe among those to be made, from 0.
+    pub index: usize,
+    /// Probes to be made (–).
+    pub n_probes: usize,
+    /// Share of this one that is done (–).
+    pub share: f64,
+    /// Wall time left for all probes (s).
+    pub time_left: f64,
 }
 
 /// How far a run is.
@@ -67,10 +93,10 @@ pub trait Watcher {
     fn preparing(&mut self, _what: &str, _share: f64) {}
     /// A rotor was checked against blade-element momentum.
     fn checked(&mut self, _check: &SelfCheck) {}
-    /// The phase estimator on the turbine called `turbine` was calibrated.
-    fn calibrated(&mut self, _turbine: &str, _calibration: &Calibration) {}
-    /// It was found how pitch acts on the loads of the turbine called `turbine`.
-    fn decoupled(&mut self, _turbine: &str, _decoupling: &Decoupling) {}
+    /// A probe moved on.
+    fn probing(&mut self, _probing: &Probing) {}
+    /// It was found how the pitch of the turbine called `turbine`, and of those alike, acts; `again`: by an earlier session.
+    fn probed(&mut self, _turbine: &str, _response: &PitchResponse, _again: bool) {}
     /// A run moved on.
     fn advanced(&mut self, _progress: &Progress) {}
     /// A run is complete.

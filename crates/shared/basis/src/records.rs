@@ -67,6 +67,32 @@ impl PitchDuty {
     }
 }
 
+/// How a turbine's own pitch acts, as its controller was told before the run: probed, or given in the case file.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PitchResponse {
+    /// In the belief of what finds the helix.
+    Estimator {
+        /// Factor on tilt and yaw of the pitch (–).
+        gain: f64,
+        /// Angle by which a blade runs ahead of its pitch (rad).
+        azimuth_offset: f64,
+        /// Amplitude of the helix that was found where there was none, before (m/s).
+        before: f64,
+        /// The same after (m/s).
+        after: f64,
+    },
+    /// On the tilt and yaw moments of the blades.
+    Loads {
+        /// Azimuth offset of the inverse multi-blade transformation (rad).
+        azimuth_offset: f64,
+        /// Time by which commands run ahead (s).
+        delay: f64,
+        /// Moment lost per pitch (N m/rad).
+        gain: f64,
+    },
+}
+
 /// One turbine over one run's analysed time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TurbineSummary {
@@ -88,6 +114,9 @@ pub struct TurbineSummary {
     pub delivered_pitch: Option<DeliveredPitch>,
     /// Power relative to the same turbine in the compared run, minus one (–).
     pub power_gain: Option<Statistic>,
+    /// How its own pitch acts; absent where its controller need not know.
+    #[serde(default)]
+    pub pitch_response: Option<PitchResponse>,
     /// 1-Hz damage-equivalent loads by channel, slope and unit, such as `RootMyc1, m = 10 (kN m)`.
     pub damage_equivalent_loads: BTreeMap<String, f64>,
     /// What pitching did to blade 1; absent in records that do not tell.

@@ -9,11 +9,12 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use wakemix::basis::records::Summary;
-use wakemix::estimation::helix::Calibration;
-use wakemix::farm::case::Decoupling;
+use wakemix::basis::records::{PitchResponse, Summary};
 use wakemix::farm::self_check::{SelfCheck, TOLERANCE};
-use wakemix::study::{self, Estimate, Options, Outcome, Progress, StudyError, Watcher};
+use wakemix::study::{self, Estimate, Options, Outcome, Probing, Progress, StudyError, Watcher};
+
+/// Longest time left that is shown (s): a year.
+const LONGEST: f64 = 3.2e7;
 
 /// Arguments of `wakemix run`.
 #[derive(Args)]
@@ -102,6 +103,19 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
     }
 }
 
+/// What goes before the runs, in words: " and 1 probe of pitch before them (19 % of a run)".
+fn probes(estimate: &Estimate) -> String {
+    match estimate.n_probes {
+        0 => String::new(),
+        n => format!(
+            " and {n} probe{} of pitch before them ({} steps, {:.0} % of a run)",
+            if n == 1 { "" } else { "s" },
+            estimate.n_probe_steps,
+            100.0 * estimate.probe_share()
+        ),
+    }
+}
+
 /// Progress and remarks on stderr.
 struct Screen {
     bar: ProgressBar,
@@ -129,17 +143,19 @@ impl Watcher for Screen {
         let [n_x, n_y, n_z] = estimate.n_cells;
         match (estimate.updates_per_second, estimate.wall_time()) {
             (Some(speed), Some(wall_time)) => self.say(&format!(
-                "cost: about {} for {} run{} at {:.0} million cell updates a second",
+                "cost: about {} for {} run{}{} at {:.0} million cell updates a second",
                 HumanDuration(Duration::from_secs_f64(wall_time.max(1.0))),
                 estimate.n_runs,
                 if estimate.n_runs == 1 { "" } else { "s" },
+                probes(estimate),
                 speed / 1e6
             )),
             _ if n_x == 0 => self.say(&format!(
-                "prescribed wind: {} steps of {:.4} s a run, disk up to {} a run",
+                "prescribed wind: {} steps of {:.4} s a run, disk up to {} a run{}",
                 estimate.n_steps,
                 estimate.interval,
                 HumanBytes(estimate.disk),
+                probes(estimate),
             )),
             _ => self.say(&format!(
                 "grid: {n_x} × {n_y} × {n_z} = {:.2} million cells of {:.1} m, {} steps of {:.4} s a run; \
@@ -178,23 +194,29 @@ impl Watcher for Screen {
         ));
     }
 
-    fn calibrated(&mut self, turbine: &str, calibration: &Calibration) {
-        self.say(&format!(
-            "calibrated: {turbine}'s estimator takes its own pitch times {:.3}, {:+.1}° on; of it {:.2} m/s were taken for wind, {:.2} m/s still are",
-            calibration.gain,
-            calibration.azimuth_offset.to_degrees(),
-            calibration.before,
-            calibration.after,
-        ));
+    fn probing(&mut self, probing: &Probing) {
+        self.last = None;
+        let Probing { turbine, index, n_probes, share, time_left } = *probing;
+        self.bar.set_prefix(format!("probing {turbine} ({}/{n_probes})", index + 1));
+        self.bar.set_length(1000);
+        self.bar.set_position((1000.0 * share) as u64);
+        let left = HumanDuration(Duration::from_secs_f64(time_left.clamp(0.0, LONGEST)));
+        self.bar.set_message(format!("{left} left before the runs"));
     }
 
-    fn decoupled(&mut self, turbine: &str, found: &Decoupling) {
-        self.say(&format!(
-            "probed: {turbine} loses {:.2} MN m per degree of cyclic pitch, {:+.1}° of azimuth and {:.2} s after it",
-            1e-6 * found.gain * 1f64.to_radians(),
-            found.azimuth_offset.to_degrees(),
-            found.delay,
-        ));
+    fn probed(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
+        let found = if again { "probed before" } else { "probed" };
+        self.say(&match *response {
+            PitchResponse::Estimator { gain, azimuth_offset, before, after } => format!(
+                "{found}: {turbine}'s estimator takes its own pitch times {gain:.3}, {:+.1}° on; of it {before:.2} m/s were taken for wind, {after:.2} m/s still are",
+                azimuth_offset.to_degrees(),
+            ),
+            PitchResponse::Loads { azimuth_offset, delay, gain } => format!(
+                "{found}: {turbine} loses {:.2} MN m per degree of cyclic pitch, {:+.1}° of azimuth and {delay:.2} s after it",
+                1e-6 * gain * 1f64.to_radians(),
+                azimuth_offset.to_degrees(),
+            ),
+        });
     }
 
     fn advanced(&mut self, progress: &Progress) {

@@ -4,10 +4,12 @@
 //! files, planes included, so that a study can be told anew from its folder alone.
 
 mod manifest;
+mod probes;
 mod series;
 mod study;
 
 pub use manifest::{Machine, Manifest, read_manifest, sha256, write_manifest};
+pub use probes::{ProbeRecord, read_probes, write_probes};
 pub use series::{SeriesWriter, read_series};
 pub use study::{RunRecords, StudyRecords, read_study};
 

@@ -44,6 +44,7 @@ pub(crate) fn render(study: &Study, figures: &[Figure]) -> Result<String, Report
         chips => chips(study),
         conditions => tables::conditions(study),
         excitations => tables::excitations(study),
+        responses => tables::responses(study),
         rows => tables::results(study),
         has_gains => best.is_some(),
         load_conventions => tables::load_conventions(study),

@@ -6,7 +6,7 @@ use crate::sentence;
 use crate::study::{Kind, Study};
 use crate::words::{self, SPACE, number, percent, three_figures};
 use analysis::fatigue;
-use basis::records::{Statistic, TurbineSummary};
+use basis::records::{PitchResponse, Statistic, TurbineSummary};
 use minijinja::{Value, context};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -141,6 +141,47 @@ pub(crate) fn excitations(study: &Study) -> Vec<Value> {
                 frequency => number(pitch.frequency_hz, 4),
                 excitation_period => number(1.0 / pitch.excitation_frequency_hz.abs(), 1),
                 clipped => percent(pitch.clipped_share),
+            });
+        }
+    }
+    rows
+}
+
+/// How pitch acts where a controller was told, as it was told.
+pub(crate) fn responses(study: &Study) -> Vec<Value> {
+    let mut rows = Vec::new();
+    for (run, &colour) in study.runs().iter().zip(&study.colours) {
+        for turbine in &run.summary.turbines {
+            let (on, gain, offset, delay, remark) = match turbine.pitch_response {
+                None => continue,
+                Some(PitchResponse::Estimator { gain, azimuth_offset, before, after }) => (
+                    "belief of the phase estimator",
+                    format!("× {}", number(gain, 3)),
+                    azimuth_offset,
+                    String::new(),
+                    format!(
+                        "helix found without one: {}{SPACE}m/s before, {}{SPACE}m/s after",
+                        number(before, 2),
+                        number(after, 2)
+                    ),
+                ),
+                Some(PitchResponse::Loads { azimuth_offset, delay, gain }) => (
+                    "tilt and yaw moment of the blades",
+                    format!("−{}{SPACE}MN{SPACE}m/°", number(1e-6 * gain * 1f64.to_radians(), 3)),
+                    azimuth_offset,
+                    number(delay, 2),
+                    String::new(),
+                ),
+            };
+            rows.push(context! {
+                run => run.summary.run.clone(),
+                colour,
+                turbine => turbine.name.clone(),
+                on,
+                gain,
+                offset => number(offset.to_degrees(), 1),
+                delay,
+                remark,
             });
         }
     }

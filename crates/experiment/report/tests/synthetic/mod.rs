@@ -1,8 +1,8 @@
 //! A study in closed form: Gaussian wakes that a helix makes recover sooner, sinusoidal pitch.
 
 use basis::records::{
-    Conditions, Cost, DeliveredPitch, Plane, PlaneAxes, SCHEMA_VERSION, Series, Statistic, Summary,
-    TurbineSummary,
+    Conditions, Cost, DeliveredPitch, PitchResponse, Plane, PlaneAxes, SCHEMA_VERSION, Series,
+    Statistic, Summary, TurbineSummary,
 };
 use report::{RunRecords, StudyRecords};
 use std::collections::BTreeMap;
@@ -112,6 +112,11 @@ fn run(recipe: &Recipe) -> RunRecords {
             clipped_share: 0.0,
         }),
         power_gain: gain(recipe.gains[index], [0.004, 0.021][index]),
+        pitch_response: (index == 1).then_some(PitchResponse::Loads {
+            azimuth_offset: 0.25,
+            delay: 3.5,
+            gain: 1.6e8,
+        }),
         damage_equivalent_loads: BTreeMap::new(),
         pitch_duty: None,
     });

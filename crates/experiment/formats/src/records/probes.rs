@@ -1,0 +1,66 @@
+//! What was probed before the runs of a study: `DIR/probes.json`, so that a resumed study need not probe again.
+
+use crate::{FileError, atomic};
+use basis::records::PitchResponse;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+const WHAT: &str = "what was probed before the runs";
+
+/// How the pitch of one turbine was found to act.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProbeRecord {
+    /// SHA-256 of everything that decides what is found, hexadecimal: equal for equal probes alone.
+    pub key: String,
+    /// Name of the turbine for which it was found first.
+    pub turbine: String,
+    /// What was found.
+    pub response: PitchResponse,
+}
+
+fn path_in(study: &Path) -> PathBuf {
+    study.join("probes.json")
+}
+
+/// Reads what was probed for the study in the folder `study`; nothing where nothing was.
+///
+/// # Errors
+/// [`FileError::System`] and [`FileError::Content`].
+pub fn read_probes(study: &Path) -> Result<Vec<ProbeRecord>, FileError> {
+    let path = path_in(study);
+    if path.is_file() { super::read_json(&path, WHAT) } else { Ok(Vec::new()) }
+}
+
+/// Writes `probes`, all that was probed, into the folder `study`.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn write_probes(study: &Path, probes: &[ProbeRecord]) -> Result<(), FileError> {
+    atomic::create_folder(study)?;
+    super::write_json(&path_in(study), WHAT, &probes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_back_with_their_bits() {
+        let study = tempfile::tempdir().unwrap();
+        assert_eq!(read_probes(study.path()).unwrap(), []);
+        let third = 1.0 / 3.0;
+        let probes: Vec<ProbeRecord> = (0..200)
+            .map(|index| {
+                let value = third * 1.1_f64.powi(index);
+                let loads = PitchResponse::Loads {
+                    azimuth_offset: -value,
+                    delay: value.sqrt(),
+                    gain: 1e8 * value.sin(),
+                };
+                ProbeRecord { key: format!("{index}"), turbine: "T2".into(), response: loads }
+            })
+            .collect();
+        write_probes(study.path(), &probes).unwrap();
+        assert_eq!(read_probes(study.path()).unwrap(), probes);
+    }
+}
