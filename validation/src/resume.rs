@@ -38,10 +38,12 @@ position_diameters = [0.0, 0.0]
 name = "T2"
 model = "iea-15mw"
 position_diameters = [3.0, 0.2]
+instruments.flap_moments = { noise_mnm = 0.3, dropout = 0.02, time_constant = 0.1 }
+instruments.rotor_speed = { resolution_rpm = 0.01 }
 [[run]]
 name = "helix"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
-control.T2 = { kind = "pulse", amplitude_deg = 2.0, strouhal = 0.3 }
+control.T2 = { kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 3.0, start = 60.0 }
 "#;
 
 /// Files that differ between an undisturbed run and one that was killed [`N_KILLS`] times, out of those compared.
