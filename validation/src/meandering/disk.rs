@@ -1,16 +1,18 @@
-//! The source's section 4-2-1: the aeroelastic turbine in the rotating disk, loads brought to factors of their own amplitude.
+//! The source's section 4-2-1: the aeroelastic turbine in the rotating disk, loads brought to factors of their own amplitude; and
+//! what it leaves open, the same where the disk meets a part of the rotor only.
 
 use super::identify::decoupling;
 use super::judge::{Record, Table};
 use super::rig::{INTERVAL, Reading, Rig};
 use crate::Row;
-use basis::Sense;
+use basis::{FixedFrame, Sense};
 use control::meandering::{Decoupling, Followed, Meandering, Reference, Settings, TwoAxisSettings};
 use estimation::Estimator;
 use estimation::phase_locked::{Leader, Settings as Signal, TwoAxisLoop};
 use flow::inflow::deterministic::Event;
 use flow::inflow::deterministic::RotatingDisk;
 use flow::inflow::{DeterministicWind, MeanProfile};
+use std::f64::consts::TAU;
 
 /// Wind outside the disk (m/s).
 const AMBIENT: f64 = 16.0;
@@ -38,73 +40,134 @@ const PUBLISHED: [(f64, [f64; 8]); 4] = [
     (0.35, [-1.0, -27.9, -43.5, -2.8, -60.9, -8.0, -16.0, -4.0]),
 ];
 
-/// Everything; prints the table with intervals, gives what is claimed as rows.
-pub fn disk() -> Vec<Row> {
-    let circling =
-        RotatingDisk { edge: EDGE, ..RotatingDisk::of_wake(DIAMETER, HUB_HEIGHT, AMBIENT, true) };
-    let calm = DeterministicWind::steady(MeanProfile::Uniform { speed: AMBIENT }, HUB_HEIGHT);
-    let wind = DeterministicWind { event: Event::RotatingDisk(circling), ..calm };
-    let rig = Rig::new(wind, ROTOR_SPEED);
+/// Factors asked for where the disk meets a part of the rotor only.
+const PARTIAL_FACTORS: [f64; 3] = [1.25, 0.75, 0.35];
 
-    let mut follower = TwoAxisLoop::new(&following(), INTERVAL).expect("a sound loop");
-    let mut amplitudes = [0.0; 2];
-    let (mut off_rate, mut n) = (0.0_f64, 0.0);
-    let mut all = Vec::new();
-    let mut baseline = Record::new(circling);
-    let mut machine = rig.clone();
-    for _ in 0..n_steps(END) {
-        let mut belief = follower.estimate();
-        let reading = machine.advance(|_, measurements| belief = follower.update(measurements));
-        if reading.time >= JUDGED {
-            amplitudes[0] += belief.tilt.amplitude;
-            amplitudes[1] += belief.yaw.amplitude;
-            n += 1.0;
-            let true_rate = std::f64::consts::TAU * circling.frequency(reading.time);
-            off_rate = off_rate.max((belief.rate / true_rate - 1.0).abs());
-            baseline.take(&reading);
-        }
-        all.push(reading.loads);
-    }
-    let [tilt, yaw] = amplitudes.map(|sum| sum / n);
-    let decoupling = decoupling(&rig, &all);
+/// Everything; prints the tables with intervals, gives what is claimed as rows.
+pub fn disk() -> Vec<Row> {
+    let full = Bench::new(0.0);
+    let decoupling = decoupling(&full.rig, &full.loads);
     let Decoupling { azimuth_offset, delay, gain } = decoupling;
     println!(
         "azimuth offset {:.1}°, delay {delay:.2} s, {:.0} MN m/rad",
         azimuth_offset.to_degrees(),
         1e-6 * gain
     );
-    println!("baseline amplitudes: tilt {:.2}, yaw {:.2} MN m", 1e-6 * tilt, 1e-6 * yaw);
-
-    let mut rows = vec![Row {
-        what: "baseline: rate believed in off the disk's, at worst".to_owned(),
-        measured: off_rate,
-        expected: 0.0,
-        tolerance: 0.05,
-        unit: "–",
-    }];
-    let given = Reference::Given { tilt, yaw };
-    let kinds: [(_, &str, _, &[f64]); 3] = [
-        (Followed::Load, "load followed", given, &FACTORS),
+    let mut rows = full.rows("full overlap");
+    let given = full.given();
+    let observed = Reference::Observed;
+    for (followed, name, reference, factors) in [
+        (Followed::Load, "load followed", given, &FACTORS[..]),
         (Followed::Wake, "wake followed", given, &FACTORS[3..]),
-        (
-            Followed::Wake,
-            "wake followed, its amplitude observed",
-            Reference::Observed,
-            &DEEP_FACTORS,
-        ),
-    ];
-    for (followed, name, reference, factors) in kinds {
-        let mut table = Table::new(name, &baseline);
+        (Followed::Wake, "wake followed, its amplitude observed", observed, &DEEP_FACTORS),
+    ] {
+        let published: &[_] = if reference == given { &PUBLISHED } else { &[] };
+        let asked = |factor| settings(factor, followed, reference, decoupling);
+        rows.extend(full.table(name, factors, asked, published));
+    }
+    // Pitch acts as it was found in full overlap: a turbine that is probed alone knows nothing of where the wake will meet it.
+    for (aside, place, names) in [
+        (0.25, "¼ D aside", ["¼ D aside, load followed", "¼ D aside, wake followed, observed"]),
+        (0.5, "½ D aside", ["½ D aside, load followed", "½ D aside, wake followed, observed"]),
+    ] {
+        let partial = Bench::new(aside);
+        rows.extend(partial.rows(place));
+        let kinds = [(Followed::Load, partial.given()), (Followed::Wake, observed)];
+        for (name, (followed, reference)) in names.into_iter().zip(kinds) {
+            let asked = |factor| settings(factor, followed, reference, decoupling);
+            rows.extend(partial.table(name, &PARTIAL_FACTORS, asked, &[]));
+        }
+    }
+    rows
+}
+
+/// The turbine in the disk, and what it does without control.
+struct Bench {
+    rig: Rig,
+    disk: RotatingDisk,
+    baseline: Record,
+    /// Tilt and yaw moments at every step (N m).
+    loads: Vec<FixedFrame>,
+    /// Mean amplitudes of tilt and yaw moment that the loop believes in (N m).
+    amplitudes: [f64; 2],
+    /// Largest distance of the believed rate from the disk's (–), and share of the time without lock (–).
+    off_rate: f64,
+    unlocked: f64,
+}
+
+impl Bench {
+    /// The turbine `aside` (diameters) to the left of the middle of the disk's path, looking downwind.
+    fn new(aside: f64) -> Self {
+        let disk = RotatingDisk::of_wake(DIAMETER, HUB_HEIGHT, AMBIENT, true);
+        let middle = [-aside * DIAMETER, HUB_HEIGHT];
+        let disk = RotatingDisk { edge: EDGE, middle, ..disk };
+        let calm = DeterministicWind::steady(MeanProfile::Uniform { speed: AMBIENT }, HUB_HEIGHT);
+        let wind = DeterministicWind { event: Event::RotatingDisk(disk), ..calm };
+        let rig = Rig::new(wind, ROTOR_SPEED);
+        let mut follower = TwoAxisLoop::new(&following(), INTERVAL).expect("a sound loop");
+        let (mut sums, mut off_rate, mut unlocked, mut n) = ([0.0; 2], 0.0_f64, 0.0, 0.0);
+        let (mut loads, mut baseline) = (Vec::new(), Record::new(disk));
+        let mut machine = rig.clone();
+        for _ in 0..n_steps(END) {
+            let mut belief = follower.estimate();
+            let reading = machine.advance(|_, measurements| belief = follower.update(measurements));
+            if reading.time >= JUDGED {
+                sums[0] += belief.tilt.amplitude;
+                sums[1] += belief.yaw.amplitude;
+                unlocked += f64::from(u8::from(!belief.locked));
+                n += 1.0;
+                let true_rate = TAU * disk.frequency(reading.time);
+                off_rate = off_rate.max((belief.rate / true_rate - 1.0).abs());
+                baseline.take(&reading);
+            }
+            loads.push(reading.loads);
+        }
+        let amplitudes = sums.map(|sum| sum / n);
+        Self { rig, disk, baseline, loads, amplitudes, off_rate, unlocked: unlocked / n }
+    }
+
+    /// The believed amplitudes as references.
+    fn given(&self) -> Reference {
+        let [tilt, yaw] = self.amplitudes;
+        Reference::Given { tilt, yaw }
+    }
+
+    /// What the loop makes of the loads without control at `place`.
+    fn rows(&self, place: &str) -> Vec<Row> {
+        let [tilt, yaw] = self.amplitudes;
+        println!(
+            "\n{place}: baseline amplitudes tilt {:.2}, yaw {:.2} MN m; unlocked {:.0} % of the time",
+            1e-6 * tilt,
+            1e-6 * yaw,
+            100.0 * self.unlocked
+        );
+        vec![Row {
+            what: format!("{place}, baseline: rate believed in off the disk's, at worst"),
+            measured: self.off_rate,
+            expected: 0.0,
+            tolerance: 0.05,
+            unit: "–",
+        }]
+    }
+
+    /// Runs with what `asked` makes of each of `factors` (–), printed; what is claimed, beside `published` changes.
+    fn table(
+        &self,
+        name: &'static str,
+        factors: &[f64],
+        asked: impl Fn(f64) -> Settings,
+        published: &[(f64, [f64; 8])],
+    ) -> Vec<Row> {
+        let mut table = Table::new(name, &self.baseline);
+        let mut rows = Vec::new();
         for factor in factors {
-            let asked = settings(*factor, followed, reference, decoupling);
-            let record = controlled(&rig, asked, circling);
+            let record = controlled(&self.rig, asked(*factor), self.disk);
             rows.extend(table.add(*factor, record));
         }
         table.print();
-        let is_given = reference == given;
-        rows.extend(table.claims(if is_given { &PUBLISHED } else { &[] }));
+        rows.extend(table.claims(published));
+        rows
     }
-    rows
 }
 
 /// A run of `rig` under meandering control with `asked`.
@@ -128,7 +191,7 @@ fn n_steps(duration: f64) -> usize {
 
 /// How the loads are followed: St 0.12 to 0.3 of the ambient wind, the disk being clockwise.
 fn following() -> TwoAxisSettings {
-    let rates = [0.12, 0.3].map(|strouhal| std::f64::consts::TAU * strouhal * AMBIENT / DIAMETER);
+    let rates = [0.12, 0.3].map(|strouhal| TAU * strouhal * AMBIENT / DIAMETER);
     let signal = Signal::between(rates);
     TwoAxisSettings { signal, sense: Sense::Clockwise, leader: Leader::Both }
 }
