@@ -428,6 +428,8 @@ pub struct Output {
     pub helix_phases: Option<usize>,
     /// Places in [`Case::turbines`] of the turbines where runs without them keep the wind along radial lines over the disc.
     pub lines_at: Vec<usize>,
+    /// Places in [`Case::turbines`] of the turbines where runs without them record the wind over the rotor.
+    pub inflow_at: Vec<usize>,
     /// Time between volume snapshots, VTK (s); none when absent.
     pub volume_interval: Option<f64>,
     /// Checkpoint every so many seconds of wall time (s).

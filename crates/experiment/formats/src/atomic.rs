@@ -109,6 +109,13 @@ pub fn write(path: &Path, what: &'static str, bytes: &[u8]) -> Result<(), FileEr
     file.commit()
 }
 
+/// Where a file that is written as its content comes stands until it is whole: `.part` after its name.
+pub(crate) fn part_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".part");
+    path.with_file_name(name)
+}
+
 /// Makes the folder `path` with all above it, when it is not there.
 ///
 /// # Errors

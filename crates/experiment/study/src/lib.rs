@@ -16,6 +16,7 @@ mod simulate;
 mod summarise;
 mod synchronisation;
 mod watcher;
+mod wind_records;
 
 pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;

@@ -1,4 +1,4 @@
-//! Damage-equivalent loads of a run, and what its pitching cost.
+//! Damage-equivalent loads and standard deviations of the moments of a run, and what its pitching cost.
 
 use crate::StudyError;
 use crate::channels::LOADS;
@@ -24,18 +24,8 @@ pub(crate) fn damage_equivalent(
     analysed: &Analysed<'_>,
 ) -> Result<BTreeMap<String, f64>, StudyError> {
     let mut loads = BTreeMap::new();
-    for name in &series.names {
-        let Some(channel) = name
-            .strip_prefix(turbine)
-            .and_then(|rest| rest.strip_prefix('.'))
-            .and_then(|rest| rest.strip_suffix("_kN-m"))
-        else {
-            continue;
-        };
+    for (name, channel) in moments(series, turbine) {
         let slope = if channel.starts_with("Root") { BLADE_SLOPE } else { STEEL_SLOPE };
-        if !LOADS.contains(&channel) {
-            continue;
-        }
         let load = analysed.column(name)?;
         if load.len() < 2 {
             continue;
@@ -47,6 +37,32 @@ pub(crate) fn damage_equivalent(
         loads.insert(format!("{channel}, m = {slope} (kN m)"), fatigue.loads[0].load);
     }
     Ok(loads)
+}
+
+/// Standard deviation of the same moments (kN m), by channel.
+pub(crate) fn deviations(
+    series: &Series,
+    turbine: &str,
+    analysed: &Analysed<'_>,
+) -> Result<BTreeMap<String, f64>, StudyError> {
+    let mut deviations = BTreeMap::new();
+    for (name, channel) in moments(series, turbine) {
+        let load = analysed.column(name)?;
+        let n = load.len().max(1) as f64;
+        let mean = load.iter().sum::<f64>() / n;
+        let variance = load.iter().map(|load| (load - mean).powi(2)).sum::<f64>() / n;
+        deviations.insert(format!("{channel}, standard deviation (kN m)"), variance.sqrt());
+    }
+    Ok(deviations)
+}
+
+/// Columns of `series` with the moments of `turbine` that are kept of any run, each with its channel.
+fn moments<'a>(series: &'a Series, turbine: &'a str) -> impl Iterator<Item = (&'a str, &'a str)> {
+    series.names.iter().filter_map(move |name| {
+        let rest = name.strip_prefix(turbine)?.strip_prefix('.')?;
+        let channel = rest.strip_suffix("_kN-m")?;
+        LOADS.contains(&channel).then_some((name.as_str(), channel))
+    })
 }
 
 /// What pitching did to blade 1 of `turbine` in `series`, in the blade's own frame; None where the series does not tell.

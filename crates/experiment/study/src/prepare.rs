@@ -314,6 +314,12 @@ fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
             case.flow.cells_per_diameter
         ));
     }
+    let is_absent =
+        |index: usize| case.runs.iter().any(|run| run.control[index] == Control::Absent);
+    for &index in case.output.inflow_at.iter().filter(|&&index| !is_absent(index)) {
+        let name = &case.turbines[index].name;
+        warnings.push(format!("no wind is recorded at {name}: it stands there in every run"));
+    }
     let blocks = (case.time.duration - case.time.spin_up) / analysis::statistics::BLOCK_LENGTH;
     if blocks < BLOCKS_TO_WARN {
         warnings.push(format!(

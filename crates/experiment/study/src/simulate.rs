@@ -7,6 +7,7 @@ use crate::lines::{self, WindLines};
 use crate::outb;
 use crate::prepare::Setup;
 use crate::watcher::{Progress, Watcher};
+use crate::wind_records::{self, WindRecord};
 use analysis::wake::PhaseAverage;
 use basis::Vector3;
 use basis::records::{Cost, Plane, PlaneAxes};
@@ -56,6 +57,7 @@ struct RunState {
     phases: Option<PhaseAverage>,
     n_plane_instants: u64,
     n_volumes: u64,
+    inflow_bytes: Vec<u64>,
 }
 
 /// A run under way.
@@ -72,6 +74,7 @@ struct Simulation<'a> {
     n_volumes: u64,
     probe: Vector3,
     lines: Vec<WindLines>,
+    inflows: Vec<WindRecord>,
     started: Instant,
     wall_time_before: f64,
     first_step: u64,
@@ -171,6 +174,7 @@ impl<'a> Simulation<'a> {
                 n_volumes: 0,
                 probe,
                 lines,
+                inflows: wind_records::of(setup, run, folder, None)?,
                 started,
                 wall_time_before: 0.0,
                 first_step: 0,
@@ -188,6 +192,7 @@ impl<'a> Simulation<'a> {
             n_volumes: state.n_volumes,
             probe,
             lines,
+            inflows: wind_records::of(setup, run, folder, Some(&state.inflow_bytes))?,
             started,
             wall_time_before: state.wall_time,
             first_step: state.step,
@@ -240,6 +245,11 @@ impl<'a> Simulation<'a> {
             self.series.write(self.row.values())?;
         }
         let step = self.farm.step();
+        if let Some(since) = step.checked_sub(plan.n_spin_up_steps) {
+            for inflow in &mut self.inflows {
+                inflow.see(since, self.farm.flow())?;
+            }
+        }
         let Some(lattice) = self.farm.flow().lattice() else { return Ok(()) };
         if step > plan.n_spin_up_steps {
             let since = step - plan.n_spin_up_steps;
@@ -282,6 +292,8 @@ impl<'a> Simulation<'a> {
     /// On return the checkpoint on disk holds this very instant.
     fn checkpoint(&mut self, run: &Run) -> Result<(), StudyError> {
         let series_bytes = self.series.flush()?;
+        let inflow_bytes =
+            self.inflows.iter_mut().map(WindRecord::flush).collect::<Result<_, StudyError>>()?;
         let state = RunState {
             step: self.farm.step(),
             wall_time: self.wall_time(),
@@ -292,6 +304,7 @@ impl<'a> Simulation<'a> {
             phases: self.phases.clone(),
             n_plane_instants: self.n_plane_instants,
             n_volumes: self.n_volumes,
+            inflow_bytes,
         };
         let path = self.folder.checkpoint_path();
         let mut writer = CheckpointWriter::create(&path, &self.setup.case_text, &run.name)?;
@@ -340,6 +353,9 @@ impl<'a> Simulation<'a> {
 
     fn finish(mut self, run: &Run) -> Result<Ending, StudyError> {
         self.series.finish()?;
+        for inflow in &mut self.inflows {
+            inflow.finish()?;
+        }
         if self.setup.case.flow.solver.is_prescribed() {
             for index in run.present() {
                 outb::write(self.setup, run, self.folder, &self.setup.case.turbines[index].name)?;

@@ -116,6 +116,7 @@ pub(crate) fn summarise(
             delivered_pitch,
             power_gain,
             pitch_response: response_of(control),
+            load_deviations: loads::deviations(series, name, &analysed)?,
             damage_equivalent_loads: loads::damage_equivalent(series, name, &analysed)?,
             pitch_duty: loads::pitch_duty(series, name, &analysed)?,
         });

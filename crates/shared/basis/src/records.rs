@@ -117,6 +117,9 @@ pub struct TurbineSummary {
     /// How its own pitch acts; absent where its controller need not know.
     #[serde(default)]
     pub pitch_response: Option<PitchResponse>,
+    /// Standard deviations of the moments by channel and unit, such as `RootMyc1, standard deviation (kN m)`.
+    #[serde(default)]
+    pub load_deviations: BTreeMap<String, f64>,
     /// 1-Hz damage-equivalent loads by channel, slope and unit, such as `RootMyc1, m = 10 (kN m)`.
     pub damage_equivalent_loads: BTreeMap<String, f64>,
     /// What pitching did to blade 1; absent in records that do not tell.

@@ -54,6 +54,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             interval: None,
             plane_interval: None,
             lines_at: Vec::new(),
+            inflow_at: Vec::new(),
             helix_phases: None,
             crosswind_diameters: Vec::new(),
             volume_interval: None,

@@ -353,6 +353,7 @@ fn note_unknown_turbine(
 fn output_of(section: &Section, turbines: &[Placement]) -> Output {
     Output {
         lines_at: turbines_named(section, "lines_at", turbines),
+        inflow_at: turbines_named(section, "inflow_at", turbines),
         helix_phases: section
             .optional_whole("helix_phases")
             .and_then(|count| usize::try_from(count).ok()),

@@ -297,6 +297,13 @@ pub(super) static OUTPUT: Table = Table {
             "Turbines at whose places runs without them keep the wind along 36 radial lines over the disc, as average, tilt and yaw: the true phase of a helix.",
         ),
         key(
+            "inflow_at",
+            Kind::Turbines,
+            "",
+            Value("[]"),
+            "Turbines at whose places runs without them record the wind over the rotor from the end of the spin-up on, a plane for every half cell that the wind crosses: `RUN/inflow-T2.bts`, a full field in TurbSim's format, which `flow.solver = \"planes\"` and OpenFAST read.",
+        ),
+        key(
             "volume_interval",
             above(0.0, 1e6),
             "s",

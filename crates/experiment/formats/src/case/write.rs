@@ -80,9 +80,11 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
     if let Some(count) = output.helix_phases {
         writeln!(text, "helix_phases = {count}")?;
     }
-    let names: Vec<&str> =
-        output.lines_at.iter().map(|&index| case.turbines[index].name.as_str()).collect();
-    writeln!(text, "lines_at = {names:?}")?;
+    for (key, places) in [("lines_at", &output.lines_at), ("inflow_at", &output.inflow_at)] {
+        let names: Vec<&str> =
+            places.iter().map(|&index| case.turbines[index].name.as_str()).collect();
+        writeln!(text, "{key} = {names:?}")?;
+    }
     if let Some(interval) = output.volume_interval {
         writeln!(text, "volume_interval = {interval:?}")?;
     }

@@ -22,6 +22,8 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+/// What the name of a recorded wind begins with.
+const INFLOW: &str = "inflow-";
 const SUMMARY: &str = "the summary of a run";
 
 /// The folder of one run.
@@ -55,6 +57,7 @@ impl RunFolder {
         for file in [summary, self.checkpoint_path(), series, part, self.manifest_path()] {
             gone(fs::remove_file(&file), &file)?;
         }
+        self.remove_inflows("")?;
         for folder in [self.planes_path(), self.volumes_path()] {
             gone(fs::remove_dir_all(&folder), &folder)?;
         }
@@ -66,11 +69,26 @@ impl RunFolder {
         self.summary_path().is_file()
     }
 
-    /// Takes the checkpoint away once the run is complete.
+    /// Takes away the files of recorded wind whose names end in `ending`.
+    fn remove_inflows(&self, ending: &str) -> Result<(), FileError> {
+        if !self.path.is_dir() {
+            return Ok(());
+        }
+        for file in study::entries(&self.path)? {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            if name.starts_with(INFLOW) && name.ends_with(ending) {
+                gone(fs::remove_file(&file), &file)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes the checkpoint away once the run is complete, and what else was there to go on with.
     ///
     /// # Errors
     /// [`FileError::System`].
     pub fn remove_checkpoint(&self) -> Result<(), FileError> {
+        self.remove_inflows(".part")?;
         gone(fs::remove_file(self.checkpoint_path()), &self.checkpoint_path())
     }
 
@@ -97,6 +115,11 @@ impl RunFolder {
     /// `series.csv`; until the run is complete its rows are in `series.csv.part`.
     pub fn series_path(&self) -> PathBuf {
         self.path.join("series.csv")
+    }
+
+    /// `inflow-T2.bts`: the wind at the place of the turbine called `turbine`.
+    pub fn inflow_path(&self, turbine: &str) -> PathBuf {
+        self.path.join(format!("{INFLOW}{turbine}.bts"))
     }
 
     /// `checkpoint`.

@@ -29,7 +29,7 @@ impl SeriesWriter {
     /// # Errors
     /// [`FileError::System`].
     pub fn create(path: &Path, names: &[String]) -> Result<Self, FileError> {
-        let part = part_of(path);
+        let part = atomic::part_of(path);
         let file = File::create(&part).map_err(|e| FileError::system("write", WHAT, &part, e))?;
         let line = names.join(",").into_bytes();
         let mut writer = Self::new(file, part, path, names.len(), 0);
@@ -43,7 +43,7 @@ impl SeriesWriter {
     /// # Errors
     /// [`FileError::System`], and [`FileError::Content`] when it is shorter than that or does not end a row there.
     pub fn resume(path: &Path, n_bytes: u64) -> Result<Self, FileError> {
-        let part = part_of(path);
+        let part = atomic::part_of(path);
         let failed = |source| FileError::system("read", WHAT, &part, source);
         if !part.exists() && path.exists() {
             // Completed, but its run was killed before it could say so.
@@ -130,12 +130,6 @@ impl SeriesWriter {
     fn refused(&self, source: io::Error) -> FileError {
         FileError::system("write", WHAT, &self.part, source)
     }
-}
-
-fn part_of(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
-    path.with_file_name(name)
 }
 
 /// Reads the series at `path`.

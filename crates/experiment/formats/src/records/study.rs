@@ -149,7 +149,7 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
 }
 
 /// Paths of what is in the folder `path`, by name.
-fn entries(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+pub(super) fn entries(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     let failed = |source| FileError::system("read", "the folder", path, source);
     let listed = fs::read_dir(path).map_err(failed)?;
     let mut paths = listed

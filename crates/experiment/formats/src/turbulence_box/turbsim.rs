@@ -12,7 +12,7 @@ use crate::atomic::AtomicFile;
 use flow::inflow::{PlaneGrid, Planes, TurbulenceBox};
 use std::fs::File;
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const WHAT: &str = "a TurbSim full field";
 /// Identifier of a record that does not repeat.
@@ -110,64 +110,121 @@ pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
         let fluctuation = f64::from(turbulence.plane(component, x)[point]);
         if component == 0 { fluctuation + mean(point / n_y) } else { fluctuation }
     };
-    let scales = [0, 1, 2].map(|component| scale(turbulence, component, total));
-    let description: String = stored
-        .description
-        .chars()
-        .filter(|character| character.is_ascii() && !character.is_ascii_control())
-        .take(LONGEST_DESCRIPTION)
-        .collect();
-
-    let refused = |source| FileError::system("write", WHAT, path, source);
-    let mut file = AtomicFile::create(path, WHAT)?;
-    let mut bytes = PERIODIC.to_le_bytes().to_vec();
-    for count in [n_z, n_y, 0, n_x] {
-        let count = i32::try_from(count).map_err(|_| {
-            FileError::content(
-                WHAT,
-                path,
-                format!("{count} points are more than the format counts"),
-                "make the box shorter",
-            )
-        })?;
-        bytes.extend_from_slice(&count.to_le_bytes());
-    }
+    let ranges = [0, 1, 2].map(|component| range(turbulence, component, total));
     let [spacing_x, spacing_y, spacing_z] = turbulence.spacing();
-    let interval = spacing_x / stored.hub_speed;
-    for value in
-        [spacing_z, spacing_y, interval, stored.hub_speed, stored.hub_height, stored.lowest_height]
-    {
-        bytes.extend_from_slice(&(value as f32).to_le_bytes());
-    }
-    for (slope, intercept) in scales {
-        bytes.extend_from_slice(&slope.to_le_bytes());
-        bytes.extend_from_slice(&intercept.to_le_bytes());
-    }
-    bytes.extend_from_slice(&(description.len() as i32).to_le_bytes());
-    bytes.extend_from_slice(description.as_bytes());
-    file.write_all(&bytes).map_err(refused)?;
+    let grid = PlaneGrid {
+        n_y,
+        n_z,
+        spacing: [spacing_y, spacing_z],
+        first: [-0.5 * (n_y - 1) as f64 * spacing_y, stored.lowest_height],
+        interval: spacing_x / stored.hub_speed,
+        speed: stored.hub_speed,
+        n_steps: n_x,
+        repeats: true,
+    };
+    let mut field = Field::create(path, &grid, stored.hub_height, ranges, &stored.description)?;
+    let mut plane = vec![[0.0; 3]; n_y * n_z];
     for step in 0..n_x {
         let x = in_order_of_arrival(step, n_x);
-        bytes.clear();
-        for point in 0..n_y * n_z {
-            for (component, (slope, intercept)) in scales.into_iter().enumerate() {
-                let scaled = f64::from(slope) * total(component, x, point) + f64::from(intercept);
-                // Rounding of slope and intercept may reach beyond the last integer by a hair.
-                let integer = scaled.round().clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16;
-                bytes.extend_from_slice(&integer.to_le_bytes());
-            }
+        for (point, wind) in plane.iter_mut().enumerate() {
+            *wind = [0, 1, 2].map(|component| total(component, x, point));
         }
-        file.write_all(&bytes).map_err(refused)?;
+        field.put(&plane)?;
     }
-    file.commit()
+    field.commit()
 }
 
-/// Slope and intercept that spread the range of a component over all integers.
-fn scale(
+/// A full field that is written plane by plane.
+pub(super) struct Field {
+    file: AtomicFile,
+    path: PathBuf,
+    scales: [(f32, f32); 3],
+    bytes: Vec<u8>,
+}
+
+impl Field {
+    /// Begins the field that will stand at `path`, of planes as `grid` has them whose components lie within `ranges` (m/s).
+    ///
+    /// # Errors
+    /// [`FileError`].
+    pub(super) fn create(
+        path: &Path,
+        grid: &PlaneGrid,
+        hub_height: f64,
+        ranges: [[f64; 2]; 3],
+        description: &str,
+    ) -> Result<Self, FileError> {
+        let scales = ranges.map(scale);
+        let description: String = description
+            .chars()
+            .filter(|character| character.is_ascii() && !character.is_ascii_control())
+            .take(LONGEST_DESCRIPTION)
+            .collect();
+        let mut file = AtomicFile::create(path, WHAT)?;
+        let identifier = if grid.repeats { PERIODIC } else { ONCE };
+        let mut bytes = identifier.to_le_bytes().to_vec();
+        for count in [grid.n_z, grid.n_y, 0, grid.n_steps] {
+            let count = i32::try_from(count).map_err(|_| {
+                FileError::content(
+                    WHAT,
+                    path,
+                    format!("{count} points are more than the format counts"),
+                    "make the box shorter",
+                )
+            })?;
+            bytes.extend_from_slice(&count.to_le_bytes());
+        }
+        let [spacing_y, spacing_z] = grid.spacing;
+        for value in [spacing_z, spacing_y, grid.interval, grid.speed, hub_height, grid.first[1]] {
+            bytes.extend_from_slice(&(value as f32).to_le_bytes());
+        }
+        for (slope, intercept) in scales {
+            bytes.extend_from_slice(&slope.to_le_bytes());
+            bytes.extend_from_slice(&intercept.to_le_bytes());
+        }
+        bytes.extend_from_slice(&(description.len() as i32).to_le_bytes());
+        bytes.extend_from_slice(description.as_bytes());
+        let refused = |source| FileError::system("write", WHAT, path, source);
+        file.write_all(&bytes).map_err(refused)?;
+        Ok(Self { file, path: path.to_owned(), scales, bytes })
+    }
+
+    /// Adds a plane of wind (m/s), single precision.
+    pub(super) fn write(&mut self, wind: &[[f32; 3]]) -> Result<(), FileError> {
+        self.add(wind.iter().map(|wind| wind.map(f64::from)))
+    }
+
+    /// Adds a plane of wind (m/s).
+    fn put(&mut self, wind: &[[f64; 3]]) -> Result<(), FileError> {
+        self.add(wind.iter().copied())
+    }
+
+    fn add(&mut self, wind: impl Iterator<Item = [f64; 3]>) -> Result<(), FileError> {
+        self.bytes.clear();
+        for point in wind {
+            for (value, (slope, intercept)) in point.into_iter().zip(self.scales) {
+                let scaled = f64::from(slope) * value + f64::from(intercept);
+                // Rounding of slope and intercept may reach beyond the last integer by a hair.
+                let integer = scaled.round().clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16;
+                self.bytes.extend_from_slice(&integer.to_le_bytes());
+            }
+        }
+        let refused = |source| FileError::system("write", WHAT, &self.path, source);
+        self.file.write_all(&self.bytes).map_err(refused)
+    }
+
+    /// On return the file is there, whole.
+    pub(super) fn commit(self) -> Result<(), FileError> {
+        self.file.commit()
+    }
+}
+
+/// Least and most of a component (m/s).
+fn range(
     turbulence: &TurbulenceBox,
     component: usize,
     total: impl Fn(usize, usize, usize) -> f64,
-) -> (f32, f32) {
+) -> [f64; 2] {
     let [n_x, n_y, n_z] = turbulence.n_points();
     let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
     for x in 0..n_x {
@@ -176,6 +233,11 @@ fn scale(
             (least, most) = (least.min(value), most.max(value));
         }
     }
+    [least, most]
+}
+
+/// Slope and intercept that spread the range from `least` to `most` (m/s) over all integers.
+fn scale([least, most]: [f64; 2]) -> (f32, f32) {
     let range = if most - least > 1e-6 { most - least } else { 1.0 };
     let slope = (f64::from(u16::MAX) / range) as f32;
     (slope, (f64::from(i16::MIN) - f64::from(slope) * least) as f32)

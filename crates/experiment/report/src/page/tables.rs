@@ -273,9 +273,10 @@ pub(crate) fn load_conventions(study: &Study) -> Vec<String> {
     conventions.into_iter().map(|convention| words::capitalised(&convention)).collect()
 }
 
-/// Loads of a turbine by channel: damage-equivalent ones, and what its pitching cost.
+/// Loads of a turbine by channel: damage-equivalent ones, standard deviations, and what its pitching cost.
 fn channels_of(turbine: &TurbineSummary) -> BTreeMap<String, f64> {
     let mut loads = turbine.damage_equivalent_loads.clone();
+    loads.extend(turbine.load_deviations.clone());
     if let Some(duty) = &turbine.pitch_duty {
         if let Some((load, _)) = duty.worst_bearing_load() {
             let slope = duty.bearing_slope;
