@@ -3,7 +3,7 @@
 use crate::air::Air;
 use crate::case::Meandering as MeanderingSettings;
 use crate::case::PhaseSync as PhaseSyncSettings;
-use crate::case::{Case, Control, Ground, PhaseEstimator, Run, Sides, Solver};
+use crate::case::{Case, Control, Ground, PhaseEstimator, Placement, Run, Sides, Solver};
 use crate::plan::{Footprint, Plan};
 use crate::{Farm, Machine};
 use basis::angle::wrap_to_turn;
@@ -214,16 +214,16 @@ pub fn estimator_options(estimator: PhaseEstimator, solver: Solver) -> Options {
     }
 }
 
-/// How a turbine of `model` stands in the air when time begins.
+/// How a turbine of `model` at `placement` stands in the air when time begins.
 pub(crate) fn turbine_settings(
     case: &Case,
     plan: &Plan,
     model: &Model,
-    flexible: bool,
+    placement: &Placement,
 ) -> turbine::Settings {
     turbine::Settings {
-        induction: induction(case, plan),
-        flexible,
+        induction: induction(case, plan, placement.dynamic_stall),
+        flexible: placement.flexible,
         air_density: case.wind.air_density,
         rotor_speed: model.rotor_speed(case.wind.speed),
         azimuth: 0.0,
@@ -246,7 +246,7 @@ pub fn farm(
     let mut machines = Vec::with_capacity(models.len());
     for index in run.present() {
         let model = &models[index];
-        let settings = turbine_settings(case, plan, model, case.turbines[index].flexible);
+        let settings = turbine_settings(case, plan, model, &case.turbines[index]);
         let turbine = Turbine::new(Arc::clone(&model.definition), plan.positions[index], settings)?;
         let control = controller(&run.control[index], model, case, plan)?;
         let seed = sensing::seed_of_turbine(case.wind.seed, index);
@@ -257,12 +257,13 @@ pub fn farm(
     Ok(Farm::new(machines, air, plan.interval, case.flow.threads.unwrap_or(cores))?)
 }
 
-/// Who solves the induction: the lattice itself, or momentum theory with dynamic inflow, skewed wake and dynamic stall.
-fn induction(case: &Case, plan: &Plan) -> Induction {
+/// Who solves the induction: the lattice itself, or momentum theory with dynamic inflow and skewed wake.
+fn induction(case: &Case, plan: &Plan, dynamic_stall: bool) -> Induction {
     match case.flow.solver {
         Solver::Lattice => Induction::ByFlow {
             smearing_length: SMEARING_CELLS * plan.spacing,
             sample_spacing: plan.spacing,
+            dynamic_stall,
         },
         Solver::Uniform | Solver::Turbulence | Solver::Planes => {
             Induction::ByMomentum(rotor::Settings {
@@ -270,7 +271,7 @@ fn induction(case: &Case, plan: &Plan) -> Induction {
                 induction: aero::Induction::TwoConstant(TwoConstant::varying()),
                 theory: Theory::default(),
                 skewed_wake: true,
-                dynamic_stall: true,
+                dynamic_stall,
                 tower: None,
             })
         }

@@ -248,6 +248,8 @@ pub struct Placement {
     pub position_diameters: [f64; 2],
     /// Whether blades, tower and drive train bend.
     pub flexible: bool,
+    /// Whether flow about the blades' sections separates with delay; otherwise their polars hold at once.
+    pub dynamic_stall: bool,
     /// What its controller sees of it.
     pub instruments: Instruments,
 }

@@ -266,7 +266,7 @@ fn pitching(
         azimuth_offset: pitch.azimuth_offset,
         start: 0.0,
     });
-    let settings = assemble::turbine_settings(&alone, plan, model, alone.turbines[index].flexible);
+    let settings = assemble::turbine_settings(&alone, plan, model, &alone.turbines[index]);
     let foot = Vector3::new(0.0, 0.0, -model.definition.rotor.hub_height);
     let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)
         .map_err(AssemblyError::from)?

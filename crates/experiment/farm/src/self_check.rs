@@ -120,7 +120,7 @@ impl Tunnel {
 }
 
 /// Checks `model` in the steady speed of `wind` in `tunnel`, rotor speed held at its optimum (or rated), pitch at its
-/// least, tower and nacelle left out; `progress` is told the share done.
+/// least, tower and nacelle left out, polars holding at once; `progress` is told the share done.
 ///
 /// The tunnel is narrow, so the expectation is taken in the wind that an open sky would need for the same rotor state
 /// ([`turbine::blockage`]).
@@ -148,6 +148,7 @@ pub fn self_check(
             induction: Induction::ByFlow {
                 smearing_length: SMEARING_CELLS * tunnel.spacing,
                 sample_spacing: tunnel.spacing,
+                dynamic_stall: false,
             },
             flexible: false,
             air_density: wind.air_density,

@@ -1,5 +1,6 @@
 //! Blades as lines of elements in wind that already contains the rotor's own, smeared induction.
 
+use crate::aero::Polar;
 use crate::definition::{BladeStation, Definition};
 use crate::lifting_line::{OPTIMAL_WIDTH_OVER_CHORD, SmearingCorrection, Span};
 use crate::loading::{Loading, excess};
@@ -67,6 +68,30 @@ pub struct Load {
     pub tangential: f64,
     /// Circulation, positive where lift drives the rotor (m²/s).
     pub circulation: f64,
+}
+
+/// How the sections of a rotor answer to the wind that they feel.
+pub trait Sections {
+    /// Lift and drag coefficient (–) of element number `index`, blade after blade, at `angle_of_attack` (rad) and a relative
+    /// `speed` (m/s). It may be asked several times for one instant; the last answer counts.
+    fn coefficients(&mut self, index: usize, angle_of_attack: f64, speed: f64) -> [f64; 2];
+}
+
+/// Sections whose polars hold at once.
+#[derive(Clone, Copy, Debug)]
+pub struct QuasiSteady<'a>(pub &'a ActuatorLine);
+
+impl Sections for QuasiSteady<'_> {
+    fn coefficients(&mut self, index: usize, angle_of_attack: f64, _speed: f64) -> [f64; 2] {
+        let Self(line) = self;
+        let element = &line.elements[index % line.elements.len()];
+        let [inner, outer] =
+            element.polars.map(|polar| line.definition.polars[polar].at(angle_of_attack));
+        [
+            inner.lift + element.share * (outer.lift - inner.lift),
+            inner.drag + element.share * (outer.drag - inner.drag),
+        ]
+    }
 }
 
 /// Working memory of [`ActuatorLine::loads`]; carries nothing from one call to the next.
@@ -163,12 +188,13 @@ impl ActuatorLine {
     /// `onsets`, `missing` and `loads` hold `n_blades × n_elements` values, blade after blade. `missing` is the state of
     /// the correction, the velocity that smearing hides, axial and along the rotation (m/s); on return it has moved on
     /// towards what belongs to `loads`. `rotor_speed` (rad/s) sets the pitch of the helical wake together with the mean
-    /// wind through the rotor.
+    /// wind through the rotor; `sections` answer to the wind at each element.
     pub fn loads(
         &self,
         onsets: &[Onset],
         rotor_speed: f64,
         pitch: &[f64],
+        sections: &mut impl Sections,
         missing: &mut [[f64; 2]],
         loads: &mut [Load],
         scratch: &mut Scratch,
@@ -177,7 +203,7 @@ impl ActuatorLine {
         let carried = self.mean_wind(onsets);
         let helix = self.correction.helix(carried / rotor_speed.max(1e-3));
         for sweep in 0..=N_SWEEPS {
-            self.loads_under(onsets, pitch, missing, loads);
+            self.loads_under(onsets, pitch, sections, missing, loads);
             for (circulation, load) in scratch.circulations.iter_mut().zip(&*loads) {
                 *circulation = load.circulation;
             }
@@ -205,6 +231,7 @@ impl ActuatorLine {
         &self,
         onsets: &[Onset],
         pitch: &[f64],
+        sections: &mut impl Sections,
         missing: &[[f64; 2]],
         loads: &mut [Load],
     ) {
@@ -213,7 +240,7 @@ impl ActuatorLine {
             let [axial, tangential] = missing[index];
             let felt =
                 Onset { normal: onset.normal + axial, tangential: onset.tangential - tangential };
-            *load = self.load(&self.elements[index % n], felt, pitch[index / n]);
+            *load = self.load(index, felt, pitch[index / n], sections);
         }
     }
 
@@ -258,8 +285,9 @@ impl ActuatorLine {
         sum / area
     }
 
-    /// Load of `element` in the wind `onset` at a blade pitch of `pitch` (rad).
-    fn load(&self, element: &Element, onset: Onset, pitch: f64) -> Load {
+    /// Load of element number `index` in the wind `onset` at a blade pitch of `pitch` (rad).
+    fn load(&self, index: usize, onset: Onset, pitch: f64, sections: &mut impl Sections) -> Load {
+        let element = &self.elements[index % self.elements.len()];
         let speed = onset.normal.hypot(onset.tangential);
         if speed == 0.0 {
             return Load::default();
@@ -267,10 +295,8 @@ impl ActuatorLine {
         let (sine, cosine) = (onset.normal / speed, onset.tangential / speed);
         let inflow_angle = onset.normal.atan2(onset.tangential);
         let angle_of_attack = inflow_angle - element.twist - pitch;
-        let [inner, outer] =
-            element.polars.map(|polar| self.definition.polars[polar].at(angle_of_attack));
-        let lift_coefficient = inner.lift + element.share * (outer.lift - inner.lift);
-        let drag_coefficient = inner.drag + element.share * (outer.drag - inner.drag);
+        let [lift_coefficient, drag_coefficient] =
+            sections.coefficients(index, angle_of_attack, speed);
         let scale = 0.5 * self.air_density * speed * speed * element.chord;
         let (lift, drag) = (scale * lift_coefficient, scale * drag_coefficient);
         Load {
@@ -282,6 +308,16 @@ impl ActuatorLine {
 }
 
 impl Element {
+    /// Its polar in `definition`: that of the stations on either side, blended.
+    pub(crate) fn polar(&self, definition: &Definition) -> Polar {
+        let [inner, outer] = self.polars.map(|polar| &definition.polars[polar]);
+        if self.polars[0] == self.polars[1] {
+            inner.clone()
+        } else {
+            Polar::between(inner, outer, self.share)
+        }
+    }
+
     /// Its middle, farm frame (m), on a blade at `azimuth` (rad) whose pitch axis is coned by `precone` (rad).
     pub fn position(&self, frame: &Frame, azimuth: f64, precone: f64) -> Vector3 {
         let axes = frame.blade(azimuth, precone);

@@ -1,6 +1,7 @@
 //! One turbine in the air: handed wind at its stations and commands, it turns, pitches, bends and pushes on the air.
 
 mod aerodynamics;
+mod separation;
 
 use crate::actuator_line::ActuatorLine;
 use crate::actuators::PitchState;
@@ -49,6 +50,8 @@ pub enum Induction {
         smearing_length: f64,
         /// Distance of the points between which the flow interpolates the wind (m); 0 where it does not.
         sample_spacing: f64,
+        /// Whether flow about the sections separates with delay; otherwise their polars hold at once.
+        dynamic_stall: bool,
     },
     /// The turbine itself, by momentum theory: winds are those without it. Its air density is that of [`Settings`].
     ByMomentum(rotor::Settings),
@@ -95,7 +98,8 @@ impl State {
     /// where momentum theory makes the induction.
     pub fn missing(&self) -> &[[f64; 2]] {
         match &self.aerodynamics {
-            aerodynamics::State::Line(missing) => missing,
+            aerodynamics::State::Line(missing)
+            | aerodynamics::State::SeparatingLine(missing, _) => missing,
             aerodynamics::State::Momentum(_) => &[],
         }
     }
@@ -126,7 +130,7 @@ impl Turbine {
         settings: Settings,
     ) -> Result<Self, StructureError> {
         let (smearing_length, sample_spacing) = match settings.induction {
-            Induction::ByFlow { smearing_length, sample_spacing } => {
+            Induction::ByFlow { smearing_length, sample_spacing, .. } => {
                 (smearing_length, sample_spacing)
             }
             // Nothing is spread; the length only cuts the tower into segments.

@@ -12,6 +12,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         model: "model".to_owned(),
         position_diameters: position,
         flexible: true,
+        dynamic_stall: false,
         instruments: Instruments::default(),
     };
     Case {

@@ -43,7 +43,7 @@ fn case_of(root: &Section) -> Case {
     if let Some(section) = &wind_section {
         check_together(section, &wind, &flow, time.duration);
     }
-    let turbines = turbines_of(root);
+    let turbines = turbines_of(root, flow.solver);
     let runs = runs_of(root, &turbines, time);
     let output = output_of(&root.section("output", &keys::OUTPUT), &turbines);
     Case { name, description, wind, flow, time, turbines, runs, output }
@@ -105,7 +105,7 @@ fn time_of(section: &Option<Section>) -> Time {
     Time { spin_up, duration }
 }
 
-fn turbines_of(root: &Section) -> Vec<Placement> {
+fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
     let sections = root.sections("turbine", &keys::TURBINE);
     let mut turbines: Vec<Placement> = Vec::with_capacity(sections.len());
     for section in &sections {
@@ -114,6 +114,11 @@ fn turbines_of(root: &Section) -> Vec<Placement> {
             model: section.text("model"),
             position_diameters: section.pair("position_diameters"),
             flexible: section.choice("structure") != "rigid",
+            dynamic_stall: if section.has("stall") {
+                section.choice("stall") == "dynamic"
+            } else {
+                solver.is_prescribed()
+            },
             instruments: instruments_of(section),
         };
         if section.has("name") && turbines.iter().any(|other| other.name == placement.name) {

@@ -218,6 +218,13 @@ pub(super) static TURBINE: Table = Table {
             "`flexible`: blades, tower and drive train bend. `rigid`: only the rotor turns.",
         ),
         key(
+            "stall",
+            Kind::Choice(&["dynamic", "steady"]),
+            "",
+            Otherwise("`dynamic` in prescribed wind, `steady` in solved air"),
+            "`dynamic`: flow about the blades' sections separates and attaches with delay. `steady`: their polars hold at once.",
+        ),
+        key(
             "instruments",
             Kind::Table(&INSTRUMENTS),
             "",

@@ -95,6 +95,19 @@ fn meandering_needs_little_to_be_said() {
 }
 
 #[test]
+fn stall_is_dynamic_where_the_wind_is_prescribed_unless_the_case_says_otherwise() {
+    let of = |overrides: &[&str]| {
+        let case = small(overrides).unwrap();
+        assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
+        [0, 1].map(|index: usize| case.turbines[index].dynamic_stall)
+    };
+    assert_eq!(of(&[]), [false, false]);
+    assert_eq!(of(&["flow.solver=turbulence"]), [true, true]);
+    assert_eq!(of(&["turbine.T1.stall=dynamic"]), [true, false]);
+    assert_eq!(of(&["flow.solver=uniform", "turbine.T2.stall=steady"]), [true, false]);
+}
+
+#[test]
 fn every_shipped_case_reads_and_reads_back() {
     for entry in fs::read_dir(root().join("cases")).unwrap() {
         let path = entry.unwrap().path();

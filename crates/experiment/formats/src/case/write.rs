@@ -57,6 +57,8 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         writeln!(text, "model = {}\nposition_diameters = [{x:?}, {y:?}]", quoted(&turbine.model))?;
         let structure = if turbine.flexible { "flexible" } else { "rigid" };
         writeln!(text, "structure = \"{structure}\"")?;
+        let stall = if turbine.dynamic_stall { "dynamic" } else { "steady" };
+        writeln!(text, "stall = \"{stall}\"")?;
         text.push_str(&instruments_text(&turbine.instruments));
     }
     for run in &case.runs {

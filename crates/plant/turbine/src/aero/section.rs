@@ -26,13 +26,7 @@ pub(super) fn sections(definition: &Definition, elements: &[Element]) -> Vec<Sec
     elements
         .iter()
         .map(|element| {
-            let [inner, outer] = element.polars;
-            let polar = if inner == outer {
-                definition.polars[inner].clone()
-            } else {
-                let [inner, outer] = [inner, outer].map(|polar| &definition.polars[polar]);
-                Polar::between(inner, outer, element.share)
-            };
+            let polar = element.polar(definition);
             let ring = Ring::new(Annulus {
                 n_blades: definition.n_blades,
                 radius: element.radius,

@@ -1,7 +1,8 @@
 //! What the air does to the blades: by actuator lines where the flow solves the induction, by momentum theory where not.
 
+use super::separation::{Flow, Separation};
 use super::{Induction, N_ELEMENTS, Settings};
-use crate::actuator_line::{ActuatorLine, Load, Onset, Scratch};
+use crate::actuator_line::{ActuatorLine, Load, Onset, QuasiSteady, Scratch, Sections};
 use crate::aero::rotor::{self, Posture, RotorAerodynamics};
 use crate::definition::Definition;
 use crate::motion::ElementMotion;
@@ -13,8 +14,8 @@ use serde::{Deserialize, Serialize};
 /// One of the two ways, with its working memory.
 #[derive(Clone, Debug)]
 pub(super) enum Aerodynamics {
-    /// The flow contains the induction.
-    Line(Box<LineMemory>),
+    /// The flow contains the induction; without [`Separation`] the sections' polars hold at once.
+    Line(Box<(LineMemory, Option<Separation>)>),
     /// Momentum theory makes it.
     Momentum(Box<(RotorAerodynamics, rotor::Loads)>),
 }
@@ -34,6 +35,8 @@ pub(super) enum State {
     Line(Vec<[f64; 2]>),
     /// Induction and dynamic stall.
     Momentum(rotor::State),
+    /// As `Line`, and the flow about sections with dynamic stall.
+    SeparatingLine(Vec<[f64; 2]>, Flow),
 }
 
 /// The middle of a step.
@@ -52,13 +55,16 @@ pub(super) struct Instant<'a> {
 impl Aerodynamics {
     pub(super) fn new(definition: &Definition, line: &ActuatorLine, settings: &Settings) -> Self {
         match &settings.induction {
-            Induction::ByFlow { .. } => {
+            Induction::ByFlow { dynamic_stall, .. } => {
                 let n = definition.n_blades * N_ELEMENTS;
-                Self::Line(Box::new(LineMemory {
+                let memory = LineMemory {
                     onsets: vec![Onset::default(); n],
                     loads: vec![Load::default(); n],
                     scratch: Scratch::new(definition.n_blades, N_ELEMENTS),
-                }))
+                };
+                let separation =
+                    dynamic_stall.then(|| Separation::new(definition, line.elements()));
+                Self::Line(Box::new((memory, separation)))
             }
             Induction::ByMomentum(theory) => {
                 let theory =
@@ -73,7 +79,14 @@ impl Aerodynamics {
     /// The state before the air has met the rotor.
     pub(super) fn start(&self) -> State {
         match self {
-            Self::Line(memory) => State::Line(vec![[0.0; 2]; memory.loads.len()]),
+            Self::Line(pair) => {
+                let (memory, separation) = &**pair;
+                let missing = vec![[0.0; 2]; memory.loads.len()];
+                match separation {
+                    None => State::Line(missing),
+                    Some(separation) => State::SeparatingLine(missing, separation.start()),
+                }
+            }
             Self::Momentum(pair) => State::Momentum(pair.0.start()),
         }
     }
@@ -87,7 +100,18 @@ impl Aerodynamics {
         loads: &mut [ElementLoad],
     ) {
         match (self, state) {
-            (Self::Line(memory), State::Line(missing)) => memory.loads(line, now, missing, loads),
+            (Self::Line(pair), State::Line(missing)) => {
+                let (memory, _) = &mut **pair;
+                memory.loads(line, now, &mut QuasiSteady(line), missing);
+                memory.apply(line, now, loads);
+            }
+            (Self::Line(pair), State::SeparatingLine(missing, flow)) => {
+                let (memory, Some(separation)) = &mut **pair else { mismatch() };
+                let mut step = separation.step(flow, now.interval, &now.pitch[..]);
+                memory.loads(line, now, &mut step, missing);
+                separation.come_to(flow);
+                memory.apply(line, now, loads);
+            }
             (Self::Momentum(pair), State::Momentum(state)) => {
                 let (rotor, result) = &mut **pair;
                 let posture =
@@ -96,18 +120,23 @@ impl Aerodynamics {
                 rotor.advance(now.interval, winds, posture, state, result);
                 loads.copy_from_slice(&result.elements);
             }
-            _ => unreachable!("a state comes from the aerodynamics that it goes back to"),
+            _ => mismatch(),
         }
     }
 }
 
+fn mismatch() -> ! {
+    unreachable!("a state comes from the aerodynamics that it goes back to")
+}
+
 impl LineMemory {
+    /// On return its loads are those of `now`, and `missing` has moved on.
     fn loads(
         &mut self,
         line: &ActuatorLine,
         now: &Instant<'_>,
+        sections: &mut impl Sections,
         missing: &mut [[f64; 2]],
-        loads: &mut [ElementLoad],
     ) {
         for ((onset, motion), wind) in self.onsets.iter_mut().zip(now.motions).zip(now.winds) {
             let relative = *wind - motion.velocity;
@@ -118,12 +147,16 @@ impl LineMemory {
         }
         let pitch = now.pitch.map(|pitch| pitch.angle);
         if now.first {
-            let Self { onsets, loads, scratch } = self;
-            line.loads(onsets, now.rotor_speed, &pitch, missing, loads, scratch);
+            let Self { onsets, loads, scratch, .. } = self;
+            line.loads(onsets, now.rotor_speed, &pitch, sections, missing, loads, scratch);
         } else {
             // The wake has not moved since; what smearing hides is held like the wind.
-            line.loads_under(&self.onsets, &pitch, missing, &mut self.loads);
+            line.loads_under(&self.onsets, &pitch, sections, missing, &mut self.loads);
         }
+    }
+
+    /// On return `loads` holds the loads of `now` in the farm frame.
+    fn apply(&self, line: &ActuatorLine, now: &Instant<'_>, loads: &mut [ElementLoad]) {
         let widths = line.elements().iter().cycle().map(|element| element.width);
         for (((applied, load), motion), width) in
             loads.iter_mut().zip(&self.loads).zip(now.motions).zip(widths)
