@@ -98,7 +98,6 @@ fn run(asked: &Asked<'_>) -> Run {
     let diameter = definition.rotor_diameter();
     let settings = turbine::Settings {
         induction: Induction::ByMomentum(aero::rotor::Settings {
-            air_density: AIR_DENSITY,
             induction: aero::Induction::TwoConstant(TwoConstant::fixed(asked.slow_constant)),
             theory: Theory::default(),
             skewed_wake: true,

@@ -65,7 +65,6 @@ impl Rig {
         let constants = file.controller.with_estimator(inertia, AIR_DENSITY, table);
         let settings = turbine::Settings {
             induction: Induction::ByMomentum(rotor::Settings {
-                air_density: AIR_DENSITY,
                 induction: aero::Induction::TwoConstant(TwoConstant::fixed(SLOW_CONSTANT)),
                 theory: Theory::default(),
                 skewed_wake: true,

@@ -147,7 +147,6 @@ pub(super) fn drive(
 ) {
     let settings = turbine::Settings {
         induction: Induction::ByMomentum(aero::rotor::Settings {
-            air_density: AIR_DENSITY,
             induction: aero::Induction::TwoConstant(TwoConstant::varying()),
             theory: Theory::default(),
             skewed_wake: true,

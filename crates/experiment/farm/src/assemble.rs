@@ -267,7 +267,6 @@ fn induction(case: &Case, plan: &Plan, dynamic_stall: bool) -> Induction {
         },
         Solver::Uniform | Solver::Turbulence | Solver::Planes => {
             Induction::ByMomentum(rotor::Settings {
-                air_density: case.wind.air_density,
                 induction: aero::Induction::TwoConstant(TwoConstant::varying()),
                 theory: Theory::default(),
                 skewed_wake: true,

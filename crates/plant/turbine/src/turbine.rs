@@ -53,7 +53,7 @@ pub enum Induction {
         /// Whether flow about the sections separates with delay; otherwise their polars hold at once.
         dynamic_stall: bool,
     },
-    /// The turbine itself, by momentum theory: winds are those without it. Its air density is that of [`Settings`].
+    /// The turbine itself, by momentum theory: winds are those without it.
     ByMomentum(rotor::Settings),
 }
 

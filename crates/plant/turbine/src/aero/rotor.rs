@@ -16,8 +16,6 @@ use serde::{Deserialize, Serialize};
 /// Which parts of the theory act.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Air density (kg/m³).
-    pub air_density: f64,
     /// How the wake makes itself felt.
     pub induction: Induction,
     /// Losses and drag in the induction.
@@ -37,6 +35,7 @@ pub struct Settings {
 #[derive(Clone, Debug)]
 pub struct RotorAerodynamics {
     settings: Settings,
+    air_density: f64,
     n_blades: usize,
     rotor_radius: f64,
     sections: Vec<Section>,
@@ -119,13 +118,21 @@ impl ElementFlow {
 
 impl RotorAerodynamics {
     /// The blades of `definition`, cut into `elements` as [`ActuatorLine::elements`](crate::actuator_line::ActuatorLine::elements) gives them.
-    pub fn new(definition: &Definition, elements: &[Element], settings: Settings) -> Self {
+    ///
+    /// The air has a density of `air_density` (kg/m³).
+    pub fn new(
+        definition: &Definition,
+        elements: &[Element],
+        air_density: f64,
+        settings: Settings,
+    ) -> Self {
         let mut sections = sections(definition, elements);
         if !settings.dynamic_stall {
             sections.iter_mut().for_each(|section| section.stall = None);
         }
         Self {
             settings,
+            air_density,
             n_blades: definition.n_blades,
             rotor_radius: definition.rotor_radius(),
             sections,
@@ -215,7 +222,7 @@ impl RotorAerodynamics {
         now: &Instant<'_>,
         state: &mut ElementState,
     ) -> (ElementLoad, ElementFlow) {
-        let Settings { air_density, induction, theory, .. } = &self.settings;
+        let Settings { induction, theory, .. } = &self.settings;
         let axes = &now.motion.axes;
         let relative = now.wind - now.motion.velocity;
         let onset =
@@ -252,7 +259,7 @@ impl RotorAerodynamics {
                 stall.advance(interval, &stream, &section.polar, &mut state.stall)
             }
         };
-        let scale = 0.5 * air_density * speed * speed * chord * section.width;
+        let scale = 0.5 * self.air_density * speed * speed * chord * section.width;
         let (lift, drag) = (coefficients.lift, coefficients.drag);
         let force = axes.normal * (scale * (lift * cosine + drag * sine))
             + axes.tangent * (scale * (lift * sine - drag * cosine));

@@ -67,9 +67,12 @@ impl Aerodynamics {
                 Self::Line(Box::new((memory, separation)))
             }
             Induction::ByMomentum(theory) => {
-                let theory =
-                    rotor::Settings { air_density: settings.air_density, ..theory.clone() };
-                let rotor = RotorAerodynamics::new(definition, line.elements(), theory);
+                let rotor = RotorAerodynamics::new(
+                    definition,
+                    line.elements(),
+                    settings.air_density,
+                    theory.clone(),
+                );
                 let loads = rotor.loads();
                 Self::Momentum(Box::new((rotor, loads)))
             }

@@ -290,7 +290,6 @@ fn under_prescribed_wind_the_turbine_finds_what_momentum_theory_says() {
     use crate::aero::blade_element::Theory;
     use crate::aero::induction::TwoConstant;
     let theory = crate::aero::rotor::Settings {
-        air_density: DENSITY,
         induction: crate::aero::Induction::TwoConstant(TwoConstant::varying()),
         theory: Theory::default(),
         skewed_wake: false,

@@ -33,14 +33,14 @@ fn the_small_model_is_the_rotors() {
     for induction in inductions {
         let (stiff, model) = model(induction);
         let settings = Settings {
-            air_density: 1.225,
             induction,
             theory: Theory::default(),
             skewed_wake: false,
             dynamic_stall: false,
             tower: None,
         };
-        let rotor = RotorAerodynamics::new(&stiff.definition, stiff.line.elements(), settings);
+        let rotor =
+            RotorAerodynamics::new(&stiff.definition, stiff.line.elements(), 1.225, settings);
         let (mut state, mut loads) = (rotor.start(), rotor.loads());
         let mut wake = model.settled(&conditions([9.0; 3], 0.0));
         for step in 0..300 {

@@ -14,7 +14,6 @@ const AIR_DENSITY: f64 = 1.225;
 
 fn settings(induction: Induction) -> Settings {
     Settings {
-        air_density: AIR_DENSITY,
         induction,
         theory: Theory::default(),
         skewed_wake: false,
@@ -43,7 +42,8 @@ struct Flight {
 
 impl Flight {
     fn new(stiff: Stiff, settings: Settings) -> Self {
-        let rotor = RotorAerodynamics::new(&stiff.definition, stiff.line.elements(), settings);
+        let rotor =
+            RotorAerodynamics::new(&stiff.definition, stiff.line.elements(), AIR_DENSITY, settings);
         let (state, loads) = (rotor.start(), rotor.loads());
         Self { stiff, rotor, state, loads, azimuth: 0.0 }
     }
