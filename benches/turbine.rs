@@ -41,7 +41,8 @@ fn main() {
     say("structure", &mut || structure.cost());
     let mut blades = BladesAlone::new(&definition);
     say("blade elements, momentum theory", &mut || blades.cost());
-    let by_flow = Induction::ByFlow { smearing_length: 15.0, sample_spacing: 15.0 };
+    let by_flow =
+        Induction::ByFlow { smearing_length: 15.0, sample_spacing: 15.0, dynamic_stall: false };
     for (name, induction) in [
         ("turbine, momentum theory", Induction::ByMomentum(theory())),
         ("turbine, actuator lines", by_flow),
@@ -57,7 +58,6 @@ fn main() {
 
 fn theory() -> rotor::Settings {
     rotor::Settings {
-        air_density: AIR_DENSITY,
         induction: Inflow::TwoConstant(TwoConstant::varying()),
         theory: Theory::default(),
         skewed_wake: true,
@@ -134,7 +134,8 @@ struct BladesAlone {
 impl BladesAlone {
     fn new(definition: &Arc<Definition>) -> Self {
         let whole = machine(definition, Induction::ByMomentum(theory()));
-        let rotor = RotorAerodynamics::new(definition, whole.line().elements(), theory());
+        let rotor =
+            RotorAerodynamics::new(definition, whole.line().elements(), AIR_DENSITY, theory());
         let (state, loads) = (rotor.start(), rotor.loads());
         let pitch = vec![Pitch::default(); definition.n_blades];
         Self { rotor, state, loads, structure: whole.structure().clone(), pitch }

@@ -91,10 +91,11 @@ impl Setup {
         let wind = &case.wind;
         sha256(
             format!(
-                "{} {} {} {asked} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}",
+                "{} {} {} {} {asked} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}",
                 env!("CARGO_PKG_VERSION"),
                 placement.model,
                 placement.flexible,
+                placement.dynamic_stall,
                 case.flow.solver,
                 wind.speed,
                 wind.air_density,
