@@ -9,6 +9,7 @@ mod wake;
 
 use crate::StudyError;
 use crate::phase::{PhaseAnswer, compare, recorded, truth};
+use analysis::AnalysisError;
 use analysis::phase::Reference;
 use basis::angle::wrap_to_turn;
 use control::excitation_rate;
@@ -95,13 +96,21 @@ pub(crate) fn synchronisation(
         runs.push(Joined { run: place, name: own.clone(), sync, answer });
     }
     let study = Synchronised { case: &case, records, runs, turbine, reference, diameter };
-    let (slices, deficits) = wake::wake(&study)?;
+    let (slices, deficits) = unless_short(wake::wake(&study))?;
     Ok(Some(Synchronisation {
         phases: tracks::table(&study),
-        offsets: offsets::offsets(&study)?,
-        tracks: tracks::tracks(&study)?,
-        spectra: tracks::spectra(&study)?,
+        offsets: unless_short(offsets::offsets(&study))?,
+        tracks: unless_short(tracks::tracks(&study))?,
+        spectra: unless_short(tracks::spectra(&study))?,
         slices,
         deficits,
     }))
+}
+
+/// `found`, or nothing to show where records are too short for it: that is no reason to withhold the rest of a report.
+fn unless_short<T: Default>(found: Result<T, StudyError>) -> Result<T, StudyError> {
+    match found {
+        Err(StudyError::Analysis(AnalysisError::TooShort { .. })) => Ok(T::default()),
+        found => found,
+    }
 }
