@@ -45,7 +45,7 @@ const PARTIAL_FACTORS: [f64; 3] = [1.25, 0.75, 0.35];
 
 /// Everything; prints the tables with intervals, gives what is claimed as rows.
 pub fn disk() -> Vec<Row> {
-    let full = Bench::new(0.0);
+    let full = Bench::new(0.0, following());
     let decoupling = decoupling(&full.rig, &full.loads);
     let Decoupling { azimuth_offset, delay, gain } = decoupling;
     println!(
@@ -62,22 +62,26 @@ pub fn disk() -> Vec<Row> {
         (Followed::Wake, "wake followed, its amplitude observed", observed, &DEEP_FACTORS),
     ] {
         let published: &[_] = if reference == given { &PUBLISHED } else { &[] };
-        let asked = |factor| settings(factor, followed, reference, decoupling);
+        let asked = Asked { followed, reference, decoupling };
         rows.extend(full.table(name, factors, asked, published));
     }
     // Pitch acts as it was found in full overlap: a turbine that is probed alone knows nothing of where the wake will meet it.
-    for (aside, place, names) in [
-        (0.25, "¼ D aside", ["¼ D aside, load followed", "¼ D aside, wake followed, observed"]),
-        (0.5, "½ D aside", ["½ D aside, load followed", "½ D aside, wake followed, observed"]),
-    ] {
-        let partial = Bench::new(aside);
+    for (aside, place) in [(0.25, "¼ D aside"), (0.5, "½ D aside")] {
+        let partial = Bench::new(aside, following());
         rows.extend(partial.rows(place));
-        let kinds = [(Followed::Load, partial.given()), (Followed::Wake, observed)];
-        for (name, (followed, reference)) in names.into_iter().zip(kinds) {
-            let asked = |factor| settings(factor, followed, reference, decoupling);
-            rows.extend(partial.table(name, &PARTIAL_FACTORS, asked, &[]));
+        for (how, followed, reference) in [
+            ("load followed", Followed::Load, partial.given()),
+            ("wake followed, observed", Followed::Wake, observed),
+        ] {
+            let asked = Asked { followed, reference, decoupling };
+            rows.extend(partial.table(&format!("{place}, {how}"), &PARTIAL_FACTORS, asked, &[]));
         }
     }
+    // Half a diameter aside the load circles against the disk: does a loop told so, or one of yaw alone, find it?
+    let against = TwoAxisSettings { sense: Sense::CounterClockwise, ..following() };
+    let yaw_leads = TwoAxisSettings { leader: Leader::Yaw, ..following() };
+    rows.extend(Bench::new(0.5, against).rows("½ D aside, the other sense followed"));
+    rows.extend(Bench::new(0.5, yaw_leads).rows("½ D aside, yaw followed"));
     rows
 }
 
@@ -96,15 +100,16 @@ struct Bench {
 }
 
 impl Bench {
-    /// The turbine `aside` (diameters) to the left of the middle of the disk's path, looking downwind.
-    fn new(aside: f64) -> Self {
+    /// The turbine `aside` (diameters) to the left of the middle of the disk's path, looking downwind, its loads followed as
+    /// `following` says.
+    fn new(aside: f64, following: TwoAxisSettings) -> Self {
         let disk = RotatingDisk::of_wake(DIAMETER, HUB_HEIGHT, AMBIENT, true);
         let middle = [-aside * DIAMETER, HUB_HEIGHT];
         let disk = RotatingDisk { edge: EDGE, middle, ..disk };
         let calm = DeterministicWind::steady(MeanProfile::Uniform { speed: AMBIENT }, HUB_HEIGHT);
         let wind = DeterministicWind { event: Event::RotatingDisk(disk), ..calm };
         let rig = Rig::new(wind, ROTOR_SPEED);
-        let mut follower = TwoAxisLoop::new(&following(), INTERVAL).expect("a sound loop");
+        let mut follower = TwoAxisLoop::new(&following, INTERVAL).expect("a sound loop");
         let (mut sums, mut off_rate, mut unlocked, mut n) = ([0.0; 2], 0.0_f64, 0.0, 0.0);
         let (mut loads, mut baseline) = (Vec::new(), Record::new(disk));
         let mut machine = rig.clone();
@@ -150,18 +155,18 @@ impl Bench {
         }]
     }
 
-    /// Runs with what `asked` makes of each of `factors` (–), printed; what is claimed, beside `published` changes.
+    /// Runs with `asked` at each of `factors` (–), printed; what is claimed, beside `published` changes.
     fn table(
         &self,
-        name: &'static str,
+        name: &str,
         factors: &[f64],
-        asked: impl Fn(f64) -> Settings,
+        asked: Asked,
         published: &[(f64, [f64; 8])],
     ) -> Vec<Row> {
         let mut table = Table::new(name, &self.baseline);
         let mut rows = Vec::new();
         for factor in factors {
-            let record = controlled(&self.rig, asked(*factor), self.disk);
+            let record = controlled(&self.rig, asked.settings(*factor), self.disk);
             rows.extend(table.add(*factor, record));
         }
         table.print();
@@ -196,22 +201,28 @@ fn following() -> TwoAxisSettings {
     TwoAxisSettings { signal, sense: Sense::Clockwise, leader: Leader::Both }
 }
 
-fn settings(
-    factor: f64,
+/// What the runs of a table have in common.
+#[derive(Clone, Copy)]
+struct Asked {
     followed: Followed,
     reference: Reference,
     decoupling: Decoupling,
-) -> Settings {
-    Settings {
-        follower: following(),
-        followed,
-        factor,
-        reference,
-        decoupling,
-        bandwidth: 0.02,
-        proportional: 0.0,
-        maximum_amplitude: 6.0_f64.to_radians(),
-        maximum_offset: 0.0,
-        start: START,
+}
+
+impl Asked {
+    fn settings(&self, factor: f64) -> Settings {
+        let Self { followed, reference, decoupling } = *self;
+        Settings {
+            follower: following(),
+            followed,
+            factor,
+            reference,
+            decoupling,
+            bandwidth: 0.02,
+            proportional: 0.0,
+            maximum_amplitude: 6.0_f64.to_radians(),
+            maximum_offset: 0.0,
+            start: START,
+        }
     }
 }

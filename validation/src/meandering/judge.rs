@@ -94,7 +94,7 @@ impl Change {
 /// Runs beside the one without control.
 pub(super) struct Table<'a> {
     /// What sets these runs apart.
-    name: &'static str,
+    name: &'a str,
     baseline: &'a Record,
     runs: Vec<Run>,
 }
@@ -113,7 +113,7 @@ struct Run {
 }
 
 impl<'a> Table<'a> {
-    pub(super) fn new(name: &'static str, baseline: &'a Record) -> Self {
+    pub(super) fn new(name: &'a str, baseline: &'a Record) -> Self {
         Self { name, baseline, runs: Vec::new() }
     }
 

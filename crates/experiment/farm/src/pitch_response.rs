@@ -18,6 +18,7 @@ use flow::FlowError;
 use flow::inflow::{MeanProfile, PrescribedWind};
 use flow::lattice;
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use thiserror::Error;
 use turbine::Turbine;
@@ -32,9 +33,15 @@ const COUNTED: f64 = 2.0;
 /// Amplitude of the helices that tell how pitch acts on the loads (rad): a degree.
 pub const PROBE: f64 = std::f64::consts::PI / 180.0;
 
+/// Is told the share (–) of a probe that is done; a break ends the probe.
+pub type Progress<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
+
 /// Why no calibration could be made.
 #[derive(Debug, Error)]
 pub enum CalibrationError {
+    /// Whoever was told its progress broke it off.
+    #[error("the calibration was broken off")]
+    BrokenOff,
     /// The turbine cannot be put together.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
@@ -133,7 +140,7 @@ pub fn calibration(
     model: &Model,
     index: usize,
     sync: &PhaseSync,
-    progress: &mut dyn FnMut(f64),
+    progress: Progress,
 ) -> Result<Calibration, CalibrationError> {
     let pitch = Pitching {
         wind_speed: WAKE_SPEED * case.wind.speed,
@@ -163,7 +170,7 @@ pub fn decoupling(
     model: &Model,
     index: usize,
     asked: &Meandering,
-    progress: &mut dyn FnMut(f64),
+    progress: Progress,
 ) -> Result<Decoupling, CalibrationError> {
     let strouhal = middle(asked);
     let rate = excitation_rate(strouhal, case.wind.speed, plan.diameter);
@@ -185,7 +192,7 @@ pub fn answers(
     index: usize,
     wind_speed: f64,
     rate: f64,
-    progress: &mut dyn FnMut(f64),
+    progress: Progress,
 ) -> Result<[Answer; 2], CalibrationError> {
     let mut answer = |sense, done: f64| {
         let pitch = Pitching {
@@ -251,7 +258,7 @@ fn pitching(
     model: &Model,
     index: usize,
     pitch: &Pitching,
-    progress: &mut dyn FnMut(f64),
+    progress: Progress,
 ) -> Result<Vec<Measurements>, CalibrationError> {
     let diameter = model.definition.rotor_diameter();
     let rate = pitch.rate;
@@ -288,7 +295,9 @@ fn pitching(
     for step in 0..n_steps {
         record.on = step >= course.n_settling;
         farm.advance(&mut record)?;
-        progress((step + 1) as f64 / n_steps as f64);
+        if progress((step + 1) as f64 / n_steps as f64).is_break() {
+            return Err(CalibrationError::BrokenOff);
+        }
     }
     Ok(record.measurements)
 }

@@ -8,6 +8,7 @@ use farm::assemble::Model;
 use farm::case::Decoupling;
 use farm::pitch_response::answers;
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -34,16 +35,13 @@ pub struct OffsetAnswer {
 }
 
 /// Finds the azimuth offset of a turbine alone in a steady wind, under its own control, from what a counter-clockwise and a
-/// clockwise helix of a degree take off the moments of its blades; `progress` is told the share done.
+/// clockwise helix of a degree take off the moments of its blades.
 ///
 /// The wind is prescribed and the turbine makes its own induction.
 ///
 /// # Errors
 /// [`StudyError`] for a turbine that cannot be read, and for a wind or Strouhal number that a case file could not have.
-pub fn azimuth_offset(
-    question: &OffsetQuestion,
-    progress: &mut dyn FnMut(f64),
-) -> Result<OffsetAnswer, StudyError> {
+pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyError> {
     let (_, file) = turbine(&question.model, Path::new(""))?;
     let structure = if question.flexible { "flexible" } else { "rigid" };
     let text = format!(
@@ -61,7 +59,8 @@ pub fn azimuth_offset(
     let loaded = BTreeMap::from([(question.model.clone(), model)]);
     let Setup { case, plan, models, .. } = Setup::new(case, text, &loaded)?;
     let rate = excitation_rate(question.strouhal, case.wind.speed, plan.diameter);
-    let [ccw, cw] = answers(&case, &plan, &models[0], 0, case.wind.speed, rate, progress)?;
+    let mut whole = |_| ControlFlow::Continue(());
+    let [ccw, cw] = answers(&case, &plan, &models[0], 0, case.wind.speed, rate, &mut whole)?;
     let decoupling = Decoupling::from_senses(rate, ccw, cw);
     let relative_gain =
         [0.0, decoupling.azimuth_offset].map(|offset| relative_gain(ccw, cw, offset));
@@ -81,14 +80,14 @@ mod tests {
             strouhal: 0.25,
             flexible: false,
         };
-        let slow = azimuth_offset(&question, &mut |_| ()).unwrap();
+        let slow = azimuth_offset(&question).unwrap();
         assert!((slow.relative_gain[1] - 1.0).abs() < 2e-3, "{slow:?}");
         assert!(slow.relative_gain[0] < 0.95, "{slow:?}");
         let fast = OffsetQuestion { strouhal: 0.4, ..question.clone() };
-        let fast = azimuth_offset(&fast, &mut |_| ()).unwrap();
+        let fast = azimuth_offset(&fast).unwrap();
         let apart = fast.decoupling.azimuth_offset - slow.decoupling.azimuth_offset;
         assert!(apart.abs() < 1f64.to_radians(), "{slow:?} {fast:?}");
         let nobody = OffsetQuestion { model: "nobody".to_owned(), ..question };
-        assert!(azimuth_offset(&nobody, &mut |_| ()).is_err());
+        assert!(azimuth_offset(&nobody).is_err());
     }
 }

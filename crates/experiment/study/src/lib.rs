@@ -101,7 +101,7 @@ pub fn run(
             check_same(&setup, &setup.case.runs[index], &folders[index])?;
         }
     }
-    let probes = setup.open_probes(&open, &directory, options.resume)?;
+    let probes = setup.probes(&open, &directory, options.resume)?;
     let mut estimate = setup.estimate(open.len(), &probes);
     watcher.estimated(&estimate);
     setup.check_memory(&estimate)?;
@@ -116,7 +116,9 @@ pub fn run(
         return Ok(Outcome::Estimated);
     }
     if !open.is_empty() {
-        setup.calibrate(&open, &directory, options.resume, watcher)?;
+        if setup.calibrate(probes, &directory, stop, watcher)?.is_break() {
+            return Ok(Outcome::Interrupted { directory });
+        }
         setup.make_turbulence(watcher)?;
     }
     for (place, &index) in open.iter().enumerate() {

@@ -47,11 +47,8 @@ pub(crate) fn deviations(
 ) -> Result<BTreeMap<String, f64>, StudyError> {
     let mut deviations = BTreeMap::new();
     for (name, channel) in moments(series, turbine) {
-        let load = analysed.column(name)?;
-        let n = load.len().max(1) as f64;
-        let mean = load.iter().sum::<f64>() / n;
-        let variance = load.iter().map(|load| (load - mean).powi(2)).sum::<f64>() / n;
-        deviations.insert(format!("{channel}, standard deviation (kN m)"), variance.sqrt());
+        let deviation = analysed.statistic(name)?.standard_deviation;
+        deviations.insert(format!("{channel}, standard deviation (kN m)"), deviation);
     }
     Ok(deviations)
 }

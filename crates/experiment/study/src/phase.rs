@@ -3,7 +3,6 @@
 mod asked;
 
 use crate::StudyError;
-use crate::prepare::turbine;
 use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
     fixed_frame_moments, ground_truth, uniform_interval,
@@ -15,11 +14,9 @@ use estimation::HelixEstimator;
 use estimation::helix::Setting;
 use estimation::helix::tuning::{self, Tuned};
 use farm::assemble::{AssemblyError, estimator_options};
-use farm::case::{Case, PhaseEstimator};
+use farm::case::PhaseEstimator;
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use turbine::Definition;
+use std::path::PathBuf;
 
 /// Excitation periods in a segment of the cross-spectrum (–).
 const SEGMENT_PERIODS: f64 = 4.0;
@@ -108,9 +105,9 @@ pub(crate) struct Truth {
 /// [`StudyError`] for records that cannot be read, lack a channel, have gaps, or hold no helix.
 pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
     let asked = Asked::read(question)?;
-    let Asked { case, index, reference, series, truth, .. } = &asked;
+    let Asked { case, reference, series, truth, .. } = &asked;
     let estimates = match question.estimator {
-        Some(estimator) => replay(case, series, *index, reference, estimator)?,
+        Some(estimator) => replay(&asked, estimator)?,
         None => recorded(series, asked.name())?,
     };
     let from = question.from.unwrap_or(case.time.spin_up);
@@ -120,26 +117,17 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
     let hindsight = if asked.pitches {
         None
     } else {
-        let definition = seeker(case, *index, reference, 1.0)?.0;
-        let looked_back =
-            compared(&hindsight(series, asked.name(), definition.n_blades, reference)?)?;
+        let looked_back = compared(&hindsight(series, asked.name(), reference)?)?;
         Some([looked_back.tilt.agreement, looked_back.yaw.agreement])
     };
     Ok(PhaseAnswer { hindsight, ..compared(&estimates)? })
 }
 
 /// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m) stand for winds.
-fn hindsight(
-    series: &Series,
-    name: &str,
-    n_blades: usize,
-    reference: &Reference,
-) -> Result<Estimates, StudyError> {
-    let channel = |what: &str| column(series, &format!("{name}.{what}"));
-    let blades = (1..=n_blades)
-        .map(|blade| channel(&format!("flap_moment_{blade}_nm")))
-        .collect::<Result<Vec<_>, _>>()?;
-    let moments = fixed_frame_moments(channel("azimuth_rad")?, &blades)?;
+fn hindsight(series: &Series, name: &str, reference: &Reference) -> Result<Estimates, StudyError> {
+    let blade = |blade: usize| series.column(&format!("{name}.flap_moment_{blade}_nm"));
+    let blades: Vec<&[f64]> = (1..).map_while(blade).collect();
+    let moments = fixed_frame_moments(column(series, &format!("{name}.azimuth_rad"))?, &blades)?;
     let times = column(series, "time_s")?;
     let band = Band::around(reference.frequency(), Band::RATIO);
     let told = ground_truth(&moments, times[0], uniform_interval(times)?, reference, band)?;
@@ -264,20 +252,16 @@ pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, StudyEr
     })
 }
 
-/// What `estimator` believes when it is given the records of turbine `index` row by row.
-fn replay(
-    case: &Case,
-    series: &Series,
-    index: usize,
-    reference: &Reference,
-    estimator: PhaseEstimator,
-) -> Result<Estimates, StudyError> {
-    let interval = uniform_interval(column(series, "time_s")?)?;
-    let (definition, setting) = seeker(case, index, reference, interval)?;
-    let options = estimator_options(estimator, case.flow.solver);
+/// What `estimator` believes when it is given the records of the turbine row by row, calibrated as it was in the run.
+fn replay(asked: &Asked, estimator: PhaseEstimator) -> Result<Estimates, StudyError> {
+    let interval = uniform_interval(column(&asked.series, "time_s")?)?;
+    let setting = setting(asked, interval);
+    let options = estimator_options(estimator, asked.case.flow.solver);
+    let calibration = asked.calibration.filter(|_| estimator == PhaseEstimator::Robust);
+    let options = calibration.map_or(options, |found| found.apply(options));
     let mut estimator =
-        HelixEstimator::new(&definition, &setting, options).map_err(AssemblyError::from)?;
-    let record = record(case, series, index, definition.n_blades, interval)?;
+        HelixEstimator::new(&asked.definition, &setting, options).map_err(AssemblyError::from)?;
+    let record = record(asked, interval)?;
     let replayed =
         tuning::replay(&mut estimator, &record, interval).map_err(AssemblyError::from)?;
     let mut estimates = Estimates {
@@ -306,12 +290,11 @@ fn replay(
 /// # Errors
 /// As [`phase`].
 pub fn tune(question: &PhaseQuestion) -> Result<Tuned, StudyError> {
-    let Asked { case, index, reference, series, truth, .. } = Asked::read(question)?;
-    let truth = truth.wind;
-    let interval = uniform_interval(column(&series, "time_s")?)?;
-    let from = question.from.unwrap_or(case.time.spin_up);
-    let (definition, setting) = seeker(&case, index, &reference, interval)?;
-    let whole = record(&case, &series, index, definition.n_blades, interval)?;
+    let asked = Asked::read(question)?;
+    let truth = &asked.truth.wind;
+    let interval = uniform_interval(column(&asked.series, "time_s")?)?;
+    let from = question.from.unwrap_or(asked.case.time.spin_up);
+    let whole = record(&asked, interval)?;
     let (mut measured, mut tilt, mut yaw) = (Vec::new(), Vec::new(), Vec::new());
     for measurements in whole {
         let at = truth.index_at(measurements.time).filter(|at| truth.trusted.contains(at));
@@ -322,38 +305,26 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, StudyError> {
         }
     }
     let estimator = question.estimator.unwrap_or(PhaseEstimator::Robust);
-    let options = estimator_options(estimator, case.flow.solver);
-    let tuned = tuning::tune(&definition, &setting, options, &measured, [&tilt, &yaw]);
+    let options = estimator_options(estimator, asked.case.flow.solver);
+    let setting = setting(&asked, interval);
+    let tuned = tuning::tune(&asked.definition, &setting, options, &measured, [&tilt, &yaw]);
     Ok(tuned.map_err(AssemblyError::from)?)
 }
 
-/// The rotor of turbine `index`, and what its estimator is told.
-fn seeker(
-    case: &Case,
-    index: usize,
-    reference: &Reference,
-    interval: f64,
-) -> Result<(Arc<Definition>, Setting), StudyError> {
-    let (_, file) = turbine(&case.turbines[index].model, Path::new(""))?;
-    let setting = Setting {
-        sense: reference.sense,
-        rate: reference.rate,
+/// What the estimator of the turbine is told.
+fn setting(asked: &Asked, interval: f64) -> Setting {
+    Setting {
+        sense: asked.reference.sense,
+        rate: asked.reference.rate,
         interval,
-        air_density: case.wind.air_density,
+        air_density: asked.case.wind.air_density,
         n_elements: Setting::N_ELEMENTS,
-    };
-    Ok((Arc::new(file.definition), setting))
+    }
 }
 
-/// What turbine `index` measured, row by row.
-fn record(
-    case: &Case,
-    series: &Series,
-    index: usize,
-    n_blades: usize,
-    interval: f64,
-) -> Result<Vec<Measurements>, StudyError> {
-    let name = &case.turbines[index].name;
+/// What the turbine measured, row by row.
+fn record(asked: &Asked, interval: f64) -> Result<Vec<Measurements>, StudyError> {
+    let (name, series, n_blades) = (asked.name(), &asked.series, asked.definition.n_blades);
     let channel = |what: &str| column(series, &format!("{name}.{what}"));
     let per_blade = |what: &str| {
         (1..=n_blades)

@@ -1,11 +1,12 @@
 //! What all runs of a case share: turbines, domain, wind.
 
 use crate::StudyError;
-use crate::probes::Probe;
+use crate::probes::Probes;
 use crate::watcher::{Estimate, Watcher};
 use basis::angle::wrap_to_turn;
 use farm::assemble::Model;
 use farm::case::{Case, Control, Solver};
+use farm::pitch_response::ProbeCost;
 use farm::self_check::{Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -142,16 +143,17 @@ impl Setup {
     }
 
     /// The cost of `n_runs` runs and of `probes` before them, the machine's speed not known yet.
-    pub(crate) fn estimate(&self, n_runs: usize, probes: &[Probe]) -> Estimate {
+    pub(crate) fn estimate(&self, n_runs: usize, probes: &Probes) -> Estimate {
         let plan = &self.plan;
+        let costs = probes.costs();
         let channels = 4 + CHANNELS_PER_TURBINE * self.case.turbines.len() as u64;
         let n_rows = plan.n_steps / plan.row_stride;
         let field = plan.cells() as u64 * CELL_BYTES;
         Estimate {
             n_runs,
-            n_probes: probes.len(),
-            n_probe_steps: probes.iter().map(|probe| probe.cost().n_steps).sum(),
-            probe_work: probes.iter().map(|probe| probe.cost().work()).sum(),
+            n_probes: costs.len(),
+            n_probe_steps: costs.iter().map(|cost| cost.n_steps).sum(),
+            probe_work: costs.iter().map(ProbeCost::work).sum(),
             n_cells: plan.n_cells,
             spacing: plan.spacing,
             interval: plan.interval,

@@ -6,22 +6,49 @@ use crate::watcher::{Probing, Watcher};
 use basis::records::PitchResponse;
 use estimation::helix::Calibration;
 use farm::case::{Control, Decoupling, Meandering, PhaseEstimator, PhaseSync};
-use farm::pitch_response::{ProbeCost, calibration, calibration_cost, decoupling, decoupling_cost};
+use farm::pitch_response::{
+    CalibrationError, ProbeCost, calibration, calibration_cost, decoupling, decoupling_cost,
+};
 use formats::records::{ProbeRecord, read_probes, sha256, write_probes};
+use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Wall time between two reports of progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 
 /// One thing to be found.
-pub(crate) struct Probe {
-    /// Turbine of the case.
-    index: usize,
+struct Probe {
+    /// Runs and turbines of the case that need it; the first turbine is probed for all.
+    places: Vec<(usize, usize)>,
     asked: Asked,
     /// Digest of everything that decides what is found.
     key: String,
     cost: ProbeCost,
+}
+
+/// What the runs of a study need to have found, each once, and what is known.
+pub(crate) struct Probes {
+    wanted: Vec<Probe>,
+    known: Vec<ProbeRecord>,
+}
+
+impl Probes {
+    fn found(&self, probe: &Probe) -> Option<&PitchResponse> {
+        let mut known = self.known.iter();
+        known.find(|found| found.key == probe.key).map(|found| &found.response)
+    }
+
+    /// What is not known yet.
+    fn open(&self) -> impl Iterator<Item = &Probe> {
+        self.wanted.iter().filter(|probe| self.found(probe).is_none())
+    }
+
+    /// What it costs to find what is not known yet, each.
+    pub(crate) fn costs(&self) -> Vec<ProbeCost> {
+        self.open().map(|probe| probe.cost).collect()
+    }
 }
 
 /// Whose pitch is probed for what.
@@ -29,13 +56,6 @@ pub(crate) struct Probe {
 enum Asked {
     Calibration(PhaseSync),
     Decoupling(Meandering),
-}
-
-impl Probe {
-    /// What it costs.
-    pub(crate) fn cost(&self) -> ProbeCost {
-        self.cost
-    }
 }
 
 impl Asked {
@@ -56,24 +76,35 @@ impl Asked {
 }
 
 impl Setup {
-    /// What `runs` need to have found, each once.
-    fn probes(&self, runs: &[usize]) -> Vec<Probe> {
-        let mut probes: Vec<Probe> = Vec::new();
+    /// What `runs` need to have found, each once; with `resume` what an earlier session found in the folder `directory` is known.
+    ///
+    /// # Errors
+    /// [`StudyError::File`].
+    pub(crate) fn probes(
+        &self,
+        runs: &[usize],
+        directory: &Path,
+        resume: bool,
+    ) -> Result<Probes, StudyError> {
+        let known = if resume { read_probes(directory)? } else { Vec::new() };
+        let mut wanted: Vec<Probe> = Vec::new();
         for &run in runs {
             for (index, control) in self.case.runs[run].control.iter().enumerate() {
                 let Some(asked) = Asked::of(control) else { continue };
                 let key = self.key(index, &asked);
-                if probes.iter().all(|probe| probe.key != key) {
-                    let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
-                    let cost = match &asked {
-                        Asked::Calibration(sync) => calibration_cost(case, plan, model, sync),
-                        Asked::Decoupling(asked) => decoupling_cost(case, plan, model, asked),
-                    };
-                    probes.push(Probe { index, asked, key, cost });
+                if let Some(probe) = wanted.iter_mut().find(|probe| probe.key == key) {
+                    probe.places.push((run, index));
+                    continue;
                 }
+                let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
+                let cost = match &asked {
+                    Asked::Calibration(sync) => calibration_cost(case, plan, model, sync),
+                    Asked::Decoupling(asked) => decoupling_cost(case, plan, model, asked),
+                };
+                wanted.push(Probe { places: vec![(run, index)], asked, key, cost });
             }
         }
-        probes
+        Ok(Probes { wanted, known })
     }
 
     /// Digest of everything that decides what is found for turbine number `index`: offset, start and fallback do not.
@@ -108,46 +139,34 @@ impl Setup {
         )
     }
 
-    /// What `runs` need to have found; with `resume` what an earlier session found in the folder `directory` is left out.
-    ///
-    /// # Errors
-    /// [`StudyError::File`].
-    pub(crate) fn open_probes(
-        &self,
-        runs: &[usize],
-        directory: &Path,
-        resume: bool,
-    ) -> Result<Vec<Probe>, StudyError> {
-        let known = if resume { read_probes(directory)? } else { Vec::new() };
-        let mut probes = self.probes(runs);
-        probes.retain(|probe| known.iter().all(|old| old.key != probe.key));
-        Ok(probes)
-    }
-
-    /// On return the case knows, for `runs`, what the phase estimator of every turbine that joins a helix makes of its own
-    /// pitch, and how pitch acts on the loads of every turbine that acts on meandering and is not told. What was found is
-    /// kept in the folder `directory`; with `resume` what an earlier session found there is taken.
+    /// On return the case knows what the phase estimator of every turbine that joins a helix makes of its own pitch, and how
+    /// pitch acts on the loads of every turbine that acts on meandering and is not told, as far as `probes` name them. What is
+    /// found is kept in the folder `directory`. A break when `stop` asked for an end before all was found.
     ///
     /// # Errors
     /// [`StudyError::Calibration`] when it cannot be found, [`StudyError::File`] when it cannot be kept.
-    pub fn calibrate(
+    pub(crate) fn calibrate(
         &mut self,
-        runs: &[usize],
+        probes: Probes,
         directory: &Path,
-        resume: bool,
+        stop: &AtomicBool,
         watcher: &mut dyn Watcher,
-    ) -> Result<(), StudyError> {
-        let mut known = if resume { read_probes(directory)? } else { Vec::new() };
-        let open = self.open_probes(runs, directory, resume)?;
+    ) -> Result<ControlFlow<()>, StudyError> {
+        let open: Vec<&Probe> = probes.open().collect();
+        let mut known = probes.known.clone();
         let started = Instant::now();
         let all: f64 = open.iter().map(|probe| probe.cost.work()).sum();
         let mut done = 0.0;
         for (place, probe) in open.iter().enumerate() {
-            let name = &self.case.turbines[probe.index].name;
+            let index = probe.places[0].1;
+            let name = &self.case.turbines[index].name;
             let mut last: Option<Instant> = None;
             let mut told = |share: f64| {
+                if stop.load(Ordering::Relaxed) {
+                    return ControlFlow::Break(());
+                }
                 if last.is_some_and(|last| last.elapsed() < PROGRESS_INTERVAL) {
-                    return;
+                    return ControlFlow::Continue(());
                 }
                 last = Some(Instant::now());
                 let made = done + share * probe.cost.work();
@@ -159,63 +178,47 @@ impl Setup {
                     share,
                     time_left: elapsed * (all - made) / made.max(f64::MIN_POSITIVE),
                 });
+                ControlFlow::Continue(())
             };
-            let (case, plan, model) = (&self.case, &self.plan, &self.models[probe.index]);
-            let response = match &probe.asked {
-                Asked::Calibration(sync) => record_of_calibration(&calibration(
-                    case,
-                    plan,
-                    model,
-                    probe.index,
-                    sync,
-                    &mut told,
-                )?),
-                Asked::Decoupling(asked) => record_of_decoupling(&decoupling(
-                    case,
-                    plan,
-                    model,
-                    probe.index,
-                    asked,
-                    &mut told,
-                )?),
+            let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
+            let found = match &probe.asked {
+                Asked::Calibration(sync) => calibration(case, plan, model, index, sync, &mut told)
+                    .map(|found| record_of_calibration(&found)),
+                Asked::Decoupling(asked) => decoupling(case, plan, model, index, asked, &mut told)
+                    .map(|found| record_of_decoupling(&found)),
+            };
+            let response = match found {
+                Err(CalibrationError::BrokenOff) => return Ok(ControlFlow::Break(())),
+                found => found?,
             };
             done += probe.cost.work();
-            let (key, turbine) = (probe.key.clone(), name.clone());
-            known.push(ProbeRecord { key, turbine, response });
+            known.push(ProbeRecord { key: probe.key.clone(), turbine: name.clone(), response });
             write_probes(directory, &known)?;
         }
-        for probe in self.probes(runs) {
-            let name = &self.case.turbines[probe.index].name;
-            if let Some(found) = known.iter().find(|found| found.key == probe.key) {
-                let again = open.iter().all(|open| open.key != probe.key);
-                watcher.probed(name, &found.response, again);
+        let now = Probes { known, wanted: Vec::new() };
+        for probe in &probes.wanted {
+            let Some(found) = now.found(probe) else { continue };
+            let name = &self.case.turbines[probe.places[0].1].name;
+            watcher.probed(name, found, probes.found(probe).is_some());
+            for &(run, index) in &probe.places {
+                let control = &mut self.case.runs[run].control[index];
+                *control = told(*control, found);
             }
         }
-        self.tell(runs, &known);
-        Ok(())
+        Ok(ControlFlow::Continue(()))
     }
+}
 
-    /// On return the controllers of `runs` are told what is `known`.
-    fn tell(&mut self, runs: &[usize], known: &[ProbeRecord]) {
-        for &run in runs {
-            for index in 0..self.case.turbines.len() {
-                let control = self.case.runs[run].control[index];
-                let Some(asked) = Asked::of(&control) else { continue };
-                let key = self.key(index, &asked);
-                let Some(found) = known.iter().find(|found| found.key == key) else { continue };
-                let told = match asked {
-                    Asked::Calibration(sync) => {
-                        let calibration = calibration_of(&found.response);
-                        Control::PhaseSync(PhaseSync { calibration, ..sync })
-                    }
-                    Asked::Decoupling(asked) => {
-                        let decoupling = decoupling_of(&found.response);
-                        Control::Meandering(Meandering { decoupling, ..asked })
-                    }
-                };
-                self.case.runs[run].control[index] = told;
-            }
+/// `control` when it is told what was `found` of its turbine's own pitch.
+fn told(control: Control, found: &PitchResponse) -> Control {
+    match control {
+        Control::PhaseSync(sync) => {
+            Control::PhaseSync(PhaseSync { calibration: calibration_of(found), ..sync })
         }
+        Control::Meandering(asked) => {
+            Control::Meandering(Meandering { decoupling: decoupling_of(found), ..asked })
+        }
+        other => other,
     }
 }
 
@@ -238,7 +241,8 @@ fn record_of_decoupling(found: &Decoupling) -> PitchResponse {
     PitchResponse::Loads { azimuth_offset, delay, gain }
 }
 
-fn calibration_of(response: &PitchResponse) -> Option<Calibration> {
+/// The calibration of an estimator in `response`.
+pub(crate) fn calibration_of(response: &PitchResponse) -> Option<Calibration> {
     match *response {
         PitchResponse::Estimator { gain, azimuth_offset, before, after } => {
             Some(Calibration { gain, azimuth_offset, before, after })

@@ -50,7 +50,8 @@ impl<'a> Analysed<'a> {
         Ok(column.get(self.first..).unwrap_or_default())
     }
 
-    fn statistic(&self, name: &str) -> Result<Statistic, StudyError> {
+    /// Mean and deviation of the channel `name`.
+    pub(crate) fn statistic(&self, name: &str) -> Result<Statistic, StudyError> {
         Ok(statistic(self.column(name)?, self.interval, BLOCK_LENGTH)?)
     }
 

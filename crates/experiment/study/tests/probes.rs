@@ -3,7 +3,7 @@
 use basis::records::PitchResponse;
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use study::{Estimate, Options, Outcome, Probing, Watcher};
 
 const CASE: &str = r#"
@@ -67,14 +67,18 @@ impl Watcher for Told {
     }
 }
 
-fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Told, Vec<Option<PitchResponse>>) {
-    let options = Options {
+fn options(folder: &Path, resume: bool, overrides: &[&str]) -> Options {
+    Options {
         case: folder.join("case.toml"),
         output: Some(folder.join("out")),
         overrides: overrides.iter().map(|&text| text.to_owned()).collect(),
         resume,
         ..Options::default()
-    };
+    }
+}
+
+fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Told, Vec<Option<PitchResponse>>) {
+    let options = options(folder, resume, overrides);
     let mut told = Told::default();
     let outcome = study::run(&options, &AtomicBool::new(false), &mut told).expect("a sound case");
     let Outcome::Done { summaries, .. } = outcome else { panic!("{outcome:?}") };
@@ -111,4 +115,27 @@ fn a_resumed_study_takes_what_was_probed() {
     let (third, _) = run(folder.path(), true, &["wind.speed=8.0"]);
     assert_eq!((third.n_probes, third.found.len()), (1, 1));
     assert!(!third.found[0].1 && third.found[0].0 != response);
+}
+
+/// Asks for an end as soon as a probe moves.
+struct Impatient<'a>(&'a AtomicBool);
+
+impl Watcher for Impatient<'_> {
+    fn probing(&mut self, probing: &Probing) {
+        assert!(probing.share < 1.0, "the probe went on to its end");
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn a_probe_stops_when_asked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("case.toml"), CASE).expect("a file");
+    let stop = AtomicBool::new(false);
+    let options = options(folder.path(), false, &[]);
+    let outcome = study::run(&options, &stop, &mut Impatient(&stop)).expect("a sound case");
+    assert!(matches!(outcome, Outcome::Interrupted { .. }), "{outcome:?}");
+    assert!(!folder.path().join("out/watch").exists(), "a run began after the end was asked for");
+    let (resumed, responses) = run(folder.path(), true, &[]);
+    assert_eq!((resumed.n_probes, responses.len()), (1, 3));
 }

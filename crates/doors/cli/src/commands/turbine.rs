@@ -306,7 +306,7 @@ fn offset(name: &str, wind: Range, strouhal: f64, flexible: bool) -> Result<()> 
     for wind_speed in wind.values() {
         let question = OffsetQuestion { model: name.to_owned(), wind_speed, strouhal, flexible };
         let OffsetAnswer { decoupling, relative_gain: [without, with] } =
-            azimuth_offset(&question, &mut |_| ())?;
+            azimuth_offset(&question)?;
         // Not before there is something to say: a question that cannot be answered leaves nothing.
         print(std::mem::take(&mut head))?;
         print(&format!(

@@ -1,6 +1,6 @@
 //! The manifest of a run: what was run, by which program, on which machine, when.
 
-use crate::FileError;
+use crate::{FileError, library};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -31,6 +31,9 @@ pub struct Manifest {
     pub case_sha256: String,
     /// SHA-256 of the text of each turbine model, hexadecimal.
     pub turbines_sha256: BTreeMap<String, String>,
+    /// Text of each turbine model that is not of the library, so that records can be asked anew without its file.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub own_turbines: BTreeMap<String, String>,
     /// The machine.
     pub machine: Machine,
     /// Start of the run's first session (UTC, RFC 3339).
@@ -77,7 +80,13 @@ impl Manifest {
         run_index: usize,
         turbines: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Self {
-        let digest = |(name, text): (&str, &str)| (name.to_owned(), sha256(text.as_bytes()));
+        let (mut turbines_sha256, mut own_turbines) = (BTreeMap::new(), BTreeMap::new());
+        for (name, text) in turbines {
+            turbines_sha256.insert(name.to_owned(), sha256(text.as_bytes()));
+            if library::text(name).is_none() {
+                own_turbines.insert(name.to_owned(), text.to_owned());
+            }
+        }
         Self {
             schema_version: SCHEMA_VERSION,
             version: version.to_owned(),
@@ -87,7 +96,8 @@ impl Manifest {
             run_index,
             case_text: case_text.to_owned(),
             case_sha256: sha256(case_text.as_bytes()),
-            turbines_sha256: turbines.into_iter().map(digest).collect(),
+            turbines_sha256,
+            own_turbines,
             machine: Machine::here(),
             started: now(),
             finished: None,

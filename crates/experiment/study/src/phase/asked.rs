@@ -2,13 +2,17 @@
 
 use super::{PhaseQuestion, Truth, truth};
 use crate::StudyError;
+use crate::probes::calibration_of;
 use analysis::phase::Reference;
 use basis::records::Series;
 use control::excitation_rate;
+use estimation::helix::Calibration;
 use farm::case::{Case, Control, helix_upstream};
-use formats::case;
 use formats::records::{self, Manifest, RunFolder};
+use formats::{case, library, turbine_file};
 use std::path::Path;
+use std::sync::Arc;
+use turbine::Definition;
 
 /// What a question is about, read.
 pub(super) struct Asked {
@@ -18,6 +22,10 @@ pub(super) struct Asked {
     /// Place of the turbine in the case.
     pub(super) index: usize,
     pub(super) reference: Reference,
+    /// Its rotor.
+    pub(super) definition: Arc<Definition>,
+    /// What the run made of its own pitch, where it asked.
+    pub(super) calibration: Option<Calibration>,
     /// Whether it pitches a helix of its own.
     pub(super) pitches: bool,
     pub(super) series: Series,
@@ -37,8 +45,8 @@ impl Asked {
             run: manifest.run.clone(),
             turbine: name.clone(),
         })?;
-        let diameter = records::read_summary(&folder)?.conditions.rotor_diameter;
-        let rate = excitation_rate(strouhal, case.wind.speed, diameter);
+        let summary = records::read_summary(&folder)?;
+        let rate = excitation_rate(strouhal, case.wind.speed, summary.conditions.rotor_diameter);
         let reference = Reference { rate, sense };
         let study = folder.path().parent().unwrap_or(Path::new("")).to_owned();
         let without = match &question.truth {
@@ -59,14 +67,29 @@ impl Asked {
             }
             None => None,
         };
-        let truth = truth.ok_or(StudyError::NoTruth { turbine: name, directory: study })?;
+        let truth =
+            truth.ok_or_else(|| StudyError::NoTruth { turbine: name.clone(), directory: study })?;
         let series = records::read_series(&folder.series_path())?;
         let pitches = match control[index] {
             Control::Helix(helix) => helix.amplitude != 0.0,
             Control::PhaseSync(sync) => sync.amplitude != 0.0,
             _ => false,
         };
-        Ok(Self { run: manifest.run, case, index, reference, pitches, series, truth })
+        let definition = Arc::new(rotor(&case.turbines[index].model, &manifest)?);
+        let summary = summary.turbines.into_iter().find(|turbine| turbine.name == name);
+        let response = summary.and_then(|turbine| turbine.pitch_response);
+        let calibration = response.as_ref().and_then(calibration_of);
+        Ok(Self {
+            run: manifest.run,
+            case,
+            index,
+            reference,
+            definition,
+            calibration,
+            pitches,
+            series,
+            truth,
+        })
     }
 
     /// Name of the turbine.
@@ -92,6 +115,15 @@ fn turbine_of(
         asked: question.turbine.clone(),
         turbines: names,
     })
+}
+
+/// The turbine called `model` as it was in the run of `manifest`.
+fn rotor(model: &str, manifest: &Manifest) -> Result<Definition, StudyError> {
+    let file = match manifest.own_turbines.get(model) {
+        Some(text) => turbine_file::parse(&format!("{model} of run {}", manifest.run), text)?,
+        None => library::load(model)?,
+    };
+    Ok(file.definition)
 }
 
 /// The run in the folder `path`.
