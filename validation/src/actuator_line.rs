@@ -4,6 +4,7 @@ use crate::Row;
 use farm::assemble::Model;
 use farm::case::{TurbulenceModel, Wind};
 use farm::self_check::{Tunnel, self_check};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Accepted distance of power and thrust from blade-element momentum (–).
@@ -75,7 +76,8 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
         veer: 0.0,
         event: None,
     };
-    let check = self_check(&model, &wind, &tunnel, None, &mut |_| ())
+    let mut whole = |_| ControlFlow::Continue(());
+    let check = self_check(&model, &wind, &tunnel, None, &mut whole)
         .expect("a rotor in a steady wind stays finite");
     let row = |what: &str, measured: f64, expected: f64| Row {
         what: format!(

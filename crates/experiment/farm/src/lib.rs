@@ -13,3 +13,6 @@ pub mod wind;
 pub use air::Air;
 pub use farm::{Farm, Machine, Recorder};
 pub use plan::{Plan, plan};
+
+/// Is told the share (–) of something long that is done; a break ends it.
+pub type Progress<'a> = &'a mut dyn FnMut(f64) -> std::ops::ControlFlow<()>;

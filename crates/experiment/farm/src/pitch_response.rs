@@ -7,7 +7,7 @@ use crate::case::{Case, Control, Decoupling, Helix, Meandering, PhaseEstimator, 
 use crate::farm::Recorder;
 use crate::plan::Plan;
 use crate::self_check::Tunnel;
-use crate::{Farm, Machine};
+use crate::{Farm, Machine, Progress};
 use basis::mbc::to_fixed_frame;
 use basis::{Commands, Measurements, Vector3};
 use control::excitation_rate;
@@ -18,7 +18,6 @@ use flow::FlowError;
 use flow::inflow::{MeanProfile, PrescribedWind};
 use flow::lattice;
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use thiserror::Error;
 use turbine::Turbine;
@@ -32,9 +31,6 @@ const PERIODS: [f64; 2] = [2.0, 2.0];
 const COUNTED: f64 = 2.0;
 /// Amplitude of the helices that tell how pitch acts on the loads (rad): a degree.
 pub const PROBE: f64 = std::f64::consts::PI / 180.0;
-
-/// Is told the share (–) of a probe that is done; a break ends the probe.
-pub type Progress<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
 /// Why no calibration could be made.
 #[derive(Debug, Error)]

@@ -139,6 +139,20 @@ pub enum PlanError {
         /// Longest step (s).
         longest: f64,
     },
+    /// A plane across the wake where no air is.
+    #[error(
+        "the crosswind plane {distance} diameters behind the first turbine lies at x = {x:.0} m, the domain ends at {low:.0} and {high:.0} m; raise flow.downstream_diameters or take it away"
+    )]
+    CrosswindOutside {
+        /// Distance (diameters of the first turbine).
+        distance: f64,
+        /// Its place (m).
+        x: f64,
+        /// Ends of the domain (m).
+        low: f64,
+        /// As above.
+        high: f64,
+    },
     /// A turbine without its model.
     #[error("turbine {name} asks for the model `{model}`, which was not loaded")]
     UnknownModel {
@@ -147,6 +161,20 @@ pub enum PlanError {
         /// Model.
         model: String,
     },
+}
+
+impl PlanError {
+    /// The key that decides, from the top of the case file; a name where several tables stand under one heading.
+    pub fn key(&self) -> Vec<&str> {
+        match self {
+            Self::OutsideDomain { name, .. } => vec!["turbine", name, "position_diameters"],
+            Self::Overlap { second, .. } => vec!["turbine", second, "position_diameters"],
+            Self::TooCoarse { .. } => vec!["flow", "cells_per_diameter"],
+            Self::TipOutruns { .. } | Self::TooFast { .. } => vec!["flow", "step"],
+            Self::CrosswindOutside { .. } => vec!["output", "crosswind_diameters"],
+            Self::UnknownModel { name, .. } => vec!["turbine", name, "model"],
+        }
+    }
 }
 
 /// Sizes domain and step for `case`; `footprints` holds one entry per model that the case names.
@@ -203,7 +231,20 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
     };
     let plan = plan_without_step(step(case, &machines, spacing)?);
     check_extent(&machines, &plan)?;
+    check_planes(&case.output.crosswind_diameters, &plan)?;
     Ok(plan)
+}
+
+fn check_planes(distances: &[f64], plan: &Plan) -> Result<(), PlanError> {
+    let low = plan.origin.x;
+    let high = low + plan.n_cells[0] as f64 * plan.spacing;
+    for &distance in distances {
+        let x = plan.positions[0].x + distance * plan.diameter;
+        if !(low..=high).contains(&x) {
+            return Err(PlanError::CrosswindOutside { distance, x, low, high });
+        }
+    }
+    Ok(())
 }
 
 /// Steps nearest to `duration` (s), at least one.

@@ -1,5 +1,6 @@
 //! Before a study: does each rotor, alone in a steady wind on this grid, give what blade-element momentum says?
 
+use crate::Progress;
 use crate::assemble::{Model, SMEARING_CELLS};
 use crate::case::Wind;
 use basis::{Commands, PerBlade, Vector3};
@@ -132,7 +133,7 @@ pub fn self_check(
     wind: &Wind,
     tunnel: &Tunnel,
     threads: Option<usize>,
-    progress: &mut dyn FnMut(f64),
+    progress: Progress,
 ) -> Result<SelfCheck, SelfCheckError> {
     let definition = &model.definition;
     let diameter = definition.rotor_diameter();
@@ -177,7 +178,9 @@ pub fn self_check(
             power += read.aerodynamic_torque * read.rotor_speed / n_averaging as f64;
             thrust += read.thrust / n_averaging as f64;
         }
-        progress((step + 1) as f64 / n_steps as f64);
+        if progress((step + 1) as f64 / n_steps as f64).is_break() {
+            return Err(SelfCheckError::BrokenOff);
+        }
     }
     let wall_time = started.elapsed().as_secs_f64();
 
@@ -224,6 +227,9 @@ fn expectation(
 /// Why a self-check could not be made.
 #[derive(Debug, Error)]
 pub enum SelfCheckError {
+    /// Whoever was told its progress broke it off.
+    #[error("the self-check was broken off")]
+    BrokenOff,
     /// The air cannot be set up.
     #[error("the air of the self-check cannot be set up")]
     Settings(#[from] lattice::SettingsError),

@@ -217,6 +217,26 @@ pub(crate) fn sync_folder(path: &Path) {
     }
 }
 
+/// Takes from `folder` what processes that were killed were [writing](AtomicFile) there.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn remove_leftovers(folder: &Path) -> Result<(), FileError> {
+    let failed = |source| FileError::system("tidy", "the folder", folder, source);
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        // As `beside` names them: hidden, with the process' number before the ending.
+        let process = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
+        let process = process.and_then(|name| name.rsplit_once('.')).map(|(_, number)| number);
+        let is_number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+        if process.is_some_and(|number| !number.is_empty() && is_number(number)) {
+            fs::remove_file(&path).map_err(failed)?;
+        }
+    }
+    Ok(())
+}
+
 /// Name beside `path`, hidden, of this process alone.
 fn beside(path: &Path) -> PathBuf {
     let mut name = OsString::from(".");
@@ -253,6 +273,21 @@ mod tests {
         drop(file);
         assert_eq!(fs::read(&path).unwrap(), b"good");
         assert_eq!(names(folder.path()), ["checkpoint"]);
+    }
+
+    #[test]
+    fn what_a_killed_process_left_goes_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let kept = ["checkpoint", "series.csv.part", ".hidden", ".notes.part", ".a.b1.part"];
+        for name in kept.iter().chain(&[".checkpoint.4711.part", ".mean-hub-height.nc.9.part"]) {
+            fs::write(folder.path().join(name), b"x").unwrap();
+        }
+        remove_leftovers(folder.path()).unwrap();
+        let mut left = names(folder.path());
+        left.sort();
+        let mut kept: Vec<OsString> = kept.iter().map(OsString::from).collect();
+        kept.sort();
+        assert_eq!(left, kept);
     }
 
     #[test]

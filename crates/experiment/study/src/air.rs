@@ -19,6 +19,8 @@ const MARGIN: f64 = 0.1;
 const POINTS_ACROSS: f64 = 24.0;
 /// Time between planes of made turbulence (s).
 const PLANE_INTERVAL: f64 = 0.1;
+/// Most memory that making turbulence may take (bytes): a run stays below 200 MB however long it is.
+const MEMORY_LIMIT: u64 = 128 << 20;
 /// Places upstream and downstream of the outermost towers at which turbines may ask for the wind (m).
 const REACH: f64 = 50.0;
 
@@ -35,15 +37,15 @@ pub(crate) fn begin(setup: &Setup) -> Result<Air, StudyError> {
             return Ok(Air::Lattice(Box::new(lattice)));
         }
         Solver::Uniform => PrescribedWind::everywhere(setup.inflow.clone()),
-        Solver::Turbulence if case.wind.turbulence_intensity == 0.0 => {
-            PrescribedWind::everywhere(setup.inflow.clone())
-        }
-        Solver::Turbulence => {
-            let (turbulence, lowest) = made(setup)?;
-            let planes = BoxPlanes::new(Arc::new(turbulence), &setup.profile(), lowest)?
-                .veering(case.wind.veer, plan.hub_height);
-            prescribed(setup, Box::new(planes))?
-        }
+        Solver::Turbulence => match made_grid(setup) {
+            None => PrescribedWind::everywhere(setup.inflow.clone()),
+            Some(grid) => {
+                let turbulence = Arc::new(made(setup, &grid)?);
+                let planes = BoxPlanes::new(turbulence, &setup.profile(), grid.lowest)?
+                    .veering(case.wind.veer, plan.hub_height);
+                prescribed(setup, Box::new(planes))?
+            }
+        },
         Solver::Planes => {
             let name = case.wind.planes.as_deref().unwrap_or_default();
             let planes = formats::turbulence_box::open(&setup.folder().join(name))?;
@@ -53,10 +55,25 @@ pub(crate) fn begin(setup: &Setup) -> Result<Air, StudyError> {
     Ok(Air::Prescribed(Box::new(wind)))
 }
 
-/// Turbulence around all rotors for the whole run, and the height of its lowest row (m).
-fn made(setup: &Setup) -> Result<(TurbulenceBox, f64), StudyError> {
-    let (case, plan) = (&setup.case, &setup.plan);
-    let wind = &case.wind;
+/// Grid of the turbulence that is made around all rotors.
+pub(crate) struct MadeGrid {
+    n_points: [usize; 3],
+    /// Distance of neighbouring points (m).
+    spacing: [f64; 3],
+    /// Height of the lowest row (m).
+    lowest: f64,
+    /// Most memory that making it takes (bytes).
+    pub(crate) memory: u64,
+    /// Time after which the same wind comes again (s), where that is before the run's end.
+    pub(crate) repeats_after: Option<f64>,
+}
+
+/// The grid of the turbulence that `setup` makes for prescribed wind; none where it makes none.
+pub(crate) fn made_grid(setup: &Setup) -> Option<MadeGrid> {
+    let (case, wind) = (&setup.case, &setup.case.wind);
+    if case.flow.solver != Solver::Turbulence || wind.turbulence_intensity == 0.0 {
+        return None;
+    }
     let [low, high] = around_rotors(setup);
     let diameter = setup.models.iter().map(|m| m.definition.rotor_diameter()).fold(0.0, f64::max);
     let across = diameter / POINTS_ACROSS;
@@ -66,51 +83,77 @@ fn made(setup: &Setup) -> Result<(TurbulenceBox, f64), StudyError> {
     let height = high.z + MARGIN * diameter - lowest;
     let points = |length: f64| (length / across).ceil() as usize + 1;
     let along = wind.speed * PLANE_INTERVAL;
+    let [n_y, n_z] = [points(2.0 * half_width), points(height)];
     let length = (high.x - low.x) + 2.0 * REACH;
     // Whole records only: 2, 3 and 5 are the only factors, which transforms like best.
-    let n_planes = smooth((case.time.duration / PLANE_INTERVAL + length / along).ceil() as usize);
-    let n_points = [n_planes, points(2.0 * half_width), points(height)];
-    let spacing = [along, across, across];
+    let whole = smooth((case.time.duration / PLANE_INTERVAL + length / along).ceil() as usize);
+    let (along, whole, n_across) = match wind.turbulence_model {
+        TurbulenceModel::Kaimal => (along, whole, [n_y, n_z]),
+        TurbulenceModel::Mann => {
+            // Cells of one shape along and across, and twice the width, whose periodic image would be felt otherwise.
+            let stride = (across / along).floor().max(1.0) as usize;
+            let n_across = [smooth(2 * n_y), smooth(2 * n_z)];
+            (along * stride as f64, smooth(whole.div_ceil(stride)), n_across)
+        }
+    };
+    let memory = |n_planes: usize| {
+        let n_points = [n_planes, n_across[0], n_across[1]];
+        match wind.turbulence_model {
+            TurbulenceModel::Kaimal => kaimal::peak_memory(n_points),
+            TurbulenceModel::Mann => mann::peak_memory(n_points),
+        }
+    };
+    let mut n_planes = whole;
+    while memory(n_planes) > MEMORY_LIMIT {
+        let fewer = smooth(n_planes * 4 / 5);
+        if fewer >= n_planes {
+            break;
+        }
+        n_planes = fewer;
+    }
+    Some(MadeGrid {
+        n_points: [n_planes, n_across[0], n_across[1]],
+        spacing: [along, across, across],
+        lowest,
+        memory: memory(n_planes),
+        repeats_after: (n_planes < whole).then(|| n_planes as f64 * along / wind.speed),
+    })
+}
+
+/// The turbulence on `grid`.
+fn made(setup: &Setup, grid: &MadeGrid) -> Result<TurbulenceBox, StudyError> {
+    let (case, wind) = (&setup.case, &setup.case.wind);
+    let MadeGrid { n_points, spacing, lowest, .. } = *grid;
     let standard_deviation = wind.turbulence_intensity * wind.speed;
-    let threads = case.flow.threads;
-    let turbulence = match wind.turbulence_model {
+    let (seed, threads) = (wind.seed, case.flow.threads);
+    Ok(match wind.turbulence_model {
         TurbulenceModel::Kaimal => kaimal::generate(
             &kaimal::Settings {
                 n_points,
                 spacing,
                 hub_speed: wind.speed,
-                hub_height: plan.hub_height,
+                hub_height: setup.plan.hub_height,
                 lowest_height: lowest,
                 standard_deviation,
                 scaling: Scaling::None,
-                seed: wind.seed,
+                seed,
                 threads,
             },
             |_| (),
         )?,
-        TurbulenceModel::Mann => {
-            // Cells of one shape along and across, and twice the width, whose periodic image would be felt otherwise.
-            let stride = (across / along).floor().max(1.0) as usize;
-            let n_points = [
-                smooth(n_planes.div_ceil(stride)),
-                smooth(2 * n_points[1]),
-                smooth(2 * n_points[2]),
-            ];
-            mann::generate(
-                &mann::Settings {
-                    n_points,
-                    spacing: [along * stride as f64, across, across],
-                    length_scale: wind.length_scale,
-                    anisotropy: wind.anisotropy,
-                    standard_deviation,
-                    seed: wind.seed,
-                    threads,
-                },
-                |_| (),
-            )?
-        }
-    };
-    Ok((turbulence, lowest))
+        TurbulenceModel::Mann => mann::generate(
+            &mann::Settings {
+                n_points,
+                spacing,
+                length_scale: wind.length_scale,
+                anisotropy: wind.anisotropy,
+                standard_deviation,
+                seed,
+                threads,
+            },
+            |_| (),
+        )?,
+    })
 }
 
 /// The wind of `planes`, checked to cover all rotors for the whole run.

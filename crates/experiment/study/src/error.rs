@@ -25,6 +25,7 @@ pub enum StudyError {
     Case(#[from] CaseError),
     /// A turbine cannot be used.
     #[error(transparent)]
+    #[diagnostic(transparent)]
     Turbine(#[from] TurbineFileError),
     /// A file cannot be read or written.
     #[error(transparent)]
@@ -42,6 +43,16 @@ pub enum StudyError {
     /// The turbines cannot be put together.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
+    /// A turbine's controller cannot be made.
+    #[error("run {run}: {turbine} cannot be controlled so")]
+    Control {
+        /// Run.
+        run: String,
+        /// Turbine.
+        turbine: String,
+        /// Why.
+        source: AssemblyError,
+    },
     /// A phase estimator cannot be calibrated.
     #[error(transparent)]
     Calibration(#[from] CalibrationError),
@@ -90,7 +101,9 @@ pub enum StudyError {
     },
     /// Results of another case or of other turbines are to be resumed.
     #[error("run {run} in {} was made with another version of the case or of a turbine", directory.display())]
-    #[diagnostic(help("use --overwrite to make it again, or another folder with -o"))]
+    #[diagnostic(help(
+        "repeat the --set of the first call, use --overwrite to make it again (with the runs that compare with it), or another folder with -o"
+    ))]
     OtherCase {
         /// Run.
         run: String,
@@ -121,13 +134,26 @@ pub enum StudyError {
     /// No run holds the true wind at a turbine's place.
     #[error("no run in {} holds the true wind at the place of {turbine}", directory.display())]
     #[diagnostic(help(
-        "run the case with `output.lines_at = [\"{turbine}\"]` and a run in which {turbine} is absent, or name one with --truth"
+        "run the case with `output.lines_at = [\"{turbine}\"]` and a run in which {turbine} is absent and all upstream of it do as in this run, or name one with --truth"
     ))]
     NoTruth {
         /// Turbine.
         turbine: String,
         /// Folder of the study.
         directory: PathBuf,
+    },
+    /// A rotor of one or two blades shall pitch them cyclically.
+    #[error("run {run}: {turbine} has {n_blades} blades; tilt and yaw take three or more")]
+    #[diagnostic(help(
+        "let it pitch collectively, control.{turbine} = {{ kind = \"pulse\", ... }}, or give it another model"
+    ))]
+    TooFewBlades {
+        /// Run.
+        run: String,
+        /// Turbine.
+        turbine: String,
+        /// Blades of its rotor (–).
+        n_blades: usize,
     },
     /// The machine has too little memory.
     #[error("the study needs {needed:.1} GiB of memory, {available:.1} GiB are free")]

@@ -29,6 +29,7 @@ use farm::case::Run;
 use formats::case;
 use formats::records::{self, Manifest, RunFolder};
 use simulate::{Ending, simulate};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -101,6 +102,15 @@ pub fn run(
             check_same(&setup, &setup.case.runs[index], &folders[index])?;
         }
     }
+    for &index in &open {
+        // Gains are over a run of the same wind, or over none.
+        if let Some(other) = compared_index(&setup, index)
+            && !open.contains(&other)
+            && folders[other].is_complete()
+        {
+            check_same(&setup, &setup.case.runs[other], &folders[other])?;
+        }
+    }
     let probes = setup.probes(&open, &directory, options.resume)?;
     let mut estimate = setup.estimate(open.len(), &probes);
     watcher.estimated(&estimate);
@@ -109,7 +119,10 @@ pub fn run(
         watcher.warned(warning);
     }
     if !open.is_empty() {
-        estimate.updates_per_second = setup.self_check(watcher)?;
+        match setup.self_check(stop, watcher)? {
+            ControlFlow::Break(()) => return Ok(Outcome::Interrupted { directory }),
+            ControlFlow::Continue(speed) => estimate.updates_per_second = speed,
+        }
         watcher.estimated(&estimate);
     }
     if options.dry_run {
@@ -130,10 +143,12 @@ pub fn run(
             Ending::Interrupted => return Ok(Outcome::Interrupted { directory }),
             Ending::Complete { cost, clipped_shares } => {
                 let series = records::read_series(&folder.series_path())?;
-                let compared = compared_run(&setup, index, &folders)?;
-                let compared = compared.as_ref().map(|(run, series)| (*run, series));
-                let summary =
-                    summarise::summarise(&setup, run, &series, compared, &clipped_shares, cost)?;
+                let mut summary =
+                    summarise::summarise(&setup, run, &series, &clipped_shares, cost)?;
+                if let Some((other, other_series)) = compared_run(&setup, index, &folders)? {
+                    let other = (other, &other_series);
+                    summarise::add_gains(&setup, &mut summary, (run, &series), other)?;
+                }
                 for warning in &summary.warnings[setup.warnings.len()..] {
                     watcher.warned(warning);
                 }
@@ -144,6 +159,9 @@ pub fn run(
                 watcher.finished(&summary);
             }
         }
+    }
+    for &index in &wanted {
+        catch_up(&setup, index, &folders, watcher)?;
     }
     let (summaries, report) = self::report(&directory)?;
     Ok(Outcome::Done { summaries, report })
@@ -188,6 +206,7 @@ fn begin_run(
     folder: &RunFolder,
     resume: bool,
 ) -> Result<Manifest, StudyError> {
+    folder.remove_leftovers()?;
     if resume && folder.checkpoint_path().exists() && folder.manifest_path().exists() {
         return Ok(records::read_manifest(folder)?);
     }
@@ -234,21 +253,59 @@ fn wanted_runs(setup: &Setup, names: &[String]) -> Result<Vec<usize>, StudyError
         .collect()
 }
 
+/// On return the summary of run number `index` holds its gains where the run that it compares with was made after it.
+fn catch_up(
+    setup: &Setup,
+    index: usize,
+    folders: &[RunFolder],
+    watcher: &mut dyn Watcher,
+) -> Result<(), StudyError> {
+    let (run, folder) = (&setup.case.runs[index], &folders[index]);
+    let mut summary = records::read_summary(folder)?;
+    if summary.compare_with.is_some() {
+        return Ok(());
+    }
+    let Some(other) = compared_index(setup, index) else { return Ok(()) };
+    let name = &setup.case.runs[other].name;
+    if !folders[other].is_complete() {
+        watcher.warned(&format!(
+            "{} has no gains: the run {name} that it compares with is not made yet; make it with --run {name} --resume",
+            run.name
+        ));
+    } else if check_same(setup, &setup.case.runs[other], &folders[other]).is_err() {
+        watcher.warned(&format!(
+            "{} has no gains: the run {name} was made with another version of the case or of a turbine",
+            run.name
+        ));
+    } else if let Some((other, other_series)) = compared_run(setup, index, folders)? {
+        let series = records::read_series(&folder.series_path())?;
+        let other = (other, &other_series);
+        summarise::add_gains(setup, &mut summary, (run, &series), other)?;
+        records::write_summary(folder, &summary)?;
+    }
+    Ok(())
+}
+
+/// Number of the run that run number `index` compares with.
+fn compared_index(setup: &Setup, index: usize) -> Option<usize> {
+    let runs = &setup.case.runs;
+    let other = match &runs[index].compare_with {
+        Some(name) => runs.iter().position(|run| run.name == *name),
+        None => (index > 0).then_some(0),
+    };
+    other.filter(|&other| other != index)
+}
+
 /// The run that `index` compares with, when its series is there.
 fn compared_run<'a>(
     setup: &'a Setup,
     index: usize,
     folders: &[RunFolder],
 ) -> Result<Option<(&'a Run, Series)>, StudyError> {
-    let runs = &setup.case.runs;
-    let other = match &runs[index].compare_with {
-        Some(name) => runs.iter().position(|run| run.name == *name),
-        None => (index > 0).then_some(0),
-    };
-    match other {
-        Some(other) if other != index && folders[other].is_complete() => {
+    match compared_index(setup, index) {
+        Some(other) if folders[other].is_complete() => {
             let series = records::read_series(&folders[other].series_path())?;
-            Ok(Some((&runs[other], series)))
+            Ok(Some((&setup.case.runs[other], series)))
         }
         _ => Ok(None),
     }

@@ -1,6 +1,6 @@
 //! How well the phase of a helix is estimated on the turbine that it meets: records in, agreement with the true wind out.
 
-mod asked;
+pub(crate) mod asked;
 
 use crate::StudyError;
 use analysis::phase::{
@@ -11,8 +11,8 @@ use asked::Asked;
 use basis::records::Series;
 use basis::{FixedFrame, Measurements, PerBlade};
 use estimation::HelixEstimator;
-use estimation::helix::Setting;
 use estimation::helix::tuning::{self, Tuned};
+use estimation::helix::{Options, Setting};
 use farm::assemble::{AssemblyError, estimator_options};
 use farm::case::PhaseEstimator;
 use std::f64::consts::TAU;
@@ -256,9 +256,7 @@ pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, StudyEr
 fn replay(asked: &Asked, estimator: PhaseEstimator) -> Result<Estimates, StudyError> {
     let interval = uniform_interval(column(&asked.series, "time_s")?)?;
     let setting = setting(asked, interval);
-    let options = estimator_options(estimator, asked.case.flow.solver);
-    let calibration = asked.calibration.filter(|_| estimator == PhaseEstimator::Robust);
-    let options = calibration.map_or(options, |found| found.apply(options));
+    let options = options(asked, estimator);
     let mut estimator =
         HelixEstimator::new(&asked.definition, &setting, options).map_err(AssemblyError::from)?;
     let record = record(asked, interval)?;
@@ -305,10 +303,17 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, StudyError> {
         }
     }
     let estimator = question.estimator.unwrap_or(PhaseEstimator::Robust);
-    let options = estimator_options(estimator, asked.case.flow.solver);
+    let options = options(&asked, estimator);
     let setting = setting(&asked, interval);
     let tuned = tuning::tune(&asked.definition, &setting, options, &measured, [&tilt, &yaw]);
     Ok(tuned.map_err(AssemblyError::from)?)
+}
+
+/// Choices of `estimator`, calibrated as in the run.
+fn options(asked: &Asked, estimator: PhaseEstimator) -> Options {
+    let options = estimator_options(estimator, asked.case.flow.solver);
+    let calibration = asked.calibration.filter(|_| estimator == PhaseEstimator::Robust);
+    calibration.map_or(options, |found| found.apply(options))
 }
 
 /// What the estimator of the turbine is told.

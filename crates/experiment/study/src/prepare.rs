@@ -1,25 +1,31 @@
 //! What all runs of a case share: turbines, domain, wind.
 
 use crate::StudyError;
+use crate::air;
 use crate::probes::Probes;
+use crate::simulate::VOLUME_STRIDE;
 use crate::watcher::{Estimate, Watcher};
 use basis::angle::wrap_to_turn;
-use farm::assemble::Model;
-use farm::case::{Case, Control, Solver};
+use farm::assemble::{Model, controller};
+use farm::case::{Case, Control, Decoupling, Solver};
 use farm::pitch_response::ProbeCost;
-use farm::self_check::{Tunnel, self_check};
+use farm::self_check::{SelfCheckError, Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
 use flow::inflow::deterministic::Event;
 use flow::inflow::sizing::Need;
 use flow::inflow::turbulent::BLOCKING_HEIGHT;
 use flow::inflow::{MeanProfile, TurbulentInflow, mann, size_box};
+use formats::case::objection;
 use formats::turbine_file::TurbineFile;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use turbine::blockage::equivalent_speed_ratio;
 
 /// Rise of a rotor's power by the walls of the domain beyond which a reader must know (–).
@@ -81,7 +87,24 @@ impl Setup {
         }
         let case_text = formats::case::write(&file.case);
         let folder = file.folder().to_owned();
-        let mut setup = Self::new(file.case, case_text, &loaded)?;
+        let setup = Self::new(file.case.clone(), case_text, &loaded);
+        let mut setup = setup.map_err(|error| match error {
+            // What only the turbines tell is pointed at in the file, too.
+            StudyError::Plan(error) => {
+                StudyError::Case(objection(&file, &error.key(), error.to_string()))
+            }
+            StudyError::Control { run, turbine, source } => {
+                let mut message = format!("{turbine} cannot be controlled so: {source}");
+                let mut cause = source.source();
+                while let Some(deeper) = cause {
+                    message += &format!(": {deeper}");
+                    cause = deeper.source();
+                }
+                let path = ["run", run.as_str(), "control", turbine.as_str()];
+                StudyError::Case(objection(&file, &path, message))
+            }
+            error => error,
+        })?;
         setup.turbine_texts = texts;
         setup.folder = folder;
         Ok(setup)
@@ -102,8 +125,9 @@ impl Setup {
             |model: &Model| model.equipped(case.flow.solver, case.wind.air_density).into_owned();
         let equipped: BTreeMap<&String, Model> =
             loaded.iter().map(|(name, model)| (name, equip(model))).collect();
-        let models =
+        let models: Vec<Model> =
             case.turbines.iter().map(|placement| equipped[&placement.model].clone()).collect();
+        check_control(&case, &plan, &models)?;
         let warnings = warnings(&case, &plan);
         let inflow = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
         let turbine_texts = BTreeMap::new();
@@ -116,6 +140,12 @@ impl Setup {
             setup.warnings.push(format!(
                 "the turbulence returns after {:.0} s: more would not fit in memory",
                 size.repeats_after
+            ));
+        }
+        if let Some(time) = air::made_grid(&setup).and_then(|grid| grid.repeats_after) {
+            setup.warnings.push(format!(
+                "the turbulence returns after {time:.0} s: more would not fit in the memory that one turbine may take; for a longer one \
+                 write a file with `wakemix inflow generate` and read it with flow.solver = \"planes\""
             ));
         }
         Ok(setup)
@@ -160,12 +190,26 @@ impl Setup {
             n_steps: plan.n_steps,
             memory: field + self.turbulence_memory(),
             // A new checkpoint stands beside the old one until it is complete.
-            disk: 2 * field + channels * n_rows * SERIES_VALUE_BYTES,
+            disk: 2 * field + channels * n_rows * SERIES_VALUE_BYTES + self.pictures(),
             updates_per_second: None,
             blockage: plan.blockage,
             wall_gain: wall_gain(plan.blockage),
             lattice_speed: plan.lattice_speed,
         }
+    }
+
+    /// Planes and volumes of one run (bytes).
+    fn pictures(&self) -> u64 {
+        const POINT_BYTES: u64 = 3 * size_of::<f32>() as u64;
+        let (plan, output) = (&self.plan, &self.case.output);
+        let [n_x, n_y, n_z] = plan.n_cells.map(|n| n as u64);
+        let n_across = output.crosswind_diameters.len() as u64;
+        let planes = (n_x * n_y + n_x * n_z + n_across * n_y * n_z) * POINT_BYTES;
+        let volume = plan.cells() as u64 * POINT_BYTES / VOLUME_STRIDE.pow(3) as u64;
+        let analysed = self.case.time.duration - self.case.time.spin_up;
+        let times = |every: Option<f64>| every.map_or(0, |every| (analysed / every) as u64 + 1);
+        // The averages, then those of single instants.
+        planes * (1 + times(output.plane_interval)) + volume * times(output.volume_interval)
     }
 
     /// Whether this machine's free memory carries `estimate`; passes where the system does not tell.
@@ -183,13 +227,18 @@ impl Setup {
         }
     }
 
-    /// Checks each turbine model against blade-element momentum; gives the slowest update rate met (1/s).
+    /// Checks each turbine model against blade-element momentum; gives the slowest update rate met (1/s), or a break when
+    /// `stop` asked for an end.
     ///
     /// # Errors
     /// [`StudyError::SelfCheck`] when a check cannot be made; a model that falls short is a warning.
-    pub fn self_check(&mut self, watcher: &mut dyn Watcher) -> Result<Option<f64>, StudyError> {
+    pub fn self_check(
+        &mut self,
+        stop: &AtomicBool,
+        watcher: &mut dyn Watcher,
+    ) -> Result<ControlFlow<(), Option<f64>>, StudyError> {
         if self.case.flow.solver.is_prescribed() {
-            return Ok(None);
+            return Ok(ControlFlow::Continue(None));
         }
         let mut checked: Vec<String> = Vec::new();
         let mut slowest: Option<f64> = None;
@@ -205,8 +254,19 @@ impl Setup {
                 &self.case.wind,
                 &Tunnel::of_study(self.plan.spacing, self.plan.interval),
                 self.case.flow.threads,
-                &mut |share| watcher.preparing(&what, share),
-            )?;
+                &mut |share| {
+                    watcher.preparing(&what, share);
+                    if stop.load(Ordering::Relaxed) {
+                        ControlFlow::Break(())
+                    } else {
+                        ControlFlow::Continue(())
+                    }
+                },
+            );
+            let check = match check {
+                Err(SelfCheckError::BrokenOff) => return Ok(ControlFlow::Break(())),
+                check => check?,
+            };
             watcher.checked(&check);
             if !check.passes() {
                 let warning = format!(
@@ -221,7 +281,7 @@ impl Setup {
             let speed = check.updates_per_second;
             slowest = Some(slowest.map_or(speed, |slowest| slowest.min(speed)));
         }
-        Ok(slowest)
+        Ok(ControlFlow::Continue(slowest))
     }
 
     /// What the inlet needs of the turbulence: the box of air at the start, then a plane for every later step.
@@ -241,7 +301,11 @@ impl Setup {
     }
 
     fn turbulence_memory(&self) -> u64 {
-        if self.needs_box() { size_box(&self.turbulence_need()).peak_memory } else { 0 }
+        if self.needs_box() {
+            size_box(&self.turbulence_need()).peak_memory
+        } else {
+            air::made_grid(self).map_or(0, |grid| grid.memory)
+        }
     }
 
     /// Whether the inlet of a lattice is fed from a box of turbulence.
@@ -293,6 +357,33 @@ pub(crate) fn turbine(model: &str, folder: &Path) -> Result<(String, TurbineFile
     Ok((String::new(), formats::library::load(model)?))
 }
 
+/// Whether every rotor that shall pitch by tilt and yaw has the blades for it, and every controller can be made: known now,
+/// not when its run begins after hours of others.
+fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), StudyError> {
+    for run in &case.runs {
+        for ((control, placement), model) in run.control.iter().zip(&case.turbines).zip(models) {
+            let n_blades = model.definition.n_blades;
+            let cyclic =
+                !matches!(control, Control::Absent | Control::Baseline | Control::Pulse(_));
+            if cyclic && n_blades < 3 {
+                let (run, turbine) = (run.name.clone(), placement.name.clone());
+                return Err(StudyError::TooFewBlades { run, turbine, n_blades });
+            }
+            let mut control = *control;
+            if let Control::Meandering(asked) = &mut control {
+                // What a probe will find, if there is to be one, decides nothing here.
+                let any = Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: 1.0 };
+                asked.decoupling = asked.decoupling.or(Some(any));
+            }
+            if let Err(source) = controller(&control, model, case, plan) {
+                let (run, turbine) = (run.name.clone(), placement.name.clone());
+                return Err(StudyError::Control { run, turbine, source });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Rise of a rotor's power (–) in a domain of which it takes `blockage` (–), over that in unbounded air.
 fn wall_gain(blockage: f64) -> f64 {
     equivalent_speed_ratio(USUAL_THRUST, blockage).powi(3) - 1.0
@@ -321,6 +412,12 @@ fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
     for &index in case.output.inflow_at.iter().filter(|&&index| !is_absent(index)) {
         let name = &case.turbines[index].name;
         warnings.push(format!("no wind is recorded at {name}: it stands there in every run"));
+    }
+    for &index in case.output.lines_at.iter().filter(|&&index| !is_absent(index)) {
+        let name = &case.turbines[index].name;
+        warnings.push(format!(
+            "no run tells the true wind at {name}, as it stands there in every run: add one with control.{name} = {{ kind = \"absent\" }}"
+        ));
     }
     let blocks = (case.time.duration - case.time.spin_up) / analysis::statistics::BLOCK_LENGTH;
     if blocks < BLOCKS_TO_WARN {

@@ -28,7 +28,7 @@ const PROBE_DISTANCE: f64 = 2.0;
 /// Planes are averaged from instants about this far apart (s).
 const AVERAGING_INTERVAL: f64 = 2.0;
 /// Every so many cells along each axis are kept in a volume.
-const VOLUME_STRIDE: usize = 2;
+pub(crate) const VOLUME_STRIDE: usize = 2;
 /// Wall time between two reports of progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 
@@ -290,7 +290,15 @@ impl<'a> Simulation<'a> {
     }
 
     /// On return the checkpoint on disk holds this very instant.
+    ///
+    /// # Errors
+    /// [`StudyError::Diverged`] for air that no longer is worth keeping, [`StudyError::File`].
     fn checkpoint(&mut self, run: &Run) -> Result<(), StudyError> {
+        if let Air::Lattice(lattice) = self.farm.flow_mut()
+            && let Err(error) = lattice.check()
+        {
+            return Err(self.diverged(run, error));
+        }
         let series_bytes = self.series.flush()?;
         let inflow_bytes =
             self.inflows.iter_mut().map(WindRecord::flush).collect::<Result<_, StudyError>>()?;

@@ -69,7 +69,7 @@ impl<'a> Analysed<'a> {
     }
 }
 
-/// The run `run` in numbers; `compared` is the series of the run that its gains compare with.
+/// The run `run` in numbers, its gains left out.
 ///
 /// `clipped_shares` (–) holds, for each turbine that is there, the share of control instants at which a pitch limit
 /// held a command back.
@@ -77,7 +77,6 @@ pub(crate) fn summarise(
     setup: &Setup,
     run: &Run,
     series: &Series,
-    compared: Option<(&Run, &Series)>,
     clipped_shares: &[f64],
     cost: Cost,
 ) -> Result<Summary, StudyError> {
@@ -89,23 +88,15 @@ pub(crate) fn summarise(
         let name = &placement.name;
         let control = &run.control[index];
         let runs = controller(control, &setup.models[index], &setup.case, &setup.plan)?;
+        let n_blades = setup.models[index].definition.n_blades;
         let delivered_pitch =
-            delivered_pitch(&analysed, name, control, setup, clipped_shares[machine])?;
+            delivered_pitch(&analysed, name, n_blades, control, setup, clipped_shares[machine])?;
         // A phase that follows the wind spreads the line: what is missing of it was not held back.
         let steady = !matches!(control, Control::PhaseSync(_));
         let share = clipped_shares[machine];
         warn_of_clipping(name, &run.name, delivered_pitch, share, steady, &mut warnings);
         warn_of_fading(&analysed, name, control, &run.name, &mut warnings)?;
-        let power_gain = match compared {
-            Some((other, other_series)) if other.present().any(|there| there == index) => {
-                let other = Analysed::new(other_series, setup);
-                let channel = format!("{name}.power_w");
-                let own = analysed.column(&channel)?;
-                Some(gain(own, other.column(&channel)?, analysed.interval, BLOCK_LENGTH)?)
-            }
-            _ => None,
-        };
-        let n_blades = setup.models[index].definition.n_blades;
+        warn_of_no_lock(&analysed, name, control, &run.name, &mut warnings)?;
         turbines.push(TurbineSummary {
             name: name.clone(),
             model: placement.model.clone(),
@@ -115,7 +106,7 @@ pub(crate) fn summarise(
             rotor_speed: analysed.statistic(&format!("{name}.rotor_speed_rad_s"))?,
             pitch: collective_pitch(&analysed, name, n_blades)?,
             delivered_pitch,
-            power_gain,
+            power_gain: None,
             pitch_response: response_of(control),
             load_deviations: loads::deviations(series, name, &analysed)?,
             damage_equivalent_loads: loads::damage_equivalent(series, name, &analysed)?,
@@ -124,25 +115,42 @@ pub(crate) fn summarise(
     }
     let names: Vec<&str> = turbines.iter().map(|turbine| turbine.name.as_str()).collect();
     let array = analysed.sum(&names, "power_w")?;
-    let array_power_gain = match compared {
-        Some((other, other_series)) if other.present().eq(run.present()) => {
-            let other = Analysed::new(other_series, setup).sum(&names, "power_w")?;
-            Some(gain(&array, &other, analysed.interval, BLOCK_LENGTH)?)
-        }
-        _ => None,
-    };
     Ok(Summary {
         schema_version: SCHEMA_VERSION,
         case: setup.case.name.clone(),
         run: run.name.clone(),
-        compare_with: compared.map(|(other, _)| other.name.clone()),
+        compare_with: None,
         conditions: conditions(&analysed, setup)?,
         array_power: statistic(&array, analysed.interval, BLOCK_LENGTH)?,
-        array_power_gain,
+        array_power_gain: None,
         turbines,
         cost,
         warnings,
     })
+}
+
+/// On return `summary`, which is that of `run`, holds its gains over the run `other`; each run comes with its series.
+pub(crate) fn add_gains(
+    setup: &Setup,
+    summary: &mut Summary,
+    (run, series): (&Run, &Series),
+    (other, other_series): (&Run, &Series),
+) -> Result<(), StudyError> {
+    let [own, there] = [series, other_series].map(|series| Analysed::new(series, setup));
+    for (turbine, index) in summary.turbines.iter_mut().zip(run.present()) {
+        if other.present().any(|there| there == index) {
+            let channel = format!("{}.power_w", turbine.name);
+            let [own_power, power] = [own.column(&channel)?, there.column(&channel)?];
+            turbine.power_gain = Some(gain(own_power, power, own.interval, BLOCK_LENGTH)?);
+        }
+    }
+    if other.present().eq(run.present()) {
+        let names: Vec<&str> = summary.turbines.iter().map(|t| t.name.as_str()).collect();
+        let [own_power, power] = [own.sum(&names, "power_w")?, there.sum(&names, "power_w")?];
+        summary.array_power_gain = Some(gain(&own_power, &power, own.interval, BLOCK_LENGTH)?);
+    }
+    summary.compare_with = Some(other.name.clone());
+    Ok(())
 }
 
 fn collective_pitch(
@@ -164,6 +172,7 @@ fn collective_pitch(
 fn delivered_pitch(
     analysed: &Analysed,
     name: &str,
+    n_blades: usize,
     control: &Control,
     setup: &Setup,
     clipped_share: f64,
@@ -184,7 +193,6 @@ fn delivered_pitch(
     let skip = full.saturating_sub(analysed.first);
     let cut = |column: &'_ [f64]| column.get(skip..).unwrap_or_default().to_vec();
     let azimuth = cut(analysed.column(&format!("{name}.azimuth_rad"))?);
-    let n_blades = setup.models[0].definition.n_blades;
     let mut pitch = Vec::with_capacity(n_blades);
     for blade in 1..=n_blades {
         pitch.push(cut(analysed.column(&format!("{name}.pitch_{blade}_rad"))?));
@@ -205,14 +213,19 @@ fn warn_of_clipping(
     steady: bool,
     warnings: &mut Vec<String>,
 ) {
-    let Some(pitch) = pitch else { return };
+    let held = 100.0 * clipped_share;
+    let Some(pitch) = pitch else {
+        if clipped_share > CLIPPED_SHARE {
+            warnings.push(format!("{run}: a pitch limit held {name} back {held:.0} % of the time"));
+        }
+        return;
+    };
     let asked = pitch.commanded_amplitude_deg;
     let arrived = pitch.delivered_amplitude_deg;
     let missing = steady && arrived < DELIVERED_SHARE * asked;
     if missing || clipped_share > CLIPPED_SHARE {
         warnings.push(format!(
-            "{run}: {name} was asked for {asked:.2}° and delivered {arrived:.2}°; a pitch limit held it back {:.0} % of the time",
-            100.0 * clipped_share
+            "{run}: {name} was asked for {asked:.2}° and delivered {arrived:.2}°; a pitch limit held it back {held:.0} % of the time"
         ));
     }
 }
@@ -236,6 +249,29 @@ fn warn_of_fading(
         warnings.push(format!(
             "{run}: {name} could not trust the phase that it found {:.0} % of the time, and ran baseline meanwhile",
             100.0 * faded
+        ));
+    }
+    Ok(())
+}
+
+/// Notes where a turbine that shall act on meandering found nothing to lock to.
+fn warn_of_no_lock(
+    analysed: &Analysed,
+    name: &str,
+    control: &Control,
+    run: &str,
+    warnings: &mut Vec<String>,
+) -> Result<(), StudyError> {
+    let Control::Meandering(asked) = control else { return Ok(()) };
+    if asked.amplitude == 0.0 {
+        return Ok(());
+    }
+    let lock = analysed.column(&format!("{name}.meandering_lock"))?;
+    let locked = lock.iter().sum::<f64>() / lock.len().max(1) as f64;
+    if locked < 1.0 - FADED_SHARE {
+        warnings.push(format!(
+            "{run}: {name} was locked to the wake's motion {:.0} % of the time, and pitched nothing of its own meanwhile",
+            100.0 * locked
         ));
     }
     Ok(())

@@ -8,6 +8,7 @@ mod tracks;
 mod wake;
 
 use crate::StudyError;
+use crate::phase::asked::tells_truth;
 use crate::phase::{PhaseAnswer, compare, recorded, truth};
 use analysis::AnalysisError;
 use analysis::phase::Reference;
@@ -15,7 +16,7 @@ use basis::angle::wrap_to_turn;
 use control::excitation_rate;
 use farm::case::{Case, Control, PhaseSync};
 use formats::case;
-use formats::records::StudyRecords;
+use formats::records::{RunRecords, StudyRecords};
 use report::Synchronisation;
 
 /// One run in which a turbine joins a helix, or watches for one.
@@ -73,19 +74,23 @@ pub(crate) fn synchronisation(
     let reference = Reference { rate, sense: sync.sense };
     let name = &case.turbines[turbine].name;
     // Without a true wind there is nothing to compare with; a short run says nothing of phases.
-    let mut truths = records
-        .runs
-        .iter()
-        .filter_map(|run| truth(&run.manifest.run, name, &run.series, &reference).ok().flatten());
-    let truth = truths.next();
+    let control = |run: &RunRecords| case.runs[run.manifest.run_index].control.as_slice();
+    let truth_of = |own: &RunRecords| {
+        let mut without = records
+            .runs
+            .iter()
+            .filter(|run| tells_truth(&case, control(run), control(own), turbine));
+        without
+            .find_map(|run| truth(&run.manifest.run, name, &run.series, &reference).ok().flatten())
+    };
     let from = case.time.spin_up;
     let mut runs = Vec::new();
     for (place, run, _, sync) in joined.into_iter().filter(|joined| joined.2 == turbine) {
         let (series, own) = (&run.series, &run.manifest.run);
-        let answer = match &truth {
+        let answer = match truth_of(run) {
             Some(truth) => {
                 let estimates = recorded(series, name)?;
-                match compare(own, name, series, &estimates, truth, &reference, from) {
+                match compare(own, name, series, &estimates, &truth, &reference, from) {
                     Ok(answer) => Some(answer),
                     Err(StudyError::Analysis(_)) => None,
                     Err(error) => return Err(error),

@@ -35,6 +35,7 @@ control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.
 control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 2.0, fallback = "none" }
 [[run]]
 name = "alone"
+control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
 control.T2 = { kind = "absent" }
 [output]
 interval = 0.2

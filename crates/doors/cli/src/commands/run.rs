@@ -4,13 +4,15 @@ use super::{BAD_INPUT, DIVERGED, INTERRUPTED};
 use crate::commands::table;
 use clap::Args;
 use indicatif::{HumanBytes, HumanDuration, ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use wakemix::basis::records::{PitchResponse, Summary};
-use wakemix::farm::self_check::{SelfCheck, TOLERANCE};
+use wakemix::farm::pitch_response::CalibrationError;
+use wakemix::farm::self_check::{SelfCheck, SelfCheckError, TOLERANCE};
 use wakemix::study::{self, Estimate, Options, Outcome, Probing, Progress, StudyError, Watcher};
 
 /// Longest time left that is shown (s): a year.
@@ -86,20 +88,40 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
         Ok(Outcome::Estimated) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted { directory }) => {
             eprintln!(
-                "interrupted; go on with: wakemix run {} -o {} --resume",
-                arguments.case.display(),
-                directory.display()
+                "interrupted; go on with: wakemix run {} -o {}{} --resume",
+                shell_word(&arguments.case.display().to_string()),
+                shell_word(&directory.display().to_string()),
+                repeated(arguments)
             );
             ExitCode::from(INTERRUPTED)
         }
         Err(error) => {
             let code = match &error {
-                StudyError::Diverged { .. } => DIVERGED,
+                StudyError::Diverged { .. }
+                | StudyError::SelfCheck(SelfCheckError::Flow(_))
+                | StudyError::Calibration(CalibrationError::Flow(_)) => DIVERGED,
                 _ => BAD_INPUT,
             };
             eprintln!("{:?}", miette::Report::new(error));
             ExitCode::from(code)
         }
+    }
+}
+
+/// The runs and overrides of `arguments` as they were given, for the same command once more.
+fn repeated(arguments: &RunArguments) -> String {
+    let runs = arguments.runs.iter().map(|name| format!(" --run {}", shell_word(name)));
+    let overrides = arguments.overrides.iter().map(|text| format!(" --set {}", shell_word(text)));
+    runs.chain(overrides).collect()
+}
+
+/// `text` as one word of a shell.
+fn shell_word(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+%@".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', r"'\''"))
     }
 }
 
@@ -116,10 +138,17 @@ fn probes(estimate: &Estimate) -> String {
     }
 }
 
+/// Tenths of a run at which progress is told where no bar can be drawn (–).
+const TENTHS: u64 = 10;
+
 /// Progress and remarks on stderr.
 struct Screen {
     bar: ProgressBar,
     last: Option<String>,
+    /// Whether somebody sees the bar; a file gets a line now and then instead.
+    drawn: bool,
+    /// What was told last where it is not drawn: of what, and which tenth of it.
+    told: Option<(String, u64)>,
 }
 
 impl Screen {
@@ -130,7 +159,21 @@ impl Screen {
         {
             bar.set_style(style.progress_chars("=> "));
         }
-        Self { bar, last: None }
+        Self { bar, last: None, drawn: std::io::stderr().is_terminal(), told: None }
+    }
+
+    /// Where the bar cannot be drawn, a line at every tenth of `what`, of which `done` of `all` are done.
+    fn tell(&mut self, what: &str, done: u64, all: u64, left: &str) {
+        if self.drawn || all == 0 {
+            return;
+        }
+        let tenth = TENTHS * done / all;
+        if self.told.as_ref().is_none_or(|(last, told)| last != what || *told != tenth) {
+            self.told = Some((what.to_owned(), tenth));
+            if tenth > 0 {
+                eprintln!("{what}: {} %, {left}", 100 / TENTHS * tenth);
+            }
+        }
     }
 
     fn say(&self, line: &str) {
@@ -202,6 +245,8 @@ impl Watcher for Screen {
         self.bar.set_position((1000.0 * share) as u64);
         let left = HumanDuration(Duration::from_secs_f64(time_left.clamp(0.0, LONGEST)));
         self.bar.set_message(format!("{left} left before the runs"));
+        let what = format!("probing {turbine} ({}/{n_probes})", index + 1);
+        self.tell(&what, (1000.0 * share) as u64, 1000, &format!("{left} left before the runs"));
     }
 
     fn probed(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
@@ -221,19 +266,17 @@ impl Watcher for Screen {
 
     fn advanced(&mut self, progress: &Progress) {
         self.last = None;
-        self.bar.set_prefix(format!(
-            "{} ({}/{})",
-            progress.run,
-            progress.run_index + 1,
-            progress.n_runs
-        ));
+        let what = format!("{} ({}/{})", progress.run, progress.run_index + 1, progress.n_runs);
+        self.bar.set_prefix(what.clone());
         self.bar.set_length(progress.n_steps);
         self.bar.set_position(progress.step);
         let left = HumanDuration(Duration::from_secs_f64(progress.time_left.max(0.0)));
-        self.bar.set_message(match progress.updates_per_second / 1e6 {
+        let message = match progress.updates_per_second / 1e6 {
             0.0 => format!("{left} left in all"),
             updates => format!("{updates:.0} Mups, {left} left in all"),
-        });
+        };
+        self.tell(&what, progress.step, progress.n_steps, &message);
+        self.bar.set_message(message);
     }
 
     fn finished(&mut self, summary: &Summary) {
@@ -246,5 +289,23 @@ impl Watcher for Screen {
 
     fn warned(&mut self, warning: &str) {
         self.say(&format!("warning: {warning}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shell_word;
+
+    #[test]
+    fn a_shell_reads_a_word_back() {
+        for (text, word) in [
+            ("cases/a.toml", "cases/a.toml"),
+            ("wind.speed=7", "wind.speed=7"),
+            ("my case", "'my case'"),
+            ("it's", r"'it'\''s'"),
+            ("", "''"),
+        ] {
+            assert_eq!(shell_word(text), word);
+        }
     }
 }

@@ -220,11 +220,15 @@ fn insert(
 
 /// The item at an index, or the table with such a `name`; the name wins.
 fn pick<'a>(items: &'a mut [Node], which: &str) -> Option<&'a mut Node> {
-    let named = |item: &Node| match &item.value {
+    let found = items.iter().position(|item| named(item, which));
+    items.get_mut(found.or_else(|| which.parse().ok())?)
+}
+
+/// Whether `item` is a table whose `name` is `name`.
+pub(super) fn named(item: &Node, name: &str) -> bool {
+    match &item.value {
         Value::Table(entries) => find(entries, "name")
-            .is_some_and(|entry| matches!(&entry.node.value, Value::Text(name) if name == which)),
+            .is_some_and(|entry| matches!(&entry.node.value, Value::Text(text) if text == name)),
         _ => false,
-    };
-    let index = items.iter().position(named).or_else(|| which.parse().ok())?;
-    items.get_mut(index)
+    }
 }

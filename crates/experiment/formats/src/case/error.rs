@@ -288,6 +288,12 @@ pub enum ProblemKind {
         /// The run.
         name: String,
     },
+    /// What the case's turbines make impossible.
+    #[error("{message}")]
+    Unfit {
+        /// What does not fit, and the fix.
+        message: String,
+    },
     /// An override that cannot be applied.
     #[error("the override `{text}` cannot be applied: {why}")]
     Override {
@@ -340,6 +346,7 @@ impl ProblemKind {
             Self::ComparedWithItself { .. } => "itself",
             Self::ComparedWithLater { .. } => "comes later",
             Self::NobodyThere { .. } => "nobody there",
+            Self::Unfit { .. } => "does not fit",
             Self::Override { .. } => "this override",
         };
         words.to_owned()

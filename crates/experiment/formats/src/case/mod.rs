@@ -9,6 +9,7 @@ mod error;
 mod instruments;
 mod keys;
 mod meandering;
+mod objection;
 mod reference;
 mod section;
 mod spelling;
@@ -17,6 +18,7 @@ mod wind;
 mod write;
 
 pub use error::{CaseError, Problem, ProblemKind};
+pub use objection::objection;
 pub use reference::{reference, schema};
 pub(crate) use spelling::nearest;
 pub use write::write;

@@ -92,6 +92,19 @@ impl RunFolder {
         gone(fs::remove_file(self.checkpoint_path()), &self.checkpoint_path())
     }
 
+    /// Takes away what a killed process was writing: no name that anything reads.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn remove_leftovers(&self) -> Result<(), FileError> {
+        for folder in [self.path.clone(), self.planes_path(), self.volumes_path()] {
+            if folder.is_dir() {
+                atomic::remove_leftovers(&folder)?;
+            }
+        }
+        Ok(())
+    }
+
     /// The folder itself.
     pub fn path(&self) -> &Path {
         &self.path

@@ -55,7 +55,8 @@ impl Asked {
                 .runs
                 .iter()
                 .filter(|run| {
-                    run.control[index] == Control::Absent && case.output.lines_at.contains(&index)
+                    case.output.lines_at.contains(&index)
+                        && tells_truth(&case, &run.control, control, index)
                 })
                 .map(|run| RunFolder::new(&study, &run.name))
                 .find(RunFolder::is_complete),
@@ -115,6 +116,19 @@ fn turbine_of(
         asked: question.turbine.clone(),
         turbines: names,
     })
+}
+
+/// Whether a run under `without` holds the true wind of turbine `index` in one under `with`: it is away there, and the
+/// turbines upstream of it do the same.
+pub(crate) fn tells_truth(
+    case: &Case,
+    without: &[Control],
+    with: &[Control],
+    index: usize,
+) -> bool {
+    let x = |turbine: usize| case.turbines[turbine].position_diameters[0];
+    let mut upstream = (0..case.turbines.len()).filter(|&other| x(other) < x(index));
+    without[index] == Control::Absent && upstream.all(|other| without[other] == with[other])
 }
 
 /// The turbine called `model` as it was in the run of `manifest`.

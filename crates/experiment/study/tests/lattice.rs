@@ -1,0 +1,108 @@
+//! A study in solved air, from case to report, stopped on the way: what it leaves has the same bits.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use study::{Options, Outcome, Progress, Watcher};
+
+const CASE: &str = r#"
+name = "small"
+[wind]
+speed = 9.0
+turbulence_intensity = 0.08
+[flow]
+cells_per_diameter = 8
+upstream_diameters = 2.0
+downstream_diameters = 3.0
+width_diameters = 4.0
+height_diameters = 3.0
+[time]
+spin_up = 40.0
+duration = 160.0
+[[turbine]]
+name = "T1"
+model = "nrel-5mw"
+position_diameters = [0.0, 0.0]
+[[run]]
+name = "helix"
+control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 3.0, strouhal = 0.3 }
+[output]
+plane_interval = 20.0
+volume_interval = 60.0
+helix_phases = 4
+crosswind_diameters = [1.0]
+"#;
+
+/// Asks for an end when a run of which little is made moves on.
+struct Impatient<'a>(&'a AtomicBool);
+
+impl Watcher for Impatient<'_> {
+    fn advanced(&mut self, progress: &Progress) {
+        if progress.step > 0 {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+struct Silent;
+
+impl Watcher for Silent {}
+
+fn options(folder: &Path, output: &str) -> Options {
+    Options {
+        case: folder.join("case.toml"),
+        output: Some(folder.join(output)),
+        ..Options::default()
+    }
+}
+
+/// Everything that a run left but what tells of the machine and the hour, by its place in the run's folder.
+fn left(run: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut files = Vec::new();
+    for folder in [run.to_owned(), run.join("planes"), run.join("volumes")] {
+        for entry in fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            if path.is_file() && name != "manifest.json" && name != "summary.json" {
+                let place = path.strip_prefix(run).expect("in the run").to_owned();
+                files.push((place, fs::read(&path).expect("a file")));
+            }
+        }
+    }
+    files.sort();
+    files
+}
+
+#[test]
+fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("case.toml"), CASE).expect("a file");
+    let stop = AtomicBool::new(false);
+    let outcome = study::run(&options(folder.path(), "whole"), &stop, &mut Silent);
+    assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{outcome:?}");
+
+    let mut again = options(folder.path(), "stopped");
+    let outcome = study::run(&again, &stop, &mut Impatient(&stop));
+    assert!(matches!(outcome, Ok(Outcome::Interrupted { .. })), "{outcome:?}");
+    let run = folder.path().join("stopped/helix");
+    assert!(run.join("checkpoint").is_file());
+    // As a process leaves it that is killed while it writes.
+    let [half, plane] = [".checkpoint.4711.part", "planes/.mean-hub-height.nc.4711.part"];
+    for name in [half, plane] {
+        fs::write(run.join(name), b"half").expect("a file");
+    }
+    again.resume = true;
+    stop.store(false, Ordering::Relaxed);
+    let outcome = study::run(&again, &stop, &mut Silent);
+    assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{outcome:?}");
+
+    let (whole, stopped) = (left(&folder.path().join("whole/helix")), left(&run));
+    let names = |files: &[(PathBuf, Vec<u8>)]| -> Vec<PathBuf> {
+        files.iter().map(|(name, _)| name.clone()).collect()
+    };
+    assert_eq!(names(&whole), names(&stopped));
+    assert!(whole.len() > 10, "{:?}", names(&whole));
+    for ((name, before), (_, after)) in whole.iter().zip(&stopped) {
+        assert!(before == after, "{} has other bits", name.display());
+    }
+}

@@ -1,0 +1,114 @@
+//! What shows only once turbines and controllers are there is told before the first step, at its line of the case file.
+
+use std::fs;
+use std::sync::atomic::AtomicBool;
+use study::{Estimate, Options, Outcome, StudyError, Watcher};
+
+const LATTICE: &str = r#"
+name = "lattice"
+[wind]
+speed = 9.0
+turbulence_intensity = 0.0
+[flow]
+cells_per_diameter = 8
+height_diameters = 3.0
+[time]
+spin_up = 40.0
+duration = 160.0
+[[turbine]]
+name = "T1"
+model = "nrel-5mw"
+position_diameters = [0.0, 0.0]
+[[run]]
+name = "baseline"
+[output]
+crosswind_diameters = [1.0]
+"#;
+
+const PRESCRIBED: &str = r#"
+name = "prescribed"
+[wind]
+speed = 9.0
+turbulence_intensity = 0.1
+turbulence_model = "kaimal"
+[flow]
+solver = "turbulence"
+[time]
+spin_up = 60.0
+duration = 660.0
+[[turbine]]
+name = "T1"
+model = "nrel-5mw"
+position_diameters = [0.0, 0.0]
+[[turbine]]
+name = "T2"
+model = "nrel-5mw"
+position_diameters = [5.0, 0.0]
+[[run]]
+name = "watching"
+control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
+control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }
+"#;
+
+/// Keeps what was told beforehand.
+#[derive(Default)]
+struct Told {
+    memory: u64,
+    warnings: Vec<String>,
+}
+
+impl Watcher for Told {
+    fn estimated(&mut self, estimate: &Estimate) {
+        self.memory = estimate.memory;
+    }
+
+    fn warned(&mut self, warning: &str) {
+        self.warnings.push(warning.to_owned());
+    }
+}
+
+/// What a dry run of `case` comes to, and what it tells.
+fn dry(case: &str) -> (Result<Outcome, StudyError>, Told) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("case.toml");
+    fs::write(&path, case).expect("a file");
+    let output = Some(folder.path().join("out"));
+    let options = Options { case: path, output, dry_run: true, ..Options::default() };
+    let mut told = Told::default();
+    (study::run(&options, &AtomicBool::new(false), &mut told), told)
+}
+
+#[test]
+fn what_does_not_fit_is_pointed_at_in_the_file() {
+    for (case, from, to, line, said) in [
+        (LATTICE, "[1.0]", "[40.0]", 19, "crosswind plane 40 diameters"),
+        (LATTICE, "height_diameters = 3.0", "step = 2.0", 8, "flow.step = 2 s"),
+        (LATTICE, "height_diameters = 3.0", "height_diameters = 1.0", 15, "outside the domain"),
+        (
+            PRESCRIBED,
+            "\"turbulence\"",
+            "\"turbulence\"\nstep = 8.0",
+            24,
+            "T2 cannot be controlled so",
+        ),
+    ] {
+        assert!(case.contains(from), "{from}");
+        let (outcome, _) = dry(&case.replace(from, to));
+        let Err(StudyError::Case(error)) = outcome else { panic!("{outcome:?}") };
+        let problem = &error.problems()[0];
+        assert!(problem.to_string().contains(said), "{problem}");
+        assert_eq!(problem.line(), line, "{problem}");
+    }
+}
+
+#[test]
+fn a_long_record_of_turbulence_returns_rather_than_fill_the_memory() {
+    let (outcome, ten_minutes) = dry(PRESCRIBED);
+    assert!(matches!(outcome, Ok(Outcome::Estimated)), "{outcome:?}");
+    let returns =
+        |told: &Told| told.warnings.iter().any(|warning| warning.contains("returns after"));
+    assert!(ten_minutes.memory > 1 << 20 && !returns(&ten_minutes));
+    let (outcome, ten_hours) = dry(&PRESCRIBED.replace("660.0", "36000.0"));
+    assert!(matches!(outcome, Ok(Outcome::Estimated)), "{outcome:?}");
+    assert!(ten_hours.memory < 200 << 20 && returns(&ten_hours), "{} bytes", ten_hours.memory);
+}
