@@ -3,9 +3,11 @@
 use crate::air::Air;
 use crate::case::Meandering as MeanderingSettings;
 use crate::case::PhaseSync as PhaseSyncSettings;
+use crate::case::TowerInfluence as AskedInfluence;
 use crate::case::{Case, Control, Ground, PhaseEstimator, Placement, Run, Sides, Solver};
 use crate::plan::{Footprint, Plan};
 use crate::{Farm, Machine};
+use basis::Vector3;
 use basis::angle::wrap_to_turn;
 use control::baseline::{Baseline, Constants};
 use control::meandering::{self, Decoupling, MeanderingError, TwoAxisSettings};
@@ -21,7 +23,8 @@ use sensing::{InstrumentError, Sensing};
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
 use turbine::aero::induction::TwoConstant;
-use turbine::aero::{self, rotor};
+use turbine::aero::tower_influence::{Effects, Potential};
+use turbine::aero::{self, TowerInfluence, rotor};
 use turbine::structure::StructureError;
 use turbine::{Definition, Induction, Turbine};
 
@@ -214,15 +217,17 @@ pub fn estimator_options(estimator: PhaseEstimator, solver: Solver) -> Options {
     }
 }
 
-/// How a turbine of `model` at `placement` stands in the air when time begins.
+/// How a turbine of `model` at `placement` stands in the air when time begins; `tower` is what its blades feel of its tower,
+/// where the wind is prescribed.
 pub(crate) fn turbine_settings(
     case: &Case,
     plan: &Plan,
     model: &Model,
     placement: &Placement,
+    tower: Option<TowerInfluence>,
 ) -> turbine::Settings {
     turbine::Settings {
-        induction: induction(case, plan, placement.dynamic_stall),
+        induction: induction(case, plan, placement, tower),
         flexible: placement.flexible,
         air_density: case.wind.air_density,
         rotor_speed: model.rotor_speed(case.wind.speed),
@@ -245,20 +250,39 @@ pub fn farm(
 ) -> Result<Farm<Air>, AssemblyError> {
     let mut machines = Vec::with_capacity(models.len());
     for index in run.present() {
-        let model = &models[index];
-        let settings = turbine_settings(case, plan, model, &case.turbines[index]);
-        let turbine = Turbine::new(Arc::clone(&model.definition), plan.positions[index], settings)?;
+        let (model, placement, foot) =
+            (&models[index], &case.turbines[index], plan.positions[index]);
+        let tower = tower_influence(model, placement, foot);
+        let settings = turbine_settings(case, plan, model, placement, tower);
+        let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)?;
         let control = controller(&run.control[index], model, case, plan)?;
         let seed = sensing::seed_of_turbine(case.wind.seed, index);
-        let sensing = Sensing::new(case.turbines[index].instruments, seed)?;
+        let sensing = Sensing::new(placement.instruments, seed)?;
         machines.push(Machine::new(turbine, control).with_instruments(sensing));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     Ok(Farm::new(machines, air, plan.interval, case.flow.threads.unwrap_or(cores))?)
 }
 
+/// The tower of a turbine of `model`, with its foot at `foot` (m), as its blades feel it; none where `placement` asks for none.
+fn tower_influence(model: &Model, placement: &Placement, foot: Vector3) -> Option<TowerInfluence> {
+    let (potential, shadow) = match placement.tower_influence {
+        AskedInfluence::None => return None,
+        AskedInfluence::Potential => (Potential::Cylinder, false),
+        AskedInfluence::PotentialWithDrag => (Potential::WithDrag, false),
+        AskedInfluence::PotentialAndShadow => (Potential::Cylinder, true),
+    };
+    Some(TowerInfluence::new(&model.definition, foot, Effects { potential, shadow }))
+}
+
 /// Who solves the induction: the lattice itself, or momentum theory with dynamic inflow and skewed wake.
-fn induction(case: &Case, plan: &Plan, dynamic_stall: bool) -> Induction {
+fn induction(
+    case: &Case,
+    plan: &Plan,
+    placement: &Placement,
+    tower: Option<TowerInfluence>,
+) -> Induction {
+    let dynamic_stall = placement.dynamic_stall;
     match case.flow.solver {
         Solver::Lattice => Induction::ByFlow {
             smearing_length: SMEARING_CELLS * plan.spacing,
@@ -271,7 +295,7 @@ fn induction(case: &Case, plan: &Plan, dynamic_stall: bool) -> Induction {
                 theory: Theory::default(),
                 skewed_wake: true,
                 dynamic_stall,
-                tower: None,
+                tower,
             })
         }
     }

@@ -250,8 +250,24 @@ pub struct Placement {
     pub flexible: bool,
     /// Whether flow about the blades' sections separates with delay; otherwise their polars hold at once.
     pub dynamic_stall: bool,
+    /// What its tower does to the wind that its blades meet, where the wind is prescribed.
+    pub tower_influence: TowerInfluence,
     /// What its controller sees of it.
     pub instruments: Instruments,
+}
+
+/// What a tower does to the wind past it; [`turbine::aero::tower_influence`] gives the equations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TowerInfluence {
+    /// Nothing.
+    #[default]
+    None,
+    /// The wind parts about it as about a cylinder.
+    Potential,
+    /// As `Potential`, and its drag slows the wind ahead, after Bak.
+    PotentialWithDrag,
+    /// As `Potential`, and the wind is slow behind it, after Powles.
+    PotentialAndShadow,
 }
 
 /// One run: who does what.

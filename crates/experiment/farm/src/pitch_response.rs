@@ -269,7 +269,8 @@ fn pitching(
         azimuth_offset: pitch.azimuth_offset,
         start: 0.0,
     });
-    let settings = assemble::turbine_settings(&alone, plan, model, &alone.turbines[index]);
+    // The rotor alone: no tower stands in its wind.
+    let settings = assemble::turbine_settings(&alone, plan, model, &alone.turbines[index], None);
     let foot = Vector3::new(0.0, 0.0, -model.definition.rotor.hub_height);
     let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)
         .map_err(AssemblyError::from)?

@@ -3,7 +3,7 @@
 use super::*;
 use crate::case::{
     Control, Flow, Ground, Instruments, Output, Placement, Run, Sides, Solver, Time,
-    TurbulenceModel, Wind,
+    TowerInfluence, TurbulenceModel, Wind,
 };
 
 fn case(positions: &[[f64; 2]]) -> Case {
@@ -13,6 +13,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         position_diameters: position,
         flexible: true,
         dynamic_stall: false,
+        tower_influence: TowerInfluence::None,
         instruments: Instruments::default(),
     };
     Case {

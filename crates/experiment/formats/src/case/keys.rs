@@ -225,6 +225,13 @@ pub(super) static TURBINE: Table = Table {
             "`dynamic`: flow about the blades' sections separates and attaches with delay. `steady`: their polars hold at once.",
         ),
         key(
+            "tower_influence",
+            Kind::Choice(&["none", "potential", "potential-with-drag", "potential-and-shadow"]),
+            "",
+            Value("\"none\""),
+            "What the tower does to the wind that the blades meet, in prescribed wind only: in solved air its drag acts on the air itself. `potential`: the wind parts as about a cylinder (AeroDyn's `TwrPotent` 1). `potential-with-drag`: and its drag slows the wind ahead, after Bak (`TwrPotent` 2). `potential-and-shadow`: as about a cylinder, and slow behind it, after Powles (`TwrShadow` 1).",
+        ),
+        key(
             "instruments",
             Kind::Table(&INSTRUMENTS),
             "",

@@ -9,6 +9,7 @@ mod error;
 mod instruments;
 mod keys;
 mod meandering;
+mod momentum;
 mod objection;
 mod reference;
 mod section;

@@ -2,6 +2,7 @@
 
 use super::instruments::instruments_text;
 use super::meandering::meandering_text;
+use super::momentum::momentum_text;
 use super::wind::write_wind;
 use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides, Solver};
 use std::fmt::Write;
@@ -59,6 +60,7 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         writeln!(text, "structure = \"{structure}\"")?;
         let stall = if turbine.dynamic_stall { "dynamic" } else { "steady" };
         writeln!(text, "stall = \"{stall}\"")?;
+        text.push_str(&momentum_text(turbine));
         text.push_str(&instruments_text(&turbine.instruments));
     }
     for run in &case.runs {
