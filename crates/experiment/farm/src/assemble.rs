@@ -4,7 +4,9 @@ use crate::air::Air;
 use crate::case::Meandering as MeanderingSettings;
 use crate::case::PhaseSync as PhaseSyncSettings;
 use crate::case::TowerInfluence as AskedInfluence;
-use crate::case::{Case, Control, Ground, PhaseEstimator, Placement, Run, Sides, Solver};
+use crate::case::{
+    Case, Control, DynamicInflow, Ground, PhaseEstimator, Placement, Run, Sides, Solver,
+};
 use crate::plan::{Footprint, Plan};
 use crate::{Farm, Machine};
 use basis::Vector3;
@@ -22,7 +24,7 @@ use flow::lattice;
 use sensing::{InstrumentError, Sensing};
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
-use turbine::aero::induction::TwoConstant;
+use turbine::aero::induction::{SnelSchepers, TwoConstant};
 use turbine::aero::tower_influence::{Effects, Potential};
 use turbine::aero::{self, TowerInfluence, rotor};
 use turbine::structure::StructureError;
@@ -275,7 +277,7 @@ fn tower_influence(model: &Model, placement: &Placement, foot: Vector3) -> Optio
     Some(TowerInfluence::new(&model.definition, foot, Effects { potential, shadow }))
 }
 
-/// Who solves the induction: the lattice itself, or momentum theory with dynamic inflow and skewed wake.
+/// Who solves the induction: the lattice itself, or momentum theory with the wake's delay and its skew.
 fn induction(
     case: &Case,
     plan: &Plan,
@@ -291,12 +293,23 @@ fn induction(
         },
         Solver::Uniform | Solver::Turbulence | Solver::Planes => {
             Induction::ByMomentum(rotor::Settings {
-                induction: aero::Induction::TwoConstant(TwoConstant::varying()),
+                induction: delay(placement.dynamic_inflow),
                 theory: Theory::default(),
                 skewed_wake: true,
                 dynamic_stall,
                 tower,
             })
         }
+    }
+}
+
+/// How the wake's delay is modelled.
+fn delay(asked: DynamicInflow) -> aero::Induction {
+    match asked {
+        DynamicInflow::None => aero::Induction::QuasiSteady,
+        DynamicInflow::TwoConstant { slow_constant } => aero::Induction::TwoConstant(
+            slow_constant.map_or_else(TwoConstant::varying, TwoConstant::fixed),
+        ),
+        DynamicInflow::SnelSchepers => aero::Induction::SnelSchepers(SnelSchepers::default()),
     }
 }

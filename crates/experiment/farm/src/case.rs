@@ -250,10 +250,32 @@ pub struct Placement {
     pub flexible: bool,
     /// Whether flow about the blades' sections separates with delay; otherwise their polars hold at once.
     pub dynamic_stall: bool,
+    /// How its induction follows its loads, where the wind is prescribed.
+    pub dynamic_inflow: DynamicInflow,
     /// What its tower does to the wind that its blades meet, where the wind is prescribed.
     pub tower_influence: TowerInfluence,
     /// What its controller sees of it.
     pub instruments: Instruments,
+}
+
+/// How a rotor's induction follows its loads; [`turbine::aero::induction`] gives the equations.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum DynamicInflow {
+    /// At once.
+    None,
+    /// With two time constants, after Øye.
+    TwoConstant {
+        /// The slow one, τ₁ (s); it follows wind and induction when absent.
+        slow_constant: Option<f64>,
+    },
+    /// With the inertia of the air, after Snel and Schepers.
+    SnelSchepers,
+}
+
+impl Default for DynamicInflow {
+    fn default() -> Self {
+        Self::TwoConstant { slow_constant: None }
+    }
 }
 
 /// What a tower does to the wind past it; [`turbine::aero::tower_influence`] gives the equations.

@@ -5,7 +5,7 @@ use crate::prepare::Setup;
 use crate::watcher::{Probing, Watcher};
 use basis::records::PitchResponse;
 use estimation::helix::Calibration;
-use farm::case::{Control, Decoupling, Meandering, PhaseEstimator, PhaseSync};
+use farm::case::{Control, Decoupling, DynamicInflow, Meandering, PhaseEstimator, PhaseSync};
 use farm::pitch_response::{
     CalibrationError, ProbeCost, calibration, calibration_cost, decoupling, decoupling_cost,
 };
@@ -119,10 +119,16 @@ impl Setup {
             ),
             Asked::Decoupling(asked) => format!("decoupling {:?}", asked.strouhal),
         };
+        // The usual one leaves no trace, so that what was found before one could choose is still known.
+        let usual = DynamicInflow::default();
+        let inflow = match placement.dynamic_inflow {
+            inflow if inflow == usual => String::new(),
+            inflow => format!(" {inflow:?}"),
+        };
         let wind = &case.wind;
         sha256(
             format!(
-                "{} {} {} {} {asked} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}",
+                "{} {} {} {}{inflow} {asked} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}",
                 env!("CARGO_PKG_VERSION"),
                 placement.model,
                 placement.flexible,

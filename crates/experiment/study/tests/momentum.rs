@@ -1,6 +1,6 @@
 //! What a case says of momentum theory reaches the blades of a turbine in prescribed wind.
 
-use basis::{Commands, Measurements};
+use basis::{Commands, Measurements, PerBlade};
 use farm::assemble::{self, Model};
 use farm::case::Case;
 use farm::{Air, Farm, Plan, Recorder};
@@ -114,4 +114,57 @@ fn a_tower_takes_load_from_a_blade_once_a_turn() {
     // The drag's source slows the wind ahead further; behind the tower no blade of an upwind rotor passes.
     assert!(deepest(&added("potential-with-drag", &free)) < 1.1 * dip);
     assert_eq!(added("potential-and-shadow", &free), added_by_cylinder);
+}
+
+/// Rise of the pitch at once (rad).
+const STEP: f64 = 0.05;
+/// When it rises (s).
+const STEP_AT: f64 = 5.0;
+/// Time that is watched afterwards (s).
+const WATCHED: f64 = 120.0;
+
+/// Thrust (N) of the turbine of the case with `overrides`, instant after instant, at held rotor speed in a wind along its
+/// shaft, the same on every blade wherever it stands; its pitch steps meanwhile.
+fn thrusts(overrides: &[&str]) -> Vec<f64> {
+    let interval = 0.1;
+    let farm = farm_of(overrides);
+    let mut turbine = farm.machines()[0].turbine.clone().without_bodies().at_held_speed();
+    let wind = turbine.frame().shaft * 9.0;
+    let winds = vec![wind; turbine.stations().len()];
+    let mut thrusts = Vec::new();
+    for step in 0..((STEP_AT + WATCHED) / interval) as usize {
+        let pitch = if step as f64 * interval < STEP_AT { 0.0 } else { STEP };
+        let pitch = PerBlade::splat(turbine.definition().n_blades, pitch);
+        turbine.advance(interval, &winds, &Commands { pitch, generator_torque: 0.0 });
+        thrusts.push(turbine.measurements(0.0, interval).thrust);
+    }
+    thrusts
+}
+
+/// Before and long after a step of the pitch momentum theory says how much thrust there is, whatever the delay. In between
+/// the old wake still slows the wind: less thrust than without delay, each model at its own pace.
+#[test]
+fn every_dynamic_inflow_answers_a_step_of_the_pitch_in_its_own_way() {
+    let of = |inflow: &str| thrusts(&[&format!("turbine.T1.dynamic_inflow={inflow}")]);
+    let [none, two_constant, snel_schepers] = ["none", "two-constant", "snel-schepers"].map(of);
+    let slow = thrusts(&["turbine.T1.slow_constant=60"]);
+    assert_eq!(thrusts(&[]), two_constant);
+
+    let (before, last) = (40, none.len() - 1);
+    let (first, rest) = (none[before], none[last]);
+    assert!(rest < 0.95 * first, "{first} N, {rest} N");
+    for delayed in [&two_constant, &snel_schepers] {
+        assert!((delayed[before] / first - 1.0).abs() < 1e-3, "{} {first}", delayed[before]);
+        assert!((delayed[last] / rest - 1.0).abs() < 3e-3, "{} {rest}", delayed[last]);
+    }
+    // Three seconds after the step the pitch has come to rest.
+    let after = 80;
+    for delayed in [&two_constant, &snel_schepers, &slow] {
+        assert!(delayed[after] < 0.99 * none[after], "{} {}", delayed[after], none[after]);
+    }
+    // A slow constant of 60 s is some five times that of wind and load.
+    assert!(slow[150] < two_constant[150] - 5e-3 * rest, "{} {}", slow[150], two_constant[150]);
+    let apart = two_constant.iter().zip(&snel_schepers).map(|(a, b)| (a - b).abs());
+    let farthest = apart.fold(0.0, f64::max);
+    assert!(farthest > 3e-3 * rest, "{farthest} N of {rest} N");
 }

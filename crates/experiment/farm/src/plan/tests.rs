@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::case::{
-    Control, Flow, Ground, Instruments, Output, Placement, Run, Sides, Solver, Time,
+    Control, DynamicInflow, Flow, Ground, Instruments, Output, Placement, Run, Sides, Solver, Time,
     TowerInfluence, TurbulenceModel, Wind,
 };
 
@@ -13,6 +13,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         position_diameters: position,
         flexible: true,
         dynamic_stall: false,
+        dynamic_inflow: DynamicInflow::default(),
         tower_influence: TowerInfluence::None,
         instruments: Instruments::default(),
     };

@@ -5,7 +5,7 @@ use super::error::{Problem, ProblemKind};
 use super::instruments::instruments_of;
 use super::keys::{self, CONTROLS};
 use super::meandering::meandering_of;
-use super::momentum::tower_influence_of;
+use super::momentum::{dynamic_inflow_of, tower_influence_of};
 use super::section::{Findings, Section, list};
 use super::spelling::nearest;
 use super::table::Table;
@@ -120,6 +120,7 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
             } else {
                 solver.is_prescribed()
             },
+            dynamic_inflow: dynamic_inflow_of(section, solver),
             tower_influence: tower_influence_of(section, solver),
             instruments: instruments_of(section),
         };

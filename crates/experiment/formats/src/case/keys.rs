@@ -225,6 +225,20 @@ pub(super) static TURBINE: Table = Table {
             "`dynamic`: flow about the blades' sections separates and attaches with delay. `steady`: their polars hold at once.",
         ),
         key(
+            "dynamic_inflow",
+            Kind::Choice(&["two-constant", "snel-schepers", "none"]),
+            "",
+            Otherwise("`two-constant` in prescribed wind"),
+            "How the rotor's induction follows its loads, in prescribed wind only: solved air has a wake of its own. `two-constant`: with two time constants, after Øye, as OpenFAST's DBEMT. `snel-schepers`: with the inertia of the air, after Snel and Schepers. `none`: at once.",
+        ),
+        key(
+            "slow_constant",
+            above(0.0, 1000.0),
+            "s",
+            Otherwise("follows wind and load"),
+            "With `dynamic_inflow = \"two-constant\"`: the slow time constant τ₁, whatever wind and load (OpenFAST's `tau1_const`).",
+        ),
+        key(
             "tower_influence",
             Kind::Choice(&["none", "potential", "potential-with-drag", "potential-and-shadow"]),
             "",

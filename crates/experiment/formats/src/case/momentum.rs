@@ -2,7 +2,7 @@
 
 use super::error::ProblemKind;
 use super::section::Section;
-use farm::case::{Placement, Solver, TowerInfluence};
+use farm::case::{DynamicInflow, Placement, Solver, TowerInfluence};
 
 /// Words for what a tower does to the wind.
 const TOWER_INFLUENCES: [(&str, TowerInfluence); 4] = [
@@ -11,6 +11,27 @@ const TOWER_INFLUENCES: [(&str, TowerInfluence); 4] = [
     ("potential-with-drag", TowerInfluence::PotentialWithDrag),
     ("potential-and-shadow", TowerInfluence::PotentialAndShadow),
 ];
+
+/// How the induction of `turbine` follows its loads; notes where the air of `solver`, or what else is asked, has no use for it.
+pub(super) fn dynamic_inflow_of(turbine: &Section, solver: Solver) -> DynamicInflow {
+    if !solver.is_prescribed() {
+        let why = "the air of flow.solver = \"lattice\" has the rotor's wake in it";
+        for key in ["dynamic_inflow", "slow_constant"].into_iter().filter(|key| turbine.has(key)) {
+            note_no_use(turbine, key, why, WITHOUT_LATTICE);
+        }
+    }
+    let word = turbine.choice("dynamic_inflow");
+    let slow_constant = turbine.optional_number("slow_constant");
+    if solver.is_prescribed() && word != "two-constant" && slow_constant.is_some() {
+        let why = format!("it goes with dynamic_inflow = \"two-constant\", not \"{word}\"");
+        note_no_use(turbine, "slow_constant", &why, "leave it out");
+    }
+    match word {
+        "none" => DynamicInflow::None,
+        "snel-schepers" => DynamicInflow::SnelSchepers,
+        _ => DynamicInflow::TwoConstant { slow_constant },
+    }
+}
 
 /// What the tower does to the wind that the blades of `turbine` meet; notes where the air of `solver` has no use for it.
 pub(super) fn tower_influence_of(turbine: &Section, solver: Solver) -> TowerInfluence {
@@ -36,14 +57,20 @@ fn note_no_use(turbine: &Section, key: &str, why: &str, fix: &str) {
 /// The keys as lines of `[[turbine]]`, those alone that differ from what holds without them: so the fingerprint of a case
 /// that does not use them stays what it was.
 pub(super) fn momentum_text(turbine: &Placement) -> String {
+    let mut text = match turbine.dynamic_inflow {
+        DynamicInflow::None => "dynamic_inflow = \"none\"\n".to_owned(),
+        DynamicInflow::SnelSchepers => "dynamic_inflow = \"snel-schepers\"\n".to_owned(),
+        DynamicInflow::TwoConstant { slow_constant: Some(constant) } => {
+            format!("slow_constant = {constant:?}\n")
+        }
+        DynamicInflow::TwoConstant { slow_constant: None } => String::new(),
+    };
     let asked = turbine.tower_influence;
     let influence = TOWER_INFLUENCES.iter().find(|(_, influence)| *influence == asked);
-    match influence {
-        Some((word, influence)) if *influence != TowerInfluence::None => {
-            format!("tower_influence = \"{word}\"\n")
-        }
-        _ => String::new(),
+    if let Some((word, _)) = influence.filter(|_| asked != TowerInfluence::None) {
+        text += &format!("tower_influence = \"{word}\"\n");
     }
+    text
 }
 
 #[cfg(test)]
@@ -101,23 +128,70 @@ name = "baseline"
     }
 
     #[test]
-    fn what_is_of_no_use_is_told_with_its_line() {
-        let expected = "small.toml:15: `turbine.T1.tower_influence` is of no use here: in flow.solver = \"lattice\" the tower's drag acts on the air itself; leave it out, or take flow.solver = \"uniform\"";
-        let lines = told("tower_influence = \"potential\"", "lattice");
-        assert!(lines.contains(expected), "{lines}");
-        // This much is true there too.
+    fn induction_follows_with_two_constants_unless_asked_otherwise() {
+        let of = |keys: &str| read(keys).dynamic_inflow;
+        let usual = DynamicInflow::TwoConstant { slow_constant: None };
+        assert_eq!((of(""), DynamicInflow::default()), (usual, usual));
+        assert_eq!(of("dynamic_inflow = \"two-constant\""), usual);
+        assert_eq!(of("dynamic_inflow = \"snel-schepers\""), DynamicInflow::SnelSchepers);
+        assert_eq!(of("dynamic_inflow = \"none\""), DynamicInflow::None);
+        let fixed = DynamicInflow::TwoConstant { slow_constant: Some(12.6) };
+        assert_eq!(of("slow_constant = 12.6"), fixed);
+        assert_eq!(of("dynamic_inflow = \"two-constant\"\nslow_constant = 12.6"), fixed);
+    }
+
+    #[test]
+    fn what_cannot_be_is_told_with_its_line() {
+        let cases = [
+            (
+                "tower_influence = \"potential\"",
+                "lattice",
+                "small.toml:15: `turbine.T1.tower_influence` is of no use here: in flow.solver = \"lattice\" the tower's drag acts on the air itself; leave it out, or take flow.solver = \"uniform\"",
+            ),
+            ("tower_influence = \"potental\"", "uniform", "did you mean \"potential\"?"),
+            (
+                "dynamic_inflow = \"two-constant\"",
+                "lattice",
+                "small.toml:15: `turbine.T1.dynamic_inflow` is of no use here: the air of flow.solver = \"lattice\" has the rotor's wake in it; leave it out, or take flow.solver = \"uniform\"",
+            ),
+            ("slow_constant = 12.6", "lattice", "`turbine.T1.slow_constant` is of no use here"),
+            (
+                "dynamic_inflow = \"none\"\nslow_constant = 12.6",
+                "turbulence",
+                "small.toml:16: `turbine.T1.slow_constant` is of no use here: it goes with dynamic_inflow = \"two-constant\", not \"none\"; leave it out",
+            ),
+            ("slow_constant = 0", "uniform", "0 < slow_constant <= 1000 s"),
+            (
+                "dynamic_inflow = \"oye\"",
+                "uniform",
+                "`turbine.T1.dynamic_inflow` = \"oye\" does not exist; what exists is \"two-constant\", \"snel-schepers\", \"none\"",
+            ),
+        ];
+        for (keys, solver, expected) in cases {
+            let lines = told(keys, solver);
+            assert!(lines.contains(expected), "{keys}\nexpected {expected}\ntold     {lines}");
+        }
+        // This much is true of solved air too.
         let still = text("tower_influence = \"none\"").replace("\"uniform\"", "\"lattice\"");
         assert!(parse("small.toml", &still, &[]).is_ok());
-        let lines = told("tower_influence = \"potental\"", "uniform");
-        assert!(lines.contains("did you mean \"potential\"?"), "{lines}");
     }
 
     #[test]
     fn defaults_leave_the_fingerprint_as_it_was() {
         let of = |keys: &str| fingerprint(&text(keys), "baseline");
-        assert_eq!(of("tower_influence = \"none\""), of(""));
-        assert_ne!(of("tower_influence = \"potential\""), of(""));
-        let case = parse("small.toml", &text(""), &[]).expect("a sound case");
-        assert!(!write(&case).contains("tower_influence"));
+        let usual = "tower_influence = \"none\"\ndynamic_inflow = \"two-constant\"";
+        assert_eq!(of(usual), of(""));
+        for keys in [
+            "tower_influence = \"potential\"",
+            "dynamic_inflow = \"snel-schepers\"",
+            "dynamic_inflow = \"none\"",
+            "slow_constant = 12.6",
+        ] {
+            assert_ne!(of(keys), of(""), "{keys}");
+        }
+        let case = parse("small.toml", &text(usual), &[]).expect("a sound case");
+        let written = write(&case);
+        let keys = ["tower_influence", "dynamic_inflow", "slow_constant"];
+        assert!(!keys.iter().any(|key| written.contains(key)), "{written}");
     }
 }

@@ -129,9 +129,9 @@ fn small_print(study: &Study) -> Vec<String> {
                 .to_owned(),
         ],
         None => vec![
-            "Prescribed wind: turbines make their own induction by blade-element momentum with dynamic \
-             inflow, skewed wake and dynamic stall, and no turbine feels another's wake. What a helix \
-             does to wakes is not in these figures."
+            "Prescribed wind: turbines make their own induction by blade-element momentum with skewed \
+             wake, and with dynamic inflow and dynamic stall unless the case says otherwise; no turbine \
+             feels another's wake. What a helix does to wakes is not in these figures."
                 .to_owned(),
         ],
     };
