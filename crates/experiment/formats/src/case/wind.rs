@@ -48,6 +48,17 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
         let fix = "flow.solver = \"planes\" reads the wind from a file: planes = \"field.bts\"";
         note("speed", kind, fix);
     }
+    if wind.planes.is_some() {
+        let why = match flow.solver {
+            Solver::Lattice => Some("flow.solver = \"lattice\" reads no wind from a file"),
+            Solver::Uniform => Some("flow.solver = \"uniform\" reads no wind from a file"),
+            Solver::Turbulence => Some("flow.solver = \"turbulence\" makes its own"),
+            Solver::Planes => None,
+        };
+        if let Some(why) = why {
+            note("planes", no_use("planes", why), "leave it out, or take flow.solver = \"planes\"");
+        }
+    }
     if flow.solver == Solver::Lattice && wind.turbulence_model == TurbulenceModel::Kaimal {
         let fix = "take turbulence_model = \"mann\", or flow.solver = \"turbulence\"";
         note("turbulence_model", ProblemKind::KaimalInLattice, fix);

@@ -144,6 +144,13 @@ fn what_cannot_be_is_told_with_its_line() {
             "windy.toml:6: `wind.event` is of no use here: the air of flow.solver = \"lattice\"",
         ),
         (step, "turbulence", "`wind.event` is of no use here"),
+        (
+            "planes = \"field.bts\"",
+            "lattice",
+            "windy.toml:6: `wind.planes` is of no use here: flow.solver = \"lattice\" reads no wind from a file; leave it out, or take flow.solver = \"planes\"",
+        ),
+        ("planes = \"field.bts\"", "uniform", "`wind.planes` is of no use here"),
+        ("planes = \"field.bts\"", "turbulence", "`wind.planes` is of no use here"),
     ];
     for (keys, solver, expected) in cases {
         let text = text(keys).replace("\"uniform\"", &format!("\"{solver}\""));
@@ -152,4 +159,7 @@ fn what_cannot_be_is_told_with_its_line() {
     }
     let veering = text("veer_deg_per_m = 0.05").replace("\"uniform\"", "\"turbulence\"");
     assert!(parse("windy.toml", &veering, &[]).is_ok());
+    let read = text("planes = \"field.bts\"").replace("\"uniform\"", "\"planes\"");
+    let case = parse("windy.toml", &read, &[]).unwrap();
+    assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
 }
