@@ -2,6 +2,7 @@
 
 use super::deck::{Deck, Table, Value};
 use super::elastodyn::Source;
+use super::version;
 use crate::turbine_file::{Airfoils, Blade, PolarTable, Station, TurbineFileError, Unsteady};
 
 /// Airfoil files at most (–): all are held at once, also one that is named again and again.
@@ -26,6 +27,7 @@ pub(super) fn read(deck: &Deck, source: &Source) -> Result<Aerodynamics, Turbine
     let polars: Vec<PolarTable> =
         files.iter().map(|file| polar(&file.deck()?, &columns)).collect::<Result<_, _>>()?;
     let blade_deck = deck.deck("ADBlFile(1)")?;
+    version::AERODYN.check(&blade_deck)?;
     let blade = blade(&blade_deck, &polars, source)?;
     let mut used: Vec<PolarTable> = Vec::new();
     for polar in polars {

@@ -57,12 +57,17 @@ impl Deck {
         &self.name
     }
 
+    /// First line, which may state the version of the format.
+    pub(super) fn heading(&self) -> &str {
+        self.lines.first().map_or("", |line| line.text.trim())
+    }
+
     /// Second line, which decks use for a title.
     pub(crate) fn title(&self) -> &str {
         self.lines.get(1).map_or("", |line| line.text.trim())
     }
 
-    fn error(
+    pub(super) fn error(
         &self,
         line: usize,
         key: &str,

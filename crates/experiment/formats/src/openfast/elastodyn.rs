@@ -1,6 +1,7 @@
 //! ElastoDyn: geometry, masses, structure of blades and tower.
 
 use super::deck::Deck;
+use super::version;
 use crate::turbine_file::{BladeStructure, Hub, Mode, Nacelle, Rotor, Tower, TurbineFileError};
 
 /// What ElastoDyn and the files it names hold.
@@ -41,9 +42,12 @@ pub(super) fn read(deck: &Deck, source: &Source) -> Result<Structure, TurbineFil
         center_of_mass: [deck.number("NacCMxn")?, deck.number("NacCMyn")?, deck.number("NacCMzn")?],
         yaw_bearing_mass: if deck.has("YawBrMass") { deck.number("YawBrMass")? } else { 0.0 },
     };
-    let blade = blade(&deck.deck("BldFile(1)")?, rotor.tip_radius - rotor.hub_radius, source)?;
+    let blade_deck = deck.deck("BldFile(1)")?;
+    version::ELASTODYN.check(&blade_deck)?;
+    let blade = blade(&blade_deck, rotor.tip_radius - rotor.hub_radius, source)?;
     let base_height = deck.number("TowerBsHt")?;
     let tower_deck = deck.deck("TwrFile")?;
+    version::ELASTODYN.check(&tower_deck)?;
     let tower = Tower {
         base_height,
         top_height: tower_height,

@@ -5,6 +5,7 @@ pub(crate) mod deck;
 pub(crate) mod discon;
 mod elastodyn;
 mod torque_gain;
+mod version;
 
 use crate::turbine_file::{Document, DriveTrain, PitchActuator, TorqueControl, TurbineFileError};
 use deck::Deck;
@@ -25,15 +26,20 @@ pub struct ImportOptions {
 ///
 /// Structure, drive train and geometry come from ElastoDyn, blades and polars from AeroDyn 15, the generator from
 /// ServoDyn and the controller from the ROSCO input file that ServoDyn names. A ServoDyn file without one leaves the
-/// groups `controller` and `pitch_actuator` out.
+/// groups `controller` and `pitch_actuator` out. A file whose first line states no version is taken to be of one that is
+/// read: OpenFAST up to 5 or FAST 8, AeroDyn 15, ElastoDyn 1, ServoDyn 1.
 ///
 /// # Errors
-/// [`TurbineFileError`] naming file, line, key and what was expected.
+/// [`TurbineFileError`] naming file, line, key and what was expected; also for a stated version that is not read.
 pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineFileError> {
     let main = Deck::read(path)?;
+    version::MAIN.check(&main)?;
     let elastodyn = main.deck("EDFile")?;
+    version::ELASTODYN.check(&elastodyn)?;
     let aerodyn = main.deck("AeroFile")?;
+    version::AERODYN.check(&aerodyn)?;
     let servodyn = main.deck("ServoFile")?;
+    version::SERVODYN.check(&servodyn)?;
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().to_lowercase());
     let origin = options.source.clone().unwrap_or_else(|| format!("imported from {}", main.name()));
     let source = |files: &[&Deck]| {

@@ -342,3 +342,30 @@ fn errors_name_file_line_and_key() {
         assert!(message.contains(place) && message.contains(expected), "{message}");
     }
 }
+
+#[test]
+fn a_stated_version_must_be_one_that_is_read() {
+    // File, beginning of its first line above, one with a version that is read, one with another, and that.
+    let cases = [
+        ("small.fst", "----- INPUT", "- FAST v8.16.* INPUT", "- OPENFAST v9.9 INPUT", "v9.9"),
+        ("parts/ed.dat", "----- ELASTODYN", "- ELASTODYN v1.03.*", "- ELASTODYN v7.77", "v7.77"),
+        ("parts/edblade.dat", "----- BLADE", "- ELASTODYN V1.00.*", "- ELASTODYN V2.0.*", "v2.0"),
+        ("parts/tower.dat", "----- TOWER", "- ELASTODYN V1.00.*", "- ELASTODYN V3", "v3"),
+        ("parts/ad.dat", "----- AERODYN", "- AERODYN v15 for", "- AERODYN v99.77", "v99.77"),
+        ("parts/adblade.dat", "----- BLADE", "- AERODYN v15.00.*", "- AERODYN v14.0", "v14.0"),
+        ("parts/servo.dat", "----- SERVODYN", "- SERVODYN v1.05.*", "- v4294967297", "v4294967297"),
+    ];
+    for (file, from, known, unknown, found) in cases {
+        let (_folder, result) = import_with(file, from, known);
+        assert!(result.is_ok(), "{known}: {result:?}");
+        let (_folder, result) = import_with(file, from, unknown);
+        let Err(error) = result else { panic!("{unknown} is imported") };
+        let message = error.to_string();
+        let name = file.rsplit('/').next().unwrap();
+        assert!(message.contains(&format!("{name}, line 1, ")), "{message}");
+        assert!(message.ends_with(&format!(", found {found}")), "{message}");
+        let TurbineFileError::Value { expected, fix, .. } = error else { panic!("{message}") };
+        assert!(expected.starts_with("version v"), "{expected}");
+        assert!(fix.contains("openfast_toolbox"), "{fix}");
+    }
+}
