@@ -90,7 +90,8 @@ impl TableReader {
     /// Chooses what [`read`](Self::read) gives beside time, in this order; replaces an earlier choice.
     ///
     /// A name is looked for as it is, then ignoring case, then as the beginning of one name up to `_` or a space, so that
-    /// `RootMyc1` finds `RootMyc1_kN-m`.
+    /// `RootMyc1` finds `RootMyc1_kN-m`; at last under the name that [`turbine::structure::canonical`] gives, so that
+    /// `RootMFlp1` finds `RootMyb1`. [`selected`](Self::selected) tells what was found.
     ///
     /// # Errors
     /// [`FileError::Content`] for a name that the table has not, with those that may have been meant.

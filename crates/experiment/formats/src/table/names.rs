@@ -2,15 +2,37 @@
 
 use super::Column;
 use crate::case::nearest;
+use turbine::structure::canonical;
 
 /// Names that a refusal lists at most.
 const LISTED: usize = 8;
 
-/// Index of the column that `name` means: as it is, ignoring case, or as the beginning of one name up to `_` or a space.
+/// Index of the column that `name` means: as it is, ignoring case, as the beginning of one name up to `_` or a space, or
+/// all that again with OpenFAST's other name of the same channel.
 ///
 /// # Errors
 /// The problem and its fix, in words.
 pub(crate) fn find(name: &str, columns: &[Column]) -> Result<usize, (String, String)> {
+    if let Some(found) = find_name(name, columns) {
+        return found;
+    }
+    if let Some(found) = other_name(name).and_then(|other| find_name(&other, columns)) {
+        return found;
+    }
+    let suggestion = suggestion(name, &name.to_lowercase(), columns);
+    Err((format!("it has no channel \"{name}\""), suggestion))
+}
+
+/// Name under which turbines write the channel that OpenFAST also calls `name`; what stands before a dot is the turbine's.
+fn other_name(name: &str) -> Option<String> {
+    match name.rsplit_once('.') {
+        Some((turbine, channel)) => Some(format!("{turbine}.{}", canonical(channel)?)),
+        None => canonical(name),
+    }
+}
+
+/// As [`find`] but for other names; None where no column is called so.
+fn find_name(name: &str, columns: &[Column]) -> Option<Result<usize, (String, String)>> {
     let lower = name.to_lowercase();
     let is_beginning = |column: &Column| {
         let rest = column.name.to_lowercase();
@@ -25,21 +47,23 @@ pub(crate) fn find(name: &str, columns: &[Column]) -> Result<usize, (String, Str
         let found: Vec<usize> = (0..columns.len()).filter(|index| rule(&columns[*index])).collect();
         match found[..] {
             [] => {}
-            [one] => return Ok(one),
-            [first, ..] => {
-                let n_found = found.len();
-                let same = found.iter().all(|index| columns[*index].name == columns[first].name);
-                if same {
-                    let problem = format!("{n_found} channels are called \"{name}\"");
-                    return Err((problem, "leave only one of them in the file".to_owned()));
-                }
-                let names = list(found.iter().map(|index| &columns[*index].name));
-                let problem = format!("the channel \"{name}\" is one of {n_found}: {names}");
-                return Err((problem, "give the whole name of one of them".to_owned()));
-            }
+            [one] => return Some(Ok(one)),
+            [first, ..] => return Some(Err(ambiguous(name, &found, first, columns))),
         }
     }
-    Err((format!("it has no channel \"{name}\""), suggestion(name, &lower, columns)))
+    None
+}
+
+/// Problem and fix where `name` means all the columns `found`, `first` among them.
+fn ambiguous(name: &str, found: &[usize], first: usize, columns: &[Column]) -> (String, String) {
+    let n_found = found.len();
+    if found.iter().all(|index| columns[*index].name == columns[first].name) {
+        let problem = format!("{n_found} channels are called \"{name}\"");
+        return (problem, "leave only one of them in the file".to_owned());
+    }
+    let names = list(found.iter().map(|index| &columns[*index].name));
+    let problem = format!("the channel \"{name}\" is one of {n_found}: {names}");
+    (problem, "give the whole name of one of them".to_owned())
 }
 
 fn suggestion(name: &str, lower: &str, columns: &[Column]) -> String {

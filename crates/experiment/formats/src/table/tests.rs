@@ -125,6 +125,24 @@ fn a_name_that_is_not_there_is_told_with_what_may_be_meant() {
 }
 
 #[test]
+fn openfast_s_other_names_find_the_channel_that_is_written() {
+    let names = "time_s,T1.RootMyb1_kN-m,T1.RootMxb1_kN-m,T1.RotTorq_kN-m,T1.LSSTipMys_kN-m";
+    let (_folder, path) = written("series.csv", &format!("{names}\n0,1,2,3,4\n"));
+    let asked = ["T1.RootMFlp1", "t1.rootmedg1", "T1.LSSGagMxs", "T1.LSSGagMys"];
+    assert_eq!(rows(&path, &asked).unwrap(), [[0.0, 1.0, 2.0, 3.0, 4.0]]);
+    let told = complaint(rows(&path, &["T1.RootMFlp2"]));
+    assert!(told.starts_with("it has no channel \"T1.RootMFlp2\" | "), "{told}");
+    let (_folder, path) = written("T1.out", "Time RootMyb1 RotTorq\n(s) (kN-m) (kN-m)\n0.0 5 6\n");
+    assert_eq!(rows(&path, &["LSSGagMxs", "RootMFlp1"]).unwrap(), [[0.0, 6.0, 5.0]]);
+    // What a file has under the very name comes first.
+    let (_folder, path) = written("a.csv", "time,RootMyb1,RootMFlp1\n0,7,8\n");
+    assert_eq!(rows(&path, &["RootMFlp1"]).unwrap(), [[0.0, 8.0]]);
+    let mut table = TableReader::open(&path).unwrap();
+    table.select(&["RootMFlp1", "RootMyb1"]).unwrap();
+    assert_eq!(table.selected().next().unwrap().name, "RootMFlp1");
+}
+
+#[test]
 fn bad_tables_are_told_with_line_and_fix() {
     let cases = [
         ("a.csv", "", "it has no line of names"),

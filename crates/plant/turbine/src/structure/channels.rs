@@ -127,12 +127,20 @@ pub(super) fn table(n_blades: usize) -> Vec<Channel> {
 /// Place of the channel called `name` in `table`; case does not matter, and OpenFAST's other names are known.
 pub(super) fn index(table: &[Channel], name: &str) -> Option<usize> {
     let find = |name: &str| table.iter().position(|c| c.name.eq_ignore_ascii_case(name));
-    find(name).or_else(|| {
-        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
-        let number = &name[stem.len()..];
-        let same = ALIASES.iter().find(|(_, alias)| alias.eq_ignore_ascii_case(stem))?;
-        find(&format!("{}{number}", same.0))
-    })
+    find(name).or_else(|| find(&canonical(name)?))
+}
+
+/// The name under which the channel called `name` is written: `RootMyb1` for `RootMFlp1`; None where `name` is no other
+/// name of a channel. Case does not matter.
+///
+/// Names of the shaft's strain gauges (`LSSGagMys`) lead to the moments at the rotor apex, where ours lie; gauges that
+/// OpenFAST's `ShftGagL` puts elsewhere measure another bending moment.
+pub fn canonical(name: &str) -> Option<String> {
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let number = &name[stem.len()..];
+    let (same, _) = ALIASES.iter().find(|(_, alias)| alias.eq_ignore_ascii_case(stem))?;
+    let of_blade = BLADE.iter().any(|(blade, _)| blade == same);
+    (of_blade != number.is_empty()).then(|| format!("{same}{number}"))
 }
 
 /// On return `values` holds each channel of the table in SI units (N, N m, m, rad, rad/s, m/s²).
@@ -200,6 +208,11 @@ mod tests {
         }
         assert_eq!(index(&table, "rootmyc2"), index(&table, "RootMOoP2"));
         assert_eq!(index(&table, "RootMyc5"), None);
+        assert_eq!(canonical("rootmflp2").as_deref(), Some("RootMyb2"));
+        assert_eq!(canonical("LSSGagMxs").as_deref(), Some("RotTorq"));
+        for name in ["RootMFlp", "LSSGagMxs1", "RootMyb1", "", "7"] {
+            assert_eq!(canonical(name), None, "{name}");
+        }
         assert_eq!(index(&table, "é9"), None);
     }
 

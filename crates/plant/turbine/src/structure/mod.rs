@@ -40,7 +40,7 @@ mod stations;
 mod tests;
 
 pub use beam::Wrench;
-pub use channels::Channel;
+pub use channels::{Channel, canonical};
 pub use coordinates::{Coordinates, Freedom};
 pub use energy::Energy;
 pub use error::StructureError;
