@@ -100,3 +100,35 @@ fn bad_input_ends_with_code_2_and_a_fix() {
     let told = String::from_utf8(wakemix(&arguments, folder.path()).stderr).unwrap();
     assert!(told.contains("leaves 0 samples to count: it ends at 2 s"), "{told}");
 }
+
+#[test]
+fn the_count_ends_where_it_is_asked_to() {
+    let folder = tempfile::tempdir().unwrap();
+    // What stands behind the asked time need not be sound.
+    fs::write(folder.path().join("waves.csv"), waves(60) + "60.1,1,NaN\n").unwrap();
+    let run = |times: &[&str]| {
+        let channel = ["fatigue", "waves.csv", "--channel", "TwrBsMyt", "--slope", "4"];
+        wakemix(&[&channel[..], times].concat(), folder.path())
+    };
+    let output = run(&["--from", "10", "--to", "40"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{text}");
+    assert!(text.starts_with("waves.csv: 10 to 40 s, 30 s, 601 samples\n"), "{text}");
+    let cells: Vec<&str> = text.lines().nth(2).unwrap().split_whitespace().collect();
+    assert_eq!(cells, ["TwrBsMyt_kN-m", "4", "1.00000", "30.0", "1.00000"]);
+    let output = run(&["--to", "20", "--json"]);
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(value["from_s"], 0.0);
+    assert_eq!(value["to_s"], 20.0);
+    for times in [&["--to", "-1"][..], &["--from", "30", "--to", "20"]] {
+        let output = run(times);
+        // Drawn messages wrap; what matters is the words.
+        let told = String::from_utf8(output.stderr).unwrap();
+        let told: Vec<&str> = told.split_whitespace().filter(|word| *word != "│").collect();
+        let told = told.join(" ");
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        let expected = "leaves 0 samples to count before --to: it begins at 0 s";
+        assert!(told.contains(expected) && told.contains("after --from"), "{told}");
+    }
+    assert_eq!(run(&[]).status.code(), Some(2));
+}

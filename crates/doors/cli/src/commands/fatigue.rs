@@ -6,7 +6,7 @@ use serde_json::json;
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use wakemix::analysis::fatigue::{
     self, Cycle, EquivalentLoad, Fatigue, LoadCounter, Rainflow, RangeBins,
 };
@@ -26,6 +26,9 @@ pub(crate) struct FatigueArguments {
     /// Time at which the count begins (s); all of the file when left out
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     from: Option<f64>,
+    /// Time at which the count ends (s), a row at T included; all of the file when left out
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    to: Option<f64>,
     /// Sort ranges into N equal bins first, as some studies do (200), and use the middle of each
     #[arg(long, value_name = "N")]
     bins: Option<NonZeroUsize>,
@@ -113,16 +116,26 @@ fn count(arguments: &FatigueArguments) -> Result<Count> {
         .map(|_| Counter::new(&arguments.slope, arguments.bins))
         .collect::<Result<_>>()?;
     let from = arguments.from.unwrap_or(f64::NEG_INFINITY);
+    let to = arguments.to.unwrap_or(f64::INFINITY);
     let (mut times, mut n_samples) = ([f64::NAN; 2], 0_u64);
+    // Times of the first and the last row (s), and whether --to leaves that one and others behind it out.
+    let (mut rows, mut is_cut): (Option<(f64, f64)>, bool) = (None, false);
     let mut row = vec![0.0; names.len() + 1];
     while table.read(&mut row)? {
-        times[1] = row[0];
+        let (begin, _) = rows.unwrap_or((row[0], row[0]));
+        rows = Some((begin, row[0]));
+        is_cut = row[0] > to;
+        // What follows need not even be sound.
+        if is_cut {
+            break;
+        }
         if row[0] < from {
             continue;
         }
         if n_samples == 0 {
             times[0] = row[0];
         }
+        times[1] = row[0];
         n_samples += 1;
         for (counter, sample) in counters.iter_mut().zip(&row[1..]) {
             counter.push(*sample)?;
@@ -130,18 +143,31 @@ fn count(arguments: &FatigueArguments) -> Result<Count> {
     }
     let duration = times[1] - times[0];
     if n_samples < 2 || duration <= 0.0 {
-        let last = times[1];
-        let whole =
-            if last.is_finite() { format!("it ends at {last} s") } else { "it has no rows".into() };
-        return Err(miette!(
-            help = "give --from a time in seconds before the end of the file",
-            "{} leaves {n_samples} samples to count: {whole}",
-            table.path().display()
-        ));
+        return Err(too_few(table.path(), n_samples, rows, is_cut));
     }
     let counted = counters.into_iter().map(|counter| counter.finish(&arguments.slope, duration));
     let channels = table.selected().cloned().zip(counted.collect::<Result<Vec<_>>>()?).collect();
     Ok(Count { times, n_samples, channels })
+}
+
+/// The error that `n_samples` of the table at `path` are too few; `rows` are its first time and the last that was read (s),
+/// `is_cut` whether --to ended the reading there.
+fn too_few(path: &Path, n_samples: u64, rows: Option<(f64, f64)>, is_cut: bool) -> miette::Report {
+    let problem = format!("{} leaves {n_samples} samples to count", path.display());
+    match rows {
+        Some((begin, _)) if is_cut => miette!(
+            help = "give --to a time in seconds after --from and after the beginning of the file",
+            "{problem} before --to: it begins at {begin} s"
+        ),
+        Some((_, end)) => miette!(
+            help = "give --from a time in seconds before the end of the file",
+            "{problem}: it ends at {end} s"
+        ),
+        None => miette!(
+            help = "give --from a time in seconds before the end of the file",
+            "{problem}: it has no rows"
+        ),
+    }
 }
 
 fn text(arguments: &FatigueArguments, count: &Count) -> String {
