@@ -1,9 +1,17 @@
 //! The table of a study on the terminal.
 
 use std::fmt::Write;
-use wakemix::basis::records::{Statistic, Summary};
+use wakemix::analysis::fatigue;
+use wakemix::basis::records::{Statistic, Summary, TurbineSummary};
 
-/// Runs × turbines: power, gain, thrust, rotor speed, delivered excitation; the conditions above.
+/// Loads of which the 1-Hz damage-equivalent is told: heading, channel, what it is.
+const LOADS: [(&str, &str, &str); 2] = [
+    ("flapwise MN m", "RootMyb1", "flapwise at the root of blade 1"),
+    ("tower MN m", "TwrBsMyt", "fore-aft at the tower base"),
+];
+
+/// Runs × turbines: power, gain, thrust, rotor speed, delivered excitation, and loads where any turbine has them; the
+/// conditions above, the conventions below.
 pub(crate) fn render(summaries: &[Summary]) -> String {
     let mut text = String::new();
     let Some(first) = summaries.first() else {
@@ -25,9 +33,11 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
         minutes,
         wind.spin_up,
     );
+    let loads: Vec<Load> = LOADS.iter().filter_map(|load| Load::find(load, summaries)).collect();
+    let headings: String = loads.iter().map(|load| format!(" {:>13}", load.heading)).collect();
     let _ = writeln!(
         text,
-        "{:<14} {:<6} {:<28} {:>18} {:>18} {:>9} {:>7} {:>16}",
+        "{:<14} {:<6} {:<28} {:>18} {:>18} {:>9} {:>7} {:>16}{headings}",
         "run", "", "control", "power kW", "gain %", "thrust kN", "rpm", "pitch delivered"
     );
     for summary in summaries {
@@ -35,9 +45,10 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
             let delivered = turbine.delivered_pitch.map_or(String::new(), |pitch| {
                 format!("{:.2}° {:.4} Hz", pitch.delivered_amplitude_deg, pitch.frequency_hz)
             });
+            let cells: String = loads.iter().map(|load| load.cell(turbine)).collect();
             let _ = writeln!(
                 text,
-                "{:<14} {:<6} {:<28} {:>18} {:>18} {:>9.0} {:>7.2} {:>16}",
+                "{:<14} {:<6} {:<28} {:>18} {:>18} {:>9.0} {:>7.2} {:>16}{cells}",
                 summary.run,
                 turbine.name,
                 turbine.control,
@@ -62,7 +73,45 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
         text,
         "± 95 % from blocks of the analysed time; gains compare the same blocks of the same wind"
     );
+    if !loads.is_empty() {
+        let told: Vec<String> = loads.iter().map(Load::told).collect();
+        let _ = writeln!(text, "{}: {}", told.join("; "), fatigue::convention(None));
+    }
     text
+}
+
+/// A column of damage-equivalent loads.
+struct Load<'a> {
+    heading: &'a str,
+    what: &'a str,
+    /// Key of the summaries, such as `RootMyb1, m = 10 (kN m)`.
+    key: &'a str,
+}
+
+impl<'a> Load<'a> {
+    /// The column of `load` (heading, channel, what it is); None where no turbine of `summaries` has it.
+    fn find(load: &(&'a str, &str, &'a str), summaries: &'a [Summary]) -> Option<Self> {
+        let &(heading, channel, what) = load;
+        let of_channel = |key: &&String| {
+            key.strip_prefix(channel).is_some_and(|rest| rest.starts_with(", m = "))
+        };
+        let turbines = summaries.iter().flat_map(|summary| &summary.turbines);
+        let mut keys = turbines.flat_map(|turbine| turbine.damage_equivalent_loads.keys());
+        let key = keys.find(of_channel)?;
+        Some(Self { heading, what, key })
+    }
+
+    /// The load of `turbine` (MN m), empty where it has none.
+    fn cell(&self, turbine: &TurbineSummary) -> String {
+        let load = turbine.damage_equivalent_loads.get(self.key);
+        format!(" {:>13}", load.map_or(String::new(), |load| format!("{:.2}", load / 1e3)))
+    }
+
+    /// What the column is, with its channel and slope.
+    fn told(&self) -> String {
+        let channel = self.key.strip_suffix(" (kN m)").unwrap_or(self.key);
+        format!("{} ({channel})", self.what)
+    }
 }
 
 fn with_interval(statistic: &Statistic, scale: f64, digits: usize) -> String {
@@ -70,5 +119,94 @@ fn with_interval(statistic: &Statistic, scale: f64, digits: usize) -> String {
     match statistic.half_width_95 {
         Some(half_width) => format!("{mean:.digits$} ± {:.digits$}", scale * half_width),
         None => format!("{mean:.digits$}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wakemix::basis::records::{Conditions, Cost, SCHEMA_VERSION};
+
+    fn statistic(mean: f64) -> Statistic {
+        Statistic { mean, standard_deviation: 0.0, half_width_95: None, n_blocks: 1 }
+    }
+
+    fn turbine(name: &str, loads: &[(&str, f64)]) -> TurbineSummary {
+        TurbineSummary {
+            name: name.into(),
+            model: "iea-15mw".into(),
+            control: "baseline".into(),
+            power: statistic(1e7),
+            thrust: statistic(1.9e6),
+            rotor_speed: statistic(0.7),
+            pitch: statistic(0.0),
+            delivered_pitch: None,
+            power_gain: None,
+            pitch_response: None,
+            load_deviations: Default::default(),
+            damage_equivalent_loads: loads
+                .iter()
+                .map(|(key, load)| ((*key).into(), *load))
+                .collect(),
+            pitch_duty: None,
+        }
+    }
+
+    fn summary(turbines: Vec<TurbineSummary>) -> Summary {
+        Summary {
+            schema_version: SCHEMA_VERSION,
+            case: "row".into(),
+            run: "baseline".into(),
+            compare_with: None,
+            conditions: Conditions {
+                wind_speed: 9.0,
+                turbulence_intensity: 0.05,
+                arriving_wind_speed: 8.9,
+                arriving_turbulence_intensity: 0.05,
+                shear_exponent: 0.1,
+                seed: 1,
+                rotor_diameter: 240.0,
+                cells_per_diameter: None,
+                interval: 0.1,
+                spin_up: 300.0,
+                duration: 900.0,
+            },
+            turbines,
+            array_power: statistic(2e7),
+            array_power_gain: None,
+            cost: Cost::default(),
+            warnings: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn loads_stand_behind_the_turbines_that_have_them() {
+        let loads = [
+            ("RootMyb1, m = 10 (kN m)", 12_340.0),
+            ("RootMyc1, m = 10 (kN m)", 99_999.0),
+            ("TwrBsMyt, m = 4 (kN m)", 67_890.0),
+        ];
+        let text = render(&[summary(vec![turbine("T1", &loads), turbine("T2", &loads[..1])])]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[1].ends_with("pitch delivered flapwise MN m    tower MN m"), "{text}");
+        let cells = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(cells(lines[2])[6..], ["12.34", "67.89"], "{text}");
+        assert_eq!(cells(lines[3])[6..], ["12.34"], "{text}");
+        // Cells stand under their headings.
+        let end = lines[1].find("flapwise MN m").map(|start| start + "flapwise MN m".len());
+        assert_eq!(lines[3].find("12.34").map(|start| start + 5), end, "{text}");
+        let last = lines[lines.len() - 1];
+        assert!(last.starts_with("flapwise at the root of blade 1 (RootMyb1, m = 10); "), "{text}");
+        assert!(last.contains("fore-aft at the tower base (TwrBsMyt, m = 4): 1-Hz"), "{text}");
+        assert!(last.contains("peak to peak"), "{text}");
+    }
+
+    #[test]
+    fn a_column_that_no_turbine_fills_is_left_out() {
+        let text = render(&[summary(vec![turbine("T1", &[("TwrBsMyt, m = 4 (kN m)", 1e3)])])]);
+        assert!(!text.contains("flapwise") && text.contains("tower MN m"), "{text}");
+        let text = render(&[summary(vec![turbine("T1", &[])])]);
+        assert!(text.lines().nth(1).unwrap().ends_with("pitch delivered"), "{text}");
+        assert!(text.lines().last().unwrap().starts_with("± 95 %"), "{text}");
     }
 }
