@@ -17,17 +17,21 @@ const RENAMED: [(&str, &str, &str, f64); 6] = [
     ("{}.aerodynamic_torque_nm", "RtFldMxh", "N-m", 1.0),
 ];
 
-/// Writes `TURBINE.outb` into `folder`, from the run's complete series.
+/// Writes `TURBINE.outb` into `folder`, from the run's complete series, for turbine number `index` of the case.
 pub(crate) fn write(
     setup: &Setup,
     run: &Run,
     folder: &RunFolder,
-    turbine: &str,
+    index: usize,
 ) -> Result<(), StudyError> {
+    let turbine = setup.case.turbines[index].name.as_str();
     let mut reader = TableReader::open(&folder.series_path())?;
     let prefix = format!("{turbine}.");
     let (mut ours, mut channels, mut scales) = (Vec::new(), Vec::new(), Vec::new());
-    for (own, name, unit, scale) in RENAMED {
+    // Ours is on the low-speed side.
+    let gear_ratio = setup.models[index].definition.drive_train.gear_ratio;
+    let torque = ("{}.generator_torque_nm", "GenTq", "kN-m", 1e-3 / gear_ratio);
+    for (own, name, unit, scale) in RENAMED.into_iter().chain([torque]) {
         ours.push(own.replace("{}", turbine));
         channels.push(Column { name: name.to_owned(), unit: unit.to_owned() });
         scales.push(scale);

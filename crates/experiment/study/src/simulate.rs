@@ -366,7 +366,7 @@ impl<'a> Simulation<'a> {
         }
         if self.setup.case.flow.solver.is_prescribed() {
             for index in run.present() {
-                outb::write(self.setup, run, self.folder, &self.setup.case.turbines[index].name)?;
+                outb::write(self.setup, run, self.folder, index)?;
             }
         }
         let (plan, wall_time) = (&self.setup.plan, self.wall_time());
