@@ -1,5 +1,9 @@
 //! What the helix costs the first turbine, what it gives the array, and how the wake recovers, beside published large-eddy figures.
 
+mod pitch;
+
+pub use pitch::helix_pitch;
+
 use crate::Row;
 use basis::records::{Plane, PlaneAxes, Summary};
 use std::path::{Path, PathBuf};

@@ -73,6 +73,12 @@ pub const VALIDATIONS: &[Validation] = &[
         run: helix::helix,
     },
     Validation {
+        name: "helix-pitch",
+        about: "what a helix commands: no bit changed without amplitude, one line at 1P ± f_e with it",
+        minutes: "1",
+        run: helix::helix_pitch,
+    },
+    Validation {
         name: "centre-line",
         about: "recovery of the wake without and with a helix, beside published large-eddy figures",
         minutes: "5",
