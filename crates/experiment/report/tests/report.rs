@@ -2,7 +2,7 @@
 
 mod synthetic;
 
-use basis::records::PitchDuty;
+use basis::records::{MeanderingAxis, MeanderingSummary, PitchDuty};
 use report::{ReportError, StudyRecords};
 use std::fs;
 use std::path::Path;
@@ -239,6 +239,38 @@ fn what_pitching_cost_stands_in_the_tables_with_its_convention() {
         assert!(page.contains(expected), "`{expected}` is missing");
     }
     assert_eq!(page.matches("<td>T1</td><td class=\"n\">").count(), 36);
+    assert_well_formed(&page);
+}
+
+#[test]
+fn what_a_turbine_made_of_meandering_stands_in_a_table_with_units() {
+    let mut study = synthetic::two_runs();
+    assert!(!page(&study).contains("factor reached"));
+    let tilt = MeanderingAxis { amplitude: 7.5e6, reference: Some(5e6), factor: Some(1.5) };
+    let turbine = &mut study.runs[1].summary.turbines[1];
+    turbine.control = "meandering × 1.5 cw".into();
+    turbine.meandering = Some(MeanderingSummary {
+        locked_share: 0.9,
+        frequency_hz: Some(0.0075),
+        tilt: Some(tilt),
+        yaw: Some(MeanderingAxis { amplitude: 12e6, reference: None, factor: None }),
+    });
+    study.runs[0].summary.turbines[1].meandering =
+        Some(MeanderingSummary { locked_share: 0.0, frequency_hz: None, tilt: None, yaw: None });
+    let page = page(&study);
+    // 0.0075 Hz · 240 m / 9 m/s.
+    let found = "<td class=\"n\">90.0 %</td><td class=\"n\">0.0075</td><td class=\"n\">0.200</td>";
+    let none = "<td class=\"n\">–</td>";
+    for expected in [
+        "<th class=\"n\">amplitude (MN m)</th>".to_owned(),
+        format!(
+            "{found}<td>tilt</td><td class=\"n\">7.50</td><td class=\"n\">5.00</td><td class=\"n\">1.50</td>"
+        ),
+        format!("{found}<td>yaw</td><td class=\"n\">12.0</td>{none}{none}"),
+        format!("<td class=\"n\">0.0 %</td>{none}{none}<td>tilt</td>{none}{none}{none}"),
+    ] {
+        assert!(page.contains(&expected), "`{expected}` is missing");
+    }
     assert_well_formed(&page);
 }
 

@@ -8,6 +8,7 @@ mod channels;
 mod error;
 mod lines;
 mod loads;
+mod meandering;
 mod outb;
 mod phase;
 mod prepare;

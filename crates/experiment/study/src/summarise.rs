@@ -2,6 +2,7 @@
 
 use crate::StudyError;
 use crate::loads;
+use crate::meandering;
 use crate::prepare::Setup;
 use crate::probes::response_of;
 use analysis::AnalysisError;
@@ -108,6 +109,7 @@ pub(crate) fn summarise(
             delivered_pitch,
             power_gain: None,
             pitch_response: response_of(control),
+            meandering: meandering::followed(&analysed, name, n_blades, control)?,
             load_deviations: loads::deviations(series, name, &analysed)?,
             damage_equivalent_loads: loads::damage_equivalent(series, name, &analysed)?,
             pitch_duty: loads::pitch_duty(series, name, &analysed)?,

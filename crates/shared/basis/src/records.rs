@@ -93,6 +93,30 @@ pub enum PitchResponse {
     },
 }
 
+/// The slow oscillation of one of a rotor's moments, as far as it goes with the phase that a turbine believed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeanderingAxis {
+    /// Amplitude of the moment's part in step with the believed phase, what pitch added to it included (N m).
+    pub amplitude: f64,
+    /// Mean amplitude that the turbine took for the baseline's (N m); absent while it knew none.
+    pub reference: Option<f64>,
+    /// The first over the second: the factor reached (–).
+    pub factor: Option<f64>,
+}
+
+/// What a turbine that follows meandering found in its loads, and what became of them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeanderingSummary {
+    /// Share of the time in which its phase-locked loop was locked (–).
+    pub locked_share: f64,
+    /// Mean frequency that it believed while locked (Hz); absent where it never was.
+    pub frequency_hz: Option<f64>,
+    /// Tilt moment while locked, from the start of control on; absent where that makes less than two periods.
+    pub tilt: Option<MeanderingAxis>,
+    /// Yaw moment, likewise.
+    pub yaw: Option<MeanderingAxis>,
+}
+
 /// One turbine over one run's analysed time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TurbineSummary {
@@ -117,6 +141,9 @@ pub struct TurbineSummary {
     /// How its own pitch acts; absent where its controller need not know.
     #[serde(default)]
     pub pitch_response: Option<PitchResponse>,
+    /// What it found of meandering and made of it; absent on a turbine that does not follow any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub meandering: Option<MeanderingSummary>,
     /// Standard deviations of the moments by channel and unit, such as `RootMyc1, standard deviation (kN m)`.
     #[serde(default)]
     pub load_deviations: BTreeMap<String, f64>,

@@ -143,6 +143,7 @@ mod tests {
             delivered_pitch: None,
             power_gain: None,
             pitch_response: None,
+            meandering: None,
             load_deviations: Default::default(),
             damage_equivalent_loads: loads
                 .iter()

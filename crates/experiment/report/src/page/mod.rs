@@ -50,6 +50,7 @@ pub(crate) fn render(study: &Study, figures: &[Figure]) -> Result<String, Report
         load_conventions => tables::load_conventions(study),
         loads => tables::loads(study),
         bearings => tables::bearings(study),
+        meanderings => tables::meanderings(study),
         run_names => study.names().into_iter().map(|(_, name)| name.to_owned()).collect::<Vec<_>>(),
         conditions_line => sentence::conditions_line(study, None),
         small_print => small_print(study),

@@ -6,7 +6,7 @@ use crate::sentence;
 use crate::study::{Kind, Study};
 use crate::words::{self, SPACE, number, percent, three_figures};
 use analysis::fatigue;
-use basis::records::{PitchResponse, Statistic, TurbineSummary};
+use basis::records::{MeanderingAxis, PitchResponse, Statistic, TurbineSummary};
 use minijinja::{Value, context};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -183,6 +183,41 @@ pub(crate) fn responses(study: &Study) -> Vec<Value> {
                 delay,
                 remark,
             });
+        }
+    }
+    rows
+}
+
+/// What turbines found of meandering and made of it, a row for each axis.
+pub(crate) fn meanderings(study: &Study) -> Vec<Value> {
+    let told = |value: Option<f64>, decimals: fn(f64) -> usize| {
+        value.map_or("–".to_owned(), |value| number(value, decimals(value)))
+    };
+    let mut rows = Vec::new();
+    for (run, &colour) in study.runs().iter().zip(&study.colours) {
+        let conditions = &run.summary.conditions;
+        let strouhal =
+            |frequency: f64| frequency * conditions.rotor_diameter / conditions.wind_speed;
+        for turbine in &run.summary.turbines {
+            let Some(found) = turbine.meandering else { continue };
+            for (axis, moment) in [("tilt", found.tilt), ("yaw", found.yaw)] {
+                let mega = |of: fn(MeanderingAxis) -> Option<f64>| {
+                    moment.and_then(of).map(|newton_metres| 1e-6 * newton_metres)
+                };
+                rows.push(context! {
+                    run => run.summary.run.clone(),
+                    colour,
+                    turbine => turbine.name.clone(),
+                    control => turbine.control.clone(),
+                    locked => percent(found.locked_share),
+                    frequency => told(found.frequency_hz, |_| 4),
+                    strouhal => told(found.frequency_hz.map(strouhal), |_| 3),
+                    axis,
+                    amplitude => told(mega(|moment| Some(moment.amplitude)), three_figures),
+                    reference => told(mega(|moment| moment.reference), three_figures),
+                    factor => told(moment.and_then(|moment| moment.factor), |_| 2),
+                });
+            }
         }
     }
     rows

@@ -1,0 +1,190 @@
+//! What a turbine that follows meandering found in its loads, and what became of them.
+
+use crate::StudyError;
+use crate::summarise::Analysed;
+use basis::mbc::to_fixed_frame;
+use basis::records::{MeanderingAxis, MeanderingSummary};
+use basis::{FixedFrame, PerBlade};
+use farm::case::Control;
+use std::f64::consts::TAU;
+
+/// Periods of the oscillation that tell an amplitude (–).
+const FEWEST_PERIODS: f64 = 2.0;
+
+/// What `turbine`, of `n_blades` blades under `control`, found of meandering; None where it follows none.
+///
+/// Amplitudes are those of the moments themselves, correlated with the phase that the turbine believed: what wanders away
+/// from that phase does not count, so that they lie somewhat below what the loop believes where it follows slowly.
+///
+/// # Errors
+/// [`StudyError::MissingChannel`].
+pub(crate) fn followed(
+    analysed: &Analysed<'_>,
+    turbine: &str,
+    n_blades: usize,
+    control: &Control,
+) -> Result<Option<MeanderingSummary>, StudyError> {
+    let Control::Meandering(asked) = control else { return Ok(None) };
+    let channel = |what: &str| analysed.column(&format!("{turbine}.{what}"));
+    let (lock, rate) = (channel("meandering_lock")?, channel("meandering_rate_rad_s")?);
+    let times = analysed.column("time_s")?;
+    let locked: Vec<usize> = (0..lock.len()).filter(|&row| lock[row] > 0.5).collect();
+    let counted: Vec<usize> =
+        locked.iter().copied().filter(|&row| times[row] >= asked.start).collect();
+    let turned = analysed.interval * counted.iter().map(|&row| rate[row]).sum::<f64>();
+    let is_told = turned >= TAU * FEWEST_PERIODS;
+    let moments = moments(analysed, turbine, n_blades, &counted)?;
+    let axis = |name: &str, of: fn(&FixedFrame) -> f64| {
+        let phase = channel(&format!("meandering_{name}_phase_rad"))?;
+        let reference = channel(&format!("meandering_{name}_reference_nm"))?;
+        let pick = |column: &[f64]| counted.iter().map(|&row| column[row]).collect::<Vec<_>>();
+        let moment: Vec<f64> = moments.iter().map(of).collect();
+        let found = || axis_of(&moment, &pick(phase), &pick(reference));
+        Ok::<_, StudyError>(is_told.then(found))
+    };
+    let believed: Vec<f64> = locked.iter().map(|&row| rate[row] / TAU).collect();
+    Ok(Some(MeanderingSummary {
+        locked_share: locked.len() as f64 / lock.len().max(1) as f64,
+        frequency_hz: mean(&believed),
+        tilt: axis("tilt", |moments| moments.tilt)?,
+        yaw: axis("yaw", |moments| moments.yaw)?,
+    }))
+}
+
+/// Moments of the blades of `turbine` in the fixed frame (N m) at the `rows` of the analysed time.
+fn moments(
+    analysed: &Analysed<'_>,
+    turbine: &str,
+    n_blades: usize,
+    rows: &[usize],
+) -> Result<Vec<FixedFrame>, StudyError> {
+    let azimuth = analysed.column(&format!("{turbine}.azimuth_rad"))?;
+    let flap = (1..=n_blades)
+        .map(|blade| analysed.column(&format!("{turbine}.flap_moment_{blade}_nm")))
+        .collect::<Result<Vec<&[f64]>, StudyError>>()?;
+    let at = |&row: &usize| {
+        to_fixed_frame(azimuth[row], &PerBlade::from_fn(n_blades, |blade| flap[blade][row]))
+    };
+    Ok(rows.iter().map(at).collect())
+}
+
+/// The part of `moment` (N m) in step with `phase` (rad), against the amplitudes `reference` (N m), zero while not known.
+fn axis_of(moment: &[f64], phase: &[f64], reference: &[f64]) -> MeanderingAxis {
+    let steady = mean(moment).unwrap_or(0.0);
+    let scale = 2.0 / moment.len() as f64;
+    let (mut with, mut earlier) = (0.0, 0.0);
+    for (moment, phase) in moment.iter().zip(phase) {
+        let (sine, cosine) = phase.sin_cos();
+        with += scale * (moment - steady) * sine;
+        earlier += scale * (moment - steady) * cosine;
+    }
+    let amplitude = with.hypot(earlier);
+    let known: Vec<f64> = reference.iter().copied().filter(|&reference| reference > 0.0).collect();
+    let reference = mean(&known);
+    MeanderingAxis { amplitude, reference, factor: reference.map(|known| amplitude / known) }
+}
+
+/// None of nothing.
+fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use basis::mbc::to_blades;
+    use basis::records::Series;
+    use farm::case::{Followed, Leader, Meandering, Reference, Sense};
+
+    /// Time between rows (s).
+    const INTERVAL: f64 = 0.5;
+    /// Rate of the oscillation (rad/s): ten periods in the last half of the record.
+    const RATE: f64 = TAU / 100.0;
+
+    fn control() -> Control {
+        Control::Meandering(Meandering {
+            factor: 1.5,
+            amplitude: 0.07,
+            offset: 0.0,
+            strouhal: [0.15, 0.3],
+            sense: Sense::Clockwise,
+            leader: Leader::Both,
+            followed: Followed::Wake,
+            reference: Reference::Observed,
+            bandwidth: 0.01,
+            decoupling: None,
+            start: 1000.0,
+        })
+    }
+
+    /// 2000 s, locked from `locked_from` (s) on; 3 MN m in tilt and 1 MN m in yaw once control starts, ten times as much before.
+    fn series(locked_from: f64) -> Series {
+        let times: Vec<f64> = (0..4000).map(|row| INTERVAL * f64::from(row)).collect();
+        let azimuth = |time: f64| 0.6 * time;
+        let blade = |time: f64, blade: usize| {
+            let scale = if time < 1000.0 { 1e7 } else { 1e6 };
+            let fixed = FixedFrame {
+                average: 3e7,
+                tilt: 2e6 + 3.0 * scale * (RATE * time).sin(),
+                yaw: -1e6 + scale * (RATE * time + 1.0).sin(),
+            };
+            to_blades(azimuth(time), fixed, 3)[blade]
+        };
+        let is_locked = |time: f64| time >= locked_from;
+        let columns: [(&str, &dyn Fn(f64) -> f64); 11] = [
+            ("time_s", &|time| time),
+            ("T1.azimuth_rad", &azimuth),
+            ("T1.flap_moment_1_nm", &|time| blade(time, 0)),
+            ("T1.flap_moment_2_nm", &|time| blade(time, 1)),
+            ("T1.flap_moment_3_nm", &|time| blade(time, 2)),
+            ("T1.meandering_lock", &|time| f64::from(u8::from(is_locked(time)))),
+            ("T1.meandering_rate_rad_s", &|time| if is_locked(time) { RATE } else { 0.0 }),
+            ("T1.meandering_tilt_phase_rad", &|time| (RATE * time).rem_euclid(TAU)),
+            ("T1.meandering_yaw_phase_rad", &|time| (RATE * time + 0.7).rem_euclid(TAU)),
+            ("T1.meandering_tilt_reference_nm", &|time| if time < 1200.0 { 0.0 } else { 2e6 }),
+            ("T1.meandering_yaw_reference_nm", &|_| 0.0),
+        ];
+        Series {
+            names: columns.iter().map(|(name, _)| (*name).to_owned()).collect(),
+            columns: columns
+                .iter()
+                .map(|(_, of)| times.iter().map(|time| of(*time)).collect())
+                .collect(),
+        }
+    }
+
+    fn found(series: &Series) -> MeanderingSummary {
+        let analysed = Analysed::whole(series, INTERVAL);
+        followed(&analysed, "T1", 3, &control()).expect("all channels").expect("meandering")
+    }
+
+    #[test]
+    fn amplitudes_are_those_of_the_moments_while_it_acts() {
+        let found = found(&series(500.0));
+        assert_eq!(found.locked_share, 0.75);
+        assert!((found.frequency_hz.expect("it locked") - 0.01).abs() < 1e-12);
+        let (tilt, yaw) = (found.tilt.expect("ten periods"), found.yaw.expect("ten periods"));
+        assert!((tilt.amplitude - 3e6).abs() < 1.0, "{tilt:?}");
+        assert!((tilt.factor.expect("a reference") - 1.5).abs() < 1e-6, "{tilt:?}");
+        // A believed phase that is off by a constant tells the same amplitude.
+        assert!((yaw.amplitude - 1e6).abs() < 1.0, "{yaw:?}");
+        assert_eq!((yaw.reference, yaw.factor), (None, None));
+    }
+
+    #[test]
+    fn what_was_hardly_followed_has_no_amplitude() {
+        let never = found(&series(f64::INFINITY));
+        assert_eq!((never.locked_share, never.frequency_hz), (0.0, None));
+        assert_eq!((never.tilt, never.yaw), (None, None));
+        // Locked for a period and a half.
+        let late = found(&series(1850.0));
+        assert!(late.frequency_hz.is_some() && late.tilt.is_none() && late.yaw.is_none());
+    }
+
+    #[test]
+    fn a_turbine_that_follows_nothing_has_none() {
+        let series = series(0.0);
+        let analysed = Analysed::whole(&series, INTERVAL);
+        assert_eq!(followed(&analysed, "T1", 3, &Control::Baseline).expect("nothing"), None);
+    }
+}
