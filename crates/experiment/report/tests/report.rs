@@ -3,7 +3,7 @@
 mod synthetic;
 
 use basis::records::{MeanderingAxis, MeanderingSummary, PitchDuty};
-use report::{ReportError, StudyRecords};
+use report::{PhaseNumbers, PhaseRow, ReportError, StudyRecords, Synchronisation};
 use std::fs;
 use std::path::Path;
 
@@ -270,6 +270,39 @@ fn what_a_turbine_made_of_meandering_stands_in_a_table_with_units() {
         format!("<td class=\"n\">0.0 %</td>{none}{none}<td>tilt</td>{none}{none}{none}"),
     ] {
         assert!(page.contains(&expected), "`{expected}` is missing");
+    }
+    assert_well_formed(&page);
+}
+
+#[test]
+fn the_phase_error_at_the_helix_frequency_stands_beside_its_coherence() {
+    let mut study = synthetic::two_runs();
+    let numbers = |phase_error: Option<[f64; 2]>| PhaseNumbers {
+        rmse: 0.3,
+        bias: 0.1,
+        spread: 0.2,
+        locking: 0.95,
+        coherence: phase_error.map(|_| 0.87),
+        phase_error: phase_error.map(|angles| angles.map(f64::to_radians)),
+        amplitude: 1.23,
+        true_amplitude: 1.5,
+    };
+    let row = PhaseRow {
+        run: "helix-ccw".into(),
+        offset: Some(1.0),
+        tilt: numbers(Some([-12.34, 4.56])),
+        yaw: numbers(None),
+        trust: 0.5,
+    };
+    study.synchronisation =
+        Some(Synchronisation { phases: vec![row], ..Synchronisation::default() });
+    let page = page(&study);
+    for expected in [
+        "<th class=\"n\" colspan=\"2\">phase error (°)</th>",
+        "<td class=\"n\">0.87</td><td class=\"n\">−12.3</td><td class=\"pm\">± 4.6</td><td class=\"n\">1.23</td>",
+        "<td class=\"n\">–</td><td class=\"n\">–</td><td class=\"pm\"></td><td class=\"n\">1.23</td>",
+    ] {
+        assert!(page.contains(expected), "`{expected}` is missing");
     }
     assert_well_formed(&page);
 }

@@ -90,7 +90,7 @@ fn text(answer: &PhaseAnswer) -> String {
         answer.turbine, answer.run, answer.truth, answer.trust
     );
     text += &format!(
-        "{:<6} {:>14} {:>10} {:>10} {:>16} {:>10} {:>9} {:>11}\n",
+        "{:<6} {:>14} {:>10} {:>10} {:>16} {:>10} {:>9} {:>11} {:>18}\n",
         "axis",
         "amplitude m/s",
         "true m/s",
@@ -98,18 +98,22 @@ fn text(answer: &PhaseAnswer) -> String {
         "bias deg",
         "spread deg",
         "locking",
-        "coherence"
+        "coherence",
+        "phase error deg"
     );
     for (name, axis) in [("tilt", &answer.tilt), ("yaw", &answer.yaw)] {
         let agreement = &axis.agreement;
         let bias = match agreement.bias_half_width_95 {
-            Some(half) => format!("{:.1} ± {:.1}", agreement.bias.to_degrees(), half.to_degrees()),
+            Some(half) => with_interval(agreement.bias, half),
             None => format!("{:.1}", agreement.bias.to_degrees()),
         };
         let coherence =
             axis.coherence.map_or("–".to_owned(), |found| format!("{:.3}", found.coherence));
+        let error = axis.coherence.map_or("–".to_owned(), |found| {
+            with_interval(found.phase_error, found.phase_error_half_width_95)
+        });
         text += &format!(
-            "{name:<6} {:>14.2} {:>10.2} {:>10.1} {bias:>16} {:>10.1} {:>9.3} {coherence:>11}\n",
+            "{name:<6} {:>14.2} {:>10.2} {:>10.1} {bias:>16} {:>10.1} {:>9.3} {coherence:>11} {error:>18}\n",
             axis.amplitude,
             axis.true_amplitude,
             agreement.rmse.to_degrees(),
@@ -117,6 +121,7 @@ fn text(answer: &PhaseAnswer) -> String {
             agreement.locking,
         );
     }
+    text += "± 95 %; coherence and phase error, estimate before truth, at the helix's frequency, from the cross-spectrum\n";
     if let Some([tilt, yaw]) = answer.hindsight {
         let [tilt, yaw] =
             [tilt, yaw].map(|found| (found.spread.to_degrees(), found.bias.to_degrees()));
@@ -126,6 +131,11 @@ fn text(answer: &PhaseAnswer) -> String {
         );
     }
     text
+}
+
+/// An angle and its half width (rad), in degrees.
+fn with_interval(angle: f64, half_width: f64) -> String {
+    format!("{:.1} ± {:.1}", angle.to_degrees(), half_width.to_degrees())
 }
 
 fn json(answer: &PhaseAnswer) -> serde_json::Value {
@@ -142,6 +152,8 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
             "coherence": axis.coherence.map(|found| found.coherence),
             "coherence_95": axis.coherence.map(|found| found.coherence_95),
             "phase_error_deg": axis.coherence.map(|found| found.phase_error.to_degrees()),
+            "phase_error_half_width_95_deg":
+                axis.coherence.map(|found| found.phase_error_half_width_95.to_degrees()),
         })
     };
     json!({
@@ -198,4 +210,64 @@ fn tuned_json(tuned: &Tuned) -> Result<String> {
         "phase_error_deg": tuned.error.to_degrees(),
     });
     Ok(serde_json::to_string_pretty(&value).into_diagnostic()? + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wakemix::analysis::phase::{Agreement, Coherence};
+
+    /// An axis with an error of `error` (deg) at the helix's frequency, or in a record too short to tell.
+    fn axis(error: Option<f64>) -> PhaseAxis {
+        let coherence = error.map(|error| Coherence {
+            coherence: 0.9,
+            coherence_95: [0.8, 0.95],
+            floor_95: 0.2,
+            phase_error: error.to_radians(),
+            phase_error_half_width_95: 4.56_f64.to_radians(),
+            gain: 1.0,
+            n_segments: 8,
+        });
+        PhaseAxis {
+            amplitude: 1.0,
+            true_amplitude: 1.1,
+            agreement: Agreement {
+                rmse: 0.2,
+                rmse_95: None,
+                bias: 0.1,
+                bias_half_width_95: Some(0.05),
+                spread: 0.17,
+                locking: 0.98,
+            },
+            coherence,
+            phase: vec![0.0],
+            true_phase: vec![0.0],
+        }
+    }
+
+    #[test]
+    fn the_phase_error_at_the_helix_frequency_stands_in_text_and_json() {
+        let answer = PhaseAnswer {
+            run: "joined".into(),
+            turbine: "T2".into(),
+            truth: "alone".into(),
+            times: vec![600.0],
+            mean_winds: [8.0, 8.1],
+            tilt: axis(Some(-12.34)),
+            yaw: axis(None),
+            trust: 0.5,
+            hindsight: None,
+        };
+        let text = text(&answer);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[2].ends_with("coherence    phase error deg"), "{text}");
+        assert!(lines[3].starts_with("tilt") && lines[3].ends_with(" -12.3 ± 4.6"), "{text}");
+        assert!(lines[4].starts_with("yaw") && lines[4].ends_with(" –"), "{text}");
+        let width = |line: &str| line.chars().count();
+        assert_eq!([width(lines[3]), width(lines[4])], [width(lines[2]); 2], "{text}");
+        let json = json(&answer);
+        let half_width = json["tilt"]["phase_error_half_width_95_deg"].as_f64().expect("a number");
+        assert!((half_width - 4.56).abs() < 1e-9, "{half_width}");
+        assert!(json["yaw"]["phase_error_half_width_95_deg"].is_null());
+    }
 }

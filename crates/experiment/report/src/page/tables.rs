@@ -26,6 +26,10 @@ pub(crate) fn phases(study: &Study) -> Vec<Value> {
             spread => degrees(numbers.spread),
             locking => number(numbers.locking, 2),
             coherence => numbers.coherence.map_or("–".to_owned(), |found| number(found, 2)),
+            error => numbers.phase_error.map_or("–".to_owned(), |[error, _]| degrees(error)),
+            error_interval => numbers
+                .phase_error
+                .map_or(String::new(), |[_, half]| format!("±{SPACE}{}", degrees(half))),
             amplitude => number(numbers.amplitude, 2),
             true_amplitude => number(numbers.true_amplitude, 2),
         }

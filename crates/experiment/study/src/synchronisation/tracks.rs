@@ -22,6 +22,9 @@ pub(super) fn table(study: &Synchronised) -> Vec<PhaseRow> {
             spread: axis.agreement.spread,
             locking: axis.agreement.locking,
             coherence: axis.coherence.map(|found| found.coherence),
+            phase_error: axis
+                .coherence
+                .map(|found| [found.phase_error, found.phase_error_half_width_95]),
             amplitude: axis.amplitude,
             true_amplitude: axis.true_amplitude,
         };

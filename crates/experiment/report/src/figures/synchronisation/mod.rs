@@ -57,6 +57,9 @@ pub struct PhaseNumbers {
     pub locking: f64,
     /// Coherence at the excitation's frequency (–); absent in short records.
     pub coherence: Option<f64>,
+    /// Phase of the estimate minus that of the truth at the excitation's frequency, from the cross-spectrum, and half width
+    /// of its 95 % interval (rad); absent in short records.
+    pub phase_error: Option<[f64; 2]>,
     /// Mean estimated amplitude (m/s).
     pub amplitude: f64,
     /// Mean true amplitude (m/s).
