@@ -105,6 +105,11 @@ impl PhaseSync {
         &self.settings
     }
 
+    /// What finds the helix.
+    pub fn estimator(&self) -> &HelixEstimator {
+        &self.estimator
+    }
+
     /// What was believed at the last instant; nothing before the first.
     pub fn estimate(&self) -> Option<&HelixEstimate> {
         self.estimate.as_ref()

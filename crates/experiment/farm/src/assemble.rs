@@ -144,6 +144,7 @@ pub fn controller(
         Control::PhaseSync(asked) => {
             let setting = estimator_setting(asked, case, plan);
             let options = estimator_options(asked.estimator, case.flow.solver);
+            let options = asked.noise.apply(options);
             let options = asked.calibration.map_or(options, |found| found.apply(options));
             let estimator = HelixEstimator::new(&model.definition, &setting, options)?;
             let settings = SyncSettings {
@@ -205,7 +206,7 @@ pub fn estimator_setting(sync: &PhaseSyncSettings, case: &Case, plan: &Plan) -> 
     }
 }
 
-/// Choices of an estimator in the air of `solver`, before calibration.
+/// Choices of an estimator in the air of `solver`, before calibration, with its own noise.
 pub fn estimator_options(estimator: PhaseEstimator, solver: Solver) -> Options {
     match estimator {
         PhaseEstimator::Robust if solver.is_prescribed() => {

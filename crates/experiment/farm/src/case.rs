@@ -4,7 +4,7 @@ pub use control::Sense;
 pub use control::meandering::{Decoupling, Followed, Leader, Reference};
 pub use sensing::{Instrument, Instruments, Lag};
 
-use estimation::helix::Calibration;
+use estimation::helix::{Calibration, Measurement, Options};
 use serde::{Deserialize, Serialize};
 
 /// A study: one wind, one row of turbines, several runs to compare.
@@ -414,8 +414,34 @@ pub struct PhaseSync {
     pub estimator: PhaseEstimator,
     /// Whether it fades to the baseline where the estimate cannot be trusted.
     pub fallback: bool,
+    /// Noise that the estimator is told to believe in.
+    #[serde(default)]
+    pub noise: PhaseNoise,
     /// What the estimator makes of the turbine's own pitch; found [before the runs](crate::pitch_response::calibration).
     pub calibration: Option<Calibration>,
+}
+
+/// Noise that a phase estimator is told to believe in; what is absent stays as the estimator has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PhaseNoise {
+    /// Standard deviation of one blade's moment (N m).
+    pub measurement: Option<f64>,
+    /// Wandering of amplitudes, or of sine and cosine components ((m/s)²/s).
+    pub wandering_amplitude: Option<f64>,
+    /// Wandering of phases (rad²/s).
+    pub wandering_phase: Option<f64>,
+}
+
+impl PhaseNoise {
+    /// `options` with this noise.
+    pub fn apply(&self, options: Options) -> Options {
+        let mut options = options;
+        let noise = &mut options.noise;
+        noise.measurement = self.measurement.map_or(noise.measurement, Measurement::Moment);
+        noise.amplitude = self.wandering_amplitude.unwrap_or(noise.amplitude);
+        noise.phase = self.wandering_phase.unwrap_or(noise.phase);
+        options
+    }
 }
 
 /// What finds the phase of a helix.

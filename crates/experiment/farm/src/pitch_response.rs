@@ -149,6 +149,7 @@ pub fn calibration(
     let record = pitching(case, plan, model, index, &pitch, progress)?;
     let setting = assemble::estimator_setting(sync, case, plan);
     let options = assemble::estimator_options(PhaseEstimator::Robust, case.flow.solver);
+    let options = sync.noise.apply(options);
     let settling = PERIODS[0] * TAU / setting.rate;
     Ok(calibrate(&model.definition, &setting, options, &record, settling)?)
 }

@@ -309,11 +309,14 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, StudyError> {
     Ok(tuned.map_err(AssemblyError::from)?)
 }
 
-/// Choices of `estimator`, calibrated as in the run.
+/// Choices of `estimator`, calibrated as in the run, with the noise that it was given there.
 fn options(asked: &Asked, estimator: PhaseEstimator) -> Options {
     let options = estimator_options(estimator, asked.case.flow.solver);
     let calibration = asked.calibration.filter(|_| estimator == PhaseEstimator::Robust);
-    calibration.map_or(options, |found| found.apply(options))
+    let options = calibration.map_or(options, |found| found.apply(options));
+    // Noise is given to one estimator; another's states may wander otherwise.
+    let sync = asked.sync.filter(|sync| sync.estimator == estimator);
+    sync.map_or(options, |sync| sync.noise.apply(options))
 }
 
 /// What the estimator of the turbine is told.

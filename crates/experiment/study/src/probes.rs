@@ -5,7 +5,9 @@ use crate::prepare::Setup;
 use crate::watcher::{Probing, Watcher};
 use basis::records::PitchResponse;
 use estimation::helix::Calibration;
-use farm::case::{Control, Decoupling, DynamicInflow, Meandering, PhaseEstimator, PhaseSync};
+use farm::case::{
+    Control, Decoupling, DynamicInflow, Meandering, PhaseEstimator, PhaseNoise, PhaseSync,
+};
 use farm::pitch_response::{
     CalibrationError, ProbeCost, calibration, calibration_cost, decoupling, decoupling_cost,
 };
@@ -114,8 +116,12 @@ impl Setup {
         let turbine = self.turbine_texts.get(&placement.model).map_or("", String::as_str);
         let asked = match asked {
             Asked::Calibration(sync) => format!(
-                "calibration {:?} {:?} {:?} {:?}",
-                sync.sense, sync.amplitude, sync.strouhal, sync.azimuth_offset
+                "calibration {:?} {:?} {:?} {:?}{}",
+                sync.sense,
+                sync.amplitude,
+                sync.strouhal,
+                sync.azimuth_offset,
+                trace(&sync.noise)
             ),
             Asked::Decoupling(asked) => format!("decoupling {:?}", asked.strouhal),
         };
@@ -215,6 +221,12 @@ impl Setup {
     }
 }
 
+/// What `noise` leaves in the digest of a calibration: nothing where none is given, so that what was found before one could
+/// give any is still known.
+fn trace(noise: &PhaseNoise) -> String {
+    if *noise == PhaseNoise::default() { String::new() } else { format!(" {noise:?}") }
+}
+
 /// `control` when it is told what was `found` of its turbine's own pitch.
 fn told(control: Control, found: &PitchResponse) -> Control {
     match control {
@@ -263,5 +275,86 @@ fn decoupling_of(response: &PitchResponse) -> Option<Decoupling> {
             Some(Decoupling { azimuth_offset, delay, gain })
         }
         PitchResponse::Estimator { .. } => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use control::Excitation;
+    use estimation::helix::{Measurement, Options};
+    use farm::assemble::controller;
+
+    /// A case whose T2 joins the helix of T1 with `keys` beside the needed ones.
+    fn setup(keys: &str) -> Setup {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("case.toml");
+        let text = format!(
+            r#"
+name = "joined"
+[wind]
+speed = 9.0
+turbulence_intensity = 0.0
+[flow]
+solver = "uniform"
+step = 0.2
+[time]
+spin_up = 10.0
+duration = 60.0
+[[turbine]]
+name = "T1"
+model = "nrel-5mw"
+position_diameters = [0.0, 0.0]
+[[turbine]]
+name = "T2"
+model = "nrel-5mw"
+position_diameters = [5.0, 0.0]
+[[run]]
+name = "joined"
+control.T1 = {{ kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }}
+control.T2 = {{ kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 2.0{keys} }}
+"#
+        );
+        std::fs::write(&path, text).expect("a file");
+        Setup::read(&path, &[]).expect("a sound case")
+    }
+
+    fn key(keys: &str) -> String {
+        let setup = setup(keys);
+        let asked = Asked::of(&setup.case.runs[0].control[1]).expect("a calibration");
+        setup.key(1, &asked)
+    }
+
+    #[test]
+    fn noise_that_is_given_is_another_calibration_and_none_leaves_no_trace() {
+        assert_eq!(trace(&PhaseNoise::default()), "");
+        let usual = key("");
+        assert_eq!(key(", start = 20.0"), usual);
+        let given = key(", measurement_noise_mnm = 0.5");
+        assert_ne!(given, usual);
+        assert_ne!(key(", measurement_noise_mnm = 0.6"), given);
+        assert_ne!(key(", wandering_amplitude = 0.5"), given);
+    }
+
+    #[test]
+    fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
+        let options = |keys: &str| -> Options {
+            let setup = setup(keys);
+            let control = &setup.case.runs[0].control[1];
+            let built = controller(control, &setup.models[1], &setup.case, &setup.plan);
+            match built.expect("a controller").excitation {
+                Excitation::PhaseSync(sync) => *sync.estimator().options(),
+                other => panic!("{other:?}"),
+            }
+        };
+        let usual = options("");
+        let given = options(", measurement_noise_mnm = 0.5, wandering_amplitude = 3e-3");
+        assert_eq!(given.noise.measurement, Measurement::Moment(5e5));
+        assert_eq!((given.noise.amplitude, given.noise.phase), (3e-3, usual.noise.phase));
+        assert_eq!(Options { noise: usual.noise, ..given }, usual);
+        let published = options(", estimator = \"published\", wandering_phase = 3e-4");
+        let own = Options::published().noise;
+        assert_eq!((published.noise.phase, published.noise.amplitude), (3e-4, own.amplitude));
+        assert_eq!(published.noise.measurement, own.measurement);
     }
 }

@@ -32,7 +32,7 @@ structure = "rigid"
 [[run]]
 name = "joined"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
-control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 2.0, fallback = "none" }
+control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 2.0, fallback = "none" KEYS }
 [[run]]
 name = "alone"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
@@ -48,9 +48,20 @@ impl Watcher for Silent {}
 
 #[test]
 fn a_replay_believes_what_the_run_did() {
+    assert_believed("");
+}
+
+/// Noise that differs from the estimator's own makes phases differ by far more than what is allowed.
+#[test]
+fn a_replay_believes_in_the_noise_that_the_run_was_given() {
+    assert_believed(", measurement_noise_mnm = 0.6, wandering_amplitude = 3e-3");
+}
+
+/// The case with `keys` in the control of T2: its run, and a replay of it, find the same phases.
+fn assert_believed(keys: &str) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let case = folder.path().join("case.toml");
-    fs::write(&case, CASE).expect("a file");
+    fs::write(&case, CASE.replace(" KEYS", keys)).expect("a file");
     let library = formats::library::text("nrel-5mw").expect("a turbine of the library");
     fs::write(folder.path().join("own.toml"), library).expect("a file");
     let output = folder.path().join("out");

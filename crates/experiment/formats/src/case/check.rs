@@ -6,6 +6,7 @@ use super::instruments::instruments_of;
 use super::keys::{self, CONTROLS};
 use super::meandering::meandering_of;
 use super::momentum::{dynamic_inflow_of, tower_influence_of};
+use super::phase_sync::noise_of;
 use super::section::{Findings, Section, list};
 use super::spelling::nearest;
 use super::table::Table;
@@ -308,6 +309,11 @@ fn phase_sync_of(
         let fix = "give a turbine upstream a helix, or say which helix it is: sense = \"ccw\", strouhal = 0.25";
         section.findings().note(section.span_of("kind"), kind, Some(fix.into()));
     }
+    let estimator = if section.choice("estimator") == "published" {
+        PhaseEstimator::Published
+    } else {
+        PhaseEstimator::Robust
+    };
     PhaseSync {
         sense: sense.unwrap_or(Sense::CounterClockwise),
         amplitude: section.number("amplitude_deg").to_radians(),
@@ -315,12 +321,9 @@ fn phase_sync_of(
         offset: section.number("offset_deg").to_radians(),
         azimuth_offset: section.number("azimuth_offset_deg").to_radians(),
         start,
-        estimator: if section.choice("estimator") == "published" {
-            PhaseEstimator::Published
-        } else {
-            PhaseEstimator::Robust
-        },
+        estimator,
         fallback: section.choice("fallback") != "none",
+        noise: noise_of(section, estimator),
         calibration: None,
     }
 }

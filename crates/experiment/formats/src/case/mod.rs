@@ -11,6 +11,7 @@ mod keys;
 mod meandering;
 mod momentum;
 mod objection;
+mod phase_sync;
 mod reference;
 mod section;
 mod spelling;

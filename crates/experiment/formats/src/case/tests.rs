@@ -1,7 +1,9 @@
 //! What the case file's users see: good files read, bad ones told where and how to mend.
 
 use super::*;
-use farm::case::{Control, Followed, Ground, Leader, Meandering, Reference, Sense, Sides};
+use farm::case::{
+    Control, Followed, Ground, Leader, Meandering, PhaseNoise, PhaseSync, Reference, Sense, Sides,
+};
 use proptest::prelude::*;
 use std::fs;
 
@@ -92,6 +94,28 @@ fn meandering_needs_little_to_be_said() {
     assert_eq!((decoupling.azimuth_offset, decoupling.delay), (38.4f64.to_radians(), 0.99));
     assert!((decoupling.gain * 1f64.to_radians() - 4.2e6).abs() < 1e-3);
     assert_eq!(given.sense, Sense::CounterClockwise);
+}
+
+/// The phase synchronisation of T2 in a small case that says `keys` beside the needed ones, after it was written and read.
+fn phase_sync(keys: &str) -> PhaseSync {
+    let control = format!("kind = \"phase-sync\", offset_deg = 90, amplitude_deg = 4{keys}");
+    let case = small(&[&format!("run.helix.control.T2={{ {control} }}")]);
+    let case = case.unwrap_or_else(|error| panic!("{}", error.to_lines()));
+    assert_eq!(parse("again", &write(&case), &[]).unwrap(), case, "{keys}");
+    let Control::PhaseSync(sync) = case.runs[1].control[1] else { panic!("no phase-sync") };
+    sync
+}
+
+#[test]
+fn noise_of_a_phase_estimator_is_its_own_unless_given() {
+    assert_eq!(phase_sync("").noise, PhaseNoise::default());
+    let robust = phase_sync(", measurement_noise_mnm = 0.3141, wandering_amplitude = 2.5e-4");
+    assert_eq!(robust.noise.measurement, Some(0.3141 * 1e6));
+    assert_eq!(robust.noise.wandering_amplitude, Some(2.5e-4));
+    assert_eq!(robust.noise.wandering_phase, None);
+    let published = phase_sync(", estimator = \"published\", wandering_phase = 3e-4");
+    let expected = PhaseNoise { wandering_phase: Some(3e-4), ..PhaseNoise::default() };
+    assert_eq!(published.noise, expected);
 }
 
 #[test]
@@ -187,6 +211,16 @@ fn errors_name_file_line_key_and_fix() {
             "\"helix\", sense = \"ccw\"",
             "\"phase-sync\", offset_deg = 90",
             "T1 shall join a helix, but no turbine upstream of it has one in this run; give a turbine upstream a helix",
+        ),
+        (
+            "\"helix\", sense",
+            "\"phase-sync\", offset_deg = 90, wandering_phase = 1e-4, sense",
+            "`run.helix.control.T1.wandering_phase` is of no use here: it goes with estimator = \"published\"",
+        ),
+        (
+            "\"helix\", sense",
+            "\"phase-sync\", offset_deg = 90, measurement_noise_mnm = 0, sense",
+            "`run.helix.control.T1.measurement_noise_mnm` = 0 is out of range: 0 < measurement_noise_mnm <= 10000 MN m",
         ),
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",

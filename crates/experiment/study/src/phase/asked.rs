@@ -7,7 +7,7 @@ use analysis::phase::Reference;
 use basis::records::Series;
 use control::excitation_rate;
 use estimation::helix::Calibration;
-use farm::case::{Case, Control, helix_upstream};
+use farm::case::{Case, Control, PhaseSync, helix_upstream};
 use formats::records::{self, Manifest, RunFolder};
 use formats::{case, library, turbine_file};
 use std::path::Path;
@@ -26,6 +26,8 @@ pub(super) struct Asked {
     pub(super) definition: Arc<Definition>,
     /// What the run made of its own pitch, where it asked.
     pub(super) calibration: Option<Calibration>,
+    /// How it was asked to join a helix, where it was.
+    pub(super) sync: Option<PhaseSync>,
     /// Whether it pitches a helix of its own.
     pub(super) pitches: bool,
     pub(super) series: Series,
@@ -76,6 +78,10 @@ impl Asked {
             Control::PhaseSync(sync) => sync.amplitude != 0.0,
             _ => false,
         };
+        let sync = match control[index] {
+            Control::PhaseSync(sync) => Some(sync),
+            _ => None,
+        };
         let definition = Arc::new(rotor(&case.turbines[index].model, &manifest)?);
         let summary = summary.turbines.into_iter().find(|turbine| turbine.name == name);
         let response = summary.and_then(|turbine| turbine.pitch_response);
@@ -87,6 +93,7 @@ impl Asked {
             reference,
             definition,
             calibration,
+            sync,
             pitches,
             series,
             truth,

@@ -151,6 +151,27 @@ pub(in crate::case) static PHASE_SYNC: Table = Table {
             Value("\"baseline\""),
             "What it does where the estimate cannot be trusted. `baseline`: it fades out, and comes back with the helix. `none`: it goes on.",
         ),
+        key(
+            "measurement_noise_mnm",
+            above(0.0, 1e4),
+            "MN m",
+            Otherwise("5 % of the mean moment"),
+            "Standard deviation of the noise in a blade's moment that the estimator believes in. `wakemix analyse tune` finds it, and how the wave wanders, on the records of a run.",
+        ),
+        key(
+            "wandering_amplitude",
+            above(0.0, 1e6),
+            "m²/s³",
+            Otherwise("8e-4; 1e-4 with `estimator = \"published\"`"),
+            "Variance per time, (m/s)²/s, with which the helix's amplitude wanders in the estimator's belief; with `robust` each of its sine and cosine components.",
+        ),
+        key(
+            "wandering_phase",
+            above(0.0, 1e6),
+            "rad²/s",
+            Otherwise("1e-4; only with `estimator = \"published\"`"),
+            "Variance per time with which each phase wanders in the estimator's belief.",
+        ),
         START,
     ],
 };
