@@ -244,6 +244,8 @@ pub struct Placement {
     pub name: String,
     /// Turbine model in the library, or a path to a turbine file.
     pub model: String,
+    /// Path to a ROSCO input file (DISCON.IN) with the constants of its controller; the model's own when absent.
+    pub discon: Option<String>,
     /// Position of the tower's foot, farm frame x and y (diameters of the first turbine).
     pub position_diameters: [f64; 2],
     /// Whether blades, tower and drive train bend.
@@ -256,6 +258,17 @@ pub struct Placement {
     pub tower_influence: TowerInfluence,
     /// What its controller sees of it.
     pub instruments: Instruments,
+}
+
+impl Placement {
+    /// Name of what stands there: the model, and the input file of its controller where it has one of its own. Turbines of
+    /// one name are alike, machine and controller.
+    pub fn machine(&self) -> String {
+        match &self.discon {
+            None => self.model.clone(),
+            Some(discon) => format!("{} under {discon}", self.model),
+        }
+    }
 }
 
 /// How a rotor's induction follows its loads; [`turbine::aero::induction`] gives the equations.

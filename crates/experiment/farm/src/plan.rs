@@ -177,7 +177,7 @@ impl PlanError {
     }
 }
 
-/// Sizes domain and step for `case`; `footprints` holds one entry per model that the case names.
+/// Sizes domain and step for `case`; `footprints` holds one entry per [machine](crate::case::Placement::machine) of the case.
 ///
 /// The step is the longest one that keeps tips well below the speed of sound on the lattice and the free stream within
 /// [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole number of steps.
@@ -187,7 +187,7 @@ impl PlanError {
 pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Plan, PlanError> {
     let mut machines = Vec::with_capacity(case.turbines.len());
     for placement in &case.turbines {
-        let footprint = footprints.get(&placement.model).ok_or_else(|| {
+        let footprint = footprints.get(&placement.machine()).ok_or_else(|| {
             PlanError::UnknownModel { name: placement.name.clone(), model: placement.model.clone() }
         })?;
         machines.push((placement, *footprint));

@@ -1,7 +1,8 @@
 //! The azimuth offset with which tilt pitch answers in the tilt moment and yaw pitch in the yaw moment, of any turbine.
 
 use crate::StudyError;
-use crate::prepare::{Setup, turbine};
+use crate::models::turbine;
+use crate::prepare::Setup;
 use control::excitation_rate;
 use control::meandering::relative_gain;
 use farm::assemble::Model;

@@ -1,6 +1,6 @@
 //! A study from case file to report: every run of a case, with its files.
 //!
-//! Reading order: [`run`], then `prepare` (what all runs share), `probes` (how pitch acts), `simulate` (one run), `summarise` (its numbers).
+//! Reading order: [`run`], then `prepare` (what all runs share) with `models` (their turbines), `probes` (how pitch acts), `simulate` (one run), `summarise` (its numbers).
 
 mod air;
 mod azimuth_offset;
@@ -9,6 +9,7 @@ mod error;
 mod lines;
 mod loads;
 mod meandering;
+mod models;
 mod outb;
 mod phase;
 mod prepare;
@@ -220,7 +221,7 @@ fn begin_run(
     Ok(manifest)
 }
 
-/// Whether what is in `folder` was made with this very case and these very turbines.
+/// Whether what is in `folder` was made with this very case, these very turbines and controllers.
 fn check_same(setup: &Setup, run: &Run, folder: &RunFolder) -> Result<(), StudyError> {
     if !folder.manifest_path().exists() {
         return Ok(());

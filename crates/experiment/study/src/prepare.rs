@@ -2,6 +2,7 @@
 
 use crate::StudyError;
 use crate::air;
+use crate::models::{self, Loaded};
 use crate::probes::Probes;
 use crate::simulate::VOLUME_STRIDE;
 use crate::watcher::{Estimate, Watcher};
@@ -17,7 +18,6 @@ use flow::inflow::sizing::Need;
 use flow::inflow::turbulent::BLOCKING_HEIGHT;
 use flow::inflow::{MeanProfile, TurbulentInflow, mann, size_box};
 use formats::case::objection;
-use formats::turbine_file::TurbineFile;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -53,7 +53,7 @@ pub struct Setup {
     pub case_text: String,
     /// One per turbine, in the case's order.
     pub models: Vec<Model>,
-    /// Text of each turbine model's file.
+    /// Text of each turbine model's file, and of each controller's own input file with its table.
     pub turbine_texts: BTreeMap<String, String>,
     /// Domain and steps.
     pub plan: Plan,
@@ -72,22 +72,10 @@ impl Setup {
     /// [`StudyError`] for a case, a turbine or a layout that cannot be used.
     pub fn read(path: &Path, overrides: &[String]) -> Result<Self, StudyError> {
         let file = formats::case::read(path, overrides)?;
-        let mut loaded: BTreeMap<String, Model> = BTreeMap::new();
-        let mut texts = BTreeMap::new();
-        for placement in &file.case.turbines {
-            if !loaded.contains_key(&placement.model) {
-                let (text, turbine) = turbine(&placement.model, file.folder())?;
-                texts.insert(placement.model.clone(), text);
-                let model = Model {
-                    definition: Arc::new(turbine.definition),
-                    constants: turbine.controller,
-                };
-                loaded.insert(placement.model.clone(), model);
-            }
-        }
+        let Loaded { models, texts, warnings } = models::load(&file)?;
         let case_text = formats::case::write(&file.case);
         let folder = file.folder().to_owned();
-        let setup = Self::new(file.case.clone(), case_text, &loaded);
+        let setup = Self::new(file.case.clone(), case_text, &models);
         let mut setup = setup.map_err(|error| match error {
             // What only the turbines tell is pointed at in the file, too.
             StudyError::Plan(error) => {
@@ -106,10 +94,12 @@ impl Setup {
             error => error,
         })?;
         setup.turbine_texts = texts;
+        setup.warnings.extend(warnings);
         setup.folder = folder;
         Ok(setup)
     }
 
+    /// The same of a case whose machines are `loaded`, by the names of [`Placement::machine`](farm::case::Placement::machine).
     pub(crate) fn new(
         case: Case,
         case_text: String,
@@ -126,7 +116,7 @@ impl Setup {
         let equipped: BTreeMap<&String, Model> =
             loaded.iter().map(|(name, model)| (name, equip(model))).collect();
         let models: Vec<Model> =
-            case.turbines.iter().map(|placement| equipped[&placement.model].clone()).collect();
+            case.turbines.iter().map(|placement| equipped[&placement.machine()].clone()).collect();
         check_control(&case, &plan, &models)?;
         let warnings = warnings(&case, &plan);
         let inflow = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
@@ -240,14 +230,15 @@ impl Setup {
         if self.case.flow.solver.is_prescribed() {
             return Ok(ControlFlow::Continue(None));
         }
-        let mut checked: Vec<String> = Vec::new();
+        let mut checked: Vec<(&str, Option<&str>)> = Vec::new();
         let mut slowest: Option<f64> = None;
-        for model in &self.models {
+        for (model, placement) in self.models.iter().zip(&self.case.turbines) {
             let name = &model.definition.name;
-            if checked.contains(name) {
+            let machine = (name.as_str(), placement.discon.as_deref());
+            if checked.contains(&machine) {
                 continue;
             }
-            checked.push(name.clone());
+            checked.push(machine);
             let what = format!("checking {name}");
             let check = self_check(
                 model,
@@ -340,21 +331,6 @@ impl Setup {
         }
         Ok(())
     }
-}
-
-/// The turbine of the library called `model`, or that in the file of this path, relative to `folder`; with its text.
-pub(crate) fn turbine(model: &str, folder: &Path) -> Result<(String, TurbineFile), StudyError> {
-    if let Some(text) = formats::library::text(model) {
-        return Ok((text.to_owned(), formats::library::load(model)?));
-    }
-    let path = folder.join(model);
-    if path.is_file() {
-        let text = formats::atomic::read_text(&path, "a turbine file")?;
-        let parsed = formats::turbine_file::parse(&path.display().to_string(), &text)?;
-        return Ok((text, parsed));
-    }
-    // Neither: the library says what there is.
-    Ok((String::new(), formats::library::load(model)?))
 }
 
 /// Whether every rotor that shall pitch by tilt and yaw has the blades for it, and every controller can be made: known now,

@@ -1,6 +1,7 @@
 //! Probing before the runs: how the pitch of a turbine acts, found once for turbines that are alike, kept in the study's folder.
 
 use crate::StudyError;
+use crate::models::text_names;
 use crate::prepare::Setup;
 use crate::watcher::{Probing, Watcher};
 use basis::records::PitchResponse;
@@ -113,7 +114,12 @@ impl Setup {
     fn key(&self, index: usize, asked: &Asked) -> String {
         let (case, plan) = (&self.case, &self.plan);
         let placement = &case.turbines[index];
-        let turbine = self.turbine_texts.get(&placement.model).map_or("", String::as_str);
+        let text = |name: &String| self.turbine_texts.get(name).map_or("", String::as_str);
+        let turbine = text(&placement.model);
+        let controller: String = match &placement.discon {
+            None => String::new(),
+            Some(path) => text_names(path).iter().map(text).collect(),
+        };
         let asked = match asked {
             Asked::Calibration(sync) => format!(
                 "calibration {:?} {:?} {:?} {:?}{}",
@@ -134,7 +140,7 @@ impl Setup {
         let wind = &case.wind;
         sha256(
             format!(
-                "{} {} {} {}{inflow} {asked} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}",
+                "{} {} {} {}{inflow} {asked} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}{controller}",
                 env!("CARGO_PKG_VERSION"),
                 placement.model,
                 placement.flexible,

@@ -10,6 +10,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
     let placement = |(index, &position): (usize, &[f64; 2])| Placement {
         name: format!("T{}", index + 1),
         model: "model".to_owned(),
+        discon: None,
         position_diameters: position,
         flexible: true,
         dynamic_stall: false,

@@ -114,6 +114,7 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
         let placement = Placement {
             name: section.text("name"),
             model: section.text("model"),
+            discon: section.optional_text("discon"),
             position_diameters: section.pair("position_diameters"),
             flexible: section.choice("structure") != "rigid",
             dynamic_stall: if section.has("stall") {

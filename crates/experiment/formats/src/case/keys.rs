@@ -204,6 +204,13 @@ pub(super) static TURBINE: Table = Table {
             "Turbine model of the library (`wakemix turbine list`), or the path of a turbine file, relative to this file.",
         ),
         key(
+            "discon",
+            Kind::Text,
+            "",
+            Otherwise("the turbine's own controller"),
+            "Input file of ROSCO (DISCON.IN, versions 2.6 to 2.10), relative to this file: the constants of the turbine's controller come from it instead of the turbine's file, with the table of coefficients that it names where that is there, and torque is controlled as it says.",
+        ),
+        key(
             "position_diameters",
             Kind::Pair(Range { low: -500.0, open: false, high: 500.0 }),
             "D",

@@ -132,6 +132,23 @@ fn stall_is_dynamic_where_the_wind_is_prescribed_unless_the_case_says_otherwise(
 }
 
 #[test]
+fn a_turbine_may_name_the_input_of_its_controller() {
+    let case = small(&["turbine.T2.discon=rosco/DISCON.IN"]).unwrap();
+    let asked: Vec<Option<&str>> = case.turbines.iter().map(|t| t.discon.as_deref()).collect();
+    assert_eq!(asked, [None, Some("rosco/DISCON.IN")]);
+    // Of one model, and yet not alike.
+    assert_eq!(case.turbines[0].machine(), "iea-15mw");
+    assert_ne!(case.turbines[0].machine(), case.turbines[1].machine());
+    let written = write(&case);
+    assert_eq!(parse("again", &written, &[]).unwrap(), case);
+    let plain = write(&small(&[]).unwrap());
+    assert!(!plain.contains("discon"), "{plain}");
+    assert_ne!(fingerprint(&written, "helix"), fingerprint(&plain, "helix"));
+    let lines = small(&["turbine.T2.discon=3"]).unwrap_err().to_lines();
+    assert!(lines.contains("`turbine.T2.discon` must be text in quotes"), "{lines}");
+}
+
+#[test]
 fn every_shipped_case_reads_and_reads_back() {
     for entry in fs::read_dir(root().join("cases")).unwrap() {
         let path = entry.unwrap().path();

@@ -57,6 +57,10 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         let [x, y] = turbine.position_diameters;
         writeln!(text, "\n[[turbine]]\nname = {}", quoted(&turbine.name))?;
         writeln!(text, "model = {}\nposition_diameters = [{x:?}, {y:?}]", quoted(&turbine.model))?;
+        // Only where it is used, so that the fingerprint of a case without it stays what it was.
+        if let Some(discon) = &turbine.discon {
+            writeln!(text, "discon = {}", quoted(discon))?;
+        }
         let structure = if turbine.flexible { "flexible" } else { "rigid" };
         writeln!(text, "structure = \"{structure}\"")?;
         let stall = if turbine.dynamic_stall { "dynamic" } else { "steady" };

@@ -45,7 +45,8 @@ impl Deck {
         Ok(Self::parse(path, &String::from_utf8_lossy(&bytes)))
     }
 
-    fn parse(path: &Path, text: &str) -> Self {
+    /// The file at `path`, which holds `text`.
+    pub(crate) fn parse(path: &Path, text: &str) -> Self {
         let lines =
             text.lines().enumerate().map(|(index, text)| line_of(index + 1, text)).collect();
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());

@@ -2,8 +2,6 @@
 
 use crate::turbine_file::TurbineFileError;
 use control::baseline::{CoefficientTable, CoefficientTableError};
-use std::fs;
-use std::path::Path;
 
 /// What a line of numbers belongs to, by the remark above it.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -21,15 +19,6 @@ struct Row {
     line: usize,
     part: Part,
     numbers: Vec<f64>,
-}
-
-/// The table in the file at `path`.
-///
-/// # Errors
-/// [`TurbineFileError`] when the file cannot be read, or as [`parse_coefficients`].
-pub fn coefficients(path: &Path) -> Result<CoefficientTable, TurbineFileError> {
-    let bytes = fs::read(path).map_err(|source| TurbineFileError::unreadable(path, source))?;
-    parse_coefficients(&path.display().to_string(), &String::from_utf8_lossy(&bytes))
 }
 
 /// The table in `text`, which errors call `file`: pitch angles in degrees and tip-speed ratios, each below a remark that

@@ -97,7 +97,7 @@ pub(crate) const DISCON: &str = "! Controller parameter input file
 ";
 
 /// Writes both files and reads them.
-fn read_texts(discon: &str, table: &str) -> (TempDir, Result<Constants, TurbineFileError>) {
+fn read_texts(discon: &str, table: &str) -> (TempDir, Result<Discon, TurbineFileError>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("DISCON.IN");
     fs::write(&path, discon).unwrap();
@@ -107,7 +107,7 @@ fn read_texts(discon: &str, table: &str) -> (TempDir, Result<Constants, TurbineF
 }
 
 fn constants(discon: &str) -> Constants {
-    read_texts(discon, TABLE).1.unwrap()
+    read_texts(discon, TABLE).1.unwrap().constants
 }
 
 fn refusal(from: &str, to: &str) -> String {
@@ -203,7 +203,6 @@ fn errors_name_file_line_key_and_what_was_expected() {
             "from 1",
         ),
         ("7.0                 ! VS_TSRopt\n", "", "VS_TSRopt", "the key VS_TSRopt"),
-        ("\"table.txt\"", "\"none.txt\"", "PerfFileName", "the name of a file"),
         (
             "0.0 0.0 0.1         ! PS_BldPitchMin",
             "0.0 0.1 ! PS_BldPitchMin",
@@ -215,6 +214,37 @@ fn errors_name_file_line_key_and_what_was_expected() {
         assert!(message.contains("DISCON.IN, line "), "{message}");
         assert!(message.contains(place) && message.contains(expected), "{message}");
     }
+}
+
+#[test]
+fn figures_that_no_controller_can_have_are_refused_by_their_own_keys() {
+    for (from, to, place, expected) in [
+        ("1100.               ! VS_MaxTq", "900. ! VS_MaxTq", "line 41, VS_MaxTq", "50000 to"),
+        ("-30.                ! VS_KP", "30. ! VS_KP", "VS_KP", "torque_proportional zero or more"),
+        ("0.05 0.1 0.2        ! PC", "0.05 0.2 0.1 ! PC", "PC_GS_angles", "rises"),
+        ("0.25                ! F_VS", "0.0 ! F_VS", "F_VSRefSpdCornerFreq", "above zero"),
+        ("0.1                 ! FA_HPF", "0.0 ! FA_HPF", "FA_HPFCornerFreq", "above zero"),
+    ] {
+        let message = refusal(from, to);
+        assert!(message.contains("DISCON.IN, line "), "{message}");
+        assert!(message.contains(place) && message.contains(expected), "{message}");
+    }
+}
+
+#[test]
+fn without_its_table_a_file_tells_all_but_the_estimator() {
+    let whole = read_texts(DISCON, TABLE).1.unwrap();
+    assert_eq!((whole.text.as_str(), whole.table_text.as_str()), (DISCON, TABLE));
+    assert_eq!(whole.missing_table, None);
+    let alone = Constants { estimator: None, ..whole.constants };
+    let (folder, read) = read_texts(&DISCON.replace("table.txt", "none.txt"), TABLE);
+    let read = read.unwrap();
+    assert_eq!(read.constants, alone);
+    assert_eq!(read.missing_table, Some(folder.path().join("none.txt")));
+    assert_eq!(read.table_text, "");
+    let unnamed = DISCON.replace("\"table.txt\"       ! PerfFileName\n", "");
+    let unnamed = read_texts(&unnamed, TABLE).1.unwrap();
+    assert_eq!((unnamed.constants, unnamed.missing_table), (alone, None));
 }
 
 #[test]

@@ -52,6 +52,17 @@ pub fn check(document: &Document, file: &str) -> Result<TurbineFile, TurbineFile
     check::check(document, &error::Place { file, text: "" })
 }
 
+/// Nothing when `controller`, which does not come from a turbine file, holds what one may hold; errors call it `file`.
+///
+/// # Errors
+/// [`TurbineFileError::Value`] naming the key of a turbine file, without a line.
+pub(crate) fn check_controller(
+    controller: &Controller,
+    file: &str,
+) -> Result<(), TurbineFileError> {
+    controller::check(controller, &error::Place { file, text: "" })
+}
+
 /// The turbine in the file at `path`.
 ///
 /// # Errors
