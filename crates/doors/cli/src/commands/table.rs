@@ -1,7 +1,6 @@
 //! The table of a study on the terminal.
 
 use std::fmt::Write;
-use wakemix::analysis::fatigue;
 use wakemix::basis::records::{Statistic, Summary, TurbineSummary};
 
 /// Loads of which the 1-Hz damage-equivalent is told: heading, channel, what it is.
@@ -75,7 +74,11 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
     );
     if !loads.is_empty() {
         let told: Vec<String> = loads.iter().map(Load::told).collect();
-        let _ = writeln!(text, "{}: {}", told.join("; "), fatigue::convention(None));
+        let _ = writeln!(
+            text,
+            "1-Hz damage-equivalent loads, rainflow, no mean correction: {}",
+            told.join("; ")
+        );
     }
     text
 }
