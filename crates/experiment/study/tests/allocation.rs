@@ -21,7 +21,7 @@ solver = "uniform"
 step = 0.05
 [time]
 spin_up = 1.0
-duration = 40.0
+duration = 120.0
 [[turbine]]
 name = "T1"
 model = "iea-15mw"
@@ -33,8 +33,8 @@ name = "helix"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
 "#;
 
-/// Steps until all that is made once is made (–).
-const N_WARM: usize = 100;
+/// Steps until all that is made once is made, and the helix, which fades in over a period of 107 s, is whole (–).
+const N_WARM: usize = 2200;
 /// Steps that are watched (–).
 const N_WATCHED: usize = 100;
 
@@ -129,6 +129,6 @@ fn a_step_under_the_baseline_allocates_nothing() {
 fn a_step_under_the_helix_allocates_nothing() {
     let (n_allocations, travel) = allocations(1);
     assert_eq!(n_allocations, 0);
-    // Five seconds of a period of a hundred, on top of the rotor's turns: the helix is at work.
+    // Half a turn of the rotor in five seconds: the helix is at work.
     assert!(travel > 1f64.to_radians(), "{travel} rad");
 }
