@@ -8,7 +8,7 @@ const SMALL_STEP: f64 = 2e-3;
 /// A step that leads out of the neighbourhood (rad): the bracketed search then takes over.
 const LARGEST_STEP: f64 = 0.1;
 /// Smallest change of the angle from which a slope is drawn (rad).
-const LEAST_SECANT: f64 = 1e-6;
+const LEAST_SECANT: f64 = 1e-9;
 /// Looks before the bracketed search takes over.
 const MAXIMUM_LOOKS: usize = 6;
 /// Cosine of the angle (–) below which its tangent says nothing about the air's way.
