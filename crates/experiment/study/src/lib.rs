@@ -1,11 +1,12 @@
 //! A study from case file to report: every run of a case, with its files.
 //!
-//! Reading order: [`run`], then `prepare` (what all runs share) with `models` (their turbines), `probes` (how pitch acts), `simulate` (one run), `summarise` (its numbers).
+//! Reading order: [`run`], then `prepare` (what all runs share) with `models` (their turbines), `probes` (how pitch acts), `simulate` (one run), `summarise` (its numbers), `gains` (over another run).
 
 mod air;
 mod azimuth_offset;
 mod channels;
 mod error;
+mod gains;
 mod lines;
 mod loads;
 mod meandering;
@@ -26,10 +27,11 @@ pub use phase::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase, tune};
 pub use prepare::Setup;
 pub use watcher::{Estimate, Probing, Progress, Watcher};
 
-use basis::records::{Series, Summary};
+use basis::records::Summary;
 use farm::case::Run;
 use formats::case;
 use formats::records::{self, Manifest, RunFolder};
+use gains::Comparison;
 use simulate::{Ending, simulate};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -106,7 +108,7 @@ pub fn run(
     }
     for &index in &open {
         // Gains are over a run of the same wind, or over none.
-        if let Some(other) = compared_index(&setup, index)
+        if let Some(other) = gains::compared(&setup, index)
             && !open.contains(&other)
             && folders[other].is_complete()
         {
@@ -147,9 +149,11 @@ pub fn run(
                 let series = records::read_series(&folder.series_path())?;
                 let mut summary =
                     summarise::summarise(&setup, run, &series, &clipped_shares, cost)?;
-                if let Some((other, other_series)) = compared_run(&setup, index, &folders)? {
+                if let Comparison::Made(other, other_series) =
+                    gains::comparison(&setup, index, &folders)?
+                {
                     let other = (other, &other_series);
-                    summarise::add_gains(&setup, &mut summary, (run, &series), other)?;
+                    gains::add(&setup, &mut summary, (run, &series), other)?;
                 }
                 for warning in &summary.warnings[setup.warnings.len()..] {
                     watcher.warned(warning);
@@ -163,7 +167,7 @@ pub fn run(
         }
     }
     for &index in &wanted {
-        catch_up(&setup, index, &folders, watcher)?;
+        gains::catch_up(&setup, index, &folders, watcher)?;
     }
     let (summaries, report) = self::report(&directory)?;
     Ok(Outcome::Done { summaries, report })
@@ -253,64 +257,6 @@ fn wanted_runs(setup: &Setup, names: &[String]) -> Result<Vec<usize>, StudyError
             })
         })
         .collect()
-}
-
-/// On return the summary of run number `index` holds its gains where the run that it compares with was made after it.
-fn catch_up(
-    setup: &Setup,
-    index: usize,
-    folders: &[RunFolder],
-    watcher: &mut dyn Watcher,
-) -> Result<(), StudyError> {
-    let (run, folder) = (&setup.case.runs[index], &folders[index]);
-    let mut summary = records::read_summary(folder)?;
-    if summary.compare_with.is_some() {
-        return Ok(());
-    }
-    let Some(other) = compared_index(setup, index) else { return Ok(()) };
-    let name = &setup.case.runs[other].name;
-    if !folders[other].is_complete() {
-        watcher.warned(&format!(
-            "{} has no gains: the run {name} that it compares with is not made yet; make it with --run {name} --resume",
-            run.name
-        ));
-    } else if check_same(setup, &setup.case.runs[other], &folders[other]).is_err() {
-        watcher.warned(&format!(
-            "{} has no gains: the run {name} was made with another version of the case or of a turbine",
-            run.name
-        ));
-    } else if let Some((other, other_series)) = compared_run(setup, index, folders)? {
-        let series = records::read_series(&folder.series_path())?;
-        let other = (other, &other_series);
-        summarise::add_gains(setup, &mut summary, (run, &series), other)?;
-        records::write_summary(folder, &summary)?;
-    }
-    Ok(())
-}
-
-/// Number of the run that run number `index` compares with.
-fn compared_index(setup: &Setup, index: usize) -> Option<usize> {
-    let runs = &setup.case.runs;
-    let other = match &runs[index].compare_with {
-        Some(name) => runs.iter().position(|run| run.name == *name),
-        None => (index > 0).then_some(0),
-    };
-    other.filter(|&other| other != index)
-}
-
-/// The run that `index` compares with, when its series is there.
-fn compared_run<'a>(
-    setup: &'a Setup,
-    index: usize,
-    folders: &[RunFolder],
-) -> Result<Option<(&'a Run, Series)>, StudyError> {
-    match compared_index(setup, index) {
-        Some(other) if folders[other].is_complete() => {
-            let series = records::read_series(&folders[other].series_path())?;
-            Ok(Some((&setup.case.runs[other], series)))
-        }
-        _ => Ok(None),
-    }
 }
 
 /// `name` as a folder name: letters, digits, dashes.

@@ -7,9 +7,10 @@ use crate::prepare::Setup;
 use crate::probes::response_of;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
-use analysis::statistics::{BLOCK_LENGTH, gain, statistic};
+use analysis::statistics::{BLOCK_LENGTH, statistic};
 use basis::records::{
-    Conditions, Cost, DeliveredPitch, SCHEMA_VERSION, Series, Statistic, Summary, TurbineSummary,
+    Conditions, Cost, DeliveredPitch, MeanderingSummary, SCHEMA_VERSION, Series, Statistic,
+    Summary, TurbineSummary,
 };
 use farm::assemble::controller;
 use farm::case::{Control, Run};
@@ -30,7 +31,7 @@ pub(crate) struct Analysed<'a> {
 }
 
 impl<'a> Analysed<'a> {
-    fn new(series: &'a Series, setup: &Setup) -> Self {
+    pub(crate) fn new(series: &'a Series, setup: &Setup) -> Self {
         let plan = &setup.plan;
         let first = plan.n_spin_up_steps.div_ceil(plan.row_stride) as usize;
         Self { series, first, interval: plan.row_interval() }
@@ -57,7 +58,7 @@ impl<'a> Analysed<'a> {
     }
 
     /// Sum of a channel over all turbines, instant by instant.
-    fn sum(&self, names: &[&str], channel: &str) -> Result<Vec<f64>, StudyError> {
+    pub(crate) fn sum(&self, names: &[&str], channel: &str) -> Result<Vec<f64>, StudyError> {
         let mut sum = Vec::new();
         for name in names {
             let column = self.column(&format!("{name}.{channel}"))?;
@@ -97,7 +98,8 @@ pub(crate) fn summarise(
         let share = clipped_shares[machine];
         warn_of_clipping(name, &run.name, delivered_pitch, share, steady, &mut warnings);
         warn_of_fading(&analysed, name, control, &run.name, &mut warnings)?;
-        warn_of_no_lock(&analysed, name, control, &run.name, &mut warnings)?;
+        let meandering = meandering::followed(&analysed, name, n_blades, control)?;
+        warn_of_no_lock(name, control, meandering, &run.name, &mut warnings);
         turbines.push(TurbineSummary {
             name: name.clone(),
             model: placement.model.clone(),
@@ -109,7 +111,7 @@ pub(crate) fn summarise(
             delivered_pitch,
             power_gain: None,
             pitch_response: response_of(control),
-            meandering: meandering::followed(&analysed, name, n_blades, control)?,
+            meandering,
             load_deviations: loads::deviations(series, name, &analysed)?,
             damage_equivalent_loads: loads::damage_equivalent(series, name, &analysed)?,
             pitch_duty: loads::pitch_duty(series, name, &analysed)?,
@@ -129,30 +131,6 @@ pub(crate) fn summarise(
         cost,
         warnings,
     })
-}
-
-/// On return `summary`, which is that of `run`, holds its gains over the run `other`; each run comes with its series.
-pub(crate) fn add_gains(
-    setup: &Setup,
-    summary: &mut Summary,
-    (run, series): (&Run, &Series),
-    (other, other_series): (&Run, &Series),
-) -> Result<(), StudyError> {
-    let [own, there] = [series, other_series].map(|series| Analysed::new(series, setup));
-    for (turbine, index) in summary.turbines.iter_mut().zip(run.present()) {
-        if other.present().any(|there| there == index) {
-            let channel = format!("{}.power_w", turbine.name);
-            let [own_power, power] = [own.column(&channel)?, there.column(&channel)?];
-            turbine.power_gain = Some(gain(own_power, power, own.interval, BLOCK_LENGTH)?);
-        }
-    }
-    if other.present().eq(run.present()) {
-        let names: Vec<&str> = summary.turbines.iter().map(|t| t.name.as_str()).collect();
-        let [own_power, power] = [own.sum(&names, "power_w")?, there.sum(&names, "power_w")?];
-        summary.array_power_gain = Some(gain(&own_power, &power, own.interval, BLOCK_LENGTH)?);
-    }
-    summary.compare_with = Some(other.name.clone());
-    Ok(())
 }
 
 fn collective_pitch(
@@ -256,27 +234,21 @@ fn warn_of_fading(
     Ok(())
 }
 
-/// Notes where a turbine that shall act on meandering found nothing to lock to.
+/// Notes where a turbine that shall act on meandering `found` nothing to lock to.
 fn warn_of_no_lock(
-    analysed: &Analysed,
     name: &str,
     control: &Control,
+    found: Option<MeanderingSummary>,
     run: &str,
     warnings: &mut Vec<String>,
-) -> Result<(), StudyError> {
-    let Control::Meandering(asked) = control else { return Ok(()) };
-    if asked.amplitude == 0.0 {
-        return Ok(());
-    }
-    let lock = analysed.column(&format!("{name}.meandering_lock"))?;
-    let locked = lock.iter().sum::<f64>() / lock.len().max(1) as f64;
-    if locked < 1.0 - FADED_SHARE {
+) {
+    let Some(found) = found.filter(|found| found.locked_share < 1.0 - FADED_SHARE) else { return };
+    if matches!(control, Control::Meandering(asked) if asked.amplitude != 0.0) {
         warnings.push(format!(
             "{run}: {name} was locked to the wake's motion {:.0} % of the time, and pitched nothing of its own meanwhile",
-            100.0 * locked
+            100.0 * found.locked_share
         ));
     }
-    Ok(())
 }
 
 fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyError> {

@@ -240,13 +240,14 @@ impl Watcher for Screen {
     fn probing(&mut self, probing: &Probing) {
         self.last = None;
         let Probing { turbine, index, n_probes, share, time_left } = *probing;
-        self.bar.set_prefix(format!("probing {turbine} ({}/{n_probes})", index + 1));
+        let what = format!("probing {turbine} ({}/{n_probes})", index + 1);
+        self.bar.set_prefix(what.clone());
         self.bar.set_length(1000);
         self.bar.set_position((1000.0 * share) as u64);
         let left = HumanDuration(Duration::from_secs_f64(time_left.clamp(0.0, LONGEST)));
-        self.bar.set_message(format!("{left} left before the runs"));
-        let what = format!("probing {turbine} ({}/{n_probes})", index + 1);
-        self.tell(&what, (1000.0 * share) as u64, 1000, &format!("{left} left before the runs"));
+        let message = format!("{left} left before the runs");
+        self.tell(&what, (1000.0 * share) as u64, 1000, &message);
+        self.bar.set_message(message);
     }
 
     fn probed(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
