@@ -3,10 +3,12 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Root mean square of the phase error below which a loop locks (rad).
-const LOCKS_BELOW: f64 = 0.35;
-/// Root mean square of the phase error above which it has lost the lock (rad).
-const LOSES_ABOVE: f64 = 0.7;
+/// Root mean square of the phase error below which a loop locks (rad). What is done in phase with an oscillation that wanders
+/// by so much (normally distributed) still does exp(−σ²/2) = 78 % of its work.
+const LOCKS_BELOW: f64 = 0.7;
+/// Root mean square of the phase error above which it has lost the lock (rad): below half of the work. A loop with nothing to
+/// follow, whose error is anywhere, has 2 to 4 rad.
+const LOSES_ABOVE: f64 = 1.2;
 /// Least power of the oscillation, A²/2, over that of what is neither oscillation nor offset (–); half of it loses the lock.
 const LEAST_POWER_RATIO: f64 = 0.5;
 
