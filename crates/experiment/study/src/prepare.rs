@@ -366,7 +366,7 @@ fn wall_gain(blockage: f64) -> f64 {
 }
 
 fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings = Vec::from_iter(farm::wind::off_balance(case));
     let gain = wall_gain(plan.blockage);
     if gain > WALL_GAIN_TO_WARN {
         warnings.push(format!(

@@ -13,7 +13,7 @@ use basis::records::{
     Summary, TurbineSummary,
 };
 use farm::assemble::controller;
-use farm::case::{Control, Run};
+use farm::case::{Control, Run, Shear};
 
 /// Share of clipped control instants beyond which a reader must know (–).
 const CLIPPED_SHARE: f64 = 0.01;
@@ -254,12 +254,17 @@ fn warn_of_no_lock(
 fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyError> {
     let arrived = analysed.statistic("wind.u_m_s")?;
     let case = &setup.case;
+    let (shear_exponent, roughness_length) = match case.wind.shear {
+        Shear::PowerLaw { exponent } => (Some(exponent), None),
+        Shear::LogLaw { roughness_length } => (None, Some(roughness_length)),
+    };
     Ok(Conditions {
         wind_speed: case.wind.speed,
         turbulence_intensity: case.wind.turbulence_intensity,
         arriving_wind_speed: arrived.mean,
         arriving_turbulence_intensity: arrived.standard_deviation / arrived.mean,
-        shear_exponent: case.wind.shear_exponent,
+        shear_exponent,
+        roughness_length,
         seed: case.wind.seed,
         rotor_diameter: setup.plan.diameter,
         cells_per_diameter: (!case.flow.solver.is_prescribed())
