@@ -15,8 +15,9 @@ pub const MAXIMUM_LATTICE_SPEED: f64 = 0.12;
 pub const MINIMUM_CELLS_PER_DIAMETER: f64 = 8.0;
 /// Speed of sound on the lattice, in cells a step: a tip that outruns it meets its own bound vortex
 /// (docs/validation/actuator-line.md).
-const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
-/// Fastest tip that a chosen step allows, in cells a step, in the mean wind; gusts may take it up to the speed of sound.
+pub const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
+/// Fastest tip that a chosen step allows, in cells a step, in the mean wind; what a gust adds beyond the speed of sound is warned of
+/// after the run.
 const FASTEST_TIP: f64 = 0.5;
 /// Longest step between two control instants (s): pitch actuators and rotor speed are integrated on it.
 const LONGEST_STEP: f64 = 0.5;

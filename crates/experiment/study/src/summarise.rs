@@ -5,6 +5,7 @@ use crate::loads;
 use crate::meandering;
 use crate::prepare::Setup;
 use crate::probes::response_of;
+use crate::tips::Outrun;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
 use analysis::statistics::{BLOCK_LENGTH, statistic};
@@ -100,6 +101,8 @@ pub(crate) fn summarise(
         warn_of_fading(&analysed, name, control, &run.name, &mut warnings)?;
         let meandering = meandering::followed(&analysed, name, n_blades, control)?;
         warn_of_no_lock(name, control, meandering, &run.name, &mut warnings);
+        let found = outrun(&analysed, index, setup)?;
+        warnings.extend(found.map(|outrun| outrun.warning(&run.name, name)));
         turbines.push(TurbineSummary {
             name: name.clone(),
             model: placement.model.clone(),
@@ -249,6 +252,20 @@ fn warn_of_no_lock(
             100.0 * found.locked_share
         ));
     }
+}
+
+/// How the tip of the turbine at `index` outran the sound on the lattice in the analysed time; none where it did not, and
+/// where there is no lattice.
+fn outrun(analysed: &Analysed, index: usize, setup: &Setup) -> Result<Option<Outrun>, StudyError> {
+    if setup.case.flow.solver.is_prescribed() {
+        return Ok(None);
+    }
+    let name = &setup.case.turbines[index].name;
+    let times = analysed.column("time_s")?;
+    let rotor_speeds = analysed.column(&format!("{name}.rotor_speed_rad_s"))?;
+    let radius = setup.models[index].definition.rotor_radius();
+    let plan = &setup.plan;
+    Ok(Outrun::of(times, rotor_speeds, radius, plan.spacing, plan.interval))
 }
 
 fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyError> {
