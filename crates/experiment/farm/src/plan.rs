@@ -19,6 +19,9 @@ pub const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
 /// Fastest tip that a chosen step allows, in cells a step, in the mean wind; what a gust adds beyond the speed of sound is warned of
 /// after the run.
 const FASTEST_TIP: f64 = 0.5;
+/// Farthest that a wind which veers may turn between hub height and the ends of the domain below and above (rad): wind comes in at
+/// every height of the inlet.
+const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_3;
 /// Longest step between two control instants (s): pitch actuators and rotor speed are integrated on it.
 const LONGEST_STEP: f64 = 0.5;
 
@@ -122,6 +125,7 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
     };
     let plan = plan_without_step(step(case, &machines, spacing)?);
     check_extent(&machines, &plan)?;
+    check_veer(case.wind.veer, &plan)?;
     check_planes(&case.output.crosswind_diameters, &plan)?;
     Ok(plan)
 }
@@ -134,6 +138,19 @@ fn check_roughness(shear: Shear, hub_height: f64) -> Result<(), PlanError> {
         }
         _ => Ok(()),
     }
+}
+
+fn check_veer(veer: f64, plan: &Plan) -> Result<(), PlanError> {
+    let top = plan.n_cells[2] as f64 * plan.spacing;
+    let reach = plan.hub_height.max(top - plan.hub_height);
+    let turn = veer.abs() * reach;
+    if turn <= FARTHEST_TURN {
+        return Ok(());
+    }
+    let [turn_deg, most_deg] = [turn, FARTHEST_TURN].map(f64::to_degrees);
+    // Rounded down, so that what is printed can be taken.
+    let greatest_deg = (1e4 * most_deg / reach).floor() / 1e4;
+    Err(PlanError::VeersTooFar { turn_deg, most_deg, top, greatest_deg })
 }
 
 fn check_planes(distances: &[f64], plan: &Plan) -> Result<(), PlanError> {

@@ -327,7 +327,8 @@ impl Setup {
             })?;
             let profile = self.profile();
             let inflow = TurbulentInflow::aligned(Arc::new(turbulence), profile, self.plan.origin)?;
-            self.inflow = Arc::new(inflow.blocked(BLOCKING_HEIGHT * wind.length_scale));
+            let inflow = inflow.blocked(BLOCKING_HEIGHT * wind.length_scale);
+            self.inflow = Arc::new(inflow.veering(wind.veer, self.plan.hub_height));
         }
         Ok(())
     }

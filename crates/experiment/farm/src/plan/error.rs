@@ -92,6 +92,20 @@ pub enum PlanError {
         /// Greatest roughness length (m).
         highest: f64,
     },
+    /// The wind turns so far with height that part of the inlet lets none in.
+    #[error(
+        "wind.veer_deg_per_m turns the wind by {turn_deg:.0}° within the domain, which is {top:.0} m high, {most_deg:.0}° are the most; at most {greatest_deg:.4}, or lower flow.height_diameters"
+    )]
+    VeersTooFar {
+        /// Farthest direction from that at hub height (deg).
+        turn_deg: f64,
+        /// Farthest direction that may be (deg).
+        most_deg: f64,
+        /// Height of the domain (m).
+        top: f64,
+        /// Greatest veer (deg/m).
+        greatest_deg: f64,
+    },
     /// A plane across the wake where no air is.
     #[error(
         "the crosswind plane {distance} diameters behind the first turbine lies at x = {x:.0} m, the domain ends at {low:.0} and {high:.0} m; raise flow.downstream_diameters or take it away"
@@ -125,6 +139,7 @@ impl PlanError {
             Self::TooCoarse { .. } => vec!["flow", "cells_per_diameter"],
             Self::TipOutruns { .. } | Self::TooFast { .. } => vec!["flow", "step"],
             Self::TooRough { .. } => vec!["wind", "roughness_length"],
+            Self::VeersTooFar { .. } => vec!["wind", "veer_deg_per_m"],
             Self::CrosswindOutside { .. } => vec!["output", "crosswind_diameters"],
             Self::UnknownModel { name, .. } => vec!["turbine", name, "model"],
         }

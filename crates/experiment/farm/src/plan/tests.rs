@@ -132,6 +132,15 @@ fn what_does_not_fit_is_named_with_its_fix() {
     rough.wind.shear = Shear::LogLaw { roughness_length: 15.0 };
     assert!(plan(&rough, &footprints()).is_ok());
 
+    // 810 m from the hub to the top.
+    let mut veering = case(&[[0.0, 0.0]]);
+    veering.wind.veer = 0.1_f64.to_radians();
+    let turned = error(&veering);
+    assert!(turned.contains("by 81° within the domain, which is 960 m high"), "{turned}");
+    assert!(turned.contains("60° are the most; at most 0.0740, or lower"), "{turned}");
+    veering.wind.veer = 0.07_f64.to_radians();
+    assert!(plan(&veering, &footprints()).is_ok());
+
     let mut other = case(&[[0.0, 0.0]]);
     other.turbines[0].model = "iea-10mw".to_owned();
     assert!(error(&other).contains("`iea-10mw`"));

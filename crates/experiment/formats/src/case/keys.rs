@@ -67,7 +67,7 @@ pub(super) static WIND: Table = Table {
             .mistaken(&[Slip { unit: "mm²/s", factor: 1e-6 }]),
         key("turbulence_model", Kind::Choice(&["mann", "kaimal"]), "", Value("\"mann\""), "`mann`: Mann's spectral tensor. `kaimal`: Kaimal's spectra with the exponential coherence of IEC 61400-1, with `flow.solver = \"turbulence\"` only: the lattice needs wind that is free of divergence."),
         key("planes", Kind::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. `speed` then only sets the Strouhal numbers and the rotor's first speed."),
-        key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. With `flow.solver = \"uniform\"` or `\"turbulence\"`.")
+        key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. Not with `flow.solver = \"planes\"`; with `\"lattice\"` between periodic sides, and by 60° at most up to the top of the domain.")
             .mistaken(&[Slip { unit: "deg per 100 m", factor: 0.01 }]),
         key("event", Kind::Event, "", Otherwise("nothing happens"), "With `flow.solver = \"uniform\"`: what happens in time, at all places at once: `event = { kind = \"step\", start = 100.0, speed = 12.0 }`."),
     ],

@@ -6,7 +6,9 @@ use super::error::ProblemKind;
 use super::keys::{self, EVENTS};
 use super::section::Section;
 use super::write::{degrees, quoted};
-use farm::case::{CirclingDisk, Flow, Sense, Shear, Solver, TurbulenceModel, Wind, WindEvent};
+use farm::case::{
+    CirclingDisk, Flow, Sense, Shear, Sides, Solver, TurbulenceModel, Wind, WindEvent,
+};
 use std::fmt::Write;
 
 /// The wind that `section` describes; not a number where it is missing.
@@ -84,13 +86,18 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
         note("turbulence_model", ProblemKind::KaimalInLattice, fix);
     }
     if wind.veer != 0.0 {
-        let why = match flow.solver {
-            Solver::Lattice => Some("the inlet of flow.solver = \"lattice\" blows along x"),
-            Solver::Planes => Some("flow.solver = \"planes\" takes the wind as the file has it"),
-            Solver::Uniform | Solver::Turbulence => None,
+        let objection = match flow.solver {
+            Solver::Lattice if flow.sides == Sides::Slip => Some((
+                "a wind that veers blows through sides along which the air is to slip",
+                "leave it out, or take flow.sides = \"periodic\"",
+            )),
+            Solver::Planes => Some((
+                "flow.solver = \"planes\" takes the wind as the file has it",
+                "leave it out, or take another flow.solver",
+            )),
+            Solver::Lattice | Solver::Uniform | Solver::Turbulence => None,
         };
-        if let Some(why) = why {
-            let fix = "leave it out, or take flow.solver = \"uniform\" or \"turbulence\"";
+        if let Some((why, fix)) = objection {
             note("veer_deg_per_m", no_use("veer_deg_per_m", why), fix);
         }
     }

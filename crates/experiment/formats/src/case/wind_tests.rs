@@ -186,8 +186,8 @@ fn what_cannot_be_is_told_with_its_line() {
         ("veer_deg_per_m = 5", "uniform", "did you mean 0.05 deg/m? 5 deg per 100 m would be that"),
         (
             "veer_deg_per_m = 0.05",
-            "lattice",
-            "windy.toml:6: `wind.veer_deg_per_m` is of no use here: the inlet of flow.solver = \"lattice\" blows along x; leave it out, or take flow.solver = \"uniform\"",
+            "planes",
+            "windy.toml:6: `wind.veer_deg_per_m` is of no use here: flow.solver = \"planes\" takes the wind as the file has it; leave it out",
         ),
         (
             step,
@@ -208,8 +208,14 @@ fn what_cannot_be_is_told_with_its_line() {
         let told = parse("windy.toml", &text, &[]).unwrap_err().to_lines();
         assert!(told.contains(expected), "{keys}\nexpected {expected}\ntold     {told}");
     }
-    let veering = text("veer_deg_per_m = 0.05").replace("\"uniform\"", "\"turbulence\"");
-    assert!(parse("windy.toml", &veering, &[]).is_ok());
+    let veering = |flow: &str| {
+        let text = text("veer_deg_per_m = 0.05").replace("solver = \"uniform\"", flow);
+        parse("windy.toml", &text, &[])
+    };
+    assert!(veering("solver = \"turbulence\"").is_ok());
+    assert!(veering("solver = \"lattice\"").is_ok());
+    let told = veering("sides = \"slip\"").unwrap_err().to_lines();
+    assert!(told.contains("sides along which the air is to slip; leave it out"), "{told}");
     let read = text("planes = \"field.bts\"").replace("\"uniform\"", "\"planes\"");
     let case = parse("windy.toml", &read, &[]).unwrap();
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
