@@ -2,7 +2,7 @@
 
 use crate::Row;
 use farm::assemble::Model;
-use farm::case::{TurbulenceModel, Wind};
+use farm::case::{Shear, TurbulenceModel, Wind};
 use farm::self_check::{Tunnel, self_check};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -65,7 +65,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
     let wind = Wind {
         speed: wind_speed,
         turbulence_intensity: 0.0,
-        shear_exponent: 0.0,
+        shear: Shear::PowerLaw { exponent: 0.0 },
         length_scale: 0.0,
         anisotropy: 0.0,
         seed: 0,

@@ -85,7 +85,8 @@ fn find<'a>(summaries: &'a [Summary], run: &str) -> Option<&'a Summary> {
     summaries.iter().find(|summary| summary.run == run)
 }
 
-/// `cases/helix-two-turbines.toml`: power ratio of the first turbine and gain of the array against amplitude and sense.
+/// `cases/helix-two-turbines.toml`: power ratio of the first turbine and gain of the array against amplitude and sense,
+/// and what of helix and pulse arrived at the blades.
 pub fn helix() -> Vec<Row> {
     let (summaries, _) = match summaries(Path::new("cases/helix-two-turbines.toml"), "helix") {
         Ok(done) => done,
@@ -122,7 +123,7 @@ pub fn helix() -> Vec<Row> {
         }
     }
     rows.push(positive("array gain of ccw 4° less that of cw 4°".to_owned(), gains[0] - gains[1]));
-    for run in ["ccw-4", "cw-4"] {
+    for run in ["ccw-4", "cw-4", "pulse-4"] {
         let delivered = find(&summaries, run).and_then(|s| s.turbines[0].delivered_pitch);
         rows.push(Row {
             what: format!("delivered amplitude, {run}"),

@@ -69,7 +69,7 @@ pub const VALIDATIONS: &[Validation] = &[
     Validation {
         name: "helix",
         about: "power of two turbines against amplitude and sense of the helix, beside published large-eddy figures",
-        minutes: "35",
+        minutes: "38",
         run: helix::helix,
     },
     Validation {

@@ -1,4 +1,4 @@
-//! `wakemix inflow sample` from outside: a case in, the wind of its event out, other kinds of wind refused.
+//! `wakemix inflow` from outside: the wind of a case sampled, other kinds of wind refused, profiles beside boxes.
 
 use std::fs;
 use std::path::Path;
@@ -62,4 +62,32 @@ fn turbulence_is_not_sampled() {
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(!output.status.success() && told.contains("flow.solver=uniform"), "{told}");
     assert!(!folder.path().join("gusty.bts").exists());
+}
+
+#[test]
+fn a_box_has_the_profile_that_was_asked_for_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let generate = |profile: &[&str]| {
+        let size = ["--size", "16x8x4", "--spacing", "10", "--hub-height", "90"];
+        let box_of =
+            ["inflow", "generate", "--speed", "10", "--ti", "0.06", "-o", "logarithmic.toml"];
+        wakemix(&[&box_of[..], &size[..], profile].concat(), folder.path())
+    };
+    let output = generate(&["--roughness-length", "0.03"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = wakemix(&["inflow", "info", "logarithmic.toml", "--json"], folder.path());
+    let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    for (row, speed) in info["mean_speeds"].as_array().unwrap().iter().enumerate() {
+        let height = 5.0 + 10.0 * row as f64;
+        let expected = 10.0 * (height / 0.03_f64).ln() / (90.0 / 0.03_f64).ln();
+        assert!((speed.as_f64().unwrap() - expected).abs() < 1e-9, "{height} m: {speed}");
+    }
+    for (refused, told) in [
+        (&["--roughness-length", "9.5"][..], "roughness length (m) = 9.5"),
+        (&["--roughness-length", "0.03", "--shear-exponent", "0.1"][..], "cannot be used with"),
+    ] {
+        let output = generate(refused);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && error.contains(told), "{error}");
+    }
 }

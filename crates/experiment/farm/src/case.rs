@@ -35,8 +35,8 @@ pub struct Wind {
     pub speed: f64,
     /// Turbulence intensity, standard deviation of the streamwise component over `speed` (–).
     pub turbulence_intensity: f64,
-    /// Power-law exponent of the mean profile (–).
-    pub shear_exponent: f64,
+    /// How the mean speed grows with height.
+    pub shear: Shear,
     /// Length scale of Mann's tensor (m).
     pub length_scale: f64,
     /// Anisotropy Γ of Mann's tensor (–).
@@ -55,6 +55,23 @@ pub struct Wind {
     pub veer: f64,
     /// What happens in time, with [`Solver::Uniform`]; nothing when absent.
     pub event: Option<WindEvent>,
+}
+
+/// How the mean speed grows with height; it meets [`Wind::speed`] at hub height of the first turbine.
+///
+/// [`MeanProfile`](flow::inflow::MeanProfile) gives the equations.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Shear {
+    /// Power law.
+    PowerLaw {
+        /// Exponent (–).
+        exponent: f64,
+    },
+    /// Logarithmic law, calm at and below the roughness length.
+    LogLaw {
+        /// Roughness length z₀ (m).
+        roughness_length: f64,
+    },
 }
 
 /// What happens in time in a wind without turbulence, at all places at once. Times in s since the run's start.

@@ -1,9 +1,13 @@
 //! From layout to domain: cells, step, memory and cost, checked before anything runs.
 
-use crate::case::Case;
+mod error;
+
+pub use error::PlanError;
+
+use crate::case::{Case, Shear};
 use basis::Vector3;
+use flow::inflow::GREATEST_ROUGHNESS;
 use std::collections::BTreeMap;
-use thiserror::Error;
 
 /// Fastest free stream that the lattice carries without visible compressibility, in cells a step (Mach 0.2).
 pub const MAXIMUM_LATTICE_SPEED: f64 = 0.12;
@@ -11,9 +15,13 @@ pub const MAXIMUM_LATTICE_SPEED: f64 = 0.12;
 pub const MINIMUM_CELLS_PER_DIAMETER: f64 = 8.0;
 /// Speed of sound on the lattice, in cells a step: a tip that outruns it meets its own bound vortex
 /// (docs/validation/actuator-line.md).
-const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
-/// Fastest tip that a chosen step allows, in cells a step, in the mean wind; gusts may take it up to the speed of sound.
+pub const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
+/// Fastest tip that a chosen step allows, in cells a step, in the mean wind; what a gust adds beyond the speed of sound is warned of
+/// after the run.
 const FASTEST_TIP: f64 = 0.5;
+/// Farthest that a wind which veers may turn between hub height and the ends of the domain below and above (rad): wind comes in at
+/// every height of the inlet.
+const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_3;
 /// Longest step between two control instants (s): pitch actuators and rotor speed are integrated on it.
 const LONGEST_STEP: f64 = 0.5;
 
@@ -62,121 +70,6 @@ pub struct Plan {
     pub lattice_speed: f64,
 }
 
-/// Why a case cannot be run as it stands.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum PlanError {
-    /// A rotor reaches outside the air.
-    #[error(
-        "turbine {name} reaches outside the domain: its rotor spans {axis} = {low:.0} to {high:.0} m, the domain {domain_low:.0} to {domain_high:.0} m; {fix}"
-    )]
-    OutsideDomain {
-        /// Turbine.
-        name: String,
-        /// Axis, in words.
-        axis: &'static str,
-        /// Lowest coordinate of the rotor (m).
-        low: f64,
-        /// Highest coordinate of the rotor (m).
-        high: f64,
-        /// Lowest coordinate of the domain (m).
-        domain_low: f64,
-        /// Highest coordinate of the domain (m).
-        domain_high: f64,
-        /// Key to raise.
-        fix: &'static str,
-    },
-    /// Rotors that touch each other.
-    #[error(
-        "turbines {first} and {second} overlap: their towers are {distance:.0} m apart, their rotors need {needed:.0} m; move one of them (turbine.position_diameters)"
-    )]
-    Overlap {
-        /// One turbine.
-        first: String,
-        /// The other.
-        second: String,
-        /// Distance of their towers (m).
-        distance: f64,
-        /// Least distance (m).
-        needed: f64,
-    },
-    /// The grid is too coarse.
-    #[error(
-        "turbine {name} has only {cells:.1} cells across its rotor, {MINIMUM_CELLS_PER_DIAMETER} are the least; raise flow.cells_per_diameter to at least {needed:.0}"
-    )]
-    TooCoarse {
-        /// Turbine.
-        name: String,
-        /// Cells across its rotor (–).
-        cells: f64,
-        /// Least `cells_per_diameter` (–).
-        needed: f64,
-    },
-    /// A tip crosses more than a cell a step.
-    #[error(
-        "flow.step = {step} s is too long: the tip of {name} moves {cells:.2} cells a step at {tip_speed:.0} m/s; at most {longest:.4} s, or leave the key out"
-    )]
-    TipOutruns {
-        /// Turbine.
-        name: String,
-        /// Asked step (s).
-        step: f64,
-        /// Cells a step (–).
-        cells: f64,
-        /// Tip speed (m/s).
-        tip_speed: f64,
-        /// Longest step (s).
-        longest: f64,
-    },
-    /// The free stream moves too many cells a step.
-    #[error(
-        "flow.step = {step} s is too long: the wind moves {cells:.2} cells a step, {MAXIMUM_LATTICE_SPEED} are the most; at most {longest:.4} s, or leave the key out"
-    )]
-    TooFast {
-        /// Asked step (s).
-        step: f64,
-        /// Cells a step (–).
-        cells: f64,
-        /// Longest step (s).
-        longest: f64,
-    },
-    /// A plane across the wake where no air is.
-    #[error(
-        "the crosswind plane {distance} diameters behind the first turbine lies at x = {x:.0} m, the domain ends at {low:.0} and {high:.0} m; raise flow.downstream_diameters or take it away"
-    )]
-    CrosswindOutside {
-        /// Distance (diameters of the first turbine).
-        distance: f64,
-        /// Its place (m).
-        x: f64,
-        /// Ends of the domain (m).
-        low: f64,
-        /// As above.
-        high: f64,
-    },
-    /// A turbine without its model.
-    #[error("turbine {name} asks for the model `{model}`, which was not loaded")]
-    UnknownModel {
-        /// Turbine.
-        name: String,
-        /// Model.
-        model: String,
-    },
-}
-
-impl PlanError {
-    /// The key that decides, from the top of the case file; a name where several tables stand under one heading.
-    pub fn key(&self) -> Vec<&str> {
-        match self {
-            Self::OutsideDomain { name, .. } => vec!["turbine", name, "position_diameters"],
-            Self::Overlap { second, .. } => vec!["turbine", second, "position_diameters"],
-            Self::TooCoarse { .. } => vec!["flow", "cells_per_diameter"],
-            Self::TipOutruns { .. } | Self::TooFast { .. } => vec!["flow", "step"],
-            Self::CrosswindOutside { .. } => vec!["output", "crosswind_diameters"],
-            Self::UnknownModel { name, .. } => vec!["turbine", name, "model"],
-        }
-    }
-}
-
 /// Sizes domain and step for `case`; `footprints` holds one entry per [machine](crate::case::Placement::machine) of the case.
 ///
 /// The step is the longest one that keeps tips well below the speed of sound on the lattice and the free stream within
@@ -192,6 +85,7 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
         })?;
         machines.push((placement, *footprint));
     }
+    check_roughness(case.wind.shear, machines[0].1.hub_height)?;
     let diameter = machines[0].1.diameter;
     let positions: Vec<Vector3> = machines
         .iter()
@@ -231,8 +125,32 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
     };
     let plan = plan_without_step(step(case, &machines, spacing)?);
     check_extent(&machines, &plan)?;
+    check_veer(case.wind.veer, &plan)?;
     check_planes(&case.output.crosswind_diameters, &plan)?;
     Ok(plan)
+}
+
+fn check_roughness(shear: Shear, hub_height: f64) -> Result<(), PlanError> {
+    let highest = GREATEST_ROUGHNESS * hub_height;
+    match shear {
+        Shear::LogLaw { roughness_length } if roughness_length > highest => {
+            Err(PlanError::TooRough { roughness_length, hub_height, highest })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_veer(veer: f64, plan: &Plan) -> Result<(), PlanError> {
+    let top = plan.n_cells[2] as f64 * plan.spacing;
+    let reach = plan.hub_height.max(top - plan.hub_height);
+    let turn = veer.abs() * reach;
+    if turn <= FARTHEST_TURN {
+        return Ok(());
+    }
+    let [turn_deg, most_deg] = [turn, FARTHEST_TURN].map(f64::to_degrees);
+    // Rounded down, so that what is printed can be taken.
+    let greatest_deg = (1e4 * most_deg / reach).floor() / 1e4;
+    Err(PlanError::VeersTooFar { turn_deg, most_deg, top, greatest_deg })
 }
 
 fn check_planes(distances: &[f64], plan: &Plan) -> Result<(), PlanError> {

@@ -1,17 +1,39 @@
 //! The wind of a case without turbulence: profile, veer and event in closed form.
 
-use crate::case::{Case, WindEvent};
+use crate::case::{Case, Ground, Shear, WindEvent};
 use crate::plan::Plan;
 use flow::inflow::deterministic::{Event, RotatingDisk};
 use flow::inflow::{DeterministicWind, MeanProfile};
 
 /// The mean profile of `case`, with the hub height that `plan` found for its first turbine.
 pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
-    MeanProfile::PowerLaw {
-        hub_height: plan.hub_height,
-        speed: case.wind.speed,
-        exponent: case.wind.shear_exponent,
+    let (hub_height, speed) = (plan.hub_height, case.wind.speed);
+    match case.wind.shear {
+        Shear::PowerLaw { exponent } => MeanProfile::PowerLaw { hub_height, speed, exponent },
+        Shear::LogLaw { roughness_length } => {
+            MeanProfile::LogLaw { hub_height, speed, roughness_length }
+        }
     }
+}
+
+/// Why the profile that blows into `case` is not the one that its rough ground keeps, with the fix; none where it is, and
+/// where no air meets a rough ground.
+pub fn off_balance(case: &Case) -> Option<String> {
+    let Ground::Rough { roughness_length: ground } = case.flow.ground else { return None };
+    if case.flow.solver.is_prescribed() {
+        return None;
+    }
+    let blows_in = match case.wind.shear {
+        Shear::LogLaw { roughness_length } if roughness_length == ground => return None,
+        Shear::LogLaw { roughness_length } => {
+            format!("the logarithmic law of z₀ = {roughness_length} m")
+        }
+        Shear::PowerLaw { exponent } => format!("a power law of exponent {exponent}"),
+    };
+    Some(format!(
+        "the ground keeps the logarithmic law of z₀ = {ground} m, and {blows_in} blows in: the profile changes on its way through \
+         the domain; write wind.roughness_length = {ground}, and no wind.shear_exponent"
+    ))
 }
 
 /// The wind of `case` without turbulence; lengths in diameters are those of its first turbine in `plan`.

@@ -18,6 +18,7 @@ mod probes;
 mod simulate;
 mod summarise;
 mod synchronisation;
+mod tips;
 mod watcher;
 mod wind_records;
 

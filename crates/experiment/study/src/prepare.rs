@@ -327,7 +327,8 @@ impl Setup {
             })?;
             let profile = self.profile();
             let inflow = TurbulentInflow::aligned(Arc::new(turbulence), profile, self.plan.origin)?;
-            self.inflow = Arc::new(inflow.blocked(BLOCKING_HEIGHT * wind.length_scale));
+            let inflow = inflow.blocked(BLOCKING_HEIGHT * wind.length_scale);
+            self.inflow = Arc::new(inflow.veering(wind.veer, self.plan.hub_height));
         }
         Ok(())
     }
@@ -366,7 +367,7 @@ fn wall_gain(blockage: f64) -> f64 {
 }
 
 fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings = Vec::from_iter(farm::wind::off_balance(case));
     let gain = wall_gain(plan.blockage);
     if gain > WALL_GAIN_TO_WARN {
         warnings.push(format!(

@@ -5,6 +5,7 @@ use crate::loads;
 use crate::meandering;
 use crate::prepare::Setup;
 use crate::probes::response_of;
+use crate::tips::Outrun;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
 use analysis::statistics::{BLOCK_LENGTH, statistic};
@@ -13,7 +14,7 @@ use basis::records::{
     Summary, TurbineSummary,
 };
 use farm::assemble::controller;
-use farm::case::{Control, Run};
+use farm::case::{Control, Run, Shear};
 
 /// Share of clipped control instants beyond which a reader must know (–).
 const CLIPPED_SHARE: f64 = 0.01;
@@ -100,6 +101,8 @@ pub(crate) fn summarise(
         warn_of_fading(&analysed, name, control, &run.name, &mut warnings)?;
         let meandering = meandering::followed(&analysed, name, n_blades, control)?;
         warn_of_no_lock(name, control, meandering, &run.name, &mut warnings);
+        let found = outrun(&analysed, index, setup)?;
+        warnings.extend(found.map(|outrun| outrun.warning(&run.name, name)));
         turbines.push(TurbineSummary {
             name: name.clone(),
             model: placement.model.clone(),
@@ -251,15 +254,34 @@ fn warn_of_no_lock(
     }
 }
 
+/// How the tip of the turbine at `index` outran the sound on the lattice in the analysed time; none where it did not, and
+/// where there is no lattice.
+fn outrun(analysed: &Analysed, index: usize, setup: &Setup) -> Result<Option<Outrun>, StudyError> {
+    if setup.case.flow.solver.is_prescribed() {
+        return Ok(None);
+    }
+    let name = &setup.case.turbines[index].name;
+    let times = analysed.column("time_s")?;
+    let rotor_speeds = analysed.column(&format!("{name}.rotor_speed_rad_s"))?;
+    let radius = setup.models[index].definition.rotor_radius();
+    let plan = &setup.plan;
+    Ok(Outrun::of(times, rotor_speeds, radius, plan.spacing, plan.interval))
+}
+
 fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyError> {
     let arrived = analysed.statistic("wind.u_m_s")?;
     let case = &setup.case;
+    let (shear_exponent, roughness_length) = match case.wind.shear {
+        Shear::PowerLaw { exponent } => (Some(exponent), None),
+        Shear::LogLaw { roughness_length } => (None, Some(roughness_length)),
+    };
     Ok(Conditions {
         wind_speed: case.wind.speed,
         turbulence_intensity: case.wind.turbulence_intensity,
         arriving_wind_speed: arrived.mean,
         arriving_turbulence_intensity: arrived.standard_deviation / arrived.mean,
-        shear_exponent: case.wind.shear_exponent,
+        shear_exponent,
+        roughness_length,
         seed: case.wind.seed,
         rotor_diameter: setup.plan.diameter,
         cells_per_diameter: (!case.flow.solver.is_prescribed())

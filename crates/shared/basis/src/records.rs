@@ -181,8 +181,10 @@ pub struct Conditions {
     pub arriving_wind_speed: f64,
     /// Turbulence intensity measured there (–).
     pub arriving_turbulence_intensity: f64,
-    /// Power-law shear exponent (–).
-    pub shear_exponent: f64,
+    /// Power-law exponent of the mean profile (–); absent where that is logarithmic.
+    pub shear_exponent: Option<f64>,
+    /// Roughness length of the logarithmic mean profile (m); absent where that is a power law.
+    pub roughness_length: Option<f64>,
     /// Seed of the turbulence.
     pub seed: u64,
     /// Rotor diameter of the first turbine (m).

@@ -110,6 +110,9 @@ pub(crate) struct GenerateArguments {
     /// Power-law exponent of the mean profile that is written beside the fluctuations
     #[arg(long, default_value_t = 0.0)]
     shear_exponent: f64,
+    /// Roughness length (m): a logarithmic mean profile instead
+    #[arg(long, conflicts_with = "shear_exponent")]
+    roughness_length: Option<f64>,
     /// File to write: NAME.toml or NAME.bin (HAWC2-style), NAME.bts (TurbSim) or NAME.wnd (Bladed)
     #[arg(short, long)]
     output: PathBuf,
@@ -154,18 +157,13 @@ fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
         Settings::Kaimal(settings) => kaimal::generate(settings, progress),
     };
     bar.finish_and_clear();
-    let profile = MeanProfile::PowerLaw {
-        hub_height: arguments.hub_height,
-        speed: arguments.speed,
-        exponent: arguments.shear_exponent,
-    };
     let stored = StoredBox {
         turbulence: turbulence.into_diagnostic()?,
         hub_speed: arguments.speed,
         hub_height: arguments.hub_height,
         lowest_height: plan.lowest_height,
         mean_speeds: (0..n_z)
-            .map(|z| profile.speed(plan.lowest_height + z as f64 * plan.spacing[2]))
+            .map(|z| plan.profile.speed(plan.lowest_height + z as f64 * plan.spacing[2]))
             .collect(),
         description: format!("wakemix {}: {}", env!("CARGO_PKG_VERSION"), plan.description),
     };
@@ -177,6 +175,7 @@ fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
 /// Arguments, checked.
 struct Plan {
     settings: Settings,
+    profile: MeanProfile,
     spacing: [f64; 3],
     lowest_height: f64,
     description: String,
@@ -276,8 +275,20 @@ impl Plan {
             }
         };
         let description = format!("{model}, TI {intensity:.4}, seed {seed}");
-        Ok(Self { settings, spacing, lowest_height, description })
+        let profile = profile(arguments)?;
+        Ok(Self { settings, profile, spacing, lowest_height, description })
     }
+}
+
+/// The mean profile that is written beside the fluctuations.
+fn profile(arguments: &GenerateArguments) -> miette::Result<MeanProfile> {
+    let (hub_height, speed) = (arguments.hub_height, arguments.speed);
+    let profile = match arguments.roughness_length {
+        None => MeanProfile::PowerLaw { hub_height, speed, exponent: arguments.shear_exponent },
+        Some(roughness_length) => MeanProfile::LogLaw { hub_height, speed, roughness_length },
+    };
+    profile.check().into_diagnostic()?;
+    Ok(profile)
 }
 
 fn info(file: &Path, json: bool) -> miette::Result<()> {

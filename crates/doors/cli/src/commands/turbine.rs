@@ -25,6 +25,9 @@ pub(crate) enum TurbineCommand {
         file: bool,
     },
     /// Convert an OpenFAST deck (.fst) or a windIO file (.yaml) into a turbine file
+    ///
+    /// windIO files lack mode shapes, damping, generator inertia and controller gains: what is to be completed by hand is
+    /// listed, and the exit code is 2 until the file is whole.
     Import {
         /// Main file of the deck, or the windIO file
         file: PathBuf,
@@ -278,11 +281,19 @@ fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Resu
         turbine_file::read(output)?;
         return Ok(());
     }
-    eprintln!("the input does not hold what a turbine needs besides; complete by hand:");
+    eprintln!("{} does not hold what a turbine needs besides:", file.display());
     for key in &written.missing {
         eprintln!("  {key}");
     }
-    Ok(())
+    let place = output.display();
+    Err(miette!(
+        help = format!(
+            "each has a commented line or heading in {place}: write the figures there, with their source, until `wakemix turbine show {place}` \
+             describes the turbine; the OpenFAST deck (.fst) of the same turbine, imported instead, mostly holds them all"
+        ),
+        "{place} cannot be run yet: {} groups and keys are missing",
+        written.missing.len()
+    ))
 }
 
 fn steady(file: &TurbineFile, tsr: Range, pitch: Range) -> Result<()> {

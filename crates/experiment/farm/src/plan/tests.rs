@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::case::{
-    Control, DynamicInflow, Flow, Ground, Instruments, Output, Placement, Run, Sides, Solver, Time,
-    TowerInfluence, TurbulenceModel, Wind,
+    Control, DynamicInflow, Flow, Ground, Instruments, Output, Placement, Run, Shear, Sides,
+    Solver, Time, TowerInfluence, TurbulenceModel, Wind,
 };
 
 fn case(positions: &[[f64; 2]]) -> Case {
@@ -24,7 +24,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         wind: Wind {
             speed: 9.0,
             turbulence_intensity: 0.05,
-            shear_exponent: 0.1,
+            shear: Shear::PowerLaw { exponent: 0.1 },
             length_scale: 33.6,
             anisotropy: 3.9,
             seed: 1,
@@ -123,6 +123,23 @@ fn what_does_not_fit_is_named_with_its_fix() {
     fast.flow.step = Some(0.1);
     fast.wind.speed = 24.0;
     assert!(error(&fast).contains("the wind moves 0.16 cells"), "{}", error(&fast));
+
+    let mut rough = case(&[[0.0, 0.0]]);
+    rough.wind.shear = Shear::LogLaw { roughness_length: 16.0 };
+    assert!(error(&rough).contains("wind.roughness_length = 16 m is too much for a hub at 150 m"));
+    rough.flow.solver = Solver::Uniform;
+    assert!(error(&rough).contains("15.0 m, a tenth of it, is the most"), "{}", error(&rough));
+    rough.wind.shear = Shear::LogLaw { roughness_length: 15.0 };
+    assert!(plan(&rough, &footprints()).is_ok());
+
+    // 810 m from the hub to the top.
+    let mut veering = case(&[[0.0, 0.0]]);
+    veering.wind.veer = 0.1_f64.to_radians();
+    let turned = error(&veering);
+    assert!(turned.contains("by 81° within the domain, which is 960 m high"), "{turned}");
+    assert!(turned.contains("60° are the most; at most 0.0740, or lower"), "{turned}");
+    veering.wind.veer = 0.07_f64.to_radians();
+    assert!(plan(&veering, &footprints()).is_ok());
 
     let mut other = case(&[[0.0, 0.0]]);
     other.turbines[0].model = "iea-10mw".to_owned();

@@ -57,6 +57,7 @@ pub(super) static WIND: Table = Table {
         key("turbulence_intensity", from(0.0, 0.5), "–", Required, "Standard deviation of the streamwise component over `speed`, at hub height; 0 switches the turbulence off.")
             .mistaken(&[Slip { unit: "percent", factor: 0.01 }]),
         key("shear_exponent", from(-0.5, 1.0), "–", Value("0.1"), "Power-law exponent of the mean profile."),
+        key("roughness_length", above(0.0, 5.0), "m", Otherwise("a power law with `shear_exponent`"), "In place of `shear_exponent`: the mean profile is the logarithmic law, `speed` · ln(z/z₀) / ln(z_hub/z₀) with this roughness length z₀, calm at z₀ and below; at most a tenth of the hub height. A rough `flow.ground` keeps such a profile when it has the same z₀."),
         key("length_scale", above(0.0, 1000.0), "m", Value("33.6"), "Length scale of Mann's tensor. The default is 0.8 Λ₁ of IEC 61400-1 with Λ₁ = 42 m, for hubs at 60 m and higher."),
         key("anisotropy", from(0.0, 10.0), "–", Value("3.9"), "Anisotropy Γ of Mann's tensor; 0 is isotropic. The default is that of IEC 61400-1."),
         key("seed", Kind::Whole { least: 0, most: SEED_MOST }, "–", Value("1"), "Seed of the turbulence; another seed is another hour of the same climate."),
@@ -66,7 +67,7 @@ pub(super) static WIND: Table = Table {
             .mistaken(&[Slip { unit: "mm²/s", factor: 1e-6 }]),
         key("turbulence_model", Kind::Choice(&["mann", "kaimal"]), "", Value("\"mann\""), "`mann`: Mann's spectral tensor. `kaimal`: Kaimal's spectra with the exponential coherence of IEC 61400-1, with `flow.solver = \"turbulence\"` only: the lattice needs wind that is free of divergence."),
         key("planes", Kind::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. `speed` then only sets the Strouhal numbers and the rotor's first speed."),
-        key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. With `flow.solver = \"uniform\"` or `\"turbulence\"`.")
+        key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. Not with `flow.solver = \"planes\"`; with `\"lattice\"` between periodic sides, and by 60° at most up to the top of the domain.")
             .mistaken(&[Slip { unit: "deg per 100 m", factor: 0.01 }]),
         key("event", Kind::Event, "", Otherwise("nothing happens"), "With `flow.solver = \"uniform\"`: what happens in time, at all places at once: `event = { kind = \"step\", start = 100.0, speed = 12.0 }`."),
     ],

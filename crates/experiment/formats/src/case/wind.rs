@@ -6,7 +6,9 @@ use super::error::ProblemKind;
 use super::keys::{self, EVENTS};
 use super::section::Section;
 use super::write::{degrees, quoted};
-use farm::case::{CirclingDisk, Flow, Sense, Solver, TurbulenceModel, Wind, WindEvent};
+use farm::case::{
+    CirclingDisk, Flow, Sense, Shear, Sides, Solver, TurbulenceModel, Wind, WindEvent,
+};
 use std::fmt::Write;
 
 /// The wind that `section` describes; not a number where it is missing.
@@ -15,7 +17,7 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
     Wind {
         speed: number("speed"),
         turbulence_intensity: number("turbulence_intensity"),
-        shear_exponent: number("shear_exponent"),
+        shear: shear_of(section),
         length_scale: number("length_scale"),
         anisotropy: number("anisotropy"),
         seed: section.as_ref().map_or(1, |section| section.whole("seed")),
@@ -32,6 +34,22 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
             event_of(section, entry, number("speed"))
         }),
     }
+}
+
+/// How the mean speed of `section` grows with height; notes when two laws are asked for.
+fn shear_of(section: &Option<Section>) -> Shear {
+    let Some(section) = section else { return Shear::PowerLaw { exponent: f64::NAN } };
+    let Some(roughness_length) = section.optional_number("roughness_length") else {
+        return Shear::PowerLaw { exponent: section.number("shear_exponent") };
+    };
+    if section.has("shear_exponent") {
+        let why = "the profile is logarithmic with wind.roughness_length";
+        let key = section.key_path("shear_exponent");
+        let kind = ProblemKind::NoUse { key, why: why.to_owned() };
+        let fix = "leave one of the two out";
+        section.findings().note(section.span_of("shear_exponent"), kind, Some(fix.into()));
+    }
+    Shear::LogLaw { roughness_length }
 }
 
 /// Notes where the wind of `section` does not suit what moves the air, or begins after `duration` (s).
@@ -59,18 +77,27 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
             note("planes", no_use("planes", why), "leave it out, or take flow.solver = \"planes\"");
         }
     }
+    if flow.solver == Solver::Planes && section.has("roughness_length") {
+        let why = "flow.solver = \"planes\" takes the wind as the file has it";
+        note("roughness_length", no_use("roughness_length", why), "leave it out");
+    }
     if flow.solver == Solver::Lattice && wind.turbulence_model == TurbulenceModel::Kaimal {
         let fix = "take turbulence_model = \"mann\", or flow.solver = \"turbulence\"";
         note("turbulence_model", ProblemKind::KaimalInLattice, fix);
     }
     if wind.veer != 0.0 {
-        let why = match flow.solver {
-            Solver::Lattice => Some("the inlet of flow.solver = \"lattice\" blows along x"),
-            Solver::Planes => Some("flow.solver = \"planes\" takes the wind as the file has it"),
-            Solver::Uniform | Solver::Turbulence => None,
+        let objection = match flow.solver {
+            Solver::Lattice if flow.sides == Sides::Slip => Some((
+                "a wind that veers blows through sides along which the air is to slip",
+                "leave it out, or take flow.sides = \"periodic\"",
+            )),
+            Solver::Planes => Some((
+                "flow.solver = \"planes\" takes the wind as the file has it",
+                "leave it out, or take another flow.solver",
+            )),
+            Solver::Lattice | Solver::Uniform | Solver::Turbulence => None,
         };
-        if let Some(why) = why {
-            let fix = "leave it out, or take flow.solver = \"uniform\" or \"turbulence\"";
+        if let Some((why, fix)) = objection {
             note("veer_deg_per_m", no_use("veer_deg_per_m", why), fix);
         }
     }
@@ -205,7 +232,12 @@ pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
     writeln!(text, "\n[wind]")?;
     writeln!(text, "speed = {:?}", wind.speed)?;
     writeln!(text, "turbulence_intensity = {:?}", wind.turbulence_intensity)?;
-    writeln!(text, "shear_exponent = {:?}", wind.shear_exponent)?;
+    match wind.shear {
+        Shear::PowerLaw { exponent } => writeln!(text, "shear_exponent = {exponent:?}")?,
+        Shear::LogLaw { roughness_length } => {
+            writeln!(text, "roughness_length = {roughness_length:?}")?;
+        }
+    }
     writeln!(text, "length_scale = {:?}", wind.length_scale)?;
     writeln!(text, "anisotropy = {:?}", wind.anisotropy)?;
     writeln!(text, "seed = {}", wind.seed)?;

@@ -3,7 +3,7 @@
 use super::*;
 use basis::Vector3;
 use farm::plan::{Footprint, plan};
-use farm::wind::deterministic;
+use farm::wind::{deterministic, off_balance};
 use flow::inflow::DeterministicWind;
 use std::collections::BTreeMap;
 
@@ -19,11 +19,20 @@ fn text(keys: &str) -> String {
     )
 }
 
+/// A case whose profile is logarithmic.
+fn logarithmic(roughness_length: &str) -> String {
+    text("").replace("shear_exponent = 0.2", &format!("roughness_length = {roughness_length}"))
+}
+
 /// The wind of a case with `keys`, after it was written and read again.
 fn wind(keys: &str) -> DeterministicWind {
-    let case = parse("windy.toml", &text(keys), &[]);
+    wind_of_case(&text(keys))
+}
+
+fn wind_of_case(text: &str) -> DeterministicWind {
+    let case = parse("windy.toml", text, &[]);
     let case = case.unwrap_or_else(|error| panic!("{}", error.to_lines()));
-    assert_eq!(parse("again", &write(&case), &[]).unwrap(), case, "{keys}");
+    assert_eq!(parse("again", &write(&case), &[]).unwrap(), case, "{text}");
     let footprint = Footprint { diameter: DIAMETER, hub_height: HUB, tip_speed: 80.0 };
     let plan = plan(&case, &BTreeMap::from([("m".to_owned(), footprint)])).unwrap();
     let wind = deterministic(&case, &plan);
@@ -51,6 +60,37 @@ fn shear_and_veer_turn_the_wind_over_height() {
     let speed = 10.0 * ((HUB + 100.0) / HUB).powf(0.2);
     let (sine, cosine) = 5_f64.to_radians().sin_cos();
     near(at(&veering, 5.0, 0.0, HUB + 100.0), [speed * cosine, -speed * sine, 0.0]);
+}
+
+#[test]
+fn a_roughness_length_makes_the_profile_logarithmic() {
+    let wind = wind_of_case(&logarithmic("0.06"));
+    for height in [30.0, HUB, 2.0 * HUB] {
+        let speed = 10.0 * (height / 0.06_f64).ln() / (HUB / 0.06).ln();
+        near(at(&wind, 5.0, 0.0, height), [speed, 0.0, 0.0]);
+    }
+    for calm in [0.06, 0.01, -5.0] {
+        near(at(&wind, 5.0, 0.0, calm), [0.0; 3]);
+    }
+}
+
+#[test]
+fn a_rough_ground_asks_for_its_own_profile() {
+    let told = |text: String, ground: &str| {
+        let text = text.replace("solver = \"uniform\"", &format!("ground = {ground}"));
+        off_balance(&parse("windy.toml", &text, &[]).unwrap())
+    };
+    let rough = "{ roughness_length = 0.001 }";
+    assert_eq!(told(logarithmic("0.001"), rough), None);
+    assert_eq!(told(logarithmic("0.002"), "\"slip\""), None);
+    let other = told(logarithmic("0.002"), rough).unwrap();
+    assert!(other.contains("the logarithmic law of z₀ = 0.002 m blows in"), "{other}");
+    let power = told(text(""), rough).unwrap();
+    assert!(power.contains("a power law of exponent 0.2 blows in"), "{power}");
+    assert!(power.contains("write wind.roughness_length = 0.001, and no wind.shear_exponent"));
+    // Prescribed wind meets no ground.
+    let uniform = text("").replace("[flow]\n", &format!("[flow]\nground = {rough}\n"));
+    assert_eq!(off_balance(&parse("windy.toml", &uniform, &[]).unwrap()), None);
 }
 
 #[test]
@@ -132,11 +172,22 @@ fn what_cannot_be_is_told_with_its_line() {
             "uniform",
             "windy.toml:6: `wind.event.rise` = -3 is out of range: rise >= -2.5000 m/s for 4 steps down to calm",
         ),
+        (
+            "roughness_length = 0.06",
+            "uniform",
+            "windy.toml:5: `wind.shear_exponent` is of no use here: the profile is logarithmic with wind.roughness_length; leave one of the two out",
+        ),
+        (
+            "roughness_length = 0.06",
+            "planes",
+            "windy.toml:6: `wind.roughness_length` is of no use here: flow.solver = \"planes\" takes the wind as the file has it",
+        ),
+        ("roughness_length = 0", "uniform", "0 < roughness_length <= 5 m"),
         ("veer_deg_per_m = 5", "uniform", "did you mean 0.05 deg/m? 5 deg per 100 m would be that"),
         (
             "veer_deg_per_m = 0.05",
-            "lattice",
-            "windy.toml:6: `wind.veer_deg_per_m` is of no use here: the inlet of flow.solver = \"lattice\" blows along x; leave it out, or take flow.solver = \"uniform\"",
+            "planes",
+            "windy.toml:6: `wind.veer_deg_per_m` is of no use here: flow.solver = \"planes\" takes the wind as the file has it; leave it out",
         ),
         (
             step,
@@ -157,8 +208,14 @@ fn what_cannot_be_is_told_with_its_line() {
         let told = parse("windy.toml", &text, &[]).unwrap_err().to_lines();
         assert!(told.contains(expected), "{keys}\nexpected {expected}\ntold     {told}");
     }
-    let veering = text("veer_deg_per_m = 0.05").replace("\"uniform\"", "\"turbulence\"");
-    assert!(parse("windy.toml", &veering, &[]).is_ok());
+    let veering = |flow: &str| {
+        let text = text("veer_deg_per_m = 0.05").replace("solver = \"uniform\"", flow);
+        parse("windy.toml", &text, &[])
+    };
+    assert!(veering("solver = \"turbulence\"").is_ok());
+    assert!(veering("solver = \"lattice\"").is_ok());
+    let told = veering("sides = \"slip\"").unwrap_err().to_lines();
+    assert!(told.contains("sides along which the air is to slip; leave it out"), "{told}");
     let read = text("planes = \"field.bts\"").replace("\"uniform\"", "\"planes\"");
     let case = parse("windy.toml", &read, &[]).unwrap();
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);

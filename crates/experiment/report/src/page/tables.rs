@@ -6,7 +6,7 @@ use crate::sentence;
 use crate::study::{Kind, Study};
 use crate::words::{self, SPACE, number, percent, three_figures};
 use analysis::fatigue;
-use basis::records::{MeanderingAxis, PitchResponse, Statistic, TurbineSummary};
+use basis::records::{Conditions, MeanderingAxis, PitchResponse, Statistic, TurbineSummary};
 use minijinja::{Value, context};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -37,6 +37,15 @@ pub(crate) fn phases(study: &Study) -> Vec<Value> {
     .collect()
 }
 
+/// How the mean wind of `conditions` grows with height.
+fn mean_profile(conditions: &Conditions) -> String {
+    match (conditions.roughness_length, conditions.shear_exponent) {
+        (Some(length), _) => format!("logarithmic, z₀ = {length}{SPACE}m"),
+        (None, Some(exponent)) => format!("power law, exponent {}", number(exponent, 2)),
+        (None, None) => "–".to_owned(),
+    }
+}
+
 /// The conditions that all runs share.
 pub(crate) fn conditions(study: &Study) -> Vec<Value> {
     let summary = &study.runs()[0].summary;
@@ -59,8 +68,8 @@ pub(crate) fn conditions(study: &Study) -> Vec<Value> {
             ),
         ),
         fact(
-            "Shear exponent",
-            number(conditions.shear_exponent, 2),
+            "Mean profile",
+            mean_profile(conditions),
             format!("turbulence seed {}", conditions.seed),
         ),
     ];

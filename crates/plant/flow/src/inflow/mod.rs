@@ -27,7 +27,7 @@ pub mod turbulent;
 pub use deterministic::DeterministicWind;
 pub use planes::{PlaneGrid, Planes};
 pub use prescribed::PrescribedWind;
-pub use profile::MeanProfile;
+pub use profile::{GREATEST_ROUGHNESS, MeanProfile};
 pub use sampled::sampled;
 pub use sizing::size_box;
 pub use tensor::SpectralTensor;

@@ -1,5 +1,6 @@
 //! Planes of wind that arrive one after the other: what a turbulence box is to a turbine that stands in it.
 
+use super::profile::veered;
 use super::{InflowError, MeanProfile, TurbulenceBox, positive};
 use std::sync::Arc;
 
@@ -114,9 +115,7 @@ impl BoxPlanes {
         let PlaneGrid { first, spacing, .. } = self.grid;
         for (z, mean) in self.means.iter_mut().enumerate() {
             let height = first[1] + z as f64 * spacing[1];
-            let (sine, cosine) = (-veer * (height - hub_height)).sin_cos();
-            let speed = f64::from(mean[0]);
-            *mean = [(speed * cosine) as f32, (speed * sine) as f32];
+            *mean = veered(f64::from(mean[0]), veer, height - hub_height).map(|value| value as f32);
         }
         self
     }

@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 /// interest is there, and the law itself ends at the ground with an infinite gradient.
 pub const POWER_LAW_FLOOR: f64 = 0.01;
 
+/// Greatest roughness length of a logarithmic law (hub heights): beyond it the law says nothing of a rotor.
+pub const GREATEST_ROUGHNESS: f64 = 0.1;
+
 /// Mean wind along x over height z above the ground. Alone it is steady inflow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MeanProfile {
@@ -32,7 +35,7 @@ pub enum MeanProfile {
         hub_height: f64,
         /// Speed there (m/s).
         speed: f64,
-        /// Roughness length z₀ (m), less than `hub_height`.
+        /// Roughness length z₀ (m), at most [`GREATEST_ROUGHNESS`] hub heights.
         roughness_length: f64,
     },
 }
@@ -56,10 +59,11 @@ impl MeanProfile {
                 positive("hub height (m)", hub_height)?;
                 not_negative("speed (m/s)", speed)?;
                 positive("roughness length (m)", roughness_length)?;
-                if roughness_length < hub_height {
+                if roughness_length <= GREATEST_ROUGHNESS * hub_height {
                     return Ok(());
                 }
-                let (name, expected) = ("roughness length (m)", "less than the hub height");
+                let (name, expected) =
+                    ("roughness length (m)", "at most a tenth of the hub height");
                 Err(InflowError::Setting { name, value: roughness_length, expected })
             }
         }
@@ -87,6 +91,13 @@ impl MeanProfile {
             }
         }
     }
+}
+
+/// Mean wind u, v (m/s) of `speed` (m/s), `above_hub` (m) above the height at which it blows along x, where it veers by `veer`
+/// (rad/m): clockwise seen from above, upwards.
+pub(crate) fn veered(speed: f64, veer: f64, above_hub: f64) -> [f64; 2] {
+    let (sine, cosine) = (-veer * above_hub).sin_cos();
+    [speed * cosine, speed * sine]
 }
 
 impl Inflow for MeanProfile {
@@ -126,6 +137,19 @@ mod tests {
         let profile = MeanProfile::PowerLaw { hub_height: 150.0, speed: 9.0, exponent: 0.14 };
         for (height, speed) in [(295.0, 9.89), (246.7, 9.65), (63.0, 7.97), (5.0, 5.59)] {
             assert!((profile.speed(height) - speed).abs() < 0.0051, "{height} m");
+        }
+    }
+
+    #[test]
+    fn a_roughness_that_leaves_no_profile_is_refused() {
+        let of = |roughness_length| MeanProfile::LogLaw {
+            hub_height: 90.0,
+            speed: 9.0,
+            roughness_length,
+        };
+        assert!(of(9.0).check().is_ok());
+        for refused in [9.001, 0.0, f64::NAN] {
+            assert!(of(refused).check().is_err(), "{refused} m");
         }
     }
 

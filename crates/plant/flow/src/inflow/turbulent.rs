@@ -1,5 +1,6 @@
 //! Turbulence carried past the farm on top of a mean profile.
 
+use super::profile::veered;
 use super::{InflowError, MeanProfile, TurbulenceBox};
 use crate::Inflow;
 use basis::Vector3;
@@ -23,6 +24,9 @@ pub struct TurbulentInflow {
     profile: MeanProfile,
     origin: Vector3,
     blocking_height: f64,
+    /// Veer (rad/m), and the height (m) at which the mean wind blows along x.
+    veer: f64,
+    hub_height: f64,
 }
 
 /// Blocking height over the length scale of Mann's tensor (–): with it the variance near the ground is
@@ -43,7 +47,8 @@ impl TurbulentInflow {
         origin: Vector3,
     ) -> Result<Self, InflowError> {
         super::positive("mean speed at hub height (m/s)", profile.hub_speed())?;
-        Ok(Self { turbulence, profile, origin, blocking_height: 0.0 })
+        let (blocking_height, veer, hub_height) = (0.0, 0.0, 0.0);
+        Ok(Self { turbulence, profile, origin, blocking_height, veer, hub_height })
     }
 
     /// As [`new`](Self::new), with the box's points on the cell centres of a flow grid whose lowest corner is at
@@ -65,6 +70,13 @@ impl TurbulentInflow {
     pub fn blocked(mut self, height: f64) -> Self {
         self.blocking_height = height.max(0.0);
         self
+    }
+
+    /// The same, its mean wind turned by `veer` (rad/m) per metre above `hub_height` (m): clockwise seen from above,
+    /// upwards, as [`DeterministicWind::veer`](super::DeterministicWind::veer). The fluctuations are not turned, and all
+    /// is carried along x as before.
+    pub fn veering(self, veer: f64, hub_height: f64) -> Self {
+        Self { veer, hub_height, ..self }
     }
 
     /// The turbulence.
@@ -99,7 +111,7 @@ impl TurbulentInflow {
         let [_, n_y, n_z] = self.turbulence.n_points();
         let (index, weight) = place((height - self.origin.z) / self.turbulence.spacing()[2], n_z);
         Rows {
-            mean: self.profile.speed(height),
+            mean: veered(self.profile.speed(height), self.veer, height - self.hub_height),
             vertical: self.vertical_share(height),
             below: index * n_y,
             above: (index + 1) % n_z * n_y,
@@ -138,7 +150,8 @@ impl Planes<'_> {
 
 /// What belongs to one height.
 struct Rows {
-    mean: f64,
+    /// Mean of u and v (m/s).
+    mean: [f64; 2],
     vertical: f64,
     below: usize,
     above: usize,
@@ -194,7 +207,8 @@ impl Inflow for TurbulentInflow {
                 }
             }
             let [u, v, w] = fluctuation.map(f64::from);
-            *velocity = Vector3::new(rows.mean + u, v, rows.vertical * w);
+            let [along, across] = rows.mean;
+            *velocity = Vector3::new(along + u, across + v, rows.vertical * w);
         }
     }
 }

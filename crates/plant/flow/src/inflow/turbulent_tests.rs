@@ -1,7 +1,7 @@
 //! Tests of turbulence carried past.
 
 use super::*;
-use crate::inflow::mann;
+use crate::inflow::{DeterministicWind, mann};
 use proptest::prelude::*;
 
 const SPACING: f64 = 10.0;
@@ -48,6 +48,21 @@ fn points_of_the_box_are_met_exactly() {
         let [u, v, w] =
             [0, 1, 2].map(|component| f64::from(inflow.turbulence().at(component, point)));
         assert!((velocity - Vector3::new(profile().speed(place.z) + u, v, w)).length() < 1e-6);
+    }
+}
+
+/// The mean turns over height as the closed form has it, the fluctuations stay what they are.
+#[test]
+fn the_mean_veers_like_the_wind_without_turbulence() {
+    let veer = 2e-3;
+    let mean = DeterministicWind { veer, ..DeterministicWind::steady(profile(), 60.0) };
+    let (straight, veering) = (inflow(), inflow().veering(veer, 60.0));
+    for place in
+        [place_of([7, 3, 2]), Vector3::new(3.0, -17.0, 60.0), Vector3::new(90.0, 4.0, 113.0)]
+    {
+        let turned = mean.wind(0.0, place) - Vector3::X * profile().speed(place.z);
+        let found = wind(&veering, 21.0, place) - wind(&straight, 21.0, place);
+        assert!((found - turned).length() < 1e-12, "{place}: {found} for {turned}");
     }
 }
 

@@ -108,3 +108,25 @@ fn the_wind_that_enters_has_its_profile() {
         }
     }
 }
+
+/// Layers of air that slide over each other, each along its own direction, are a steady flow without friction.
+#[test]
+fn a_wind_that_veers_keeps_its_directions() {
+    let wind = |z: f64| {
+        let (sine, cosine) = (-0.03 * (z - 9.5)).sin_cos();
+        0.08 * Vector3::new(cosine, sine, 0.0)
+    };
+    let mut settings = periodic_box([48, 8, 20], 1e-6);
+    (settings.ends, settings.ground) = (Ends::InletOutlet, Ground::Slip);
+    settings.smagorinsky = DEFAULT_SMAGORINSKY;
+    let mut air = lattice(settings, move |_, x| wind(x.z));
+    air.advance(2000.0, &[]).expect("no divergence");
+    for x in [0.0, 10.0, 30.0] {
+        for z in 0..20 {
+            let mut velocity = [Vector3::ZERO];
+            air.sample(&[Vector3::new(x, 4.0, f64::from(z))], &mut velocity);
+            let error = velocity[0] - wind(f64::from(z));
+            assert!(error.length() < 0.03 * 0.08, "x {x} z {z}: off by {error}");
+        }
+    }
+}

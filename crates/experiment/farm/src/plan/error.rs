@@ -1,0 +1,147 @@
+//! Why a case cannot be run as it stands, and the key that decides.
+
+use super::{MAXIMUM_LATTICE_SPEED, MINIMUM_CELLS_PER_DIAMETER};
+use thiserror::Error;
+
+/// Why a case cannot be run as it stands.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PlanError {
+    /// A rotor reaches outside the air.
+    #[error(
+        "turbine {name} reaches outside the domain: its rotor spans {axis} = {low:.0} to {high:.0} m, the domain {domain_low:.0} to {domain_high:.0} m; {fix}"
+    )]
+    OutsideDomain {
+        /// Turbine.
+        name: String,
+        /// Axis, in words.
+        axis: &'static str,
+        /// Lowest coordinate of the rotor (m).
+        low: f64,
+        /// Highest coordinate of the rotor (m).
+        high: f64,
+        /// Lowest coordinate of the domain (m).
+        domain_low: f64,
+        /// Highest coordinate of the domain (m).
+        domain_high: f64,
+        /// Key to raise.
+        fix: &'static str,
+    },
+    /// Rotors that touch each other.
+    #[error(
+        "turbines {first} and {second} overlap: their towers are {distance:.0} m apart, their rotors need {needed:.0} m; move one of them (turbine.position_diameters)"
+    )]
+    Overlap {
+        /// One turbine.
+        first: String,
+        /// The other.
+        second: String,
+        /// Distance of their towers (m).
+        distance: f64,
+        /// Least distance (m).
+        needed: f64,
+    },
+    /// The grid is too coarse.
+    #[error(
+        "turbine {name} has only {cells:.1} cells across its rotor, {MINIMUM_CELLS_PER_DIAMETER} are the least; raise flow.cells_per_diameter to at least {needed:.0}"
+    )]
+    TooCoarse {
+        /// Turbine.
+        name: String,
+        /// Cells across its rotor (–).
+        cells: f64,
+        /// Least `cells_per_diameter` (–).
+        needed: f64,
+    },
+    /// A tip crosses more than a cell a step.
+    #[error(
+        "flow.step = {step} s is too long: the tip of {name} moves {cells:.2} cells a step at {tip_speed:.0} m/s; at most {longest:.4} s, or leave the key out"
+    )]
+    TipOutruns {
+        /// Turbine.
+        name: String,
+        /// Asked step (s).
+        step: f64,
+        /// Cells a step (–).
+        cells: f64,
+        /// Tip speed (m/s).
+        tip_speed: f64,
+        /// Longest step (s).
+        longest: f64,
+    },
+    /// The free stream moves too many cells a step.
+    #[error(
+        "flow.step = {step} s is too long: the wind moves {cells:.2} cells a step, {MAXIMUM_LATTICE_SPEED} are the most; at most {longest:.4} s, or leave the key out"
+    )]
+    TooFast {
+        /// Asked step (s).
+        step: f64,
+        /// Cells a step (–).
+        cells: f64,
+        /// Longest step (s).
+        longest: f64,
+    },
+    /// The wind's profile is calm up to the rotor.
+    #[error(
+        "wind.roughness_length = {roughness_length} m is too much for a hub at {hub_height:.0} m: {highest:.1} m, a tenth of it, is the most; 0.0002 is calm sea, 0.03 farmland, 1 a town"
+    )]
+    TooRough {
+        /// Asked roughness length (m).
+        roughness_length: f64,
+        /// Hub height of the first turbine (m).
+        hub_height: f64,
+        /// Greatest roughness length (m).
+        highest: f64,
+    },
+    /// The wind turns so far with height that part of the inlet lets none in.
+    #[error(
+        "wind.veer_deg_per_m turns the wind by {turn_deg:.0}° within the domain, which is {top:.0} m high, {most_deg:.0}° are the most; at most {greatest_deg:.4}, or lower flow.height_diameters"
+    )]
+    VeersTooFar {
+        /// Farthest direction from that at hub height (deg).
+        turn_deg: f64,
+        /// Farthest direction that may be (deg).
+        most_deg: f64,
+        /// Height of the domain (m).
+        top: f64,
+        /// Greatest veer (deg/m).
+        greatest_deg: f64,
+    },
+    /// A plane across the wake where no air is.
+    #[error(
+        "the crosswind plane {distance} diameters behind the first turbine lies at x = {x:.0} m, the domain ends at {low:.0} and {high:.0} m; raise flow.downstream_diameters or take it away"
+    )]
+    CrosswindOutside {
+        /// Distance (diameters of the first turbine).
+        distance: f64,
+        /// Its place (m).
+        x: f64,
+        /// Ends of the domain (m).
+        low: f64,
+        /// As above.
+        high: f64,
+    },
+    /// A turbine without its model.
+    #[error("turbine {name} asks for the model `{model}`, which was not loaded")]
+    UnknownModel {
+        /// Turbine.
+        name: String,
+        /// Model.
+        model: String,
+    },
+}
+
+impl PlanError {
+    /// The key that decides, from the top of the case file; a name where several tables stand under one heading.
+    pub fn key(&self) -> Vec<&str> {
+        match self {
+            Self::OutsideDomain { name, .. } => vec!["turbine", name, "position_diameters"],
+            Self::Overlap { second, .. } => vec!["turbine", second, "position_diameters"],
+            Self::TooCoarse { .. } => vec!["flow", "cells_per_diameter"],
+            Self::TipOutruns { .. } | Self::TooFast { .. } => vec!["flow", "step"],
+            Self::TooRough { .. } => vec!["wind", "roughness_length"],
+            Self::VeersTooFar { .. } => vec!["wind", "veer_deg_per_m"],
+            Self::CrosswindOutside { .. } => vec!["output", "crosswind_diameters"],
+            Self::UnknownModel { name, .. } => vec!["turbine", name, "model"],
+        }
+    }
+}

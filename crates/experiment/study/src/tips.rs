@@ -1,0 +1,96 @@
+//! Blade tips that outran the sound on the lattice: the step is chosen in the mean wind, and a gust may turn a rotor faster.
+
+use farm::plan::LATTICE_SOUND_SPEED;
+
+/// How fast a tip moved in a record, against the sound on the lattice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Outrun {
+    /// When it first outran the sound (s).
+    first: f64,
+    /// Share of the instants at which it did (–).
+    share: f64,
+    /// Its greatest speed (m/s), and when that was (s).
+    fastest: f64,
+    fastest_at: f64,
+    /// That speed in cells a step (–).
+    cells: f64,
+    /// Longest step with which it would not have outrun the sound (s).
+    longest_step: f64,
+}
+
+impl Outrun {
+    /// None where the tip stayed slower: `radius` (m) from the axis of a rotor that turned at `rotor_speeds` (rad/s) at
+    /// `times` (s), over cells of `spacing` (m) in steps of `interval` (s).
+    pub(crate) fn of(
+        times: &[f64],
+        rotor_speeds: &[f64],
+        radius: f64,
+        spacing: f64,
+        interval: f64,
+    ) -> Option<Self> {
+        let sound = LATTICE_SOUND_SPEED * spacing / interval;
+        let tips = || {
+            let instants = times.iter().zip(rotor_speeds);
+            instants.map(move |(&time, speed)| (time, speed.abs() * radius))
+        };
+        let outruns = |tip: &(f64, f64)| tip.1 > sound;
+        let (first, _) = tips().find(outruns)?;
+        let (fastest_at, fastest) = tips().reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+        Some(Self {
+            first,
+            share: tips().filter(outruns).count() as f64 / times.len() as f64,
+            fastest,
+            fastest_at,
+            cells: fastest * interval / spacing,
+            longest_step: LATTICE_SOUND_SPEED * spacing / fastest,
+        })
+    }
+
+    /// What a reader of the figures of the turbine `name` in `run` must know.
+    pub(crate) fn warning(&self, run: &str, name: &str) -> String {
+        format!(
+            "{run}: the tip of {name} outran the sound on the lattice {:.1} % of the time, first at {:.0} s; at {:.0} s it moved at {:.1} m/s, \
+             {:.3} cells a step, {LATTICE_SOUND_SPEED:.3} are the most; its power is then too low: take flow.step = {:.4} or less",
+            100.0 * self.share,
+            self.first,
+            self.fastest_at,
+            self.fastest,
+            self.cells,
+            // Rounded down, so that the step printed is short enough.
+            (1e4 * self.longest_step).floor() / 1e4,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sound crosses cells of 15 m in steps of 0.1 s at 86.6 m/s; tips turn 120 m from their axis.
+    fn outrun(rotor_speeds: &[f64]) -> Option<Outrun> {
+        let times: Vec<f64> =
+            (0..rotor_speeds.len()).map(|row| 300.0 + 100.0 * row as f64).collect();
+        Outrun::of(&times, rotor_speeds, 120.0, 15.0, 0.1)
+    }
+
+    #[test]
+    fn tips_below_the_sound_are_no_matter() {
+        assert_eq!(outrun(&[0.6, 0.7, 0.72]), None);
+        assert_eq!(outrun(&[]), None);
+    }
+
+    #[test]
+    fn the_first_and_the_fastest_instant_are_told_with_the_step_that_mends_it() {
+        // 84, 87.6, 90 and 72 m/s.
+        let found = outrun(&[0.7, 0.73, 0.75, 0.6]).expect("two of four instants");
+        assert_eq!((found.first, found.fastest_at, found.share), (400.0, 500.0, 0.5));
+        assert!((found.fastest - 90.0).abs() < 1e-9 && (found.cells - 0.6).abs() < 1e-9);
+        // With that step the fastest tip moves with the sound.
+        let moved = found.fastest * found.longest_step / 15.0;
+        assert!((moved - 1.0 / 3.0_f64.sqrt()).abs() < 1e-12, "{moved}");
+        let told = found.warning("helix", "T1");
+        assert!(told.starts_with("helix: the tip of T1 outran"), "{told}");
+        assert!(told.contains("50.0 % of the time, first at 400 s; at 500 s it moved at 90.0 m/s"));
+        assert!(told.ends_with("take flow.step = 0.0962 or less"), "{told}");
+    }
+}
