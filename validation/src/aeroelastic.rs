@@ -1,27 +1,19 @@
 //! The flexible turbine in prescribed wind against OpenFAST 5.0.0 with ROSCO 2.10.1 on the same definitions.
 //!
 //! Reference: own runs of OpenFAST (commit 2895884): BEM_Mod 1, Pitt/Peters skew, DBEMT_Mod 3 with the time constants below,
-//! UA_Mod 3, tower influence off, clamped tower, steps of 0.02 s (IEA 15 MW) and 0.0125 s (NREL 5 MW).
+//! UA_Mod 3, tower influence off but where it is told, clamped tower, steps of 0.02 s (IEA 15 MW) and 0.0125 s (NREL 5 MW).
+
+mod rig;
+mod tower;
+mod turbulence;
 
 use crate::Row;
-use basis::Vector3;
-use control::{Baseline, Excitation, Helix, Sense, TurbineController};
-use farm::assemble::Model;
-use farm::case::Solver;
-use farm::farm::Recorder;
-use farm::{Air, Farm, Machine};
-use flow::inflow::{MeanProfile, PrescribedWind};
-use std::sync::Arc;
-use turbine::aero;
-use turbine::aero::blade_element::Theory;
-use turbine::aero::induction::TwoConstant;
-use turbine::{Induction, Turbine};
+use rig::{Asked, CHANNELS, Run, Speed, run};
+pub use turbulence::openfast_turbulence;
 
-/// Step (s).
-const INTERVAL: f64 = 0.02;
 /// Accepted distance of means from the reference (–).
 const TOLERANCE: f64 = 0.02;
-/// Accepted distance of a change by the helix from the reference's: points (–), or share of the change (–).
+/// Accepted distance of a change by the helix, or by the tower, from the reference's: points (–), or share of the change (–).
 const CHANGE_POINTS: f64 = 0.03;
 const CHANGE_SHARE: f64 = 0.15;
 
@@ -134,149 +126,8 @@ const HELIX: [(f64, [f64; 10]); 5] = [
     ),
 ];
 
-/// Channels that are looked at.
-const CHANNELS: [&str; 7] =
-    ["RootMyc1", "TwrBsMyt", "YawBrMyp", "YawBrMzp", "LSSTipMys", "OoPDefl1", "RootMxc1"];
-
-/// What a run gives over its last part.
-struct Run {
-    power: f64,
-    thrust: f64,
-    generator_power: f64,
-    /// Rotor speed (rpm).
-    rotor_speed: f64,
-    /// Samples of each of [`CHANNELS`], in MN m or m.
-    samples: [Vec<f64>; 7],
-}
-
-impl Run {
-    fn mean(&self, channel: usize) -> f64 {
-        self.samples[channel].iter().sum::<f64>() / self.samples[channel].len() as f64
-    }
-
-    fn deviation(&self, channel: usize) -> f64 {
-        let mean = self.mean(channel);
-        let samples = &self.samples[channel];
-        (samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples.len() as f64).sqrt()
-    }
-
-    fn equivalent(&self, channel: usize, slope: f64) -> f64 {
-        analysis::fatigue::damage_equivalent_load(&self.samples[channel], INTERVAL, slope, 1.0)
-            .expect("loads are finite and the record is long")
-    }
-}
-
-struct Silent;
-
-impl Recorder for Silent {
-    fn record(&mut self, _: usize, _: &basis::Measurements, _: &basis::Commands) {}
-}
-
-/// What becomes of the rotor's speed.
-#[derive(Clone, Copy, PartialEq)]
-enum Speed {
-    Held,
-    /// Torque control k ω².
-    Square,
-    /// Torque control that tracks the tip-speed ratio on an estimated wind, as prescribed wind has it by default.
-    Tracked,
-}
-
-/// How a turbine is run.
-struct Asked<'a> {
-    model: &'a str,
-    wind: f64,
-    slow_constant: f64,
-    /// Rotor speed at the beginning (rpm).
-    rotor_speed: f64,
-    speed: Speed,
-    /// Helix, degrees.
-    amplitude: f64,
-    /// From and to (s).
-    window: [f64; 2],
-}
-
-fn run(asked: &Asked<'_>) -> Run {
-    let file =
-        formats::library::load(asked.model).expect("the library's own turbines are readable");
-    let definition = Arc::new(file.definition);
-    let mut model = Model { definition: Arc::clone(&definition), constants: file.controller };
-    if asked.speed == Speed::Tracked {
-        model = model.equipped(Solver::Uniform, AIR_DENSITY).into_owned();
-    }
-    let diameter = definition.rotor_diameter();
-    let settings = turbine::Settings {
-        induction: Induction::ByMomentum(aero::rotor::Settings {
-            induction: aero::Induction::TwoConstant(TwoConstant::fixed(asked.slow_constant)),
-            theory: Theory::default(),
-            skewed_wake: true,
-            dynamic_stall: true,
-            tower: None,
-        }),
-        flexible: true,
-        air_density: AIR_DENSITY,
-        rotor_speed: asked.rotor_speed * std::f64::consts::PI / 30.0,
-        azimuth: 0.0,
-        pitch: 0.0,
-    };
-    let mut turbine = Turbine::new(definition, Vector3::ZERO, settings)
-        .expect("the library's own turbines have a structure")
-        .without_bodies();
-    if asked.speed == Speed::Held {
-        turbine = turbine.at_held_speed();
-    }
-    let mut excitation = Excitation::None;
-    if asked.amplitude > 0.0 {
-        let amplitude = asked.amplitude.to_radians();
-        let sense = Sense::CounterClockwise;
-        excitation = Excitation::Helix(Helix::new(sense, amplitude, 0.25, asked.wind, diameter));
-    }
-    let places = CHANNELS.map(|name| turbine.structure().channel(name).expect("a known channel"));
-    let n_channels = turbine.channels().len();
-    let controller = TurbineController::new(Baseline::new(model.constants), excitation);
-    let wind = PrescribedWind::everywhere(Arc::new(MeanProfile::Uniform { speed: asked.wind }));
-    let air = Air::Prescribed(Box::new(wind));
-    let mut farm = Farm::new(vec![Machine::new(turbine, controller)], air, INTERVAL, 1)
-        .expect("one turbine needs no threads");
-    let mut values = vec![0.0; n_channels];
-    let mut result = Run {
-        power: 0.0,
-        thrust: 0.0,
-        generator_power: 0.0,
-        rotor_speed: 0.0,
-        samples: Default::default(),
-    };
-    while farm.time() < asked.window[1] {
-        farm.advance(&mut Silent).expect("a uniform wind does not end");
-        if farm.time() > asked.window[0] {
-            let turbine = &farm.machines()[0].turbine;
-            let read = turbine.measurements(farm.time(), INTERVAL);
-            result.power += 1e-6 * read.aerodynamic_torque * read.rotor_speed;
-            result.thrust += 1e-6 * read.thrust;
-            result.generator_power += 1e-6 * read.power;
-            result.rotor_speed += read.rotor_speed * 30.0 / std::f64::consts::PI;
-            turbine.write_channels(&mut values);
-            for ((samples, place), name) in result.samples.iter_mut().zip(places).zip(CHANNELS) {
-                samples.push(if name.contains('M') { 1e-6 } else { 1.0 } * values[place]);
-            }
-        }
-    }
-    let n = result.samples[0].len() as f64;
-    for sum in [
-        &mut result.power,
-        &mut result.thrust,
-        &mut result.generator_power,
-        &mut result.rotor_speed,
-    ] {
-        *sum /= n;
-    }
-    result
-}
-
-/// Density of the air in the reference (kg/m³).
-const AIR_DENSITY: f64 = 1.225;
-
-/// Steady wind: means at the reference's rotor speed, then speed and power under the turbine's own control.
+/// Steady wind: means at the reference's rotor speed, then speed and power under the turbine's own control, last what the tower
+/// changes where its wind is felt.
 pub fn openfast_steady() -> Vec<Row> {
     let mut rows = Vec::new();
     for steady in STEADY {
@@ -296,8 +147,7 @@ pub fn openfast_steady() -> Vec<Row> {
             slow_constant,
             rotor_speed,
             speed,
-            amplitude: 0.0,
-            window: [500.0, 600.0],
+            ..Asked::in_nine_metres_a_second()
         };
         let held = run(&asked(Speed::Held));
         let moments = (0..6).map(|channel| held.mean(channel));
@@ -312,6 +162,7 @@ pub fn openfast_steady() -> Vec<Row> {
         let power = tracked.generator_power;
         add("own control: generator power".to_owned(), power, generator_power, "MW");
     }
+    rows.extend(tower::changes());
     rows
 }
 
@@ -319,15 +170,8 @@ pub fn openfast_steady() -> Vec<Row> {
 pub fn openfast_helix() -> Vec<Row> {
     let runs = HELIX.map(|(amplitude, _)| {
         let window = if amplitude == 0.0 { [500.0, 600.0] } else { [280.0, 600.0] };
-        run(&Asked {
-            model: "iea-15mw",
-            wind: 9.0,
-            slow_constant: 29.03,
-            rotor_speed: 6.44866,
-            speed: Speed::Square,
-            amplitude,
-            window,
-        })
+        let speed = Speed::Square;
+        run(&Asked { speed, amplitude, window, ..Asked::in_nine_metres_a_second() })
     });
     let numbers = |run: &Run| {
         [

@@ -127,7 +127,7 @@ fn boxes(name: &str, anisotropy: f64) -> Vec<Row> {
 }
 
 /// Mean of `values` with its standard error.
-fn mean_of(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
+pub(crate) fn mean_of(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let n = values.clone().count() as f64;
     let mean = values.clone().sum::<f64>() / n;
     let variance = values.map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);

@@ -8,6 +8,7 @@ pub mod blade_element;
 pub mod flow;
 pub mod helix;
 pub mod inflow;
+mod least_squares;
 pub mod meandering;
 pub mod phase_estimator;
 pub mod resume;
@@ -92,7 +93,7 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "openfast-steady",
-        about: "the flexible turbine in steady prescribed wind against OpenFAST: power, thrust, mean loads, deflection",
+        about: "the flexible turbine in steady prescribed wind against OpenFAST: power, thrust, mean loads, deflection, tower",
         minutes: "under 1",
         run: aeroelastic::openfast_steady,
     },
@@ -101,6 +102,12 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "changes of power and loads by a helix of 1 to 4° in steady prescribed wind against OpenFAST",
         minutes: "under 1",
         run: aeroelastic::openfast_helix,
+    },
+    Validation {
+        name: "openfast-turbulence",
+        about: "the flexible turbine in Kaimal turbulence: deviations and equivalent loads beside a record of OpenFAST",
+        minutes: "under 1",
+        run: aeroelastic::openfast_turbulence,
     },
     Validation {
         name: "meandering-loops",

@@ -6,7 +6,6 @@ mod disk;
 mod follower;
 mod identify;
 mod judge;
-mod least_squares;
 mod loops;
 mod rig;
 mod spring_mass;

@@ -33,7 +33,8 @@ const TURBSIM_SPECTRUM: [f64; 4] = [9.8600, 2.8725, 0.56149, 0.090499];
 const TURBSIM_DEVIATIONS: [f64; 3] = [0.50223, 0.41972, 0.26207];
 const TURBSIM_AT_HUB: f64 = 0.41633;
 
-fn settings(seed: u64) -> Settings {
+/// What TurbSim was asked for, for our own `seed`.
+pub(crate) fn settings(seed: u64) -> Settings {
     let spacing = 290.0 / 30.0;
     Settings {
         n_points: [6600, 31, 31],
@@ -193,7 +194,8 @@ fn scaled() -> Vec<Row> {
     .collect()
 }
 
-fn made(settings: &Settings) -> TurbulenceBox {
+/// The box of `settings`, which only a lack of memory (110 MB) denies.
+pub(crate) fn made(settings: &Settings) -> TurbulenceBox {
     match generate(settings, |_| {}) {
         Ok(turbulence) => turbulence,
         Err(error) => panic!("the box of the validation cannot be made: {error}"),

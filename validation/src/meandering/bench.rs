@@ -1,8 +1,8 @@
 //! The source's chapter 3: three generators side by side on a frequency step and ramp, jumps, offset, noise, attenuation.
 
 use super::follower::{Case, END, INTERVAL, Instant, START, run};
-use super::least_squares::Fit;
 use crate::Row;
+use crate::least_squares::Fit;
 use estimation::phase_locked::Kind;
 use std::f64::consts::{SQRT_2, TAU};
 

@@ -1,8 +1,8 @@
 //! Loads and power of a run in the rotating disk beside those without control.
 
-use super::least_squares::Fit;
 use super::rig::{INTERVAL, MOMENTS, Reading};
 use crate::Row;
+use crate::least_squares::Fit;
 use analysis::fatigue::damage_equivalent_load;
 use analysis::statistics::student_97_5;
 use flow::inflow::deterministic::RotatingDisk;

@@ -12,6 +12,13 @@ fn wakemix(arguments: &[&str], folder: &Path) -> Output {
         .unwrap()
 }
 
+/// What a command that failed said: drawn messages wrap, what matters is the words.
+fn told(output: &Output) -> String {
+    let told = String::from_utf8_lossy(&output.stderr);
+    let words: Vec<&str> = told.split_whitespace().filter(|word| *word != "│").collect();
+    words.join(" ")
+}
+
 /// A wave of amplitude 3 and one of 0.5, both of 1 Hz, sampled at 20 Hz over `seconds` from their peaks.
 fn waves(seconds: usize) -> String {
     let rows = (0..=20 * seconds).map(|index| {
@@ -87,10 +94,7 @@ fn bad_input_ends_with_code_2_and_a_fix() {
     ];
     for (arguments, expected) in cases {
         let output = wakemix(&[&["fatigue"], arguments.as_slice()].concat(), folder.path());
-        // Drawn messages wrap; what matters is the words.
-        let told = String::from_utf8(output.stderr).unwrap();
-        let told: Vec<&str> = told.split_whitespace().filter(|word| *word != "│").collect();
-        let told = told.join(" ");
+        let told = told(&output);
         assert_eq!(output.status.code(), Some(2), "{told}");
         assert!(told.contains(expected), "{told}\n{expected}");
         assert!(output.stdout.is_empty());
@@ -122,13 +126,91 @@ fn the_count_ends_where_it_is_asked_to() {
     assert_eq!(value["to_s"], 20.0);
     for times in [&["--to", "-1"][..], &["--from", "30", "--to", "20"]] {
         let output = run(times);
-        // Drawn messages wrap; what matters is the words.
-        let told = String::from_utf8(output.stderr).unwrap();
-        let told: Vec<&str> = told.split_whitespace().filter(|word| *word != "│").collect();
-        let told = told.join(" ");
+        let told = told(&output);
         assert_eq!(output.status.code(), Some(2), "{told}");
         let expected = "leaves 0 samples to count before --to: it begins at 0 s";
         assert!(told.contains(expected) && told.contains("after --from"), "{told}");
     }
     assert_eq!(run(&[]).status.code(), Some(2));
+}
+
+/// A blade that swings by 10 degrees at the reference's 600 degrees in 10 minutes, and steady moments; `pitch` names its
+/// column, of which one degree is `degree`, and `prefix` stands before the moments.
+fn pitching(prefix: &str, pitch: &str, degree: f64) -> String {
+    let rows = (0..=120_i32).map(|index| {
+        let swing = f64::from((index % 40 - 20).abs()) / 2.0;
+        format!("{:?},{:?},3000.0,4000.0\n", f64::from(index) / 2.0, degree * swing)
+    });
+    let names = format!("time_s,{pitch},{prefix}RootMyb1_kN-m,{prefix}RootMxb1_kN-m\n");
+    std::iter::once(names).chain(rows).collect()
+}
+
+#[test]
+fn a_bearing_carries_steady_moments_where_they_press() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("swing.csv"), pitching("", "BldPitch1_deg", 1.0)).unwrap();
+    let output = wakemix(&["fatigue", "swing.csv", "--bearing"], folder.path());
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{text}");
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "swing.csv: 0 to 60 s, 60 s, 121 samples");
+    assert_eq!(
+        lines[1],
+        "pitch BldPitch1_deg, M_flap RootMyb1_kN-m, M_edge RootMxb1_kN-m, slope 3"
+    );
+    assert_eq!(lines[2], "pitch travel 60.0000 deg, 600.000 deg in 10 minutes");
+    let cells = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(cells(lines[4]), ["0", "3000.00"]);
+    assert_eq!(cells(lines[13]), ["90", "4000.00"]);
+    assert_eq!(cells(lines[22]), ["180", "0.00000"]);
+    assert!(lines[40].starts_with("pitch-bearing load (van der Hoek et al., Eq. 9)"), "{text}");
+    assert!(lines[40].ends_with("samples every 0.5 s") && lines.len() == 41, "{text}");
+}
+
+#[test]
+fn the_bearing_of_a_turbine_in_the_records_of_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let series = pitching("T2.", "T2.pitch_1_rad", 1_f64.to_radians());
+    fs::write(folder.path().join("series.csv"), series).unwrap();
+    let asked = ["fatigue", ".", "--bearing", "--turbine", "T2", "--slope", "4", "--json"];
+    let output = wakemix(&[&asked[..], &["--from", "20"]].concat(), folder.path());
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(value["pitch"], "T2.pitch_1_rad");
+    assert_eq!(value["unit"], "kN-m");
+    assert_eq!(value["slope"], 4.0);
+    assert_eq!(value["duration_s"], 40.0);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert!((number(&value["travel_deg"]) - 40.0).abs() < 1e-9, "{value}");
+    let positions = value["positions"].as_array().unwrap();
+    assert_eq!(positions.len(), 36);
+    for position in positions {
+        let (sine, cosine) = number(&position["position_deg"]).to_radians().sin_cos();
+        let expected = (3000.0 * cosine + 4000.0 * sine).max(0.0);
+        assert!((number(&position["load"]) - expected).abs() < 1e-6, "{position}");
+    }
+}
+
+#[test]
+fn a_bearing_that_cannot_be_counted_is_told_with_a_fix() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("waves.csv"), waves(2)).unwrap();
+    fs::write(folder.path().join("swing.csv"), pitching("", "BldPitch1_deg", 1.0)).unwrap();
+    fs::write(folder.path().join("bare.csv"), pitching("", "BldPitch1", 1.0)).unwrap();
+    let mixed = pitching("", "BldPitch1_deg", 1.0).replacen("RootMxb1_kN-m", "RootMxb1_N-m", 1);
+    fs::write(folder.path().join("mixed.csv"), mixed).unwrap();
+    let cases: [(&[&str], &str); 7] = [
+        (&["waves.csv"], "neither \"pitch_1\" nor \"BldPitch1\" means one of its channels"),
+        (&["swing.csv", "--turbine", "T1"], "--turbine T1"),
+        (&["swing.csv", "--blade", "2"], "has no pitch of blade 2"),
+        (&["bare.csv"], "with the unit behind its name, such as BldPitch1_deg"),
+        (&["mixed.csv"], "RootMyb1_kN-m is in \"kN-m\", RootMxb1_N-m in \"N-m\""),
+        (&["swing.csv", "--slope", "3,4"], "--bearing with 2 slopes"),
+        (&["swing.csv", "--channel", "RootMyb1"], "cannot be used with"),
+    ];
+    for (arguments, expected) in cases {
+        let output = wakemix(&[&["fatigue", "--bearing"][..], arguments].concat(), folder.path());
+        let told = told(&output);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains(expected), "{told}\n{expected}");
+    }
 }

@@ -1,4 +1,6 @@
-//! `wakemix fatigue`: damage-equivalent loads of channels in any table of results.
+//! `wakemix fatigue`: damage-equivalent loads of channels, or of a pitch bearing, in any table of results.
+
+mod bearing;
 
 use clap::Args;
 use miette::{IntoDiagnostic, Result, miette};
@@ -18,11 +20,32 @@ pub(crate) struct FatigueArguments {
     /// OpenFAST output (.outb, .out), CSV with a column of time, or the folder of a run
     file: PathBuf,
     /// Channels, such as RootMyc1,TwrBsMyt; a unit at the end of a name may be left out
-    #[arg(long, value_name = "NAME", required = true, value_delimiter = ',')]
+    #[arg(
+        long,
+        value_name = "NAME",
+        required_unless_present = "bearing",
+        conflicts_with = "bearing",
+        value_delimiter = ','
+    )]
     channel: Vec<String>,
-    /// Wöhler slopes m of the S-N line: 4 is usual for welded steel, 10 for composite blades
-    #[arg(long, value_name = "M", required = true, value_delimiter = ',', value_parser = slope)]
+    /// Wöhler slopes m of the S-N line: 4 is usual for welded steel, 10 for composite blades; one, 3 when left out, with --bearing
+    #[arg(
+        long,
+        value_name = "M",
+        required_unless_present = "bearing",
+        value_delimiter = ',',
+        value_parser = slope
+    )]
     slope: Vec<f64>,
+    /// Load of a blade's pitch bearing all round its ring, from pitch and root moments (BldPitch1, RootMyb1, RootMxb1), instead of channels
+    #[arg(long)]
+    bearing: bool,
+    /// Blade whose bearing it is; 1 when left out
+    #[arg(long, value_name = "N", requires = "bearing")]
+    blade: Option<NonZeroUsize>,
+    /// Turbine whose bearing it is, such as T1, where the file holds several, as the records of a run do
+    #[arg(long, value_name = "NAME", requires = "bearing")]
+    turbine: Option<String>,
     /// Time at which the count begins (s); all of the file when left out
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     from: Option<f64>,
@@ -30,7 +53,7 @@ pub(crate) struct FatigueArguments {
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     to: Option<f64>,
     /// Sort ranges into N equal bins first, as some studies do (200), and use the middle of each
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", conflicts_with = "bearing")]
     bins: Option<NonZeroUsize>,
     /// Print JSON on stdout instead of text
     #[arg(long)]
@@ -39,10 +62,43 @@ pub(crate) struct FatigueArguments {
 
 /// What was counted of a file.
 struct Count {
-    /// First and last time counted (s).
+    span: Span,
+    channels: Vec<(Column, Fatigue)>,
+}
+
+/// The rows that were taken of a file.
+struct Span {
+    /// Time of the first and of the last (s).
     times: [f64; 2],
     n_samples: u64,
-    channels: Vec<(Column, Fatigue)>,
+}
+
+impl Span {
+    /// From the first row to the last (s).
+    fn duration(&self) -> f64 {
+        self.times[1] - self.times[0]
+    }
+
+    /// Mean time from row to row (s).
+    fn interval(&self) -> f64 {
+        self.duration() / (self.n_samples - 1) as f64
+    }
+
+    /// The first line of a text about `file`.
+    fn line(&self, file: &Path) -> String {
+        let Self { times: [first, last], n_samples } = self;
+        let duration = self.duration();
+        format!("{}: {first} to {last} s, {duration} s, {n_samples} samples\n", file.display())
+    }
+
+    /// On return `value`, an object about `file`, tells of the rows as well.
+    fn tell(&self, file: &Path, value: &mut serde_json::Value) {
+        value["file"] = json!(file.display().to_string());
+        value["from_s"] = json!(self.times[0]);
+        value["to_s"] = json!(self.times[1]);
+        value["duration_s"] = json!(self.duration());
+        value["n_samples"] = json!(self.n_samples);
+    }
 }
 
 /// Prints equivalent loads; data goes to stdout.
@@ -50,16 +106,22 @@ struct Count {
 /// # Errors
 /// Files and channels that cannot be read, and times that leave nothing to count.
 pub(crate) fn run(arguments: &FatigueArguments) -> Result<()> {
-    let count = count(arguments)?;
-    let text = if arguments.json {
-        serde_json::to_string_pretty(&json(arguments, &count)).into_diagnostic()? + "\n"
+    let text = if arguments.bearing {
+        let duty = bearing::count(arguments)?;
+        if arguments.json { lines(&duty.json(arguments))? } else { duty.text(arguments) }
     } else {
-        text(arguments, &count)
+        let count = count(arguments)?;
+        if arguments.json { lines(&json(arguments, &count))? } else { text(arguments, &count) }
     };
     match std::io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).into_diagnostic(),
         _ => Ok(()),
     }
+}
+
+/// `value` as text that ends its last line.
+fn lines(value: &serde_json::Value) -> Result<String> {
+    Ok(serde_json::to_string_pretty(value).into_diagnostic()? + "\n")
 }
 
 /// Counts one channel, with or without bins.
@@ -115,12 +177,33 @@ fn count(arguments: &FatigueArguments) -> Result<Count> {
         .iter()
         .map(|_| Counter::new(&arguments.slope, arguments.bins))
         .collect::<Result<_>>()?;
+    let span = read_span(&mut table, arguments, |row| {
+        for (counter, sample) in counters.iter_mut().zip(&row[1..]) {
+            counter.push(*sample)?;
+        }
+        Ok(())
+    })?;
+    let counted =
+        counters.into_iter().map(|counter| counter.finish(&arguments.slope, span.duration()));
+    let channels = table.selected().cloned().zip(counted.collect::<Result<Vec<_>>>()?).collect();
+    Ok(Count { span, channels })
+}
+
+/// Hands every row of `table` from --from to --to, time and the selected channels, to `take`.
+///
+/// # Errors
+/// Rows that cannot be read, what `take` says, and times that leave nothing to count.
+fn read_span(
+    table: &mut TableReader,
+    arguments: &FatigueArguments,
+    mut take: impl FnMut(&[f64]) -> Result<()>,
+) -> Result<Span> {
     let from = arguments.from.unwrap_or(f64::NEG_INFINITY);
     let to = arguments.to.unwrap_or(f64::INFINITY);
-    let (mut times, mut n_samples) = ([f64::NAN; 2], 0_u64);
+    let mut span = Span { times: [f64::NAN; 2], n_samples: 0 };
     // Times of the first and the last row (s), and whether --to leaves that one and others behind it out.
     let (mut rows, mut is_cut): (Option<(f64, f64)>, bool) = (None, false);
-    let mut row = vec![0.0; names.len() + 1];
+    let mut row = vec![0.0; table.selected().count() + 1];
     while table.read(&mut row)? {
         let (begin, _) = rows.unwrap_or((row[0], row[0]));
         rows = Some((begin, row[0]));
@@ -132,22 +215,17 @@ fn count(arguments: &FatigueArguments) -> Result<Count> {
         if row[0] < from {
             continue;
         }
-        if n_samples == 0 {
-            times[0] = row[0];
+        if span.n_samples == 0 {
+            span.times[0] = row[0];
         }
-        times[1] = row[0];
-        n_samples += 1;
-        for (counter, sample) in counters.iter_mut().zip(&row[1..]) {
-            counter.push(*sample)?;
-        }
+        span.times[1] = row[0];
+        span.n_samples += 1;
+        take(&row)?;
     }
-    let duration = times[1] - times[0];
-    if n_samples < 2 || duration <= 0.0 {
-        return Err(too_few(table.path(), n_samples, rows, is_cut));
+    if span.n_samples < 2 || span.duration() <= 0.0 {
+        return Err(too_few(table.path(), span.n_samples, rows, is_cut));
     }
-    let counted = counters.into_iter().map(|counter| counter.finish(&arguments.slope, duration));
-    let channels = table.selected().cloned().zip(counted.collect::<Result<Vec<_>>>()?).collect();
-    Ok(Count { times, n_samples, channels })
+    Ok(span)
 }
 
 /// The error that `n_samples` of the table at `path` are too few; `rows` are its first time and the last that was read (s),
@@ -171,22 +249,18 @@ fn too_few(path: &Path, n_samples: u64, rows: Option<(f64, f64)>, is_cut: bool) 
 }
 
 fn text(arguments: &FatigueArguments, count: &Count) -> String {
-    let Count { times: [first, last], n_samples, channels } = count;
-    let name = |column: &Column| match column.unit.as_str() {
-        "" => column.name.clone(),
-        unit => format!("{} ({unit})", column.name),
-    };
+    let Count { span, channels } = count;
     let width = channels.iter().map(|(column, _)| name(column).chars().count()).max();
     let width = width.unwrap_or(0).max("channel".len());
-    let mut text = format!(
-        "{}: {first} to {last} s, {} s, {n_samples} samples\n{:<width$}  slope    equivalent load     cycles      largest range\n",
-        arguments.file.display(),
-        last - first,
+    let mut text = span.line(&arguments.file);
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "{:<width$}  slope    equivalent load     cycles      largest range",
         "channel",
     );
     for (column, fatigue) in channels {
         for EquivalentLoad { slope, load } in &fatigue.loads {
-            // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
                 "{:<width$} {slope:>6} {:>18} {:>10.1} {:>18}",
@@ -202,8 +276,16 @@ fn text(arguments: &FatigueArguments, count: &Count) -> String {
     text
 }
 
+/// A column's name, with its unit where the file tells it apart.
+fn name(column: &Column) -> String {
+    match column.unit.as_str() {
+        "" => column.name.clone(),
+        unit => format!("{} ({unit})", column.name),
+    }
+}
+
 fn json(arguments: &FatigueArguments, count: &Count) -> serde_json::Value {
-    let Count { times: [first, last], n_samples, channels } = count;
+    let Count { span, channels } = count;
     let channels: Vec<serde_json::Value> = channels
         .iter()
         .map(|(column, fatigue)| {
@@ -221,17 +303,14 @@ fn json(arguments: &FatigueArguments, count: &Count) -> serde_json::Value {
             })
         })
         .collect();
-    json!({
-        "file": arguments.file.display().to_string(),
-        "from_s": first,
-        "to_s": last,
-        "duration_s": last - first,
-        "n_samples": n_samples,
-        "n_equivalent": fatigue::REFERENCE_FREQUENCY * (last - first),
+    let mut value = json!({
+        "n_equivalent": fatigue::REFERENCE_FREQUENCY * span.duration(),
         "bins": arguments.bins,
         "convention": fatigue::convention(arguments.bins.map(NonZeroUsize::get)),
         "channels": channels,
-    })
+    });
+    span.tell(&arguments.file, &mut value);
+    value
 }
 
 /// Six digits that count, without an exponent where loads usually lie.

@@ -2,7 +2,7 @@
 
 /// Sums of a fit of N signals.
 #[derive(Clone, Debug)]
-pub(super) struct Fit<const N: usize> {
+pub(crate) struct Fit<const N: usize> {
     normal: [[f64; N]; N],
     right: [f64; N],
     square: f64,
@@ -17,7 +17,7 @@ impl<const N: usize> Default for Fit<N> {
 
 impl<const N: usize> Fit<N> {
     /// Takes in one instant: the given signals' values and the one to be explained.
-    pub(super) fn add(&mut self, row: [f64; N], value: f64) {
+    pub(crate) fn add(&mut self, row: [f64; N], value: f64) {
         for (line, x) in self.normal.iter_mut().zip(row) {
             line.iter_mut().zip(row).for_each(|(cell, y)| *cell += x * y);
         }
@@ -27,7 +27,7 @@ impl<const N: usize> Fit<N> {
     }
 
     /// How much of each signal there is.
-    pub(super) fn parts(&self) -> [f64; N] {
+    pub(crate) fn parts(&self) -> [f64; N] {
         let (mut matrix, mut right) = (self.normal, self.right);
         // A positive definite matrix needs no pivots.
         for pivot in 0..N {
@@ -42,7 +42,7 @@ impl<const N: usize> Fit<N> {
     }
 
     /// Mean square of what they do not explain.
-    pub(super) fn rest(&self) -> f64 {
+    pub(crate) fn rest(&self) -> f64 {
         let explained: f64 = self.parts().iter().zip(&self.right).map(|(x, y)| x * y).sum();
         (self.square - explained) / self.n
     }
