@@ -393,6 +393,9 @@ pub struct Helix {
     pub azimuth_offset: f64,
     /// Time at which it fades in (s).
     pub start: f64,
+    /// Time at which it fades out (s); never when absent.
+    #[serde(default)]
+    pub stop: Option<f64>,
 }
 
 /// Settings of the pulse.
@@ -406,6 +409,9 @@ pub struct Pulse {
     pub phase: f64,
     /// Time at which it fades in (s).
     pub start: f64,
+    /// Time at which it fades out (s); never when absent.
+    #[serde(default)]
+    pub stop: Option<f64>,
 }
 
 /// Settings of a turbine that joins the helix that comes from upstream.
