@@ -4,6 +4,8 @@
 //! stall dynamically, the wake is skewed, the wind is sheared and turbulent. Its momentum theory keeps the wake's delay with
 //! each blade, so the estimator is told the same of the wake; in a solved flow it keeps its default.
 
+mod choices;
+mod on_and_off;
 mod rig;
 mod side_by_side;
 mod wind;
@@ -13,7 +15,7 @@ pub use side_by_side::estimators;
 use crate::Row;
 use basis::{FixedFrame, Measurements, PerBlade, Sense, Vector3};
 use estimation::helix::{
-    Form, HelixEstimator, MeasurementModel, Options, Rotor, Setting, Wake, calibrate,
+    HelixEstimate, HelixEstimator, MeasurementModel, Options, Rotor, Setting, Wake, calibrate,
 };
 use estimation::{EstimationError, Estimator};
 use flow::Inflow;
@@ -68,7 +70,7 @@ impl Machine {
             hub: self.hub(),
             radius: self.definition.rotor_radius(),
             mean,
-            present: [0.0, f64::INFINITY],
+            absent: [f64::INFINITY; 2],
             gust: (f64::INFINITY, 0.0),
         }
     }
@@ -94,7 +96,11 @@ impl Machine {
         self.estimator(model, sense, calibration.apply(robust()))
     }
 
-    fn run(&self, asked: &Asked, estimators: &mut [HelixEstimator]) -> Vec<Errors> {
+    fn run<E: Estimator<Estimate = HelixEstimate>>(
+        &self,
+        asked: &Asked,
+        estimators: &mut [E],
+    ) -> Vec<Errors> {
         rig::run(&self.definition, &self.constants, asked, estimators)
     }
 }
@@ -134,8 +140,10 @@ pub fn phase_estimator() -> Vec<Row> {
     let mut rows = Vec::new();
     let done = synthetic(&machine, &mut rows)
         .and_then(|()| turbulence(&machine, &mut rows))
-        .and_then(|()| options(&machine, &mut rows))
-        .and_then(|()| robustness(&machine, &mut rows));
+        .and_then(|()| choices::options(&machine, &mut rows))
+        .and_then(|()| choices::linear(&machine, &mut rows))
+        .and_then(|()| robustness(&machine, &mut rows))
+        .and_then(|()| on_and_off::on_and_off(&machine, &mut rows));
     if let Err(error) = done {
         eprintln!("the estimator could not be made: {error}");
         rows.push(Row {
@@ -282,45 +290,13 @@ fn turbulence(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationEr
     Ok(())
 }
 
-/// Each choice of the robust form against what it replaces, turbulence 6 %, own pitch.
-fn options(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
-    let base = robust();
-    let wake = |wake| Options { rotor: Rotor { wake, ..base.rotor }, ..base };
-    let forms = [
-        ("as it is", base),
-        ("without lasting tilt and yaw", Options { bias: None, ..base }),
-        ("without eddies", Options { eddies: None, ..base }),
-        ("without adaptation", Options { adaptation: None, ..base }),
-        ("tilt and yaw apart", Options { roundness: 0.0, ..base }),
-        ("amplitude and phase for each axis", Options { form: Form::SeparateAmplitudes, ..base }),
-        ("with an excitation rate of its own", Options { rate: Some(1e-9), ..base }),
-        ("learning its own pitch", Options { response: Some(0.03), ..base }),
-        ("blades stiff", Options { rotor: Rotor { flexible: false, ..base.rotor }, ..base }),
-        ("wake at once", wake(Wake::Static)),
-        ("wake in the air", Options::default()),
-        ("every fifth instant", Options { update_every: 5, ..base }),
-    ];
-    let ccw = Sense::CounterClockwise;
-    let mut estimators = Vec::new();
-    for (_, options) in forms {
-        estimators.push(machine.estimator(&machine.definition, ccw, options)?);
-    }
-    let asked = asked(machine.gradient(ccw, 0.06), OWN, Instruments::default(), 1200.0);
-    let errors = machine.run(&asked, &mut estimators);
-    for ((name, _), errors) in forms.iter().zip(errors) {
-        let what = format!("turbulence 6 %, own pitch, robust form {name}: worse axis, rms error");
-        rows.push(row(what, errors.worst(), 180.0, "deg"));
-    }
-    Ok(())
-}
-
 /// Wrong polars, poor instruments, a wake half beside the rotor, a gust, a helix that goes and comes.
 fn robustness(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
     let ccw = Sense::CounterClockwise;
     let poor = Instruments { noise: 0.05, dropouts: 0.1 };
     let fine = Instruments::default();
     let gusty = HelixWind { gust: (500.0, 1.5), ..machine.gradient(ccw, 0.06) };
-    let coming = HelixWind { present: [450.0, f64::INFINITY], ..machine.gradient(ccw, 0.06) };
+    let coming = HelixWind { absent: [0.0, 450.0], ..machine.gradient(ccw, 0.06) };
     let wake = |aside: f64| {
         let mean = turbulent(SPEED, SHEAR, 0.05, machine.hub(), 2);
         machine.wind(Swing::Wake { depth: 3.5, width: 70.0, offset: 25.0, aside }, ccw, mean)

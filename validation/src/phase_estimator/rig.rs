@@ -4,7 +4,7 @@ use super::wind::{HelixWind, degrees, pitch};
 use basis::{Measurements, PerBlade, Vector3};
 use control::{Baseline, Controller};
 use estimation::Estimator;
-use estimation::helix::{HelixEstimate, HelixEstimator};
+use estimation::helix::HelixEstimate;
 use flow::Inflow;
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
@@ -107,11 +107,11 @@ impl Errors {
 }
 
 /// Runs the turbine and lets `estimators` listen; gives the errors of each.
-pub(super) fn run(
+pub(super) fn run<E: Estimator<Estimate = HelixEstimate>>(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
     asked: &Asked,
-    estimators: &mut [HelixEstimator],
+    estimators: &mut [E],
 ) -> Vec<Errors> {
     let truth = asked.wind.truth();
     let mut errors = vec![Errors::default(); estimators.len()];
@@ -124,11 +124,11 @@ pub(super) fn run(
 }
 
 /// Runs the turbine and lets `estimators` listen; `seen` is told time (s), place in `estimators` and estimate.
-pub(super) fn follow(
+pub(super) fn follow<E: Estimator<Estimate = HelixEstimate>>(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
     asked: &Asked,
-    estimators: &mut [HelixEstimator],
+    estimators: &mut [E],
     mut seen: impl FnMut(f64, usize, &HelixEstimate),
 ) {
     drive(definition, constants, asked, |measurements| {
@@ -138,12 +138,30 @@ pub(super) fn follow(
     });
 }
 
-/// Runs the turbine; `heard` is told what its instruments show once it has come to rest from its start.
+/// Runs the turbine with the own pitch that is asked for; `heard` is told what its instruments show once it has come to rest
+/// from its start.
 pub(super) fn drive(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
     asked: &Asked,
     mut heard: impl FnMut(&Measurements),
+) {
+    let (amplitude, ahead) = asked.own;
+    fly(definition, constants, asked, |reading| {
+        heard(reading);
+        let begun = if reading.time < OWN_START { 0.0 } else { amplitude };
+        let n_blades = reading.pitch.len();
+        pitch(&asked.wind, reading.time, reading.azimuth, begun, ahead, n_blades)
+    });
+}
+
+/// Runs the turbine; `excite` is told what its instruments show once it has come to rest from its start, and gives what is
+/// added to each blade's pitch (rad).
+pub(super) fn fly(
+    definition: &Arc<Definition>,
+    constants: &control::baseline::Constants,
+    asked: &Asked,
+    mut excite: impl FnMut(&Measurements) -> PerBlade<f64>,
 ) {
     let settings = turbine::Settings {
         induction: Induction::ByMomentum(aero::rotor::Settings {
@@ -169,12 +187,9 @@ pub(super) fn drive(
         let time = step as f64 * INTERVAL;
         let measurements = turbine.measurements(time, INTERVAL);
         let mut commands = controller.update(&measurements);
-        let (azimuth, n_blades) = (measurements.azimuth, definition.n_blades);
-        let begun = if time < OWN_START { 0.0 } else { asked.own.0 };
-        let own = pitch(&asked.wind, time, azimuth, begun, asked.own.1, n_blades);
-        commands.pitch.iter_mut().zip(own.iter()).for_each(|(pitch, own)| *pitch += own);
         if time > FIRST_READING {
-            heard(&read(&measurements, asked.instruments, &mut shown, &mut noise));
+            let own = excite(&read(&measurements, asked.instruments, &mut shown, &mut noise));
+            commands.pitch.iter_mut().zip(own.iter()).for_each(|(pitch, own)| *pitch += own);
         }
         asked.wind.sample(time, turbine.stations(), &mut winds);
         turbine.advance(INTERVAL, &winds, &commands);

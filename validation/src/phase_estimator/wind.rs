@@ -33,8 +33,8 @@ pub(super) struct HelixWind {
     pub(super) hub: Vector3,
     pub(super) radius: f64,
     pub(super) mean: Arc<dyn Inflow>,
-    /// Interval (s) in which the helix blows.
-    pub(super) present: [f64; 2],
+    /// Interval (s) in which the helix does not blow.
+    pub(super) absent: [f64; 2],
     /// Speed that is added from `gust`.0 (s) on (m/s).
     pub(super) gust: (f64, f64),
 }
@@ -96,11 +96,11 @@ impl HelixWind {
 impl Inflow for HelixWind {
     fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]) {
         self.mean.sample(time, positions, velocities);
-        let present = (self.present[0]..self.present[1]).contains(&time);
+        let absent = (self.absent[0]..self.absent[1]).contains(&time);
         let gust = if time >= self.gust.0 { self.gust.1 } else { 0.0 };
         for (position, velocity) in positions.iter().zip(velocities) {
             velocity.x += gust;
-            if present {
+            if !absent {
                 velocity.x += self.added(time, position.y, position.z);
             }
         }

@@ -160,9 +160,35 @@ pub(crate) fn fade_in(time: f64, start: f64, rate: f64) -> f64 {
     }
 }
 
+/// Share of the amplitude (–) at `time` (s) of what fades in at `start` (s) and, where it has a `stop` (s), out from then
+/// on, each over one period of `rate` (rad/s). Both fades add up to one, so it lies between 0 and 1 for a stop at or after
+/// the start.
+fn share(time: f64, start: f64, stop: Option<f64>, rate: f64) -> f64 {
+    fade_in(time, start, rate) - stop.map_or(0.0, |stop| fade_in(time, stop, rate))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn fades_out_as_it_fades_in() {
+        let (start, stop, rate) = (100.0, 700.0, 0.1);
+        let period = TAU / rate;
+        for step in 0..=2000 {
+            let later = 1.1 * period * f64::from(step) / 2000.0;
+            let [rising, falling] =
+                [start, stop].map(|from| share(from + later, start, Some(stop), rate));
+            assert!((rising + falling - 1.0).abs() < 1e-12, "{later} s after start and stop");
+            assert_eq!(rising, share(start + later, start, None, rate));
+        }
+        // A quarter of the way through a raised cosine: (1 + cos 45°) / 2.
+        let quarter = share(stop + 0.25 * period, start, Some(stop), rate);
+        assert!((quarter - (2.0 + 2.0_f64.sqrt()) / 4.0).abs() < 1e-12);
+        assert_eq!(share(stop, start, Some(stop), rate), 1.0);
+        assert_eq!(share(stop + 1.001 * period, start, Some(stop), rate), 0.0);
+        assert_eq!(share(1e9, start, None, rate), 1.0);
+    }
 
     #[test]
     fn fades_in_over_one_period_without_a_step() {

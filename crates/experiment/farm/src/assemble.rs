@@ -22,6 +22,7 @@ use estimation::phase_locked;
 use estimation::{EstimationError, HelixEstimator};
 use flow::lattice;
 use sensing::{InstrumentError, Sensing};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
 use turbine::aero::induction::{SnelSchepers, TwoConstant};
@@ -45,6 +46,20 @@ pub enum AssemblyError {
     /// Nobody found how pitch acts on the loads.
     #[error("how pitch acts on the loads was neither given nor found before")]
     NotDecoupled,
+    /// An excitation that fades out before it has faded in.
+    #[error(
+        "stop = {stop} s comes before the excitation is whole: it starts at {start} s and fades in over one period of {period:.1} s; stop at {earliest} s or later, or leave `stop` out"
+    )]
+    StopsTooEarly {
+        /// Asked stop (s).
+        stop: f64,
+        /// Start (s).
+        start: f64,
+        /// Excitation period (s).
+        period: f64,
+        /// Earliest stop, in whole seconds (s).
+        earliest: f64,
+    },
     /// A turbine's instruments cannot be.
     #[error(transparent)]
     Instruments(#[from] InstrumentError),
@@ -117,7 +132,8 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
 ///
 /// # Errors
 /// [`AssemblyError::Estimation`] when the phase of a helix cannot be sought as asked, [`AssemblyError::Meandering`] and
-/// [`AssemblyError::NotDecoupled`] when meandering cannot be followed.
+/// [`AssemblyError::NotDecoupled`] when meandering cannot be followed, [`AssemblyError::StopsTooEarly`] for an excitation that
+/// ends before it has begun.
 pub fn controller(
     control: &Control,
     model: &Model,
@@ -133,12 +149,14 @@ pub fn controller(
             helix.phase = asked.phase;
             helix.azimuth_offset = asked.azimuth_offset;
             helix.start = asked.start;
+            helix.stop = stop_of(asked.start, asked.stop, helix.rate)?;
             Excitation::Helix(helix)
         }
         Control::Pulse(asked) => {
             let mut pulse = Pulse::new(asked.amplitude, asked.strouhal, wind_speed, diameter);
             pulse.phase = asked.phase;
             pulse.start = asked.start;
+            pulse.stop = stop_of(asked.start, asked.stop, pulse.rate)?;
             Excitation::Pulse(pulse)
         }
         Control::PhaseSync(asked) => {
@@ -164,6 +182,18 @@ pub fn controller(
         }
     };
     Ok(TurbineController::new(Baseline::new(model.constants.clone()), excitation))
+}
+
+/// The `stop` (s) of an excitation of `rate` (rad/s) that begins at `start` (s), which is to be whole before it ends.
+fn stop_of(start: f64, stop: Option<f64>, rate: f64) -> Result<Option<f64>, AssemblyError> {
+    let period = TAU / rate;
+    match stop {
+        Some(stop) if stop < start + period => {
+            let earliest = (start + period).ceil();
+            Err(AssemblyError::StopsTooEarly { stop, start, period, earliest })
+        }
+        stop => Ok(stop),
+    }
 }
 
 /// What meandering control is told.

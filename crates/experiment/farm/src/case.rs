@@ -410,6 +410,9 @@ pub struct Helix {
     pub azimuth_offset: f64,
     /// Time at which it fades in (s).
     pub start: f64,
+    /// Time at which it fades out (s); never when absent.
+    #[serde(default)]
+    pub stop: Option<f64>,
 }
 
 /// Settings of the pulse.
@@ -423,6 +426,9 @@ pub struct Pulse {
     pub phase: f64,
     /// Time at which it fades in (s).
     pub start: f64,
+    /// Time at which it fades out (s); never when absent.
+    #[serde(default)]
+    pub stop: Option<f64>,
 }
 
 /// Settings of a turbine that joins the helix that comes from upstream.

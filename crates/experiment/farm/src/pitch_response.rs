@@ -269,6 +269,7 @@ fn pitching(
         phase: 0.0,
         azimuth_offset: pitch.azimuth_offset,
         start: 0.0,
+        stop: None,
     });
     // The rotor alone: no tower stands in its wind.
     let settings = assemble::turbine_settings(&alone, plan, model, &alone.turbines[index], None);

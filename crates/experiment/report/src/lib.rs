@@ -29,8 +29,8 @@ pub struct StudyRecords {
     pub case_text: String,
     /// The runs, in the case file's order.
     pub runs: Vec<RunRecords>,
-    /// What there is to show of phase synchronisation, where a turbine joins a helix.
-    pub synchronisation: Option<Synchronisation>,
+    /// What there is to show of phase synchronisation, for each turbine that joins a helix.
+    pub synchronisation: Vec<Synchronisation>,
     /// Version of the program that ran it.
     pub version: String,
 }
@@ -98,7 +98,7 @@ pub fn write(study: &StudyRecords, directory: &Path) -> Result<(), ReportError> 
     let digest = study::Study::new(study)?;
     let figures = figures::all(&digest);
     let page = page::render(&digest, &figures)?;
-    write_figures(&figures, directory)?;
+    write_figures(figures.iter(), directory)?;
     write_whole(&directory.join("report.html"), page.as_bytes())
 }
 
@@ -111,13 +111,16 @@ pub fn write_synchronisation(
     directory: &Path,
 ) -> Result<Vec<String>, ReportError> {
     let figures = figures::synchronisation::all(records);
-    write_figures(&figures, directory)?;
+    write_figures(figures.iter(), directory)?;
     Ok(figures.into_iter().map(|figure| figure.name).collect())
 }
 
 /// Draws every figure in both forms, then writes them into `directory`/figures.
-fn write_figures(figures: &[draw::Figure], directory: &Path) -> Result<(), ReportError> {
-    let mut files = Vec::with_capacity(2 * figures.len());
+fn write_figures<'f>(
+    figures: impl Iterator<Item = &'f draw::Figure>,
+    directory: &Path,
+) -> Result<(), ReportError> {
+    let mut files = Vec::new();
     for figure in figures {
         let failed = |source| ReportError::Picture { figure: figure.name.clone(), source };
         files.push((format!("{}.svg", figure.name), draw::svg::document(figure).map_err(failed)?));

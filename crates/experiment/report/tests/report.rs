@@ -3,7 +3,10 @@
 mod synthetic;
 
 use basis::records::{MeanderingAxis, MeanderingSummary, PitchDuty};
-use report::{PhaseNumbers, PhaseRow, ReportError, StudyRecords, Synchronisation};
+use report::{
+    PhaseNumbers, PhaseRow, ReportError, StudyRecords, Synchronisation, TrackFigure, TrackLine,
+    TrackRow,
+};
 use std::fs;
 use std::path::Path;
 
@@ -274,9 +277,8 @@ fn what_a_turbine_made_of_meandering_stands_in_a_table_with_units() {
     assert_well_formed(&page);
 }
 
-#[test]
-fn the_phase_error_at_the_helix_frequency_stands_beside_its_coherence() {
-    let mut study = synthetic::two_runs();
+/// How well the run `helix-ccw` found its phases, in yaw in too short a record for the helix's frequency.
+fn phases() -> PhaseRow {
     let numbers = |phase_error: Option<[f64; 2]>| PhaseNumbers {
         rmse: 0.3,
         bias: 0.1,
@@ -287,15 +289,69 @@ fn the_phase_error_at_the_helix_frequency_stands_beside_its_coherence() {
         amplitude: 1.23,
         true_amplitude: 1.5,
     };
-    let row = PhaseRow {
+    PhaseRow {
         run: "helix-ccw".into(),
         offset: Some(1.0),
         tilt: numbers(Some([-12.34, 4.56])),
         yaw: numbers(None),
         trust: 0.5,
+    }
+}
+
+/// A turbine's phase synchronisation with one line of phases and one figure.
+fn joined(name: &str) -> Synchronisation {
+    let times: Vec<f64> = (0..200).map(f64::from).collect();
+    let values = times.iter().map(|time| (0.07 * time).sin()).collect();
+    let line = TrackLine { name: "true".into(), colour: 0, times, values };
+    let row = TrackRow { label: "tilt (m/s)".into(), is_angle: false, lines: vec![line] };
+    let track = TrackFigure {
+        name: "phases-helix-ccw".into(),
+        title: format!("Phase of the helix at {name}"),
+        caption: "True phases.".into(),
+        rows: vec![row],
+        mark: None,
     };
+    Synchronisation {
+        name: name.into(),
+        phases: vec![phases()],
+        tracks: vec![track],
+        ..Synchronisation::default()
+    }
+}
+
+#[test]
+fn every_turbine_that_joins_a_helix_has_its_part_its_rows_and_its_files() {
+    let mut study = synthetic::two_runs();
+    study.synchronisation = vec![joined("T2"), joined("T3")];
+    let folder = tempfile::tempdir().expect("a folder");
+    report::write(&study, folder.path()).expect("a report");
+    let both = read(folder.path());
+    for turbine in ["T2", "T3"] {
+        for expected in [
+            format!("<h2>Phase synchronisation of {turbine}</h2>"),
+            format!("<figure id=\"phases-helix-ccw-{turbine}\">"),
+            format!("<h3>Phase of the helix at {turbine}</h3>"),
+        ] {
+            assert_eq!(both.matches(&expected).count(), 1, "`{expected}`");
+        }
+        let row = format!("<td>helix-ccw</td><td>{turbine}</td><td class=\"n\">57</td>");
+        assert_eq!(both.matches(&row).count(), 2, "`{row}`, tilt and yaw");
+        let file = folder.path().join(format!("figures/phases-helix-ccw-{turbine}.svg"));
+        assert!(file.exists(), "{}", file.display());
+    }
+    assert_well_formed(&both);
+    // One alone needs no telling apart.
+    study.synchronisation.pop();
+    let alone = page(&study);
+    assert!(alone.contains("<h2>Phase synchronisation</h2>"));
+    assert!(alone.contains("<figure id=\"phases-helix-ccw\">"));
+}
+
+#[test]
+fn the_phase_error_at_the_helix_frequency_stands_beside_its_coherence() {
+    let mut study = synthetic::two_runs();
     study.synchronisation =
-        Some(Synchronisation { phases: vec![row], ..Synchronisation::default() });
+        vec![Synchronisation { phases: vec![phases()], ..Synchronisation::default() }];
     let page = page(&study);
     for expected in [
         "<th class=\"n\" colspan=\"2\">phase error (°)</th>",

@@ -24,7 +24,7 @@ mod wind_records;
 
 pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;
-pub use phase::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase, tune};
+pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phases, tune};
 pub use prepare::Setup;
 pub use watcher::{Estimate, Probing, Progress, Watcher};
 

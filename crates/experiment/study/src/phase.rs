@@ -78,6 +78,15 @@ pub struct PhaseAnswer {
     pub hindsight: Option<[Agreement; 2]>,
 }
 
+/// The answers for all turbines of a run that seek a helix.
+#[derive(Debug)]
+pub struct PhaseAnswers {
+    /// Turbine by turbine, in the case's order.
+    pub answers: Vec<PhaseAnswer>,
+    /// Why others have none: no run kept the true wind at their place.
+    pub without_truth: Vec<StudyError>,
+}
+
 /// Estimates over the time of a series.
 pub(crate) struct Estimates {
     wind: Vec<f64>,
@@ -121,6 +130,28 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
         Some([looked_back.tilt.agreement, looked_back.yaw.agreement])
     };
     Ok(PhaseAnswer { hindsight, ..compared(&estimates)? })
+}
+
+/// What [`phase`] answers for the turbine that `question` names, for each that seeks a helix where it names none.
+///
+/// # Errors
+/// As [`phase`]; [`StudyError::NoTruth`] only where no turbine has an answer.
+pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, StudyError> {
+    let turbines = match &question.turbine {
+        Some(turbine) => vec![turbine.clone()],
+        None => asked::seekers(question)?,
+    };
+    let mut found = PhaseAnswers { answers: Vec::new(), without_truth: Vec::new() };
+    for turbine in turbines {
+        match phase(&PhaseQuestion { turbine: Some(turbine), ..question.clone() }) {
+            Err(error @ StudyError::NoTruth { .. }) => found.without_truth.push(error),
+            answer => found.answers.push(answer?),
+        }
+    }
+    if found.answers.is_empty() && !found.without_truth.is_empty() {
+        return Err(found.without_truth.remove(0));
+    }
+    Ok(found)
 }
 
 /// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m) stand for winds.

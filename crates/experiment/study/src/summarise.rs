@@ -160,21 +160,29 @@ fn delivered_pitch(
     setup: &Setup,
     clipped_share: f64,
 ) -> Result<Option<DeliveredPitch>, StudyError> {
-    let (motion, amplitude, strouhal, start) = match control {
-        Control::Helix(helix) => (Motion::Cyclic, helix.amplitude, helix.strouhal, helix.start),
-        Control::Pulse(pulse) => (Motion::Collective, pulse.amplitude, pulse.strouhal, pulse.start),
-        Control::PhaseSync(sync) => (Motion::Cyclic, sync.amplitude, sync.strouhal, sync.start),
+    let (motion, amplitude, strouhal, start, stop) = match control {
+        Control::Helix(helix) => {
+            (Motion::Cyclic, helix.amplitude, helix.strouhal, helix.start, helix.stop)
+        }
+        Control::Pulse(pulse) => {
+            (Motion::Collective, pulse.amplitude, pulse.strouhal, pulse.start, pulse.stop)
+        }
+        Control::PhaseSync(sync) => {
+            (Motion::Cyclic, sync.amplitude, sync.strouhal, sync.start, None)
+        }
         // The amplitude of meandering control is no constant.
         Control::Meandering(_) | Control::Baseline | Control::Absent => return Ok(None),
     };
     if amplitude == 0.0 {
         return Ok(None);
     }
-    // The excitation fades in over one period; only what comes after is measured.
+    // The excitation fades in over one period, and out from its stop on; only what lies between is measured.
     let period = setup.plan.diameter / (strouhal * setup.case.wind.speed);
-    let full = ((start + period) / analysed.interval).ceil() as usize;
-    let skip = full.saturating_sub(analysed.first);
-    let cut = |column: &'_ [f64]| column.get(skip..).unwrap_or_default().to_vec();
+    let row = |time: f64| (time / analysed.interval).ceil() as usize;
+    let skip = row(start + period).saturating_sub(analysed.first);
+    let end = stop.map_or(usize::MAX, |stop| row(stop).saturating_sub(analysed.first));
+    let cut =
+        |column: &'_ [f64]| column.get(skip..end.min(column.len())).unwrap_or_default().to_vec();
     let azimuth = cut(analysed.column(&format!("{name}.azimuth_rad"))?);
     let mut pitch = Vec::with_capacity(n_blades);
     for blade in 1..=n_blades {

@@ -14,7 +14,7 @@ use analysis::AnalysisError;
 use analysis::phase::Reference;
 use basis::angle::wrap_to_turn;
 use control::excitation_rate;
-use farm::case::{Case, Control, PhaseSync};
+use farm::case::{Case, Control, PhaseSync, Sense};
 use formats::case;
 use formats::records::{RunRecords, StudyRecords};
 use report::Synchronisation;
@@ -48,49 +48,105 @@ struct Synchronised<'a> {
     diameter: f64,
 }
 
-/// The data of the figures, and the lines of the table of phases; nothing where no turbine joins a helix.
+/// A turbine and one helix that it joins, or watches for.
+struct Pairing {
+    /// Place of the turbine in the case.
+    turbine: usize,
+    sense: Sense,
+    strouhal: f64,
+    /// Places of the runs in which it does, and how it was asked to.
+    runs: Vec<(usize, PhaseSync)>,
+}
+
+impl Pairing {
+    fn is_of(&self, turbine: usize, sync: &PhaseSync) -> bool {
+        (self.turbine, self.sense, self.strouhal) == (turbine, sync.sense, sync.strouhal)
+    }
+
+    /// The turbine's name, with the helix's sense and Strouhal number where `all` hold another helix that it joins.
+    fn name(&self, case: &Case, all: &[Self]) -> String {
+        let name = &case.turbines[self.turbine].name;
+        let Self { sense, strouhal, .. } = self;
+        if all.iter().filter(|other| other.turbine == self.turbine).count() == 1 {
+            name.clone()
+        } else {
+            format!("{name} {sense} St {strouhal}")
+        }
+    }
+}
+
+/// What is joined in the runs number `run_indices` of `case`, by turbines from upstream to downstream.
+fn pairings(case: &Case, run_indices: &[usize]) -> Vec<Pairing> {
+    let mut found: Vec<Pairing> = Vec::new();
+    for (place, &index) in run_indices.iter().enumerate() {
+        let control = case.runs.get(index).map(|run| run.control.as_slice()).unwrap_or_default();
+        for (turbine, control) in control.iter().enumerate() {
+            let Control::PhaseSync(sync) = *control else { continue };
+            let run = (place, sync);
+            match found.iter_mut().find(|pairing| pairing.is_of(turbine, &sync)) {
+                Some(pairing) => pairing.runs.push(run),
+                None => found.push(Pairing {
+                    turbine,
+                    sense: sync.sense,
+                    strouhal: sync.strouhal,
+                    runs: vec![run],
+                }),
+            }
+        }
+    }
+    let x = |pairing: &Pairing| case.turbines[pairing.turbine].position_diameters[0];
+    found.sort_by(|a, b| x(a).total_cmp(&x(b)));
+    found
+}
+
+/// The data of the figures and the lines of the table of phases, for each turbine and each helix that it joins.
 ///
 /// # Errors
 /// [`StudyError`] for records that cannot be analysed.
-pub(crate) fn synchronisation(
-    records: &StudyRecords,
-) -> Result<Option<Synchronisation>, StudyError> {
+pub(crate) fn synchronisation(records: &StudyRecords) -> Result<Vec<Synchronisation>, StudyError> {
     let case = case::parse("the manifest's case", &records.case_text, &[])?;
-    let joins = |index: usize| {
-        let control = case.runs.get(index).map(|run| run.control.as_slice()).unwrap_or_default();
-        control.iter().enumerate().find_map(|(turbine, control)| match control {
-            Control::PhaseSync(sync) => Some((turbine, *sync)),
-            _ => None,
-        })
-    };
-    let joined = records.runs.iter().enumerate().filter_map(|(place, run)| {
-        let (turbine, sync) = joins(run.manifest.run_index)?;
-        Some((place, run, turbine, sync))
+    let run_indices: Vec<usize> = records.runs.iter().map(|run| run.manifest.run_index).collect();
+    let pairings = pairings(&case, &run_indices);
+    let found = pairings.iter().map(|pairing| {
+        let name = pairing.name(&case, &pairings);
+        synchronised(&case, records, pairing, name)
     });
-    let joined: Vec<_> = joined.collect();
-    let Some(&(_, first, turbine, sync)) = joined.first() else { return Ok(None) };
-    let diameter = first.summary.conditions.rotor_diameter;
-    let rate = excitation_rate(sync.strouhal, case.wind.speed, diameter);
-    let reference = Reference { rate, sense: sync.sense };
-    let name = &case.turbines[turbine].name;
+    found.collect()
+}
+
+/// What there is to show of `pairing`, under the name `name`.
+fn synchronised(
+    case: &Case,
+    records: &StudyRecords,
+    pairing: &Pairing,
+    name: String,
+) -> Result<Synchronisation, StudyError> {
+    let turbine = pairing.turbine;
+    let (first, _) = pairing.runs[0];
+    let diameter = records.runs[first].summary.conditions.rotor_diameter;
+    let rate = excitation_rate(pairing.strouhal, case.wind.speed, diameter);
+    let reference = Reference { rate, sense: pairing.sense };
+    let own_name = &case.turbines[turbine].name;
     // Without a true wind there is nothing to compare with; a short run says nothing of phases.
     let control = |run: &RunRecords| case.runs[run.manifest.run_index].control.as_slice();
     let truth_of = |own: &RunRecords| {
         let mut without = records
             .runs
             .iter()
-            .filter(|run| tells_truth(&case, control(run), control(own), turbine));
-        without
-            .find_map(|run| truth(&run.manifest.run, name, &run.series, &reference).ok().flatten())
+            .filter(|run| tells_truth(case, control(run), control(own), turbine));
+        without.find_map(|run| {
+            truth(&run.manifest.run, own_name, &run.series, &reference).ok().flatten()
+        })
     };
     let from = case.time.spin_up;
     let mut runs = Vec::new();
-    for (place, run, _, sync) in joined.into_iter().filter(|joined| joined.2 == turbine) {
+    for &(place, sync) in &pairing.runs {
+        let run = &records.runs[place];
         let (series, own) = (&run.series, &run.manifest.run);
         let answer = match truth_of(run) {
             Some(truth) => {
-                let estimates = recorded(series, name)?;
-                match compare(own, name, series, &estimates, &truth, &reference, from) {
+                let estimates = recorded(series, own_name)?;
+                match compare(own, own_name, series, &estimates, &truth, &reference, from) {
                     Ok(answer) => Some(answer),
                     Err(StudyError::Analysis(_)) => None,
                     Err(error) => return Err(error),
@@ -100,16 +156,17 @@ pub(crate) fn synchronisation(
         };
         runs.push(Joined { run: place, name: own.clone(), sync, answer });
     }
-    let study = Synchronised { case: &case, records, runs, turbine, reference, diameter };
+    let study = Synchronised { case, records, runs, turbine, reference, diameter };
     let (slices, deficits) = unless_short(wake::wake(&study))?;
-    Ok(Some(Synchronisation {
+    Ok(Synchronisation {
+        name,
         phases: tracks::table(&study),
         offsets: unless_short(offsets::offsets(&study))?,
         tracks: unless_short(tracks::tracks(&study))?,
         spectra: unless_short(tracks::spectra(&study))?,
         slices,
         deficits,
-    }))
+    })
 }
 
 /// `found`, or nothing to show where records are too short for it: that is no reason to withhold the rest of a report.
@@ -117,5 +174,79 @@ fn unless_short<T: Default>(found: Result<T, StudyError>) -> Result<T, StudyErro
     match found {
         Err(StudyError::Analysis(AnalysisError::TooShort { .. })) => Ok(T::default()),
         found => found,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROW: &str = r#"
+name = "row"
+[wind]
+speed = 9.0
+turbulence_intensity = 0.05
+[time]
+spin_up = 300.0
+duration = 900.0
+[[turbine]]
+name = "T1"
+model = "iea-15mw"
+position_diameters = [0.0, 0.0]
+[[turbine]]
+name = "T3"
+model = "iea-15mw"
+position_diameters = [10.0, 0.0]
+[[turbine]]
+name = "T2"
+model = "iea-15mw"
+position_diameters = [5.0, 0.0]
+[[run]]
+name = "watching"
+control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
+control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }
+[[run]]
+name = "not-made"
+control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.2 }
+control.T2 = { kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 4.0 }
+[[run]]
+name = "both"
+control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
+control.T2 = { kind = "phase-sync", offset_deg = 150.0, amplitude_deg = 4.0 }
+control.T3 = { kind = "phase-sync", offset_deg = 210.0, amplitude_deg = 4.0 }
+[[run]]
+name = "other-sense"
+control.T1 = { kind = "helix", sense = "cw", amplitude_deg = 4.0, strouhal = 0.25 }
+control.T2 = { kind = "phase-sync", offset_deg = 150.0, amplitude_deg = 4.0 }
+"#;
+
+    /// Name, runs and offsets (deg) of what is joined in the runs number `run_indices`.
+    fn found(run_indices: &[usize]) -> Vec<(String, Vec<usize>, Vec<f64>)> {
+        let case = case::parse("row.toml", ROW, &[]).expect("a sound case");
+        let pairings = pairings(&case, run_indices);
+        let told = pairings.iter().map(|pairing| {
+            let runs = pairing.runs.iter();
+            let (places, offsets): (Vec<usize>, Vec<f64>) =
+                runs.map(|(place, sync)| (*place, sync.offset.to_degrees().round())).unzip();
+            (pairing.name(&case, &pairings), places, offsets)
+        });
+        told.collect()
+    }
+
+    #[test]
+    fn each_turbine_and_each_helix_that_it_joins_is_told_apart() {
+        let joined = |name: &str, places: &[usize], offsets: &[f64]| {
+            (name.to_owned(), places.to_vec(), offsets.to_vec())
+        };
+        // Places are among the runs that were made; T2 stands before T3, whatever the case's order.
+        let expected = [
+            joined("T2 ccw St 0.25", &[0, 1], &[0.0, 150.0]),
+            joined("T2 cw St 0.25", &[2], &[150.0]),
+            joined("T3", &[1], &[210.0]),
+        ];
+        assert_eq!(found(&[0, 2, 3]), expected);
+        let expected = [joined("T2", &[0, 1], &[0.0, 150.0]), joined("T3", &[1], &[210.0])];
+        assert_eq!(found(&[0, 2]), expected);
+        assert!(found(&[]).is_empty());
     }
 }

@@ -91,6 +91,13 @@ fn what_does_not_fit_is_pointed_at_in_the_file() {
             24,
             "T2 cannot be controlled so",
         ),
+        (
+            PRESCRIBED,
+            "strouhal = 0.25 }",
+            "strouhal = 0.25, stop = 40 }",
+            22,
+            "T1 cannot be controlled so: stop = 40 s comes before the excitation is whole",
+        ),
     ] {
         assert!(case.contains(from), "{from}");
         let (outcome, _) = dry(&case.replace(from, to));

@@ -1,6 +1,6 @@
 //! The helix: tilt and yaw commands a quarter period apart, through the inverse multi-blade transformation.
 
-use super::{excitation_rate, fade_in};
+use super::{excitation_rate, share};
 use basis::mbc::to_blades;
 use basis::{FixedFrame, PerBlade, Sense};
 use serde::{Deserialize, Serialize};
@@ -22,11 +22,13 @@ pub struct Helix {
     pub azimuth_offset: f64,
     /// Time at which it fades in, over one excitation period (s).
     pub start: f64,
+    /// Time at which it fades out, over one excitation period (s); never when absent.
+    pub stop: Option<f64>,
 }
 
 impl Helix {
     /// A helix of `amplitude` (rad) at `strouhal` (–) of the free-stream `wind_speed` (m/s) past a rotor of
-    /// `diameter` (m), with phase, azimuth offset and start zero.
+    /// `diameter` (m), with phase, azimuth offset and start zero, and no stop.
     pub fn new(
         sense: Sense,
         amplitude: f64,
@@ -35,12 +37,21 @@ impl Helix {
         diameter: f64,
     ) -> Self {
         let rate = excitation_rate(strouhal, wind_speed, diameter);
-        Self { sense, amplitude, strouhal, rate, phase: 0.0, azimuth_offset: 0.0, start: 0.0 }
+        Self {
+            sense,
+            amplitude,
+            strouhal,
+            rate,
+            phase: 0.0,
+            azimuth_offset: 0.0,
+            start: 0.0,
+            stop: None,
+        }
     }
 
     /// Tilt and yaw commands (rad) at `time` (s); the average is zero. van Vondelen et al. (2025), Eq. 2.
     pub fn commands(&self, time: f64) -> FixedFrame {
-        let amplitude = self.amplitude * fade_in(time, self.start, self.rate);
+        let amplitude = self.amplitude * share(time, self.start, self.stop, self.rate);
         let angle = self.rate * time + self.phase;
         FixedFrame {
             average: 0.0,

@@ -1,6 +1,6 @@
 //! The pulse: periodic collective pitch, which makes the wake breathe.
 
-use super::{excitation_rate, fade_in};
+use super::{excitation_rate, share};
 use serde::{Deserialize, Serialize};
 
 /// The pulse as it runs on one turbine; it has no state, its phase follows from time.
@@ -19,19 +19,21 @@ pub struct Pulse {
     pub phase: f64,
     /// Time at which it fades in, over one excitation period (s).
     pub start: f64,
+    /// Time at which it fades out, over one excitation period (s); never when absent.
+    pub stop: Option<f64>,
 }
 
 impl Pulse {
     /// A pulse of `amplitude` (rad) at `strouhal` (–) of the free-stream `wind_speed` (m/s) past a rotor of
-    /// `diameter` (m), with phase and start zero.
+    /// `diameter` (m), with phase and start zero, and no stop.
     pub fn new(amplitude: f64, strouhal: f64, wind_speed: f64, diameter: f64) -> Self {
         let rate = excitation_rate(strouhal, wind_speed, diameter);
-        Self { amplitude, strouhal, rate, phase: 0.0, start: 0.0 }
+        Self { amplitude, strouhal, rate, phase: 0.0, start: 0.0, stop: None }
     }
 
     /// What is added to every blade (rad) at `time` (s).
     pub fn pitch(&self, time: f64) -> f64 {
-        let amplitude = self.amplitude * fade_in(time, self.start, self.rate);
+        let amplitude = self.amplitude * share(time, self.start, self.stop, self.rate);
         amplitude * (self.rate * time + self.phase).sin()
     }
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use wakemix::estimation::helix::tuning::Tuned;
 use wakemix::estimation::helix::{Form, Measurement};
 use wakemix::farm::case::PhaseEstimator;
-use wakemix::study::{PhaseAnswer, PhaseAxis, PhaseQuestion, phase, tune};
+use wakemix::study::{PhaseAnswer, PhaseAxis, PhaseQuestion, phases, tune};
 
 /// What to analyse.
 #[derive(Subcommand)]
@@ -23,7 +23,7 @@ pub(crate) enum AnalyseCommand {
 pub(crate) struct PhaseArguments {
     /// Folder of a run, such as runs/synchronised-helix/offset-150
     run: PathBuf,
-    /// Turbine that the helix meets; the first that seeks one when left out
+    /// Turbine that the helix meets; when left out each that seeks one, for `tune` the first of them
     #[arg(long, value_name = "NAME")]
     turbine: Option<String>,
     /// Folder of a run without that turbine, with the wind along lines at its place; one beside RUN when left out
@@ -70,13 +70,25 @@ pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
         print!("{}", if arguments.json { tuned_json(&tuned)? } else { tuned_text(&tuned) });
         return Ok(());
     }
-    let answer = phase(&question)?;
+    let found = phases(&question)?;
+    for error in &found.without_truth {
+        eprintln!("{error}");
+    }
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&json(&answer)).into_diagnostic()?);
+        println!("{}", serde_json::to_string_pretty(&all_json(&found.answers)).into_diagnostic()?);
     } else {
-        print!("{}", text(&answer));
+        let texts: Vec<String> = found.answers.iter().map(text).collect();
+        print!("{}", texts.join("\n"));
     }
     Ok(())
+}
+
+/// An object, or a list of them where several turbines seek a helix.
+fn all_json(answers: &[PhaseAnswer]) -> serde_json::Value {
+    match answers {
+        [answer] => json(answer),
+        several => several.iter().map(json).collect(),
+    }
 }
 
 fn text(answer: &PhaseAnswer) -> String {

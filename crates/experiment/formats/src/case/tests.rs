@@ -62,6 +62,23 @@ fn a_small_case_gets_the_documented_defaults() {
     assert_eq!(helix.start, 0.0);
 }
 
+#[test]
+fn helix_and_pulse_may_stop() {
+    for kind in ["\"helix\", sense = \"cw\"", "\"pulse\""] {
+        let control = format!("kind = {kind}, amplitude_deg = 4, strouhal = 0.25, stop = 300.5");
+        let case = small(&[&format!("run.helix.control.T1={{ {control} }}")]).unwrap();
+        let stop = match case.runs[1].control[0] {
+            Control::Helix(helix) => helix.stop,
+            Control::Pulse(pulse) => pulse.stop,
+            _ => None,
+        };
+        assert_eq!(stop, Some(300.5), "{kind}");
+        assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
+    }
+    let plain = write(&small(&[]).unwrap());
+    assert!(!plain.contains("stop"), "{plain}");
+}
+
 /// The meandering control of a small case that says `keys` beside factor and amplitude, after it was written and read.
 fn meandering(keys: &str) -> Meandering {
     let control = format!("kind = \"meandering\", factor = 1.5, amplitude_deg = 4{keys}");

@@ -107,20 +107,22 @@ fn control_text(control: &Control) -> String {
         Control::Helix(helix) => {
             let sense = if helix.sense == Sense::Clockwise { "cw" } else { "ccw" };
             format!(
-                "{{ kind = \"helix\", sense = \"{sense}\", amplitude_deg = {:?}, strouhal = {:?}, phase_deg = {:?}, azimuth_offset_deg = {:?}, start = {:?} }}",
+                "{{ kind = \"helix\", sense = \"{sense}\", amplitude_deg = {:?}, strouhal = {:?}, phase_deg = {:?}, azimuth_offset_deg = {:?}, start = {:?}{} }}",
                 degrees(helix.amplitude),
                 helix.strouhal,
                 degrees(helix.phase),
                 degrees(helix.azimuth_offset),
                 helix.start,
+                stop_text(helix.stop),
             )
         }
         Control::Pulse(pulse) => format!(
-            "{{ kind = \"pulse\", amplitude_deg = {:?}, strouhal = {:?}, phase_deg = {:?}, start = {:?} }}",
+            "{{ kind = \"pulse\", amplitude_deg = {:?}, strouhal = {:?}, phase_deg = {:?}, start = {:?}{} }}",
             degrees(pulse.amplitude),
             pulse.strouhal,
             degrees(pulse.phase),
             pulse.start,
+            stop_text(pulse.stop),
         ),
         Control::Meandering(meandering) => meandering_text(meandering),
         Control::PhaseSync(sync) => {
@@ -141,6 +143,11 @@ fn control_text(control: &Control) -> String {
             )
         }
     }
+}
+
+/// The key `stop` after a comma, only where it is used, so that the fingerprint of a case without it stays what it was.
+fn stop_text(stop: Option<f64>) -> String {
+    stop.map_or_else(String::new, |stop| format!(", stop = {stop:?}"))
 }
 
 /// The degrees with the fewest digits that give `angle` (rad) back, bit for bit where any do.

@@ -13,12 +13,28 @@ use crate::draw::font::Face;
 use crate::draw::{Figure, Setting, text};
 use crate::sentence;
 use crate::study::Study;
+use synchronisation::Synchronisation;
 
 /// Width of every figure.
 const WIDTH: f64 = 1000.0;
 
 /// Every figure that the records allow, in the order of the page.
-pub(crate) fn all(study: &Study) -> Vec<Figure> {
+pub(crate) struct Figures {
+    /// Of the study.
+    pub(crate) study: Vec<Figure>,
+    /// Of each turbine that joins a helix, below the title of its part of the page.
+    pub(crate) joined: Vec<(String, Vec<Figure>)>,
+}
+
+impl Figures {
+    /// All of them, in order.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Figure> {
+        self.study.iter().chain(self.joined.iter().flat_map(|(_, figures)| figures))
+    }
+}
+
+/// Draws them.
+pub(crate) fn all(study: &Study) -> Figures {
     let mut figures = Vec::new();
     figures.extend(gains::gains(study));
     figures.extend(gains::gain_over_amplitude(study));
@@ -32,10 +48,28 @@ pub(crate) fn all(study: &Study) -> Vec<Figure> {
     figures.extend(profiles::centre_line(study));
     figures.extend(pitch::pitch(study));
     figures.extend(power::rotor_speed(study));
-    figures.extend(study.records.synchronisation.iter().flat_map(synchronisation::all));
+    let mut joined = joined(&study.records.synchronisation);
     let conditions = sentence::study_line(study);
-    figures.iter_mut().for_each(|figure| sign(figure, &conditions));
-    figures
+    let of_turbines = joined.iter_mut().flat_map(|(_, figures)| figures);
+    figures.iter_mut().chain(of_turbines).for_each(|figure| sign(figure, &conditions));
+    Figures { study: figures, joined }
+}
+
+/// Title and figures of each of `found`; where there are several, title and files tell them apart.
+fn joined(found: &[Synchronisation]) -> Vec<(String, Vec<Figure>)> {
+    let title = "Phase synchronisation";
+    let drawn = found.iter().map(|one| {
+        let mut figures = synchronisation::all(one);
+        if found.len() == 1 {
+            return (title.to_owned(), figures);
+        }
+        let ending = one.name.replace(' ', "-");
+        for figure in &mut figures {
+            figure.name = format!("{}-{ending}", figure.name);
+        }
+        (format!("{title} of {}", one.name), figures)
+    });
+    drawn.collect()
 }
 
 /// Writes the conditions below a figure, so that it keeps them wherever it is shown.

@@ -5,6 +5,7 @@ mod tables;
 use crate::ReportError;
 use crate::draw::colour::{Ink, hex};
 use crate::draw::{Figure, svg};
+use crate::figures::Figures;
 use crate::sentence;
 use crate::study::Study;
 use crate::words;
@@ -16,7 +17,7 @@ const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 
 /// The page of `study` with `figures`.
-pub(crate) fn render(study: &Study, figures: &[Figure]) -> Result<String, ReportError> {
+pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportError> {
     let records = study.records;
     let best = study.best();
     let mut environment = Environment::new();
@@ -164,7 +165,7 @@ fn small_print(study: &Study) -> Vec<String> {
 }
 
 /// The figures in the order and under the headings of the page.
-fn parts(figures: &[Figure]) -> Result<Vec<Value>, ReportError> {
+fn parts(figures: &Figures) -> Result<Vec<Value>, ReportError> {
     const PARTS: [(&str, &str, &[&str]); 3] = [
         ("Power", "", &["gains", "gain-over-amplitude", "power"]),
         (
@@ -183,34 +184,43 @@ fn parts(figures: &[Figure]) -> Result<Vec<Value>, ReportError> {
         ),
         ("Blades and rotor", "", &["pitch", "rotor-speed"]),
     ];
-    const JOINED: (&str, &str) = (
-        "Phase synchronisation",
-        "A turbine finds the helix that meets it in its blade loads, and joins it with a phase offset: the lead of its \
-         pitch over the wind that meets it.",
-    );
+    const JOINED: &str = "A turbine finds the helix that meets it in its blade loads, and joins it with a phase offset: the lead of its \
+         pitch over the wind that meets it.";
+    // What has no place of its own stands in the last.
     let place = |figure: &Figure| {
         let name = figure.name.as_str();
-        PARTS.iter().position(|(_, _, names)| names.contains(&name))
+        PARTS.iter().position(|(_, _, names)| names.contains(&name)).unwrap_or(PARTS.len() - 1)
     };
-    let headings = PARTS.iter().map(|(title, lead, _)| (*title, *lead)).chain([JOINED]);
     let mut parts = Vec::new();
-    for (index, (title, lead)) in headings.enumerate() {
-        let mut drawings = Vec::new();
-        // What stands in no other part belongs to the last.
-        let is_here = |figure: &&Figure| place(figure).unwrap_or(PARTS.len()) == index;
-        for figure in figures.iter().filter(is_here) {
-            let drawn = svg::inline(figure)
-                .map_err(|source| ReportError::Picture { figure: figure.name.clone(), source })?;
-            drawings.push(context! {
-                name => figure.name.clone(),
-                title => figure.title.clone(),
-                caption => figure.caption.clone(),
-                svg => Value::from_safe_string(drawn),
-            });
-        }
-        if !drawings.is_empty() {
-            parts.push(context! { title, lead, figures => drawings });
-        }
+    for (index, (title, lead, _)) in PARTS.iter().enumerate() {
+        let here = figures.study.iter().filter(|figure| place(figure) == index);
+        parts.extend(part(title, lead, here)?);
+    }
+    for (title, figures) in &figures.joined {
+        parts.extend(part(title, JOINED, figures.iter())?);
     }
     Ok(parts)
+}
+
+/// `figures` under a heading; nothing where there are none.
+fn part<'f>(
+    title: &str,
+    lead: &str,
+    figures: impl Iterator<Item = &'f Figure>,
+) -> Result<Option<Value>, ReportError> {
+    let mut drawings = Vec::new();
+    for figure in figures {
+        let drawn = svg::inline(figure)
+            .map_err(|source| ReportError::Picture { figure: figure.name.clone(), source })?;
+        drawings.push(context! {
+            name => figure.name.clone(),
+            title => figure.title.clone(),
+            caption => figure.caption.clone(),
+            svg => Value::from_safe_string(drawn),
+        });
+    }
+    if drawings.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(context! { title => title, lead => lead, figures => drawings }))
 }

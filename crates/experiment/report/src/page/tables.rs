@@ -14,11 +14,15 @@ use std::f64::consts::TAU;
 /// How well each run found the phases of the helix, a row for each axis.
 pub(crate) fn phases(study: &Study) -> Vec<Value> {
     let degrees = |angle: f64| number(angle.to_degrees(), 1);
-    let found = study.records.synchronisation.iter().flat_map(|found| &found.phases);
-    let rows = found.flat_map(|row| [(row, "tilt", &row.tilt), (row, "yaw", &row.yaw)]);
-    rows.map(|(row, axis, numbers)| {
+    let found = study.records.synchronisation.iter();
+    let rows = found.flat_map(|found| found.phases.iter().map(move |row| (&found.name, row)));
+    let axes = rows.flat_map(|(turbine, row)| {
+        [(turbine, row, "tilt", &row.tilt), (turbine, row, "yaw", &row.yaw)]
+    });
+    axes.map(|(turbine, row, axis, numbers)| {
         context! {
             run => row.run.clone(),
+            turbine => turbine.clone(),
             offset => row.offset.map_or("watches".to_owned(), |offset| number(offset.to_degrees(), 0)),
             axis,
             rmse => degrees(numbers.rmse),

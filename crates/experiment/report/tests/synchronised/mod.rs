@@ -18,6 +18,7 @@ const CASES: [(&str, usize, f64); 3] =
 /// Everything at once.
 pub(crate) fn all() -> Synchronisation {
     Synchronisation {
+        name: "T2".into(),
         phases: Vec::new(),
         offsets: vec![power()],
         tracks: vec![estimates(), responses()],

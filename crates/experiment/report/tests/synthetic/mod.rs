@@ -68,7 +68,7 @@ fn study(recipes: &[Recipe]) -> StudyRecords {
              [[turbine]]\nname = \"T2\"\nposition_diameters = [{SPACING:.1}, 0.0]\n"
         ),
         runs,
-        synchronisation: None,
+        synchronisation: Vec::new(),
         version: "0.1.0".into(),
     }
 }

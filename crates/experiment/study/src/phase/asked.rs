@@ -112,17 +112,34 @@ fn turbine_of(
     case: &Case,
     manifest: &Manifest,
 ) -> Result<usize, StudyError> {
-    let names: Vec<String> = case.turbines.iter().map(|turbine| turbine.name.clone()).collect();
-    let control = &case.runs[manifest.run_index].control;
     let found = match &question.turbine {
-        Some(name) => names.iter().position(|other| other == name),
-        None => control.iter().position(|control| matches!(control, Control::PhaseSync(_))),
+        Some(name) => case.turbines.iter().position(|turbine| turbine.name == *name),
+        None => seeking(case, manifest).next(),
     };
-    found.ok_or_else(|| StudyError::NobodySeeks {
+    found.ok_or_else(|| nobody_seeks(question, case, manifest))
+}
+
+/// Names of the turbines that seek a helix in the run that `question` is about, in the case's order; one or more.
+pub(super) fn seekers(question: &PhaseQuestion) -> Result<Vec<String>, StudyError> {
+    let manifest = records::read_manifest(&folder_of(&question.run))?;
+    let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
+    let names: Vec<String> =
+        seeking(&case, &manifest).map(|index| case.turbines[index].name.clone()).collect();
+    if names.is_empty() { Err(nobody_seeks(question, &case, &manifest)) } else { Ok(names) }
+}
+
+/// Places of the turbines that seek a helix in the run of `manifest`.
+fn seeking<'c>(case: &'c Case, manifest: &Manifest) -> impl Iterator<Item = usize> + use<'c> {
+    let control = case.runs[manifest.run_index].control.iter().enumerate();
+    control.filter_map(|(index, control)| matches!(control, Control::PhaseSync(_)).then_some(index))
+}
+
+fn nobody_seeks(question: &PhaseQuestion, case: &Case, manifest: &Manifest) -> StudyError {
+    StudyError::NobodySeeks {
         run: manifest.run.clone(),
         asked: question.turbine.clone(),
-        turbines: names,
-    })
+        turbines: case.turbines.iter().map(|turbine| turbine.name.clone()).collect(),
+    }
 }
 
 /// Whether a run under `without` holds the true wind of turbine `index` in one under `with`: it is away there, and the

@@ -61,7 +61,10 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, StudyEr
     }
     let mut figures = vec![OffsetFigure {
         name: "power-over-offset".into(),
-        title: "Power over the phase offset".into(),
+        title: format!(
+            "Power over the phase offset of {}",
+            study.case.turbines[study.turbine].name
+        ),
         label: format!("power against the run {against} (%)"),
         panels: power,
     }];
@@ -90,7 +93,10 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, StudyEr
         }
         figures.push(OffsetFigure {
             name: format!("load-over-offset-{channel}"),
-            title: format!("Fatigue over the phase offset: {title}"),
+            title: format!(
+                "Fatigue over the phase offset of {}: {title}",
+                study.case.turbines[study.turbine].name
+            ),
             label: format!("equivalent load against {against} (%)"),
             panels,
         });

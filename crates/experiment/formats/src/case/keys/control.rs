@@ -40,6 +40,13 @@ const START: Key = key(
     Value("0"),
     "Time at which it fades in; before `time.duration`.",
 );
+const STOP: Key = key(
+    "stop",
+    above(0.0, 1e6),
+    "s",
+    Otherwise("never"),
+    "Time at which it fades out again, over one excitation period as it fades in; at least one period after `start`. After the end of the run it changes nothing.",
+);
 const PHASE_RANGE: Kind = from(-360.0, 360.0);
 
 /// `kind = "baseline"`.
@@ -80,6 +87,7 @@ pub(in crate::case) static HELIX: Table = Table {
             "Azimuth offset of the inverse multi-blade transformation.",
         ),
         START,
+        STOP,
     ],
 };
 
@@ -93,6 +101,7 @@ pub(in crate::case) static PULSE: Table = Table {
         STROUHAL,
         key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase at time zero."),
         START,
+        STOP,
     ],
 };
 

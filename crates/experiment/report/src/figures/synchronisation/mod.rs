@@ -12,9 +12,11 @@ mod tracks;
 use crate::draw::Figure;
 use basis::records::{Plane, Statistic};
 
-/// What a study of phase synchronisation has to show; what is empty is left out.
+/// What a study has to show of a turbine's phase synchronisation; what is empty is left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Synchronisation {
+    /// Whose it is: the turbine that joins a helix, and which helix where it joins several, such as `T2` or `T2 cw St 0.25`.
+    pub name: String,
     /// How well each run found the phases of the helix.
     pub phases: Vec<PhaseRow>,
     /// Changes over the phase offset: of power, of loads.
