@@ -8,9 +8,11 @@ mod identify;
 mod judge;
 mod least_squares;
 mod loops;
+mod pictures;
 mod rig;
 mod spring_mass;
 
 pub use bench::bench;
 pub use disk::disk;
 pub use loops::loops;
+pub use pictures::pictures;
