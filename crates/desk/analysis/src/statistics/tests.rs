@@ -70,8 +70,8 @@ fn a_change_that_every_block_shares_is_certain_and_a_shift_is_none() {
     let compared = [[1.0, 3.0], [5.0, 9.0], [2.0, 7.0]].concat();
     let samples: Vec<f64> = compared.iter().map(|x| 100.0 - 0.8 * x).collect();
     let less = change(&samples, &compared, 1.0, 2.0, deviation).expect("three blocks");
-    assert!((less.mean + 0.2).abs() < 1e-14 && less.n_blocks == 3, "{less:?}");
-    assert!(less.half_width_95.expect("three blocks") < 1e-13, "{less:?}");
+    assert!((less.mean + 0.2).abs() < 1e-12 && less.n_blocks == 3, "{less:?}");
+    assert!(less.half_width_95.expect("three blocks") < 1e-12, "{less:?}");
     // Of means it is what a gain is, its interval that of the blocks' own changes: 10 % and 20 %.
     let mean_of = |samples: &[f64]| Ok(mean(samples));
     let more = change(&[1.1, 4.8], &[1.0, 4.0], 1.0, 1.0, mean_of).expect("two blocks");
