@@ -7,9 +7,11 @@ mod follower;
 mod identify;
 mod judge;
 mod loops;
+mod pictures;
 mod rig;
 mod spring_mass;
 
 pub use bench::bench;
 pub use disk::disk;
 pub use loops::loops;
+pub use pictures::pictures;

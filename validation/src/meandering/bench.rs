@@ -1,14 +1,15 @@
 //! The source's chapter 3: three generators side by side on a frequency step and ramp, jumps, offset, noise, attenuation.
 
 use super::follower::{Case, END, INTERVAL, Instant, START, run};
+use super::loops::kinds;
 use crate::Row;
 use crate::least_squares::Fit;
-use estimation::phase_locked::Kind;
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 /// Plain amplification with 4 % noise, what all cases start from.
 const STEP: Case = Case {
     name: "frequency step (3-3)",
+    figure: "3-3",
     strouhals: [0.18, 0.22],
     sweeps: false,
     amplitudes: [1.0, 1.0],
@@ -19,13 +20,25 @@ const STEP: Case = Case {
 
 /// The source's figures. Their steps, jumps, offsets and references are not told in numbers; these are ours, within the
 /// band of St 0.15 to 0.25.
-const CASES: [Case; 6] = [
+pub(super) const CASES: [Case; 6] = [
     STEP,
-    Case { name: "frequency ramp (3-4)", strouhals: [0.17, 0.22], sweeps: true, ..STEP },
-    Case { name: "offset and step (3-5)", offset: 0.5, ..STEP },
-    Case { name: "amplitude jump (3-6)", strouhals: [0.2, 0.2], amplitudes: [1.0, 1.4], ..STEP },
-    Case { name: "50 % noise and step (3-7)", noise: 0.5, ..STEP },
-    Case { name: "attenuation (3-8)", factor: 0.1, strouhals: [0.2, 0.2], ..STEP },
+    Case {
+        name: "frequency ramp (3-4)",
+        figure: "3-4",
+        strouhals: [0.17, 0.22],
+        sweeps: true,
+        ..STEP
+    },
+    Case { name: "offset and step (3-5)", figure: "3-5", offset: 0.5, ..STEP },
+    Case {
+        name: "amplitude jump (3-6)",
+        figure: "3-6",
+        strouhals: [0.2, 0.2],
+        amplitudes: [1.0, 1.4],
+        ..STEP
+    },
+    Case { name: "50 % noise and step (3-7)", figure: "3-7", noise: 0.5, ..STEP },
+    Case { name: "attenuation (3-8)", figure: "3-8", factor: 0.1, strouhals: [0.2, 0.2], ..STEP },
 ];
 
 /// A rate has settled when it stays so near the true one (–).
@@ -51,15 +64,13 @@ struct Outcome {
 
 /// Repeats all cases with all generators; prints the table and gives what the source claims as rows.
 pub fn bench() -> Vec<Row> {
-    let extended = Kind::extended(SQRT_2, 1.0).expect("damping √2 has a dc gain");
-    let kinds = [("SOGI", Kind::Second), ("ESOGI", extended), ("MSTOGI", Kind::Mixed)];
     println!(
         "| case | generator | settling after start, s | after 1000 s, s | overshoot | ripple of ω̂, % | SNR, dB | 3rd, dB | 5th, dB | amplitude error, % | offset, % |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let mut rows = Vec::new();
     for case in &CASES {
-        let outcomes = kinds.map(|(name, kind)| {
+        let outcomes = kinds().map(|(name, kind)| {
             let run = run(case, kind, true).expect("the bench's own settings are sound");
             let outcome = judged(case, &run);
             println!("{}", outcome.line(case.name, name));

@@ -21,6 +21,8 @@ pub(super) fn rate_of(strouhal: f64) -> f64 {
 pub(super) struct Case {
     /// Name, with the source's figure.
     pub(super) name: &'static str,
+    /// That figure alone.
+    pub(super) figure: &'static str,
     /// Strouhal number before and after 1000 s, or, where it sweeps, at both ends.
     pub(super) strouhals: [f64; 2],
     /// Whether the frequency goes evenly from the first to the last instead of at once.
@@ -42,6 +44,8 @@ pub(super) struct Instant {
     pub(super) time: f64,
     /// Rate of the force (rad/s).
     pub(super) rate: f64,
+    /// Phase that the place has when the masses have settled under the force (rad).
+    pub(super) phase: f64,
     /// Place of the first mass (m).
     pub(super) place: f64,
     /// What the loop believes of it (m).
@@ -122,7 +126,15 @@ pub(super) fn run(
         }
         let [_, lag] = answer(estimate.rate);
         force += share * (swing.0 * (estimate.phase - lag).sin() + middle.0);
-        run.push(Instant { time, rate, place: masses.place(), estimate, reference });
+        let settled = phase + answer(rate)[1];
+        run.push(Instant {
+            time,
+            rate,
+            phase: settled,
+            place: masses.place(),
+            estimate,
+            reference,
+        });
         masses.advance(INTERVAL, force);
         phase = (phase + rate * INTERVAL) % TAU;
     }

@@ -3,8 +3,10 @@
 use super::rig::{INTERVAL, MOMENTS, Reading};
 use crate::Row;
 use crate::least_squares::Fit;
-use analysis::fatigue::damage_equivalent_load;
-use analysis::statistics::student_97_5;
+use analysis::AnalysisError;
+use analysis::fatigue::{REFERENCE_FREQUENCY, damage_equivalent_load};
+use analysis::statistics::{change, mean, standard_deviation};
+use basis::records::Statistic;
 use flow::inflow::deterministic::RotatingDisk;
 
 /// Blocks that intervals come from (s): two periods of the disk.
@@ -58,37 +60,15 @@ fn block() -> usize {
     (BLOCK / INTERVAL).round() as usize
 }
 
-fn deviation(samples: &[f64]) -> f64 {
-    let n = samples.len() as f64;
-    let mean = samples.iter().sum::<f64>() / n;
-    (samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt()
-}
-
-fn mean(samples: &[f64]) -> f64 {
-    samples.iter().sum::<f64>() / samples.len() as f64
-}
-
-/// A change (–) and the half width of its 95 % interval.
-#[derive(Clone, Copy)]
-struct Change {
-    whole: f64,
-    half_width: f64,
-}
-
-impl Change {
-    /// Change of `of` from `before` to `now`; the interval is that of the same change block by block.
-    fn new(before: &[f64], now: &[f64], of: impl Fn(&[f64]) -> f64) -> Self {
-        let change = |before: &[f64], now: &[f64]| of(now) / of(before) - 1.0;
-        let blocks: Vec<f64> = before
-            .chunks_exact(block())
-            .zip(now.chunks_exact(block()))
-            .map(|(before, now)| change(before, now))
-            .collect();
-        let n = blocks.len() as f64;
-        let spread = deviation(&blocks) * (n / (n - 1.0)).sqrt();
-        let half_width = student_97_5(blocks.len() - 1) * spread / n.sqrt();
-        Self { whole: change(before, now), half_width }
-    }
+/// Change from `before` to `now` of what `of` makes of the samples number `index`.
+fn changed(
+    before: &Record,
+    now: &Record,
+    index: usize,
+    of: impl Fn(&[f64]) -> Result<f64, AnalysisError>,
+) -> Statistic {
+    change(&now.samples[index], &before.samples[index], INTERVAL, BLOCK, of)
+        .expect("loads are finite, none rests, and the records are equally long")
 }
 
 /// Runs beside the one without control.
@@ -107,9 +87,9 @@ struct Run {
     /// Largest pitch on either axis (rad).
     pitch: f64,
     /// Of the deviations and of mean power.
-    changes: [Change; 8],
+    changes: [Statistic; 8],
     /// Of the equivalent loads.
-    equivalents: [Change; 7],
+    equivalents: [Statistic; 7],
 }
 
 impl<'a> Table<'a> {
@@ -121,15 +101,14 @@ impl<'a> Table<'a> {
     pub(super) fn add(&mut self, factor: f64, record: Record) -> Vec<Row> {
         let before = self.baseline;
         let changes = std::array::from_fn(|index| {
-            let of = if index < MOMENTS.len() { deviation } else { mean };
-            Change::new(&before.samples[index], &record.samples[index], of)
+            let of = if index < MOMENTS.len() { standard_deviation } else { mean };
+            changed(before, &record, index, |samples| Ok(of(samples)))
         });
         let equivalents = std::array::from_fn(|index| {
-            let load = |samples: &[f64]| {
-                damage_equivalent_load(samples, INTERVAL, MOMENTS[index].2, 1.0)
-                    .expect("loads are finite and the record is long")
-            };
-            Change::new(&before.samples[index], &record.samples[index], load)
+            let slope = MOMENTS[index].2;
+            changed(before, &record, index, |samples| {
+                damage_equivalent_load(samples, INTERVAL, slope, REFERENCE_FREQUENCY)
+            })
         });
         let (now, then) = (record.amplitudes(), before.amplitudes());
         let reached = [0, 1].map(|axis| now[axis] / then[axis]);
@@ -154,8 +133,9 @@ impl<'a> Table<'a> {
         let line =
             |name: String, cells: Vec<String>| println!("| {name} | {} |", cells.join(" | "));
         let cells = |of: &dyn Fn(usize) -> String| (0..self.runs.len()).map(of).collect();
-        let percent = |change: &Change| {
-            format!("{:+.1} ± {:.1}", 100.0 * change.whole, 100.0 * change.half_width)
+        let percent = |change: &Statistic| {
+            let half_width = change.half_width_95.expect("six blocks");
+            format!("{:+.1} ± {:.1}", 100.0 * change.mean, 100.0 * half_width)
         };
         line("factor asked for".into(), cells(&|run| format!("{}", self.runs[run].factor)));
         line("---".into(), cells(&|_| "---".into()));
@@ -170,7 +150,7 @@ impl<'a> Table<'a> {
             cells(&|run| format!("{:.1}", self.runs[run].pitch.to_degrees())),
         );
         for (index, (name, _, _)) in MOMENTS.iter().enumerate() {
-            let before = 1e-3 * deviation(&self.baseline.samples[index]);
+            let before = 1e-3 * standard_deviation(&self.baseline.samples[index]);
             let name = format!("{name}, deviation (baseline {before:.0} kN m), %");
             line(name, cells(&|run| percent(&self.runs[run].changes[index])));
         }
@@ -188,8 +168,7 @@ impl<'a> Table<'a> {
         let mut rows = Vec::new();
         for Run { factor, changes, .. } in &self.runs {
             if *factor == 0.75 {
-                let largest =
-                    changes[..7].iter().map(|c| c.whole).fold(f64::NEG_INFINITY, f64::max);
+                let largest = changes[..7].iter().map(|c| c.mean).fold(f64::NEG_INFINITY, f64::max);
                 // Between −1 and 0: all seven fall.
                 rows.push(Row {
                     what: format!("{}, factor 0.75: largest change of the deviations", self.name),
@@ -200,7 +179,7 @@ impl<'a> Table<'a> {
                 });
                 rows.push(Row {
                     what: format!("{}, factor 0.75: power lost beyond 1 %", self.name),
-                    measured: (-0.01 - changes[7].whole).max(0.0),
+                    measured: (-0.01 - changes[7].mean).max(0.0),
                     expected: 0.0,
                     tolerance: 0.0,
                     unit: "–",
@@ -213,7 +192,7 @@ impl<'a> Table<'a> {
                 let least = if name == "power" { 1.0 } else { 5.0 };
                 rows.push(Row {
                     what: format!("{}, factor {factor}: {name}, beside table 4-4", self.name),
-                    measured: 100.0 * change.whole,
+                    measured: 100.0 * change.mean,
                     expected: *expected,
                     tolerance: (expected.abs() / 3.0).max(least),
                     unit: "%",

@@ -18,7 +18,8 @@ pub fn loops() -> Vec<Row> {
     [tones(), ramps(), steps(), transfers(), equilibria()].concat()
 }
 
-fn kinds() -> [(&'static str, Kind); 3] {
+/// The three generators of damping √2, each with its name.
+pub(super) fn kinds() -> [(&'static str, Kind); 3] {
     let extended = Kind::extended(SQRT_2, 1.0).expect("damping √2 has a dc gain");
     [("SOGI", Kind::Second), ("ESOGI", extended), ("MSTOGI", Kind::Mixed)]
 }

@@ -52,6 +52,11 @@ pub enum AnalysisError {
     /// A ratio to a mean of zero.
     #[error("the compared record has a mean of zero")]
     ZeroMean,
+    /// A ratio to a figure that is zero, of a whole record or of a block.
+    #[error(
+        "what the compared record, or a block of it, comes to is zero: there is no ratio to it"
+    )]
+    NoReference,
     /// A rotor whose blades do not make a fixed frame.
     #[error("a rotor of {n_blades} blades has no tilt and yaw, 3 are needed")]
     TooFewBlades {

@@ -1,9 +1,11 @@
 //! Means, gains and the intervals that go with them.
 
+mod change;
 mod student;
 
 use crate::AnalysisError;
 use basis::records::Statistic;
+pub use change::change;
 pub use student::student_97_5;
 
 /// Length of the blocks whose means are taken as independent (s): ten minutes, the field's averaging time.
@@ -38,11 +40,9 @@ pub fn statistic(
     block_length: f64,
 ) -> Result<Statistic, AnalysisError> {
     let blocks = block_means(samples, interval, block_length)?;
-    let mean = mean(samples);
-    let variance = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples.len() as f64;
     Ok(Statistic {
-        mean,
-        standard_deviation: variance.sqrt(),
+        mean: mean(samples),
+        standard_deviation: standard_deviation(samples),
         half_width_95: half_width_95(&blocks),
         n_blocks: blocks.len(),
     })
@@ -65,9 +65,7 @@ pub fn gain(
     interval: f64,
     block_length: f64,
 ) -> Result<Statistic, AnalysisError> {
-    if samples.len() != compared.len() {
-        return Err(AnalysisError::UnequalLengths { first: samples.len(), second: compared.len() });
-    }
+    check_lengths(samples, compared)?;
     let blocks = block_means(samples, interval, block_length)?;
     let compared_blocks = block_means(compared, interval, block_length)?;
     let reference = mean(compared);
@@ -106,6 +104,15 @@ pub fn block_means(
     interval: f64,
     block_length: f64,
 ) -> Result<Vec<f64>, AnalysisError> {
+    Ok(blocks(samples, interval, block_length)?.map(mean).collect())
+}
+
+/// The whole blocks of `block_length` (s) in `samples`, taken every `interval` (s).
+fn blocks(
+    samples: &[f64],
+    interval: f64,
+    block_length: f64,
+) -> Result<impl Iterator<Item = &[f64]>, AnalysisError> {
     if samples.is_empty() {
         return Err(AnalysisError::TooShort { n_samples: 0, needed: 1 });
     }
@@ -118,7 +125,13 @@ pub fn block_means(
     // Steps rarely divide a block: a sample short of the last one must not cost it.
     let n_blocks = (samples.len() as f64 / whole as f64 + SHORT).floor() as usize;
     let n_samples = whole.min(samples.len() / n_blocks.max(1)).max(1);
-    Ok(samples.chunks_exact(n_samples).take(n_blocks).map(mean).collect())
+    Ok(samples.chunks_exact(n_samples).take(n_blocks))
+}
+
+/// Refuses two records that do not belong together.
+fn check_lengths(first: &[f64], second: &[f64]) -> Result<(), AnalysisError> {
+    let (first, second) = (first.len(), second.len());
+    if first == second { Ok(()) } else { Err(AnalysisError::UnequalLengths { first, second }) }
 }
 
 /// Half width of the 95 % interval of the mean of `blocks`; none with fewer than two.
@@ -137,8 +150,16 @@ fn sample_deviation(values: &[f64]) -> Option<f64> {
     Some((sum / (values.len() - 1) as f64).sqrt())
 }
 
-pub(crate) fn mean(samples: &[f64]) -> f64 {
+/// Mean of `samples`, in their unit; no number where there are none.
+pub fn mean(samples: &[f64]) -> f64 {
     samples.iter().sum::<f64>() / samples.len() as f64
+}
+
+/// Standard deviation of `samples` with n in the denominator, in their unit; no number where there are none.
+pub fn standard_deviation(samples: &[f64]) -> f64 {
+    let mean = mean(samples);
+    let sum = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
+    (sum / samples.len() as f64).sqrt()
 }
 
 #[cfg(test)]

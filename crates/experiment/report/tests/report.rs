@@ -2,7 +2,7 @@
 
 mod synthetic;
 
-use basis::records::{MeanderingAxis, MeanderingSummary, PitchDuty};
+use basis::records::{MeanderingAxis, MeanderingSummary, PitchDuty, Statistic};
 use report::{
     PhaseNumbers, PhaseRow, ReportError, StudyRecords, Synchronisation, TrackFigure, TrackLine,
     TrackRow,
@@ -243,6 +243,32 @@ fn what_pitching_cost_stands_in_the_tables_with_its_convention() {
     }
     assert_eq!(page.matches("<td>T1</td><td class=\"n\">").count(), 36);
     assert_well_formed(&page);
+}
+
+#[test]
+fn changes_of_loads_come_with_their_intervals() {
+    let mut study = synthetic::two_runs();
+    let key = "RootMyb1, m = 10 (kN m)";
+    for (run, load) in [(0, 12_500.0), (1, 10_000.0)] {
+        study.runs[run].summary.turbines[0].damage_equivalent_loads.insert(key.into(), load);
+    }
+    let cells = |change: &str| {
+        format!(
+            "<td>{key}</td><td class=\"n\">12500</td><td class=\"pm\"></td><td class=\"n\">10000</td><td class=\"pm\">{change}</td>"
+        )
+    };
+    // Records from before there were intervals.
+    assert!(page(&study).contains(&cells("−20.0 %")));
+    let mut change =
+        Statistic { mean: -0.2, standard_deviation: 0.1, half_width_95: Some(0.034), n_blocks: 3 };
+    let set = |study: &mut StudyRecords, change| {
+        study.runs[1].summary.turbines[0].load_changes.insert(key.into(), change);
+    };
+    set(&mut study, change);
+    assert!(page(&study).contains(&cells("−20.0 % ± 3.4 %")));
+    change.half_width_95 = None;
+    set(&mut study, change);
+    assert!(page(&study).contains(&cells("−20.0 % (no interval)")));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Gains of a run over the run that it compares with, whenever that was made.
 
+use crate::loads;
 use crate::prepare::Setup;
 use crate::summarise::Analysed;
 use crate::{StudyError, Watcher, check_same};
@@ -64,6 +65,7 @@ pub(crate) fn add(
             let channel = format!("{}.power_w", turbine.name);
             let [own_power, power] = [own.column(&channel)?, there.column(&channel)?];
             turbine.power_gain = Some(gain(own_power, power, own.interval, BLOCK_LENGTH)?);
+            turbine.load_changes = loads::changes(&turbine.name, &own, &there)?;
         }
     }
     if other.present().eq(run.present()) {

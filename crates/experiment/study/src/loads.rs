@@ -1,12 +1,15 @@
-//! Damage-equivalent loads and standard deviations of the moments of a run, and what its pitching cost.
+//! Damage-equivalent loads and standard deviations of the moments of a run, their change, and what its pitching cost.
 
 use crate::StudyError;
 use crate::channels::LOADS;
 use crate::summarise::Analysed;
+use analysis::AnalysisError;
 use analysis::fatigue::{
-    BEARING_SLOPE, LoadCounter, N_BEARING_POSITIONS, PitchBearing, PitchTravel, duty_convention,
+    BEARING_SLOPE, N_BEARING_POSITIONS, PitchBearing, PitchTravel, REFERENCE_FREQUENCY,
+    damage_equivalent_load, duty_convention,
 };
-use basis::records::{PitchDuty, Series};
+use analysis::statistics::{BLOCK_LENGTH, change, standard_deviation};
+use basis::records::{PitchDuty, Series, Statistic};
 use std::collections::BTreeMap;
 
 /// Wöhler's exponent of composite blades (–).
@@ -25,16 +28,11 @@ pub(crate) fn damage_equivalent(
 ) -> Result<BTreeMap<String, f64>, StudyError> {
     let mut loads = BTreeMap::new();
     for (name, channel) in moments(series, turbine) {
-        let slope = if channel.starts_with("Root") { BLADE_SLOPE } else { STEEL_SLOPE };
-        let load = analysed.column(name)?;
-        if load.len() < 2 {
-            continue;
+        let samples = analysed.column(name)?;
+        if samples.len() >= 2 {
+            let (key, of) = equivalent_load(channel, analysed.interval);
+            loads.insert(key, of(samples)?);
         }
-        let mut counter = LoadCounter::new(&[slope])?;
-        counter.extend(load)?;
-        let duration = (load.len() - 1) as f64 * analysed.interval;
-        let fatigue = counter.finish(duration)?;
-        loads.insert(format!("{channel}, m = {slope} (kN m)"), fatigue.loads[0].load);
     }
     Ok(loads)
 }
@@ -47,10 +45,62 @@ pub(crate) fn deviations(
 ) -> Result<BTreeMap<String, f64>, StudyError> {
     let mut deviations = BTreeMap::new();
     for (name, channel) in moments(series, turbine) {
-        let deviation = analysed.statistic(name)?.standard_deviation;
-        deviations.insert(format!("{channel}, standard deviation (kN m)"), deviation);
+        deviations.insert(deviation_key(channel), analysed.statistic(name)?.standard_deviation);
     }
     Ok(deviations)
+}
+
+/// Changes of both from `compared` to `analysed` by the same keys, as far as both runs keep the moments of `turbine`.
+pub(crate) fn changes(
+    turbine: &str,
+    analysed: &Analysed<'_>,
+    compared: &Analysed<'_>,
+) -> Result<BTreeMap<String, Statistic>, StudyError> {
+    let mut changes = BTreeMap::new();
+    for (name, channel) in moments(analysed.series, turbine) {
+        if compared.series.column(name).is_none() {
+            continue;
+        }
+        let (now, before) = (analysed.column(name)?, compared.column(name)?);
+        if now.len() < 2 {
+            continue;
+        }
+        let interval = analysed.interval;
+        let (key, load) = equivalent_load(channel, interval);
+        let deviation = |samples: &[f64]| Ok(standard_deviation(samples));
+        let found = [
+            (key, change(now, before, interval, BLOCK_LENGTH, load)),
+            (deviation_key(channel), change(now, before, interval, BLOCK_LENGTH, deviation)),
+        ];
+        for (key, change) in found {
+            match change {
+                Ok(change) => {
+                    changes.insert(key, change);
+                }
+                // A moment that rested has no ratio to it.
+                Err(AnalysisError::NoReference) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+    Ok(changes)
+}
+
+/// Key in a summary of the standard deviation of `channel`.
+fn deviation_key(channel: &str) -> String {
+    format!("{channel}, standard deviation (kN m)")
+}
+
+/// Key in a summary of the equivalent load of `channel`, and what makes it of samples `interval` (s) apart.
+fn equivalent_load(
+    channel: &str,
+    interval: f64,
+) -> (String, impl Fn(&[f64]) -> Result<f64, AnalysisError>) {
+    let slope = if channel.starts_with("Root") { BLADE_SLOPE } else { STEEL_SLOPE };
+    let key = format!("{channel}, m = {slope} (kN m)");
+    (key, move |samples: &[f64]| {
+        damage_equivalent_load(samples, interval, slope, REFERENCE_FREQUENCY)
+    })
 }
 
 /// Columns of `series` with the moments of `turbine` that are kept of any run, each with its channel.
@@ -136,6 +186,42 @@ mod tests {
         assert!((position.to_degrees() - 50.0).abs() < 1e-9 && (load / 5e4 - 1.0).abs() < 0.01);
         assert!(duty.convention.contains("m = 3, at 36 positions"), "{}", duty.convention);
         assert!(duty.convention.ends_with("samples every 0.01 s"), "{}", duty.convention);
+    }
+
+    /// Swings that grow by 20 % and 30 % in two blocks, about another mean; a moment at rest beside them has no change.
+    #[test]
+    fn moments_that_swing_further_say_so_with_an_interval() {
+        let names = ["time_s", "T1.RootMyb1_kN-m", "T1.TwrBsMyt_kN-m"];
+        let swing = |sizes: [f64; 2], mean: f64| Series {
+            names: names.map(str::to_owned).to_vec(),
+            columns: vec![
+                (0..1200).map(f64::from).collect(),
+                sizes.map(|size| [mean + size, mean - size].repeat(300)).concat(),
+                vec![mean; 1200],
+            ],
+        };
+        let (series, other) = (swing([1.2, 1.3], 7.0), swing([1.0, 1.0], 3.0));
+        fn whole(series: &Series) -> Analysed<'_> {
+            Analysed::whole(series, 1.0)
+        }
+        let found = changes("T1", &whole(&series), &whole(&other)).expect("numbers");
+        let keys: Vec<&str> = found.keys().map(String::as_str).collect();
+        assert_eq!(keys, ["RootMyb1, m = 10 (kN m)", "RootMyb1, standard deviation (kN m)"]);
+        for (change, expected) in found.values().zip([
+            // Half of the cycles of one size, half of the other, on a slope of ten.
+            (0.5 * (1.2f64.powi(10) + 1.3f64.powi(10))).powf(0.1) - 1.0,
+            (0.5 * (1.2f64.powi(2) + 1.3f64.powi(2))).sqrt() - 1.0,
+        ]) {
+            assert!((change.mean - expected).abs() < 1e-3, "{change:?} {expected}");
+            // t(0.975, 1) · 0.1/2, whatever the slope.
+            let half_width = change.half_width_95.expect("two blocks");
+            assert!((half_width - 12.706_205 * 0.05).abs() < 1e-6, "{change:?}");
+        }
+        let own = damage_equivalent(&series, "T1", &whole(&series)).expect("numbers");
+        assert!(found.keys().all(|key| own.contains_key(key) || key.contains("deviation")));
+        // A run that keeps no moments is nothing to compare with.
+        let none = Series { names: vec!["time_s".into()], columns: other.columns[..1].to_vec() };
+        assert_eq!(changes("T1", &whole(&series), &whole(&none)).ok(), Some(BTreeMap::new()));
     }
 
     #[test]

@@ -15,6 +15,7 @@ use basis::records::{
 };
 use farm::assemble::controller;
 use farm::case::{Control, Run, Shear};
+use std::collections::BTreeMap;
 
 /// Share of clipped control instants beyond which a reader must know (–).
 const CLIPPED_SHARE: f64 = 0.01;
@@ -25,7 +26,8 @@ const DELIVERED_SHARE: f64 = 0.95;
 
 /// The series of one run, cut to the analysed time.
 pub(crate) struct Analysed<'a> {
-    series: &'a Series,
+    /// All of it.
+    pub(crate) series: &'a Series,
     first: usize,
     /// Time between rows (s).
     pub(crate) interval: f64,
@@ -117,6 +119,7 @@ pub(crate) fn summarise(
             meandering,
             load_deviations: loads::deviations(series, name, &analysed)?,
             damage_equivalent_loads: loads::damage_equivalent(series, name, &analysed)?,
+            load_changes: BTreeMap::new(),
             pitch_duty: loads::pitch_duty(series, name, &analysed)?,
         });
     }

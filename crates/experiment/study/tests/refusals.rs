@@ -98,6 +98,13 @@ fn what_does_not_fit_is_pointed_at_in_the_file() {
             22,
             "T1 cannot be controlled so: stop = 40 s comes before the excitation is whole",
         ),
+        (
+            PRESCRIBED,
+            "\"phase-sync\", offset_deg = 0.0, amplitude_deg = 0.0",
+            "\"meandering\", factor = 0.5, amplitude_deg = 4.0, followed = \"load\", integral_gain = 1.0, azimuth_offset_deg = 0.0, delay = 10.0, moment_per_degree_mnm = 1.0",
+            23,
+            "the amplitude loop is unstable",
+        ),
     ] {
         assert!(case.contains(from), "{from}");
         let (outcome, _) = dry(&case.replace(from, to));

@@ -149,6 +149,10 @@ pub struct TurbineSummary {
     pub load_deviations: BTreeMap<String, f64>,
     /// 1-Hz damage-equivalent loads by channel, slope and unit, such as `RootMyc1, m = 10 (kN m)`.
     pub damage_equivalent_loads: BTreeMap<String, f64>,
+    /// Both relative to the same turbine in the compared run, minus one (–), by the same keys; absent where nothing is
+    /// compared, and of a load that is zero there.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub load_changes: BTreeMap<String, Statistic>,
     /// What pitching did to blade 1; absent in records that do not tell.
     pub pitch_duty: Option<PitchDuty>,
 }

@@ -27,7 +27,7 @@ use axis::AxisLoop;
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use basis::mbc::{to_blades, to_fixed_frame};
 use basis::{FixedFrame, Measurements, PerBlade};
-use estimation::phase_locked::{Axis, TwoAxisLoop};
+use estimation::phase_locked::{AmplitudeLoop, Axis, TwoAxisLoop};
 use reference::Baseline;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -108,12 +108,16 @@ impl Meandering {
     /// Control with `settings` for measurements every `interval` (s).
     ///
     /// # Errors
-    /// [`MeanderingError`] names what cannot be used.
+    /// [`MeanderingError`] names what cannot be used; gains that would not be stable come with the pole that is not.
     pub fn new(settings: Settings, interval: f64) -> Result<Self, MeanderingError> {
         settings.check()?;
+        let follower = TwoAxisLoop::new(&settings.follower, interval)?;
+        if settings.maximum_amplitude > 0.0 {
+            settings.amplitude_loop().check(&settings.follower.signal)?;
+        }
         Ok(Self {
             settings,
-            follower: TwoAxisLoop::new(&settings.follower, interval)?,
+            follower,
             baseline: Baseline::default(),
             tilt: AxisLoop::default(),
             yaw: AxisLoop::default(),
@@ -284,6 +288,16 @@ impl Settings {
     /// Whether no pitch is allowed, so that the loads are followed and nothing else.
     pub fn only_watches(&self) -> bool {
         self.maximum_amplitude == 0.0 && self.maximum_offset == 0.0
+    }
+
+    /// How each axis' amplitude is brought to its reference.
+    fn amplitude_loop(&self) -> AmplitudeLoop {
+        AmplitudeLoop {
+            integral: self.bandwidth,
+            proportional: self.proportional,
+            delay: self.decoupling.delay,
+            is_taken_off: self.followed == Followed::Wake,
+        }
     }
 
     fn check(&self) -> Result<(), MeanderingError> {

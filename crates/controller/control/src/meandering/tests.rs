@@ -281,6 +281,20 @@ fn what_cannot_be_built_says_why() {
     assert!(build(|s| s.start = f64::NAN).contains("start"));
     assert!(build(|s| s.reference = Reference::Learned { duration: 0.0 }).contains("learning"));
     assert!(build(|s| s.follower.signal.follower.rates = [0.0, 0.1]).contains("above zero"));
+    let unstable = build(|s| (s.bandwidth, s.decoupling.delay) = (0.5, 4.0));
+    assert!(unstable.starts_with("the amplitude loop is unstable at 0.0500 rad/s: a pole at +"));
+    assert!(
+        unstable.contains("with an integral gain of 0.5 1/s; it is stable up to 0.2"),
+        "{unstable}"
+    );
+}
+
+/// Gains that nothing is pitched by are no matter.
+#[test]
+fn a_loop_that_watches_may_have_any_gain() {
+    let mut asked = settings(Sense::Clockwise, 1.25);
+    (asked.bandwidth, asked.decoupling.delay, asked.maximum_amplitude) = (0.5, 4.0, 0.0);
+    assert!(Meandering::new(asked, INTERVAL).is_ok());
 }
 
 #[test]

@@ -14,6 +14,7 @@
 //!
 //! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, chapter 2.
 
+mod amplitude;
 mod complex;
 mod generator;
 mod lock;
@@ -24,6 +25,7 @@ mod transfer;
 mod two_axis;
 mod whole;
 
+pub use amplitude::AmplitudeLoop;
 pub use generator::{Generator, Kind, dc_gain};
 pub use oscillator::{Gains, LoopSettings, Order, Oscillator, Pole};
 pub use record::{FEWEST_PERIODS, follow};
@@ -89,6 +91,20 @@ pub enum PhaseLockedError {
         pole: Pole,
         /// Rate at which it stands there (rad/s).
         rate: f64,
+    },
+    /// Control of the amplitude with which errors grow.
+    #[error(
+        "the amplitude loop is unstable at {rate:.4} rad/s: a pole at {pole} with an integral gain of {integral} 1/s; it is stable up to {largest:.4} 1/s"
+    )]
+    AmplitudeUnstable {
+        /// The pole, as an error of the amplitude moves.
+        pole: Pole,
+        /// Rate at which it stands there (rad/s).
+        rate: f64,
+        /// Integral gain asked for (1/s).
+        integral: f64,
+        /// Up to which it is stable at that rate (1/s); zero where the proportional gain alone is too large.
+        largest: f64,
     },
     /// Too few samples to follow anything.
     #[error("{n_samples} samples are too few, {needed} make three periods of the lowest rate")]

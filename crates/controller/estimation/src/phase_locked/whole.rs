@@ -14,14 +14,21 @@ const SETTLING: i32 = 30;
 const EARLY: i32 = 10;
 const LATE: i32 = 40;
 
+/// `fresh` after thirty periods of a sine of amplitude one, `n_samples` (–) a period, the last of them at phase zero.
+pub(super) fn settled(fresh: &Generator, n_samples: i32) -> Generator {
+    let turned = TAU / f64::from(n_samples);
+    let mut generator = *fresh;
+    for step in -SETTLING * n_samples..=0 {
+        generator.update(turned, (turned * f64::from(step)).sin());
+    }
+    generator
+}
+
 /// Growth (1/s) of small errors about the lock to a tone of `rate` (rad/s), over thirty periods; negative where they decay.
 pub(super) fn growth(settings: &LoopSettings, fresh: &Generator, rate: f64) -> f64 {
     let turned = TAU / f64::from(N_SAMPLES);
     let interval = turned / rate;
-    let mut generator = *fresh;
-    for step in -SETTLING * N_SAMPLES..=0 {
-        generator.update(turned, (turned * f64::from(step)).sin());
-    }
+    let mut generator = settled(fresh, N_SAMPLES);
     // In lock but for a thousandth of one sample's turn, so that errors stay small while they grow.
     let centred = LoopSettings { rates: [0.5 * rate, 1.5 * rate], ..*settings };
     let mut oscillator = Oscillator::new(&centred);

@@ -60,6 +60,36 @@ fn a_gain_that_every_block_shares_is_certain() {
     assert!(gain.half_width_95.expect("three blocks") < 1e-14);
 }
 
+/// Deviation of a record, as what a change is of.
+fn deviation(samples: &[f64]) -> Result<f64, AnalysisError> {
+    Ok(standard_deviation(samples))
+}
+
+#[test]
+fn a_change_that_every_block_shares_is_certain_and_a_shift_is_none() {
+    let compared = [[1.0, 3.0], [5.0, 9.0], [2.0, 7.0]].concat();
+    let samples: Vec<f64> = compared.iter().map(|x| 100.0 - 0.8 * x).collect();
+    let less = change(&samples, &compared, 1.0, 2.0, deviation).expect("three blocks");
+    assert!((less.mean + 0.2).abs() < 1e-12 && less.n_blocks == 3, "{less:?}");
+    assert!(less.half_width_95.expect("three blocks") < 1e-12, "{less:?}");
+    // Of means it is what a gain is, its interval that of the blocks' own changes: 10 % and 20 %.
+    let mean_of = |samples: &[f64]| Ok(mean(samples));
+    let more = change(&[1.1, 4.8], &[1.0, 4.0], 1.0, 1.0, mean_of).expect("two blocks");
+    assert!((more.mean - 0.18).abs() < 1e-14, "{more:?}");
+    assert!((more.half_width_95.expect("two blocks") - 12.706_205 * 0.05).abs() < 1e-6);
+}
+
+#[test]
+fn a_change_of_one_block_has_no_interval_and_one_from_zero_is_refused() {
+    let one = change(&[0.0, 3.0, 9.0], &[0.0, 2.0, 6.0], 1.0, 3.0, deviation).expect("a block");
+    assert_eq!((one.n_blocks, one.half_width_95), (1, None));
+    assert!((one.mean - 0.5).abs() < 1e-14);
+    let from = |compared: &[f64]| change(&[1.0, 2.0, 3.0, 5.0], compared, 1.0, 2.0, deviation);
+    assert_eq!(from(&[4.0; 4]), Err(AnalysisError::NoReference));
+    assert_eq!(from(&[4.0, 4.0, 1.0, 2.0]), Err(AnalysisError::NoReference));
+    assert_eq!(from(&[4.0]), Err(AnalysisError::UnequalLengths { first: 4, second: 1 }));
+}
+
 /// Of many intervals at 95 %, 95 % hold the truth: 2000 records of four blocks, binomial deviation 0.5 %.
 #[test]
 fn intervals_hold_the_truth_as_often_as_they_say() {

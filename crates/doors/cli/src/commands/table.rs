@@ -9,8 +9,8 @@ const LOADS: [(&str, &str, &str); 2] = [
     ("tower MN m", "TwrBsMyt", "fore-aft at the tower base"),
 ];
 
-/// Runs × turbines: power, gain, thrust, rotor speed, delivered excitation, and loads where any turbine has them; the
-/// conditions above, the conventions below.
+/// Runs × turbines: power, gain, thrust, rotor speed, delivered excitation, and loads and their changes where any turbine
+/// has them; the conditions above, the conventions below.
 pub(crate) fn render(summaries: &[Summary]) -> String {
     let mut text = String::new();
     let Some(first) = summaries.first() else {
@@ -33,7 +33,7 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
         wind.spin_up,
     );
     let loads: Vec<Load> = LOADS.iter().filter_map(|load| Load::find(load, summaries)).collect();
-    let headings: String = loads.iter().map(|load| format!(" {:>13}", load.heading)).collect();
+    let headings: String = loads.iter().map(Load::headings).collect();
     let _ = writeln!(
         text,
         "{:<14} {:<6} {:<28} {:>18} {:>18} {:>9} {:>7} {:>16}{headings}",
@@ -44,7 +44,7 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
             let delivered = turbine.delivered_pitch.map_or(String::new(), |pitch| {
                 format!("{:.2}° {:.4} Hz", pitch.delivered_amplitude_deg, pitch.frequency_hz)
             });
-            let cells: String = loads.iter().map(|load| load.cell(turbine)).collect();
+            let cells: String = loads.iter().map(|load| load.cells(turbine)).collect();
             let _ = writeln!(
                 text,
                 "{:<14} {:<6} {:<28} {:>18} {:>18} {:>9.0} {:>7.2} {:>16}{cells}",
@@ -70,7 +70,7 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
     }
     let _ = writeln!(
         text,
-        "± 95 % from blocks of the analysed time; gains compare the same blocks of the same wind"
+        "± 95 % from blocks of the analysed time; gains and changes compare the same blocks of the same wind"
     );
     if !loads.is_empty() {
         let told: Vec<String> = loads.iter().map(Load::told).collect();
@@ -83,12 +83,13 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
     text
 }
 
-/// A column of damage-equivalent loads.
+/// A column of damage-equivalent loads, and one of their changes where any run is compared.
 struct Load<'a> {
     heading: &'a str,
     what: &'a str,
     /// Key of the summaries, such as `RootMyb1, m = 10 (kN m)`.
     key: &'a str,
+    is_compared: bool,
 }
 
 impl<'a> Load<'a> {
@@ -98,16 +99,29 @@ impl<'a> Load<'a> {
         let of_channel = |key: &&String| {
             key.strip_prefix(channel).is_some_and(|rest| rest.starts_with(", m = "))
         };
-        let turbines = summaries.iter().flat_map(|summary| &summary.turbines);
-        let mut keys = turbines.flat_map(|turbine| turbine.damage_equivalent_loads.keys());
+        let mut turbines = summaries.iter().flat_map(|summary| &summary.turbines);
+        let mut keys = turbines.clone().flat_map(|turbine| turbine.damage_equivalent_loads.keys());
         let key = keys.find(of_channel)?;
-        Some(Self { heading, what, key })
+        let is_compared = turbines.any(|turbine| turbine.load_changes.contains_key(key));
+        Some(Self { heading, what, key, is_compared })
     }
 
-    /// The load of `turbine` (MN m), empty where it has none.
-    fn cell(&self, turbine: &TurbineSummary) -> String {
+    fn headings(&self) -> String {
+        self.columns(self.heading, "change %")
+    }
+
+    /// The load of `turbine` (MN m) and its change (%), empty where it has none.
+    fn cells(&self, turbine: &TurbineSummary) -> String {
         let load = turbine.damage_equivalent_loads.get(self.key);
-        format!(" {:>13}", load.map_or(String::new(), |load| format!("{:.2}", load / 1e3)))
+        let change = turbine.load_changes.get(self.key);
+        self.columns(
+            &load.map_or(String::new(), |load| format!("{:.2}", load / 1e3)),
+            &change.map_or(String::new(), |change| with_interval(change, 100.0, 1)),
+        )
+    }
+
+    fn columns(&self, load: &str, change: &str) -> String {
+        if self.is_compared { format!(" {load:>13} {change:>13}") } else { format!(" {load:>13}") }
     }
 
     /// What the column is, with its channel and slope.
@@ -152,6 +166,7 @@ mod tests {
                 .iter()
                 .map(|(key, load)| ((*key).into(), *load))
                 .collect(),
+            load_changes: Default::default(),
             pitch_duty: None,
         }
     }
@@ -200,10 +215,27 @@ mod tests {
         // Cells stand under their headings.
         let end = lines[1].find("flapwise MN m").map(|start| start + "flapwise MN m".len());
         assert_eq!(lines[3].find("12.34").map(|start| start + 5), end, "{text}");
+        assert!(!text.contains("change %"), "{text}");
         let last = lines[lines.len() - 1];
         assert!(last.starts_with("1-Hz damage-equivalent loads, rainflow"), "{text}");
         assert!(last.contains("flapwise at the root of blade 1 (RootMyb1, m = 10); "), "{text}");
         assert!(last.ends_with("fore-aft at the tower base (TwrBsMyt, m = 4)"), "{text}");
+    }
+
+    #[test]
+    fn changes_stand_behind_their_loads_with_their_intervals() {
+        let loads = [("RootMyb1, m = 10 (kN m)", 12_340.0), ("TwrBsMyt, m = 4 (kN m)", 67_890.0)];
+        let mut compared = turbine("T1", &loads);
+        let change = Statistic { half_width_95: Some(0.0312), ..statistic(-0.0678) };
+        compared.load_changes.insert(loads[0].0.into(), change);
+        let text = render(&[
+            summary(vec![turbine("T1", &loads)]),
+            summary(vec![compared, turbine("T2", &loads[..1])]),
+        ]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[1].ends_with("flapwise MN m      change %    tower MN m"), "{text}");
+        assert!(lines[2].ends_with("        12.34                       67.89"), "{text}");
+        assert!(lines[4].ends_with("        12.34    -6.8 ± 3.1         67.89"), "{text}");
     }
 
     #[test]

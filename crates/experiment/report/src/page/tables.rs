@@ -390,8 +390,10 @@ pub(crate) fn loads(study: &Study) -> Vec<Value> {
                         .iter()
                         .position(|run| Some(run.summary.run.as_str()) == other)
                         .and_then(at);
-                    let change = match compared {
-                        Some(&compared) if compared > 0.0 => {
+                    let change = match (change_of(run, name, channel), compared) {
+                        (Some(change), _) => words::gain(change),
+                        // What pitching cost comes without an interval.
+                        (None, Some(&compared)) if compared > 0.0 => {
                             words::signed_percent(load / compared - 1.0)
                         }
                         _ => String::new(),
@@ -403,6 +405,12 @@ pub(crate) fn loads(study: &Study) -> Vec<Value> {
         }
     }
     rows
+}
+
+/// Change of the load `channel` of `turbine` in `run`, where its summary tells.
+fn change_of<'a>(run: &'a RunRecords, turbine: &str, channel: &str) -> Option<&'a Statistic> {
+    let turbine = run.summary.turbines.iter().find(|found| found.name == turbine)?;
+    turbine.load_changes.get(channel)
 }
 
 /// What every run cost.

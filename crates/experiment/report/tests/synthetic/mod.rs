@@ -120,6 +120,7 @@ fn run(recipe: &Recipe) -> RunRecords {
         meandering: None,
         load_deviations: BTreeMap::new(),
         damage_equivalent_loads: BTreeMap::new(),
+        load_changes: BTreeMap::new(),
         pitch_duty: None,
     });
     RunRecords {

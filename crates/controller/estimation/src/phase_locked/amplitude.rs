@@ -1,0 +1,226 @@
+//! Whether an amplitude that control brings to a reference by what a generator tells of it comes to rest there.
+//!
+//! To a slow change of amplitude a generator is a lag τ (see [`Kind::lag`](super::Kind::lag) over the rate). With proportional
+//! and integral action P and I, and a delay T until what is added stands in the signal,
+//!
+//! ```text
+//! s (1 + τ s) + (P s + I) e^(−s T) = 0 ,    at the border, s = jν:   P + cos νT = τν sin νT ,   I = ν (τν cos νT + sin νT)
+//! ```
+//!
+//! which without delay is stable for every I. This promises too much where I or 1/T comes near the rate itself: the signals
+//! of a disturbed generator breathe at twice the rate. So the loop itself is asked, with the phase in lock.
+
+use super::PhaseLockedError;
+use super::generator::Generator;
+use super::oscillator::Pole;
+use super::single::Settings;
+use super::whole::settled;
+use std::f64::consts::{PI, TAU};
+
+/// Samples a period.
+const N_SAMPLES: i32 = 200;
+/// Periods from which errors are compared with those of as many periods later, and the end.
+const EARLY: i32 = 10;
+const LATE: i32 = 25;
+const END: i32 = 40;
+/// First push, and the error that has run away from it, over the amplitude (–).
+const PUSH: f64 = 1e-6;
+const AWAY: f64 = 1.0;
+
+/// Proportional and integral action on the amplitude that a generator tells, whose sum joins the signal in phase.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmplitudeLoop {
+    /// Integral action: amplitude added per time and amplitude missing (1/s).
+    pub integral: f64,
+    /// Proportional action: amplitude added per amplitude missing (–).
+    pub proportional: f64,
+    /// Time until what is asked for stands in the signal (s); below zero it is there at once.
+    pub delay: f64,
+    /// Whether what is asked for is taken off the signal before the generator sees it, and counted apart.
+    pub is_taken_off: bool,
+}
+
+impl AmplitudeLoop {
+    /// Checks the loop around the generator of `signal`, whose rates are sound, at the lowest and the highest of them.
+    ///
+    /// # Errors
+    /// [`PhaseLockedError::AmplitudeUnstable`] with the pole that is and the integral action that would do; those of
+    /// [`Generator::new`].
+    pub fn check(&self, signal: &Settings) -> Result<(), PhaseLockedError> {
+        let generator = settled(&Generator::new(signal.generator, signal.damping)?, N_SAMPLES);
+        for rate in signal.follower.rates {
+            let pole = self.pole(&generator, rate);
+            if pole.real >= 0.0 {
+                let (integral, largest) = (self.integral, self.border(&generator, rate));
+                return Err(PhaseLockedError::AmplitudeUnstable { pole, rate, integral, largest });
+            }
+        }
+        Ok(())
+    }
+
+    /// Growth and turning of a small error of the amplitude of a tone of `rate` (rad/s) that `generator` has settled on.
+    fn pole(&self, generator: &Generator, rate: f64) -> Pole {
+        let turned = TAU / f64::from(N_SAMPLES);
+        let interval = turned / rate;
+        let mut generator = *generator;
+        // What is asked for now is there at the next sample at the earliest; beyond the end nothing comes back.
+        let n_late = (self.delay.max(0.0) / interval).min(f64::from(END * N_SAMPLES)).round();
+        let mut asked = vec![0.0; n_late as usize + 1];
+        let (mut integral, mut sum) = (PUSH, 0.0);
+        let (mut early, mut late, mut before) = (0.0_f64, 0.0_f64, 0.0);
+        let mut crossings = Crossings::default();
+        for step in 1..=END * N_SAMPLES {
+            let place = step as usize % asked.len();
+            let own = if self.is_taken_off { sum } else { 0.0 };
+            let amplitude = 1.0 + asked[place] - own;
+            generator.update(turned, amplitude * (turned * f64::from(step)).sin());
+            let error = 1.0 - generator.amplitude() - own;
+            integral += self.integral * interval * error;
+            sum = integral + self.proportional * error;
+            asked[place] = sum;
+            if error * before < 0.0 {
+                crossings.add(step);
+            }
+            before = error;
+            match step / N_SAMPLES {
+                EARLY..LATE => early = early.max(error.abs()),
+                LATE.. => late = late.max(error.abs()),
+                _ => {}
+            }
+            if error.abs() > AWAY {
+                let elapsed = f64::from(step) * interval;
+                let real = (error.abs() / PUSH).ln() / elapsed;
+                return Pole { real, imaginary: crossings.rate() / interval };
+            }
+        }
+        let elapsed = f64::from(LATE - EARLY) * TAU / rate;
+        // Below rounding there is nothing left to grow.
+        let real = if late < 1e-13 { -1.0 / elapsed } else { (late / early).ln() / elapsed };
+        Pole { real, imaginary: crossings.rate() / interval }
+    }
+
+    /// Integral action (1/s), below this loop's own, up to which it is stable at `rate` (rad/s); zero where none is.
+    fn border(&self, generator: &Generator, rate: f64) -> f64 {
+        let is_stable = |integral: f64| Self { integral, ..*self }.pole(generator, rate).real < 0.0;
+        let part = |n: i32| self.integral * f64::from(n) / 32.0;
+        // From below, since beyond the first gains that are unstable there may be some that are not.
+        let first = (1..32).find(|&n| !is_stable(part(n))).unwrap_or(32);
+        let (mut low, mut high) = (part(first - 1), part(first));
+        for _ in 0..20 {
+            let middle = 0.5 * (low + high);
+            if is_stable(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+}
+
+/// When an error passes through zero, by steps.
+#[derive(Default)]
+struct Crossings {
+    first: Option<i32>,
+    last: i32,
+    n: i32,
+}
+
+impl Crossings {
+    fn add(&mut self, step: i32) {
+        self.first.get_or_insert(step);
+        self.last = step;
+        self.n += 1;
+    }
+
+    /// Half turns over the steps between the first crossing and the last (rad); zero with fewer than two.
+    fn rate(&self) -> f64 {
+        match self.first {
+            Some(first) if self.n > 1 => PI * f64::from(self.n - 1) / f64::from(self.last - first),
+            _ => 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Kind;
+    use super::*;
+    use std::f64::consts::SQRT_2;
+
+    const RATE: f64 = 0.05;
+
+    /// Border of the lag τ with a delay T, both over the rate: ν and I of the module's head, by halves.
+    fn border(lag: f64, delay: f64, proportional: f64) -> [f64; 2] {
+        let (mut low, mut high) = (0.0, PI / delay);
+        for _ in 0..60 {
+            let middle: f64 = 0.5 * (low + high);
+            let (sine, cosine) = (middle * delay).sin_cos();
+            let beyond = lag * middle * sine > proportional + cosine;
+            (low, high) = if beyond { (low, middle) } else { (middle, high) };
+        }
+        let (sine, cosine) = (low * delay).sin_cos();
+        [low, low * (lag * low * cosine + sine)]
+    }
+
+    fn signal(generator: Kind) -> Settings {
+        Settings { generator, ..Settings::between([RATE, 1.01 * RATE]) }
+    }
+
+    /// With a delay of three periods everything is slow against the rate, and the lag is all that a generator is: borders
+    /// within 3 % of the closed form, the pole that crosses it within 5 % of ν.
+    #[test]
+    fn the_border_is_that_of_the_closed_form_where_the_delay_is_long() {
+        for kind in [Kind::Second, Kind::extended(SQRT_2, 1.0).unwrap(), Kind::Mixed] {
+            let [turning, largest] = border(kind.lag(SQRT_2), 20.0, 0.0).map(|by| by * RATE);
+            let with = |share: f64| AmplitudeLoop {
+                integral: share * largest,
+                proportional: 0.0,
+                delay: 20.0 / RATE,
+                is_taken_off: false,
+            };
+            assert_eq!(with(0.95).check(&signal(kind)), Ok(()));
+            let refused = with(1.05).check(&signal(kind));
+            let Err(PhaseLockedError::AmplitudeUnstable { pole, rate, largest: told, .. }) =
+                refused
+            else {
+                panic!("{kind:?}: {refused:?}")
+            };
+            assert_eq!(rate, RATE);
+            assert!(pole.real > 0.0 && (pole.imaginary / turning - 1.0).abs() < 0.05, "{pole}");
+            assert!((told / largest - 1.0).abs() < 0.03, "{kind:?}: {told} {largest}");
+        }
+    }
+
+    /// Without delay the closed form knows no border; the second-order generator has one near its own rate, the mixed one none.
+    #[test]
+    fn what_breathes_is_refused_although_the_closed_form_allows_it() {
+        let at_once = AmplitudeLoop {
+            integral: 2.0 * RATE,
+            proportional: 0.0,
+            delay: 0.0,
+            is_taken_off: false,
+        };
+        let refused = at_once.check(&signal(Kind::Second));
+        let Err(PhaseLockedError::AmplitudeUnstable { largest, .. }) = refused else {
+            panic!("{refused:?}")
+        };
+        assert!((0.5 * RATE..2.0 * RATE).contains(&largest), "{largest}");
+        assert_eq!(
+            AmplitudeLoop { integral: largest, ..at_once }.check(&signal(Kind::Second)),
+            Ok(())
+        );
+        assert_eq!(at_once.check(&signal(Kind::Mixed)), Ok(()));
+    }
+
+    /// What is taken off first and counted apart closes its loop at once: stable for proportional action below one.
+    #[test]
+    fn what_is_taken_off_first_is_stable_up_to_a_proportional_action_of_one() {
+        let with = |proportional: f64| {
+            AmplitudeLoop { integral: 0.1 * RATE, proportional, delay: 0.0, is_taken_off: true }
+                .check(&signal(Kind::Mixed))
+        };
+        assert_eq!(with(0.9), Ok(()));
+        assert!(matches!(with(1.1), Err(PhaseLockedError::AmplitudeUnstable { .. })));
+    }
+}

@@ -1,0 +1,58 @@
+//! Change of a number that is no mean, such as a standard deviation or an equivalent load, with its interval.
+
+use super::{blocks, check_lengths, half_width_95, sample_deviation};
+use crate::AnalysisError;
+use basis::records::Statistic;
+
+/// Change from `compared` to `samples` (same unit, same instants, every `interval` s) of what `of` makes of a record:
+/// ratio of the two minus one (–), with its interval from paired blocks of `block_length` (s).
+///
+/// The half width is t s / √n with the standard deviation s of the same change in each of the n pairs of blocks; with
+/// fewer than two there is none. `standard_deviation` of the result is this s (zero with fewer than two blocks). Both runs
+/// met the same wind, so what the wind does to a block cancels within the pair. For means there is
+/// [`gain`](super::gain), whose blocks add up to the whole.
+///
+/// Limits: what is slower than a block counts in the change, not in its interval.
+///
+/// # Errors
+/// [`AnalysisError::UnequalLengths`], [`AnalysisError::NoReference`] where `of` gives zero for `compared` or a block of it,
+/// those of `of`, and those of [`statistic`](super::statistic).
+///
+/// ```
+/// # use analysis::statistics::{change, standard_deviation};
+/// // Swings of 1 and 2 become swings of 1.1 and 2.4: by 10 % and by 20 %, t(0.975, 1) = 12.706.
+/// let wave = |sizes: [f64; 2]| sizes.map(|size| [size, -size].repeat(300)).concat();
+/// let deviation = |samples: &[f64]| Ok(standard_deviation(samples));
+/// let change = change(&wave([1.1, 2.4]), &wave([1.0, 2.0]), 1.0, 600.0, deviation)?;
+/// assert!((change.mean - ((1.21_f64 + 5.76) / 5.0).sqrt() + 1.0).abs() < 1e-12);
+/// assert!((change.half_width_95.unwrap() - 12.706 * 0.05).abs() < 1e-4);
+/// # Ok::<(), analysis::AnalysisError>(())
+/// ```
+pub fn change(
+    samples: &[f64],
+    compared: &[f64],
+    interval: f64,
+    block_length: f64,
+    of: impl Fn(&[f64]) -> Result<f64, AnalysisError>,
+) -> Result<Statistic, AnalysisError> {
+    check_lengths(samples, compared)?;
+    let change = |samples: &[f64], compared: &[f64]| -> Result<f64, AnalysisError> {
+        let reference = of(compared)?;
+        if reference == 0.0 {
+            return Err(AnalysisError::NoReference);
+        }
+        Ok(of(samples)? / reference - 1.0)
+    };
+    let pairs =
+        blocks(samples, interval, block_length)?.zip(blocks(compared, interval, block_length)?);
+    let mut changes = Vec::new();
+    for (samples, compared) in pairs {
+        changes.push(change(samples, compared)?);
+    }
+    Ok(Statistic {
+        mean: change(samples, compared)?,
+        standard_deviation: sample_deviation(&changes).unwrap_or(0.0),
+        half_width_95: half_width_95(&changes),
+        n_blocks: changes.len(),
+    })
+}
