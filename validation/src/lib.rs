@@ -127,6 +127,7 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "the flexible turbine in Kaimal turbulence: deviations and equivalent loads beside a record of OpenFAST",
         minutes: "under 1",
         run: aeroelastic::openfast_turbulence,
+        pictures: None,
     },
     Validation {
         name: "meandering-loops",
