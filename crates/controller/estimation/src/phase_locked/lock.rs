@@ -12,8 +12,8 @@ const LOSES_ABOVE: f64 = 1.2;
 /// Least power of the oscillation, A²/2, over that of what is neither oscillation nor offset (–); half of it loses the lock.
 const LEAST_POWER_RATIO: f64 = 0.5;
 
-/// Phase (rad) over which missing samples are bridged without a doubt: a single one here and there costs nothing.
-const BRIDGED: f64 = TAU / 50.0;
+/// Phase (rad) over which missing samples on end are bridged; then nothing is believed any more.
+const BRIDGED: f64 = 0.5 * TAU;
 
 /// Lock detection; means are exponential over one period of the oscillation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,15 +64,10 @@ impl Lock {
         self.locked = holds && (self.locked || self.turned > TAU);
     }
 
-    /// Takes in an instant without a sample: after half a period of them on end nothing is believed any more.
+    /// Takes in an instant without a sample, `turned` (rad) after the one before.
     pub(super) fn miss(&mut self, turned: f64) {
         self.silent += turned;
-        if self.silent <= BRIDGED {
-            return;
-        }
-        let share = (turned / TAU).min(1.0);
-        self.phase += share * (1.0 - self.phase);
-        if self.phase >= LOSES_ABOVE.powi(2) {
+        if self.silent > BRIDGED {
             self.locked = false;
             self.turned = 0.0;
         }
