@@ -222,6 +222,7 @@ impl Asked {
             proportional: 0.0,
             maximum_amplitude: 6.0_f64.to_radians(),
             maximum_offset: 0.0,
+            needs_lock: true,
             start: START,
         }
     }

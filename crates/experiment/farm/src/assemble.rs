@@ -221,6 +221,7 @@ fn meandering_settings(
         proportional: 0.0,
         maximum_amplitude: asked.amplitude,
         maximum_offset: if watches { 0.0 } else { asked.offset },
+        needs_lock: asked.fallback,
         start: asked.start,
     })
 }

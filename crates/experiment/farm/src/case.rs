@@ -512,6 +512,8 @@ pub struct Meandering {
     pub bandwidth: f64,
     /// How pitch acts on the loads; found before the runs when absent.
     pub decoupling: Option<Decoupling>,
+    /// Whether it fades to the baseline where the loop is not locked.
+    pub fallback: bool,
     /// Time at which it starts (s).
     pub start: f64,
 }

@@ -113,6 +113,7 @@ mod tests {
             reference: Reference::Observed,
             bandwidth: 0.01,
             decoupling: None,
+            fallback: true,
             start: 1000.0,
         })
     }

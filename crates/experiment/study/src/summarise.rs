@@ -257,7 +257,7 @@ fn warn_of_no_lock(
     warnings: &mut Vec<String>,
 ) {
     let Some(found) = found.filter(|found| found.locked_share < 1.0 - FADED_SHARE) else { return };
-    if matches!(control, Control::Meandering(asked) if asked.amplitude != 0.0) {
+    if matches!(control, Control::Meandering(asked) if asked.amplitude != 0.0 && asked.fallback) {
         warnings.push(format!(
             "{run}: {name} was locked to the wake's motion {:.0} % of the time, and pitched nothing of its own meanwhile",
             100.0 * found.locked_share

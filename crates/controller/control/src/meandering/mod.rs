@@ -65,6 +65,9 @@ pub struct Settings {
     pub maximum_amplitude: f64,
     /// Largest constant pitch on either axis to bring offsets to zero (rad); 0 leaves offsets alone.
     pub maximum_offset: f64,
+    /// Whether it fades out while the loop is not locked, and learns nothing then. Without it the believed phase is pitched with
+    /// whatever it follows, as the source does.
+    pub needs_lock: bool,
     /// Time from which it acts (s).
     pub start: f64,
 }
@@ -130,7 +133,7 @@ impl Meandering {
 
     /// Takes in `measurements` and adds what is asked of each blade to `pitch` (rad).
     ///
-    /// Begins without a step, and fades out over a period whenever the loop loses its lock.
+    /// Begins without a step, and fades out over a period whenever the loop loses the lock that it [needs](Settings::needs_lock).
     pub fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
         let interval = measurements.interval;
         let moments = to_fixed_frame(measurements.azimuth, &measurements.flap_moments);
@@ -148,8 +151,10 @@ impl Meandering {
         let Settings { reference, factor, start, .. } = self.settings;
         let amplitudes = self.baseline.amplitudes(estimate.rate, reference);
         let watches = self.settings.only_watches();
-        let acts =
-            estimate.locked && !watches && measurements.time >= start && amplitudes.is_some();
+        let acts = self.trusts(&estimate)
+            && !watches
+            && measurements.time >= start
+            && amplitudes.is_some();
         let slew = interval * estimate.rate / TAU;
         self.authority = (self.authority + if acts { slew } else { -slew }).clamp(0.0, 1.0);
         if let Some([tilt, yaw]) = amplitudes
@@ -226,14 +231,18 @@ impl Meandering {
         };
     }
 
-    /// Keeps the baseline's amplitudes up while the loop is locked.
+    fn trusts(&self, estimate: &TwoAxisEstimate) -> bool {
+        estimate.locked || !self.settings.needs_lock
+    }
+
+    /// Keeps the baseline's amplitudes up while the loop is trusted.
     fn learn(&mut self, measurements: &Measurements, estimate: &TwoAxisEstimate) {
         let Settings { reference, start, .. } = self.settings;
         let early = match reference {
             Reference::Learned { duration } => measurements.time < start - duration,
             Reference::Given { .. } | Reference::Observed => false,
         };
-        if early || !estimate.locked || estimate.held {
+        if early || !self.trusts(estimate) || estimate.held {
             return;
         }
         let added = match self.settings.followed {
@@ -265,7 +274,7 @@ impl Meandering {
         self.commands
     }
 
-    /// Share of the command that is given (–), up to one while the loop is locked.
+    /// Share of the command that is given (–), up to one while it acts.
     pub fn authority(&self) -> f64 {
         self.authority
     }

@@ -80,6 +80,7 @@ fn settings(sense: Sense, factor: f64) -> Settings {
         proportional: 0.1,
         maximum_amplitude: 0.1,
         maximum_offset: 0.0,
+        needs_lock: true,
         start: 400.0,
     }
 }
@@ -142,6 +143,26 @@ fn a_load_can_be_taken_away_whole_when_the_wake_is_followed() {
                 assert!((reached - factor).abs() < 0.02, "{sense} {factor}: {reached}");
             }
         }
+    }
+}
+
+/// A loop held to rates above the load's own never locks.
+#[test]
+fn without_a_lock_it_waits_or_pitches_as_asked() {
+    for needs_lock in [true, false] {
+        let mut asked = settings(Sense::Clockwise, 2.0);
+        asked.needs_lock = needs_lock;
+        asked.follower.signal = Signal::between([0.2, 0.4]);
+        let mut rotor = Rotor::new(Sense::Clockwise, 1, 0.0);
+        let mut control = Meandering::new(asked, INTERVAL).unwrap();
+        let mut pitched: f64 = 0.0;
+        for step in 0..15_000 {
+            rotor.step(step, &mut control);
+            pitched = pitched.max(control.commands().tilt.abs());
+            assert!(pitched == 0.0 || INTERVAL * step as f64 >= asked.start, "before the start");
+            assert!(!needs_lock || !control.estimate().locked);
+        }
+        assert_eq!(pitched > 0.0, !needs_lock, "{pitched}");
     }
 }
 

@@ -40,6 +40,7 @@ pub(super) fn meandering_of(section: &Section, start: f64) -> Meandering {
         reference: reference_of(section),
         bandwidth: section.number("integral_gain"),
         decoupling: decoupling_of(section),
+        fallback: section.choice("fallback") != "none",
         start,
     }
 }
@@ -128,8 +129,10 @@ pub(super) fn meandering_text(control: &Meandering) -> String {
             ", azimuth_offset_deg = {offset:?}, delay = {delay:?}, moment_per_degree_mnm = {moment:?}"
         )
     });
+    // Only where it is used, so that the fingerprint of a case without it stays what it was.
+    let fallback = if control.fallback { "" } else { ", fallback = \"none\"" };
     format!(
-        "{{ kind = \"meandering\", factor = {:?}, amplitude_deg = {:?}, strouhal_low = {:?}, strouhal_high = {:?}, sense = \"{sense}\", leader = \"{leader}\", followed = \"{followed}\", {reference}, integral_gain = {:?}, constant_pitch_deg = {:?}{decoupling}, start = {:?} }}",
+        "{{ kind = \"meandering\", factor = {:?}, amplitude_deg = {:?}, strouhal_low = {:?}, strouhal_high = {:?}, sense = \"{sense}\", leader = \"{leader}\", followed = \"{followed}\", {reference}, integral_gain = {:?}, constant_pitch_deg = {:?}{decoupling}{fallback}, start = {:?} }}",
         control.factor,
         degrees(control.amplitude),
         control.strouhal[0],

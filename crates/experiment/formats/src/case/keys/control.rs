@@ -276,6 +276,13 @@ pub(in crate::case) static MEANDERING: Table = Table {
             "Amplitude added per second and amplitude missing.",
         ),
         key(
+            "fallback",
+            Kind::Choice(&["baseline", "none"]),
+            "",
+            Value("\"baseline\""),
+            "What it does while the loop is not locked. `baseline`: it fades out, and comes back with the lock. `none`: it pitches with whatever phase it believes in, as published.",
+        ),
+        key(
             "constant_pitch_deg",
             from(0.0, 10.0),
             "deg",
