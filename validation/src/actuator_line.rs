@@ -79,6 +79,12 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
     let mut whole = |_| ControlFlow::Continue(());
     let check = self_check(&model, &wind, &tunnel, None, &mut whole)
         .expect("a rotor in a steady wind stays finite");
+    // The runs take minutes each: what is known is told at once.
+    eprintln!(
+        "{name}, {cells_per_diameter} cells per diameter, {wind_speed} m/s: power {:+.2} %, thrust {:+.2} % of blade-element momentum",
+        100.0 * (check.power / check.expected_power - 1.0),
+        100.0 * (check.thrust / check.expected_thrust - 1.0),
+    );
     let row = |what: &str, measured: f64, expected: f64| Row {
         what: format!(
             "{name}, {cells_per_diameter} cells per diameter, {wind_speed} m/s, tip-speed ratio {:.2}: {what} over that of blade-element momentum",

@@ -21,9 +21,9 @@ pub(crate) struct ValidateArguments {
 /// pictures of what has none, and for a folder that cannot be written.
 pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
     let Some(name) = &arguments.name else {
-        println!("{:<16} {:>10}  what", "name", "minutes");
+        println!("{:<20} {:>8}  what", "name", "minutes");
         for validation in VALIDATIONS {
-            println!("{:<16} {:>10}  {}", validation.name, validation.minutes, validation.about);
+            println!("{:<20} {:>8}  {}", validation.name, validation.minutes, validation.about);
         }
         return ExitCode::SUCCESS;
     };
