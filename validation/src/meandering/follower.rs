@@ -1,6 +1,7 @@
 //! The loop closed around three masses on springs: the source's figure 3-2.
 
 use super::spring_mass::{SpringMass, answer};
+use control::meandering::Followed;
 use estimation::phase_locked::{
     Estimate, Kind, LoopSettings, Order, PhaseLockedError, PhaseLockedLoop, Settings,
 };
@@ -35,6 +36,8 @@ pub(super) struct Case {
     pub(super) noise: f64,
     /// Amplitude asked for over that at St 0.2 under the first amplitude alone (–).
     pub(super) factor: f64,
+    /// The place as it is, as the source has it, or less what the added force does to it.
+    pub(super) followed: Followed,
 }
 
 /// One instant of a run.
@@ -48,8 +51,10 @@ pub(super) struct Instant {
     pub(super) phase: f64,
     /// Place of the first mass (m).
     pub(super) place: f64,
-    /// What the loop believes of it (m).
+    /// What the loop believes of what it follows (m).
     pub(super) estimate: Estimate,
+    /// Amplitude of the place that goes with it (m).
+    pub(super) amplitude: f64,
     /// Amplitude asked for (m).
     pub(super) reference: f64,
 }
@@ -95,6 +100,8 @@ pub(super) fn run(
 ) -> Result<Vec<Instant>, PhaseLockedError> {
     let mut follower = PhaseLockedLoop::new(&settings(kind), INTERVAL)?;
     let mut masses = SpringMass::default();
+    // What the added force does, known as a turbine knows its own: from a model, here a true one.
+    let mut own = SpringMass::default();
     let mut noise = Noise(1);
     let (mut swing, mut middle) = (Action::default(), Action::default());
     let ([static_gain, _], [gain, _]) = (answer(1e-9), answer(rate_of(0.2)));
@@ -115,17 +122,26 @@ pub(super) fn run(
         let offset = if time >= 600.0 { case.offset } else { 0.0 };
         let mut force = offset + case.amplitudes[late] * f64::sin(phase);
         force += case.noise * case.amplitudes[0] * noise.normal();
-        let estimate = follower.update(INTERVAL, masses.place());
+        let followed = match case.followed {
+            Followed::Load => masses.place(),
+            Followed::Wake => masses.place() - own.place(),
+        };
+        let estimate = follower.update(INTERVAL, followed);
         // As on the turbine: nothing is learned, and the force fades, while there is no lock.
         let acts = controlled && time >= START && estimate.locked;
         let slew = estimate.rate * INTERVAL / TAU;
         share = f64::clamp(share + if acts { slew } else { -slew }, 0.0, 1.0);
+        let [answer_now, lag] = answer(estimate.rate);
+        let amplitude = match case.followed {
+            Followed::Load => estimate.amplitude,
+            Followed::Wake => estimate.amplitude + share * answer_now * swing.0,
+        };
         if acts {
-            swing.update((reference - estimate.amplitude) / gain);
+            swing.update((reference - amplitude) / gain);
             middle.update(-estimate.offset / static_gain);
         }
-        let [_, lag] = answer(estimate.rate);
-        force += share * (swing.0 * (estimate.phase - lag).sin() + middle.0);
+        let added = share * (swing.0 * (estimate.phase - lag).sin() + middle.0);
+        force += added;
         let settled = phase + answer(rate)[1];
         run.push(Instant {
             time,
@@ -133,9 +149,11 @@ pub(super) fn run(
             phase: settled,
             place: masses.place(),
             estimate,
+            amplitude: amplitude.abs(),
             reference,
         });
         masses.advance(INTERVAL, force);
+        own.advance(INTERVAL, added);
         phase = (phase + rate * INTERVAL) % TAU;
     }
     Ok(run)

@@ -24,7 +24,7 @@ fn figure(case: &Case) -> TrackFigure {
         (name, run[(START / INTERVAL) as usize..].to_vec())
     });
     let mut rate = row("frequency (mHz)", &runs, |now| millihertz(now.estimate.rate));
-    let mut amplitude = row("amplitude (m)", &runs, |now| now.estimate.amplitude);
+    let mut amplitude = row("amplitude (m)", &runs, |now| now.amplitude);
     let error = row("phase error (°)", &runs, |now| {
         wrap_to_half_turn(now.estimate.phase - now.phase).to_degrees()
     });
