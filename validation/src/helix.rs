@@ -5,10 +5,9 @@ mod pitch;
 pub use pitch::helix_pitch;
 
 use crate::Row;
-use basis::records::{Plane, PlaneAxes, Summary};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-use study::{Options, Outcome, Watcher};
+use crate::studies::{failure, find, summaries};
+use basis::records::{Plane, PlaneAxes};
+use std::path::Path;
 
 /// Power of the first turbine over its baseline at St 0.25, IEA 22 MW: fit to published large-eddy tables
 /// (amplitude in degrees, ratio).
@@ -28,47 +27,6 @@ const CENTRE_LINE: [(f64, f64, f64); 6] = [
     (8.0, 6.87, 7.77),
 ];
 
-/// Prints progress as plain lines.
-struct Lines {
-    last: String,
-}
-
-impl Watcher for Lines {
-    fn advanced(&mut self, progress: &study::Progress) {
-        let share = 10 * progress.step / progress.n_steps.max(1);
-        let line = format!("{} {share}0 %", progress.run);
-        if line != self.last {
-            eprintln!("{line}, {:.0} s left in all", progress.time_left);
-            self.last = line;
-        }
-    }
-
-    fn warned(&mut self, warning: &str) {
-        eprintln!("warning: {warning}");
-    }
-}
-
-/// Runs the case at `path`, or takes up what is left of it in `runs/validate-NAME`; gives summaries and that folder.
-fn summaries(path: &Path, name: &str) -> Result<(Vec<Summary>, PathBuf), String> {
-    let output = Path::new("runs").join(format!("validate-{name}"));
-    let options = Options {
-        case: path.to_owned(),
-        output: Some(output.clone()),
-        resume: true,
-        ..Options::default()
-    };
-    let mut watcher = Lines { last: String::new() };
-    match study::run(&options, &AtomicBool::new(false), &mut watcher) {
-        Ok(Outcome::Done { summaries, .. }) => Ok((summaries, output)),
-        Ok(other) => Err(format!("the study ended early: {other:?}")),
-        Err(error) => Err(error.to_string()),
-    }
-}
-
-fn failure(problem: String) -> Vec<Row> {
-    vec![Row { what: problem, measured: f64::NAN, expected: 0.0, tolerance: 0.0, unit: "-" }]
-}
-
 /// The claim that `what` (%), measured as `gain`, is above zero.
 fn positive(what: String, gain: f64) -> Row {
     Row {
@@ -81,17 +39,14 @@ fn positive(what: String, gain: f64) -> Row {
     }
 }
 
-fn find<'a>(summaries: &'a [Summary], run: &str) -> Option<&'a Summary> {
-    summaries.iter().find(|summary| summary.run == run)
-}
-
 /// `cases/helix-two-turbines.toml`: power ratio of the first turbine and gain of the array against amplitude and sense,
 /// and what of helix and pulse arrived at the blades.
 pub fn helix() -> Vec<Row> {
-    let (summaries, _) = match summaries(Path::new("cases/helix-two-turbines.toml"), "helix") {
-        Ok(done) => done,
-        Err(problem) => return failure(problem),
-    };
+    let (summaries, _) =
+        match summaries(Path::new("cases/helix-two-turbines.toml"), "helix", Vec::new()) {
+            Ok(done) => done,
+            Err(problem) => return failure(problem),
+        };
     let mut rows = Vec::new();
     for (degrees, expected) in POWER_RATIOS {
         let gain =
@@ -149,7 +104,7 @@ pub fn helix() -> Vec<Row> {
 /// `validation/cases/centre-line.toml`: mean hub-height speed behind one turbine, baseline and helix.
 pub fn centre_line() -> Vec<Row> {
     let path = Path::new("validation/cases/centre-line.toml");
-    let (summaries, folder) = match summaries(path, "centre-line") {
+    let (summaries, folder) = match summaries(path, "centre-line", Vec::new()) {
         Ok(done) => done,
         Err(problem) => return failure(problem),
     };

@@ -14,6 +14,7 @@ pub mod phase_estimator;
 pub mod resume;
 pub mod row;
 pub mod structure;
+mod studies;
 
 pub use report::ReportError;
 pub use row::Row;
@@ -148,6 +149,13 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "the flexible turbine in a rotating disk, in its middle and aside, loads amplified and attenuated, beside published tables",
         minutes: "4",
         run: meandering::disk,
+        pictures: None,
+    },
+    Validation {
+        name: "meandering-wake",
+        about: "the flexible turbine in the recorded wake of a helix, loads amplified and attenuated, beside a published table",
+        minutes: "12",
+        run: meandering::wake,
         pictures: None,
     },
     Validation {

@@ -10,8 +10,10 @@ mod loops;
 mod pictures;
 mod rig;
 mod spring_mass;
+mod wake;
 
 pub use bench::bench;
 pub use disk::disk;
 pub use loops::loops;
 pub use pictures::pictures;
+pub use wake::wake;

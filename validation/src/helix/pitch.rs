@@ -20,7 +20,7 @@ const BESIDE: f64 = 0.02;
 /// `validation/cases/helix-pitch.toml`: bits of a helix without amplitude, lines of one with.
 pub fn helix_pitch() -> Vec<Row> {
     let path = Path::new("validation/cases/helix-pitch.toml");
-    let (summaries, folder) = match summaries(path, "helix-pitch") {
+    let (summaries, folder) = match summaries(path, "helix-pitch", Vec::new()) {
         Ok(done) => done,
         Err(problem) => return failure(problem),
     };

@@ -71,6 +71,43 @@ fn changed(
         .expect("loads are finite, none rests, and the records are equally long")
 }
 
+/// The change of `name` as measured beside the published one (%).
+pub(super) fn beside(what: String, name: &str, change: &Statistic, expected: f64) -> Row {
+    // Another wind, controller and code: five points or a third of the change; one point of power.
+    let least = if name == "power" { 1.0 } else { 5.0 };
+    Row {
+        what,
+        measured: 100.0 * change.mean,
+        expected,
+        tolerance: (expected.abs() / 3.0).max(least),
+        unit: "%",
+    }
+}
+
+/// The amplitude on `axis` that was reached over the one asked for, `factor` of the baseline's.
+pub(super) fn reached(name: &str, factor: f64, axis: &str, measured: f64) -> Row {
+    Row {
+        what: format!("{name}, factor {factor}: amplitude reached in {axis}"),
+        measured,
+        expected: factor,
+        // Three per cent of the factor, or one of the baseline where nearly nothing is asked for.
+        tolerance: (0.03 * factor).max(0.01),
+        unit: "–",
+    }
+}
+
+/// The change in per cent, with its interval where there is one.
+pub(super) fn percent(change: &Statistic) -> String {
+    let interval =
+        change.half_width_95.map_or_else(String::new, |half| format!(" ± {:.1}", 100.0 * half));
+    format!("{:+.1}{interval}", 100.0 * change.mean)
+}
+
+/// Prints a row of a table.
+pub(super) fn print_line(name: &str, cells: &[String]) {
+    println!("| {name} | {} |", cells.join(" | "));
+}
+
 /// Runs beside the one without control.
 pub(super) struct Table<'a> {
     /// What sets these runs apart.
@@ -111,32 +148,20 @@ impl<'a> Table<'a> {
             })
         });
         let (now, then) = (record.amplitudes(), before.amplitudes());
-        let reached = [0, 1].map(|axis| now[axis] / then[axis]);
-        self.runs.push(Run { factor, reached, pitch: record.pitch, changes, equivalents });
+        let shares = [0, 1].map(|axis| now[axis] / then[axis]);
+        self.runs.push(Run { factor, reached: shares, pitch: record.pitch, changes, equivalents });
         ["tilt", "yaw"]
             .into_iter()
-            .zip(reached)
-            .map(|(axis, measured)| Row {
-                what: format!("{}, factor {factor}: amplitude reached in {axis}", self.name),
-                measured,
-                expected: factor,
-                // Three per cent of the factor, or one of the baseline where nearly nothing is asked for.
-                tolerance: (0.03 * factor).max(0.01),
-                unit: "–",
-            })
+            .zip(shares)
+            .map(|(axis, measured)| reached(self.name, factor, axis, measured))
             .collect()
     }
 
     /// Prints all changes with their intervals.
     pub(super) fn print(&self) {
         println!("\n{}:\n", self.name);
-        let line =
-            |name: String, cells: Vec<String>| println!("| {name} | {} |", cells.join(" | "));
+        let line = |name: String, cells: Vec<String>| print_line(&name, &cells);
         let cells = |of: &dyn Fn(usize) -> String| (0..self.runs.len()).map(of).collect();
-        let percent = |change: &Statistic| {
-            let half_width = change.half_width_95.expect("six blocks");
-            format!("{:+.1} ± {:.1}", 100.0 * change.mean, 100.0 * half_width)
-        };
         line("factor asked for".into(), cells(&|run| format!("{}", self.runs[run].factor)));
         line("---".into(), cells(&|_| "---".into()));
         for (axis, name) in ["tilt", "yaw"].into_iter().enumerate() {
@@ -188,15 +213,8 @@ impl<'a> Table<'a> {
             let Some((_, expected)) = published.iter().find(|(f, _)| f == factor) else { continue };
             let names = MOMENTS.iter().map(|(name, _, _)| *name).chain(["power"]);
             for ((name, change), expected) in names.zip(changes).zip(expected) {
-                // Another disk, edge, controller and code: five points or a third of the change; one point of power.
-                let least = if name == "power" { 1.0 } else { 5.0 };
-                rows.push(Row {
-                    what: format!("{}, factor {factor}: {name}, beside table 4-4", self.name),
-                    measured: 100.0 * change.mean,
-                    expected: *expected,
-                    tolerance: (expected.abs() / 3.0).max(least),
-                    unit: "%",
-                });
+                let what = format!("{}, factor {factor}: {name}, beside table 4-4", self.name);
+                rows.push(beside(what, name, change, *expected));
             }
         }
         rows

@@ -1,0 +1,60 @@
+//! Whole studies as validations run them: lines of progress, and on from where an earlier call stopped.
+
+use crate::Row;
+use basis::records::Summary;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use study::{Options, Outcome, Watcher};
+
+/// Prints progress as plain lines.
+struct Lines {
+    last: String,
+}
+
+impl Watcher for Lines {
+    fn advanced(&mut self, progress: &study::Progress) {
+        let share = 10 * progress.step / progress.n_steps.max(1);
+        let line = format!("{} {share}0 %", progress.run);
+        if line != self.last {
+            eprintln!("{line}, {:.0} s left in all", progress.time_left);
+            self.last = line;
+        }
+    }
+
+    fn warned(&mut self, warning: &str) {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Runs the case at `path` with `overrides` of its keys, or takes up what is left of it in `runs/validate-NAME`; gives
+/// summaries and that folder.
+pub(crate) fn summaries(
+    path: &Path,
+    name: &str,
+    overrides: Vec<String>,
+) -> Result<(Vec<Summary>, PathBuf), String> {
+    let output = Path::new("runs").join(format!("validate-{name}"));
+    let options = Options {
+        case: path.to_owned(),
+        output: Some(output.clone()),
+        overrides,
+        resume: true,
+        ..Options::default()
+    };
+    let mut watcher = Lines { last: String::new() };
+    match study::run(&options, &AtomicBool::new(false), &mut watcher) {
+        Ok(Outcome::Done { summaries, .. }) => Ok((summaries, output)),
+        Ok(other) => Err(format!("the study ended early: {other:?}")),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// The one row of a validation that could not be made.
+pub(crate) fn failure(problem: String) -> Vec<Row> {
+    vec![Row { what: problem, measured: f64::NAN, expected: 0.0, tolerance: 0.0, unit: "-" }]
+}
+
+/// The summary of the run of this name.
+pub(crate) fn find<'a>(summaries: &'a [Summary], run: &str) -> Option<&'a Summary> {
+    summaries.iter().find(|summary| summary.run == run)
+}
