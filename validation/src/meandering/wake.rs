@@ -6,7 +6,7 @@ use super::rig::MOMENTS;
 use crate::Row;
 use crate::studies::{failure, find, summaries};
 use basis::records::{Statistic, TurbineSummary};
-use std::path::Path;
+use std::path::{Path, absolute};
 
 /// Where the wake is recorded, and the turbine put into it.
 const WAKE: &str = "cases/wake-inflow.toml";
@@ -33,7 +33,7 @@ fn made() -> Result<Vec<Row>, String> {
     let (_, folder) = summaries(Path::new(WAKE), "wake-inflow", Vec::new())?;
     let planes = folder.join("helix").join("inflow-T2.bts");
     // A path in a case file counts from that file.
-    let planes = std::path::absolute(planes).map_err(|error| error.to_string())?;
+    let planes = absolute(planes).map_err(|error| error.to_string())?;
     let overrides = vec![format!("wind.planes={}", planes.display())];
     let (summaries, _) = summaries(Path::new(TURBINE), "meandering-in-wake", overrides)?;
     let turbine = |run: &str| {

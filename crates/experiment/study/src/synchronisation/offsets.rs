@@ -59,12 +59,10 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, StudyEr
         }
         power.push(panel(names.join(" + "), points));
     }
+    let joining = &study.case.turbines[study.turbine].name;
     let mut figures = vec![OffsetFigure {
         name: "power-over-offset".into(),
-        title: format!(
-            "Power over the phase offset of {}",
-            study.case.turbines[study.turbine].name
-        ),
+        title: format!("Power over the phase offset of {joining}"),
         label: format!("power against the run {against} (%)"),
         panels: power,
     }];
@@ -93,10 +91,7 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, StudyEr
         }
         figures.push(OffsetFigure {
             name: format!("load-over-offset-{channel}"),
-            title: format!(
-                "Fatigue over the phase offset of {}: {title}",
-                study.case.turbines[study.turbine].name
-            ),
+            title: format!("Fatigue over the phase offset of {joining}: {title}"),
             label: format!("equivalent load against {against} (%)"),
             panels,
         });
