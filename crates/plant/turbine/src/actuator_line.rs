@@ -183,9 +183,9 @@ impl ActuatorLine {
         &self.elements
     }
 
-    /// Loads of all elements in the winds `onsets`, blades pitched by `pitch` (rad), with the smearing correction.
+    /// Loads of all elements in the winds `onsets`, sections turned by `pitch` (rad) beside their twist, with the smearing correction.
     ///
-    /// `onsets`, `missing` and `loads` hold `n_blades × n_elements` values, blade after blade. `missing` is the state of
+    /// `onsets`, `pitch`, `missing` and `loads` hold `n_blades × n_elements` values, blade after blade. `missing` is the state of
     /// the correction, the velocity that smearing hides, axial and along the rotation (m/s); on return it has moved on
     /// towards what belongs to `loads`. `rotor_speed` (rad/s) sets the pitch of the helical wake together with the mean
     /// wind through the rotor; `sections` answer to the wind at each element.
@@ -235,12 +235,11 @@ impl ActuatorLine {
         missing: &[[f64; 2]],
         loads: &mut [Load],
     ) {
-        let n = self.elements.len();
         for (index, (load, onset)) in loads.iter_mut().zip(onsets).enumerate() {
             let [axial, tangential] = missing[index];
             let felt =
                 Onset { normal: onset.normal + axial, tangential: onset.tangential - tangential };
-            *load = self.load(index, felt, pitch[index / n], sections);
+            *load = self.load(index, felt, pitch[index], sections);
         }
     }
 
@@ -285,7 +284,7 @@ impl ActuatorLine {
         sum / area
     }
 
-    /// Load of element number `index` in the wind `onset` at a blade pitch of `pitch` (rad).
+    /// Load of element number `index` in the wind `onset`, turned by `pitch` (rad) beside its twist.
     fn load(&self, index: usize, onset: Onset, pitch: f64, sections: &mut impl Sections) -> Load {
         let element = &self.elements[index % self.elements.len()];
         let speed = onset.normal.hypot(onset.tangential);

@@ -12,4 +12,7 @@ pub struct ElementMotion {
     pub velocity: Vector3,
     /// Directions at it: precone, prebend and bending included, pitch and twist not.
     pub axes: BladeFrame,
+    /// Turn of the section about `axes.span`, away from facing `axes.normal`, positive to feather (rad): pitch, and what bending
+    /// out of the plane and in it at once adds; twist not.
+    pub pitch: f64,
 }

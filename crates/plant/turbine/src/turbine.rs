@@ -185,6 +185,7 @@ impl Turbine {
             position: Vector3::ZERO,
             velocity: Vector3::ZERO,
             axes: frame.blade(0.0, 0.0),
+            pitch: 0.0,
         };
         let workspace = Workspace {
             stations: Vec::with_capacity(n + bodies.len()),

@@ -227,7 +227,7 @@ impl RotorAerodynamics {
         let relative = now.wind - now.motion.velocity;
         let onset =
             Onset { normal: relative.dot(axes.normal), tangential: -relative.dot(axes.tangent) };
-        let annulus = section.ring.annulus_now(now.pitch.angle, now.radius);
+        let annulus = section.ring.annulus_now(now.motion.pitch, now.radius);
         let induced = &mut state.induced;
         match now.interval {
             None => *induced = induction.settled(onset, &annulus, &section.polar, *theory),

@@ -135,8 +135,8 @@ impl Stiff {
         Self { definition, line, frame, rotor_speed }
     }
 
-    /// Its elements with blade 1 at `azimuth` (rad).
-    pub(super) fn motions(&self, azimuth: f64) -> Vec<ElementMotion> {
+    /// Its elements with blade 1 at `azimuth` (rad), blades pitched by `pitch` (rad).
+    pub(super) fn motions(&self, azimuth: f64, pitch: f64) -> Vec<ElementMotion> {
         let n_blades = self.definition.n_blades;
         let precone = self.definition.rotor.precone;
         (0..n_blades)
@@ -149,6 +149,7 @@ impl Stiff {
                         position,
                         velocity: turning.cross(position - self.frame.hub),
                         axes: self.frame.blade(azimuth, element.cone),
+                        pitch,
                     }
                 })
             })

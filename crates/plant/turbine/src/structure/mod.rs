@@ -201,7 +201,7 @@ impl Structure {
         if n > 0 {
             let phase = self.state.phase().ahead(ahead);
             let motion = self.machine.motion(&phase.q, &phase.v, pitch);
-            self.stations.observe(&motion, &phase.q, &phase.v, pitch, elements);
+            self.stations.observe(&motion, &phase.q, &phase.v, elements);
         }
     }
 

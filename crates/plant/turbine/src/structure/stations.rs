@@ -50,6 +50,8 @@ struct Station {
     place: Place<N_MODES>,
     /// Along the undeformed line of aerodynamic centres, in the pitched blade.
     along: Vector3,
+    /// Where an untwisted section faces there, across that line.
+    across: Vector3,
     /// Part of the blade that it lies in.
     part: usize,
 }
@@ -93,6 +95,7 @@ impl Stations {
                 part: ((share * N_BLADE_PARTS as f64) as usize).min(N_BLADE_PARTS - 1),
                 place: place.offset_by(Vector3::new(-prebend, sweep, 0.0)),
                 along: Vector3::new(-slope, 0.0, 1.0),
+                across: Vector3::new(1.0, 0.0, slope),
             }
         };
         let base = definition.tower.base_height;
@@ -119,25 +122,31 @@ impl Stations {
         motion: &Motion,
         q: &Coordinates,
         v: &Coordinates,
-        pitch: &[Pitch],
         elements: &mut [ElementMotion],
     ) {
+        let Motion { hub, blades, .. } = motion;
         for (blade, elements) in elements.chunks_exact_mut(self.blade.len()).enumerate() {
-            let frame = &motion.blades[blade];
+            let frame = &blades[blade];
             let (q, v) = (&q.blades[blade], &v.blades[blade]);
-            let (sine, cosine) = pitch[blade].angle.sin_cos();
-            let downwind = frame.axes * Vector3::new(cosine, sine, 0.0);
             let spin = frame.axes.transpose() * frame.spin;
             for (element, station) in elements.iter_mut().zip(&self.blade) {
                 let (position, partials) = station.place.at(q);
                 let velocity = spin.cross(position) + weighted(&partials, v);
-                let bent = station.along + station.place.turn(q).cross(station.along);
-                let span = (frame.axes * bent).normalize();
-                let normal = (downwind - span * span.dot(downwind)).normalize();
+                let turn = station.place.turn(q);
+                let span = (frame.axes * (station.along + turn.cross(station.along))).normalize();
+                let position = frame.origin + frame.axes * position;
+                let swept = hub.axes.x_axis.cross(position - hub.origin);
+                let normal = span.cross(swept).normalize();
+                let tangent = normal.cross(span);
+                // To second order: where a blade bends in both directions, its sections also turn about it, by half the product of
+                // the slopes. That goes with gravity once a turn and so leaves a steady moment on the hub.
+                let first = turn.cross(station.across);
+                let facing = frame.axes * (station.across + first + 0.5 * turn.cross(first));
                 *element = ElementMotion {
-                    position: frame.origin + frame.axes * position,
+                    position,
                     velocity: frame.velocity + frame.axes * velocity,
-                    axes: BladeFrame { span, normal, tangent: normal.cross(span) },
+                    axes: BladeFrame { span, normal, tangent },
+                    pitch: facing.dot(tangent).atan2(facing.dot(normal)),
                 };
             }
         }

@@ -24,6 +24,8 @@ pub(super) enum Aerodynamics {
 #[derive(Clone, Debug)]
 pub(super) struct LineMemory {
     onsets: Vec<Onset>,
+    /// Turn of each section beside its twist (rad).
+    pitch: Vec<f64>,
     loads: Vec<Load>,
     scratch: Scratch,
 }
@@ -59,6 +61,7 @@ impl Aerodynamics {
                 let n = definition.n_blades * N_ELEMENTS;
                 let memory = LineMemory {
                     onsets: vec![Onset::default(); n],
+                    pitch: vec![0.0; n],
                     loads: vec![Load::default(); n],
                     scratch: Scratch::new(definition.n_blades, N_ELEMENTS),
                 };
@@ -141,6 +144,9 @@ impl LineMemory {
         sections: &mut impl Sections,
         missing: &mut [[f64; 2]],
     ) {
+        for (pitch, motion) in self.pitch.iter_mut().zip(now.motions) {
+            *pitch = motion.pitch;
+        }
         for ((onset, motion), wind) in self.onsets.iter_mut().zip(now.motions).zip(now.winds) {
             let relative = *wind - motion.velocity;
             *onset = Onset {
@@ -148,13 +154,12 @@ impl LineMemory {
                 tangential: -relative.dot(motion.axes.tangent),
             };
         }
-        let pitch = now.pitch.map(|pitch| pitch.angle);
         if now.first {
-            let Self { onsets, loads, scratch, .. } = self;
-            line.loads(onsets, now.rotor_speed, &pitch, sections, missing, loads, scratch);
+            let Self { onsets, pitch, loads, scratch } = self;
+            line.loads(onsets, now.rotor_speed, pitch, sections, missing, loads, scratch);
         } else {
             // The wake has not moved since; what smearing hides is held like the wind.
-            line.loads_under(&self.onsets, &pitch, sections, missing, &mut self.loads);
+            line.loads_under(&self.onsets, &self.pitch, sections, missing, &mut self.loads);
         }
     }
 

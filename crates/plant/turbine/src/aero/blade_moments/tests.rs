@@ -45,7 +45,7 @@ fn the_small_model_is_the_rotors() {
         let mut wake = model.settled(&conditions([9.0; 3], 0.0));
         for step in 0..300 {
             let pitch = if step == 0 { 0.0 } else { 0.03 };
-            let elements = stiff.motions(0.3 * f64::from(step));
+            let elements = stiff.motions(0.3 * f64::from(step), pitch);
             let winds = vec![Vector3::X * 9.0; elements.len()];
             let pitches = stiff.pitch(pitch);
             let posture = Posture { frame: &stiff.frame, elements: &elements, pitch: &pitches };

@@ -50,7 +50,7 @@ impl Flight {
 
     fn step(&mut self, interval: f64, wind: Vector3, pitch: f64) {
         self.azimuth += interval * self.stiff.rotor_speed;
-        let elements = self.stiff.motions(self.azimuth);
+        let elements = self.stiff.motions(self.azimuth, pitch);
         let winds = vec![wind; elements.len()];
         let pitch = self.stiff.pitch(pitch);
         let posture = Posture { frame: &self.stiff.frame, elements: &elements, pitch: &pitch };
@@ -167,10 +167,11 @@ fn power_is_what_the_blades_take_on_their_way() {
     settings.skewed_wake = true;
     let mut flight = Flight::new(Stiff::new(tilted, ROTOR_SPEED), settings);
     for step in 0..50 {
-        flight.step(0.05, Vector3::new(WIND, 0.5, 0.2), 0.01 * f64::from(step % 7));
+        let pitch = 0.01 * f64::from(step % 7);
+        flight.step(0.05, Vector3::new(WIND, 0.5, 0.2), pitch);
         let work: f64 = flight
             .stiff
-            .motions(flight.azimuth)
+            .motions(flight.azimuth, pitch)
             .iter()
             .zip(&flight.loads.elements)
             .map(|(motion, load)| load.force.dot(motion.velocity))

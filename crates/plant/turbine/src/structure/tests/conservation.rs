@@ -98,6 +98,7 @@ fn energy_grows_by_the_work_of_the_loads() {
         position: Vector3::ZERO,
         velocity: Vector3::ZERO,
         axes: BladeFrame { span: Vector3::ZERO, normal: Vector3::ZERO, tangent: Vector3::ZERO },
+        pitch: 0.0,
     };
     let (mut elements, mut points) = (vec![blank; 12], vec![(Vector3::ZERO, Vector3::ZERO); 2]);
     // Forces are constant in the farm frame: their work is force × way, the torque's is torque × turned angle.

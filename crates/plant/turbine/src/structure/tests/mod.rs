@@ -6,3 +6,4 @@ mod invariants;
 mod momentum;
 mod rigid;
 mod samples;
+mod sections;

@@ -95,6 +95,7 @@ fn loads_are_the_rate_of_momentum_outboard() {
                 position: Vector3::ZERO,
                 velocity: Vector3::ZERO,
                 axes: crate::rotor::Frame::new(Vector3::ZERO, 0.0).blade(0.0, 0.0),
+                pitch: 0.0,
             };
             9
         ];
