@@ -9,6 +9,7 @@ mod turbulence;
 
 use crate::Row;
 use rig::{Asked, CHANNELS, Run, Speed, run};
+use turbine::structure::Projection;
 pub use turbulence::openfast_turbulence;
 
 /// Accepted distance of means from the reference (–).
@@ -126,8 +127,11 @@ const HELIX: [(f64, [f64; 10]); 5] = [
     ),
 ];
 
-/// Steady wind: means at the reference's rotor speed, then speed and power under the turbine's own control, last what the tower
-/// changes where its wind is felt.
+/// Those of [`CHANNELS`] whose means hang on how sections of a blade are seen that bends in both directions: YawBrMzp and LSSTipMys.
+const TURNED: [usize; 2] = [3, 4];
+
+/// Steady wind: means at the reference's rotor speed, those of [`TURNED`] again with blades seen as the reference does, then speed and
+/// power under the turbine's own control, last what the tower changes where its wind is felt.
 pub fn openfast_steady() -> Vec<Row> {
     let mut rows = Vec::new();
     for steady in STEADY {
@@ -156,6 +160,11 @@ pub fn openfast_steady() -> Vec<Row> {
         let units = ["MW", "MN", "MN m", "MN m", "MN m", "MN m", "MN m", "m"];
         for (((name, unit), measured), expected) in names.zip(units).zip(measured).zip(means) {
             add(format!("{rotor_speed} rpm: mean {name}"), measured, expected, unit);
+        }
+        let annular = run(&Asked { projection: Projection::Annular, ..asked(Speed::Held) });
+        for channel in TURNED {
+            let what = format!("sections seen as there: mean {}", CHANNELS[channel]);
+            add(what, annular.mean(channel), means[2 + channel], "MN m");
         }
         let tracked = run(&asked(Speed::Tracked));
         add("own control: rotor speed".to_owned(), tracked.rotor_speed, rotor_speed, "rpm");

@@ -14,6 +14,7 @@ use turbine::aero::blade_element::Theory;
 use turbine::aero::induction::TwoConstant;
 use turbine::aero::tower_influence::Effects;
 use turbine::aero::{self, TowerInfluence};
+use turbine::structure::Projection;
 use turbine::{Induction, Turbine};
 
 /// Step (s).
@@ -96,6 +97,8 @@ pub(super) struct Asked<'a> {
     pub(super) speed: Speed,
     /// Helix, degrees.
     pub(super) amplitude: f64,
+    /// How the blades' sections are seen.
+    pub(super) projection: Projection,
     /// From and to (s).
     pub(super) window: [f64; 2],
     /// Steps of [`INTERVAL`] from sample to sample (–).
@@ -114,6 +117,7 @@ impl Asked<'_> {
             rotor_speed: 6.44866,
             speed: Speed::Held,
             amplitude: 0.0,
+            projection: Projection::Swept,
             window: [500.0, 600.0],
             steps_per_sample: 1,
         }
@@ -194,7 +198,8 @@ fn machine(asked: &Asked<'_>) -> Machine {
     };
     let mut turbine = Turbine::new(definition, Vector3::ZERO, settings)
         .expect("the library's own turbines have a structure")
-        .without_bodies();
+        .without_bodies()
+        .projecting(asked.projection);
     if asked.speed == Speed::Held {
         turbine = turbine.at_held_speed();
     }

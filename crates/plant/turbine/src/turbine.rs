@@ -11,7 +11,8 @@ use crate::definition::Definition;
 use crate::motion::ElementMotion;
 use crate::rotor::{BladeFrame, Frame};
 use crate::structure::{
-    AppliedLoads, Channel, ElementLoad, Freedom, GRAVITY, Pitch, Structure, StructureError,
+    AppliedLoads, Channel, ElementLoad, Freedom, GRAVITY, Pitch, Projection, Structure,
+    StructureError,
 };
 use aerodynamics::Aerodynamics;
 use basis::{Commands, Measurements, PerBlade, PointForce, Vector3};
@@ -232,6 +233,13 @@ impl Turbine {
     pub fn at_held_speed(mut self) -> Self {
         self.held.push(Freedom::Generator);
         self.structure.hold(&self.held);
+        self
+    }
+
+    /// The same turbine, its blade elements seen as `projection` has them.
+    pub fn projecting(mut self, projection: Projection) -> Self {
+        self.structure.project(projection);
+        self.place_stations();
         self
     }
 

@@ -33,6 +33,7 @@ mod loads;
 mod machine;
 mod midpoint;
 mod modes;
+mod projection;
 mod quadrature;
 mod shapes;
 mod stations;
@@ -47,6 +48,7 @@ pub use error::StructureError;
 pub use loads::{BladeLoads, Loads, N_GAUGES};
 pub use machine::Pitch;
 pub use modes::NaturalMode;
+pub use projection::Projection;
 pub use stations::{AppliedLoads, ElementLoad};
 
 use crate::definition::Definition;
@@ -189,6 +191,11 @@ impl Structure {
         }
     }
 
+    /// Sees blade elements as `projection` has them from now on.
+    pub fn project(&mut self, projection: Projection) {
+        self.stations.projection = projection;
+    }
+
     /// On return `elements` holds the motion of each blade element `ahead` (s) after now, blade after blade.
     ///
     /// Loads belong to the middle of the step they act in: ask half a step ahead, blades at the `pitch` of then.
@@ -201,7 +208,7 @@ impl Structure {
         if n > 0 {
             let phase = self.state.phase().ahead(ahead);
             let motion = self.machine.motion(&phase.q, &phase.v, pitch);
-            self.stations.observe(&motion, &phase.q, &phase.v, elements);
+            self.stations.observe(&self.machine, &motion, &phase.q, &phase.v, elements);
         }
     }
 

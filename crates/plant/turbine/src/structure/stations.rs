@@ -2,11 +2,11 @@
 
 use super::beam::Wrench;
 use super::coordinates::{Coordinates, N_MODES, N_TOWER};
-use super::machine::{Machine, ModeTables, Motion, N_BLADE_PARTS, Pitch};
+use super::machine::{Machine, ModeTables, Motion, N_BLADE_PARTS};
+use super::projection::Projection;
 use super::shapes::{Place, weighted};
 use crate::definition::{BladeStation, Definition};
 use crate::motion::ElementMotion;
-use crate::rotor::BladeFrame;
 use basis::Vector3;
 use basis::blades::MAXIMUM_BLADES;
 
@@ -43,6 +43,7 @@ impl AppliedLoads<'_> {
 pub(super) struct Stations {
     blade: Vec<Station>,
     tower: Vec<Place<N_TOWER>>,
+    pub(super) projection: Projection,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +104,7 @@ impl Stations {
         Self {
             blade: spans.iter().map(station).collect(),
             tower: heights.iter().map(point).collect(),
+            projection: Projection::default(),
         }
     }
 
@@ -119,14 +121,16 @@ impl Stations {
     /// On return `elements` holds where each blade element is and how it moves, blade after blade.
     pub(super) fn observe(
         &self,
+        machine: &Machine,
         motion: &Motion,
         q: &Coordinates,
         v: &Coordinates,
         elements: &mut [ElementMotion],
     ) {
-        let Motion { hub, blades, .. } = motion;
+        let hub = &motion.hub;
         for (blade, elements) in elements.chunks_exact_mut(self.blade.len()).enumerate() {
-            let frame = &blades[blade];
+            let frame = &motion.blades[blade];
+            let cone = machine.cone_axes(blade, motion);
             let (q, v) = (&q.blades[blade], &v.blades[blade]);
             let spin = frame.axes.transpose() * frame.spin;
             for (element, station) in elements.iter_mut().zip(&self.blade) {
@@ -135,19 +139,14 @@ impl Stations {
                 let turn = station.place.turn(q);
                 let span = (frame.axes * (station.along + turn.cross(station.along))).normalize();
                 let position = frame.origin + frame.axes * position;
-                let swept = hub.axes.x_axis.cross(position - hub.origin);
-                let normal = span.cross(swept).normalize();
-                let tangent = normal.cross(span);
                 // To second order: where a blade bends in both directions, its sections also turn about it, by half the product of
                 // the slopes. That goes with gravity once a turn and so leaves a steady moment on the hub.
                 let first = turn.cross(station.across);
                 let facing = frame.axes * (station.across + first + 0.5 * turn.cross(first));
-                *element = ElementMotion {
-                    position,
-                    velocity: frame.velocity + frame.axes * velocity,
-                    axes: BladeFrame { span, normal, tangent },
-                    pitch: facing.dot(tangent).atan2(facing.dot(normal)),
-                };
+                let swept = hub.axes.x_axis.cross(position - hub.origin);
+                let (axes, pitch) = self.projection.of(span, facing.normalize(), swept, &cone);
+                let velocity = frame.velocity + frame.axes * velocity;
+                *element = ElementMotion { position, velocity, axes, pitch };
             }
         }
     }

@@ -1,0 +1,53 @@
+//! How the wind at a bent blade is split: across its sections, and against their way.
+
+use crate::rotor::BladeFrame;
+use basis::{Matrix3, Vector3};
+
+/// In which frame aerodynamics sees the sections of a bent blade.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Projection {
+    /// Across the surface that the blade sweeps, and along its way.
+    #[default]
+    Swept,
+    /// As AeroDyn 5.0's standard formulation (BEM_Mod 1) has it; only to compare with it.
+    ///
+    /// It takes the turn of a section apart into angles about the blade's x, y and z axis, one after the other, and splits the
+    /// wind in the frame of the one about y. The angle about z, which goes to the section's pitch, is one that comes after the
+    /// angle about x, which is left out of that frame: sections face the product of the blade's slopes further into the wind
+    /// than they do.
+    Annular,
+}
+
+impl Projection {
+    /// Axes and turn (rad) of a section that faces `facing` on a line along `span` (unit vectors).
+    ///
+    /// The element's way is along `swept` (m) and its blade's unpitched axes are `cone`, all in the farm frame.
+    pub(super) fn of(
+        self,
+        span: Vector3,
+        facing: Vector3,
+        swept: Vector3,
+        cone: &Matrix3,
+    ) -> (BladeFrame, f64) {
+        match self {
+            Self::Swept => {
+                let normal = span.cross(swept).normalize();
+                let tangent = normal.cross(span);
+                let pitch = facing.dot(tangent).atan2(facing.dot(normal));
+                (BladeFrame { span, normal, tangent }, pitch)
+            }
+            Self::Annular => {
+                let own_from_farm = cone.transpose();
+                let (span, facing) = (own_from_farm * span, own_from_farm * facing);
+                let cos_y = (1.0 - span.x * span.x).sqrt();
+                let (sin_x, cos_x) = (-span.y / cos_y, span.z / cos_y);
+                let unturned = Vector3::new(cos_y, sin_x * span.x, -cos_x * span.x);
+                let beside = Vector3::new(0.0, cos_x, sin_x);
+                let normal = *cone * Vector3::new(cos_y, 0.0, -span.x);
+                let tangent = -cone.y_axis;
+                let pitch = -facing.dot(beside).atan2(facing.dot(unturned));
+                (BladeFrame { span: tangent.cross(normal), normal, tangent }, pitch)
+            }
+        }
+    }
+}
