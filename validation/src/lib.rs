@@ -10,6 +10,7 @@ pub mod helix;
 pub mod inflow;
 mod least_squares;
 pub mod meandering;
+pub mod memory;
 pub mod phase_estimator;
 pub mod resume;
 pub mod row;
@@ -177,6 +178,13 @@ pub const VALIDATIONS: &[Validation] = &[
         about: "20 kills at random moments, each followed by --resume: same bits",
         minutes: "5",
         run: resume::resume,
+        pictures: None,
+    },
+    Validation {
+        name: "memory",
+        about: "memory of one flexible turbine in turbulence, ten minutes and an hour, each in a process of its own",
+        minutes: "under 1",
+        run: memory::memory,
         pictures: None,
     },
     Validation {

@@ -1,9 +1,9 @@
 //! Kills at random moments: a run that is killed and resumed ends with the same bits as one that is not.
 
 use crate::Row;
+use crate::studies::command;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Instant;
 
@@ -110,14 +110,6 @@ fn kill_and_compare() -> Result<(u32, usize, Vec<PathBuf>), String> {
     compare(&whole.join("helix"), &broken.join("helix"), &mut compared, &mut different)?;
     fs::remove_dir_all(&folder).map_err(|error| error.to_string())?;
     Ok((kills, compared, different))
-}
-
-fn command(case: &Path, output: &Path) -> Command {
-    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("wakemix"));
-    let mut command = Command::new(program);
-    command.arg("run").arg(case).arg("-o").arg(output).arg("--resume");
-    command.stdout(Stdio::null()).stderr(Stdio::null());
-    command
 }
 
 fn run_to_end(case: &Path, output: &Path) -> Result<(), String> {

@@ -1,8 +1,10 @@
-//! Whole studies as validations run them: lines of progress, and on from where an earlier call stopped.
+//! Whole studies as validations run them: with lines of progress, or silent in a process of their own; on from where an earlier
+//! call stopped.
 
 use crate::Row;
 use basis::records::Summary;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 use std::sync::atomic::AtomicBool;
 use study::{Options, Outcome, Watcher};
 
@@ -47,6 +49,15 @@ pub(crate) fn summaries(
         Ok(other) => Err(format!("the study ended early: {other:?}")),
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// `wakemix run`, silent, of the case at `path`: what is left of it in the folder `output`.
+pub(crate) fn command(path: &Path, output: &Path) -> Command {
+    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("wakemix"));
+    let mut command = Command::new(program);
+    command.arg("run").arg(path).arg("-o").arg(output).arg("--resume");
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command
 }
 
 /// The one row of a validation that could not be made.

@@ -306,6 +306,11 @@ impl CheckpointReader {
         }
     }
 
+    /// Whether there is a section `name`, which an earlier program may not have written.
+    pub fn holds(&self, name: &str) -> bool {
+        self.sections.iter().any(|(section, _)| section == name)
+    }
+
     /// The state in the section `name`.
     ///
     /// # Errors

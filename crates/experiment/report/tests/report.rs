@@ -34,6 +34,8 @@ fn the_page_says_what_the_numbers_say_and_under_which_conditions() {
         "Power of T1 differs from blade-element momentum by 6.1 % (limit 5 %)",
         "<td class=\"n\">8.91</td><td class=\"pm\">± 0.18</td>",
         "1 258 291",
+        "<td class=\"n\">120 MB</td><td class=\"n\">–</td></tr>",
+        "<td class=\"n\">120 MB</td><td class=\"n\">298 MB</td></tr>",
         "<td class=\"n\">−2.793 MN m&#x2f;°</td><td class=\"n\">14.3</td><td class=\"n\">3.50</td>",
         "wakemix 0.1.0",
     ] {

@@ -159,6 +159,9 @@ pub fn run(
                 for warning in &summary.warnings[setup.warnings.len()..] {
                     watcher.warned(warning);
                 }
+                // For these numbers the whole series was read.
+                let peak_memory = formats::machine::peak_memory();
+                summary.cost.peak_memory = summary.cost.peak_memory.max(peak_memory);
                 records::write_manifest(folder, &manifest.finish())?;
                 // The summary comes last: with it the run is complete.
                 records::write_summary(folder, &summary)?;

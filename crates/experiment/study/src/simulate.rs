@@ -29,6 +29,8 @@ const PROBE_DISTANCE: f64 = 2.0;
 const AVERAGING_INTERVAL: f64 = 2.0;
 /// Every so many cells along each axis are kept in a volume.
 pub(crate) const VOLUME_STRIDE: usize = 2;
+/// Section of a checkpoint with the most memory that the run has held so far; checkpoints of earlier programs have none.
+const PEAK_MEMORY: &str = "peak memory";
 /// Wall time between two reports of progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 
@@ -77,6 +79,8 @@ struct Simulation<'a> {
     inflows: Vec<WindRecord>,
     started: Instant,
     wall_time_before: f64,
+    /// What the processes before this one held of memory at most (bytes).
+    peak_memory_before: Option<u64>,
     first_step: u64,
 }
 
@@ -177,10 +181,13 @@ impl<'a> Simulation<'a> {
                 inflows: wind_records::of(setup, run, folder, None)?,
                 started,
                 wall_time_before: 0.0,
+                peak_memory_before: None,
                 first_step: 0,
             });
         };
         let state: RunState = reader.state("run")?;
+        let peak_memory_before: Option<u64> =
+            if reader.holds(PEAK_MEMORY) { reader.state(PEAK_MEMORY)? } else { None };
         let mut simulation = Self {
             setup,
             folder,
@@ -195,6 +202,7 @@ impl<'a> Simulation<'a> {
             inflows: wind_records::of(setup, run, folder, Some(&state.inflow_bytes))?,
             started,
             wall_time_before: state.wall_time,
+            peak_memory_before,
             first_step: state.step,
             farm: farm.at_step(state.step),
         };
@@ -289,6 +297,11 @@ impl<'a> Simulation<'a> {
         self.wall_time_before + self.started.elapsed().as_secs_f64()
     }
 
+    /// Most memory that a process of this run has held at once so far (bytes); none where the system does not tell.
+    fn peak_memory(&self) -> Option<u64> {
+        self.peak_memory_before.max(formats::machine::peak_memory())
+    }
+
     /// On return the checkpoint on disk holds this very instant.
     ///
     /// # Errors
@@ -317,6 +330,7 @@ impl<'a> Simulation<'a> {
         let path = self.folder.checkpoint_path();
         let mut writer = CheckpointWriter::create(&path, &self.setup.case_text, &run.name)?;
         writer.state("run", &state)?;
+        writer.state(PEAK_MEMORY, &self.peak_memory())?;
         if self.has_instruments() {
             let sensing: Vec<sensing::State> =
                 self.farm.machines().iter().map(|machine| *machine.sensing.state()).collect();
@@ -377,6 +391,7 @@ impl<'a> Simulation<'a> {
             updates_per_second: plan.updates() / wall_time,
             n_threads: 1,
             memory: 0,
+            peak_memory: self.peak_memory(),
         };
         if let Some(lattice) = self.farm.flow().lattice() {
             cost.n_threads = lattice.n_threads();

@@ -94,7 +94,11 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
     again.resume = true;
     stop.store(false, Ordering::Relaxed);
     let outcome = study::run(&again, &stop, &mut Silent);
-    assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{outcome:?}");
+    let Ok(Outcome::Done { summaries, .. }) = outcome else { panic!("{outcome:?}") };
+    let cost = &summaries[0].cost;
+    assert_eq!(cost.peak_memory.is_some(), formats::machine::peak_memory().is_some());
+    // The air is not all that is held.
+    assert!(cost.peak_memory.is_none_or(|peak_memory| peak_memory > cost.memory), "{cost:?}");
 
     let (whole, stopped) = (left(&folder.path().join("whole/helix")), left(&run));
     let names = |files: &[(PathBuf, Vec<u8>)]| -> Vec<PathBuf> {

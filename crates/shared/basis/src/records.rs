@@ -172,6 +172,10 @@ pub struct Cost {
     pub n_threads: usize,
     /// Memory of the flow field (bytes).
     pub memory: u64,
+    /// Most that the program's process held at once until the run's numbers were made, runs before it in the same process
+    /// included (bytes); of a run that was resumed the most of any of its processes. Absent where the system does not tell, and
+    /// in older records.
+    pub peak_memory: Option<u64>,
 }
 
 /// The wind as asked for and as it arrived.

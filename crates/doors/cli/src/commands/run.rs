@@ -281,8 +281,11 @@ impl Watcher for Screen {
     }
 
     fn finished(&mut self, summary: &Summary) {
+        let memory = summary.cost.peak_memory.map_or_else(String::new, |peak_memory| {
+            format!(", {} of memory at most", HumanBytes(peak_memory))
+        });
         self.say(&format!(
-            "done: {} in {}",
+            "done: {} in {}{memory}",
             summary.run,
             HumanDuration(Duration::from_secs_f64(summary.cost.wall_time.max(1.0)))
         ));

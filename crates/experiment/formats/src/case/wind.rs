@@ -46,7 +46,8 @@ fn shear_of(section: &Option<Section>) -> Shear {
         let why = "the profile is logarithmic with wind.roughness_length";
         let key = section.key_path("shear_exponent");
         let kind = ProblemKind::NoUse { key, why: why.to_owned() };
-        let fix = "leave one of the two out";
+        let fix =
+            "leave one of the two out; where --set gives one, the other must go from the file";
         section.findings().note(section.span_of("shear_exponent"), kind, Some(fix.into()));
     }
     Shear::LogLaw { roughness_length }

@@ -208,6 +208,12 @@ fn what_cannot_be_is_told_with_its_line() {
         let told = parse("windy.toml", &text, &[]).unwrap_err().to_lines();
         assert!(told.contains(expected), "{keys}\nexpected {expected}\ntold     {told}");
     }
+    for (text, other) in [(text(""), "roughness_length"), (logarithmic("0.06"), "shear_exponent")] {
+        let told = parse("windy.toml", &text, &[format!("wind.{other}=0.1")]);
+        let told = told.unwrap_err().to_lines();
+        assert!(told.contains("`wind.shear_exponent` is of no use here"), "{other}: {told}");
+        assert!(told.contains("where --set gives one, the other must go from the file"), "{told}");
+    }
     let veering = |flow: &str| {
         let text = text("veer_deg_per_m = 0.05").replace("solver = \"uniform\"", flow);
         parse("windy.toml", &text, &[])

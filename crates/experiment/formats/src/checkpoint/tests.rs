@@ -49,6 +49,7 @@ fn sections_are_found_in_any_order_and_missing_ones_named() {
     let mut reader = CheckpointReader::open(&path, CASE, "helix").unwrap();
     reader.stream("air", |_| Ok(())).unwrap();
     assert_eq!(reader.state::<Vec<f64>>("run").unwrap(), [1.0]);
+    assert!(reader.holds("air") && !reader.holds("wake"));
     assert_eq!(
         problem(reader.state::<Vec<f64>>("wake")),
         CheckpointProblem::Missing { section: "wake".into() }

@@ -266,6 +266,22 @@ mod tests {
     }
 
     #[test]
+    fn an_older_summary_does_not_tell_the_peak_of_memory() {
+        let study = tempfile::tempdir().unwrap();
+        let folder = leave(study.path(), 0, CASE);
+        let mut told = summary("baseline");
+        told.cost.peak_memory = Some(123_456_789);
+        write_summary(&folder, &told).unwrap();
+        assert_eq!(read_summary(&folder).unwrap(), told);
+        let text = fs::read_to_string(folder.summary_path()).unwrap();
+        // The last of its table: the comma before it goes with it.
+        let older = text.replace(",\n    \"peak_memory\": 123456789", "");
+        assert_ne!(older, text);
+        fs::write(folder.summary_path(), older).unwrap();
+        assert_eq!(read_summary(&folder).unwrap(), summary("baseline"));
+    }
+
+    #[test]
     fn incomplete_runs_and_mixed_cases_are_told() {
         let study = tempfile::tempdir().unwrap();
         leave(study.path(), 0, CASE);

@@ -432,6 +432,7 @@ pub(crate) fn costs(study: &Study) -> Vec<Value> {
                 updates => number(cost.updates_per_second / 1e6, three_figures(cost.updates_per_second / 1e6)),
                 threads => cost.n_threads,
                 memory => words::memory(cost.memory),
+                peak_memory => cost.peak_memory.map_or_else(|| "–".to_owned(), words::memory),
             }
         })
         .collect()

@@ -153,6 +153,7 @@ fn run(recipe: &Recipe) -> RunRecords {
                 updates_per_second: 293e6,
                 n_threads: 2,
                 memory: 119_537_664,
+                peak_memory: (!is_baseline).then_some(297_800_000),
             },
             warnings: if is_baseline {
                 Vec::new()
