@@ -9,7 +9,7 @@ mod turbulence;
 
 use crate::Row;
 use rig::{Asked, CHANNELS, Run, Speed, run};
-use turbine::structure::Projection;
+use turbine::structure::{GRAVITY, Projection};
 pub use turbulence::openfast_turbulence;
 
 /// Accepted distance of means from the reference (–).
@@ -171,7 +171,52 @@ pub fn openfast_steady() -> Vec<Row> {
         let power = tracked.generator_power;
         add("own control: generator power".to_owned(), power, generator_power, "MW");
     }
+    rows.extend(published_steady_states());
     rows.extend(tower::changes());
+    rows
+}
+
+/// NREL 5 MW as its authors published it: wind (m/s), generator power (kW), and thrust (kN) with the rotor's weight along the shaft.
+///
+/// Source: Jonkman, Butterfield, Musial, Scott, NREL/TP-500-38060 (2009), figs. 9-1 and 9-2, by FAST with AeroDyn's blade-element momentum
+/// of then and the torque law k ω²; figures from NREL's archive of turbine models, "NREL_5MW_126_RWT".
+const PUBLISHED: [[f64; 3]; 4] =
+    [[7.0, 1187.2, 398.6], [8.0, 1771.1, 478.0], [9.0, 2518.6, 579.2], [10.0, 3448.41, 691.496]];
+
+/// Power and thrust of NREL 5 MW under its own torque law beside [`PUBLISHED`].
+fn published_steady_states() -> Vec<Row> {
+    let definition = formats::library::load("nrel-5mw")
+        .expect("the library's own turbines are readable")
+        .definition;
+    let blade = &definition.blade_structure.sections;
+    let blade_mass: f64 = blade
+        .windows(2)
+        .map(|ends| 0.5 * (ends[0].mass + ends[1].mass) * (ends[1].span - ends[0].span))
+        .sum();
+    let mass = definition.hub.mass + definition.n_blades as f64 * blade_mass;
+    let weight = 1e-6 * mass * GRAVITY * definition.rotor.shaft_tilt.sin();
+    let mut rows = Vec::new();
+    for [wind, power, thrust] in PUBLISHED {
+        let run = run(&Asked {
+            model: "nrel-5mw",
+            wind,
+            slow_constant: 12.6,
+            rotor_speed: 10.0934 * wind / 9.0,
+            speed: Speed::Square,
+            ..Asked::in_nine_metres_a_second()
+        });
+        let mut add = |what: &str, measured: f64, expected: f64, unit| {
+            rows.push(Row {
+                what: format!("nrel-5mw, {wind} m/s, as published: {what}"),
+                measured,
+                expected,
+                tolerance: TOLERANCE * expected,
+                unit,
+            });
+        };
+        add("generator power", run.generator_power, 1e-3 * power, "MW");
+        add("thrust and weight along the shaft", run.thrust + weight, 1e-3 * thrust, "MN");
+    }
     rows
 }
 
