@@ -127,9 +127,7 @@ pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
         InflowCommand::Generate(arguments) => generate(&arguments),
         InflowCommand::Info { file, json } => info(&file, json),
         InflowCommand::Convert { from, to } => {
-            turbulence_box::check_name(&to)?;
-            let stored = turbulence_box::read(&from)?;
-            turbulence_box::write(&to, &stored)?;
+            turbulence_box::convert(&from, &to)?;
             eprintln!("wrote {}", to.display());
             Ok(())
         }

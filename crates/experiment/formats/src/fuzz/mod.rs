@@ -7,7 +7,7 @@
 mod cases;
 mod damage;
 mod decks;
-mod memory;
+pub(crate) mod memory;
 mod nesting;
 mod records;
 mod tables;

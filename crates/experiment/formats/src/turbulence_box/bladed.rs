@@ -12,6 +12,7 @@
 mod header;
 
 use super::packed::{PackedPlanes, Packing};
+use super::source::{Outline, Source, each_plane, whole};
 use super::{FASTEST, StoredBox, in_order_of_arrival};
 use crate::FileError;
 use crate::atomic::{self, AtomicFile};
@@ -36,12 +37,20 @@ const IMPROVED_VON_KARMAN: i16 = 4;
 /// # Errors
 /// [`FileError`] names file, place and fix.
 pub fn read(path: &Path) -> Result<StoredBox, FileError> {
+    whole(path, &mut stream(path)?)
+}
+
+/// The full field at `path` as a box, read plane by plane.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn stream(path: &Path) -> Result<impl Source + use<>, FileError> {
     let (planes, hub_height) = start(path)?;
     let mut description = "a full field of Bladed".to_owned();
     if !planes.grid().repeats {
         description.push_str(" (does not repeat: its end meets its beginning with a jump)");
     }
-    planes.into_box(hub_height, description)
+    planes.into_source(hub_height, description)
 }
 
 /// Planes of the full field at `path`, read one at a time; the middle of its width stands at y = 0.
@@ -96,7 +105,7 @@ fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
             repeats: summary.repeats,
         },
         start: header.start,
-        bytes_per_step: 6 * (header.n_y * header.n_z) as u64,
+        bytes_per_step: 6 * header.n_y * header.n_z,
         offsets: [speed, 0.0, 0.0],
         scales,
         from_left: summary.from_left,
@@ -106,41 +115,32 @@ fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
     Ok((PackedPlanes::new(file, path, WHAT, packing), hub_height))
 }
 
-/// Writes `stored` to `path` with the header of type 4, and `NAME.sum` beside it, which other programs want.
+/// Writes the box of `source` to `path` with the header of type 4, and `NAME.sum` beside it, which other programs want.
 ///
 /// Values are rounded to a thousandth of the deviation that scales them: that of the component, or a thirtieth of its
-/// greatest distance from the mean speed where that is more.
+/// greatest distance from the mean speed where that is more. For these all planes are read three times.
 ///
 /// # Errors
 /// [`FileError`]; each file appears whole or not at all, the summary last.
-pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
-    let turbulence = &stored.turbulence;
-    let [n_x, n_y, n_z] = turbulence.n_points();
-    let speed = stored.hub_speed;
-    let above = |component: usize, x: usize, point: usize| {
-        let fluctuation = f64::from(turbulence.plane(component, x)[point]);
-        let mean = stored.mean_speeds.get(point / n_y).copied().unwrap_or(speed);
-        if component == 0 { fluctuation + mean - speed } else { fluctuation }
-    };
-    let deviations = turbulence.standard_deviations();
-    let intensities: [f32; 3] = std::array::from_fn(|component| {
-        let greatest = (0..n_x)
-            .flat_map(|x| (0..n_y * n_z).map(move |point| (x, point)))
-            .map(|(x, point)| above(component, x, point).abs())
-            .fold(0.0, f64::max);
-        (100.0 * deviations[component].max(greatest / 30.0).max(1e-4 * speed) / speed) as f32
+pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
+    let outline = source.outline();
+    let [n_x, n_y, n_z] = outline.n_points;
+    let speed = outline.hub_speed;
+    let intensities = spreads(&outline, source)?.map(|Spread { deviation, greatest }| {
+        (100.0 * deviation.max(greatest / 30.0).max(1e-4 * speed) / speed) as f32
     });
     let per_integer = intensities.map(|ti| f64::from(ti) / 100.0 * speed / PER_DEVIATION);
     let refused = |source| FileError::system("write", WHAT, path, source);
     let mut file = AtomicFile::create(path, WHAT)?;
-    let mut bytes = header::bytes(path, stored, intensities)?;
+    let mut bytes = header::bytes(path, &outline, intensities)?;
     file.write_all(&bytes).map_err(refused)?;
     for step in 0..n_x {
-        let x = in_order_of_arrival(step, n_x);
+        let plane = source.plane(in_order_of_arrival(step, n_x))?;
         bytes.clear();
         for point in 0..n_y * n_z {
             for (component, per_integer) in per_integer.into_iter().enumerate() {
-                let integer = (above(component, x, point) / per_integer).round();
+                let above = above(&outline, component, point, plane[component][point]);
+                let integer = (above / per_integer).round();
                 let integer = integer.clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16;
                 bytes.extend_from_slice(&integer.to_le_bytes());
             }
@@ -148,8 +148,50 @@ pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
         file.write_all(&bytes).map_err(refused)?;
     }
     file.commit()?;
-    let summary = header::summary(stored, intensities);
+    let summary = header::summary(&outline, intensities);
     atomic::write(&path.with_extension("sum"), SUMMARY, summary.as_bytes())
+}
+
+/// How far component 0 to 2 of the wind is above what the integer zero stands for (m/s): the hub speed for u, none for v, w.
+fn above(outline: &Outline, component: usize, point: usize, fluctuation: f32) -> f64 {
+    let wind = outline.wind(component, point, fluctuation);
+    if component == 0 { wind - outline.hub_speed } else { wind }
+}
+
+/// How far the values of a component spread.
+#[derive(Clone, Copy, Debug)]
+struct Spread {
+    /// Standard deviation of the fluctuations (m/s): to the last bit that of a box in memory.
+    deviation: f64,
+    /// Greatest distance from what the integer zero stands for (m/s).
+    greatest: f64,
+}
+
+/// Those of u, v, w in the box of `source`, which is as `outline` says; its planes are read twice.
+fn spreads(outline: &Outline, source: &mut dyn Source) -> Result<[Spread; 3], FileError> {
+    let n_values = outline.n_points.iter().product::<usize>() as f64;
+    let mut means = [0.0_f64; 3];
+    each_plane(source, |plane| {
+        for (mean, values) in means.iter_mut().zip(plane) {
+            *mean += values.iter().map(|value| f64::from(*value)).sum::<f64>();
+        }
+    })?;
+    means.iter_mut().for_each(|mean| *mean /= n_values);
+    let (mut squares, mut greatest) = ([0.0_f64; 3], [0.0_f64; 3]);
+    each_plane(source, |plane| {
+        for (component, values) in plane.into_iter().enumerate() {
+            let square = |value: &f32| (f64::from(*value) - means[component]).powi(2);
+            squares[component] += values.iter().map(square).sum::<f64>();
+            for (point, value) in values.iter().enumerate() {
+                let above = above(outline, component, point, *value);
+                greatest[component] = greatest[component].max(above.abs());
+            }
+        }
+    })?;
+    Ok(std::array::from_fn(|component| Spread {
+        deviation: (squares[component] / n_values).sqrt(),
+        greatest: greatest[component],
+    }))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Tests of Bladed's full field.
 
 use super::super::tests::{complaint, folder, stored};
+use super::super::write;
 use super::*;
 use std::fs;
 
@@ -34,6 +35,20 @@ fn counts_time_z_y_component_in_thousandths_of_a_deviation() {
     assert!((value(0, 1, 0, 0) - above).abs() < 1e-3);
     assert!((value(0, 1, 2, 1) - f64::from(turbulence.at(1, [0, 2, 1]))).abs() < 1e-3);
     assert!((value(1, 0, 1, 2) - f64::from(turbulence.at(2, [3, 1, 0]))).abs() < 1e-3);
+}
+
+/// The deviations that scale a file are those of the box, to the last bit, however it is summed up.
+#[test]
+fn deviations_are_those_of_the_box() {
+    let stored = stored([6, 5, 4]);
+    let mut source = &stored;
+    let outline = source.outline();
+    let found = spreads(&outline, &mut source).unwrap();
+    assert_eq!(found.map(|spread| spread.deviation), stored.turbulence.standard_deviations());
+    // v is counted from zero, u from the hub speed of 10 m/s: the lowest row has a mean of 8 m/s, and falls to 7.
+    let v = stored.turbulence.component(1).iter().map(|v| f64::from(v.abs()));
+    assert_eq!(found[1].greatest, v.fold(0.0, f64::max));
+    assert!((found[0].greatest - 3.0).abs() < 0.01);
 }
 
 #[test]

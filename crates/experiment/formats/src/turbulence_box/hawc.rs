@@ -5,13 +5,15 @@
 //! in which OpenFAST's InflowWind reads HAWC files: x slowest and in order of arrival, then y from left to right
 //! looking downwind, then z upwards, fastest.
 
+use super::blocks::Blocks;
+use super::source::{Outline, Source, whole};
 use super::{FASTEST, StoredBox, in_order_of_arrival};
 use crate::FileError;
 use crate::atomic::{self, AtomicFile};
-use flow::inflow::{InflowError, PlaneGrid, Planes, TurbulenceBox};
+use flow::inflow::{InflowError, PlaneGrid, Planes};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 const WHAT: &str = "the header of a turbulence box";
@@ -68,21 +70,30 @@ const PREFACE: &str = "\
 #   wind.mean_speeds            mean speed at each height (m/s), lowest first; not part of the fluctuations
 ";
 
-/// Writes `stored` as NAME.toml at `path` with NAME_u.bin, NAME_v.bin, NAME_w.bin beside it.
+/// Writes the box of `source` as NAME.toml at `path` with NAME_u.bin, NAME_v.bin, NAME_w.bin beside it.
 ///
 /// # Errors
-/// [`FileError`]; each file appears whole or not at all, the header last.
-pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
-    let turbulence = &stored.turbulence;
+/// [`FileError`]; each file appears whole or not at all and none before the last plane is read, the header last.
+pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
+    let Outline {
+        n_points,
+        spacing,
+        hub_speed,
+        hub_height,
+        lowest_height,
+        mean_speeds,
+        description,
+    } = source.outline();
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let files = ["u", "v", "w"].map(|component| format!("{stem}_{component}.bin"));
-    let [n_x, n_y, n_z] = turbulence.n_points();
+    let paths = files.each_ref().map(|name| path.with_file_name(name));
+    let create = |component: usize| AtomicFile::create(&paths[component], COMPONENT);
+    let mut written = [create(0)?, create(1)?, create(2)?];
+    let [n_x, n_y, n_z] = n_points;
     let mut bytes = Vec::with_capacity(4 * n_y * n_z);
-    for (component, name) in files.iter().enumerate() {
-        let path = path.with_file_name(name);
-        let mut file = AtomicFile::create(&path, COMPONENT)?;
-        for place in 0..n_x {
-            let plane = turbulence.plane(component, in_order_of_arrival(place, n_x));
+    for place in 0..n_x {
+        let planes = source.plane(in_order_of_arrival(place, n_x))?;
+        for ((file, plane), path) in written.iter_mut().zip(planes).zip(&paths) {
             bytes.clear();
             for y in (0..n_y).rev() {
                 for z in 0..n_z {
@@ -90,25 +101,14 @@ pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
                 }
             }
             file.write_all(&bytes)
-                .map_err(|source| FileError::system("write", COMPONENT, &path, source))?;
+                .map_err(|source| FileError::system("write", COMPONENT, path, source))?;
         }
-        file.commit()?;
     }
+    written.into_iter().try_for_each(AtomicFile::commit)?;
     let header = Header {
-        description: stored.description.clone(),
-        layout: Layout {
-            n_points: turbulence.n_points(),
-            spacing: turbulence.spacing(),
-            files,
-            x_runs: Axis::Upwind,
-            y_runs: Axis::Right,
-        },
-        wind: Wind {
-            hub_speed: stored.hub_speed,
-            hub_height: stored.hub_height,
-            lowest_height: stored.lowest_height,
-            mean_speeds: stored.mean_speeds.clone(),
-        },
+        description,
+        layout: Layout { n_points, spacing, files, x_runs: Axis::Upwind, y_runs: Axis::Right },
+        wind: Wind { hub_speed, hub_height, lowest_height, mean_speeds },
     };
     let text = toml::to_string(&header).map_err(|error| {
         FileError::content(WHAT, path, error.to_string(), "check the numbers of the box")
@@ -121,27 +121,29 @@ pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
 /// # Errors
 /// [`FileError`] names file, place and fix.
 pub fn read(path: &Path) -> Result<StoredBox, FileError> {
+    whole(path, &mut stream(path)?)
+}
+
+/// The box whose header is at `path`, read plane by plane.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn stream(path: &Path) -> Result<impl Source + use<>, FileError> {
     let header = read_header(path)?;
-    let Layout { n_points, spacing, files, x_runs, y_runs } = header.layout;
-    let mut velocity: [Vec<f32>; 3] = Default::default();
-    for (values, name) in velocity.iter_mut().zip(files) {
-        let mut component = Component::open(&beside(path, &name)?, n_points, x_runs, y_runs)?;
-        let [n_x, n_y, n_z] = n_points;
-        values.resize(n_x * n_y * n_z, 0.0);
-        for (x, plane) in values.chunks_mut(n_y * n_z).enumerate() {
-            component.read(in_order_of_arrival(x, n_x), |point, value| plane[point] = value)?;
-        }
-    }
-    let turbulence = TurbulenceBox::new(n_points, spacing, velocity)
-        .map_err(|error| FileError::content(WHAT, path, error.to_string(), "mend the header"))?;
-    Ok(StoredBox {
-        turbulence,
-        hub_speed: header.wind.hub_speed,
-        hub_height: header.wind.hub_height,
-        lowest_height: header.wind.lowest_height,
-        mean_speeds: header.wind.mean_speeds,
+    let components = components(path, &header.layout)?;
+    let Layout { n_points, spacing, .. } = header.layout;
+    let Wind { hub_speed, hub_height, lowest_height, mean_speeds } = header.wind;
+    let outline = Outline {
+        n_points,
+        spacing,
+        hub_speed,
+        hub_height,
+        lowest_height,
+        mean_speeds,
         description: header.description,
-    })
+    };
+    let velocity = std::array::from_fn(|_| vec![0.0; n_points[1] * n_points[2]]);
+    Ok(HawcSource { components, outline, velocity })
 }
 
 fn read_header(path: &Path) -> Result<Header, FileError> {
@@ -230,12 +232,38 @@ fn grid_of(header: &Header) -> PlaneGrid {
 /// As [`read`].
 pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
     let header = read_header(path)?;
-    let grid = grid_of(&header);
-    let Layout { n_points, files, x_runs, y_runs, .. } = header.layout;
-    let open = |name: &String| Component::open(&beside(path, name)?, n_points, x_runs, y_runs);
-    let components = [open(&files[0])?, open(&files[1])?, open(&files[2])?];
+    let components = components(path, &header.layout)?;
     let mean_speeds = header.wind.mean_speeds.iter().map(|speed| *speed as f32).collect();
-    Ok(HawcPlanes { components, mean_speeds, grid })
+    Ok(HawcPlanes { components, mean_speeds, grid: grid_of(&header) })
+}
+
+/// The files that `layout`, of the header at `path`, names.
+fn components(path: &Path, layout: &Layout) -> Result<[Component; 3], FileError> {
+    let open = |name: &String| Component::open(&beside(path, name)?, layout);
+    let [u, v, w] = &layout.files;
+    Ok([open(u)?, open(v)?, open(w)?])
+}
+
+/// The box that three files are.
+struct HawcSource {
+    components: [Component; 3],
+    outline: Outline,
+    /// Fluctuations u, v, w (m/s) on the plane that was asked for.
+    velocity: [Vec<f32>; 3],
+}
+
+impl Source for HawcSource {
+    fn outline(&self) -> Outline {
+        self.outline.clone()
+    }
+
+    fn plane(&mut self, x: usize) -> Result<[&[f32]; 3], FileError> {
+        let step = in_order_of_arrival(x, self.outline.n_points[0]);
+        for (component, values) in self.components.iter_mut().zip(&mut self.velocity) {
+            component.read(step, |point, value| values[point] = value)?;
+        }
+        Ok(self.velocity.each_ref().map(Vec::as_slice))
+    }
 }
 
 /// Planes in three files.
@@ -263,23 +291,17 @@ impl Planes for HawcPlanes {
     }
 }
 
-/// One component's file, of which one plane is in memory.
+/// One component's file, of which a block of planes is in memory.
 struct Component {
-    file: File,
-    path: PathBuf,
+    planes: Blocks,
     n_points: [usize; 3],
     x_runs: Axis,
     y_runs: Axis,
-    bytes: Vec<u8>,
 }
 
 impl Component {
-    fn open(
-        path: &Path,
-        n_points: [usize; 3],
-        x_runs: Axis,
-        y_runs: Axis,
-    ) -> Result<Self, FileError> {
+    fn open(path: &Path, layout: &Layout) -> Result<Self, FileError> {
+        let Layout { n_points, x_runs, y_runs, .. } = *layout;
         let [n_x, n_y, n_z] = n_points;
         let refused = |source| FileError::system("read", COMPONENT, path, source);
         let file = File::open(path).map_err(refused)?;
@@ -302,8 +324,8 @@ impl Component {
                 "copy or write the file again, or mend box.n_points in the header",
             ));
         }
-        let bytes = vec![0; 4 * size];
-        Ok(Self { file, path: path.to_owned(), n_points, x_runs, y_runs, bytes })
+        let planes = Blocks::new(file, path, COMPONENT, 0, 4 * size, n_x);
+        Ok(Self { planes, n_points, x_runs, y_runs })
     }
 
     /// Calls `put(point, value)` for all points of the plane that arrives as number `step`; points y fastest.
@@ -313,17 +335,18 @@ impl Component {
             Axis::Downwind => in_order_of_arrival(step, n_x),
             _ => step,
         };
-        let start = place * self.bytes.len();
-        self.file
-            .seek(SeekFrom::Start(start as u64))
-            .and_then(|_| self.file.read_exact(&mut self.bytes))
-            .map_err(|source| FileError::system("read", COMPONENT, &self.path, source))?;
-        for (index, four) in self.bytes.chunks_exact(4).enumerate() {
+        let start = place * 4 * n_y * n_z;
+        for (index, four) in self.planes.plane(place)?.chunks_exact(4).enumerate() {
             let four = [four[0], four[1], four[2], four[3]];
             let value = f32::from_le_bytes(four);
             let (column, z) = (index / n_z, index % n_z);
             if value.is_nan() || value.abs() > FASTEST {
-                return Err(not_wind(&self.path, four, start + 4 * index, [place, column, z]));
+                return Err(not_wind(
+                    self.planes.path(),
+                    four,
+                    start + 4 * index,
+                    [place, column, z],
+                ));
             }
             let y = if self.y_runs == Axis::Left { column } else { n_y - 1 - column };
             put(z * n_y + y, value);

@@ -3,17 +3,21 @@
 //! In memory a box lies in the farm frame (x downwind, y left looking downwind, z up); each format converts on its way in
 //! and out. Time runs against x: of a box that stands with x index 0 at the inlet at time zero, the planes
 //! n_x − 1, n_x − 2, … arrive next. Formats that count in order of arrival therefore hold plane (n_x − i) mod n_x
-//! at place i. [`read`] takes a whole box into memory, [`open`] gives its planes one at a time, however long it is.
+//! at place i. [`read`] takes a whole box into memory, [`open`] gives its planes one at a time, however long it is, and
+//! [`convert`] writes them as they come: no writer holds more than a [`Source`] gives it.
 
 mod bladed;
+mod blocks;
 mod hawc;
 mod packed;
 mod recorder;
+mod source;
 mod turbsim;
 
 pub use bladed::{open as open_bladed, read as read_bladed, write as write_bladed};
 pub use hawc::{Axis, open as open_hawc, read as read_hawc, write as write_hawc};
 pub use recorder::WindRecorder;
+pub use source::{Outline, Source};
 pub use turbsim::{open as open_turbsim, read as read_turbsim, write as write_turbsim};
 
 use crate::FileError;
@@ -70,11 +74,31 @@ pub fn open(path: &Path) -> Result<Box<dyn Planes>, FileError> {
 ///
 /// # Errors
 /// [`FileError`]; files appear whole or not at all, the header last.
-pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
+pub fn write(path: &Path, mut stored: &StoredBox) -> Result<(), FileError> {
+    write_from(path, &mut stored)
+}
+
+/// Writes the box at `from` to `to`, whose extensions choose the formats as in [`read`]: the same files as [`write`] makes of
+/// what [`read`] gives. However long it is, a few planes at a time are in memory; they come once more for mean speeds that
+/// `from` does not tell, and for what the header of `to` tells of all of them.
+///
+/// # Errors
+/// As [`read`] and [`write`]; where `from` cannot be read to its end, what was at `to` before still stands.
+pub fn convert(from: &Path, to: &Path) -> Result<(), FileError> {
+    check_name(to)?;
+    match kind(from)? {
+        Kind::Hawc(header) => write_from(to, &mut hawc::stream(&header)?),
+        Kind::TurbSim => write_from(to, &mut turbsim::stream(from)?),
+        Kind::Bladed => write_from(to, &mut bladed::stream(from)?),
+    }
+}
+
+/// Writes the box of `source` as [`write`] does.
+fn write_from(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
     match kind(path)? {
-        Kind::Hawc(header) => hawc::write(&header, stored),
-        Kind::TurbSim => turbsim::write(path, stored),
-        Kind::Bladed => bladed::write(path, stored),
+        Kind::Hawc(header) => hawc::write(&header, source),
+        Kind::TurbSim => turbsim::write(path, source),
+        Kind::Bladed => bladed::write(path, source),
     }
 }
 
@@ -147,6 +171,8 @@ fn in_order_of_arrival(place: usize, n_x: usize) -> usize {
     (n_x - place) % n_x
 }
 
+#[cfg(test)]
+mod conversion_tests;
 #[cfg(test)]
 mod streaming_tests;
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! Planes of 16-bit integers, as TurbSim and Bladed write them, read one at a time.
 
-use super::StoredBox;
+use super::blocks::Blocks;
+use super::source::{Outline, Source, each_plane};
 use crate::FileError;
-use flow::inflow::{InflowError, PlaneGrid, Planes, TurbulenceBox};
+use flow::inflow::{InflowError, PlaneGrid, Planes};
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Where the integers are in a file, and what they mean.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +15,7 @@ pub(super) struct Packing {
     /// Byte of the first plane's first value.
     pub start: u64,
     /// Bytes from one plane to the next: points of a tower may follow those of the grid.
-    pub bytes_per_step: u64,
+    pub bytes_per_step: usize,
     /// Speed of the integer zero, for u, v, w (m/s).
     pub offsets: [f64; 3],
     /// Speed per integer, for u, v, w (m/s).
@@ -24,21 +24,19 @@ pub(super) struct Packing {
     pub from_left: bool,
 }
 
-/// Planes of 16-bit integers in a file; one of them is in memory.
+/// Planes of 16-bit integers in a file; a block of them is in memory.
 #[derive(Debug)]
 pub(super) struct PackedPlanes {
-    file: File,
-    path: PathBuf,
-    what: &'static str,
+    planes: Blocks,
     packing: Packing,
-    bytes: Vec<u8>,
 }
 
 impl PackedPlanes {
     /// Planes in `file`, which stands at `path` and holds `what`.
     pub(super) fn new(file: File, path: &Path, what: &'static str, packing: Packing) -> Self {
-        let bytes = vec![0; 6 * packing.grid.n_y * packing.grid.n_z];
-        Self { file, path: path.to_owned(), what, packing, bytes }
+        let Packing { grid, start, bytes_per_step, .. } = packing;
+        let planes = Blocks::new(file, path, what, start, bytes_per_step, grid.n_steps);
+        Self { planes, packing }
     }
 
     fn decode(
@@ -46,13 +44,9 @@ impl PackedPlanes {
         step: usize,
         mut put: impl FnMut(usize, [f32; 3]),
     ) -> Result<(), FileError> {
-        let Packing { grid, start, bytes_per_step, offsets, scales, from_left } = self.packing;
-        let byte = start + step as u64 * bytes_per_step;
-        self.file
-            .seek(SeekFrom::Start(byte))
-            .and_then(|_| self.file.read_exact(&mut self.bytes))
-            .map_err(|source| FileError::system("read", self.what, &self.path, source))?;
-        for (index, six) in self.bytes.chunks_exact(6).enumerate() {
+        let Packing { grid, offsets, scales, from_left, .. } = self.packing;
+        let bytes = self.planes.plane(step)?;
+        for (index, six) in bytes.chunks_exact(6).take(grid.n_y * grid.n_z).enumerate() {
             let value = |component: usize| {
                 let two = [six[2 * component], six[2 * component + 1]];
                 (offsets[component] + scales[component] * f64::from(i16::from_le_bytes(two))) as f32
@@ -64,43 +58,39 @@ impl PackedPlanes {
         Ok(())
     }
 
-    /// All planes as a box; the mean of u over time and width at each height goes to the mean speeds, so that the
-    /// fluctuations have none; v and w keep theirs.
+    /// The planes as those of a box; the mean of u over time and width at each height, for which all of them are read once,
+    /// goes to the mean speeds, so that the fluctuations have none; v and w keep theirs.
     ///
     /// # Errors
     /// [`FileError`] when the file cannot be read any more.
-    pub(super) fn into_box(
-        mut self,
+    pub(super) fn into_source(
+        self,
         hub_height: f64,
         description: String,
-    ) -> Result<StoredBox, FileError> {
+    ) -> Result<PackedSource, FileError> {
         let grid = self.packing.grid;
-        let (n_x, size) = (grid.n_steps, grid.n_y * grid.n_z);
-        let mut velocity: [Vec<f32>; 3] = Default::default();
-        for values in &mut velocity {
-            values.try_reserve_exact(n_x * size).map_err(|_| {
-                let problem =
-                    format!("its {} bytes of wind do not fit into memory", 12 * n_x * size);
-                FileError::content(self.what, &self.path, problem, "take a shorter record")
-            })?;
-            values.resize(n_x * size, 0.0);
-        }
-        for step in 0..n_x {
-            let start = super::in_order_of_arrival(step, n_x) * size;
-            self.decode(step, |point, wind| {
-                for (values, value) in velocity.iter_mut().zip(wind) {
-                    values[start + point] = value;
-                }
-            })?;
-        }
-        let mean_speeds = take_means(&mut velocity[0], grid.n_y, grid.n_z);
-        let n_points = [n_x, grid.n_y, grid.n_z];
-        let spacing = [grid.speed * grid.interval, grid.spacing[0], grid.spacing[1]];
-        let turbulence = TurbulenceBox::new(n_points, spacing, velocity).map_err(|error| {
-            FileError::content(self.what, &self.path, error.to_string(), "make the file again")
+        let mut means = vec![0.0; grid.n_z];
+        let outline = Outline {
+            n_points: [grid.n_steps, grid.n_y, grid.n_z],
+            spacing: [grid.speed * grid.interval, grid.spacing[0], grid.spacing[1]],
+            hub_speed: grid.speed,
+            hub_height,
+            lowest_height: grid.first[1],
+            mean_speeds: means.clone(),
+            description,
+        };
+        let velocity = std::array::from_fn(|_| vec![0.0; grid.n_y * grid.n_z]);
+        let mut source = PackedSource { planes: self, outline, velocity };
+        // As long as the mean speeds are zero, u is the wind itself.
+        each_plane(&mut source, |[u, ..]| {
+            for (mean, row) in means.iter_mut().zip(u.chunks(grid.n_y)) {
+                *mean += row.iter().map(|value| f64::from(*value)).sum::<f64>();
+            }
         })?;
-        let (hub_speed, lowest_height) = (grid.speed, grid.first[1]);
-        Ok(StoredBox { turbulence, hub_speed, hub_height, lowest_height, mean_speeds, description })
+        let points = (grid.n_steps * grid.n_y) as f64;
+        means.iter_mut().for_each(|mean| *mean /= points);
+        source.outline.mean_speeds = means;
+        Ok(source)
     }
 }
 
@@ -115,19 +105,32 @@ impl Planes for PackedPlanes {
     }
 }
 
-/// Takes the mean of each row off `values` (n_x × n_z × n_y) and gives it, lowest row first.
-fn take_means(values: &mut [f32], n_y: usize, n_z: usize) -> Vec<f64> {
-    let n_rows = values.len() / n_y;
-    let mut means = vec![0.0; n_z];
-    for (row, values) in values.chunks(n_y).enumerate() {
-        means[row % n_z] += values.iter().map(|value| f64::from(*value)).sum::<f64>();
+/// The box that planes of 16-bit integers are.
+pub(super) struct PackedSource {
+    planes: PackedPlanes,
+    outline: Outline,
+    /// Fluctuations u, v, w (m/s) on the plane that was asked for.
+    velocity: [Vec<f32>; 3],
+}
+
+impl Source for PackedSource {
+    fn outline(&self) -> Outline {
+        self.outline.clone()
     }
-    let points = (n_rows / n_z * n_y) as f64;
-    means.iter_mut().for_each(|mean| *mean /= points);
-    for (row, values) in values.chunks_mut(n_y).enumerate() {
-        for value in values {
-            *value = (f64::from(*value) - means[row % n_z]) as f32;
+
+    fn plane(&mut self, x: usize) -> Result<[&[f32]; 3], FileError> {
+        let Self { planes, outline, velocity } = self;
+        let [n_x, n_y, _] = outline.n_points;
+        planes.decode(super::in_order_of_arrival(x, n_x), |point, wind| {
+            for (values, value) in velocity.iter_mut().zip(wind) {
+                values[point] = value;
+            }
+        })?;
+        for (row, mean) in velocity[0].chunks_mut(n_y).zip(&outline.mean_speeds) {
+            for value in row {
+                *value = (f64::from(*value) - mean) as f32;
+            }
         }
+        Ok(velocity.each_ref().map(Vec::as_slice))
     }
-    means
 }

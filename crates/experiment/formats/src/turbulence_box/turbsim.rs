@@ -6,10 +6,11 @@
 //! was checked against the standard deviations by point in a summary file of TurbSim 2.
 
 use super::packed::{PackedPlanes, Packing};
+use super::source::{Outline, Source, each_plane, whole};
 use super::{FASTEST, StoredBox, in_order_of_arrival};
 use crate::FileError;
 use crate::atomic::AtomicFile;
-use flow::inflow::{PlaneGrid, Planes, TurbulenceBox};
+use flow::inflow::{PlaneGrid, Planes};
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -49,11 +50,19 @@ struct Header {
 /// # Errors
 /// [`FileError`] names file, place and fix.
 pub fn read(path: &Path) -> Result<StoredBox, FileError> {
+    whole(path, &mut stream(path)?)
+}
+
+/// The full field at `path` as a box, read plane by plane.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn stream(path: &Path) -> Result<impl Source + use<>, FileError> {
     let (planes, header, mut description) = start(path)?;
     if !header.periodic {
         description.push_str(" (does not repeat: its end meets its beginning with a jump)");
     }
-    planes.into_box(header.hub_height, description)
+    planes.into_source(header.hub_height, description)
 }
 
 /// Planes of the full field at `path`, read one at a time; the middle of its width stands at y = 0.
@@ -85,7 +94,7 @@ fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
             repeats: header.periodic,
         },
         start: (FIXED_HEADER + header.description_length) as u64,
-        bytes_per_step: 6 * (n_points + header.n_tower) as u64,
+        bytes_per_step: 6 * (n_points + header.n_tower),
         offsets: [0, 1, 2].map(|component| {
             -f64::from(header.intercepts[component]) / f64::from(header.slopes[component])
         }),
@@ -96,40 +105,35 @@ fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
     Ok((PackedPlanes::new(file, path, WHAT, packing), header, description))
 }
 
-/// Writes `stored` to `path`: a record that repeats, interval = spacing along x over hub speed.
+/// Writes the box of `source` to `path`: a record that repeats, interval = spacing along x over hub speed.
 ///
-/// Values are rounded to 1/65535 of their range, a few 1e-5 of it; the description to 200 characters of ASCII.
+/// Values are rounded to 1/65535 of their range, a few 1e-5 of it, for which all planes are read twice; the description to
+/// 200 characters of ASCII.
 ///
 /// # Errors
 /// [`FileError`]; the file appears whole or not at all.
-pub fn write(path: &Path, stored: &StoredBox) -> Result<(), FileError> {
-    let turbulence = &stored.turbulence;
-    let [n_x, n_y, n_z] = turbulence.n_points();
-    let mean = |z: usize| stored.mean_speeds.get(z).copied().unwrap_or(stored.hub_speed);
-    let total = |component: usize, x: usize, point: usize| {
-        let fluctuation = f64::from(turbulence.plane(component, x)[point]);
-        if component == 0 { fluctuation + mean(point / n_y) } else { fluctuation }
-    };
-    let ranges = [0, 1, 2].map(|component| range(turbulence, component, total));
-    let [spacing_x, spacing_y, spacing_z] = turbulence.spacing();
+pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
+    let outline = source.outline();
+    let ranges = ranges(&outline, source)?;
+    let [n_x, n_y, n_z] = outline.n_points;
+    let [spacing_x, spacing_y, spacing_z] = outline.spacing;
     let grid = PlaneGrid {
         n_y,
         n_z,
         spacing: [spacing_y, spacing_z],
-        first: [-0.5 * (n_y - 1) as f64 * spacing_y, stored.lowest_height],
-        interval: spacing_x / stored.hub_speed,
-        speed: stored.hub_speed,
+        first: [-0.5 * (n_y - 1) as f64 * spacing_y, outline.lowest_height],
+        interval: spacing_x / outline.hub_speed,
+        speed: outline.hub_speed,
         n_steps: n_x,
         repeats: true,
     };
-    let mut field = Field::create(path, &grid, stored.hub_height, ranges, &stored.description)?;
-    let mut plane = vec![[0.0; 3]; n_y * n_z];
+    let mut field = Field::create(path, &grid, outline.hub_height, ranges, &outline.description)?;
     for step in 0..n_x {
-        let x = in_order_of_arrival(step, n_x);
-        for (point, wind) in plane.iter_mut().enumerate() {
-            *wind = [0, 1, 2].map(|component| total(component, x, point));
-        }
-        field.put(&plane)?;
+        let plane = source.plane(in_order_of_arrival(step, n_x))?;
+        let wind = |point: usize| {
+            [0, 1, 2].map(|component| outline.wind(component, point, plane[component][point]))
+        };
+        field.add((0..n_y * n_z).map(wind))?;
     }
     field.commit()
 }
@@ -195,10 +199,6 @@ impl Field {
     }
 
     /// Adds a plane of wind (m/s).
-    fn put(&mut self, wind: &[[f64; 3]]) -> Result<(), FileError> {
-        self.add(wind.iter().copied())
-    }
-
     fn add(&mut self, wind: impl Iterator<Item = [f64; 3]>) -> Result<(), FileError> {
         self.bytes.clear();
         for point in wind {
@@ -219,21 +219,18 @@ impl Field {
     }
 }
 
-/// Least and most of a component (m/s).
-fn range(
-    turbulence: &TurbulenceBox,
-    component: usize,
-    total: impl Fn(usize, usize, usize) -> f64,
-) -> [f64; 2] {
-    let [n_x, n_y, n_z] = turbulence.n_points();
-    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-    for x in 0..n_x {
-        for point in 0..n_y * n_z {
-            let value = total(component, x, point);
-            (least, most) = (least.min(value), most.max(value));
+/// Least and most of u, v, w (m/s), the mean included, in the box of `source`, which is as `outline` says.
+fn ranges(outline: &Outline, source: &mut dyn Source) -> Result<[[f64; 2]; 3], FileError> {
+    let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    each_plane(source, |plane| {
+        for (component, (range, values)) in ranges.iter_mut().zip(plane).enumerate() {
+            for (point, value) in values.iter().enumerate() {
+                let wind = outline.wind(component, point, *value);
+                *range = [range[0].min(wind), range[1].max(wind)];
+            }
         }
-    }
-    [least, most]
+    })?;
+    Ok(ranges)
 }
 
 /// Slope and intercept that spread the range from `least` to `most` (m/s) over all integers.

@@ -1,6 +1,6 @@
 //! Headers of Bladed's full fields, old and new, and the summary beside them.
 
-use super::{IMPROVED_VON_KARMAN, NEW, StoredBox, WHAT};
+use super::{IMPROVED_VON_KARMAN, NEW, Outline, WHAT};
 use crate::FileError;
 use crate::atomic;
 use std::io::Read;
@@ -300,24 +300,24 @@ impl Summary {
     }
 }
 
-/// The new header, type 4, of `stored`, whose integers are scaled with `intensities` (%).
+/// The new header, type 4, of the box that `outline` is of, whose integers are scaled with `intensities` (%).
 ///
 /// # Errors
 /// [`FileError`] when the format cannot count the points.
 pub(super) fn bytes(
     path: &Path,
-    stored: &StoredBox,
+    outline: &Outline,
     intensities: [f32; 3],
 ) -> Result<Vec<u8>, FileError> {
-    let [n_x, n_y, n_z] = stored.turbulence.n_points();
-    let [spacing_x, spacing_y, spacing_z] = stored.turbulence.spacing();
+    let [n_x, n_y, n_z] = outline.n_points;
+    let [spacing_x, spacing_y, spacing_z] = outline.spacing;
     let count = |n: usize| {
         i32::try_from(n).map_err(|_| {
             let problem = format!("{n} points are more than the format counts");
             FileError::content(WHAT, path, problem, "make the box shorter")
         })
     };
-    let middle = stored.lowest_height + 0.5 * (n_z - 1) as f64 * spacing_z;
+    let middle = outline.lowest_height + 0.5 * (n_z - 1) as f64 * spacing_z;
     let mut bytes = Vec::with_capacity(128);
     bytes.extend_from_slice(&NEW.to_le_bytes());
     bytes.extend_from_slice(&IMPROVED_VON_KARMAN.to_le_bytes());
@@ -331,7 +331,7 @@ pub(super) fn bytes(
     reals(&mut bytes, &intensities.map(f64::from));
     reals(&mut bytes, &[spacing_z, spacing_y, spacing_x]);
     bytes.extend_from_slice(&count(n_x / 2)?.to_le_bytes());
-    reals(&mut bytes, &[stored.hub_speed, 0.0, 0.0, 0.0]);
+    reals(&mut bytes, &[outline.hub_speed, 0.0, 0.0, 0.0]);
     for value in [0, 0, count(n_z)?, count(n_y)?] {
         bytes.extend_from_slice(&value.to_le_bytes());
     }
@@ -339,10 +339,10 @@ pub(super) fn bytes(
     Ok(bytes)
 }
 
-/// Text of the summary of `stored`, whose integers are scaled with `intensities` (%).
-pub(super) fn summary(stored: &StoredBox, intensities: [f32; 3]) -> String {
-    let [_, n_y, n_z] = stored.turbulence.n_points();
-    let [_, spacing_y, spacing_z] = stored.turbulence.spacing();
+/// Text of the summary of the box that `outline` is of, whose integers are scaled with `intensities` (%).
+pub(super) fn summary(outline: &Outline, intensities: [f32; 3]) -> String {
+    let [_, n_y, n_z] = outline.n_points;
+    let [_, spacing_y, spacing_z] = outline.spacing;
     let height = (n_z - 1) as f64 * spacing_z;
     let [u, v, w] = intensities;
     format!(
@@ -358,11 +358,11 @@ pub(super) fn summary(stored: &StoredBox, intensities: [f32; 3]) -> String {
          \x20  Height Offset = {:.4} m\n\
          \x20  Grid Base     = {:.4} m\n\n\
          Creating a PERIODIC output file.\n",
-        stored.description,
-        stored.hub_height,
+        outline.description,
+        outline.hub_height,
         (n_y - 1) as f64 * spacing_y,
-        stored.hub_speed,
-        stored.hub_height - stored.lowest_height - 0.5 * height,
-        stored.lowest_height,
+        outline.hub_speed,
+        outline.hub_height - outline.lowest_height - 0.5 * height,
+        outline.lowest_height,
     )
 }
