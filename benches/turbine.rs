@@ -147,6 +147,7 @@ impl BladesAlone {
             position: Vector3::ZERO,
             velocity: Vector3::ZERO,
             axes: structure.frame(0.0).blade(0.0, 0.0),
+            pitch: 0.0,
         };
         // A turn of the rotor in sixty postures, found beforehand.
         let turn: Vec<_> = (0..60)
