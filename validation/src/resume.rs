@@ -8,8 +8,8 @@ use std::thread::sleep;
 use std::time::Instant;
 
 const N_KILLS: u32 = 20;
-/// A small row in turbulent wind: every state that a run has, in seconds. The estimator is one that is not calibrated first, or most
-/// kills would hit that.
+/// A small row in turbulent wind: every state that a run has, in seconds. The estimator is one that is not calibrated first, and the
+/// azimuth offset is given, or most kills would hit their probe.
 const CASE: &str = r#"
 name = "kills"
 [wind]
@@ -44,7 +44,7 @@ instruments.rotor_speed = { resolution_rpm = 0.01 }
 [[run]]
 name = "helix"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
-control.T2 = { kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 3.0, start = 60.0, estimator = "published" }
+control.T2 = { kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 3.0, start = 60.0, estimator = "published", azimuth_offset_deg = 0.0 }
 "#;
 
 /// Files that differ between an undisturbed run and one that was killed [`N_KILLS`] times, out of those compared.

@@ -9,6 +9,10 @@
 //! with the phases φ̂ of the wind that [`HelixEstimator`] finds. Offset 0: pitch rises where the wind does, and the blades
 //! lose load there; offset 180°: pitch falls where the wind rises.
 //!
+//! The blades follow by the inverse multi-blade transformation with the azimuth offset ψ_o, which multiplies tilt + j yaw by
+//! e^(−jψ_o). Where both axes have one phase that is another phase: the blades pitch as with φ_off + ψ_o (ccw) or φ_off − ψ_o
+//! (cw) and no azimuth offset. What the axes' phases differ by is a wave of the other sense, which is turned the other way.
+//!
 //! What the paper leaves open: the excitation is as strong as the estimate is trusted. Where the wind carries no helix, or
 //! the loads go missing, it fades to the baseline, and comes back when the helix does.
 
@@ -37,6 +41,21 @@ pub struct SyncSettings {
     pub start: f64,
     /// Trust (–) below which the excitation fades out, and above which it comes back; none: it never fades out.
     pub trust: Option<[f64; 2]>,
+}
+
+impl SyncSettings {
+    /// Tilt and yaw commands (rad) at `time` (s), of a `share` (–) of the amplitude, where tilt and yaw of the wind have the
+    /// `phases` (rad). van Vondelen et al. (2025), Eq. 22.
+    fn commands(&self, time: f64, share: f64, phases: [f64; 2]) -> FixedFrame {
+        let Self { sense, amplitude, rate, offset, start, .. } = *self;
+        let amplitude = amplitude * share * fade_in(time, start, rate);
+        let angle = rate * time + offset;
+        FixedFrame {
+            average: 0.0,
+            tilt: amplitude * (angle + phases[0]).sin(),
+            yaw: amplitude * (angle + sense.yaw_lead() + phases[1]).sin(),
+        }
+    }
 }
 
 /// Trust below which the excitation fades out, and above which it comes back (–).
@@ -131,19 +150,9 @@ impl PhaseSync {
             steady.lean(share, axis.phase);
         }
         let azimuth = measurements.azimuth + self.settings.azimuth_offset;
-        to_blades(azimuth, self.commands(measurements.time), measurements.pitch.len())
-    }
-
-    /// Tilt and yaw commands (rad) at `time` (s). van Vondelen et al. (2025), Eq. 22.
-    fn commands(&self, time: f64) -> FixedFrame {
-        let SyncSettings { sense, amplitude, rate, offset, start, .. } = self.settings;
-        let amplitude = amplitude * self.share * fade_in(time, start, rate);
-        let angle = rate * time + offset;
-        FixedFrame {
-            average: 0.0,
-            tilt: amplitude * (angle + self.steady[0].phase()).sin(),
-            yaw: amplitude * (angle + sense.yaw_lead() + self.steady[1].phase()).sin(),
-        }
+        let phases = self.steady.map(Phasor::phase);
+        let commands = self.settings.commands(measurements.time, self.share, phases);
+        to_blades(azimuth, commands, measurements.pitch.len())
     }
 
     /// Moves the share towards all or nothing within about one excitation period.
@@ -186,5 +195,44 @@ impl PhaseSync {
             amplitude.to_degrees(),
             offset.to_degrees()
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::PI;
+
+    fn settings(sense: Sense, offset: f64, azimuth_offset: f64) -> SyncSettings {
+        let (amplitude, rate) = (0.07, 0.069);
+        SyncSettings { sense, amplitude, rate, offset, azimuth_offset, start: -1e6, trust: None }
+    }
+
+    /// Pitch (rad) of three blades at `time` (s), the first at `azimuth` (rad), that follow `phases` (rad).
+    fn blades(settings: &SyncSettings, time: f64, azimuth: f64, phases: [f64; 2]) -> PerBlade<f64> {
+        to_blades(azimuth + settings.azimuth_offset, settings.commands(time, 1.0, phases), 3)
+    }
+
+    proptest! {
+        /// Axes half a turn apart in phase make a wave of the other sense, which an azimuth offset turns the other way.
+        #[test]
+        fn an_azimuth_offset_is_another_offset_where_both_axes_have_one_phase(
+            offset in 0.0..TAU, azimuth_offset in -PI..PI, phase in -PI..PI,
+            time in 0.0..3000.0_f64, azimuth in 0.0..TAU,
+        ) {
+            for (sense, sign) in [(Sense::CounterClockwise, 1.0), (Sense::Clockwise, -1.0)] {
+                for (apart, sign) in [(0.0, sign), (PI, -sign)] {
+                    let phases = [phase, phase + apart];
+                    let turned = settings(sense, offset, azimuth_offset);
+                    let plain = settings(sense, offset + sign * azimuth_offset, 0.0);
+                    let turned = blades(&turned, time, azimuth, phases);
+                    let plain = blades(&plain, time, azimuth, phases);
+                    for (turned, plain) in turned.iter().zip(plain.iter()) {
+                        prop_assert!((turned - plain).abs() < 1e-12);
+                    }
+                }
+            }
+        }
     }
 }

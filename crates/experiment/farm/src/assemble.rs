@@ -46,6 +46,9 @@ pub enum AssemblyError {
     /// Nobody found how pitch acts on the loads.
     #[error("how pitch acts on the loads was neither given nor found before")]
     NotDecoupled,
+    /// Nobody found the azimuth offset of a turbine that joins a helix.
+    #[error("the azimuth offset with which it pitches was neither given nor found before")]
+    NoAzimuthOffset,
     /// An excitation that fades out before it has faded in.
     #[error(
         "stop = {stop} s comes before the excitation is whole: it starts at {start} s and fades in over one period of {period:.1} s; stop at {earliest} s or later, or leave `stop` out"
@@ -131,9 +134,9 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
 /// What runs on a turbine of `model`, at time steps of `plan`; Strouhal numbers are taken with the case's wind speed and the first turbine's diameter.
 ///
 /// # Errors
-/// [`AssemblyError::Estimation`] when the phase of a helix cannot be sought as asked, [`AssemblyError::Meandering`] and
-/// [`AssemblyError::NotDecoupled`] when meandering cannot be followed, [`AssemblyError::StopsTooEarly`] for an excitation that
-/// ends before it has begun.
+/// [`AssemblyError::Estimation`] when the phase of a helix cannot be sought as asked, [`AssemblyError::NoAzimuthOffset`] when it
+/// cannot be joined, [`AssemblyError::Meandering`] and [`AssemblyError::NotDecoupled`] when meandering cannot be followed,
+/// [`AssemblyError::StopsTooEarly`] for an excitation that ends before it has begun.
 pub fn controller(
     control: &Control,
     model: &Model,
@@ -170,7 +173,7 @@ pub fn controller(
                 amplitude: asked.amplitude,
                 rate: setting.rate,
                 offset: wrap_to_turn(asked.offset),
-                azimuth_offset: asked.azimuth_offset,
+                azimuth_offset: asked.azimuth_offset.ok_or(AssemblyError::NoAzimuthOffset)?,
                 start: asked.start,
                 trust: asked.fallback.then_some(phase_sync::TRUST),
             };

@@ -442,8 +442,9 @@ pub struct PhaseSync {
     pub strouhal: f64,
     /// Lead of the pitch over the wind that meets the rotor (rad, any turn).
     pub offset: f64,
-    /// Azimuth offset of the inverse multi-blade transformation (rad).
-    pub azimuth_offset: f64,
+    /// Azimuth offset of the inverse multi-blade transformation (rad); found [before the runs](crate::pitch_response::own_pitch)
+    /// when absent.
+    pub azimuth_offset: Option<f64>,
     /// Time at which it fades in (s).
     pub start: f64,
     /// What finds the phase.
@@ -453,7 +454,7 @@ pub struct PhaseSync {
     /// Noise that the estimator is told to believe in.
     #[serde(default)]
     pub noise: PhaseNoise,
-    /// What the estimator makes of the turbine's own pitch; found [before the runs](crate::pitch_response::calibration).
+    /// What the estimator makes of the turbine's own pitch; found [before the runs](crate::pitch_response::own_pitch).
     pub calibration: Option<Calibration>,
 }
 

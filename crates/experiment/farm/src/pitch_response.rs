@@ -1,9 +1,13 @@
 //! A turbine alone in a steady wind that pitches a helix: the record on which a phase estimator is calibrated, and which
-//! tells meandering control how pitch acts on the loads.
+//! tells how pitch acts on the loads.
+
+mod joining;
+
+pub use joining::{OwnPitch, own_pitch, own_pitch_cost};
 
 use crate::air::Air;
 use crate::assemble::{self, AssemblyError, Model};
-use crate::case::{Case, Control, Decoupling, Helix, Meandering, PhaseEstimator, PhaseSync, Sense};
+use crate::case::{Case, Control, Decoupling, Helix, Meandering, Sense};
 use crate::farm::Recorder;
 use crate::plan::Plan;
 use crate::self_check::Tunnel;
@@ -13,7 +17,6 @@ use basis::{Commands, Measurements, Vector3};
 use control::excitation_rate;
 use control::meandering::Answer;
 use estimation::EstimationError;
-use estimation::helix::{Calibration, calibrate};
 use flow::FlowError;
 use flow::inflow::{MeanProfile, PrescribedWind};
 use flow::lattice;
@@ -24,8 +27,6 @@ use turbine::Turbine;
 
 /// Wind of the record over the case's (–): about what is left in a wake.
 const WAKE_SPEED: f64 = 0.75;
-/// Excitation periods for the filter to settle once the near wake has, and counted after them (–).
-const PERIODS: [f64; 2] = [2.0, 2.0];
 /// Excitation periods counted where no filter has to settle (–): moments answer as soon as the near wake has settled, some
 /// periods after the pitch began, so that waiting longer would tell nothing more and cost a third of the probe.
 const COUNTED: f64 = 2.0;
@@ -55,25 +56,10 @@ pub enum CalibrationError {
 /// What a probe costs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProbeCost {
-    /// Cells of the air (–); none in prescribed wind.
-    pub n_cells: usize,
     /// Steps, those of all its trials together (–).
     pub n_steps: u64,
-}
-
-impl ProbeCost {
-    /// Cell updates, or steps in prescribed wind (–): what wall time goes with.
-    pub fn work(&self) -> f64 {
-        self.n_cells.max(1) as f64 * self.n_steps as f64
-    }
-}
-
-/// Cost of [`calibration`].
-pub fn calibration_cost(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSync) -> ProbeCost {
-    let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
-    let wind_speed = WAKE_SPEED * case.wind.speed;
-    let periods = PERIODS[0] + PERIODS[1];
-    Course::new(wind_speed, plan, model, rate, periods).cost(case, plan, model, 1)
+    /// Cell updates or what takes as long, steps where the case's wind is prescribed (–): what wall time goes with.
+    pub work: f64,
 }
 
 /// Cost of [`decoupling`].
@@ -113,50 +99,21 @@ impl Course {
 
     /// Of `n_trials` of them.
     fn cost(self, case: &Case, plan: &Plan, model: &Model, n_trials: u64) -> ProbeCost {
-        let n_cells = if case.flow.solver.is_prescribed() {
-            0
+        let n_cells: usize = if case.flow.solver.is_prescribed() {
+            1
         } else {
             let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
             tunnel.n_cells(model.definition.rotor_diameter()).iter().product()
         };
-        ProbeCost { n_cells, n_steps: n_trials * self.n_steps() }
+        let n_steps = n_trials * self.n_steps();
+        ProbeCost { n_steps, work: n_cells as f64 * n_steps as f64 }
     }
-}
-
-/// Calibrates the estimator of `sync` on turbine number `index` of `case`: gain and azimuth offset of its own pitch.
-///
-/// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in prescribed wind
-/// as the case has it, with perfect instruments, and pitches the helix that it shall pitch; `progress` is told the share done.
-///
-/// # Errors
-/// [`CalibrationError`].
-pub fn calibration(
-    case: &Case,
-    plan: &Plan,
-    model: &Model,
-    index: usize,
-    sync: &PhaseSync,
-    progress: Progress,
-) -> Result<Calibration, CalibrationError> {
-    let pitch = Pitching {
-        wind_speed: WAKE_SPEED * case.wind.speed,
-        rate: excitation_rate(sync.strouhal, case.wind.speed, plan.diameter),
-        sense: sync.sense,
-        amplitude: sync.amplitude,
-        azimuth_offset: sync.azimuth_offset,
-        periods: PERIODS[0] + PERIODS[1],
-    };
-    let record = pitching(case, plan, model, index, &pitch, progress)?;
-    let setting = assemble::estimator_setting(sync, case, plan);
-    let options = assemble::estimator_options(PhaseEstimator::Robust, case.flow.solver);
-    let options = sync.noise.apply(options);
-    let settling = PERIODS[0] * TAU / setting.rate;
-    Ok(calibrate(&model.definition, &setting, options, &record, settling)?)
 }
 
 /// How pitch acts on tilt and yaw moment of turbine number `index` of `case` in the middle of what `asked` follows.
 ///
-/// The turbine stands as in [`calibration`] and pitches a helix of [`PROBE`], first counter-clockwise, then clockwise; what
+/// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in prescribed wind as
+/// the case has it, with perfect instruments, and pitches a helix of [`PROBE`], first counter-clockwise, then clockwise; what
 /// either takes off the moments is told by [`Decoupling::from_senses`]; `progress` is told the share done.
 ///
 /// # Errors

@@ -171,7 +171,12 @@ fn stride(duration: f64, interval: f64) -> u64 {
 }
 
 /// The plan of turbines in prescribed wind: no cells.
-fn without_air(case: &Case, diameter: f64, hub_height: f64, positions: Vec<Vector3>) -> Plan {
+pub(crate) fn without_air(
+    case: &Case,
+    diameter: f64,
+    hub_height: f64,
+    positions: Vec<Vector3>,
+) -> Plan {
     let interval = case.flow.step.unwrap_or(PRESCRIBED_STEP);
     let n_spin_up_steps = (case.time.spin_up / interval).round() as u64;
     let row_stride = stride(case.output.interval.unwrap_or(PRESCRIBED_ROW), interval);

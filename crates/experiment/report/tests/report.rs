@@ -2,7 +2,7 @@
 
 mod synthetic;
 
-use basis::records::{MeanderingAxis, MeanderingSummary, PitchDuty, Statistic};
+use basis::records::{MeanderingAxis, MeanderingSummary, PitchDuty, PitchResponse, Statistic};
 use report::{
     PhaseNumbers, PhaseRow, ReportError, StudyRecords, Synchronisation, TrackFigure, TrackLine,
     TrackRow,
@@ -271,6 +271,31 @@ fn changes_of_loads_come_with_their_intervals() {
     change.half_width_95 = None;
     set(&mut study, change);
     assert!(page(&study).contains(&cells("−20.0 % (no interval)")));
+}
+
+#[test]
+fn the_offset_of_the_pitch_and_that_of_the_belief_have_their_rows() {
+    let mut study = synthetic::two_runs();
+    let turned = "<td>blades, by the inverse multi-blade transformation</td><td class=\"n\"></td>";
+    let belief = "<td>belief of the phase estimator</td><td class=\"n\">× 1.040</td>";
+    assert!(!page(&study).contains(turned));
+    study.runs[1].summary.turbines[1].pitch_response = Some(PitchResponse::Estimator {
+        gain: 1.04,
+        azimuth_offset: 0.5f64.to_radians(),
+        before: 0.12,
+        after: 0.0,
+        transformation_offset: Some(35.2f64.to_radians()),
+    });
+    let both = page(&study);
+    for (on, offset) in [(turned, "35.2"), (belief, "0.5")] {
+        let row = format!("{on}<td class=\"n\">{offset}</td><td class=\"n\"></td>");
+        assert_eq!(both.matches(&row).count(), 1, "{on}");
+    }
+    assert_well_formed(&both);
+    study.runs[1].summary.turbines[1].pitch_response =
+        Some(PitchResponse::Transformation { azimuth_offset: 35.2f64.to_radians() });
+    let alone = page(&study);
+    assert!(alone.contains(turned) && !alone.contains(belief));
 }
 
 #[test]

@@ -9,7 +9,6 @@ use crate::watcher::{Estimate, Watcher};
 use basis::angle::wrap_to_turn;
 use farm::assemble::{Model, controller};
 use farm::case::{Case, Control, Decoupling, Solver};
-use farm::pitch_response::ProbeCost;
 use farm::self_check::{SelfCheckError, Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -173,7 +172,7 @@ impl Setup {
             n_runs,
             n_probes: costs.len(),
             n_probe_steps: costs.iter().map(|cost| cost.n_steps).sum(),
-            probe_work: costs.iter().map(ProbeCost::work).sum(),
+            probe_work: costs.iter().map(|cost| cost.work).sum(),
             n_cells: plan.n_cells,
             spacing: plan.spacing,
             interval: plan.interval,
@@ -347,10 +346,16 @@ fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), Study
                 return Err(StudyError::TooFewBlades { run, turbine, n_blades });
             }
             let mut control = *control;
-            if let Control::Meandering(asked) = &mut control {
-                // What a probe will find, if there is to be one, decides nothing here.
-                let any = Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: 1.0 };
-                asked.decoupling = asked.decoupling.or(Some(any));
+            // What a probe will find, if there is to be one, decides nothing here.
+            match &mut control {
+                Control::Meandering(asked) => {
+                    let any = Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: 1.0 };
+                    asked.decoupling = asked.decoupling.or(Some(any));
+                }
+                Control::PhaseSync(asked) => {
+                    asked.azimuth_offset = asked.azimuth_offset.or(Some(0.0));
+                }
+                _ => {}
             }
             if let Err(source) = controller(&control, model, case, plan) {
                 let (run, turbine) = (run.name.clone(), placement.name.clone());

@@ -10,7 +10,7 @@ use farm::case::{
     Control, Decoupling, DynamicInflow, Meandering, PhaseEstimator, PhaseNoise, PhaseSync,
 };
 use farm::pitch_response::{
-    CalibrationError, ProbeCost, calibration, calibration_cost, decoupling, decoupling_cost,
+    CalibrationError, OwnPitch, ProbeCost, decoupling, decoupling_cost, own_pitch, own_pitch_cost,
 };
 use formats::records::{ProbeRecord, read_probes, sha256, write_probes};
 use std::ops::ControlFlow;
@@ -57,7 +57,8 @@ impl Probes {
 /// Whose pitch is probed for what.
 #[derive(Clone, Copy)]
 enum Asked {
-    Calibration(PhaseSync),
+    /// Azimuth offset and calibration of a turbine that joins a helix, what of both is to be found.
+    OwnPitch(PhaseSync),
     Decoupling(Meandering),
 }
 
@@ -66,8 +67,9 @@ impl Asked {
     fn of(control: &Control) -> Option<Self> {
         match *control {
             Control::PhaseSync(sync) => {
-                let needs = sync.estimator == PhaseEstimator::Robust && sync.amplitude != 0.0;
-                needs.then_some(Self::Calibration(sync))
+                let open =
+                    sync.azimuth_offset.is_none() || sync.estimator == PhaseEstimator::Robust;
+                (open && sync.amplitude != 0.0).then_some(Self::OwnPitch(sync))
             }
             Control::Meandering(asked) => {
                 let needs = asked.decoupling.is_none() && asked.amplitude != 0.0;
@@ -101,7 +103,7 @@ impl Setup {
                 }
                 let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
                 let cost = match &asked {
-                    Asked::Calibration(sync) => calibration_cost(case, plan, model, sync),
+                    Asked::OwnPitch(sync) => own_pitch_cost(case, plan, model, sync),
                     Asked::Decoupling(asked) => decoupling_cost(case, plan, model, asked),
                 };
                 wanted.push(Probe { places: vec![(run, index)], asked, key, cost });
@@ -121,12 +123,15 @@ impl Setup {
             Some(path) => text_names(path).iter().map(text).collect(),
         };
         let asked = match asked {
-            Asked::Calibration(sync) => format!(
-                "calibration {:?} {:?} {:?} {:?}{}",
+            Asked::OwnPitch(sync) if sync.estimator == PhaseEstimator::Published => {
+                format!("azimuth offset {:?}", sync.strouhal)
+            }
+            Asked::OwnPitch(sync) => format!(
+                "calibration {:?} {:?} {:?} {}{}",
                 sync.sense,
                 sync.amplitude,
                 sync.strouhal,
-                sync.azimuth_offset,
+                sync.azimuth_offset.map_or("found".to_owned(), |given| format!("{given:?}")),
                 trace(&sync.noise)
             ),
             Asked::Decoupling(asked) => format!("decoupling {:?}", asked.strouhal),
@@ -157,9 +162,10 @@ impl Setup {
         )
     }
 
-    /// On return the case knows what the phase estimator of every turbine that joins a helix makes of its own pitch, and how
-    /// pitch acts on the loads of every turbine that acts on meandering and is not told, as far as `probes` name them. What is
-    /// found is kept in the folder `directory`. A break when `stop` asked for an end before all was found.
+    /// On return the case knows with which azimuth offset every turbine pitches that joins a helix, and what its phase
+    /// estimator makes of that, and how pitch acts on the loads of every turbine that acts on meandering and is not told, as far
+    /// as `probes` name them. What is found is kept in the folder `directory`. A break when `stop` asked for an end before all
+    /// was found.
     ///
     /// # Errors
     /// [`StudyError::Calibration`] when it cannot be found, [`StudyError::File`] when it cannot be kept.
@@ -173,7 +179,7 @@ impl Setup {
         let open: Vec<&Probe> = probes.open().collect();
         let mut known = probes.known.clone();
         let started = Instant::now();
-        let all: f64 = open.iter().map(|probe| probe.cost.work()).sum();
+        let all: f64 = open.iter().map(|probe| probe.cost.work).sum();
         let mut done = 0.0;
         for (place, probe) in open.iter().enumerate() {
             let index = probe.places[0].1;
@@ -187,7 +193,7 @@ impl Setup {
                     return ControlFlow::Continue(());
                 }
                 last = Some(Instant::now());
-                let made = done + share * probe.cost.work();
+                let made = done + share * probe.cost.work;
                 let elapsed = started.elapsed().as_secs_f64();
                 watcher.probing(&Probing {
                     turbine: name,
@@ -200,8 +206,8 @@ impl Setup {
             };
             let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
             let found = match &probe.asked {
-                Asked::Calibration(sync) => calibration(case, plan, model, index, sync, &mut told)
-                    .map(|found| record_of_calibration(&found)),
+                Asked::OwnPitch(sync) => own_pitch(case, plan, model, index, sync, &mut told)
+                    .map(|found| record_of_own_pitch(&found)),
                 Asked::Decoupling(asked) => decoupling(case, plan, model, index, asked, &mut told)
                     .map(|found| record_of_decoupling(&found)),
             };
@@ -209,7 +215,7 @@ impl Setup {
                 Err(CalibrationError::BrokenOff) => return Ok(ControlFlow::Break(())),
                 found => found?,
             };
-            done += probe.cost.work();
+            done += probe.cost.work;
             known.push(ProbeRecord { key: probe.key.clone(), turbine: name.clone(), response });
             write_probes(directory, &known)?;
         }
@@ -237,7 +243,9 @@ fn trace(noise: &PhaseNoise) -> String {
 fn told(control: Control, found: &PitchResponse) -> Control {
     match control {
         Control::PhaseSync(sync) => {
-            Control::PhaseSync(PhaseSync { calibration: calibration_of(found), ..sync })
+            let azimuth_offset = sync.azimuth_offset.or(azimuth_offset_of(found));
+            let calibration = calibration_of(found);
+            Control::PhaseSync(PhaseSync { azimuth_offset, calibration, ..sync })
         }
         Control::Meandering(asked) => {
             Control::Meandering(Meandering { decoupling: decoupling_of(found), ..asked })
@@ -249,15 +257,25 @@ fn told(control: Control, found: &PitchResponse) -> Control {
 /// What `control` was told of its turbine's own pitch, for the record.
 pub(crate) fn response_of(control: &Control) -> Option<PitchResponse> {
     match control {
-        Control::PhaseSync(sync) => sync.calibration.as_ref().map(record_of_calibration),
+        Control::PhaseSync(sync) => {
+            let azimuth_offset = sync.azimuth_offset.filter(|_| sync.amplitude != 0.0)?;
+            let calibration = sync.calibration;
+            Some(record_of_own_pitch(&OwnPitch { azimuth_offset, calibration }))
+        }
         Control::Meandering(asked) => asked.decoupling.as_ref().map(record_of_decoupling),
         _ => None,
     }
 }
 
-fn record_of_calibration(found: &Calibration) -> PitchResponse {
-    let Calibration { gain, azimuth_offset, before, after } = *found;
-    PitchResponse::Estimator { gain, azimuth_offset, before, after }
+fn record_of_own_pitch(found: &OwnPitch) -> PitchResponse {
+    let OwnPitch { azimuth_offset: transformation_offset, calibration } = *found;
+    match calibration {
+        None => PitchResponse::Transformation { azimuth_offset: transformation_offset },
+        Some(Calibration { gain, azimuth_offset, before, after }) => {
+            let transformation_offset = Some(transformation_offset);
+            PitchResponse::Estimator { gain, azimuth_offset, before, after, transformation_offset }
+        }
+    }
 }
 
 fn record_of_decoupling(found: &Decoupling) -> PitchResponse {
@@ -268,9 +286,18 @@ fn record_of_decoupling(found: &Decoupling) -> PitchResponse {
 /// The calibration of an estimator in `response`.
 pub(crate) fn calibration_of(response: &PitchResponse) -> Option<Calibration> {
     match *response {
-        PitchResponse::Estimator { gain, azimuth_offset, before, after } => {
+        PitchResponse::Estimator { gain, azimuth_offset, before, after, .. } => {
             Some(Calibration { gain, azimuth_offset, before, after })
         }
+        PitchResponse::Transformation { .. } | PitchResponse::Loads { .. } => None,
+    }
+}
+
+/// The azimuth offset (rad) in `response` with which a turbine that joins a helix pitches.
+fn azimuth_offset_of(response: &PitchResponse) -> Option<f64> {
+    match *response {
+        PitchResponse::Estimator { transformation_offset, .. } => transformation_offset,
+        PitchResponse::Transformation { azimuth_offset } => Some(azimuth_offset),
         PitchResponse::Loads { .. } => None,
     }
 }
@@ -280,87 +307,9 @@ fn decoupling_of(response: &PitchResponse) -> Option<Decoupling> {
         PitchResponse::Loads { azimuth_offset, delay, gain } => {
             Some(Decoupling { azimuth_offset, delay, gain })
         }
-        PitchResponse::Estimator { .. } => None,
+        PitchResponse::Estimator { .. } | PitchResponse::Transformation { .. } => None,
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use control::Excitation;
-    use estimation::helix::{Measurement, Options};
-    use farm::assemble::controller;
-
-    /// A case whose T2 joins the helix of T1 with `keys` beside the needed ones.
-    fn setup(keys: &str) -> Setup {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("case.toml");
-        let text = format!(
-            r#"
-name = "joined"
-[wind]
-speed = 9.0
-turbulence_intensity = 0.0
-[flow]
-solver = "uniform"
-step = 0.2
-[time]
-spin_up = 10.0
-duration = 60.0
-[[turbine]]
-name = "T1"
-model = "nrel-5mw"
-position_diameters = [0.0, 0.0]
-[[turbine]]
-name = "T2"
-model = "nrel-5mw"
-position_diameters = [5.0, 0.0]
-[[run]]
-name = "joined"
-control.T1 = {{ kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }}
-control.T2 = {{ kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 2.0{keys} }}
-"#
-        );
-        std::fs::write(&path, text).expect("a file");
-        Setup::read(&path, &[]).expect("a sound case")
-    }
-
-    fn key(keys: &str) -> String {
-        let setup = setup(keys);
-        let asked = Asked::of(&setup.case.runs[0].control[1]).expect("a calibration");
-        setup.key(1, &asked)
-    }
-
-    #[test]
-    fn noise_that_is_given_is_another_calibration_and_none_leaves_no_trace() {
-        assert_eq!(trace(&PhaseNoise::default()), "");
-        let usual = key("");
-        assert_eq!(key(", start = 20.0"), usual);
-        let given = key(", measurement_noise_mnm = 0.5");
-        assert_ne!(given, usual);
-        assert_ne!(key(", measurement_noise_mnm = 0.6"), given);
-        assert_ne!(key(", wandering_amplitude = 0.5"), given);
-    }
-
-    #[test]
-    fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
-        let options = |keys: &str| -> Options {
-            let setup = setup(keys);
-            let control = &setup.case.runs[0].control[1];
-            let built = controller(control, &setup.models[1], &setup.case, &setup.plan);
-            match built.expect("a controller").excitation {
-                Excitation::PhaseSync(sync) => *sync.estimator().options(),
-                other => panic!("{other:?}"),
-            }
-        };
-        let usual = options("");
-        let given = options(", measurement_noise_mnm = 0.5, wandering_amplitude = 3e-3");
-        assert_eq!(given.noise.measurement, Measurement::Moment(5e5));
-        assert_eq!((given.noise.amplitude, given.noise.phase), (3e-3, usual.noise.phase));
-        assert_eq!(Options { noise: usual.noise, ..given }, usual);
-        let published = options(", estimator = \"published\", wandering_phase = 3e-4");
-        let own = Options::published().noise;
-        assert_eq!((published.noise.phase, published.noise.amplitude), (3e-4, own.amplitude));
-        assert_eq!(published.noise.measurement, own.measurement);
-    }
-}
+mod tests;

@@ -12,7 +12,7 @@ pub struct Estimate {
     pub n_probes: usize,
     /// Steps of all probes together (–).
     pub n_probe_steps: u64,
-    /// Cell updates of all probes together (–); steps in prescribed wind.
+    /// Cell updates of all probes together, or what takes as long (–); steps in prescribed wind.
     pub probe_work: f64,
     /// Cells along x, y, z (–).
     pub n_cells: [usize; 3],

@@ -81,6 +81,15 @@ pub enum PitchResponse {
         before: f64,
         /// The same after (m/s).
         after: f64,
+        /// Azimuth offset of the inverse multi-blade transformation with which it pitches (rad); absent in records that do
+        /// not tell.
+        #[serde(default)]
+        transformation_offset: Option<f64>,
+    },
+    /// Where what finds the helix is not calibrated, in the inverse multi-blade transformation alone.
+    Transformation {
+        /// Its azimuth offset (rad).
+        azimuth_offset: f64,
     },
     /// On the tilt and yaw moments of the blades.
     Loads {

@@ -138,6 +138,29 @@ fn probes(estimate: &Estimate) -> String {
     }
 }
 
+/// How the pitch of `turbine` acts, in words.
+fn words_of(turbine: &str, response: &PitchResponse) -> String {
+    let turned = |offset: f64| {
+        format!("{turbine} pitches with an azimuth offset of {:+.1}°", offset.to_degrees())
+    };
+    match *response {
+        PitchResponse::Estimator { gain, azimuth_offset, before, after, transformation_offset } => {
+            let pitches = transformation_offset.map(|offset| turned(offset) + "; ");
+            format!(
+                "{}{turbine}'s estimator takes its own pitch times {gain:.3}, {:+.1}° on; of it {before:.2} m/s were taken for wind, {after:.2} m/s still are",
+                pitches.unwrap_or_default(),
+                azimuth_offset.to_degrees(),
+            )
+        }
+        PitchResponse::Transformation { azimuth_offset } => turned(azimuth_offset),
+        PitchResponse::Loads { azimuth_offset, delay, gain } => format!(
+            "{turbine} loses {:.2} MN m per degree of cyclic pitch, {:+.1}° of azimuth and {delay:.2} s after it",
+            1e-6 * gain * 1f64.to_radians(),
+            azimuth_offset.to_degrees(),
+        ),
+    }
+}
+
 /// Tenths of a run at which progress is told where no bar can be drawn (–).
 const TENTHS: u64 = 10;
 
@@ -252,17 +275,7 @@ impl Watcher for Screen {
 
     fn probed(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
         let found = if again { "probed before" } else { "probed" };
-        self.say(&match *response {
-            PitchResponse::Estimator { gain, azimuth_offset, before, after } => format!(
-                "{found}: {turbine}'s estimator takes its own pitch times {gain:.3}, {:+.1}° on; of it {before:.2} m/s were taken for wind, {after:.2} m/s still are",
-                azimuth_offset.to_degrees(),
-            ),
-            PitchResponse::Loads { azimuth_offset, delay, gain } => format!(
-                "{found}: {turbine} loses {:.2} MN m per degree of cyclic pitch, {:+.1}° of azimuth and {delay:.2} s after it",
-                1e-6 * gain * 1f64.to_radians(),
-                azimuth_offset.to_degrees(),
-            ),
-        });
+        self.say(&format!("{found}: {}", words_of(turbine, response)));
     }
 
     fn advanced(&mut self, progress: &Progress) {
@@ -298,7 +311,7 @@ impl Watcher for Screen {
 
 #[cfg(test)]
 mod tests {
-    use super::shell_word;
+    use super::{PitchResponse, shell_word, words_of};
 
     #[test]
     fn a_shell_reads_a_word_back() {
@@ -311,5 +324,24 @@ mod tests {
         ] {
             assert_eq!(shell_word(text), word);
         }
+    }
+
+    #[test]
+    fn the_offset_of_the_pitch_and_that_of_the_belief_are_told_apart() {
+        let of = |transformation_offset| PitchResponse::Estimator {
+            gain: 1.04,
+            azimuth_offset: (-0.5f64).to_radians(),
+            before: 0.12,
+            after: 0.0,
+            transformation_offset,
+        };
+        let words = words_of("T2", &of(Some(35.2f64.to_radians())));
+        let belief = "T2's estimator takes its own pitch times 1.040, -0.5° on; ";
+        let pitches = "T2 pitches with an azimuth offset of +35.2°";
+        assert!(words.starts_with(&format!("{pitches}; {belief}")), "{words}");
+        // Records of before do not tell.
+        assert!(words_of("T2", &of(None)).starts_with(belief));
+        let alone = PitchResponse::Transformation { azimuth_offset: 35.2f64.to_radians() };
+        assert_eq!(words_of("T2", &alone), pitches);
     }
 }

@@ -6,7 +6,7 @@ use super::instruments::instruments_of;
 use super::keys::{self, CONTROLS};
 use super::meandering::meandering_of;
 use super::momentum::{dynamic_inflow_of, tower_influence_of};
-use super::phase_sync::noise_of;
+use super::phase_sync::{azimuth_offset_of, noise_of};
 use super::section::{Findings, Section, list};
 use super::spelling::nearest;
 use super::table::Table;
@@ -317,12 +317,13 @@ fn phase_sync_of(
     } else {
         PhaseEstimator::Robust
     };
+    let amplitude = section.number("amplitude_deg").to_radians();
     PhaseSync {
         sense: sense.unwrap_or(Sense::CounterClockwise),
-        amplitude: section.number("amplitude_deg").to_radians(),
+        amplitude,
         strouhal: strouhal.unwrap_or(f64::NAN),
         offset: section.number("offset_deg").to_radians(),
-        azimuth_offset: section.number("azimuth_offset_deg").to_radians(),
+        azimuth_offset: azimuth_offset_of(section, amplitude),
         start,
         estimator,
         fallback: section.choice("fallback") != "none",

@@ -1,13 +1,26 @@
-//! The noise of `kind = "phase-sync"`, read and written.
+//! Azimuth offset and noise of `kind = "phase-sync"`, read and written.
 
 use super::error::ProblemKind;
 use super::section::Section;
-use super::write::shortest;
+use super::write::{degrees, shortest};
 use farm::case::{PhaseEstimator, PhaseNoise};
 use std::fmt::Write;
 
 /// Newton metres of a meganewton metre.
 const MEGA: f64 = 1e6;
+
+/// The azimuth offset (rad) that `section` gives; none where it is to be found, for an `amplitude` (rad) that is not zero.
+pub(super) fn azimuth_offset_of(section: &Section, amplitude: f64) -> Option<f64> {
+    let given = section.optional_number("azimuth_offset_deg").map(f64::to_radians);
+    // Nothing is pitched, with whatever offset.
+    given.or((amplitude == 0.0).then_some(0.0))
+}
+
+/// The key of an azimuth `offset` (rad) that is given, after a comma.
+pub(super) fn azimuth_offset_text(offset: Option<f64>) -> String {
+    offset
+        .map_or_else(String::new, |offset| format!(", azimuth_offset_deg = {:?}", degrees(offset)))
+}
 
 /// The noise that `section` gives to `estimator`; notes what is of no use to it.
 pub(super) fn noise_of(section: &Section, estimator: PhaseEstimator) -> PhaseNoise {

@@ -136,6 +136,28 @@ fn noise_of_a_phase_estimator_is_its_own_unless_given() {
 }
 
 #[test]
+fn the_azimuth_offset_of_a_turbine_in_step_is_found_unless_given() {
+    assert_eq!(phase_sync("").azimuth_offset, None);
+    assert_eq!(phase_sync(", azimuth_offset_deg = 0").azimuth_offset, Some(0.0));
+    assert_eq!(phase_sync(", azimuth_offset_deg = 17").azimuth_offset, Some(17f64.to_radians()));
+    // What only watches pitches nothing; its records are those of a turbine that was given none.
+    let watching = |keys: &str| {
+        let control = "kind = \"phase-sync\", offset_deg = 90, amplitude_deg = 0";
+        small(&[&format!("run.helix.control.T2={{ {control}{keys} }}")]).unwrap()
+    };
+    let case = watching("");
+    let Control::PhaseSync(sync) = case.runs[1].control[1] else { panic!("no phase-sync") };
+    assert_eq!(sync.azimuth_offset, Some(0.0));
+    assert_eq!(case, watching(", azimuth_offset_deg = 0"));
+    assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
+    // An open helix is turned by nothing that it does not ask for.
+    let case = small(&[]).unwrap();
+    assert!(
+        matches!(case.runs[1].control[0], Control::Helix(helix) if helix.azimuth_offset == 0.0)
+    );
+}
+
+#[test]
 fn stall_is_dynamic_where_the_wind_is_prescribed_unless_the_case_says_otherwise() {
     let of = |overrides: &[&str]| {
         let case = small(overrides).unwrap();

@@ -3,7 +3,7 @@
 use super::instruments::instruments_text;
 use super::meandering::meandering_text;
 use super::momentum::momentum_text;
-use super::phase_sync::noise_text;
+use super::phase_sync::{azimuth_offset_text, noise_text};
 use super::wind::write_wind;
 use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides, Solver};
 use std::fmt::Write;
@@ -133,11 +133,11 @@ fn control_text(control: &Control) -> String {
             };
             let fallback = if sync.fallback { "baseline" } else { "none" };
             format!(
-                "{{ kind = \"phase-sync\", offset_deg = {:?}, amplitude_deg = {:?}, sense = \"{sense}\", strouhal = {:?}, azimuth_offset_deg = {:?}, estimator = \"{estimator}\", fallback = \"{fallback}\"{}, start = {:?} }}",
+                "{{ kind = \"phase-sync\", offset_deg = {:?}, amplitude_deg = {:?}, sense = \"{sense}\", strouhal = {:?}{}, estimator = \"{estimator}\", fallback = \"{fallback}\"{}, start = {:?} }}",
                 degrees(sync.offset),
                 degrees(sync.amplitude),
                 sync.strouhal,
-                degrees(sync.azimuth_offset),
+                azimuth_offset_text(sync.azimuth_offset),
                 noise_text(&sync.noise),
                 sync.start,
             )

@@ -63,4 +63,26 @@ mod tests {
         write_probes(study.path(), &probes).unwrap();
         assert_eq!(read_probes(study.path()).unwrap(), probes);
     }
+
+    #[test]
+    fn what_a_turbine_in_step_was_told_comes_back_and_older_records_read() {
+        let study = tempfile::tempdir().unwrap();
+        let estimator = |transformation_offset| PitchResponse::Estimator {
+            gain: 1.04,
+            azimuth_offset: -0.01,
+            before: 0.12,
+            after: 0.0,
+            transformation_offset,
+        };
+        let transformation = PitchResponse::Transformation { azimuth_offset: 0.6 };
+        let probes = [estimator(Some(0.6)), estimator(None), transformation].map(|response| {
+            ProbeRecord { key: "a".to_owned(), turbine: "T2".to_owned(), response }
+        });
+        write_probes(study.path(), &probes).unwrap();
+        assert_eq!(read_probes(study.path()).unwrap(), probes);
+        let older = r#"[{"key": "a", "turbine": "T2", "response": {"estimator":
+            {"gain": 1.04, "azimuth_offset": -0.01, "before": 0.12, "after": 0.0}}}]"#;
+        std::fs::write(path_in(study.path()), older).unwrap();
+        assert_eq!(read_probes(study.path()).unwrap(), &probes[1..2]);
+    }
 }

@@ -164,42 +164,53 @@ pub(crate) fn excitations(study: &Study) -> Vec<Value> {
     rows
 }
 
-/// How pitch acts where a controller was told, as it was told.
+/// How pitch acts where a controller was told, as it was told: a row for each thing that it acts on.
 pub(crate) fn responses(study: &Study) -> Vec<Value> {
     let mut rows = Vec::new();
     for (run, &colour) in study.runs().iter().zip(&study.colours) {
         for turbine in &run.summary.turbines {
-            let (on, gain, offset, delay, remark) = match turbine.pitch_response {
-                None => continue,
-                Some(PitchResponse::Estimator { gain, azimuth_offset, before, after }) => (
-                    "belief of the phase estimator",
-                    format!("× {}", number(gain, 3)),
-                    azimuth_offset,
-                    String::new(),
-                    format!(
+            let mut add = |on: &str, gain: String, offset: f64, delay: String, remark: String| {
+                rows.push(context! {
+                    run => run.summary.run.clone(),
+                    colour,
+                    turbine => turbine.name.clone(),
+                    on,
+                    gain,
+                    offset => number(offset.to_degrees(), 1),
+                    delay,
+                    remark,
+                });
+            };
+            let transformation = match turbine.pitch_response {
+                Some(PitchResponse::Estimator { transformation_offset, .. }) => {
+                    transformation_offset
+                }
+                Some(PitchResponse::Transformation { azimuth_offset }) => Some(azimuth_offset),
+                Some(PitchResponse::Loads { .. }) | None => None,
+            };
+            if let Some(offset) = transformation {
+                let on = "blades, by the inverse multi-blade transformation";
+                add(on, String::new(), offset, String::new(), String::new());
+            }
+            match turbine.pitch_response {
+                Some(PitchResponse::Estimator { gain, azimuth_offset, before, after, .. }) => {
+                    let remark = format!(
                         "helix found without one: {}{SPACE}m/s before, {}{SPACE}m/s after",
                         number(before, 2),
                         number(after, 2)
-                    ),
-                ),
-                Some(PitchResponse::Loads { azimuth_offset, delay, gain }) => (
-                    "tilt and yaw moment of the blades",
-                    format!("−{}{SPACE}MN{SPACE}m/°", number(1e-6 * gain * 1f64.to_radians(), 3)),
-                    azimuth_offset,
-                    number(delay, 2),
-                    String::new(),
-                ),
-            };
-            rows.push(context! {
-                run => run.summary.run.clone(),
-                colour,
-                turbine => turbine.name.clone(),
-                on,
-                gain,
-                offset => number(offset.to_degrees(), 1),
-                delay,
-                remark,
-            });
+                    );
+                    let gain = format!("× {}", number(gain, 3));
+                    let on = "belief of the phase estimator";
+                    add(on, gain, azimuth_offset, String::new(), remark);
+                }
+                Some(PitchResponse::Loads { azimuth_offset, delay, gain }) => {
+                    let gain = number(1e-6 * gain * 1f64.to_radians(), 3);
+                    let gain = format!("−{gain}{SPACE}MN{SPACE}m/°");
+                    let on = "tilt and yaw moment of the blades";
+                    add(on, gain, azimuth_offset, number(delay, 2), String::new());
+                }
+                Some(PitchResponse::Transformation { .. }) | None => {}
+            }
         }
     }
     rows

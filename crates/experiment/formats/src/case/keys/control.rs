@@ -84,7 +84,7 @@ pub(in crate::case) static HELIX: Table = Table {
             PHASE_RANGE,
             "deg",
             Value("0"),
-            "Azimuth offset of the inverse multi-blade transformation.",
+            "Azimuth offset of the inverse multi-blade transformation. An open helix has a free phase, of which this is a part: it adds to `phase_deg` (`ccw`) or takes from it (`cw`).",
         ),
         START,
         STOP,
@@ -143,8 +143,10 @@ pub(in crate::case) static PHASE_SYNC: Table = Table {
             "azimuth_offset_deg",
             PHASE_RANGE,
             "deg",
-            Value("0"),
-            "Azimuth offset of the inverse multi-blade transformation.",
+            Otherwise(
+                "found before the runs, by a helix of a degree in either sense in prescribed wind",
+            ),
+            "Azimuth offset ψ of the inverse multi-blade transformation, with which tilt pitch answers in the tilt moment alone; 0 with `amplitude_deg = 0`. At one frequency the blades pitch with it as with none and an `offset_deg` greater (`ccw`) or less (`cw`) by ψ.",
         ),
         key(
             "estimator",

@@ -1,0 +1,197 @@
+//! What is asked of a probe, and what a run is told of it.
+
+use super::*;
+use crate::{OffsetQuestion, azimuth_offset};
+use control::Excitation;
+use estimation::helix::{Measurement, Options};
+use farm::assemble::controller;
+
+/// A case whose T2 joins the helix of T1 with `keys` beside the needed ones, under `overrides`.
+fn setup(keys: &str, overrides: &[&str]) -> Setup {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("case.toml");
+    let text = format!(
+        r#"
+name = "joined"
+[wind]
+speed = 9.0
+turbulence_intensity = 0.0
+[flow]
+solver = "uniform"
+step = 0.2
+[time]
+spin_up = 10.0
+duration = 60.0
+[[turbine]]
+name = "T1"
+model = "nrel-5mw"
+position_diameters = [0.0, 0.0]
+[[turbine]]
+name = "T2"
+model = "nrel-5mw"
+position_diameters = [5.0, 0.0]
+[[run]]
+name = "joined"
+control.T1 = {{ kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }}
+control.T2 = {{ kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 2.0{keys} }}
+"#
+    );
+    std::fs::write(&path, text).expect("a file");
+    let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+    Setup::read(&path, &overrides).expect("a sound case")
+}
+
+fn key(keys: &str) -> String {
+    let setup = setup(keys, &[]);
+    let asked = Asked::of(&setup.case.runs[0].control[1]).expect("a calibration");
+    setup.key(1, &asked)
+}
+
+/// How T2 of `setup` is asked to join the helix, or was told to.
+fn sync_of(setup: &Setup) -> PhaseSync {
+    let Control::PhaseSync(sync) = setup.case.runs[0].control[1] else { panic!("no phase-sync") };
+    sync
+}
+
+/// What T2 of `setup` is told of its own pitch, and the shares that its probe told.
+fn told_of(setup: &Setup) -> (OwnPitch, Vec<f64>) {
+    let (case, plan, model) = (&setup.case, &setup.plan, &setup.models[1]);
+    let mut shares = Vec::new();
+    let mut told = |share: f64| {
+        shares.push(share);
+        ControlFlow::Continue(())
+    };
+    let found = own_pitch(case, plan, model, 1, &sync_of(setup), &mut told);
+    (found.expect("a sound turbine"), shares)
+}
+
+#[test]
+fn noise_that_is_given_is_another_calibration_and_none_leaves_no_trace() {
+    assert_eq!(trace(&PhaseNoise::default()), "");
+    let usual = key("");
+    assert_eq!(key(", start = 20.0"), usual);
+    let given = key(", measurement_noise_mnm = 0.5");
+    assert_ne!(given, usual);
+    assert_ne!(key(", measurement_noise_mnm = 0.6"), given);
+    assert_ne!(key(", wandering_amplitude = 0.5"), given);
+}
+
+#[test]
+fn what_is_given_is_not_sought_and_a_turbine_that_watches_needs_nothing() {
+    let asks = |keys: &str, overrides: &[&str]| {
+        Asked::of(&setup(keys, overrides).case.runs[0].control[1]).is_some()
+    };
+    assert!(asks("", &[]) && asks(", azimuth_offset_deg = 10", &[]));
+    assert!(asks(", estimator = \"published\"", &[]));
+    assert!(!asks(", estimator = \"published\", azimuth_offset_deg = 10", &[]));
+    for keys in ["", ", estimator = \"published\""] {
+        let watching = setup(keys, &["run.joined.control.T2.amplitude_deg=0"]);
+        assert!(Asked::of(&watching.case.runs[0].control[1]).is_none());
+        assert_eq!(sync_of(&watching).azimuth_offset, Some(0.0));
+        assert_eq!(response_of(&watching.case.runs[0].control[1]), None);
+    }
+    let [found, none, ten] = ["", ", azimuth_offset_deg = 0", ", azimuth_offset_deg = 10"].map(key);
+    assert!(found != none && found != ten && none != ten);
+}
+
+/// `turbine offset` in the wind and at the rate of the probe: the same turbine, the same two helices.
+#[test]
+fn the_offset_is_the_turbines_whatever_moves_the_air() {
+    let question = OffsetQuestion {
+        model: "nrel-5mw".to_owned(),
+        wind_speed: 6.75,
+        strouhal: 0.25 / 0.75,
+        flexible: false,
+    };
+    let alone = azimuth_offset(&question).expect("a sound turbine").decoupling.azimuth_offset;
+    let published = ", estimator = \"published\"";
+    let prescribed = setup(published, &["turbine.T2.structure=rigid", "flow.step=0.02"]);
+    let (found, _) = told_of(&prescribed);
+    assert!((found.azimuth_offset - alone).abs() < 1e-3, "{found:?}, alone {alone}");
+    assert_eq!(found.calibration, None);
+
+    let solved = [
+        "turbine.T2.structure=rigid",
+        "turbine.T2.stall=dynamic",
+        "flow.solver=lattice",
+        "flow.cells_per_diameter=8",
+        "flow.step=0.05",
+    ];
+    let solved = setup(published, &solved);
+    let (found, _) = told_of(&solved);
+    // Torque is controlled otherwise in solved air, so that the rotor turns a little slower or faster.
+    assert!((found.azimuth_offset - alone).abs() < 5f64.to_radians(), "{found:?}, alone {alone}");
+    // Its steps are those of prescribed wind, not the lattice's.
+    let steps = |setup: &Setup| {
+        let (case, plan, model) = (&setup.case, &setup.plan, &setup.models[1]);
+        own_pitch_cost(case, plan, model, &sync_of(setup)).n_steps
+    };
+    assert_eq!(steps(&solved), steps(&prescribed));
+}
+
+#[test]
+fn both_parts_of_a_probe_move_its_progress() {
+    let (found, shares) = told_of(&setup("", &["turbine.T2.structure=rigid"]));
+    assert!(found.calibration.is_some());
+    assert!(shares.windows(2).all(|pair| pair[0] < pair[1]), "{shares:?}");
+    let [first, last] = [shares[0], shares[shares.len() - 1]];
+    assert!(first > 0.0 && (last - 1.0).abs() < 1e-12, "{first} to {last}");
+}
+
+struct Silent;
+
+impl Watcher for Silent {}
+
+#[test]
+fn a_resumed_study_is_told_the_same_to_the_last_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // How many probes were made, and how T2 was told to join the helix.
+    let told = |keys: &str, resume: bool| {
+        let mut setup = setup(keys, &["turbine.T2.structure=rigid"]);
+        let probes = setup.probes(&[0], folder.path(), resume).expect("sound records");
+        let n_probes = probes.costs().len();
+        let ended = setup.calibrate(probes, folder.path(), &AtomicBool::new(false), &mut Silent);
+        assert!(ended.expect("a sound turbine").is_continue());
+        (n_probes, setup.case.runs[0].control[1])
+    };
+    let (n_probes, joined) = told("", false);
+    let Some(PitchResponse::Estimator { azimuth_offset, transformation_offset, .. }) =
+        response_of(&joined)
+    else {
+        panic!("{joined:?}")
+    };
+    let found = transformation_offset.expect("an azimuth offset");
+    assert!(n_probes == 1 && found != azimuth_offset, "{joined:?}");
+    assert_eq!(told("", true), (0, joined));
+
+    let (n_probes, published) = told(", estimator = \"published\"", true);
+    let response = PitchResponse::Transformation { azimuth_offset: found };
+    assert_eq!((n_probes, response_of(&published)), (1, Some(response)));
+    assert_eq!(told(", estimator = \"published\"", true), (0, published));
+
+    let (_, given) = told(", azimuth_offset_deg = 10", true);
+    let Control::PhaseSync(given) = given else { panic!("{given:?}") };
+    assert_eq!(given.azimuth_offset, Some(10f64.to_radians()));
+}
+
+#[test]
+fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
+    let options = |keys: &str| -> Options {
+        let setup = setup(&format!("{keys}, azimuth_offset_deg = 0"), &[]);
+        let control = &setup.case.runs[0].control[1];
+        let built = controller(control, &setup.models[1], &setup.case, &setup.plan);
+        match built.expect("a controller").excitation {
+            Excitation::PhaseSync(sync) => *sync.estimator().options(),
+            other => panic!("{other:?}"),
+        }
+    };
+    let usual = options("");
+    let given = options(", measurement_noise_mnm = 0.5, wandering_amplitude = 3e-3");
+    assert_eq!(given.noise.measurement, Measurement::Moment(5e5));
+    assert_eq!((given.noise.amplitude, given.noise.phase), (3e-3, usual.noise.phase));
+    assert_eq!(Options { noise: usual.noise, ..given }, usual);
+    let published = options(", estimator = \"published\", wandering_phase = 3e-4");
+    let own = Options::published().noise;
+    assert_eq!((published.noise.phase, published.noise.amplitude), (3e-4, own.amplitude));
+    assert_eq!(published.noise.measurement, own.measurement);
+}
