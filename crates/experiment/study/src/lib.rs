@@ -15,6 +15,7 @@ mod outb;
 mod phase;
 mod prepare;
 mod probes;
+mod seeds;
 mod simulate;
 mod summarise;
 mod synchronisation;
@@ -26,6 +27,7 @@ pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;
 pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phases, tune};
 pub use prepare::Setup;
+pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
 pub use watcher::{Estimate, Probing, Progress, Watcher};
 
 use basis::records::Summary;

@@ -1,5 +1,7 @@
 //! `wakemix analyse`: what the records of runs tell.
 
+mod gains;
+
 use clap::{Args, Subcommand, ValueEnum};
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
@@ -16,6 +18,8 @@ pub(crate) enum AnalyseCommand {
     Phase(PhaseArguments),
     /// Noise for the phase estimator from the record of a run and the true wind of another, after Algorithm 1 of van Vondelen et al. (2025)
     Tune(PhaseArguments),
+    /// Gains of one case in several winds, from studies that differ in wind.seed, each and all together with a 95 % interval
+    Gains(gains::GainsArguments),
 }
 
 /// Arguments of `wakemix analyse phase` and `wakemix analyse tune`.
@@ -54,7 +58,10 @@ enum Choice {
 /// # Errors
 /// Records that cannot be read or do not hold what is asked for.
 pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
-    let (AnalyseCommand::Phase(arguments) | AnalyseCommand::Tune(arguments)) = command;
+    let arguments = match command {
+        AnalyseCommand::Phase(arguments) | AnalyseCommand::Tune(arguments) => arguments,
+        AnalyseCommand::Gains(arguments) => return gains::run(arguments),
+    };
     let question = PhaseQuestion {
         run: arguments.run.clone(),
         turbine: arguments.turbine.clone(),
