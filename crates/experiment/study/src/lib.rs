@@ -9,6 +9,7 @@ mod error;
 mod gains;
 mod lines;
 mod loads;
+mod lock;
 mod meandering;
 mod models;
 mod outb;
@@ -25,6 +26,7 @@ mod wind_records;
 
 pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;
+pub use lock::{LockAnswer, LockQuestion, lock};
 pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phases, tune};
 pub use prepare::Setup;
 pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};

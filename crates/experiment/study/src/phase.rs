@@ -158,9 +158,7 @@ fn answer(question: &PhaseQuestion, asked: &Asked<'_>) -> Result<PhaseAnswer, St
 
 /// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m) stand for winds.
 fn hindsight(series: &Series, name: &str, reference: &Reference) -> Result<Estimates, StudyError> {
-    let blade = |blade: usize| series.column(&format!("{name}.flap_moment_{blade}_nm"));
-    let blades: Vec<&[f64]> = (1..).map_while(blade).collect();
-    let moments = fixed_frame_moments(column(series, &format!("{name}.azimuth_rad"))?, &blades)?;
+    let moments = moments(series, name)?;
     let times = column(series, "time_s")?;
     let band = Band::around(reference.frequency(), Band::RATIO);
     let told = ground_truth(&moments, times[0], uniform_interval(times)?, reference, band)?;
@@ -171,6 +169,13 @@ fn hindsight(series: &Series, name: &str, reference: &Reference) -> Result<Estim
         tilt: wave(told.tilt),
         yaw: wave(told.yaw),
     })
+}
+
+/// Moments of the blades of turbine `name` in the fixed frame (N m), row by row.
+pub(crate) fn moments(series: &Series, name: &str) -> Result<Vec<FixedFrame>, StudyError> {
+    let blade = |blade: usize| series.column(&format!("{name}.flap_moment_{blade}_nm"));
+    let blades: Vec<&[f64]> = (1..).map_while(blade).collect();
+    Ok(fixed_frame_moments(column(series, &format!("{name}.azimuth_rad"))?, &blades)?)
 }
 
 /// What `estimates` over the rows of `series` are worth against `truth`, from the time `from` (s) on.
@@ -238,7 +243,8 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-fn column<'a>(series: &'a Series, channel: &str) -> Result<&'a [f64], StudyError> {
+/// The samples of `channel`.
+pub(crate) fn column<'a>(series: &'a Series, channel: &str) -> Result<&'a [f64], StudyError> {
     let missing = || StudyError::MissingChannel { channel: channel.to_owned() };
     series.column(channel).ok_or_else(missing)
 }

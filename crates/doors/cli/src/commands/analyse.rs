@@ -1,6 +1,7 @@
 //! `wakemix analyse`: what the records of runs tell.
 
 mod gains;
+mod lock;
 
 use clap::{Args, Subcommand, ValueEnum};
 use miette::{IntoDiagnostic, Result};
@@ -20,6 +21,8 @@ pub(crate) enum AnalyseCommand {
     Tune(PhaseArguments),
     /// Gains of one case in several winds, from studies that differ in wind.seed, each and all together with a 95 % interval
     Gains(gains::GainsArguments),
+    /// How well a phase-locked loop would follow the slow swing of a turbine's blade moments in the records of a run, whatever its control
+    Lock(lock::LockArguments),
 }
 
 /// Arguments of `wakemix analyse phase` and `wakemix analyse tune`.
@@ -61,6 +64,7 @@ pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
     let arguments = match command {
         AnalyseCommand::Phase(arguments) | AnalyseCommand::Tune(arguments) => arguments,
         AnalyseCommand::Gains(arguments) => return gains::run(arguments),
+        AnalyseCommand::Lock(arguments) => return lock::run(arguments),
     };
     let question = PhaseQuestion {
         run: arguments.run.clone(),

@@ -187,7 +187,7 @@ fn rotor(model: &str, manifest: &Manifest) -> Result<Definition, StudyError> {
 }
 
 /// The run in the folder `path`.
-fn folder_of(path: &Path) -> RunFolder {
+pub(crate) fn folder_of(path: &Path) -> RunFolder {
     // A bare name has no parent to look for other runs in.
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
