@@ -83,6 +83,32 @@ pub fn gain(
     })
 }
 
+/// Mean of independent `values` (any unit), such as one of each seed of the wind, and the half width of its 95 % interval,
+/// t s / √n with the standard deviation s of the n values and Student's t for n − 1 degrees of freedom; with fewer than two
+/// there is none. `standard_deviation` of the result is this s (zero with fewer than two).
+///
+/// # Errors
+/// [`AnalysisError::TooShort`] without values.
+///
+/// ```
+/// // t(0.975, 1) = 12.706, s / √2 = 1
+/// let statistic = analysis::statistics::independent(&[1.0, 3.0])?;
+/// assert_eq!(statistic.mean, 2.0);
+/// assert!((statistic.half_width_95.unwrap() - 12.706).abs() < 1e-3);
+/// # Ok::<(), analysis::AnalysisError>(())
+/// ```
+pub fn independent(values: &[f64]) -> Result<Statistic, AnalysisError> {
+    if values.is_empty() {
+        return Err(AnalysisError::TooShort { n_samples: 0, needed: 1 });
+    }
+    Ok(Statistic {
+        mean: mean(values),
+        standard_deviation: sample_deviation(values).unwrap_or(0.0),
+        half_width_95: half_width_95(values),
+        n_blocks: values.len(),
+    })
+}
+
 /// Turbulence intensity (–): standard deviation of the streamwise velocity `samples` (m/s) over their mean.
 ///
 /// # Errors

@@ -1,5 +1,6 @@
 //! Why a study could not be made.
 
+use crate::seeds::SeedsError;
 use analysis::AnalysisError;
 use farm::assemble::AssemblyError;
 use farm::pitch_response::CalibrationError;
@@ -62,6 +63,10 @@ pub enum StudyError {
     /// The records of a run cannot be analysed.
     #[error("the records cannot be analysed")]
     Analysis(#[from] AnalysisError),
+    /// Several studies tell no gains together.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Seeds(#[from] SeedsError),
     /// The report cannot be made.
     #[error("the report cannot be made")]
     Report(#[from] ReportError),

@@ -9,12 +9,14 @@ mod error;
 mod gains;
 mod lines;
 mod loads;
+mod lock;
 mod meandering;
 mod models;
 mod outb;
 mod phase;
 mod prepare;
 mod probes;
+mod seeds;
 mod simulate;
 mod summarise;
 mod synchronisation;
@@ -24,8 +26,10 @@ mod wind_records;
 
 pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;
+pub use lock::{LockAnswer, LockQuestion, lock};
 pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phases, tune};
 pub use prepare::Setup;
+pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
 pub use watcher::{Estimate, Probing, Progress, Watcher};
 
 use basis::records::Summary;

@@ -7,7 +7,7 @@ use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
     fixed_frame_moments, ground_truth, uniform_interval,
 };
-use asked::Asked;
+use asked::{Asked, Records};
 use basis::records::Series;
 use basis::{FixedFrame, Measurements, PerBlade};
 use estimation::HelixEstimator;
@@ -113,23 +113,9 @@ pub(crate) struct Truth {
 /// # Errors
 /// [`StudyError`] for records that cannot be read, lack a channel, have gaps, or hold no helix.
 pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
-    let asked = Asked::read(question)?;
-    let Asked { case, reference, series, truth, .. } = &asked;
-    let estimates = match question.estimator {
-        Some(estimator) => replay(&asked, estimator)?,
-        None => recorded(series, asked.name())?,
-    };
-    let from = question.from.unwrap_or(case.time.spin_up);
-    let compared = |estimates: &Estimates| {
-        compare(&asked.run, asked.name(), series, estimates, truth, reference, from)
-    };
-    let hindsight = if asked.pitches {
-        None
-    } else {
-        let looked_back = compared(&hindsight(series, asked.name(), reference)?)?;
-        Some([looked_back.tilt.agreement, looked_back.yaw.agreement])
-    };
-    Ok(PhaseAnswer { hindsight, ..compared(&estimates)? })
+    let mut records = Records::read(question)?;
+    let first = records.turbines[0];
+    answer(question, &records.asked(first)?)
 }
 
 /// What [`phase`] answers for the turbine that `question` names, for each that seeks a helix where it names none.
@@ -137,15 +123,12 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
 /// # Errors
 /// As [`phase`]; [`StudyError::NoTruth`] only where no turbine has an answer.
 pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, StudyError> {
-    let turbines = match &question.turbine {
-        Some(turbine) => vec![turbine.clone()],
-        None => asked::seekers(question)?,
-    };
+    let mut records = Records::read(question)?;
     let mut found = PhaseAnswers { answers: Vec::new(), without_truth: Vec::new() };
-    for turbine in turbines {
-        match phase(&PhaseQuestion { turbine: Some(turbine), ..question.clone() }) {
+    for index in records.turbines.clone() {
+        match records.asked(index) {
             Err(error @ StudyError::NoTruth { .. }) => found.without_truth.push(error),
-            answer => found.answers.push(answer?),
+            asked => found.answers.push(answer(question, &asked?)?),
         }
     }
     if found.answers.is_empty() && !found.without_truth.is_empty() {
@@ -154,11 +137,28 @@ pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, StudyError> {
     Ok(found)
 }
 
+/// What the records that are `asked` tell of one turbine.
+fn answer(question: &PhaseQuestion, asked: &Asked<'_>) -> Result<PhaseAnswer, StudyError> {
+    let Asked { run, case, name, reference, series, truth, .. } = asked;
+    let estimates = match question.estimator {
+        Some(estimator) => replay(asked, estimator)?,
+        None => recorded(series, name)?,
+    };
+    let from = question.from.unwrap_or(case.time.spin_up);
+    let compared =
+        |estimates: &Estimates| compare(run, name, series, estimates, truth, reference, from);
+    let hindsight = if asked.pitches {
+        None
+    } else {
+        let looked_back = compared(&hindsight(series, name, reference)?)?;
+        Some([looked_back.tilt.agreement, looked_back.yaw.agreement])
+    };
+    Ok(PhaseAnswer { hindsight, ..compared(&estimates)? })
+}
+
 /// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m) stand for winds.
 fn hindsight(series: &Series, name: &str, reference: &Reference) -> Result<Estimates, StudyError> {
-    let blade = |blade: usize| series.column(&format!("{name}.flap_moment_{blade}_nm"));
-    let blades: Vec<&[f64]> = (1..).map_while(blade).collect();
-    let moments = fixed_frame_moments(column(series, &format!("{name}.azimuth_rad"))?, &blades)?;
+    let moments = moments(series, name)?;
     let times = column(series, "time_s")?;
     let band = Band::around(reference.frequency(), Band::RATIO);
     let told = ground_truth(&moments, times[0], uniform_interval(times)?, reference, band)?;
@@ -169,6 +169,13 @@ fn hindsight(series: &Series, name: &str, reference: &Reference) -> Result<Estim
         tilt: wave(told.tilt),
         yaw: wave(told.yaw),
     })
+}
+
+/// Moments of the blades of turbine `name` in the fixed frame (N m), row by row.
+pub(crate) fn moments(series: &Series, name: &str) -> Result<Vec<FixedFrame>, StudyError> {
+    let blade = |blade: usize| series.column(&format!("{name}.flap_moment_{blade}_nm"));
+    let blades: Vec<&[f64]> = (1..).map_while(blade).collect();
+    Ok(fixed_frame_moments(column(series, &format!("{name}.azimuth_rad"))?, &blades)?)
 }
 
 /// What `estimates` over the rows of `series` are worth against `truth`, from the time `from` (s) on.
@@ -236,7 +243,8 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-fn column<'a>(series: &'a Series, channel: &str) -> Result<&'a [f64], StudyError> {
+/// The samples of `channel`.
+pub(crate) fn column<'a>(series: &'a Series, channel: &str) -> Result<&'a [f64], StudyError> {
     let missing = || StudyError::MissingChannel { channel: channel.to_owned() };
     series.column(channel).ok_or_else(missing)
 }
@@ -284,8 +292,8 @@ pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, StudyEr
 }
 
 /// What `estimator` believes when it is given the records of the turbine row by row, calibrated as it was in the run.
-fn replay(asked: &Asked, estimator: PhaseEstimator) -> Result<Estimates, StudyError> {
-    let interval = uniform_interval(column(&asked.series, "time_s")?)?;
+fn replay(asked: &Asked<'_>, estimator: PhaseEstimator) -> Result<Estimates, StudyError> {
+    let interval = uniform_interval(column(asked.series, "time_s")?)?;
     let setting = setting(asked, interval);
     let options = options(asked, estimator);
     let mut estimator =
@@ -319,9 +327,11 @@ fn replay(asked: &Asked, estimator: PhaseEstimator) -> Result<Estimates, StudyEr
 /// # Errors
 /// As [`phase`].
 pub fn tune(question: &PhaseQuestion) -> Result<Tuned, StudyError> {
-    let asked = Asked::read(question)?;
+    let mut records = Records::read(question)?;
+    let first = records.turbines[0];
+    let asked = records.asked(first)?;
     let truth = &asked.truth.wind;
-    let interval = uniform_interval(column(&asked.series, "time_s")?)?;
+    let interval = uniform_interval(column(asked.series, "time_s")?)?;
     let from = question.from.unwrap_or(asked.case.time.spin_up);
     let whole = record(&asked, interval)?;
     let (mut measured, mut tilt, mut yaw) = (Vec::new(), Vec::new(), Vec::new());
@@ -341,7 +351,7 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, StudyError> {
 }
 
 /// Choices of `estimator`, calibrated as in the run, with the noise that it was given there.
-fn options(asked: &Asked, estimator: PhaseEstimator) -> Options {
+fn options(asked: &Asked<'_>, estimator: PhaseEstimator) -> Options {
     let options = estimator_options(estimator, asked.case.flow.solver);
     let calibration = asked.calibration.filter(|_| estimator == PhaseEstimator::Robust);
     let options = calibration.map_or(options, |found| found.apply(options));
@@ -351,7 +361,7 @@ fn options(asked: &Asked, estimator: PhaseEstimator) -> Options {
 }
 
 /// What the estimator of the turbine is told.
-fn setting(asked: &Asked, interval: f64) -> Setting {
+fn setting(asked: &Asked<'_>, interval: f64) -> Setting {
     Setting {
         sense: asked.reference.sense,
         rate: asked.reference.rate,
@@ -362,8 +372,8 @@ fn setting(asked: &Asked, interval: f64) -> Setting {
 }
 
 /// What the turbine measured, row by row.
-fn record(asked: &Asked, interval: f64) -> Result<Vec<Measurements>, StudyError> {
-    let (name, series, n_blades) = (asked.name(), &asked.series, asked.definition.n_blades);
+fn record(asked: &Asked<'_>, interval: f64) -> Result<Vec<Measurements>, StudyError> {
+    let (name, series, n_blades) = (asked.name, asked.series, asked.definition.n_blades);
     let channel = |what: &str| column(series, &format!("{name}.{what}"));
     let per_blade = |what: &str| {
         (1..=n_blades)

@@ -2,14 +2,14 @@
 //!
 //! The farm's own promise; it stands here because the published turbine comes from a file.
 
+mod small;
+
 use basis::{Commands, Measurements};
-use farm::assemble::{self, Model};
+use farm::assemble;
 use farm::{Air, Farm, Recorder};
-use flow::inflow::{MeanProfile, PrescribedWind};
+use small::{laid_out, uniform_air};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use std::collections::BTreeMap;
-use std::sync::Arc;
 
 const CASE: &str = r#"
 name = "allocation"
@@ -83,15 +83,8 @@ impl Recorder for Last {
 
 /// The flexible turbine of run number `run`, alone in wind that is the same everywhere, on the thread that asks.
 fn farm_of(run: usize) -> Farm<Air> {
-    let case = formats::case::parse("allocation.toml", CASE, &[])
-        .unwrap_or_else(|error| panic!("{}", error.to_lines()));
-    let file = formats::library::load("iea-15mw").expect("a turbine of the library");
-    let model = Model { definition: Arc::new(file.definition), constants: file.controller };
-    let model = model.equipped(case.flow.solver, case.wind.air_density).into_owned();
-    let footprints = BTreeMap::from([("iea-15mw".to_owned(), model.footprint(case.wind.speed))]);
-    let plan = farm::plan(&case, &footprints).expect("the layout fits");
-    let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
-    let air = Air::Prescribed(Box::new(PrescribedWind::everywhere(profile)));
+    let (case, plan, model) = laid_out(CASE, &[], "iea-15mw");
+    let air = uniform_air(&case);
     assemble::farm(&case, &case.runs[run], &plan, &[model], air).expect("such a farm can be")
 }
 

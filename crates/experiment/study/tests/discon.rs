@@ -1,36 +1,21 @@
 //! A turbine whose case names ROSCO's input file runs under the constants in that file, and no other does.
 
+mod small;
+
+use small::{NREL_5MW, options};
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
-use study::{Options, Outcome, Setup, StudyError, Watcher};
+use study::{Options, Outcome, Setup, StudyError};
 use tempfile::TempDir;
 
-const CASE: &str = r#"
-name = "rosco"
-[wind]
-speed = 9.0
-turbulence_intensity = 0.0
-[flow]
-solver = "uniform"
-step = 0.2
-[time]
-spin_up = 10.0
-duration = 40.0
-[[turbine]]
-name = "T1"
-model = "nrel-5mw"
-position_diameters = [0.0, 0.0]
-structure = "rigid"
-[[turbine]]
-name = "T2"
-model = "nrel-5mw"
-discon = "control/DISCON.IN"
-position_diameters = [5.0, 0.0]
-structure = "rigid"
-[[run]]
+fn case() -> String {
+    let controlled = r#"model = "nrel-5mw"
+discon = "control/DISCON.IN""#;
+    let run = r#"[[run]]
 name = "baseline"
 "#;
+    small::case("rosco", "", [10.0, 40.0], &[NREL_5MW, controlled], run)
+}
 
 /// ROSCO on the generator side of a gearbox of 97, with a rated speed of its own.
 const DISCON: &str = "! Controller parameter input file
@@ -82,14 +67,9 @@ const TABLE: &str = "# Pitch angle vector
 0.75 0.80 0.70
 ";
 
-struct Silent;
-
-impl Watcher for Silent {}
-
 /// The case with the files of its controller.
 fn written(discon: &str) -> TempDir {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("case.toml"), CASE).expect("a file");
+    let folder = small::written(&case());
     fs::create_dir(folder.path().join("control")).expect("a folder");
     fs::write(folder.path().join("control/DISCON.IN"), discon).expect("a file");
     fs::write(folder.path().join("control/table.txt"), TABLE).expect("a file");
@@ -142,15 +122,7 @@ fn what_the_file_lacks_or_does_not_fit_is_told() {
 fn other_texts_of_file_or_table_are_noticed() {
     let folder = written(DISCON);
     let output = folder.path().join("out");
-    let go = |resume| {
-        let options = Options {
-            case: folder.path().join("case.toml"),
-            output: Some(output.clone()),
-            resume,
-            ..Options::default()
-        };
-        study::run(&options, &AtomicBool::new(false), &mut Silent)
-    };
+    let go = |resume| small::run(&Options { resume, ..options(folder.path()) });
     let first = go(false);
     assert!(matches!(first, Ok(Outcome::Done { .. })), "{first:?}");
     let manifest = fs::read_to_string(output.join("baseline/manifest.json")).expect("a manifest");

@@ -1,15 +1,17 @@
 //! Instruments in the farm, in solved and in prescribed air: perfect ones change no bit, noise is what was asked for,
 //! records hold the truth, and a run that was stopped goes on with the same noise.
 
+mod small;
+
 use basis::{Commands, Measurements, Vector3};
 use control::Controller;
 use farm::assemble::{self, Model};
 use farm::case::Case;
 use farm::{Air, Farm, Plan, Recorder};
 use flow::WindField;
-use flow::inflow::{MeanProfile, PrescribedWind};
+use flow::inflow::MeanProfile;
 use flow::lattice::Lattice;
-use std::collections::BTreeMap;
+use small::{Silent, laid_out, options, uniform_air, written};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -54,21 +56,15 @@ const MOMENT_NOISE: f64 = 2.0;
 
 /// The case with `overrides`, laid out, with its turbines.
 fn case(overrides: &[String]) -> (Case, Plan, Vec<Model>) {
-    let case = formats::case::parse("instruments.toml", CASE, overrides)
-        .unwrap_or_else(|error| panic!("{}", error.to_lines()));
-    let file = formats::library::load("iea-15mw").expect("a turbine of the library");
-    let model = Model { definition: Arc::new(file.definition), constants: file.controller };
-    let model = model.equipped(case.flow.solver, case.wind.air_density).into_owned();
-    let footprints = BTreeMap::from([("iea-15mw".to_owned(), model.footprint(case.wind.speed))]);
-    let plan = farm::plan(&case, &footprints).expect("the layout fits");
+    let (case, plan, model) = laid_out(CASE, overrides, "iea-15mw");
     (case, plan, vec![model.clone(), model])
 }
 
 fn farm_of((case, plan, models): &(Case, Plan, Vec<Model>)) -> Farm<Air> {
-    let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
     let air = if case.flow.solver.is_prescribed() {
-        Air::Prescribed(Box::new(PrescribedWind::everywhere(profile)))
+        uniform_air(case)
     } else {
+        let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
         let settings = assemble::lattice_settings(case, plan);
         Air::Lattice(Box::new(Lattice::new(settings, profile).expect("such air can be")))
     };
@@ -203,15 +199,9 @@ impl Watcher for Stopper<'_> {
     }
 }
 
-struct Patient;
-
-impl Watcher for Patient {}
-
 #[test]
 fn a_stopped_run_goes_on_with_the_same_bits() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("instruments.toml");
-    fs::write(&path, CASE).expect("a case file");
+    let folder = written(CASE);
     let overrides = [
         "time.duration=10",
         "turbine.T1.instruments.generator_speed={ noise_rpm = 0.05, dropout = 0.1, time_constant = 0.1 }",
@@ -223,11 +213,10 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
     let series = |name: &str, watcher: &mut dyn FnMut(&AtomicBool, &Options) -> Outcome| {
         let output = folder.path().join(name);
         let options = Options {
-            case: path.clone(),
             output: Some(output.clone()),
             overrides: overrides.to_vec(),
             resume: true,
-            ..Options::default()
+            ..options(folder.path())
         };
         while !matches!(watcher(&AtomicBool::new(false), &options), Outcome::Done { .. }) {}
         read(&output)
@@ -235,7 +224,7 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
     let run = |stop: &AtomicBool, options: &Options, watcher: &mut dyn Watcher| {
         study::run(options, stop, watcher).expect("the study runs")
     };
-    let whole = series("whole", &mut |stop, options| run(stop, options, &mut Patient));
+    let whole = series("whole", &mut |stop, options| run(stop, options, &mut Silent));
     let broken = series("broken", &mut |stop, options| run(stop, options, &mut Stopper(stop)));
     assert!(whole == broken, "the series differ");
 }

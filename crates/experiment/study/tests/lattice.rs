@@ -1,5 +1,8 @@
 //! A study in solved air, from case to report, stopped on the way: what it leaves has the same bits.
 
+mod small;
+
+use small::written;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -44,16 +47,8 @@ impl Watcher for Impatient<'_> {
     }
 }
 
-struct Silent;
-
-impl Watcher for Silent {}
-
 fn options(folder: &Path, output: &str) -> Options {
-    Options {
-        case: folder.join("case.toml"),
-        output: Some(folder.join(output)),
-        ..Options::default()
-    }
+    Options { output: Some(folder.join(output)), ..small::options(folder) }
 }
 
 /// Everything that a run left but what tells of the machine and the hour, by its place in the run's folder.
@@ -75,10 +70,9 @@ fn left(run: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 
 #[test]
 fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("case.toml"), CASE).expect("a file");
+    let folder = written(CASE);
     let stop = AtomicBool::new(false);
-    let outcome = study::run(&options(folder.path(), "whole"), &stop, &mut Silent);
+    let outcome = small::run(&options(folder.path(), "whole"));
     assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{outcome:?}");
 
     let mut again = options(folder.path(), "stopped");
@@ -92,8 +86,7 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
         fs::write(run.join(name), b"half").expect("a file");
     }
     again.resume = true;
-    stop.store(false, Ordering::Relaxed);
-    let outcome = study::run(&again, &stop, &mut Silent);
+    let outcome = small::run(&again);
     let Ok(Outcome::Done { summaries, .. }) = outcome else { panic!("{outcome:?}") };
     let cost = &summaries[0].cost;
     assert_eq!(cost.peak_memory.is_some(), formats::machine::peak_memory().is_some());

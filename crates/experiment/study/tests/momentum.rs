@@ -1,13 +1,12 @@
 //! What a case says of momentum theory reaches the blades of a turbine in prescribed wind.
 
+mod small;
+
 use basis::{Commands, Measurements, PerBlade};
-use farm::assemble::{self, Model};
-use farm::case::Case;
-use farm::{Air, Farm, Plan, Recorder};
-use flow::inflow::{MeanProfile, PrescribedWind};
-use std::collections::BTreeMap;
+use farm::assemble;
+use farm::{Air, Farm, Recorder};
+use small::{laid_out, uniform_air};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 const CASE: &str = r#"
 name = "momentum"
@@ -32,24 +31,11 @@ name = "baseline"
 /// Steps of a bit more than two turns of the rotor.
 const N_STEPS: usize = 250;
 
-/// The case with `overrides`, laid out, with its turbine.
-fn case(overrides: &[&str]) -> (Case, Plan, Model) {
-    let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
-    let case = formats::case::parse("momentum.toml", CASE, &overrides)
-        .unwrap_or_else(|error| panic!("{}", error.to_lines()));
-    let file = formats::library::load("nrel-5mw").expect("a turbine of the library");
-    let model = Model { definition: Arc::new(file.definition), constants: file.controller };
-    let model = model.equipped(case.flow.solver, case.wind.air_density).into_owned();
-    let footprints = BTreeMap::from([("nrel-5mw".to_owned(), model.footprint(case.wind.speed))]);
-    let plan = farm::plan(&case, &footprints).expect("the layout fits");
-    (case, plan, model)
-}
-
 /// The farm of the case with `overrides`, in wind that is the same everywhere.
 fn farm_of(overrides: &[&str]) -> Farm<Air> {
-    let (case, plan, model) = case(overrides);
-    let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
-    let air = Air::Prescribed(Box::new(PrescribedWind::everywhere(profile)));
+    let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
+    let (case, plan, model) = laid_out(CASE, &overrides, "nrel-5mw");
+    let air = uniform_air(&case);
     assemble::farm(&case, &case.runs[0], &plan, &[model], air).expect("such a farm can be")
 }
 

@@ -1,37 +1,17 @@
 //! The `.outb` of a turbine in prescribed wind holds what its series holds, under OpenFAST's names and units.
 
-use formats::table::TableReader;
-use std::fs;
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
-use study::{Options, Outcome, Watcher};
+mod small;
 
-const CASE: &str = r#"
-name = "geared"
-[wind]
-speed = 9.0
-turbulence_intensity = 0.0
-[flow]
-solver = "uniform"
-step = 0.2
-[time]
-spin_up = 10.0
-duration = 40.0
-[[turbine]]
-name = "T1"
-model = "nrel-5mw"
-position_diameters = [0.0, 0.0]
-structure = "rigid"
-[[run]]
+use formats::table::TableReader;
+use small::{NREL_5MW, case, done, options, written};
+use std::path::Path;
+
+const RUN: &str = r#"[[run]]
 name = "baseline"
 "#;
 
 /// Generator speed over rotor speed of NREL 5 MW (–).
 const GEAR_RATIO: f64 = 97.0;
-
-struct Silent;
-
-impl Watcher for Silent {}
 
 /// Unit of the channel `name` in the table at `path`, and its values.
 fn channel(path: &Path, name: &str) -> (String, Vec<f64>) {
@@ -47,13 +27,9 @@ fn channel(path: &Path, name: &str) -> (String, Vec<f64>) {
 
 #[test]
 fn generator_torque_is_that_of_the_generator_s_side() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let case = folder.path().join("geared.toml");
-    fs::write(&case, CASE).expect("a file");
+    let folder = written(&case("geared", "", [10.0, 40.0], &[NREL_5MW], RUN));
     let output = folder.path().join("out");
-    let options = Options { case, output: Some(output.clone()), ..Options::default() };
-    let outcome = study::run(&options, &AtomicBool::new(false), &mut Silent);
-    assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{outcome:?}");
+    done(&options(folder.path()));
     let run = output.join("baseline");
     let (unit, torque) = channel(&run.join("T1.outb"), "GenTq");
     let (_, low_speed) = channel(&run.join("series.csv"), "T1.generator_torque_nm");

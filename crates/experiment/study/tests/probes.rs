@@ -1,45 +1,27 @@
 //! What is probed before the runs stands in the records, and a resumed study takes it from there, with the same bits.
 
+mod small;
+
 use basis::records::PitchResponse;
+use small::{NREL_5MW, written};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::{Estimate, Options, Outcome, Probing, Watcher};
 
-const CASE: &str = r#"
-name = "probed"
-
-[wind]
-speed = 9.0
-turbulence_intensity = 0.0
-shear_exponent = 0.0
-
-[flow]
-solver = "uniform"
-step = 0.2
-
-[time]
-spin_up = 10.0
-duration = 60.0
-
-[[turbine]]
-name = "T1"
-model = "nrel-5mw"
-position_diameters = [0.0, 0.0]
-structure = "rigid"
-
-[[run]]
+fn case() -> String {
+    let runs = r#"[[run]]
 name = "watch"
 control.T1 = { kind = "meandering", factor = 1.0, amplitude_deg = 0.0 }
-
 [[run]]
 name = "amplify"
 control.T1 = { kind = "meandering", factor = 1.5, amplitude_deg = 2.0 }
-
 [[run]]
 name = "attenuate"
 control.T1 = { kind = "meandering", factor = 0.5, amplitude_deg = 2.0 }
 "#;
+    small::case("probed", "shear_exponent = 0.0\n", [10.0, 60.0], &[NREL_5MW], runs)
+}
 
 /// What was told.
 #[derive(Default)]
@@ -68,13 +50,8 @@ impl Watcher for Told {
 }
 
 fn options(folder: &Path, resume: bool, overrides: &[&str]) -> Options {
-    Options {
-        case: folder.join("case.toml"),
-        output: Some(folder.join("out")),
-        overrides: overrides.iter().map(|&text| text.to_owned()).collect(),
-        resume,
-        ..Options::default()
-    }
+    let overrides = overrides.iter().map(|&text| text.to_owned()).collect();
+    Options { overrides, resume, ..small::options(folder) }
 }
 
 fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Told, Vec<Option<PitchResponse>>) {
@@ -88,8 +65,7 @@ fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Told, Vec<Option<Pit
 
 #[test]
 fn a_resumed_study_takes_what_was_probed() {
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("case.toml"), CASE).expect("a file");
+    let folder = written(&case());
     let (first, responses) = run(folder.path(), false, &[]);
     // Once for both runs that act; the one that watches needs nothing.
     assert_eq!((first.n_probes, first.found.len()), (1, 1));
@@ -129,8 +105,7 @@ impl Watcher for Impatient<'_> {
 
 #[test]
 fn a_probe_stops_when_asked() {
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("case.toml"), CASE).expect("a file");
+    let folder = written(&case());
     let stop = AtomicBool::new(false);
     let options = options(folder.path(), false, &[]);
     let outcome = study::run(&options, &stop, &mut Impatient(&stop)).expect("a sound case");

@@ -1,6 +1,8 @@
 //! What shows only once turbines and controllers are there is told before the first step, at its line of the case file.
 
-use std::fs;
+mod small;
+
+use small::{options, written};
 use std::sync::atomic::AtomicBool;
 use study::{Estimate, Options, Outcome, StudyError, Watcher};
 
@@ -69,11 +71,8 @@ impl Watcher for Told {
 
 /// What a dry run of `case` comes to, and what it tells.
 fn dry(case: &str) -> (Result<Outcome, StudyError>, Told) {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("case.toml");
-    fs::write(&path, case).expect("a file");
-    let output = Some(folder.path().join("out"));
-    let options = Options { case: path, output, dry_run: true, ..Options::default() };
+    let folder = written(case);
+    let options = Options { dry_run: true, ..options(folder.path()) };
     let mut told = Told::default();
     (study::run(&options, &AtomicBool::new(false), &mut told), told)
 }

@@ -1,62 +1,26 @@
 //! A row in which each turbine seeks the helix of the one before: all of them are answered for, in analysis and report.
 
-use std::f64::consts::PI;
+mod small;
+
+use basis::angle::wrap_to_half_turn;
+use small::{ABSENT, DISK, NREL_5MW, WATCHING, behind_helix, done, options, written};
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
-use study::{Options, Outcome, PhaseAnswers, PhaseQuestion, StudyError, Watcher};
+use study::{PhaseAnswers, PhaseQuestion, StudyError};
 
 /// All turbines stand in the path of one disk of slow air, whose waves T2 and T3 take for a helix.
-const CASE: &str = r#"
-name = "row"
-[wind]
-speed = 9.0
-turbulence_intensity = 0.0
-event = { kind = "rotating-disk", speed = 6.0, strouhal = 0.25 }
-[flow]
-solver = "uniform"
-step = 0.2
-[time]
-spin_up = 100.0
-duration = 500.0
-[[turbine]]
-name = "T1"
-model = "nrel-5mw"
-position_diameters = [0.0, 0.0]
-structure = "rigid"
-[[turbine]]
-name = "T2"
-model = "nrel-5mw"
-position_diameters = [5.0, 0.0]
-structure = "rigid"
-[[turbine]]
-name = "T3"
-model = "nrel-5mw"
-position_diameters = [10.0, 0.0]
-structure = "rigid"
-[[run]]
-name = "both"
-control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
-control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }
-control.T3 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }
-[[run]]
-name = "without-t3"
-control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
-control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }
-control.T3 = { kind = "absent" }
-[[run]]
-name = "alone"
-control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
-control.T2 = { kind = "absent" }
-control.T3 = { kind = "absent" }
-[output]
+fn case() -> String {
+    let runs = [
+        behind_helix("both", &[WATCHING, WATCHING]),
+        behind_helix("without-t3", &[WATCHING, ABSENT]),
+        behind_helix("alone", &[ABSENT, ABSENT]),
+    ];
+    let kept = r#"[output]
 interval = 0.2
 lines_at = ["T2", "T3"]
 "#;
-
-struct Silent;
-
-impl Watcher for Silent {}
+    small::case("row", DISK, [100.0, 500.0], &[NREL_5MW; 3], &(runs.concat() + kept))
+}
 
 /// What is answered of the run "both" of the study in `output`.
 fn both(output: &Path) -> PhaseAnswers {
@@ -66,13 +30,9 @@ fn both(output: &Path) -> PhaseAnswers {
 
 #[test]
 fn every_turbine_that_seeks_a_helix_is_answered_for() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let case = folder.path().join("case.toml");
-    fs::write(&case, CASE).expect("a file");
+    let folder = written(&case());
     let output = folder.path().join("out");
-    let options = Options { case, output: Some(output.clone()), ..Options::default() };
-    let outcome = study::run(&options, &AtomicBool::new(false), &mut Silent);
-    let Ok(Outcome::Done { report, .. }) = outcome else { panic!("{outcome:?}") };
+    let report = done(&options(folder.path()));
 
     let found = both(&output);
     assert!(found.without_truth.is_empty(), "{:?}", found.without_truth);
@@ -92,7 +52,7 @@ fn every_turbine_that_seeks_a_helix_is_answered_for() {
         far.len()
     );
     for (near, far) in near.iter().zip(far) {
-        let apart = (near - far + 3.0 * PI).rem_euclid(2.0 * PI) - PI;
+        let apart = wrap_to_half_turn(near - far);
         assert!(apart.abs() < 1e-9, "{apart} rad");
     }
 

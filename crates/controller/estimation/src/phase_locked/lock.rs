@@ -73,6 +73,11 @@ impl Lock {
         }
     }
 
+    /// Root mean square of the phase error (rad).
+    pub(super) fn phase_error(&self) -> f64 {
+        self.phase.sqrt()
+    }
+
     pub(super) fn is_locked(&self) -> bool {
         self.locked
     }

@@ -134,6 +134,12 @@ impl TwoAxisLoop {
         }
     }
 
+    /// Root mean square of the oscillator's phase error, an exponential mean over one period of the oscillation (rad): what a
+    /// lock is judged by, 1 before the first sample.
+    pub fn phase_error(&self) -> f64 {
+        self.lock.phase_error()
+    }
+
     /// What is believed now.
     pub fn estimate(&self) -> TwoAxisEstimate {
         let phase = self.oscillator.phase();

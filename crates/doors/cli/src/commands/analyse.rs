@@ -1,5 +1,8 @@
 //! `wakemix analyse`: what the records of runs tell.
 
+mod gains;
+mod lock;
+
 use clap::{Args, Subcommand, ValueEnum};
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
@@ -16,6 +19,10 @@ pub(crate) enum AnalyseCommand {
     Phase(PhaseArguments),
     /// Noise for the phase estimator from the record of a run and the true wind of another, after Algorithm 1 of van Vondelen et al. (2025)
     Tune(PhaseArguments),
+    /// Gains of one case in several winds, from studies that differ in wind.seed, each and all together with a 95 % interval
+    Gains(gains::GainsArguments),
+    /// How well a phase-locked loop would follow the slow swing of a turbine's blade moments in the records of a run, whatever its control
+    Lock(lock::LockArguments),
 }
 
 /// Arguments of `wakemix analyse phase` and `wakemix analyse tune`.
@@ -54,7 +61,11 @@ enum Choice {
 /// # Errors
 /// Records that cannot be read or do not hold what is asked for.
 pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
-    let (AnalyseCommand::Phase(arguments) | AnalyseCommand::Tune(arguments)) = command;
+    let arguments = match command {
+        AnalyseCommand::Phase(arguments) | AnalyseCommand::Tune(arguments) => arguments,
+        AnalyseCommand::Gains(arguments) => return gains::run(arguments),
+        AnalyseCommand::Lock(arguments) => return lock::run(arguments),
+    };
     let question = PhaseQuestion {
         run: arguments.run.clone(),
         turbine: arguments.turbine.clone(),

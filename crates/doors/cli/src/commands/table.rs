@@ -131,7 +131,8 @@ impl<'a> Load<'a> {
     }
 }
 
-fn with_interval(statistic: &Statistic, scale: f64, digits: usize) -> String {
+/// `statistic` times `scale` with so many `digits`, ± half of its 95 % interval where it has one.
+pub(crate) fn with_interval(statistic: &Statistic, scale: f64, digits: usize) -> String {
     let mean = scale * statistic.mean;
     match statistic.half_width_95 {
         Some(half_width) => format!("{mean:.digits$} ± {:.digits$}", scale * half_width),

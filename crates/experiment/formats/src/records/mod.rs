@@ -11,7 +11,7 @@ mod study;
 pub use manifest::{Machine, Manifest, read_manifest, sha256, write_manifest};
 pub use probes::{ProbeRecord, read_probes, write_probes};
 pub use series::{SeriesWriter, read_series};
-pub use study::{RunRecords, StudyRecords, read_study};
+pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
 
 use crate::{FileError, atomic, netcdf, vtk};
 use basis::records::{Plane, SCHEMA_VERSION, Summary};

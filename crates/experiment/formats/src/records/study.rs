@@ -52,34 +52,14 @@ pub struct RunRecords {
 /// [`FileError::System`] when a file cannot be read; [`FileError::Content`] when one holds something else, or when
 /// no run of a study is there.
 pub fn read_study(path: &Path) -> Result<StudyRecords, FileError> {
-    let mut runs = Vec::new();
-    let mut incomplete = Vec::new();
-    for entry in entries(path)? {
-        let folder = RunFolder { path: entry };
-        if !folder.manifest_path().is_file() {
-            continue;
-        }
-        let manifest = read_manifest(&folder)?;
-        if folder.is_complete() {
-            runs.push(read_run(&folder, manifest)?);
-        } else {
-            incomplete.push((manifest.run_index, manifest.run));
-        }
+    let Found { complete, incomplete } = find_runs(path)?;
+    let mut runs = Vec::with_capacity(complete.len());
+    for (folder, manifest) in complete {
+        runs.push(read_run(&folder, manifest)?);
     }
-    runs.sort_by(|a, b| place(a).cmp(&place(b)));
-    incomplete.sort();
-    let incomplete: Vec<String> = incomplete.into_iter().map(|(_, run)| run).collect();
     // Times of this form sort as text.
     let Some(latest) = runs.iter().map(|run| &run.manifest).max_by_key(|run| &run.started) else {
-        let problem = match incomplete.as_slice() {
-            [] => "there is no run in it".to_owned(),
-            names => {
-                format!("no run in it is complete; under way or interrupted: {}", names.join(", "))
-            }
-        };
-        let fix =
-            "name the folder that `wakemix run CASE -o DIR` wrote, or complete it with --resume";
-        return Err(FileError::content("a study", path, problem, fix));
+        return Err(no_run(path, &incomplete));
     };
     Ok(StudyRecords {
         case_name: latest.case.clone(),
@@ -92,8 +72,61 @@ pub fn read_study(path: &Path) -> Result<StudyRecords, FileError> {
     })
 }
 
-fn place(run: &RunRecords) -> (usize, &str) {
-    (run.manifest.run_index, &run.manifest.run)
+/// Reads what the complete runs of the study in the folder `path` came to, without their series and planes: manifest and
+/// summary of each, in the case file's order; one or more.
+///
+/// # Errors
+/// Those of [`read_study`].
+pub fn read_summaries(path: &Path) -> Result<Vec<(Manifest, Summary)>, FileError> {
+    let Found { complete, incomplete } = find_runs(path)?;
+    if complete.is_empty() {
+        return Err(no_run(path, &incomplete));
+    }
+    let read = |(folder, manifest): (RunFolder, Manifest)| Ok((manifest, read_summary(&folder)?));
+    complete.into_iter().map(read).collect()
+}
+
+/// The runs of a study, in the case file's order.
+struct Found {
+    complete: Vec<(RunFolder, Manifest)>,
+    /// Names of those that are under way or were interrupted.
+    incomplete: Vec<String>,
+}
+
+/// The runs in the study's folder `path`.
+fn find_runs(path: &Path) -> Result<Found, FileError> {
+    let (mut complete, mut incomplete) = (Vec::new(), Vec::new());
+    for entry in entries(path)? {
+        let folder = RunFolder { path: entry };
+        if !folder.manifest_path().is_file() {
+            continue;
+        }
+        let manifest = read_manifest(&folder)?;
+        if folder.is_complete() {
+            complete.push((folder, manifest));
+        } else {
+            incomplete.push((manifest.run_index, manifest.run));
+        }
+    }
+    complete.sort_by(|(_, a), (_, b)| place(a).cmp(&place(b)));
+    incomplete.sort();
+    Ok(Found { complete, incomplete: incomplete.into_iter().map(|(_, run)| run).collect() })
+}
+
+/// No run in the study's folder `path` is complete; those in `incomplete` are not.
+fn no_run(path: &Path, incomplete: &[String]) -> FileError {
+    let problem = match incomplete {
+        [] => "there is no run in it".to_owned(),
+        names => {
+            format!("no run in it is complete; under way or interrupted: {}", names.join(", "))
+        }
+    };
+    let fix = "name the folder that `wakemix run CASE -o DIR` wrote, or complete it with --resume";
+    FileError::content("a study", path, problem, fix)
+}
+
+fn place(run: &Manifest) -> (usize, &str) {
+    (run.run_index, &run.run)
 }
 
 fn warnings(runs: &[RunRecords], latest: &Manifest) -> Vec<String> {
@@ -263,6 +296,9 @@ mod tests {
         assert!(run.volume_paths[0].ends_with("baseline/volumes/velocity-0000.vti"));
         assert!(run.manifest.finished.is_some() && run.manifest.machine.n_cores > 0);
         assert!(records.warnings.is_empty() && records.incomplete.is_empty());
+        let read = read_summaries(study.path()).unwrap();
+        let kept = records.runs.into_iter().map(|run| (run.manifest, run.summary));
+        assert_eq!(read, kept.collect::<Vec<_>>());
     }
 
     #[test]
@@ -298,6 +334,7 @@ mod tests {
         let study = tempfile::tempdir().unwrap();
         let error = read_study(study.path()).unwrap_err().to_string();
         assert!(error.contains("does not hold a study: there is no run in it"), "{error}");
+        assert_eq!(read_summaries(study.path()).unwrap_err().to_string(), error);
         let error = read_study(&study.path().join("none")).unwrap_err().to_string();
         assert!(error.contains("cannot read the folder"), "{error}");
     }

@@ -4,23 +4,39 @@ use super::{PhaseQuestion, Truth, truth};
 use crate::StudyError;
 use crate::probes::calibration_of;
 use analysis::phase::Reference;
-use basis::records::Series;
+use basis::records::{Series, Summary};
 use control::excitation_rate;
 use estimation::helix::Calibration;
 use farm::case::{Case, Control, PhaseSync, helix_upstream};
 use formats::records::{self, Manifest, RunFolder};
 use formats::{case, library, turbine_file};
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use turbine::Definition;
 
-/// What a question is about, read.
-pub(super) struct Asked {
+/// The run that a question is about, read once for all its turbines.
+pub(super) struct Records<'q> {
+    question: &'q PhaseQuestion,
+    folder: RunFolder,
+    manifest: Manifest,
+    case: Case,
+    /// Places in the case of the turbines that the question is about, in the case's order; one or more.
+    pub(super) turbines: Vec<usize>,
+    summary: Summary,
+    series: Series,
+    /// Series of runs without one of the turbines, by their paths, as far as they were asked for.
+    without: BTreeMap<PathBuf, Series>,
+}
+
+/// What is asked of one turbine.
+pub(super) struct Asked<'r> {
     /// Name of the run.
-    pub(super) run: String,
-    pub(super) case: Case,
-    /// Place of the turbine in the case.
-    pub(super) index: usize,
+    pub(super) run: &'r str,
+    pub(super) case: &'r Case,
+    /// Name of the turbine.
+    pub(super) name: &'r str,
     pub(super) reference: Reference,
     /// Its rotor.
     pub(super) definition: Arc<Definition>,
@@ -30,49 +46,62 @@ pub(super) struct Asked {
     pub(super) sync: Option<PhaseSync>,
     /// Whether it pitches a helix of its own.
     pub(super) pitches: bool,
-    pub(super) series: Series,
+    pub(super) series: &'r Series,
     pub(super) truth: Truth,
 }
 
-impl Asked {
-    pub(super) fn read(question: &PhaseQuestion) -> Result<Self, StudyError> {
+impl<'q> Records<'q> {
+    pub(super) fn read(question: &'q PhaseQuestion) -> Result<Self, StudyError> {
         let folder = folder_of(&question.run);
         let manifest = records::read_manifest(&folder)?;
         let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
-        let index = turbine_of(question, &case, &manifest)?;
-        let name = case.turbines[index].name.clone();
+        let turbines = turbines_of(question, &case, &manifest)?;
+        let summary = records::read_summary(&folder)?;
+        let series = records::read_series(&folder.series_path())?;
+        let without = BTreeMap::new();
+        Ok(Self { question, folder, manifest, case, turbines, summary, series, without })
+    }
+
+    /// What is asked of turbine number `index` of the case.
+    ///
+    /// # Errors
+    /// [`StudyError::NoHelix`], [`StudyError::NoTruth`], and [`StudyError`] for records that cannot be read.
+    pub(super) fn asked(&mut self, index: usize) -> Result<Asked<'_>, StudyError> {
+        let (manifest, case, without) = (&self.manifest, &self.case, &mut self.without);
+        let turbine = &case.turbines[index];
         let control = &case.runs[manifest.run_index].control;
         let helix = control[index].helix().or(helix_upstream(index, &case.turbines, control));
         let (sense, strouhal) = helix.ok_or_else(|| StudyError::NoHelix {
             run: manifest.run.clone(),
-            turbine: name.clone(),
+            turbine: turbine.name.clone(),
         })?;
-        let summary = records::read_summary(&folder)?;
-        let rate = excitation_rate(strouhal, case.wind.speed, summary.conditions.rotor_diameter);
+        let rate =
+            excitation_rate(strouhal, case.wind.speed, self.summary.conditions.rotor_diameter);
         let reference = Reference { rate, sense };
-        let study = folder.path().parent().unwrap_or(Path::new("")).to_owned();
-        let without = match &question.truth {
+        let study = self.folder.path().parent().unwrap_or(Path::new("")).to_owned();
+        let truth_folder = match &self.question.truth {
             Some(path) => Some(folder_of(path)),
             None => case
                 .runs
                 .iter()
                 .filter(|run| {
                     case.output.lines_at.contains(&index)
-                        && tells_truth(&case, &run.control, control, index)
+                        && tells_truth(case, &run.control, control, index)
                 })
                 .map(|run| RunFolder::new(&study, &run.name))
                 .find(RunFolder::is_complete),
         };
-        let truth = match without {
-            Some(without) => {
-                let series = records::read_series(&without.series_path())?;
-                truth(&without.run(), &name, &series, &reference)?
+        let truth = match truth_folder {
+            Some(folder) => {
+                let series = read_once(without, folder.series_path())?;
+                truth(&folder.run(), &turbine.name, series, &reference)?
             }
             None => None,
         };
-        let truth =
-            truth.ok_or_else(|| StudyError::NoTruth { turbine: name.clone(), directory: study })?;
-        let series = records::read_series(&folder.series_path())?;
+        let truth = truth.ok_or_else(|| StudyError::NoTruth {
+            turbine: turbine.name.clone(),
+            directory: study,
+        })?;
         let pitches = match control[index] {
             Control::Helix(helix) => helix.amplitude != 0.0,
             Control::PhaseSync(sync) => sync.amplitude != 0.0,
@@ -82,64 +111,57 @@ impl Asked {
             Control::PhaseSync(sync) => Some(sync),
             _ => None,
         };
-        let definition = Arc::new(rotor(&case.turbines[index].model, &manifest)?);
-        let summary = summary.turbines.into_iter().find(|turbine| turbine.name == name);
-        let response = summary.and_then(|turbine| turbine.pitch_response);
-        let calibration = response.as_ref().and_then(calibration_of);
-        Ok(Self {
-            run: manifest.run,
+        let definition = Arc::new(rotor(&turbine.model, manifest)?);
+        let told = self.summary.turbines.iter().find(|told| told.name == turbine.name);
+        let response = told.and_then(|told| told.pitch_response.as_ref());
+        let calibration = response.and_then(calibration_of);
+        Ok(Asked {
+            run: &manifest.run,
             case,
-            index,
+            name: &turbine.name,
             reference,
             definition,
             calibration,
             sync,
             pitches,
-            series,
+            series: &self.series,
             truth,
         })
     }
-
-    /// Name of the turbine.
-    pub(super) fn name(&self) -> &str {
-        &self.case.turbines[self.index].name
-    }
 }
 
-/// The turbine that `question` is about.
-fn turbine_of(
+/// The series at `path`, which is kept in `read` from then on.
+fn read_once(read: &mut BTreeMap<PathBuf, Series>, path: PathBuf) -> Result<&Series, StudyError> {
+    Ok(match read.entry(path) {
+        Entry::Occupied(found) => found.into_mut(),
+        Entry::Vacant(place) => {
+            let series = records::read_series(place.key())?;
+            place.insert(series)
+        }
+    })
+}
+
+/// Places in `case` of the turbine that `question` names, or of those that seek a helix in the run of `manifest` where it
+/// names none; one or more.
+fn turbines_of(
     question: &PhaseQuestion,
     case: &Case,
     manifest: &Manifest,
-) -> Result<usize, StudyError> {
-    let found = match &question.turbine {
-        Some(name) => case.turbines.iter().position(|turbine| turbine.name == *name),
-        None => seeking(case, manifest).next(),
+) -> Result<Vec<usize>, StudyError> {
+    let control = &case.runs[manifest.run_index].control;
+    let is_asked = |&index: &usize| match &question.turbine {
+        Some(name) => case.turbines[index].name == *name,
+        None => matches!(control[index], Control::PhaseSync(_)),
     };
-    found.ok_or_else(|| nobody_seeks(question, case, manifest))
-}
-
-/// Names of the turbines that seek a helix in the run that `question` is about, in the case's order; one or more.
-pub(super) fn seekers(question: &PhaseQuestion) -> Result<Vec<String>, StudyError> {
-    let manifest = records::read_manifest(&folder_of(&question.run))?;
-    let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
-    let names: Vec<String> =
-        seeking(&case, &manifest).map(|index| case.turbines[index].name.clone()).collect();
-    if names.is_empty() { Err(nobody_seeks(question, &case, &manifest)) } else { Ok(names) }
-}
-
-/// Places of the turbines that seek a helix in the run of `manifest`.
-fn seeking<'c>(case: &'c Case, manifest: &Manifest) -> impl Iterator<Item = usize> + use<'c> {
-    let control = case.runs[manifest.run_index].control.iter().enumerate();
-    control.filter_map(|(index, control)| matches!(control, Control::PhaseSync(_)).then_some(index))
-}
-
-fn nobody_seeks(question: &PhaseQuestion, case: &Case, manifest: &Manifest) -> StudyError {
-    StudyError::NobodySeeks {
-        run: manifest.run.clone(),
-        asked: question.turbine.clone(),
-        turbines: case.turbines.iter().map(|turbine| turbine.name.clone()).collect(),
+    let turbines: Vec<usize> = (0..case.turbines.len()).filter(is_asked).collect();
+    if turbines.is_empty() {
+        return Err(StudyError::NobodySeeks {
+            run: manifest.run.clone(),
+            asked: question.turbine.clone(),
+            turbines: case.turbines.iter().map(|turbine| turbine.name.clone()).collect(),
+        });
     }
+    Ok(turbines)
 }
 
 /// Whether a run under `without` holds the true wind of turbine `index` in one under `with`: it is away there, and the
@@ -165,9 +187,32 @@ fn rotor(model: &str, manifest: &Manifest) -> Result<Definition, StudyError> {
 }
 
 /// The run in the folder `path`.
-fn folder_of(path: &Path) -> RunFolder {
+pub(crate) fn folder_of(path: &Path) -> RunFolder {
     // A bare name has no parent to look for other runs in.
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
     RunFolder::new(path.parent().unwrap_or(Path::new("")), &name.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_series_is_read_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("series.csv");
+        let mut writer =
+            records::SeriesWriter::create(&path, &["time_s".to_owned()]).expect("a file");
+        writer.write(&[0.5]).expect("a row");
+        writer.finish().expect("a file");
+        let mut read = BTreeMap::new();
+        let first = read_once(&mut read, path.clone()).expect("a sound file").clone();
+        assert_eq!(first.columns, [[0.5]]);
+        // What is gone from the disk cannot be read again.
+        fs::remove_file(&path).expect("a file");
+        assert_eq!(*read_once(&mut read, path).expect("kept"), first);
+        assert!(read_once(&mut read, folder.path().join("other.csv")).is_err());
+    }
 }

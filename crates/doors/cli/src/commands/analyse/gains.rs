@@ -1,0 +1,157 @@
+//! `wakemix analyse gains`: gains of one case in several winds, and all of them together.
+
+use crate::commands::table::with_interval;
+use clap::Args;
+use miette::{IntoDiagnostic, Result};
+use serde_json::json;
+use std::path::PathBuf;
+use wakemix::study::{GainsAnswer, GainsQuestion, PartGains, gains_over_seeds};
+
+/// Arguments of `wakemix analyse gains`.
+#[derive(Args)]
+pub(crate) struct GainsArguments {
+    /// Folders of two studies or more of one case that differ in wind.seed
+    #[arg(required = true, value_name = "STUDY")]
+    studies: Vec<PathBuf>,
+    /// Only this run (may be repeated); all that compare with another when left out
+    #[arg(long = "run", value_name = "NAME")]
+    runs: Vec<String>,
+    /// Print JSON on stdout instead of the table
+    #[arg(long)]
+    json: bool,
+}
+
+/// Prints the gains; data goes to stdout.
+///
+/// # Errors
+/// Studies that cannot be read or do not belong together.
+pub(super) fn run(arguments: &GainsArguments) -> Result<()> {
+    let question =
+        GainsQuestion { studies: arguments.studies.clone(), runs: arguments.runs.clone() };
+    let answer = gains_over_seeds(&question)?;
+    if arguments.json {
+        let told = json(&answer, &question.studies);
+        println!("{}", serde_json::to_string_pretty(&told).into_diagnostic()?);
+    } else {
+        print!("{}", text(&answer));
+    }
+    Ok(())
+}
+
+/// Runs × turbines: gain in each wind and in all of them, in percent; the conventions below.
+fn text(answer: &GainsAnswer) -> String {
+    let heading = |seed: &u64| {
+        let heading = format!("seed {seed}");
+        format!(" {heading:>9}")
+    };
+    let seeds: String = answer.seeds.iter().map(heading).collect();
+    let mut text = format!(
+        "{}: gains of power, %\n{:<14} {:<14} {:<11}{seeds} {:>16}\n",
+        answer.case, "run", "over", "", "all"
+    );
+    for run in &answer.runs {
+        for part in &run.parts {
+            let gains: String =
+                part.gains.iter().map(|gain| format!(" {:>9.2}", 100.0 * gain)).collect();
+            text += &format!(
+                "{:<14} {:<14} {:<11}{gains} {:>16}\n",
+                run.run,
+                run.compare_with,
+                part.name,
+                with_interval(&part.together, 100.0, 2),
+            );
+        }
+    }
+    text += &format!(
+        "± 95 % by Student's t from {} winds, taken as independent; each gain is over the other run in the same wind\n",
+        answer.seeds.len()
+    );
+    if answer.downstream.len() > 1 {
+        text += &format!("downstream: {} together\n", answer.downstream.join(" + "));
+    }
+    text
+}
+
+fn json(answer: &GainsAnswer, studies: &[PathBuf]) -> serde_json::Value {
+    let part = |part: &PartGains| {
+        json!({
+            "name": part.name,
+            "gains": part.gains,
+            "mean": part.together.mean,
+            "half_width_95": part.together.half_width_95,
+        })
+    };
+    let studies = studies.iter().zip(&answer.seeds);
+    json!({
+        "case": answer.case,
+        "studies": studies
+            .map(|(folder, seed)| json!({ "folder": folder.display().to_string(), "seed": seed }))
+            .collect::<Vec<_>>(),
+        "downstream": answer.downstream,
+        "runs": answer.runs.iter().map(|run| json!({
+            "run": run.run,
+            "compare_with": run.compare_with,
+            "parts": run.parts.iter().map(part).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wakemix::basis::records::Statistic;
+    use wakemix::study::RunGains;
+
+    fn answer() -> GainsAnswer {
+        let part = |name: &str, gains: [f64; 2], half_width: f64| PartGains {
+            name: name.into(),
+            gains: gains.to_vec(),
+            together: Statistic {
+                mean: 0.5 * (gains[0] + gains[1]),
+                standard_deviation: 0.0,
+                half_width_95: Some(half_width),
+                n_blocks: 2,
+            },
+        };
+        GainsAnswer {
+            case: "row".into(),
+            seeds: vec![1, 12],
+            downstream: vec!["T2".into(), "T3".into()],
+            runs: vec![RunGains {
+                run: "offset-090".into(),
+                compare_with: "bl-helix".into(),
+                parts: vec![
+                    part("T2", [-0.018, -0.019], 0.0064),
+                    part("downstream", [0.047, 0.043], 0.0254),
+                ],
+            }],
+        }
+    }
+
+    #[test]
+    fn gains_stand_beside_each_other_and_together() {
+        let text = text(&answer());
+        let lines: Vec<&str> = text.lines().collect();
+        let cells = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(lines[0], "row: gains of power, %");
+        assert_eq!(cells(lines[1]), ["run", "over", "seed", "1", "seed", "12", "all"]);
+        let own = ["offset-090", "bl-helix", "T2", "-1.80", "-1.90", "-1.85", "±", "0.64"];
+        assert_eq!(cells(lines[2]), own);
+        assert_eq!(cells(lines[3])[2..], ["downstream", "4.70", "4.30", "4.50", "±", "2.54"]);
+        // Cells stand under their headings.
+        let width = |line: &str| line.chars().count();
+        assert_eq!([width(lines[2]), width(lines[3])], [width(lines[1]); 2], "{text}");
+        assert!(lines[4].starts_with("± 95 % by Student's t from 2 winds"), "{text}");
+        assert_eq!(lines[5], "downstream: T2 + T3 together");
+    }
+
+    #[test]
+    fn json_holds_ratios_and_the_seed_of_each_folder() {
+        let json = json(&answer(), &["a".into(), "b".into()]);
+        assert_eq!(json["studies"][1], json!({ "folder": "b", "seed": 12 }));
+        let part = &json["runs"][0]["parts"][1];
+        assert_eq!(part["name"], "downstream");
+        assert_eq!(part["gains"], json!([0.047, 0.043]));
+        assert_eq!(part["half_width_95"], 0.0254);
+    }
+}

@@ -1,0 +1,128 @@
+//! `wakemix analyse lock`: how well a meandering loop would lock to the loads of a turbine in records.
+
+use clap::{Args, ValueEnum};
+use miette::{IntoDiagnostic, Result};
+use serde_json::json;
+use std::path::PathBuf;
+use wakemix::basis::Sense;
+use wakemix::study::{LockAnswer, LockQuestion, lock};
+
+/// Arguments of `wakemix analyse lock`.
+#[derive(Args)]
+pub(crate) struct LockArguments {
+    /// Folder of a run, such as runs/meandering/baseline
+    run: PathBuf,
+    /// Turbine whose blades are listened to; each that is there when left out
+    #[arg(long, value_name = "NAME")]
+    turbine: Option<String>,
+    /// Lowest Strouhal number that is followed; the turbine's own, or 0.15, when left out
+    #[arg(long, value_name = "ST")]
+    strouhal_low: Option<f64>,
+    /// Highest Strouhal number that is followed; the turbine's own, or 0.3, when left out
+    #[arg(long, value_name = "ST")]
+    strouhal_high: Option<f64>,
+    /// Way the loads circle, looking downwind; the turbine's own, or cw, when left out
+    #[arg(long, value_name = "WAY")]
+    sense: Option<Way>,
+    /// First time that counts (s); the end of the spin-up when left out
+    #[arg(long, value_name = "T")]
+    from: Option<f64>,
+    /// Print JSON on stdout instead of the table
+    #[arg(long)]
+    json: bool,
+}
+
+/// Ways to circle.
+#[derive(Clone, Copy, ValueEnum)]
+enum Way {
+    /// Clockwise
+    Cw,
+    /// Counter-clockwise
+    Ccw,
+}
+
+/// Prints what the loops found; data goes to stdout.
+///
+/// # Errors
+/// Records that cannot be read or do not hold what is asked for.
+pub(super) fn run(arguments: &LockArguments) -> Result<()> {
+    let answers = lock(&LockQuestion {
+        run: arguments.run.clone(),
+        turbine: arguments.turbine.clone(),
+        strouhal: [arguments.strouhal_low, arguments.strouhal_high],
+        sense: arguments.sense.map(|way| match way {
+            Way::Cw => Sense::Clockwise,
+            Way::Ccw => Sense::CounterClockwise,
+        }),
+        from: arguments.from,
+    })?;
+    if arguments.json {
+        let told: Vec<serde_json::Value> = answers.iter().map(json).collect();
+        println!("{}", serde_json::to_string_pretty(&told).into_diagnostic()?);
+    } else {
+        print!("{}", text(&answers));
+    }
+    Ok(())
+}
+
+/// Turbine by turbine: what was followed, the median phase error, how often it was locked; the convention below.
+fn text(answers: &[LockAnswer]) -> String {
+    let mut text = format!(
+        "{:<8} {:<5} {:<14} {:<16} {:>15} {:>9} {:>9}\n",
+        "turbine", "sense", "Strouhal", "time s", "phase error rad", "locked %", "found St"
+    );
+    for answer in answers {
+        let [low, high] = answer.strouhal_range;
+        let [first, last] = answer.times;
+        let sense = answer.sense.to_string();
+        let (range, span) = (format!("{low} to {high}"), format!("{first:.0} to {last:.0}"));
+        text += &format!(
+            "{:<8} {:<5} {range:<14} {span:<16} {:>15.2} {:>9.1} {:>9.3}\n",
+            answer.turbine,
+            sense,
+            answer.phase_error,
+            100.0 * answer.locked_share,
+            answer.strouhal,
+        );
+    }
+    text + "phase error: median of its root mean square over a period; a loop locks below 0.7 and loses it above 1.2\n"
+}
+
+fn json(answer: &LockAnswer) -> serde_json::Value {
+    json!({
+        "turbine": answer.turbine,
+        "sense": answer.sense.to_string(),
+        "strouhal_range": answer.strouhal_range,
+        "from_s": answer.times[0],
+        "to_s": answer.times[1],
+        "phase_error_rad": answer.phase_error,
+        "locked_share": answer.locked_share,
+        "strouhal": answer.strouhal,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_loop_is_told_in_one_line() {
+        let answer = LockAnswer {
+            turbine: "T2".into(),
+            sense: Sense::CounterClockwise,
+            strouhal_range: [0.15, 0.3],
+            times: [600.0, 3200.0],
+            phase_error: 0.512,
+            locked_share: 0.924,
+            strouhal: 0.2034,
+        };
+        let text = text(std::slice::from_ref(&answer));
+        let lines: Vec<&str> = text.lines().collect();
+        let cells: Vec<&str> = lines[1].split_whitespace().collect();
+        let own = ["T2", "ccw", "0.15", "to", "0.3", "600", "to", "3200", "0.51", "92.4", "0.203"];
+        assert_eq!(cells, own);
+        // Cells stand under their headings.
+        assert_eq!(lines[1].len(), lines[0].len(), "{text}");
+        assert_eq!(json(&answer)["phase_error_rad"], 0.512);
+    }
+}
