@@ -124,7 +124,7 @@ fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
 /// [`FileError`]; each file appears whole or not at all, the summary last.
 pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
     let outline = source.outline();
-    let [n_x, n_y, n_z] = outline.n_points;
+    let n_x = outline.n_points[0];
     let speed = outline.hub_speed;
     let intensities = spreads(&outline, source)?.map(|Spread { deviation, greatest }| {
         (100.0 * deviation.max(greatest / 30.0).max(1e-4 * speed) / speed) as f32
@@ -137,9 +137,12 @@ pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
     for step in 0..n_x {
         let plane = source.plane(in_order_of_arrival(step, n_x))?;
         bytes.clear();
-        for point in 0..n_y * n_z {
-            for (component, per_integer) in per_integer.into_iter().enumerate() {
-                let above = above(&outline, component, point, plane[component][point]);
+        let [u, v, w] = plane;
+        for (point, ((u, v), w)) in u.iter().zip(v).zip(w).enumerate() {
+            for (component, (value, per_integer)) in
+                [u, v, w].into_iter().zip(per_integer).enumerate()
+            {
+                let above = above(&outline, component, point, *value);
                 let integer = (above / per_integer).round();
                 let integer = integer.clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16;
                 bytes.extend_from_slice(&integer.to_le_bytes());
