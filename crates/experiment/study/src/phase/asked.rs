@@ -1,6 +1,6 @@
 //! The records that a question about phases is put to.
 
-use super::{PhaseQuestion, Truth, truth};
+use super::{PhaseQuestion, Truth, tells, truth};
 use crate::StudyError;
 use crate::probes::calibration_of;
 use analysis::phase::Reference;
@@ -30,6 +30,7 @@ pub(super) struct Asked {
     pub(super) sync: Option<PhaseSync>,
     /// Whether it pitches a helix of its own.
     pub(super) pitches: bool,
+    /// What [`tells`] of the phase, over time.
     pub(super) series: Series,
     pub(super) truth: Truth,
 }
@@ -65,14 +66,15 @@ impl Asked {
         };
         let truth = match without {
             Some(without) => {
-                let series = records::read_series(&without.series_path())?;
+                let series =
+                    records::read_series(&without.series_path(), |channel| tells(&name, channel))?;
                 truth(&without.run(), &name, &series, &reference)?
             }
             None => None,
         };
         let truth =
             truth.ok_or_else(|| StudyError::NoTruth { turbine: name.clone(), directory: study })?;
-        let series = records::read_series(&folder.series_path())?;
+        let series = records::read_series(&folder.series_path(), |channel| tells(&name, channel))?;
         let pitches = match control[index] {
             Control::Helix(helix) => helix.amplitude != 0.0,
             Control::PhaseSync(sync) => sync.amplitude != 0.0,
