@@ -46,7 +46,7 @@ pub struct RunRecords {
     pub volume_paths: Vec<PathBuf>,
 }
 
-/// Reads the study in the folder `path` back: every run's folder in it.
+/// Reads the study in the folder `path` back: every run's folder in it, of its series the channels' names alone.
 ///
 /// # Errors
 /// [`FileError::System`] when a file cannot be read; [`FileError::Content`] when one holds something else, or when
