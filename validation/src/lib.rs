@@ -182,7 +182,7 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "memory",
-        about: "memory of one flexible turbine in turbulence, ten minutes and an hour, each in a process of its own",
+        about: "memory of one flexible turbine in turbulence, ten minutes, an hour and three, each in a process of its own",
         minutes: "under 1",
         run: memory::memory,
         pictures: None,

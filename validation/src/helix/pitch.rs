@@ -14,6 +14,8 @@ const STROUHAL: f64 = 0.25;
 const AMPLITUDE: f64 = 3.0;
 /// First time that counts (s): the helix is whole.
 const FROM: f64 = 200.0;
+/// Time, azimuth and pitch of T1's first blade in a series.
+const CHANNELS: [&str; 3] = ["time_s", "T1.azimuth_rad", "T1.pitch_1_rad"];
 /// Share of the pitch's variance that may lie beside its line (–).
 const BESIDE: f64 = 0.02;
 
@@ -50,7 +52,9 @@ pub fn helix_pitch() -> Vec<Row> {
         let rate =
             conditions.map_or(f64::NAN, |at| TAU * STROUHAL * at.wind_speed / at.rotor_diameter);
         let series = study.runs.iter().find(|records| records.summary.run == run);
-        let line = series.and_then(|records| line(&records.series, sense, rate));
+        let channels = |name: &str| CHANNELS.contains(&name);
+        let series = series.and_then(|records| records.series.read(channels).ok());
+        let line = series.and_then(|series| line(&series, sense, rate));
         let [amplitude, beside] = line.unwrap_or([f64::NAN; 2]);
         rows.push(Row {
             what: format!("{run}, blade 1: amplitude of the pitch at {place}"),
@@ -73,9 +77,8 @@ pub fn helix_pitch() -> Vec<Row> {
 /// Amplitude (rad) of T1's first blade at the line of a helix of `sense` and `rate` (rad/s), which turns with the azimuth, and
 /// the share of its pitch's variance that lies beside it (–).
 fn line(series: &Series, sense: Sense, rate: f64) -> Option<[f64; 2]> {
-    let column = |name: &str| series.column(name);
-    let times = column("time_s")?;
-    let (azimuth, pitch) = (column("T1.azimuth_rad")?, column("T1.pitch_1_rad")?);
+    let [times, azimuth, pitch] = CHANNELS.map(|channel| series.column(channel));
+    let (times, azimuth, pitch) = (times?, azimuth?, pitch?);
     let first = times.iter().position(|time| *time >= FROM)?;
     let n = (times.len() - first) as f64;
     let mean = pitch[first..].iter().sum::<f64>() / n;

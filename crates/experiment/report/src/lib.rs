@@ -40,12 +40,25 @@ pub struct StudyRecords {
 pub struct RunRecords {
     /// The run in numbers.
     pub summary: Summary,
-    /// Channels over time; empty where none were kept.
+    /// Channels over time, those that the report [`draws`] or more; empty where none were kept.
     pub series: Series,
     /// Averaged planes: `hub-height`, `streamwise` and crosswind planes.
     pub mean_planes: Vec<Plane>,
     /// The same planes at single instants.
     pub instant_planes: Vec<Plane>,
+}
+
+/// Whether the report of a run with this `summary` draws `channel` of its series.
+pub fn draws(summary: &Summary, channel: &str) -> bool {
+    channel == figures::TIME
+        || summary.turbines.iter().any(|turbine| {
+            let of_turbine = channel.strip_prefix(&turbine.name);
+            let quantity = of_turbine.and_then(|rest| rest.strip_prefix('.'));
+            quantity.is_some_and(|quantity| {
+                figures::power::draws(quantity)
+                    || turbine.delivered_pitch.is_some() && figures::pitch::draws(quantity)
+            })
+        })
 }
 
 /// Why a report could not be made.

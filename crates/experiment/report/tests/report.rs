@@ -2,7 +2,9 @@
 
 mod synthetic;
 
-use basis::records::{MeanderingAxis, MeanderingSummary, PitchDuty, PitchResponse, Statistic};
+use basis::records::{
+    MeanderingAxis, MeanderingSummary, PitchDuty, PitchResponse, Series, Statistic,
+};
 use report::{
     PhaseNumbers, PhaseRow, ReportError, StudyRecords, Synchronisation, TrackFigure, TrackLine,
     TrackRow,
@@ -177,6 +179,26 @@ fn a_gain_without_certainty_says_so() {
     assert!(page(&study).contains("The interval includes zero"));
     study.runs[1].summary.array_power_gain.as_mut().expect("a gain").half_width_95 = None;
     assert!(page(&study).contains("There is no interval"));
+}
+
+#[test]
+fn the_channels_that_are_drawn_are_all_that_a_report_needs() {
+    let mut study = synthetic::two_runs();
+    let whole = page(&study);
+    for run in &mut study.runs {
+        let Series { names, columns } = std::mem::take(&mut run.series);
+        let n_all = names.len();
+        let drawn = names.into_iter().zip(columns);
+        let drawn = drawn.filter(|(name, _)| report::draws(&run.summary, name));
+        let (names, columns): (Vec<String>, Vec<Vec<f64>>) = drawn.unzip();
+        assert!(names.len() < n_all);
+        run.series = Series { names, columns };
+    }
+    assert!(page(&study) == whole, "another page without what is not drawn");
+    // Of a turbine that is not excited no pitch is drawn.
+    let [baseline, helix] = [0, 1].map(|run| &study.runs[run].series.names);
+    let pitch = "T1.pitch_1_rad".to_owned();
+    assert!(helix.contains(&pitch) && !baseline.contains(&pitch));
 }
 
 #[test]

@@ -20,7 +20,7 @@ const POINTS_ACROSS: f64 = 24.0;
 /// Time between planes of made turbulence (s).
 const PLANE_INTERVAL: f64 = 0.1;
 /// Most memory that making turbulence may take (bytes), however long the run is. A run of one turbine shall stay below 200 MB
-/// (docs/validation/memory.md), its series included, which summary and report hold whole.
+/// (docs/validation/memory.md), the columns of its series included that summary and report hold.
 const MEMORY_LIMIT: u64 = 128 << 20;
 /// Places upstream and downstream of the outermost towers at which turbines may ask for the wind (m).
 const REACH: f64 = 50.0;

@@ -1,13 +1,14 @@
 //! Gains of a run over the run that it compares with, whenever that was made.
 
+use crate::columns::{Columns, add_to};
 use crate::loads;
 use crate::prepare::Setup;
-use crate::summarise::Analysed;
 use crate::{StudyError, Watcher, check_same};
 use analysis::statistics::{BLOCK_LENGTH, gain};
-use basis::records::{Series, Summary};
+use basis::records::{Summary, TurbineSummary};
 use farm::case::Run;
 use formats::records::{self, RunFolder};
+use std::collections::BTreeMap;
 
 /// What a run can be compared with.
 pub(crate) enum Comparison<'a> {
@@ -18,7 +19,7 @@ pub(crate) enum Comparison<'a> {
     /// With a run that was made of another case or other turbines: no comparison.
     Other(&'a Run),
     /// With this run.
-    Made(&'a Run, Series),
+    Made(&'a Run, Columns),
 }
 
 /// Number of the run that run number `index` compares with.
@@ -46,35 +47,64 @@ pub(crate) fn comparison<'a>(
         return Ok(Comparison::Missing(run));
     }
     match check_same(setup, run, folder) {
-        Ok(()) => Ok(Comparison::Made(run, records::read_series(&folder.series_path())?)),
+        Ok(()) => Ok(Comparison::Made(run, Columns::open(folder, setup)?)),
         Err(StudyError::OtherCase { .. }) => Ok(Comparison::Other(run)),
         Err(error) => Err(error),
     }
 }
 
-/// On return `summary`, which is that of `run`, holds its gains over the run `other`; each run comes with its series.
+/// On return `summary`, which is that of `run`, holds its gains over the run `other`; each run comes with its columns.
 pub(crate) fn add(
-    setup: &Setup,
     summary: &mut Summary,
-    (run, series): (&Run, &Series),
-    (other, other_series): (&Run, &Series),
+    (run, own): (&Run, &mut Columns),
+    (other, there): (&Run, &mut Columns),
 ) -> Result<(), StudyError> {
-    let [own, there] = [series, other_series].map(|series| Analysed::new(series, setup));
-    for (turbine, index) in summary.turbines.iter_mut().zip(run.present()) {
-        if other.present().any(|there| there == index) {
-            let channel = format!("{}.power_w", turbine.name);
-            let [own_power, power] = [own.column(&channel)?, there.column(&channel)?];
-            turbine.power_gain = Some(gain(own_power, power, own.interval, BLOCK_LENGTH)?);
-            turbine.load_changes = loads::changes(&turbine.name, &own, &there)?;
-        }
+    for columns in [&mut *own, &mut *there] {
+        let expected = parts(summary, columns.names());
+        columns.expect(expected);
     }
-    if other.present().eq(run.present()) {
-        let names: Vec<&str> = summary.turbines.iter().map(|t| t.name.as_str()).collect();
-        let [own_power, power] = [own.sum(&names, "power_w")?, there.sum(&names, "power_w")?];
-        summary.array_power_gain = Some(gain(&own_power, &power, own.interval, BLOCK_LENGTH)?);
+    let is_alike = other.present().eq(run.present());
+    let (mut own_array, mut array) = (Vec::new(), Vec::new());
+    for (turbine, index) in summary.turbines.iter_mut().zip(run.present()) {
+        if !other.present().any(|there| there == index) {
+            continue;
+        }
+        let channel = power(&turbine.name);
+        let (now, before) = (own.of(&channel)?, there.of(&channel)?);
+        let (own_power, power) = (now.column(&channel[0])?, before.column(&channel[0])?);
+        turbine.power_gain = Some(gain(own_power, power, now.interval, BLOCK_LENGTH)?);
+        if is_alike {
+            add_to(&mut own_array, own_power);
+            add_to(&mut array, power);
+        }
+        let mut changes = BTreeMap::new();
+        for moment in loads::moments(own.names(), &turbine.name) {
+            let part = moment.part();
+            changes.extend(loads::changes(&moment, &own.of(&part)?, &there.of(&part)?)?);
+        }
+        turbine.load_changes = changes;
+    }
+    if is_alike {
+        let interval = own.of(&[])?.interval;
+        summary.array_power_gain = Some(gain(&own_array, &array, interval, BLOCK_LENGTH)?);
     }
     summary.compare_with = Some(other.name.clone());
     Ok(())
+}
+
+/// Channels that [`add`] asks for together, in its order; the columns of the run are called `names`.
+fn parts(summary: &Summary, names: &[String]) -> Vec<Vec<String>> {
+    let of_turbine = |turbine: &TurbineSummary| {
+        let moments = loads::moments(names, &turbine.name);
+        let moments = moments.into_iter().map(|moment| moment.part());
+        std::iter::once(power(&turbine.name).to_vec()).chain(moments)
+    };
+    summary.turbines.iter().flat_map(of_turbine).collect()
+}
+
+/// The channel of the power of `turbine`.
+fn power(turbine: &str) -> [String; 1] {
+    [format!("{turbine}.power_w")]
 }
 
 /// On return the summary of run number `index` holds its gains where the run that it compares with was made after it.
@@ -102,9 +132,9 @@ pub(crate) fn catch_up(
             "{} has no gains: the run {name} was made with another version of the case or of a turbine",
             run.name
         )),
-        Comparison::Made(other, other_series) => {
-            let series = records::read_series(&folder.series_path())?;
-            add(setup, &mut summary, (run, &series), (other, &other_series))?;
+        Comparison::Made(other, mut there) => {
+            let mut own = Columns::open(folder, setup)?;
+            add(&mut summary, (run, &mut own), (other, &mut there))?;
             records::write_summary(folder, &summary)?;
         }
     }

@@ -1,10 +1,11 @@
 //! A study from case file to report: every run of a case, with its files.
 //!
-//! Reading order: [`run`], then `prepare` (what all runs share) with `models` (their turbines), `probes` (how pitch acts), `simulate` (one run), `summarise` (its numbers), `gains` (over another run).
+//! Reading order: [`run`], then `prepare` (what all runs share) with `models` (their turbines), `probes` (how pitch acts), `simulate` (one run), `summarise` (its numbers, from its `columns`), `gains` (over another run).
 
 mod air;
 mod azimuth_offset;
 mod channels;
+mod columns;
 mod error;
 mod gains;
 mod lines;
@@ -33,6 +34,7 @@ pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gai
 pub use watcher::{Estimate, Probing, Progress, Watcher};
 
 use basis::records::Summary;
+use columns::Columns;
 use farm::case::Run;
 use formats::case;
 use formats::records::{self, Manifest, RunFolder};
@@ -151,19 +153,19 @@ pub fn run(
         match simulate(&setup, run, folder, options.resume, place, stop, watcher)? {
             Ending::Interrupted => return Ok(Outcome::Interrupted { directory }),
             Ending::Complete { cost, clipped_shares } => {
-                let series = records::read_series(&folder.series_path())?;
+                let mut columns = Columns::open(folder, &setup)?;
                 let mut summary =
-                    summarise::summarise(&setup, run, &series, &clipped_shares, cost)?;
-                if let Comparison::Made(other, other_series) =
+                    summarise::summarise(&setup, run, &mut columns, &clipped_shares, cost)?;
+                if let Comparison::Made(other, mut there) =
                     gains::comparison(&setup, index, &folders)?
                 {
-                    let other = (other, &other_series);
-                    gains::add(&setup, &mut summary, (run, &series), other)?;
+                    let there = (other, &mut there);
+                    gains::add(&mut summary, (run, &mut columns), there)?;
                 }
                 for warning in &summary.warnings[setup.warnings.len()..] {
                     watcher.warned(warning);
                 }
-                // For these numbers the whole series was read.
+                // For these numbers columns of the series were read.
                 let peak_memory = formats::machine::peak_memory();
                 summary.cost.peak_memory = summary.cost.peak_memory.max(peak_memory);
                 records::write_manifest(folder, &manifest.finish())?;
@@ -192,11 +194,12 @@ pub fn report(directory: &Path) -> Result<(Vec<Summary>, PathBuf), StudyError> {
     let mut summaries = Vec::with_capacity(study.runs.len());
     for run in study.runs {
         let mut summary = run.summary;
+        let series = run.series.read(|channel| report::draws(&summary, channel))?;
         summaries.push(summary.clone());
         summary.warnings.extend(study.warnings.iter().cloned());
         runs.push(report::RunRecords {
             summary,
-            series: run.series,
+            series,
             mean_planes: run.mean_planes,
             instant_planes: run.last_planes,
         });

@@ -2,14 +2,14 @@
 
 use crate::StudyError;
 use crate::channels::LOADS;
-use crate::summarise::Analysed;
+use crate::columns::Analysed;
 use analysis::AnalysisError;
 use analysis::fatigue::{
     BEARING_SLOPE, N_BEARING_POSITIONS, PitchBearing, PitchTravel, REFERENCE_FREQUENCY,
     damage_equivalent_load, duty_convention,
 };
 use analysis::statistics::{BLOCK_LENGTH, change, standard_deviation};
-use basis::records::{PitchDuty, Series, Statistic};
+use basis::records::{PitchDuty, Statistic};
 use std::collections::BTreeMap;
 
 /// Wöhler's exponent of composite blades (–).
@@ -17,70 +17,86 @@ const BLADE_SLOPE: f64 = 10.0;
 /// Wöhler's exponent of steel: shaft, tower (–).
 const STEEL_SLOPE: f64 = 4.0;
 
-/// 1-Hz damage-equivalent load (range, peak to peak) of the moments of `turbine` in `series` that are kept of any
-/// run, by channel with slope and unit.
+/// A moment that is kept of any run.
+pub(crate) struct Moment {
+    /// Name of its column.
+    name: String,
+    /// The same without turbine and unit.
+    channel: &'static str,
+}
+
+impl Moment {
+    /// What its figures are made of.
+    pub(crate) fn part(&self) -> Vec<String> {
+        vec![self.name.clone()]
+    }
+}
+
+/// Moments of `turbine` among the columns called `names`.
+pub(crate) fn moments(names: &[String], turbine: &str) -> Vec<Moment> {
+    let moment = |name: &String| {
+        let rest = name.strip_prefix(turbine)?.strip_prefix('.')?;
+        let rest = rest.strip_suffix("_kN-m")?;
+        let channel = LOADS.into_iter().find(|channel| *channel == rest)?;
+        Some(Moment { name: name.clone(), channel })
+    };
+    names.iter().filter_map(moment).collect()
+}
+
+/// 1-Hz damage-equivalent load (range, peak to peak) of `moment`, with its key in a summary: channel, slope and unit.
 ///
 /// Slopes as van der Hoek et al., section 2.4: 10 for the blade's composite, 4 for steel.
 pub(crate) fn damage_equivalent(
-    series: &Series,
-    turbine: &str,
+    moment: &Moment,
     analysed: &Analysed<'_>,
-) -> Result<BTreeMap<String, f64>, StudyError> {
-    let mut loads = BTreeMap::new();
-    for (name, channel) in moments(series, turbine) {
-        let samples = analysed.column(name)?;
-        if samples.len() >= 2 {
-            let (key, of) = equivalent_load(channel, analysed.interval);
-            loads.insert(key, of(samples)?);
-        }
+) -> Result<Option<(String, f64)>, StudyError> {
+    let samples = analysed.column(&moment.name)?;
+    if samples.len() < 2 {
+        return Ok(None);
     }
-    Ok(loads)
+    let (key, of) = equivalent_load(moment.channel, analysed.interval);
+    Ok(Some((key, of(samples)?)))
 }
 
-/// Standard deviation of the same moments (kN m), by channel.
-pub(crate) fn deviations(
-    series: &Series,
-    turbine: &str,
+/// Standard deviation of `moment` (kN m), with its key in a summary.
+pub(crate) fn deviation(
+    moment: &Moment,
     analysed: &Analysed<'_>,
-) -> Result<BTreeMap<String, f64>, StudyError> {
-    let mut deviations = BTreeMap::new();
-    for (name, channel) in moments(series, turbine) {
-        deviations.insert(deviation_key(channel), analysed.statistic(name)?.standard_deviation);
-    }
-    Ok(deviations)
+) -> Result<(String, f64), StudyError> {
+    let deviation = analysed.statistic(&moment.name)?.standard_deviation;
+    Ok((deviation_key(moment.channel), deviation))
 }
 
-/// Changes of both from `compared` to `analysed` by the same keys, as far as both runs keep the moments of `turbine`.
+/// Changes of both from `compared` to `analysed` by the same keys; none where the compared run does not keep `moment`.
 pub(crate) fn changes(
-    turbine: &str,
+    moment: &Moment,
     analysed: &Analysed<'_>,
     compared: &Analysed<'_>,
 ) -> Result<BTreeMap<String, Statistic>, StudyError> {
     let mut changes = BTreeMap::new();
-    for (name, channel) in moments(analysed.series, turbine) {
-        if compared.series.column(name).is_none() {
-            continue;
-        }
-        let (now, before) = (analysed.column(name)?, compared.column(name)?);
-        if now.len() < 2 {
-            continue;
-        }
-        let interval = analysed.interval;
-        let (key, load) = equivalent_load(channel, interval);
-        let deviation = |samples: &[f64]| Ok(standard_deviation(samples));
-        let found = [
-            (key, change(now, before, interval, BLOCK_LENGTH, load)),
-            (deviation_key(channel), change(now, before, interval, BLOCK_LENGTH, deviation)),
-        ];
-        for (key, change) in found {
-            match change {
-                Ok(change) => {
-                    changes.insert(key, change);
-                }
-                // A moment that rested has no ratio to it.
-                Err(AnalysisError::NoReference) => {}
-                Err(error) => return Err(error.into()),
+    let Moment { name, channel } = moment;
+    if !compared.has(name) {
+        return Ok(changes);
+    }
+    let (now, before) = (analysed.column(name)?, compared.column(name)?);
+    if now.len() < 2 {
+        return Ok(changes);
+    }
+    let interval = analysed.interval;
+    let (key, load) = equivalent_load(channel, interval);
+    let deviation = |samples: &[f64]| Ok(standard_deviation(samples));
+    let found = [
+        (key, change(now, before, interval, BLOCK_LENGTH, load)),
+        (deviation_key(channel), change(now, before, interval, BLOCK_LENGTH, deviation)),
+    ];
+    for (key, change) in found {
+        match change {
+            Ok(change) => {
+                changes.insert(key, change);
             }
+            // A moment that rested has no ratio to it.
+            Err(AnalysisError::NoReference) => {}
+            Err(error) => return Err(error.into()),
         }
     }
     Ok(changes)
@@ -103,24 +119,18 @@ fn equivalent_load(
     })
 }
 
-/// Columns of `series` with the moments of `turbine` that are kept of any run, each with its channel.
-fn moments<'a>(series: &'a Series, turbine: &'a str) -> impl Iterator<Item = (&'a str, &'a str)> {
-    series.names.iter().filter_map(move |name| {
-        let rest = name.strip_prefix(turbine)?.strip_prefix('.')?;
-        let channel = rest.strip_suffix("_kN-m")?;
-        LOADS.contains(&channel).then_some((name.as_str(), channel))
-    })
+/// What [`pitch_duty`] of `turbine` is made of: pitch of blade 1, flapwise and edgewise moment at its root.
+pub(crate) fn duty_channels(turbine: &str) -> [String; 3] {
+    ["pitch_1_rad", "RootMyb1_kN-m", "RootMxb1_kN-m"].map(|channel| format!("{turbine}.{channel}"))
 }
 
-/// What pitching did to blade 1 of `turbine` in `series`, in the blade's own frame; None where the series does not tell.
+/// What pitching did to blade 1 of `turbine`, in the blade's own frame; None where the series does not tell.
 pub(crate) fn pitch_duty(
-    series: &Series,
     turbine: &str,
     analysed: &Analysed<'_>,
 ) -> Result<Option<PitchDuty>, StudyError> {
-    let names = ["pitch_1_rad", "RootMyb1_kN-m", "RootMxb1_kN-m"]
-        .map(|channel| format!("{turbine}.{channel}"));
-    if names.iter().any(|name| series.column(name).is_none()) {
+    let names = duty_channels(turbine);
+    if names.iter().any(|name| !analysed.has(name)) {
         return Ok(None);
     }
     let [pitch, flapwise, edgewise] = &names;
@@ -154,6 +164,7 @@ pub(crate) fn pitch_duty(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use basis::records::Series;
     use std::f64::consts::TAU;
 
     fn series(interval: f64, n: usize) -> Series {
@@ -172,7 +183,7 @@ mod tests {
     fn a_steady_moment_on_a_bearing_that_travels_the_reference_is_its_load() {
         let series = series(0.01, 6001);
         let analysed = Analysed::whole(&series, 0.01);
-        let duty = pitch_duty(&series, "T1", &analysed).expect("numbers").expect("all channels");
+        let duty = pitch_duty("T1", &analysed).expect("numbers").expect("all channels");
         assert!((duty.travel_deg - 60.0).abs() < 0.01, "{}", duty.travel_deg);
         assert!((duty.travel_in_ten_minutes_deg - 600.0).abs() < 0.1);
         assert_eq!(duty.bearing_loads_kn_m.len(), 36);
@@ -204,7 +215,16 @@ mod tests {
         fn whole(series: &Series) -> Analysed<'_> {
             Analysed::whole(series, 1.0)
         }
-        let found = changes("T1", &whole(&series), &whole(&other)).expect("numbers");
+        let moments = moments(&series.names, "T1");
+        let changes = |other: &Series| {
+            let mut found = BTreeMap::new();
+            for moment in &moments {
+                let change = changes(moment, &whole(&series), &whole(other));
+                found.extend(change.expect("numbers"));
+            }
+            found
+        };
+        let found = changes(&other);
         let keys: Vec<&str> = found.keys().map(String::as_str).collect();
         assert_eq!(keys, ["RootMyb1, m = 10 (kN m)", "RootMyb1, standard deviation (kN m)"]);
         for (change, expected) in found.values().zip([
@@ -217,18 +237,22 @@ mod tests {
             let half_width = change.half_width_95.expect("two blocks");
             assert!((half_width - 12.706_205 * 0.05).abs() < 1e-6, "{change:?}");
         }
-        let own = damage_equivalent(&series, "T1", &whole(&series)).expect("numbers");
-        assert!(found.keys().all(|key| own.contains_key(key) || key.contains("deviation")));
+        let own: Vec<String> = moments
+            .iter()
+            .filter_map(|moment| damage_equivalent(moment, &whole(&series)).expect("numbers"))
+            .map(|(key, _)| key)
+            .collect();
+        assert!(found.keys().all(|key| own.contains(key) || key.contains("deviation")));
         // A run that keeps no moments is nothing to compare with.
         let none = Series { names: vec!["time_s".into()], columns: other.columns[..1].to_vec() };
-        assert_eq!(changes("T1", &whole(&series), &whole(&none)).ok(), Some(BTreeMap::new()));
+        assert!(changes(&none).is_empty());
     }
 
     #[test]
     fn records_without_the_channels_tell_nothing() {
         let mut series = series(0.1, 100);
-        assert_eq!(pitch_duty(&series, "T2", &Analysed::whole(&series, 0.1)).ok(), Some(None));
+        assert_eq!(pitch_duty("T2", &Analysed::whole(&series, 0.1)).ok(), Some(None));
         series.columns.iter_mut().for_each(|column| column.truncate(1));
-        assert_eq!(pitch_duty(&series, "T1", &Analysed::whole(&series, 0.1)).ok(), Some(None));
+        assert_eq!(pitch_duty("T1", &Analysed::whole(&series, 0.1)).ok(), Some(None));
     }
 }

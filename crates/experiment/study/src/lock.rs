@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use crate::phase::asked::folder_of;
-use crate::phase::{column, moments};
+use crate::phase::{column, moments, tells};
 use analysis::AnalysisError;
 use analysis::phase::uniform_interval;
 use basis::{FixedFrame, Sense};
@@ -77,7 +77,9 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, StudyError> {
         });
     }
     let summary = records::read_summary(&folder)?;
-    let series = records::read_series(&folder.series_path())?;
+    let told =
+        |channel: &str| turbines.iter().any(|&index| tells(&case.turbines[index].name, channel));
+    let series = records::read_series(&folder.series_path(), told)?;
     let times = column(&series, "time_s")?;
     let rate_of_one = excitation_rate(1.0, case.wind.speed, summary.conditions.rotor_diameter);
     let from = question.from.unwrap_or(case.time.spin_up);

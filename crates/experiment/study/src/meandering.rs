@@ -1,7 +1,7 @@
 //! What a turbine that follows meandering found in its loads, and what became of them.
 
 use crate::StudyError;
-use crate::summarise::Analysed;
+use crate::columns::{Analysed, names_of};
 use basis::mbc::to_fixed_frame;
 use basis::records::{MeanderingAxis, MeanderingSummary};
 use basis::{FixedFrame, PerBlade};
@@ -10,6 +10,23 @@ use std::f64::consts::TAU;
 
 /// Periods of the oscillation that tell an amplitude (–).
 const FEWEST_PERIODS: f64 = 2.0;
+
+/// What [`followed`] is made of, of `turbine` with `n_blades` blades.
+pub(crate) fn channels(turbine: &str, n_blades: usize) -> Vec<String> {
+    let own = [
+        "azimuth_rad",
+        "meandering_lock",
+        "meandering_rate_rad_s",
+        "meandering_tilt_phase_rad",
+        "meandering_yaw_phase_rad",
+        "meandering_tilt_reference_nm",
+        "meandering_yaw_reference_nm",
+    ];
+    let mut channels = names_of(turbine, &own);
+    channels.push("time_s".to_owned());
+    channels.extend((1..=n_blades).map(|blade| format!("{turbine}.flap_moment_{blade}_nm")));
+    channels
+}
 
 /// What `turbine`, of `n_blades` blades under `control`, found of meandering; None where it follows none.
 ///
@@ -180,6 +197,14 @@ mod tests {
         // Locked for a period and a half.
         let late = found(&series(1850.0));
         assert!(late.frequency_hz.is_some() && late.tilt.is_none() && late.yaw.is_none());
+    }
+
+    #[test]
+    fn what_it_is_made_of_is_all_that_it_needs() {
+        let (mut names, mut wanted) = (series(500.0).names, channels("T1", 3));
+        names.sort();
+        wanted.sort();
+        assert_eq!(names, wanted);
     }
 
     #[test]

@@ -20,6 +20,9 @@ use std::path::PathBuf;
 
 /// Excitation periods in a segment of the cross-spectrum (–).
 const SEGMENT_PERIODS: f64 = 4.0;
+/// What the channels of a turbine begin with that tell of a phase: measured, believed, and the true wind where it would stand.
+const CHANNELS: [&str; 6] =
+    ["azimuth_", "rotor_speed_", "pitch_", "flap_moment_", "estimate", "lines_"];
 
 /// What is asked of the records of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -237,6 +240,13 @@ pub(crate) fn compare(
         times: pick(times),
         hindsight: None,
     })
+}
+
+/// Whether `channel` of a series tells of the phase of a helix at turbine `name`; no other is asked for here.
+pub(crate) fn tells(name: &str, channel: &str) -> bool {
+    let of_turbine = channel.strip_prefix(name).and_then(|rest| rest.strip_prefix('.'));
+    let begins = |what: &str| CHANNELS.iter().any(|beginning| what.starts_with(beginning));
+    channel == "time_s" || of_turbine.is_some_and(begins)
 }
 
 fn mean(values: &[f64]) -> f64 {

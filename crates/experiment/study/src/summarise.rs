@@ -1,6 +1,7 @@
 //! From the series of a run to its summary.
 
 use crate::StudyError;
+use crate::columns::{Analysed, Columns, add_to, names_of};
 use crate::loads;
 use crate::meandering;
 use crate::prepare::Setup;
@@ -10,13 +11,15 @@ use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
 use analysis::statistics::{BLOCK_LENGTH, statistic};
 use basis::records::{
-    Conditions, Cost, DeliveredPitch, MeanderingSummary, SCHEMA_VERSION, Series, Statistic,
-    Summary, TurbineSummary,
+    Conditions, Cost, DeliveredPitch, MeanderingSummary, SCHEMA_VERSION, Statistic, Summary,
+    TurbineSummary,
 };
 use farm::assemble::controller;
 use farm::case::{Control, Run, Shear};
 use std::collections::BTreeMap;
 
+/// Channel of the wind that arrives.
+const WIND: &str = "wind.u_m_s";
 /// Share of clipped control instants beyond which a reader must know (–).
 const CLIPPED_SHARE: f64 = 0.01;
 /// Share of the time without a trusted phase beyond which a reader must know (–).
@@ -24,107 +27,77 @@ const FADED_SHARE: f64 = 0.02;
 /// Share of the asked amplitude that must arrive at the blades (–).
 const DELIVERED_SHARE: f64 = 0.95;
 
-/// The series of one run, cut to the analysed time.
-pub(crate) struct Analysed<'a> {
-    /// All of it.
-    pub(crate) series: &'a Series,
-    first: usize,
-    /// Time between rows (s).
-    pub(crate) interval: f64,
-}
-
-impl<'a> Analysed<'a> {
-    pub(crate) fn new(series: &'a Series, setup: &Setup) -> Self {
-        let plan = &setup.plan;
-        let first = plan.n_spin_up_steps.div_ceil(plan.row_stride) as usize;
-        Self { series, first, interval: plan.row_interval() }
-    }
-
-    /// All of a series whose rows lie `interval` (s) apart.
-    #[cfg(test)]
-    pub(crate) fn whole(series: &'a Series, interval: f64) -> Self {
-        Self { series, first: 0, interval }
-    }
-
-    /// The analysed part of the channel `name`.
-    pub(crate) fn column(&self, name: &str) -> Result<&'a [f64], StudyError> {
-        let column = self
-            .series
-            .column(name)
-            .ok_or_else(|| StudyError::MissingChannel { channel: name.to_owned() })?;
-        Ok(column.get(self.first..).unwrap_or_default())
-    }
-
-    /// Mean and deviation of the channel `name`.
-    pub(crate) fn statistic(&self, name: &str) -> Result<Statistic, StudyError> {
-        Ok(statistic(self.column(name)?, self.interval, BLOCK_LENGTH)?)
-    }
-
-    /// Sum of a channel over all turbines, instant by instant.
-    pub(crate) fn sum(&self, names: &[&str], channel: &str) -> Result<Vec<f64>, StudyError> {
-        let mut sum = Vec::new();
-        for name in names {
-            let column = self.column(&format!("{name}.{channel}"))?;
-            sum.resize(column.len(), 0.0);
-            for (sum, value) in sum.iter_mut().zip(column) {
-                *sum += value;
-            }
-        }
-        Ok(sum)
-    }
-}
-
-/// The run `run` in numbers, its gains left out.
+/// The run `run` in numbers, its gains left out, from its `columns`.
 ///
 /// `clipped_shares` (–) holds, for each turbine that is there, the share of control instants at which a pitch limit
 /// held a command back.
 pub(crate) fn summarise(
     setup: &Setup,
     run: &Run,
-    series: &Series,
+    columns: &mut Columns,
     clipped_shares: &[f64],
     cost: Cost,
 ) -> Result<Summary, StudyError> {
-    let analysed = Analysed::new(series, setup);
+    let expected = parts(setup, run, columns.names());
+    columns.expect(expected);
     let mut warnings = setup.warnings.clone();
     let mut turbines = Vec::new();
+    let mut array = Vec::new();
     for (machine, index) in run.present().enumerate() {
         let placement = &setup.case.turbines[index];
         let name = &placement.name;
         let control = &run.control[index];
         let runs = controller(control, &setup.models[index], &setup.case, &setup.plan)?;
         let n_blades = setup.models[index].definition.n_blades;
-        let delivered_pitch =
-            delivered_pitch(&analysed, name, n_blades, control, setup, clipped_shares[machine])?;
+        let share = clipped_shares[machine];
+
+        let analysed = columns.of(&operation(name))?;
+        let power_channel = format!("{name}.power_w");
+        let power = analysed.statistic(&power_channel)?;
+        let thrust = analysed.statistic(&format!("{name}.thrust_n"))?;
+        let rotor_speed = analysed.statistic(&format!("{name}.rotor_speed_rad_s"))?;
+        let outrun = outrun(&analysed, index, setup)?;
+        add_to(&mut array, analysed.column(&power_channel)?);
+
+        let analysed = columns.of(&pitching(name, n_blades))?;
+        let pitch = collective_pitch(&analysed, name, n_blades)?;
+        let delivered_pitch = delivered_pitch(&analysed, name, n_blades, control, setup, share)?;
         // A phase that follows the wind spreads the line: what is missing of it was not held back.
         let steady = !matches!(control, Control::PhaseSync(_));
-        let share = clipped_shares[machine];
         warn_of_clipping(name, &run.name, delivered_pitch, share, steady, &mut warnings);
+
+        let analysed = columns.of(&beliefs(name, n_blades, control))?;
         warn_of_fading(&analysed, name, control, &run.name, &mut warnings)?;
         let meandering = meandering::followed(&analysed, name, n_blades, control)?;
         warn_of_no_lock(name, control, meandering, &run.name, &mut warnings);
-        let found = outrun(&analysed, index, setup)?;
-        warnings.extend(found.map(|outrun| outrun.warning(&run.name, name)));
+        warnings.extend(outrun.map(|outrun| outrun.warning(&run.name, name)));
+
+        let (mut load_deviations, mut damage_equivalent_loads) = (BTreeMap::new(), BTreeMap::new());
+        for moment in loads::moments(columns.names(), name) {
+            let analysed = columns.of(&moment.part())?;
+            load_deviations.extend([loads::deviation(&moment, &analysed)?]);
+            damage_equivalent_loads.extend(loads::damage_equivalent(&moment, &analysed)?);
+        }
+        let pitch_duty = loads::pitch_duty(name, &columns.of(&loads::duty_channels(name))?)?;
         turbines.push(TurbineSummary {
             name: name.clone(),
             model: placement.model.clone(),
             control: runs.describe(),
-            power: analysed.statistic(&format!("{name}.power_w"))?,
-            thrust: analysed.statistic(&format!("{name}.thrust_n"))?,
-            rotor_speed: analysed.statistic(&format!("{name}.rotor_speed_rad_s"))?,
-            pitch: collective_pitch(&analysed, name, n_blades)?,
+            power,
+            thrust,
+            rotor_speed,
+            pitch,
             delivered_pitch,
             power_gain: None,
             pitch_response: response_of(control),
             meandering,
-            load_deviations: loads::deviations(series, name, &analysed)?,
-            damage_equivalent_loads: loads::damage_equivalent(series, name, &analysed)?,
+            load_deviations,
+            damage_equivalent_loads,
             load_changes: BTreeMap::new(),
-            pitch_duty: loads::pitch_duty(series, name, &analysed)?,
+            pitch_duty,
         });
     }
-    let names: Vec<&str> = turbines.iter().map(|turbine| turbine.name.as_str()).collect();
-    let array = analysed.sum(&names, "power_w")?;
+    let analysed = columns.of(&[WIND.to_owned()])?;
     Ok(Summary {
         schema_version: SCHEMA_VERSION,
         case: setup.case.name.clone(),
@@ -137,6 +110,45 @@ pub(crate) fn summarise(
         cost,
         warnings,
     })
+}
+
+/// Channels that [`summarise`] asks for together, in its order; the columns of the run are called `names`.
+fn parts(setup: &Setup, run: &Run, names: &[String]) -> Vec<Vec<String>> {
+    let mut parts = Vec::new();
+    for index in run.present() {
+        let name = &setup.case.turbines[index].name;
+        let n_blades = setup.models[index].definition.n_blades;
+        parts.push(operation(name));
+        parts.push(pitching(name, n_blades));
+        parts.push(beliefs(name, n_blades, &run.control[index]));
+        parts.extend(loads::moments(names, name).iter().map(loads::Moment::part));
+        parts.push(loads::duty_channels(name).to_vec());
+    }
+    parts.push(vec![WIND.to_owned()]);
+    parts
+}
+
+/// What tells how `turbine` ran.
+fn operation(turbine: &str) -> Vec<String> {
+    let mut channels = names_of(turbine, &["power_w", "thrust_n", "rotor_speed_rad_s"]);
+    channels.push("time_s".to_owned());
+    channels
+}
+
+/// What tells how the `n_blades` blades of `turbine` pitched.
+fn pitching(turbine: &str, n_blades: usize) -> Vec<String> {
+    let mut channels = names_of(turbine, &["azimuth_rad"]);
+    channels.extend((1..=n_blades).map(|blade| format!("{turbine}.pitch_{blade}_rad")));
+    channels
+}
+
+/// What tells what `turbine`, of `n_blades` blades, believed under `control`; nothing where it seeks nothing.
+fn beliefs(turbine: &str, n_blades: usize, control: &Control) -> Vec<String> {
+    match control {
+        Control::PhaseSync(_) => names_of(turbine, &["sync_share"]),
+        Control::Meandering(_) => meandering::channels(turbine, n_blades),
+        Control::Absent | Control::Baseline | Control::Helix(_) | Control::Pulse(_) => Vec::new(),
+    }
 }
 
 fn collective_pitch(
@@ -184,15 +196,16 @@ fn delivered_pitch(
     let row = |time: f64| (time / analysed.interval).ceil() as usize;
     let skip = row(start + period).saturating_sub(analysed.first);
     let end = stop.map_or(usize::MAX, |stop| row(stop).saturating_sub(analysed.first));
-    let cut =
-        |column: &'_ [f64]| column.get(skip..end.min(column.len())).unwrap_or_default().to_vec();
-    let azimuth = cut(analysed.column(&format!("{name}.azimuth_rad"))?);
+    let cut = |channel: &str| -> Result<_, StudyError> {
+        let column = analysed.column(&format!("{name}.{channel}"))?;
+        Ok(column.get(skip..end.min(column.len())).unwrap_or_default())
+    };
+    let azimuth = cut("azimuth_rad")?;
     let mut pitch = Vec::with_capacity(n_blades);
     for blade in 1..=n_blades {
-        pitch.push(cut(analysed.column(&format!("{name}.pitch_{blade}_rad"))?));
+        pitch.push(cut(&format!("pitch_{blade}_rad"))?);
     }
-    let pitch: Vec<&[f64]> = pitch.iter().map(Vec::as_slice).collect();
-    match delivered(motion, &azimuth, &pitch, analysed.interval, amplitude, clipped_share) {
+    match delivered(motion, azimuth, &pitch, analysed.interval, amplitude, clipped_share) {
         Ok(delivered) => Ok(Some(delivered)),
         Err(AnalysisError::TooShort { .. }) => Ok(None),
         Err(error) => Err(error.into()),
@@ -280,7 +293,7 @@ fn outrun(analysed: &Analysed, index: usize, setup: &Setup) -> Result<Option<Out
 }
 
 fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyError> {
-    let arrived = analysed.statistic("wind.u_m_s")?;
+    let arrived = analysed.statistic(WIND)?;
     let case = &setup.case;
     let (shear_exponent, roughness_length) = match case.wind.shear {
         Shear::PowerLaw { exponent } => (Some(exponent), None),
@@ -302,3 +315,6 @@ fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyErr
         duration: case.time.duration,
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,7 +9,7 @@ mod wake;
 
 use crate::StudyError;
 use crate::phase::asked::tells_truth;
-use crate::phase::{PhaseAnswer, compare, recorded, truth};
+use crate::phase::{PhaseAnswer, Truth, compare, recorded, tells, truth};
 use analysis::AnalysisError;
 use analysis::phase::Reference;
 use basis::angle::wrap_to_turn;
@@ -129,24 +129,28 @@ fn synchronised(
     let own_name = &case.turbines[turbine].name;
     // Without a true wind there is nothing to compare with; a short run says nothing of phases.
     let control = |run: &RunRecords| case.runs[run.manifest.run_index].control.as_slice();
-    let truth_of = |own: &RunRecords| {
-        let mut without = records
-            .runs
-            .iter()
-            .filter(|run| tells_truth(case, control(run), control(own), turbine));
-        without.find_map(|run| {
-            truth(&run.manifest.run, own_name, &run.series, &reference).ok().flatten()
-        })
+    let truth_of = |own: &RunRecords| -> Result<Option<Truth>, StudyError> {
+        for run in &records.runs {
+            if !tells_truth(case, control(run), control(own), turbine) {
+                continue;
+            }
+            let series = run.series.read(|channel| tells(own_name, channel))?;
+            if let Ok(Some(truth)) = truth(&run.manifest.run, own_name, &series, &reference) {
+                return Ok(Some(truth));
+            }
+        }
+        Ok(None)
     };
     let from = case.time.spin_up;
     let mut runs = Vec::new();
     for &(place, sync) in &pairing.runs {
         let run = &records.runs[place];
-        let (series, own) = (&run.series, &run.manifest.run);
-        let answer = match truth_of(run) {
+        let own = &run.manifest.run;
+        let answer = match truth_of(run)? {
             Some(truth) => {
-                let estimates = recorded(series, own_name)?;
-                match compare(own, own_name, series, &estimates, &truth, &reference, from) {
+                let series = run.series.read(|channel| tells(own_name, channel))?;
+                let estimates = recorded(&series, own_name)?;
+                match compare(own, own_name, &series, &estimates, &truth, &reference, from) {
                     Ok(answer) => Some(answer),
                     Err(StudyError::Analysis(_)) => None,
                     Err(error) => return Err(error),

@@ -6,11 +6,13 @@
 mod manifest;
 mod probes;
 mod series;
+mod series_file;
 mod study;
 
 pub use manifest::{Machine, Manifest, read_manifest, sha256, write_manifest};
 pub use probes::{ProbeRecord, read_probes, write_probes};
-pub use series::{SeriesWriter, read_series};
+pub use series::SeriesWriter;
+pub use series_file::{SeriesFile, read_series};
 pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
 
 use crate::{FileError, atomic, netcdf, vtk};

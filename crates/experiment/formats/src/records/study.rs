@@ -1,8 +1,8 @@
 //! A study read back from its folder.
 
-use super::{Manifest, RunFolder, read_manifest, read_series, read_summary};
+use super::{Manifest, RunFolder, SeriesFile, read_manifest, read_summary};
 use crate::{FileError, netcdf};
-use basis::records::{Plane, Series, Summary};
+use basis::records::{Plane, Summary};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,8 +32,8 @@ pub struct RunRecords {
     pub summary: Summary,
     /// What was run, where and when.
     pub manifest: Manifest,
-    /// Channels over time.
-    pub series: Series,
+    /// Channels over time, on the disk.
+    pub series: SeriesFile,
     /// Planes averaged over the analysed time, by name.
     pub mean_planes: Vec<Plane>,
     /// The same planes at the run's last instant.
@@ -46,7 +46,7 @@ pub struct RunRecords {
     pub volume_paths: Vec<PathBuf>,
 }
 
-/// Reads the study in the folder `path` back: every run's folder in it.
+/// Reads the study in the folder `path` back: every run's folder in it, of its series the channels' names alone.
 ///
 /// # Errors
 /// [`FileError::System`] when a file cannot be read; [`FileError::Content`] when one holds something else, or when
@@ -154,7 +154,7 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
     let mut records = RunRecords {
         summary: read_summary(folder)?,
         manifest,
-        series: read_series(&folder.series_path())?,
+        series: SeriesFile::open(&folder.series_path())?,
         mean_planes: Vec::new(),
         last_planes: Vec::new(),
         phase_planes: Vec::new(),
@@ -289,7 +289,7 @@ mod tests {
         assert_eq!(names, ["baseline", "helix-ccw"]);
         let run = &records.runs[0];
         assert_eq!(run.summary, summary("baseline"));
-        assert_eq!(run.series.columns, [[0.1]]);
+        assert_eq!(run.series.read(|_| true).unwrap().columns, [[0.1]]);
         assert_eq!(run.mean_planes, [plane("hub-height", 1200.0)]);
         assert_eq!(run.last_planes, [plane("hub-height", 0.0)]);
         assert!(run.instant_paths[0].ends_with("baseline/planes/hub-height-0003.nc"));

@@ -1,8 +1,8 @@
 //! The figures of a report.
 
 mod gains;
-mod pitch;
-mod power;
+pub(crate) mod pitch;
+pub(crate) mod power;
 mod profiles;
 mod sheet;
 mod slices;
@@ -15,6 +15,8 @@ use crate::sentence;
 use crate::study::Study;
 use synchronisation::Synchronisation;
 
+/// The channel that every series is drawn over.
+pub(crate) const TIME: &str = "time_s";
 /// Width of every figure.
 const WIDTH: f64 = 1000.0;
 

@@ -1,6 +1,6 @@
 //! What the blades did: pitch over a few turns of the rotor, and the lines in its spectrum.
 
-use super::WIDTH;
+use super::{TIME, WIDTH};
 use crate::RunRecords;
 use crate::draw::axes::{Frame, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
@@ -12,7 +12,19 @@ use std::f64::consts::TAU;
 
 /// Turns of the rotor that are shown.
 const N_TURNS: f64 = 6.0;
+/// Blades that are shown at most (–).
+const N_BLADES: usize = 3;
 const HEIGHT: f64 = 215.0;
+
+/// Channel of the pitch of `blade`, numbered from 1, among those of its turbine.
+fn channel(blade: usize) -> String {
+    format!("pitch_{blade}_rad")
+}
+
+/// Whether the channel `asked` of an excited turbine is shown.
+pub(crate) fn draws(asked: &str) -> bool {
+    (1..=N_BLADES).any(|blade| channel(blade) == asked)
+}
 
 /// One excited turbine in one run.
 struct Excited<'a> {
@@ -74,15 +86,15 @@ pub(crate) fn pitch(study: &Study) -> Option<Figure> {
 
 /// Times (s) and pitch (deg) of a blade.
 fn blade<'a>(run: &'a RunRecords, turbine: &str, blade: usize) -> Option<(&'a [f64], Vec<f64>)> {
-    let times = run.series.column("time_s")?;
-    let pitch = run.series.column(&format!("{turbine}.pitch_{blade}_rad"))?;
+    let times = run.series.column(TIME)?;
+    let pitch = run.series.column(&format!("{turbine}.{}", channel(blade)))?;
     let pitch: Vec<f64> = pitch.iter().map(|angle| angle.to_degrees()).collect();
     (times.len() > 4 && pitch.len() == times.len()).then_some((times, pitch))
 }
 
 fn over_turns(rows: &[&Excited], area: [f64; 4], shapes: &mut Vec<Shape>) {
     // Beyond two runs the other blades would only confuse.
-    let blades = if rows.len() > 2 { 1 } else { 3 };
+    let blades = if rows.len() > 2 { 1 } else { N_BLADES };
     let mut lines = Vec::new();
     for one in rows {
         for number in (1..=blades).rev() {

@@ -1,6 +1,6 @@
 //! Power and rotor speed over time.
 
-use super::WIDTH;
+use super::{TIME, WIDTH};
 use crate::draw::axes::{Frame, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::{Figure, Look, Role, Setting, Shape, segment, text};
@@ -14,6 +14,15 @@ const SMOOTHING: f64 = 30.0;
 /// Above so many runs the unsmoothed lines would hide everything.
 const MOST_RAW_RUNS: usize = 4;
 const PANEL_HEIGHT: f64 = 165.0;
+
+/// Channels of every turbine that are shown.
+const POWER: &str = "power_w";
+const ROTOR_SPEED: &str = "rotor_speed_rad_s";
+
+/// Whether the channel `channel` of a turbine is shown.
+pub(crate) fn draws(channel: &str) -> bool {
+    [POWER, ROTOR_SPEED].contains(&channel)
+}
 
 /// A quantity of every turbine over time.
 struct Quantity {
@@ -34,7 +43,7 @@ pub(crate) fn power(study: &Study) -> Option<Figure> {
         &Quantity {
             name: "power",
             title: "Power over time",
-            channel: "power_w",
+            channel: POWER,
             label: "power (MW)",
             unit: "MW",
             scale: 1e6,
@@ -50,7 +59,7 @@ pub(crate) fn rotor_speed(study: &Study) -> Option<Figure> {
         &Quantity {
             name: "rotor-speed",
             title: "Rotor speed over time",
-            channel: "rotor_speed_rad_s",
+            channel: ROTOR_SPEED,
             label: "rotor speed (rpm)",
             unit: "rpm",
             scale: TAU / 60.0,
@@ -68,7 +77,7 @@ fn over_time(study: &Study, quantity: &Quantity) -> Option<Figure> {
     let end = study
         .runs()
         .iter()
-        .filter_map(|run| run.series.column("time_s")?.last().copied())
+        .filter_map(|run| run.series.column(TIME)?.last().copied())
         .fold(0.0, f64::max);
     if names.is_empty() || end <= 0.0 {
         return None;
@@ -102,7 +111,7 @@ fn channel<'r>(
     turbine: &str,
     quantity: &Quantity,
 ) -> Option<(&'r [f64], &'r [f64])> {
-    let times = run.series.column("time_s")?;
+    let times = run.series.column(TIME)?;
     let values = run.series.column(&format!("{turbine}.{}", quantity.channel))?;
     (times.len() > 1 && values.len() == times.len()).then_some((times, values))
 }

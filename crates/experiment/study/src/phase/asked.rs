@@ -1,6 +1,6 @@
 //! The records that a question about phases is put to.
 
-use super::{PhaseQuestion, Truth, truth};
+use super::{PhaseQuestion, Truth, tells, truth};
 use crate::StudyError;
 use crate::probes::calibration_of;
 use analysis::phase::Reference;
@@ -46,6 +46,7 @@ pub(super) struct Asked<'r> {
     pub(super) sync: Option<PhaseSync>,
     /// Whether it pitches a helix of its own.
     pub(super) pitches: bool,
+    /// What [`tells`] of the phase, over time.
     pub(super) series: &'r Series,
     pub(super) truth: Truth,
 }
@@ -57,7 +58,8 @@ impl<'q> Records<'q> {
         let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
         let turbines = turbines_of(question, &case, &manifest)?;
         let summary = records::read_summary(&folder)?;
-        let series = records::read_series(&folder.series_path())?;
+        let told = |channel: &str| tells_of_any(&case, &turbines, channel);
+        let series = records::read_series(&folder.series_path(), told)?;
         let without = BTreeMap::new();
         Ok(Self { question, folder, manifest, case, turbines, summary, series, without })
     }
@@ -68,6 +70,7 @@ impl<'q> Records<'q> {
     /// [`StudyError::NoHelix`], [`StudyError::NoTruth`], and [`StudyError`] for records that cannot be read.
     pub(super) fn asked(&mut self, index: usize) -> Result<Asked<'_>, StudyError> {
         let (manifest, case, without) = (&self.manifest, &self.case, &mut self.without);
+        let turbines = &self.turbines;
         let turbine = &case.turbines[index];
         let control = &case.runs[manifest.run_index].control;
         let helix = control[index].helix().or(helix_upstream(index, &case.turbines, control));
@@ -93,7 +96,8 @@ impl<'q> Records<'q> {
         };
         let truth = match truth_folder {
             Some(folder) => {
-                let series = read_once(without, folder.series_path())?;
+                let told = |channel: &str| tells_of_any(case, turbines, channel);
+                let series = read_once(without, folder.series_path(), told)?;
                 truth(&folder.run(), &turbine.name, series, &reference)?
             }
             None => None,
@@ -130,12 +134,21 @@ impl<'q> Records<'q> {
     }
 }
 
-/// The series at `path`, which is kept in `read` from then on.
-fn read_once(read: &mut BTreeMap<PathBuf, Series>, path: PathBuf) -> Result<&Series, StudyError> {
+/// Whether `channel` [`tells`] of the phase at one of the `turbines` of `case`.
+fn tells_of_any(case: &Case, turbines: &[usize], channel: &str) -> bool {
+    turbines.iter().any(|&index| tells(&case.turbines[index].name, channel))
+}
+
+/// The `wanted` channels of the series at `path`, which are kept in `read` from then on.
+fn read_once(
+    read: &mut BTreeMap<PathBuf, Series>,
+    path: PathBuf,
+    wanted: impl Fn(&str) -> bool,
+) -> Result<&Series, StudyError> {
     Ok(match read.entry(path) {
         Entry::Occupied(found) => found.into_mut(),
         Entry::Vacant(place) => {
-            let series = records::read_series(place.key())?;
+            let series = records::read_series(place.key(), wanted)?;
             place.insert(series)
         }
     })
@@ -208,11 +221,11 @@ mod tests {
         writer.write(&[0.5]).expect("a row");
         writer.finish().expect("a file");
         let mut read = BTreeMap::new();
-        let first = read_once(&mut read, path.clone()).expect("a sound file").clone();
+        let first = read_once(&mut read, path.clone(), |_| true).expect("a sound file").clone();
         assert_eq!(first.columns, [[0.5]]);
         // What is gone from the disk cannot be read again.
         fs::remove_file(&path).expect("a file");
-        assert_eq!(*read_once(&mut read, path).expect("kept"), first);
-        assert!(read_once(&mut read, folder.path().join("other.csv")).is_err());
+        assert_eq!(*read_once(&mut read, path, |_| true).expect("kept"), first);
+        assert!(read_once(&mut read, folder.path().join("other.csv"), |_| true).is_err());
     }
 }

@@ -3,7 +3,8 @@
 use super::{Joined, Synchronised};
 use crate::StudyError;
 use analysis::statistics::{BLOCK_LENGTH, gain};
-use basis::records::{Statistic, TurbineSummary};
+use basis::records::{Series, Statistic, TurbineSummary};
+use formats::records::RunRecords;
 use report::{CurvePoint, OffsetFigure, OffsetPanel, OffsetPoint};
 use std::f64::consts::TAU;
 use surrogate::{GaussianProcess, Observations, Settings, Shape};
@@ -133,7 +134,7 @@ fn curve(points: &[OffsetPoint]) -> Option<Vec<CurvePoint>> {
 }
 
 /// The run that `run`'s gains compare with.
-fn compared<'a>(study: &'a Synchronised, run: &Joined) -> Option<&'a formats::records::RunRecords> {
+fn compared<'a>(study: &'a Synchronised, run: &Joined) -> Option<&'a RunRecords> {
     let name = study.records.runs[run.run].summary.compare_with.as_deref()?;
     study.records.runs.iter().find(|other| other.manifest.run == name)
 }
@@ -154,17 +155,21 @@ fn together(
     names: &[&str],
 ) -> Result<Option<Statistic>, StudyError> {
     let Some(other) = compared(study, run) else { return Ok(None) };
-    let sum = |run: &formats::records::RunRecords| -> Option<(Vec<f64>, f64)> {
-        let times = run.series.column("time_s")?;
+    let powers: Vec<String> = names.iter().map(|name| format!("{name}.power_w")).collect();
+    let read = |run: &RunRecords| {
+        run.series.read(|channel| channel == "time_s" || powers.iter().any(|name| name == channel))
+    };
+    let sum = |series: Series| -> Option<(Vec<f64>, f64)> {
+        let times = series.column("time_s")?;
         let first = times.iter().position(|time| *time >= study.case.time.spin_up)?;
         let mut total = vec![0.0; times.len() - first];
-        for name in names {
-            let power = run.series.column(&format!("{name}.power_w"))?;
+        for name in &powers {
+            let power = series.column(name)?;
             total.iter_mut().zip(&power[first..]).for_each(|(sum, power)| *sum += power);
         }
         Some((total, times.get(1)? - times.first()?))
     };
-    match (sum(&study.records.runs[run.run]), sum(other)) {
+    match (sum(read(&study.records.runs[run.run])?), sum(read(other)?)) {
         (Some((own, interval)), Some((other, _))) => {
             Ok(Some(gain(&own, &other, interval, BLOCK_LENGTH)?))
         }

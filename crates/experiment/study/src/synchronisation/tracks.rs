@@ -2,6 +2,7 @@
 
 use super::{Joined, Synchronised};
 use crate::StudyError;
+use crate::phase::tells;
 use analysis::phase::{Band, fixed_frame_moments, narrowband};
 use analysis::spectra::amplitude;
 use basis::PerBlade;
@@ -98,7 +99,7 @@ fn answer(study: &Synchronised, name: &str) -> Result<Option<TrackFigure>, Study
             .map(|label| TrackRow { label: label.to_owned(), is_angle: false, lines: Vec::new() })
             .collect();
     for (colour, run) in shown(study).into_iter().enumerate() {
-        let series = &study.records.runs[run.run].series;
+        let series = &study.records.runs[run.run].series.read(|channel| tells(name, channel))?;
         let Some((first, times, interval)) = analysed(study, series) else { continue };
         let cut = |channel: &str| series.column(&format!("{name}.{channel}")).map(|c| &c[first..]);
         let (Some(wind), Some(azimuth)) = (cut("estimated_tilt_wind_m_s"), cut("azimuth_rad"))
@@ -139,7 +140,7 @@ pub(super) fn spectra(study: &Synchronised) -> Result<Vec<SpectrumFigure>, Study
     let name = &study.case.turbines[study.turbine].name;
     let mut lines = Vec::new();
     for (colour, run) in shown(study).into_iter().enumerate() {
-        let series = &study.records.runs[run.run].series;
+        let series = &study.records.runs[run.run].series.read(|channel| tells(name, channel))?;
         let Some((first, _, interval)) = analysed(study, series) else { continue };
         let Some(azimuth) = series.column(&format!("{name}.azimuth_rad")) else { continue };
         let Some(moment) = columns(series, name, "flap_moment_#_nm", first) else { continue };

@@ -1,0 +1,139 @@
+//! What is read in groups is what is read at once.
+
+use super::*;
+use crate::gains;
+use formats::records::{RunFolder, SeriesWriter};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// A turbine that pitches, one that seeks its helix and one that follows meandering; a baseline beside it.
+const CASE: &str = r#"
+name = "groups"
+[wind]
+speed = 9.0
+turbulence_intensity = 0.0
+[flow]
+solver = "uniform"
+step = 0.2
+[time]
+spin_up = 10.0
+duration = 1300.0
+[output]
+interval = 0.4
+[[turbine]]
+name = "T1"
+model = "nrel-5mw"
+position_diameters = [0.0, 0.0]
+[[turbine]]
+name = "T2"
+model = "nrel-5mw"
+position_diameters = [5.0, 0.0]
+[[turbine]]
+name = "T3"
+model = "nrel-5mw"
+position_diameters = [10.0, 0.0]
+[[run]]
+name = "baseline"
+[[run]]
+name = "all"
+control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
+control.T2 = { kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 2.0, azimuth_offset_deg = 0.0 }
+control.T3 = { kind = "meandering", factor = 1.0, amplitude_deg = 0.0 }
+"#;
+
+/// Rows of a whole run (–).
+const N_ROWS: u32 = 3250;
+/// Budgets (bytes): a result at a time, a few of them, all at once.
+const BUDGETS: [usize; 3] = [0, 9 * 8 * N_ROWS as usize, usize::MAX];
+
+/// Leaves the first `n_rows` rows of the series of run number `run`, without the channel called `without`.
+fn leave(study: &Path, setup: &Setup, run: usize, n_rows: u32, without: &str) -> RunFolder {
+    let folder = RunFolder::new(study, &setup.case.runs[run].name);
+    folder.create().expect("a folder");
+    let mut names = vec!["time_s".to_owned(), WIND.to_owned()];
+    for turbine in ["T1", "T2", "T3"] {
+        names.extend(operation(turbine).into_iter().filter(|name| name != "time_s"));
+        names.extend(pitching(turbine, 3));
+        let loads = ["RootMyc1", "RootMxb1", "RootMyb1", "TwrBsMyt", "Spn1FLxb1"];
+        names.extend(loads.map(|channel| format!("{turbine}.{channel}_kN-m")));
+        names.extend(beliefs(turbine, 3, &setup.case.runs[run].control[2]));
+        names.extend(names_of(turbine, &["sync_share", "generator_torque_nm"]));
+    }
+    names.sort();
+    names.dedup();
+    names.retain(|name| name != without);
+    let interval = setup.plan.row_interval();
+    let mut writer = SeriesWriter::create(&folder.series_path(), &names).expect("a file");
+    for row in 1..=n_rows {
+        let time = interval * f64::from(row);
+        // Each channel swings about a mean of its own, in the second run a little more.
+        let value = |(place, name): (usize, &String)| match name.as_str() {
+            "time_s" => time,
+            name if name.ends_with("azimuth_rad") => (1.2 * time).rem_euclid(TAU),
+            name if name.ends_with("_lock") => 1.0,
+            _ => {
+                let own = 0.01 * place as f64;
+                1.0 + own + (0.1 + 0.02 * run as f64) * ((0.3 + own) * time).sin()
+            }
+        };
+        let values: Vec<f64> = names.iter().enumerate().map(value).collect();
+        writer.write(&values).expect("a row");
+    }
+    writer.finish().expect("a file");
+    folder
+}
+
+fn setup(folder: &Path) -> Setup {
+    let path = folder.join("case.toml");
+    std::fs::write(&path, CASE).expect("a file");
+    Setup::read(&path, &[]).expect("a sound case")
+}
+
+#[test]
+fn groups_of_columns_make_the_same_summary_as_all_at_once() {
+    let study = tempfile::tempdir().expect("a folder");
+    let setup = setup(study.path());
+    assert_eq!(setup.plan.n_steps, setup.plan.row_stride * u64::from(N_ROWS));
+    let folders = [0, 1].map(|run| leave(study.path(), &setup, run, N_ROWS, ""));
+    let summaries = BUDGETS.map(|budget| {
+        let [mut there, mut own] = [0, 1].map(|run: usize| {
+            Columns::within(budget, &folders[run], &setup).expect("a series of its own")
+        });
+        let [baseline, run] = [&setup.case.runs[0], &setup.case.runs[1]];
+        let summary = summarise(&setup, run, &mut own, &[0.0, 0.5, 0.0], Cost::default());
+        let mut summary = summary.expect("all channels");
+        gains::add(&mut summary, (run, &mut own), (baseline, &mut there)).expect("gains");
+        summary
+    });
+    let [one_by_one, few, whole] = &summaries;
+    assert_eq!(one_by_one, whole);
+    assert_eq!(few, whole);
+    // Nothing was the same for want of anything to compare.
+    let [first, second, third] = whole.turbines.as_slice() else { panic!("three turbines") };
+    assert!(first.delivered_pitch.is_some() && second.delivered_pitch.is_some());
+    assert!(third.meandering.is_some_and(|found| found.tilt.is_some()));
+    for turbine in [first, second, third] {
+        assert_eq!(turbine.damage_equivalent_loads.len(), 4);
+        assert_eq!(turbine.load_changes.len(), 8);
+        assert!(turbine.pitch_duty.is_some() && turbine.power_gain.is_some());
+    }
+    assert!(whole.array_power_gain.is_some());
+}
+
+#[test]
+fn a_channel_that_is_missing_is_named_however_the_rest_is_read() {
+    let study = tempfile::tempdir().expect("a folder");
+    let setup = setup(study.path());
+    for missing in ["T2.power_w", "T1.pitch_3_rad", "T2.sync_share", "T3.meandering_lock", WIND] {
+        let folder = leave(study.path(), &setup, 1, 600, missing);
+        for budget in BUDGETS {
+            let mut columns = Columns::within(budget, &folder, &setup).expect("a series");
+            let run = &setup.case.runs[1];
+            let error = summarise(&setup, run, &mut columns, &[0.0; 3], Cost::default());
+            match error {
+                Err(StudyError::MissingChannel { channel }) => assert_eq!(channel, missing),
+                other => panic!("{missing} within {budget}: {other:?}"),
+            }
+        }
+    }
+}
