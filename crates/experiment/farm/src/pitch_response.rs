@@ -74,7 +74,7 @@ fn middle(asked: &Meandering) -> f64 {
     0.5 * (asked.strouhal[0] + asked.strouhal[1])
 }
 
-/// Steps of one trial: until the near wake has settled, and after it.
+/// Steps of one trial: until the near wake has settled and the pitch, which fades in over a period, is whole; and after it.
 #[derive(Clone, Copy)]
 struct Course {
     n_settling: u64,
@@ -86,7 +86,7 @@ impl Course {
     fn new(wind_speed: f64, plan: &Plan, model: &Model, rate: f64, n_periods: f64) -> Self {
         let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
         let diameter = model.definition.rotor_diameter();
-        let settling = tunnel.settling * diameter / wind_speed;
+        let settling = (tunnel.settling * diameter / wind_speed).max(TAU / rate);
         Self {
             n_settling: (settling / plan.interval).ceil() as u64,
             n_counted: (n_periods * TAU / rate / plan.interval).ceil() as u64 + 1,
