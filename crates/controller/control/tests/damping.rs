@@ -72,7 +72,7 @@ fn individual_pitch_takes_tilt_and_yaw_moments_away() {
         let individual = IndividualPitch {
             proportional: 0.0,
             integral: 2e-9,
-            azimuth_offset: offset,
+            azimuth_offset: Some(offset),
             limit: 0.1,
             ramp: [8.0, 10.0],
             floor: PitchFloor::Fine,
@@ -101,7 +101,7 @@ fn individual_pitch_keeps_its_amplitude_below_limit_ramp_and_floor() {
         let individual = IndividualPitch {
             proportional: 1e-8,
             integral: 2e-9,
-            azimuth_offset: 0.0,
+            azimuth_offset: Some(0.0),
             limit,
             ramp: [8.0, 10.0],
             floor,

@@ -49,6 +49,11 @@ pub enum AssemblyError {
     /// Nobody found the azimuth offset of a turbine that joins a helix.
     #[error("the azimuth offset with which it pitches was neither given nor found before")]
     NoAzimuthOffset,
+    /// Nobody found the azimuth offset of a turbine's individual pitch control.
+    #[error(
+        "the azimuth offset of its individual pitch control was neither given nor found before; give `azimuth_offset_deg` in `individual_pitch` of its turbine file's [controller]"
+    )]
+    NoIndividualPitchOffset,
     /// An excitation that fades out before it has faded in.
     #[error(
         "stop = {stop} s comes before the excitation is whole: it starts at {start} s and fades in over one period of {period:.1} s; stop at {earliest} s or later, or leave `stop` out"
@@ -96,6 +101,22 @@ impl Model {
         (self.constants.optimal_tip_speed_ratio * wind_speed / radius)
             .clamp(self.constants.minimum_rotor_speed, self.constants.rated_rotor_speed)
     }
+
+    /// Azimuth offset with which its individual pitch control works (rad), given or found; none where there is no such control.
+    pub fn individual_pitch_offset(&self) -> Option<f64> {
+        self.constants.individual_pitch.and_then(|control| control.azimuth_offset)
+    }
+
+    /// Whether the azimuth offset of its individual pitch control is yet to be found; not where there is no such control.
+    pub fn lacks_individual_pitch_offset(&self) -> bool {
+        self.constants.individual_pitch.is_some_and(|control| control.azimuth_offset.is_none())
+    }
+
+    /// The same with its individual pitch control, if there is one, switched off.
+    pub fn without_individual_pitch(mut self) -> Self {
+        self.constants.individual_pitch = None;
+        self
+    }
 }
 
 /// Gaussian width over cell size (–): two cells is the least that the lattice carries without ringing.
@@ -135,7 +156,8 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
 ///
 /// # Errors
 /// [`AssemblyError::Estimation`] when the phase of a helix cannot be sought as asked, [`AssemblyError::NoAzimuthOffset`] when it
-/// cannot be joined, [`AssemblyError::Meandering`] and [`AssemblyError::NotDecoupled`] when meandering cannot be followed,
+/// cannot be joined, [`AssemblyError::NoIndividualPitchOffset`] when individual pitch control cannot be told where its pitch acts,
+/// [`AssemblyError::Meandering`] and [`AssemblyError::NotDecoupled`] when meandering cannot be followed,
 /// [`AssemblyError::StopsTooEarly`] for an excitation that ends before it has begun.
 pub fn controller(
     control: &Control,
@@ -143,6 +165,9 @@ pub fn controller(
     case: &Case,
     plan: &Plan,
 ) -> Result<TurbineController, AssemblyError> {
+    if model.lacks_individual_pitch_offset() {
+        return Err(AssemblyError::NoIndividualPitchOffset);
+    }
     let (wind_speed, diameter) = (case.wind.speed, plan.diameter);
     let excitation = match control {
         Control::Baseline | Control::Absent => Excitation::None,

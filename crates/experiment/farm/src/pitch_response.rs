@@ -2,8 +2,12 @@
 //! tells how pitch acts on the loads.
 
 mod joining;
+mod prescribed;
 
 pub use joining::{OwnPitch, own_pitch, own_pitch_cost};
+pub use prescribed::{
+    INDIVIDUAL_PITCH_STROUHAL, individual_pitch_offset, individual_pitch_offset_cost,
+};
 
 use crate::air::Air;
 use crate::assemble::{self, AssemblyError, Model};

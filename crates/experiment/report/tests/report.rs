@@ -318,6 +318,12 @@ fn the_offset_of_the_pitch_and_that_of_the_belief_have_their_rows() {
         Some(PitchResponse::Transformation { azimuth_offset: 35.2f64.to_radians() });
     let alone = page(&study);
     assert!(alone.contains(turned) && !alone.contains(belief));
+    let damped = "<td>blades, under individual pitch control</td><td class=\"n\"></td><td class=\"n\">12.3</td>";
+    assert!(!alone.contains(damped));
+    study.runs[1].summary.turbines[1].individual_pitch_offset = Some(12.3f64.to_radians());
+    let both = page(&study);
+    assert!(both.contains(turned) && both.contains(damped));
+    assert_well_formed(&both);
 }
 
 #[test]

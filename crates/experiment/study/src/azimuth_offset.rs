@@ -38,7 +38,8 @@ pub struct OffsetAnswer {
 /// Finds the azimuth offset of a turbine alone in a steady wind, under its own control, from what a counter-clockwise and a
 /// clockwise helix of a degree take off the moments of its blades.
 ///
-/// The wind is prescribed and the turbine makes its own induction.
+/// The wind is prescribed, the turbine makes its own induction, and its individual pitch control, which would work against the
+/// helices, is switched off.
 ///
 /// # Errors
 /// [`StudyError`] for a turbine that cannot be read, and for a wind or Strouhal number that a case file could not have.
@@ -57,6 +58,7 @@ pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyEr
     );
     let case = formats::case::parse("the question", &text, &[])?;
     let model = Model { definition: Arc::new(file.definition), constants: file.controller };
+    let model = model.without_individual_pitch();
     let loaded = BTreeMap::from([(question.model.clone(), model)]);
     let Setup { case, plan, models, .. } = Setup::new(case, text, &loaded)?;
     let rate = excitation_rate(question.strouhal, case.wind.speed, plan.diameter);

@@ -50,7 +50,8 @@ pub struct Setup {
     pub case: Case,
     /// The case as run, overrides included (TOML).
     pub case_text: String,
-    /// One per turbine, in the case's order.
+    /// One per turbine, in the case's order; azimuth offsets of individual pitch control that their files leave out are found
+    /// before the runs.
     pub models: Vec<Model>,
     /// Text of each turbine model's file, and of each controller's own input file with its table.
     pub turbine_texts: BTreeMap<String, String>,
@@ -345,8 +346,9 @@ fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), Study
                 let (run, turbine) = (run.name.clone(), placement.name.clone());
                 return Err(StudyError::TooFewBlades { run, turbine, n_blades });
             }
+            // What probes will find, if there are to be any, decides nothing here.
+            let model = model.clone().without_individual_pitch();
             let mut control = *control;
-            // What a probe will find, if there is to be one, decides nothing here.
             match &mut control {
                 Control::Meandering(asked) => {
                     let any = Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: 1.0 };
@@ -357,7 +359,7 @@ fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), Study
                 }
                 _ => {}
             }
-            if let Err(source) = controller(&control, model, case, plan) {
+            if let Err(source) = controller(&control, &model, case, plan) {
                 let (run, turbine) = (run.name.clone(), placement.name.clone());
                 return Err(StudyError::Control { run, turbine, source });
             }

@@ -6,11 +6,13 @@ use crate::prepare::Setup;
 use crate::watcher::{Probing, Watcher};
 use basis::records::PitchResponse;
 use estimation::helix::Calibration;
+use farm::Progress;
 use farm::case::{
     Control, Decoupling, DynamicInflow, Meandering, PhaseEstimator, PhaseNoise, PhaseSync,
 };
 use farm::pitch_response::{
-    CalibrationError, OwnPitch, ProbeCost, decoupling, decoupling_cost, own_pitch, own_pitch_cost,
+    CalibrationError, INDIVIDUAL_PITCH_STROUHAL, OwnPitch, ProbeCost, decoupling, decoupling_cost,
+    individual_pitch_offset, individual_pitch_offset_cost, own_pitch, own_pitch_cost,
 };
 use formats::records::{ProbeRecord, read_probes, sha256, write_probes};
 use std::ops::ControlFlow;
@@ -57,6 +59,8 @@ impl Probes {
 /// Whose pitch is probed for what.
 #[derive(Clone, Copy)]
 enum Asked {
+    /// Azimuth offset of individual pitch control.
+    IndividualPitch,
     /// Azimuth offset and calibration of a turbine that joins a helix, what of both is to be found.
     OwnPitch(PhaseSync),
     Decoupling(Meandering),
@@ -81,6 +85,23 @@ impl Asked {
 }
 
 impl Setup {
+    /// What `runs` need to have found, each with the run and the turbine that need it. Individual pitch control comes first: it
+    /// is at work while a turbine is probed for the rest.
+    fn asked(&self, runs: &[usize]) -> Vec<(usize, usize, Asked)> {
+        let (mut first, mut rest) = (Vec::new(), Vec::new());
+        for &run in runs {
+            for (index, control) in self.case.runs[run].control.iter().enumerate() {
+                if *control != Control::Absent && self.models[index].lacks_individual_pitch_offset()
+                {
+                    first.push((run, index, Asked::IndividualPitch));
+                }
+                rest.extend(Asked::of(control).map(|asked| (run, index, asked)));
+            }
+        }
+        first.append(&mut rest);
+        first
+    }
+
     /// What `runs` need to have found, each once; with `resume` what an earlier session found in the folder `directory` is known.
     ///
     /// # Errors
@@ -93,21 +114,19 @@ impl Setup {
     ) -> Result<Probes, StudyError> {
         let known = if resume { read_probes(directory)? } else { Vec::new() };
         let mut wanted: Vec<Probe> = Vec::new();
-        for &run in runs {
-            for (index, control) in self.case.runs[run].control.iter().enumerate() {
-                let Some(asked) = Asked::of(control) else { continue };
-                let key = self.key(index, &asked);
-                if let Some(probe) = wanted.iter_mut().find(|probe| probe.key == key) {
-                    probe.places.push((run, index));
-                    continue;
-                }
-                let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
-                let cost = match &asked {
-                    Asked::OwnPitch(sync) => own_pitch_cost(case, plan, model, sync),
-                    Asked::Decoupling(asked) => decoupling_cost(case, plan, model, asked),
-                };
-                wanted.push(Probe { places: vec![(run, index)], asked, key, cost });
+        for (run, index, asked) in self.asked(runs) {
+            let key = self.key(index, &asked);
+            if let Some(probe) = wanted.iter_mut().find(|probe| probe.key == key) {
+                probe.places.push((run, index));
+                continue;
             }
+            let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
+            let cost = match &asked {
+                Asked::IndividualPitch => individual_pitch_offset_cost(case, plan, model),
+                Asked::OwnPitch(sync) => own_pitch_cost(case, plan, model, sync),
+                Asked::Decoupling(asked) => decoupling_cost(case, plan, model, asked),
+            };
+            wanted.push(Probe { places: vec![(run, index)], asked, key, cost });
         }
         Ok(Probes { wanted, known })
     }
@@ -123,6 +142,7 @@ impl Setup {
             Some(path) => text_names(path).iter().map(text).collect(),
         };
         let asked = match asked {
+            Asked::IndividualPitch => format!("individual pitch {INDIVIDUAL_PITCH_STROUHAL:?}"),
             Asked::OwnPitch(sync) if sync.estimator == PhaseEstimator::Published => {
                 format!("azimuth offset {:?}", sync.strouhal)
             }
@@ -162,10 +182,10 @@ impl Setup {
         )
     }
 
-    /// On return the case knows with which azimuth offset every turbine pitches that joins a helix, and what its phase
-    /// estimator makes of that, and how pitch acts on the loads of every turbine that acts on meandering and is not told, as far
-    /// as `probes` name them. What is found is kept in the folder `directory`. A break when `stop` asked for an end before all
-    /// was found.
+    /// On return the models know the azimuth offset of every individual pitch control, and the case with which azimuth offset
+    /// every turbine pitches that joins a helix, and what its phase estimator makes of that, and how pitch acts on the loads of
+    /// every turbine that acts on meandering and is not told, as far as `probes` name them. What is found is kept in the folder
+    /// `directory`. A break when `stop` asked for an end before all was found.
     ///
     /// # Errors
     /// [`StudyError::Calibration`] when it cannot be found, [`StudyError::File`] when it cannot be kept.
@@ -176,14 +196,19 @@ impl Setup {
         stop: &AtomicBool,
         watcher: &mut dyn Watcher,
     ) -> Result<ControlFlow<()>, StudyError> {
-        let open: Vec<&Probe> = probes.open().collect();
+        let n_probes = probes.open().count();
+        let all: f64 = probes.open().map(|probe| probe.cost.work).sum();
         let mut known = probes.known.clone();
         let started = Instant::now();
-        let all: f64 = open.iter().map(|probe| probe.cost.work).sum();
-        let mut done = 0.0;
-        for (place, probe) in open.iter().enumerate() {
+        let (mut place, mut done) = (0, 0.0);
+        for probe in &probes.wanted {
             let index = probe.places[0].1;
-            let name = &self.case.turbines[index].name;
+            let name = self.case.turbines[index].name.clone();
+            if let Some(found) = probes.found(probe) {
+                watcher.probed(&name, found, true);
+                self.tell(probe, found);
+                continue;
+            }
             let mut last: Option<Instant> = None;
             let mut told = |share: f64| {
                 if stop.load(Ordering::Relaxed) {
@@ -196,40 +221,58 @@ impl Setup {
                 let made = done + share * probe.cost.work;
                 let elapsed = started.elapsed().as_secs_f64();
                 watcher.probing(&Probing {
-                    turbine: name,
+                    turbine: &name,
                     index: place,
-                    n_probes: open.len(),
+                    n_probes,
                     share,
                     time_left: elapsed * (all - made) / made.max(f64::MIN_POSITIVE),
                 });
                 ControlFlow::Continue(())
             };
-            let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
-            let found = match &probe.asked {
-                Asked::OwnPitch(sync) => own_pitch(case, plan, model, index, sync, &mut told)
-                    .map(|found| record_of_own_pitch(&found)),
-                Asked::Decoupling(asked) => decoupling(case, plan, model, index, asked, &mut told)
-                    .map(|found| record_of_decoupling(&found)),
-            };
-            let response = match found {
+            let response = match self.find(index, &probe.asked, &mut told) {
                 Err(CalibrationError::BrokenOff) => return Ok(ControlFlow::Break(())),
                 found => found?,
             };
+            place += 1;
             done += probe.cost.work;
             known.push(ProbeRecord { key: probe.key.clone(), turbine: name.clone(), response });
             write_probes(directory, &known)?;
+            watcher.probed(&name, &response, false);
+            self.tell(probe, &response);
         }
-        let now = Probes { known, wanted: Vec::new() };
-        for probe in &probes.wanted {
-            let Some(found) = now.found(probe) else { continue };
-            let name = &self.case.turbines[probe.places[0].1].name;
-            watcher.probed(name, found, probes.found(probe).is_some());
-            for &(run, index) in &probe.places {
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Probes turbine number `index` for what is `asked`; `progress` is told the share done.
+    fn find(
+        &self,
+        index: usize,
+        asked: &Asked,
+        progress: Progress,
+    ) -> Result<PitchResponse, CalibrationError> {
+        let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
+        match asked {
+            Asked::IndividualPitch => individual_pitch_offset(case, plan, model, index, progress)
+                .map(|azimuth_offset| PitchResponse::IndividualPitch { azimuth_offset }),
+            Asked::OwnPitch(sync) => own_pitch(case, plan, model, index, sync, progress)
+                .map(|found| record_of_own_pitch(&found)),
+            Asked::Decoupling(asked) => decoupling(case, plan, model, index, asked, progress)
+                .map(|found| record_of_decoupling(&found)),
+        }
+    }
+
+    /// On return all that need `probe` know what was `found`.
+    fn tell(&mut self, probe: &Probe, found: &PitchResponse) {
+        for &(run, index) in &probe.places {
+            if let PitchResponse::IndividualPitch { azimuth_offset } = *found {
+                if let Some(control) = &mut self.models[index].constants.individual_pitch {
+                    control.azimuth_offset = Some(azimuth_offset);
+                }
+            } else {
                 let control = &mut self.case.runs[run].control[index];
                 *control = told(*control, found);
             }
         }
-        Ok(ControlFlow::Continue(()))
     }
 }
 
@@ -289,7 +332,9 @@ pub(crate) fn calibration_of(response: &PitchResponse) -> Option<Calibration> {
         PitchResponse::Estimator { gain, azimuth_offset, before, after, .. } => {
             Some(Calibration { gain, azimuth_offset, before, after })
         }
-        PitchResponse::Transformation { .. } | PitchResponse::Loads { .. } => None,
+        PitchResponse::Transformation { .. }
+        | PitchResponse::IndividualPitch { .. }
+        | PitchResponse::Loads { .. } => None,
     }
 }
 
@@ -298,7 +343,7 @@ fn azimuth_offset_of(response: &PitchResponse) -> Option<f64> {
     match *response {
         PitchResponse::Estimator { transformation_offset, .. } => transformation_offset,
         PitchResponse::Transformation { azimuth_offset } => Some(azimuth_offset),
-        PitchResponse::Loads { .. } => None,
+        PitchResponse::IndividualPitch { .. } | PitchResponse::Loads { .. } => None,
     }
 }
 
@@ -307,7 +352,9 @@ fn decoupling_of(response: &PitchResponse) -> Option<Decoupling> {
         PitchResponse::Loads { azimuth_offset, delay, gain } => {
             Some(Decoupling { azimuth_offset, delay, gain })
         }
-        PitchResponse::Estimator { .. } | PitchResponse::Transformation { .. } => None,
+        PitchResponse::Estimator { .. }
+        | PitchResponse::Transformation { .. }
+        | PitchResponse::IndividualPitch { .. } => None,
     }
 }
 

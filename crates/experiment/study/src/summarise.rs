@@ -90,6 +90,7 @@ pub(crate) fn summarise(
             delivered_pitch,
             power_gain: None,
             pitch_response: response_of(control),
+            individual_pitch_offset: setup.models[index].individual_pitch_offset(),
             meandering,
             load_deviations,
             damage_equivalent_loads,

@@ -91,6 +91,11 @@ pub enum PitchResponse {
         /// Its azimuth offset (rad).
         azimuth_offset: f64,
     },
+    /// Under individual pitch control, in its inverse multi-blade transformation.
+    IndividualPitch {
+        /// Its azimuth offset (rad).
+        azimuth_offset: f64,
+    },
     /// On the tilt and yaw moments of the blades.
     Loads {
         /// Azimuth offset of the inverse multi-blade transformation (rad).
@@ -150,6 +155,10 @@ pub struct TurbineSummary {
     /// How its own pitch acts; absent where its controller need not know.
     #[serde(default)]
     pub pitch_response: Option<PitchResponse>,
+    /// Azimuth offset with which its individual pitch control works (rad); absent where there is no such control, and in
+    /// records that do not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub individual_pitch_offset: Option<f64>,
     /// What it found of meandering and made of it; absent on a turbine that does not follow any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub meandering: Option<MeanderingSummary>,

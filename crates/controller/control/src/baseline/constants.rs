@@ -146,8 +146,9 @@ pub struct IndividualPitch {
     pub proportional: f64,
     /// Pitch rate over moment (rad/(N m s)).
     pub integral: f64,
-    /// Added to the azimuth on the way back to the blades (rad).
-    pub azimuth_offset: f64,
+    /// Added to the azimuth on the way back to the blades (rad); none while it is yet to be found: whoever puts a controller
+    /// together tells it before, and nothing is added without.
+    pub azimuth_offset: Option<f64>,
     /// Greatest amplitude (rad).
     pub limit: f64,
     /// Wind speeds (m/s) between which the amplitude is let in.

@@ -51,7 +51,8 @@ impl Individual {
             ],
         );
         let pitch = FixedFrame { average: 0.0, tilt, yaw };
-        to_blades(measurements.azimuth + constants.azimuth_offset, pitch, n_blades)
+        let azimuth = measurements.azimuth + constants.azimuth_offset.unwrap_or(0.0);
+        to_blades(azimuth, pitch, n_blades)
     }
 }
 

@@ -153,6 +153,10 @@ fn words_of(turbine: &str, response: &PitchResponse) -> String {
             )
         }
         PitchResponse::Transformation { azimuth_offset } => turned(azimuth_offset),
+        PitchResponse::IndividualPitch { azimuth_offset } => format!(
+            "{turbine}'s individual pitch control works with an azimuth offset of {:+.1}°",
+            azimuth_offset.to_degrees(),
+        ),
         PitchResponse::Loads { azimuth_offset, delay, gain } => format!(
             "{turbine} loses {:.2} MN m per degree of cyclic pitch, {:+.1}° of azimuth and {delay:.2} s after it",
             1e-6 * gain * 1f64.to_radians(),
@@ -343,5 +347,8 @@ mod tests {
         assert!(words_of("T2", &of(None)).starts_with(belief));
         let alone = PitchResponse::Transformation { azimuth_offset: 35.2f64.to_radians() };
         assert_eq!(words_of("T2", &alone), pitches);
+        let control = PitchResponse::IndividualPitch { azimuth_offset: 0.5f64.to_radians() };
+        let words = "T2's individual pitch control works with an azimuth offset of +0.5°";
+        assert_eq!(words_of("T2", &control), words);
     }
 }

@@ -161,6 +161,7 @@ mod tests {
             delivered_pitch: None,
             power_gain: None,
             pitch_response: None,
+            individual_pitch_offset: None,
             meandering: None,
             load_deviations: Default::default(),
             damage_equivalent_loads: loads

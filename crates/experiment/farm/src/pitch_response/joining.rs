@@ -1,20 +1,17 @@
 //! What a turbine that joins a helix is told of its own pitch: its azimuth offset, and what its phase estimator makes of it.
 
-use super::{
-    COUNTED, CalibrationError, Course, Pitching, ProbeCost, WAKE_SPEED, answers, pitching,
-};
+use super::prescribed::{found_offset, offset_cost};
+use super::{CalibrationError, Course, Pitching, ProbeCost, WAKE_SPEED, pitching};
 use crate::Progress;
 use crate::assemble::{self, Model};
-use crate::case::{Case, Decoupling, PhaseEstimator, PhaseSync, Solver};
-use crate::plan::{Plan, without_air};
+use crate::case::{Case, PhaseEstimator, PhaseSync};
+use crate::plan::Plan;
 use control::excitation_rate;
 use estimation::helix::{Calibration, calibrate};
 use std::f64::consts::TAU;
 
 /// Excitation periods for the filter to settle once the near wake has, and counted after them (–).
 const PERIODS: [f64; 2] = [2.0, 2.0];
-/// Cell updates that take about as long as a step of one turbine in prescribed wind (–).
-const UPDATES_OF_A_STEP: f64 = 1e4;
 
 /// What a turbine that joins a helix is told of its own pitch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,11 +37,7 @@ fn costs(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSync) -> [ProbeCos
     let wind_speed = WAKE_SPEED * case.wind.speed;
     let mut costs = [ProbeCost::default(); 2];
     if sync.azimuth_offset.is_none() {
-        let (prescribed, steps) = in_prescribed_wind(case, plan);
-        let course = Course::new(wind_speed, &steps, model, rate, COUNTED);
-        let cost = course.cost(&prescribed, &steps, model, 2);
-        let of_a_step = if case.flow.solver.is_prescribed() { 1.0 } else { UPDATES_OF_A_STEP };
-        costs[0] = ProbeCost { work: of_a_step * cost.work, ..cost };
+        costs[0] = offset_cost(case, plan, model, wind_speed, rate);
     }
     if sync.estimator == PhaseEstimator::Robust {
         let course = Course::new(wind_speed, plan, model, rate, PERIODS[0] + PERIODS[1]);
@@ -71,8 +64,10 @@ pub fn own_pitch(
     let azimuth_offset = match sync.azimuth_offset {
         Some(given) => given,
         None => {
+            let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
+            let wind_speed = WAKE_SPEED * case.wind.speed;
             let mut told = |share: f64| progress(share_of_first * share);
-            found_offset(case, plan, model, index, sync, &mut told)?
+            found_offset(case, plan, model, index, wind_speed, rate, &mut told)?
         }
     };
     let calibration = match sync.estimator {
@@ -84,40 +79,6 @@ pub fn own_pitch(
         }
     };
     Ok(OwnPitch { azimuth_offset, calibration })
-}
-
-/// The azimuth offset (rad) with which tilt pitch of turbine number `index` of `case` answers in the tilt moment alone, at the
-/// rate of the helix that `sync` joins.
-///
-/// The turbine stands as in [`calibration`], in prescribed wind whatever moves the air of the case: an offset belongs to
-/// blade, rotor speed and pitch actuator, which momentum theory tells in a second.
-fn found_offset(
-    case: &Case,
-    plan: &Plan,
-    model: &Model,
-    index: usize,
-    sync: &PhaseSync,
-    progress: Progress,
-) -> Result<f64, CalibrationError> {
-    let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
-    let wind_speed = WAKE_SPEED * case.wind.speed;
-    let (case, plan) = in_prescribed_wind(case, plan);
-    let [counter_clockwise, clockwise] =
-        answers(&case, &plan, model, index, wind_speed, rate, progress)?;
-    Ok(Decoupling::from_senses(rate, counter_clockwise, clockwise).azimuth_offset)
-}
-
-/// `case` and its plan in prescribed wind, the turbines as they are.
-fn in_prescribed_wind(case: &Case, plan: &Plan) -> (Case, Plan) {
-    let mut case = case.clone();
-    if case.flow.solver.is_prescribed() {
-        return (case, plan.clone());
-    }
-    case.flow.solver = Solver::Uniform;
-    // That of the case is the lattice's.
-    case.flow.step = None;
-    let plan = without_air(&case, plan.diameter, plan.hub_height, plan.positions.clone());
-    (case, plan)
 }
 
 /// Calibrates the estimator of `sync` on turbine number `index` of `case`: gain and azimuth offset of its own pitch.

@@ -180,7 +180,7 @@ fn individual_pitch(deck: &Deck) -> Result<Option<IndividualPitch>, TurbineFileE
     Ok(Some(IndividualPitch {
         proportional: deck.number("IPC_KP")?,
         integral: deck.number("IPC_KI")?,
-        azimuth_offset_deg: deck.number("IPC_aziOffset")?.to_degrees(),
+        azimuth_offset_deg: Some(deck.number("IPC_aziOffset")?.to_degrees()),
         limit_deg: deck.number(limit)?.to_degrees(),
         ramp: [start, full],
         floor: match mode(deck, "IPC_SatMode", 2.0)? {

@@ -75,9 +75,11 @@ mod tests {
             transformation_offset,
         };
         let transformation = PitchResponse::Transformation { azimuth_offset: 0.6 };
-        let probes = [estimator(Some(0.6)), estimator(None), transformation].map(|response| {
-            ProbeRecord { key: "a".to_owned(), turbine: "T2".to_owned(), response }
-        });
+        let individual = PitchResponse::IndividualPitch { azimuth_offset: 0.6 };
+        let probes =
+            [estimator(Some(0.6)), estimator(None), transformation, individual].map(|response| {
+                ProbeRecord { key: "a".to_owned(), turbine: "T2".to_owned(), response }
+            });
         write_probes(study.path(), &probes).unwrap();
         assert_eq!(read_probes(study.path()).unwrap(), probes);
         let older = r#"[{"key": "a", "turbine": "T2", "response": {"estimator":

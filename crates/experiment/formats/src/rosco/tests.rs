@@ -134,7 +134,7 @@ fn figures_arrive_on_the_low_speed_side() {
     assert_eq!(constants.speed_notches.len(), 1);
     let individual = constants.individual_pitch.unwrap();
     assert_eq!((individual.integral, individual.floor), (2e-9, PitchFloor::Least));
-    assert!((individual.azimuth_offset - 0.3).abs() < 1e-12);
+    assert!((individual.azimuth_offset.unwrap() - 0.3).abs() < 1e-12);
     assert!((constants.tower_damping.unwrap().limit - 0.05).abs() < 1e-12);
     let estimator = constants.estimator.unwrap();
     assert_eq!((estimator.inertia, estimator.air_density), (1e6, 1.2));

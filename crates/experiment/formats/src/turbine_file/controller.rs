@@ -106,8 +106,9 @@ fn optional(controller: &Controller, place: &Place) -> Result<(), TurbineFileErr
         let at = |key| [Key("controller"), Key("individual_pitch"), Key(key)];
         place.not_negative(&at("proportional"), individual.proportional)?;
         place.not_negative(&at("integral"), individual.integral)?;
-        let offset = individual.azimuth_offset_deg;
-        place.within(&at("azimuth_offset_deg"), offset, -360.0, 360.0, "°")?;
+        if let Some(offset) = individual.azimuth_offset_deg {
+            place.within(&at("azimuth_offset_deg"), offset, -360.0, 360.0, "°")?;
+        }
         place.within(&at("limit_deg"), individual.limit_deg, 0.0, 90.0, "°")?;
         let [start, full] = individual.ramp;
         place.not_negative(&at("ramp"), start)?;
@@ -189,7 +190,7 @@ fn individual_pitch_of(asked: &document::IndividualPitch) -> IndividualPitch {
     IndividualPitch {
         proportional: asked.proportional,
         integral: asked.integral,
-        azimuth_offset: asked.azimuth_offset_deg.to_radians(),
+        azimuth_offset: asked.azimuth_offset_deg.map(f64::to_radians),
         limit: asked.limit_deg.to_radians(),
         ramp: asked.ramp,
         floor: match asked.floor {

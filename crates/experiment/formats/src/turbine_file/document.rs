@@ -289,8 +289,9 @@ pub struct IndividualPitch {
     pub proportional: f64,
     /// Pitch rate over moment (rad/(N m s)).
     pub integral: f64,
-    /// Added to the azimuth on the way back to the blades (deg).
-    pub azimuth_offset_deg: f64,
+    /// Added to the azimuth on the way back to the blades (deg); found before the runs without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub azimuth_offset_deg: Option<f64>,
     /// Greatest amplitude (deg).
     pub limit_deg: f64,
     /// Wind speeds (m/s) between which it is let in.

@@ -143,7 +143,7 @@ speed_filter_corner = 1.5708";
     assert!((controller.tower_damping.unwrap().limit - 2f64.to_radians()).abs() < 1e-15);
     let individual = controller.individual_pitch.unwrap();
     assert_eq!(individual.floor, control::baseline::PitchFloor::Least);
-    assert!((individual.azimuth_offset - 20f64.to_radians()).abs() < 1e-15);
+    assert!((individual.azimuth_offset.unwrap() - 20f64.to_radians()).abs() < 1e-15);
     let written = write(&document(&text));
     assert!(written.missing.is_empty(), "{:?}", written.missing);
     assert_eq!(document(&written.text), document(&text));
@@ -152,10 +152,33 @@ speed_filter_corner = 1.5708";
         ("[1.5, 0.0", "[-1.5, 0.0", "controller.speed_notches[1]"),
         ("[[1.5,", "[[1.0, 0.0, 0.2], [1.1, 0.0, 0.2], [1.2, 0.0, 0.2], [1.5,", "4 rows at most"),
         ("ramp = [8.0, 10.0]", "ramp = [8.0, 7.0]", "controller.individual_pitch.ramp"),
+        (
+            "offset_deg = 20.0",
+            "offset_deg = 400.0",
+            "individual_pitch.azimuth_offset_deg: expected",
+        ),
         ("corner = 0.1,", "corner = 0.0,", "controller.tower_damping.high_pass_corner"),
         ("\"k-omega-squared\"", "\"greedy\"", "k-omega-squared"),
     ] {
         let message = parse("mine.toml", &text.replacen(from, to, 1)).unwrap_err().to_string();
         assert!(message.contains(place), "{message}");
     }
+}
+
+#[test]
+fn an_azimuth_offset_that_is_left_out_stays_out() {
+    let keys = "\
+individual_pitch = { proportional = 0.0, integral = 2e-9, limit_deg = 5.0, ramp = [8.0, 10.0], floor = \"fine-pitch\" }
+speed_filter_corner = 1.5708";
+    let text = nrel().replacen("speed_filter_corner = 1.5708", keys, 1);
+    let individual = parse("mine.toml", &text).unwrap().controller.individual_pitch.unwrap();
+    assert_eq!(individual.azimuth_offset, None);
+    let written = write(&document(&text));
+    assert!(written.missing.is_empty(), "{:?}", written.missing);
+    assert!(!written.text.contains("azimuth_offset_deg"), "{}", written.text);
+    assert_eq!(document(&written.text), document(&text));
+    // Nothing is not the same as 0.
+    let none = text.replacen("limit_deg", "azimuth_offset_deg = 0.0, limit_deg", 1);
+    let individual = parse("mine.toml", &none).unwrap().controller.individual_pitch.unwrap();
+    assert_eq!(individual.azimuth_offset, Some(0.0));
 }

@@ -65,15 +65,17 @@ fn optional(out: &mut Text, controller: &Controller) {
         let figures = [
             individual.proportional,
             individual.integral,
-            individual.azimuth_offset_deg,
             individual.limit_deg,
             individual.ramp[0],
             individual.ramp[1],
         ];
-        let [proportional, integral, offset, limit, start, full] = figures.map(number);
+        let [proportional, integral, limit, start, full] = figures.map(number);
+        let offset = individual.azimuth_offset_deg.map(number);
+        let offset =
+            offset.map_or_else(String::new, |offset| format!("azimuth_offset_deg = {offset}, "));
         let floor = quoted(individual.floor.name());
         out.line(&format!(
-            "individual_pitch = {{ proportional = {proportional}, integral = {integral}, azimuth_offset_deg = {offset}, limit_deg = {limit}, ramp = [{start}, {full}], floor = {floor} }}"
+            "individual_pitch = {{ proportional = {proportional}, integral = {integral}, {offset}limit_deg = {limit}, ramp = [{start}, {full}], floor = {floor} }}"
         ));
     }
     if !controller.speed_notches.is_empty() {

@@ -181,12 +181,17 @@ pub(crate) fn responses(study: &Study) -> Vec<Value> {
                     remark,
                 });
             };
+            if let Some(offset) = turbine.individual_pitch_offset {
+                let on = "blades, under individual pitch control";
+                add(on, String::new(), offset, String::new(), String::new());
+            }
             let transformation = match turbine.pitch_response {
                 Some(PitchResponse::Estimator { transformation_offset, .. }) => {
                     transformation_offset
                 }
                 Some(PitchResponse::Transformation { azimuth_offset }) => Some(azimuth_offset),
-                Some(PitchResponse::Loads { .. }) | None => None,
+                Some(PitchResponse::IndividualPitch { .. } | PitchResponse::Loads { .. })
+                | None => None,
             };
             if let Some(offset) = transformation {
                 let on = "blades, by the inverse multi-blade transformation";
@@ -209,7 +214,10 @@ pub(crate) fn responses(study: &Study) -> Vec<Value> {
                     let on = "tilt and yaw moment of the blades";
                     add(on, gain, azimuth_offset, number(delay, 2), String::new());
                 }
-                Some(PitchResponse::Transformation { .. }) | None => {}
+                Some(
+                    PitchResponse::Transformation { .. } | PitchResponse::IndividualPitch { .. },
+                )
+                | None => {}
             }
         }
     }

@@ -117,6 +117,7 @@ fn run(recipe: &Recipe) -> RunRecords {
             delay: 3.5,
             gain: 1.6e8,
         }),
+        individual_pitch_offset: None,
         meandering: None,
         load_deviations: BTreeMap::new(),
         damage_equivalent_loads: BTreeMap::new(),

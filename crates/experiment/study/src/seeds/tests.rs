@@ -55,6 +55,7 @@ fn turbine(name: &str, power: f64) -> TurbineSummary {
         delivered_pitch: None,
         power_gain: None,
         pitch_response: None,
+        individual_pitch_offset: None,
         meandering: None,
         load_deviations: Default::default(),
         damage_equivalent_loads: Default::default(),
