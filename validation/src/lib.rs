@@ -62,6 +62,13 @@ pub const VALIDATIONS: &[Validation] = &[
         pictures: None,
     },
     Validation {
+        name: "actuator-line-fine",
+        about: "the same on 32 cells per diameter alone",
+        minutes: "27",
+        run: actuator_line::actuator_line_fine,
+        pictures: None,
+    },
+    Validation {
         name: "flow",
         about: "the lattice against closed forms: Taylor-Green, free stream, mass, outlet, a disc in momentum theory",
         minutes: "1",
