@@ -78,12 +78,12 @@ pub fn write(path: &Path, mut stored: &StoredBox) -> Result<(), FileError> {
     write_from(path, &mut stored)
 }
 
-/// Writes the box at `from` to `to`, whose extensions choose the formats as in [`read`]: the same files as [`write`] makes of
+/// Writes the box at `from` to `to`, whose extensions choose the formats as in [`read`]: the same files as [`write()`] makes of
 /// what [`read`] gives. However long it is, a few planes at a time are in memory; they come once more for mean speeds that
 /// `from` does not tell, and for what the header of `to` tells of all of them.
 ///
 /// # Errors
-/// As [`read`] and [`write`]; where `from` cannot be read to its end, what was at `to` before still stands.
+/// As [`read`] and [`write()`]; where `from` cannot be read to its end, what was at `to` before still stands.
 pub fn convert(from: &Path, to: &Path) -> Result<(), FileError> {
     check_name(to)?;
     match kind(from)? {
@@ -93,7 +93,7 @@ pub fn convert(from: &Path, to: &Path) -> Result<(), FileError> {
     }
 }
 
-/// Writes the box of `source` as [`write`] does.
+/// Writes the box of `source` as [`write()`] does.
 fn write_from(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
     match kind(path)? {
         Kind::Hawc(header) => hawc::write(&header, source),
