@@ -31,10 +31,15 @@ pub fn own_pitch_cost(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSync)
     }
 }
 
+/// Wind (m/s) in which the turbine is probed, and rate of the helix that it joins (rad/s).
+fn conditions(case: &Case, plan: &Plan, sync: &PhaseSync) -> (f64, f64) {
+    let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
+    (WAKE_SPEED * case.wind.speed, rate)
+}
+
 /// Costs of the azimuth offset and of the calibration, nothing for what is not sought.
 fn costs(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSync) -> [ProbeCost; 2] {
-    let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
-    let wind_speed = WAKE_SPEED * case.wind.speed;
+    let (wind_speed, rate) = conditions(case, plan, sync);
     let mut costs = [ProbeCost::default(); 2];
     if sync.azimuth_offset.is_none() {
         costs[0] = offset_cost(case, plan, model, wind_speed, rate);
@@ -64,8 +69,7 @@ pub fn own_pitch(
     let azimuth_offset = match sync.azimuth_offset {
         Some(given) => given,
         None => {
-            let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
-            let wind_speed = WAKE_SPEED * case.wind.speed;
+            let (wind_speed, rate) = conditions(case, plan, sync);
             let mut told = |share: f64| progress(share_of_first * share);
             found_offset(case, plan, model, index, wind_speed, rate, &mut told)?
         }
@@ -95,9 +99,10 @@ fn calibration(
     azimuth_offset: f64,
     progress: Progress,
 ) -> Result<Calibration, CalibrationError> {
+    let (wind_speed, rate) = conditions(case, plan, sync);
     let pitch = Pitching {
-        wind_speed: WAKE_SPEED * case.wind.speed,
-        rate: excitation_rate(sync.strouhal, case.wind.speed, plan.diameter),
+        wind_speed,
+        rate,
         sense: sync.sense,
         amplitude: sync.amplitude,
         azimuth_offset,

@@ -144,10 +144,9 @@ impl LineMemory {
         sections: &mut impl Sections,
         missing: &mut [[f64; 2]],
     ) {
-        for (pitch, motion) in self.pitch.iter_mut().zip(now.motions) {
+        let told = self.onsets.iter_mut().zip(&mut self.pitch);
+        for (((onset, pitch), motion), wind) in told.zip(now.motions).zip(now.winds) {
             *pitch = motion.pitch;
-        }
-        for ((onset, motion), wind) in self.onsets.iter_mut().zip(now.motions).zip(now.winds) {
             let relative = *wind - motion.velocity;
             *onset = Onset {
                 normal: relative.dot(motion.axes.normal),
