@@ -59,6 +59,9 @@ pub(crate) trait Simd:
     /// `LANES` values can be read from `source`, on a machine with the back-end's instructions.
     unsafe fn load(source: *const f32) -> Self;
 
+    /// Asks for the cache line of `address`, which need not be readable, ahead of its use. Advice only.
+    fn prefetch(address: *const f32);
+
     /// # Safety
     /// `LANES` values can be written to `target`, on a machine with the back-end's instructions.
     unsafe fn store(self, target: *mut f32);
@@ -107,6 +110,11 @@ impl Simd for Portable {
     unsafe fn load(source: *const f32) -> Self {
         // SAFETY: the caller promises four readable values.
         Self(unsafe { source.cast::<[f32; 4]>().read_unaligned() })
+    }
+
+    #[inline(always)]
+    fn prefetch(_: *const f32) {
+        // Its arithmetic is slower than any memory.
     }
 
     #[inline(always)]

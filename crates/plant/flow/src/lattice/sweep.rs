@@ -13,6 +13,13 @@ use super::simd::{MAXIMUM_LANES, Simd};
 use super::stencil::{Moments, Stencil};
 use std::ops::Range;
 
+/// Values per cache line (–).
+const LINE: usize = 16;
+/// How far ahead of a cell its populations are asked for, in values: nineteen streams are more than a processor's own
+/// prefetching follows, and a miss is longer than the cells that it can look ahead to. Rows follow one another in
+/// memory, so that what is asked for beyond a row's end is the next row's start.
+const AHEAD: usize = 8 * LINE;
+
 /// What all rows of a step share, in lattice units.
 pub(crate) struct Step<'a> {
     /// The populations.
@@ -232,7 +239,11 @@ unsafe fn before<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool>(
     unsafe {
         let mut populations = [S::splat(0.0); Q];
         for slot in 0..Q {
-            populations[read_direction(parity::<ODD>(), slot)] = S::load(places[slot].add(x));
+            let place = places[slot].add(x);
+            populations[read_direction(parity::<ODD>(), slot)] = S::load(place);
+            if S::LANES >= LINE || x.is_multiple_of(LINE) {
+                S::prefetch(place.wrapping_add(AHEAD));
+            }
         }
         let relaxation = Relaxation { time: S::load(times.add(x)), subgrid };
         let state = L::moments(&populations);

@@ -21,6 +21,12 @@ macro_rules! vector {
             }
 
             #[inline(always)]
+            fn prefetch(address: *const f32) {
+                // SAFETY: reads nothing, whatever the address.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast()) }
+            }
+
+            #[inline(always)]
             unsafe fn store(self, target: *mut f32) {
                 // SAFETY: the caller promises writable values and the instructions.
                 unsafe { $store(target, self.0) }
