@@ -1,13 +1,18 @@
-//! The actuator line on coarse grids against blade-element momentum: power and thrust in a steady uniform wind.
+//! The actuator line on coarse grids against blade-element momentum, and against blade elements in the flow that rings make
+//! together: power and thrust in a steady uniform wind.
 
 use crate::Row;
+use crate::free_wake::{self, Flow};
 use farm::assemble::Model;
 use farm::case::{Shear, TurbulenceModel, Wind};
 use farm::self_check::{Tunnel, self_check};
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use turbine::aero::blade_element::Theory;
+use turbine::steady::{Coefficients, SteadyRotor};
 
-/// Accepted distance of power and thrust from blade-element momentum (–).
+/// Accepted distance of power and thrust from their expectations (–).
 const TOLERANCE: f64 = 0.03;
 /// Cells that the tip moves in a step (–): below the lattice's speed of sound, 0.577, beyond which a blade outruns the
 /// pressure that should make room for it and meets its own bound vortex.
@@ -89,15 +94,23 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
     let mut whole = |_| ControlFlow::Continue(());
     let check = self_check(&model, &wind, &tunnel, None, &mut whole)
         .expect("a rotor in a steady wind stays finite");
+    let free = in_free_wake(&model, check.tip_speed_ratio);
+    let definition = &model.definition;
+    let force = 0.5 * wind.air_density * definition.rotor_area() * wind_speed * wind_speed;
+    let (free_power, free_thrust) = (free.power * force * wind_speed, free.thrust * force);
     // The runs take minutes each: what is known is told at once.
+    let percent = |measured: f64, expected: f64| 100.0 * (measured / expected - 1.0);
     eprintln!(
-        "{name}, {cells_per_diameter} cells per diameter, {wind_speed} m/s: power {:+.2} %, thrust {:+.2} % of blade-element momentum",
-        100.0 * (check.power / check.expected_power - 1.0),
-        100.0 * (check.thrust / check.expected_thrust - 1.0),
+        "{name}, {cells_per_diameter} cells per diameter, {wind_speed} m/s: power {:+.2} %, thrust {:+.2} % of blade-element momentum; \
+         {:+.2} %, {:+.2} % of the axisymmetric flow",
+        percent(check.power, check.expected_power),
+        percent(check.thrust, check.expected_thrust),
+        percent(check.power, free_power),
+        percent(check.thrust, free_thrust),
     );
-    let row = |what: &str, measured: f64, expected: f64| Row {
+    let row = |what: &str, over: &str, measured: f64, expected: f64| Row {
         what: format!(
-            "{name}, {cells_per_diameter} cells per diameter, {wind_speed} m/s, tip-speed ratio {:.2}: {what} over that of blade-element momentum",
+            "{name}, {cells_per_diameter} cells per diameter, {wind_speed} m/s, tip-speed ratio {:.2}: {what} over that of {over}",
             check.tip_speed_ratio
         ),
         measured: measured / expected,
@@ -105,8 +118,32 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
         tolerance: TOLERANCE,
         unit: "–",
     };
+    let [momentum, flow] = ["blade-element momentum", "blade elements in axisymmetric flow"];
     vec![
-        row("power", check.power, check.expected_power),
-        row("thrust", check.thrust, check.expected_thrust),
+        row("power", momentum, check.power, check.expected_power),
+        row("thrust", momentum, check.thrust, check.expected_thrust),
+        row("power", flow, check.power, free_power),
+        row("thrust", flow, check.thrust, free_thrust),
     ]
+}
+
+/// Coefficients of `model` at its least pitch in the axisymmetric flow of the tunnel, its tilt as blade-element momentum has it.
+fn in_free_wake(model: &Model, tip_speed_ratio: f64) -> Coefficients {
+    let pitch = model.constants.fine_pitch;
+    // A round duct as wide as the square tunnel is, in radii.
+    let wall = 2.0 * WIDTH / PI.sqrt();
+    let flow = Flow::new(2.0 * UPSTREAM, 2.0 * DOWNSTREAM, wall);
+    let free = free_wake::coefficients(&model.definition, tip_speed_ratio, pitch, flow);
+    let mut upright = (*model.definition).clone();
+    upright.rotor.shaft_tilt = 0.0;
+    let [tilted, upright] = [&*model.definition, &upright].map(|definition| {
+        SteadyRotor::new(definition, Theory::default())
+            .along_shaft()
+            .coefficients(tip_speed_ratio, pitch)
+    });
+    Coefficients {
+        power: free.power * tilted.power / upright.power,
+        thrust: free.thrust * tilted.thrust / upright.thrust,
+        torque: free.torque * tilted.torque / upright.torque,
+    }
 }

@@ -6,6 +6,7 @@ pub mod actuator_line;
 pub mod aeroelastic;
 pub mod blade_element;
 pub mod flow;
+mod free_wake;
 pub mod helix;
 pub mod inflow;
 mod least_squares;

@@ -1,0 +1,148 @@
+//! Blade elements in the axisymmetric flow that their own load makes.
+
+use super::Flow;
+use std::f64::consts::PI;
+use std::sync::Arc;
+use turbine::Definition;
+use turbine::actuator_line::{ActuatorLine, Load, Onset, QuasiSteady};
+use turbine::aero::blade_element::{Annulus, Theory, loss_factor};
+use turbine::steady::{Coefficients, SteadyRotor};
+
+/// Elements of a blade.
+const N_ELEMENTS: usize = 60;
+/// Share of a new load or speed that a round takes (–).
+const RELAXATION: f64 = 0.1;
+/// Rounds in which the flow finds itself under the loads of blade-element momentum, and most rounds in all.
+const N_PREPARING: usize = 100;
+const N_ROUNDS: usize = 2000;
+/// Change of the power in a round at which it counts as found, over itself (–).
+const TOLERANCE: f64 = 1e-7;
+
+/// Head lost by the air inside a stream surface, linear between the points given.
+#[derive(Default)]
+pub(super) struct Table {
+    points: Vec<[f64; 2]>,
+}
+
+impl Table {
+    /// Adds a point, further out than the ones before.
+    pub(super) fn push(&mut self, psi: f64, head: f64) {
+        self.points.push([psi, head]);
+    }
+
+    /// Head lost at `psi`; beyond the last point none.
+    pub(super) fn at(&self, psi: f64) -> f64 {
+        let next = self.points.partition_point(|point| point[0] < psi);
+        match (next.checked_sub(1).map(|i| self.points[i]), self.points.get(next)) {
+            (Some([a, from]), Some([b, to])) => from + (psi - a) / (b - a) * (to - from),
+            (None, Some([_, head])) => *head,
+            (_, None) => 0.0,
+        }
+    }
+}
+
+/// Power and thrust coefficient of `definition` without its tilt, at `tip_speed_ratio` (–) and `pitch` (rad), in the duct `flow`.
+///
+/// The number of blades enters as in blade-element momentum: a blade feels the mean induction of its ring over Prandtl's factor,
+/// and swirl is that of momentum theory. A leaning blade slows the air along the shaft by one cosine of its force and feels one of what is slowed.
+pub(crate) fn coefficients(
+    definition: &Definition,
+    tip_speed_ratio: f64,
+    pitch: f64,
+    mut flow: Flow,
+) -> Coefficients {
+    let mut definition = definition.clone();
+    definition.rotor.shaft_tilt = 0.0;
+    let definition = Arc::new(definition);
+    let radius = definition.rotor_radius();
+    let n_blades = definition.n_blades as f64;
+    let rotor_speed = tip_speed_ratio / radius;
+    let hub_radius = definition.distance_from_shaft(definition.rotor.hub_radius, 0.0);
+    // Nothing is smeared here: the line is asked for nothing but its sections.
+    let line = ActuatorLine::new(Arc::clone(&definition), N_ELEMENTS, 1.0, 0.1 * radius, 0.0);
+    let elements = line.elements();
+
+    let momentum = SteadyRotor::new(&definition, Theory::default()).along_shaft();
+    let mut points = vec![Default::default(); momentum.n_elements()];
+    momentum.distribution(tip_speed_ratio, pitch, &mut points);
+    let mut states: Vec<Ring> = elements
+        .iter()
+        .map(|element| {
+            let near = points.partition_point(|point| point.radius < element.span);
+            let point = &points[near.min(points.len() - 1)];
+            Ring {
+                felt: 1.0 - point.inflow.axial_induction,
+                swirl: point.inflow.tangential_induction,
+                loss: point.inflow.loss_factor,
+                head: 0.5 * n_blades * point.normal_force / (2.0 * PI * element.radius),
+            }
+        })
+        .collect();
+
+    let mut onsets = vec![Onset::default(); elements.len()];
+    let mut loads = vec![Load::default(); elements.len()];
+    let pitches = vec![pitch; elements.len()];
+    let unsmeared = vec![[0.0; 2]; elements.len()];
+    let mut found = Coefficients::default();
+    for round in 0..N_ROUNDS {
+        if round >= N_PREPARING {
+            for ((onset, ring), element) in onsets.iter_mut().zip(&states).zip(elements) {
+                onset.normal = ring.felt * element.cone.cos();
+                onset.tangential = rotor_speed * element.radius * (1.0 + ring.swirl);
+            }
+            line.loads_under(&onsets, &pitches, &mut QuasiSteady(&line), &unsmeared, &mut loads);
+            for (index, (ring, element)) in states.iter_mut().zip(elements).enumerate() {
+                let (onset, load) = (&onsets[index], &loads[index]);
+                let annulus = Annulus {
+                    n_blades: definition.n_blades,
+                    radius: element.radius,
+                    hub_radius,
+                    tip_radius: radius,
+                    chord: element.chord,
+                    section_pitch: element.twist + pitch,
+                    lean: element.cone,
+                };
+                let sine = onset.normal / onset.normal.hypot(onset.tangential);
+                let loss = loss_factor(&annulus, Theory::default(), sine.abs());
+                let around = 2.0 * PI * element.radius;
+                let swirl = n_blades * load.tangential / (2.0 * around * onset.normal * ring.loss);
+                ring.loss += RELAXATION * (loss - ring.loss);
+                ring.swirl += RELAXATION * (swirl / (rotor_speed * element.radius) - ring.swirl);
+                ring.head += RELAXATION * (n_blades * load.normal / around - ring.head);
+                let through = flow.at_disc(element.radius / radius)[1];
+                ring.felt += RELAXATION * (1.0 - (1.0 - through) / ring.loss - ring.felt);
+            }
+        }
+        let mut table = Table::default();
+        table.push(flow.at_disc(hub_radius / radius)[0], 0.0);
+        for (ring, element) in states.iter().zip(elements) {
+            table.push(flow.at_disc(element.radius / radius)[0], ring.head);
+        }
+        table.push(flow.at_disc(1.0)[0], 0.0);
+        flow.relax(|psi| table.at(psi));
+
+        let last = found.power;
+        let area = 0.5 * definition.rotor_area() / n_blades;
+        let sum = |part: &dyn Fn(usize) -> f64| (0..elements.len()).map(part).sum::<f64>() / area;
+        found.thrust = sum(&|i| loads[i].normal * elements[i].cone.cos() * elements[i].width);
+        found.torque =
+            sum(&|i| loads[i].tangential * elements[i].radius * elements[i].width) / radius;
+        found.power = found.torque * tip_speed_ratio;
+        if round > N_PREPARING && (found.power - last).abs() < TOLERANCE * last.abs() {
+            break;
+        }
+    }
+    found
+}
+
+/// Air and load of one element's ring.
+struct Ring {
+    /// Axial wind that the blade feels over the free stream's (–).
+    felt: f64,
+    /// Tangential induction factor that it feels (–).
+    swirl: f64,
+    /// Prandtl's factor (–).
+    loss: f64,
+    /// Head lost: load over the air's density (over the wind squared).
+    head: f64,
+}
