@@ -1,8 +1,9 @@
 //! Speed of the lattice against the limit that memory sets: `cargo bench -p wakemix-benches --bench lattice`.
 //!
 //! A cell update reads and writes each population once. The limit is the rate at which the same threads read and
-//! write back an array in place, measured in the same run; on a loaded machine both are disturbed, so each is
-//! repeated, turn about, and the best counts. Options after `--`: `quick` for a small box, a number for the repeats.
+//! write back an array in place. Neighbours of a machine change both within seconds, by as much as half; so the limit is
+//! measured before and after every figure, and the share is the median of such pairs, with the least and the greatest.
+//! Options after `--`: `quick` for a small box, a number for the repeats.
 
 use basis::{PointForce, Vector3};
 use benches::in_place_bandwidth;
@@ -29,38 +30,42 @@ impl Inflow for Shear {
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let quick = arguments.iter().any(|argument| argument == "quick");
-    let n_repeats = arguments.iter().find_map(|argument| argument.parse().ok()).unwrap_or(5);
+    let n_repeats = arguments.iter().find_map(|argument| argument.parse().ok()).unwrap_or(7).max(1);
     let n_cells = if quick { [192, 64, 64] } else { [288, 96, 96] };
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let mut counts = vec![1, cores];
     counts.dedup();
     println!(
-        "cells {n_cells:?}, {} M; best of {n_repeats}",
+        "cells {n_cells:?}, {} M; median of {n_repeats}, least and greatest",
         n_cells.iter().product::<usize>() as f64 / 1e6
     );
     for n_threads in counts {
-        let mut bandwidth: f64 = 0.0;
-        let mut names = Vec::new();
-        let mut speeds: Vec<f64> = Vec::new();
-        for repeat in 0..n_repeats {
-            bandwidth = bandwidth.max(in_place_bandwidth(n_threads, 512, 3));
-            for (index, (name, backend, everything)) in cases().into_iter().enumerate() {
+        println!("{n_threads} threads");
+        for (name, backend, everything) in cases() {
+            let limit = || in_place_bandwidth(n_threads, 512, 3);
+            let mut before = limit();
+            let (mut speeds, mut limits, mut shares) = (Vec::new(), Vec::new(), Vec::new());
+            for _ in 0..n_repeats {
                 let speed = updates_per_second(n_cells, n_threads, backend, everything);
-                if repeat == 0 {
-                    names.push(name);
-                    speeds.push(speed);
-                } else {
-                    speeds[index] = speeds[index].max(speed);
-                }
+                let after = limit();
+                let around = 0.5 * (before + after);
+                shares.push(100.0 * speed * BYTES_PER_UPDATE / around);
+                speeds.push(speed / 1e6);
+                limits.push(around / 1e9);
+                before = after;
             }
-        }
-        println!("{n_threads} threads: in-place read and write {:.1} GB/s", bandwidth / 1e9);
-        for (name, speed) in names.iter().zip(&speeds) {
-            let share = speed * BYTES_PER_UPDATE / bandwidth;
+            let [speed, limit, share] = [speeds, limits, shares].map(Spread::of);
             println!(
-                "  {name:<28} {:>6.0} M updates/s  {:>5.1} % of the limit",
-                speed / 1e6,
-                100.0 * share
+                "  {name:<20} {:>4.0} ({:.0} to {:.0}) M updates/s, limit {:.1} ({:.1} to {:.1}) GB/s: {:.1} ({:.1} to {:.1}) % of it",
+                speed.median,
+                speed.least,
+                speed.greatest,
+                limit.median,
+                limit.least,
+                limit.greatest,
+                share.median,
+                share.least,
+                share.greatest,
             );
         }
     }
@@ -78,6 +83,25 @@ fn main() {
     let air = lattice(n_cells, 1, Backend::detect(), true);
     let cells = n_cells.iter().product::<usize>() as f64;
     println!("memory {:.1} bytes a cell", air.memory() as f64 / cells);
+}
+
+/// Median of some figures, the least and the greatest of them.
+struct Spread {
+    median: f64,
+    least: f64,
+    greatest: f64,
+}
+
+impl Spread {
+    fn of(mut figures: Vec<f64>) -> Self {
+        figures.sort_by(f64::total_cmp);
+        let n = figures.len();
+        Self {
+            median: 0.5 * (figures[(n - 1) / 2] + figures[n / 2]),
+            least: figures[0],
+            greatest: figures[n - 1],
+        }
+    }
 }
 
 /// Name, back-end, and whether everything is on.

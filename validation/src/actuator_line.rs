@@ -42,7 +42,7 @@ const CASES: &[(&str, f64, f64)] = &[
 
 /// Power and thrust of three rotors at their best tip-speed ratio on 16, 24 and 32 cells per diameter.
 pub fn actuator_line() -> Vec<Row> {
-    CASES.iter().flat_map(|&(name, cells, speed)| compare(name, cells, speed)).collect()
+    CASES.iter().flat_map(|&(name, cells, speed)| compare(name, cells, speed, false)).collect()
 }
 
 /// The same on 16 cells per diameter alone, a few minutes instead of an hour.
@@ -55,18 +55,35 @@ pub fn actuator_line_fine() -> Vec<Row> {
     on(32.0)
 }
 
+/// The three rotors on 16 and 24 cells per diameter without tilt, precone and prebend: what the theories are about.
+pub fn actuator_line_flat() -> Vec<Row> {
+    let rotors = ["iea-15mw", "iea-22mw", "nrel-5mw"];
+    [16.0, 24.0]
+        .into_iter()
+        .flat_map(|cells| rotors.map(|name| (name, cells)))
+        .flat_map(|(name, cells)| compare(name, cells, 9.0, true))
+        .collect()
+}
+
 /// Those of the comparisons that are made on `cells_per_diameter`.
 fn on(cells_per_diameter: f64) -> Vec<Row> {
     CASES
         .iter()
         .filter(|case| case.1 == cells_per_diameter)
-        .flat_map(|&(name, cells, speed)| compare(name, cells, speed))
+        .flat_map(|&(name, cells, speed)| compare(name, cells, speed, false))
         .collect()
 }
 
-fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
+fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> Vec<Row> {
     let file = formats::library::load(name).expect("the library's own turbines are readable");
-    let model = Model { definition: Arc::new(file.definition), constants: file.controller };
+    let mut definition = file.definition;
+    if flat {
+        definition.rotor.precone = 0.0;
+        definition.rotor.shaft_tilt = 0.0;
+        definition.blade.iter_mut().for_each(|station| station.prebend = 0.0);
+    }
+    let shape = if flat { " flat" } else { "" };
+    let model = Model { definition: Arc::new(definition), constants: file.controller };
     let spacing = model.definition.rotor_diameter() / cells_per_diameter;
     let tunnel = Tunnel {
         upstream: UPSTREAM,
@@ -101,7 +118,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
     // The runs take minutes each: what is known is told at once.
     let percent = |measured: f64, expected: f64| 100.0 * (measured / expected - 1.0);
     eprintln!(
-        "{name}, {cells_per_diameter} cells per diameter, {wind_speed} m/s: power {:+.2} %, thrust {:+.2} % of blade-element momentum; \
+        "{name}{shape}, {cells_per_diameter} cells per diameter, {wind_speed} m/s: power {:+.2} %, thrust {:+.2} % of blade-element momentum; \
          {:+.2} %, {:+.2} % of the axisymmetric flow",
         percent(check.power, check.expected_power),
         percent(check.thrust, check.expected_thrust),
@@ -110,7 +127,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64) -> Vec<Row> {
     );
     let row = |what: &str, over: &str, measured: f64, expected: f64| Row {
         what: format!(
-            "{name}, {cells_per_diameter} cells per diameter, {wind_speed} m/s, tip-speed ratio {:.2}: {what} over that of {over}",
+            "{name}{shape}, {cells_per_diameter} cells per diameter, {wind_speed} m/s, tip-speed ratio {:.2}: {what} over that of {over}",
             check.tip_speed_ratio
         ),
         measured: measured / expected,

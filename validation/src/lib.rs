@@ -50,8 +50,8 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "actuator-line",
-        about: "power and thrust of three rotors on 16, 24 and 32 cells per diameter against blade-element momentum",
-        minutes: "60",
+        about: "power and thrust of three rotors on 16, 24 and 32 cells per diameter against blade-element momentum, and against blade elements in axisymmetric flow",
+        minutes: "28",
         run: actuator_line::actuator_line,
         pictures: None,
     },
@@ -65,8 +65,15 @@ pub const VALIDATIONS: &[Validation] = &[
     Validation {
         name: "actuator-line-fine",
         about: "the same on 32 cells per diameter alone",
-        minutes: "27",
+        minutes: "18",
         run: actuator_line::actuator_line_fine,
+        pictures: None,
+    },
+    Validation {
+        name: "actuator-line-flat",
+        about: "the same on 16 and 24 cells per diameter of rotors without tilt, precone and prebend",
+        minutes: "6",
+        run: actuator_line::actuator_line_flat,
         pictures: None,
     },
     Validation {
