@@ -104,8 +104,8 @@ impl Flow {
         [stream, speed(node) + share * (speed(other) - speed(node))]
     }
 
-    /// One round towards the flow in which the stream surface ψ has lost the head `lost(ψ)`; gives the largest change of ψ.
-    pub(crate) fn relax(&mut self, lost: impl Fn(f64) -> f64) -> f64 {
+    /// One round towards the flow in which the stream surface ψ has lost the head `lost(ψ)`.
+    pub(crate) fn relax(&mut self, lost: impl Fn(f64) -> f64) {
         let (n_all, n) = (self.radii.len(), self.sines.len().isqrt());
         let m = self.neighbours.len();
         for row in self.disc..=n {
@@ -137,7 +137,6 @@ impl Flow {
             let along = 2.0 * (1.0 - angle.cos()) / (SPACING * SPACING);
             solve_across(&self.neighbours, along, amplitudes);
         }
-        let mut largest = 0.0_f64;
         let mut departure = vec![0.0; m];
         for i in 0..n {
             departure.fill(0.0);
@@ -148,12 +147,10 @@ impl Flow {
             }
             for (node, departure) in departure.iter().enumerate() {
                 let psi = &mut self.psi[i * n_all + node + 1];
-                let change = 0.5 * self.radii[node + 1].powi(2) + departure - *psi;
-                largest = largest.max(change.abs());
-                *psi += RELAXATION * change;
+                let empty = 0.5 * self.radii[node + 1].powi(2);
+                *psi += RELAXATION * (empty + departure - *psi);
             }
         }
-        largest
     }
 }
 

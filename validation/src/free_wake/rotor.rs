@@ -44,7 +44,7 @@ impl Table {
 /// Power and thrust coefficient of `definition` without its tilt, at `tip_speed_ratio` (–) and `pitch` (rad), in the duct `flow`.
 ///
 /// The number of blades enters as in blade-element momentum: a blade feels the mean induction of its ring over Prandtl's factor,
-/// and swirl is that of momentum theory. A leaning blade slows the air along the shaft by one cosine of its force and feels one of what is slowed.
+/// and swirl is that of momentum theory. Not numbers where flow and loads do not settle on each other. A leaning blade slows the air along the shaft by one cosine of its force and feels one of what is slowed.
 pub(crate) fn coefficients(
     definition: &Definition,
     tip_speed_ratio: f64,
@@ -129,10 +129,10 @@ pub(crate) fn coefficients(
             sum(&|i| loads[i].tangential * elements[i].radius * elements[i].width) / radius;
         found.power = found.torque * tip_speed_ratio;
         if round > N_PREPARING && (found.power - last).abs() < TOLERANCE * last.abs() {
-            break;
+            return found;
         }
     }
-    found
+    Coefficients { power: f64::NAN, thrust: f64::NAN, torque: f64::NAN }
 }
 
 /// Air and load of one element's ring.

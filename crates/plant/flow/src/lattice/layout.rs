@@ -13,7 +13,7 @@
 use super::stencil::opposite;
 
 /// Values per cache line (–).
-const LINE: usize = 16;
+pub(crate) const LINE: usize = 16;
 /// Values that each slot's start is shifted by against the page grid, so that nineteen streams do not fall into one cache set.
 const SKEW: usize = 3 * LINE;
 /// Values per page (–).

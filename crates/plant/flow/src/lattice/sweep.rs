@@ -8,13 +8,11 @@
 use super::collision::{Relaxation, collide, relaxation_rate};
 use super::ends::{self, RowEnds};
 use super::forces::ForceBlock;
-use super::layout::{Layout, Parity, read_direction, write_direction};
+use super::layout::{LINE, Layout, Parity, read_direction, write_direction};
 use super::simd::{MAXIMUM_LANES, Simd};
 use super::stencil::{Moments, Stencil};
 use std::ops::Range;
 
-/// Values per cache line (–).
-const LINE: usize = 16;
 /// How far ahead of a cell its populations are asked for, in values: nineteen streams are more than a processor's own
 /// prefetching follows, and a miss is longer than the cells that it can look ahead to. Rows follow one another in
 /// memory, so that what is asked for beyond a row's end is the next row's start.
