@@ -2,7 +2,7 @@
 //! together: power and thrust in a steady uniform wind.
 
 use crate::Row;
-use crate::free_wake::{self, Flow};
+use crate::axisymmetric::{self, Flow};
 use farm::assemble::Model;
 use farm::case::{Shear, TurbulenceModel, Wind};
 use farm::self_check::{Tunnel, self_check};
@@ -111,10 +111,10 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
     let mut whole = |_| ControlFlow::Continue(());
     let check = self_check(&model, &wind, &tunnel, None, &mut whole)
         .expect("a rotor in a steady wind stays finite");
-    let free = in_free_wake(&model, check.tip_speed_ratio);
+    let together = in_axisymmetric_flow(&model, check.tip_speed_ratio);
     let definition = &model.definition;
     let force = 0.5 * wind.air_density * definition.rotor_area() * wind_speed * wind_speed;
-    let (free_power, free_thrust) = (free.power * force * wind_speed, free.thrust * force);
+    let (flow_power, flow_thrust) = (together.power * force * wind_speed, together.thrust * force);
     // The runs take minutes each: what is known is told at once.
     let percent = |measured: f64, expected: f64| 100.0 * (measured / expected - 1.0);
     eprintln!(
@@ -122,8 +122,8 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
          {:+.2} %, {:+.2} % of the axisymmetric flow",
         percent(check.power, check.expected_power),
         percent(check.thrust, check.expected_thrust),
-        percent(check.power, free_power),
-        percent(check.thrust, free_thrust),
+        percent(check.power, flow_power),
+        percent(check.thrust, flow_thrust),
     );
     let row = |what: &str, over: &str, measured: f64, expected: f64| Row {
         what: format!(
@@ -139,18 +139,18 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
     vec![
         row("power", momentum, check.power, check.expected_power),
         row("thrust", momentum, check.thrust, check.expected_thrust),
-        row("power", flow, check.power, free_power),
-        row("thrust", flow, check.thrust, free_thrust),
+        row("power", flow, check.power, flow_power),
+        row("thrust", flow, check.thrust, flow_thrust),
     ]
 }
 
 /// Coefficients of `model` at its least pitch in the axisymmetric flow of the tunnel, its tilt as blade-element momentum has it.
-fn in_free_wake(model: &Model, tip_speed_ratio: f64) -> Coefficients {
+fn in_axisymmetric_flow(model: &Model, tip_speed_ratio: f64) -> Coefficients {
     let pitch = model.constants.fine_pitch;
     // A round duct as wide as the square tunnel is, in radii.
     let wall = 2.0 * WIDTH / PI.sqrt();
     let flow = Flow::new(2.0 * UPSTREAM, 2.0 * DOWNSTREAM, wall);
-    let free = free_wake::coefficients(&model.definition, tip_speed_ratio, pitch, flow);
+    let together = axisymmetric::coefficients(&model.definition, tip_speed_ratio, pitch, flow);
     let mut upright = (*model.definition).clone();
     upright.rotor.shaft_tilt = 0.0;
     let [tilted, upright] = [&*model.definition, &upright].map(|definition| {
@@ -159,8 +159,8 @@ fn in_free_wake(model: &Model, tip_speed_ratio: f64) -> Coefficients {
             .coefficients(tip_speed_ratio, pitch)
     });
     Coefficients {
-        power: free.power * tilted.power / upright.power,
-        thrust: free.thrust * tilted.thrust / upright.thrust,
-        torque: free.torque * tilted.torque / upright.torque,
+        power: together.power * tilted.power / upright.power,
+        thrust: together.thrust * tilted.thrust / upright.thrust,
+        torque: together.torque * tilted.torque / upright.torque,
     }
 }

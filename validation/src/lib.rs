@@ -4,9 +4,9 @@
 
 pub mod actuator_line;
 pub mod aeroelastic;
+mod axisymmetric;
 pub mod blade_element;
 pub mod flow;
-mod free_wake;
 pub mod helix;
 pub mod inflow;
 mod least_squares;

@@ -172,7 +172,7 @@ fn solve_across(neighbours: &[[f64; 2]], along: f64, values: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::free_wake::rotor::Table;
+    use crate::axisymmetric::rotor::Table;
 
     #[test]
     fn a_uniform_disc_is_as_momentum_theory_has_it() {
