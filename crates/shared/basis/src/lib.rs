@@ -17,6 +17,7 @@
 pub mod angle;
 pub mod blades;
 pub mod force;
+pub mod keys;
 pub mod mbc;
 pub mod records;
 mod sense;

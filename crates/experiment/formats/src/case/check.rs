@@ -9,8 +9,8 @@ use super::momentum::{dynamic_inflow_of, tower_influence_of};
 use super::phase_sync::{azimuth_offset_of, noise_of};
 use super::section::{Findings, Section, list};
 use super::spelling::nearest;
-use super::table::Table;
 use super::wind::{check_together, wind_of};
+use basis::keys::Table;
 use farm::case::{
     Case, Control, Flow, Ground, Helix, Output, PhaseEstimator, PhaseSync, Placement, Pulse, Run,
     Sense, Sides, Solver, Time, helix_upstream,

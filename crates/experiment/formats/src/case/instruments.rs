@@ -3,8 +3,8 @@
 use super::error::ProblemKind;
 use super::keys::{ACCELERATION, ANGLE, INSTRUMENTS, MOMENT, POWER, SPEED};
 use super::section::Section;
-use super::table::Table;
 use super::write::shortest;
+use basis::keys::Table;
 use farm::case::{Instrument, Instruments, Lag};
 use std::f64::consts::{PI, TAU};
 
@@ -140,7 +140,8 @@ fn figures_text(instrument: &Instrument, place: &Place) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::{keys, parse, table, write};
+    use crate::case::{keys, parse, write};
+    use basis::keys::Holds;
     use proptest::prelude::*;
 
     const CASE: &str = r#"
@@ -238,7 +239,7 @@ name = "baseline"
         assert_eq!(PLACES.len(), keys::INSTRUMENTS.keys.len());
         for key in keys::INSTRUMENTS.keys {
             let place = PLACES.iter().find(|place| place.key == key.name).expect(key.name);
-            let table::Kind::Table(table) = key.kind else { panic!("{} is no table", key.name) };
+            let Holds::Table(table) = key.holds else { panic!("{} is no table", key.name) };
             assert!(std::ptr::eq(table, place.table), "{}", key.name);
             assert_eq!(table.keys[0].name, format!("noise{}", place.suffix));
         }

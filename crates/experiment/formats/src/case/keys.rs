@@ -10,36 +10,36 @@ pub(super) use instruments::{
     ACCELERATION, ANGLE, INSTRUMENT_KINDS, INSTRUMENTS, MOMENT, POWER, SPEED,
 };
 
-use super::table::Default::{Otherwise, Required, Value};
-use super::table::{Kind, Range, Slip, Table, above, from, key};
+use basis::keys::LeftOut::{Otherwise, Required, Value};
+use basis::keys::{Holds, Range, Slip, Table, above, from, key};
 
 /// The whole file.
 pub(super) static ROOT: Table = Table {
     heading: "(top of the file)",
     about: "What the study is called. One file is one study: one wind, one layout, several runs to compare.",
     keys: &[
-        key("name", Kind::Name, "", Required, "Name of the study: letters, digits, `-` and `_`."),
+        key("name", Holds::Name, "", Required, "Name of the study: letters, digits, `-` and `_`."),
         key(
             "description",
-            Kind::Text,
+            Holds::Text,
             "",
             Otherwise("no description"),
             "What it is for, in one line; the report shows it.",
         ),
-        key("wind", Kind::Table(&WIND), "", Required, "The wind that comes in."),
-        key("flow", Kind::Table(&FLOW), "", Otherwise("all defaults"), "How the air is solved."),
-        key("time", Kind::Table(&TIME), "", Required, "How long every run lasts."),
+        key("wind", Holds::Table(&WIND), "", Required, "The wind that comes in."),
+        key("flow", Holds::Table(&FLOW), "", Otherwise("all defaults"), "How the air is solved."),
+        key("time", Holds::Table(&TIME), "", Required, "How long every run lasts."),
         key(
             "turbine",
-            Kind::Tables(&TURBINE),
+            Holds::Tables(&TURBINE),
             "",
             Required,
             "The turbines; the order is free, the first one's diameter and hub height are the measure of all lengths in diameters.",
         ),
-        key("run", Kind::Tables(&RUN), "", Required, "The runs, all in the same inflow."),
+        key("run", Holds::Tables(&RUN), "", Required, "The runs, all in the same inflow."),
         key(
             "output",
-            Kind::Table(&OUTPUT),
+            Holds::Table(&OUTPUT),
             "",
             Otherwise("all defaults"),
             "What is kept beside series and summary.",
@@ -60,16 +60,16 @@ pub(super) static WIND: Table = Table {
         key("roughness_length", above(0.0, 5.0), "m", Otherwise("a power law with `shear_exponent`"), "In place of `shear_exponent`: the mean profile is the logarithmic law, `speed` · ln(z/z₀) / ln(z_hub/z₀) with this roughness length z₀, calm at z₀ and below; at most a tenth of the hub height. A rough `flow.ground` keeps such a profile when it has the same z₀."),
         key("length_scale", above(0.0, 1000.0), "m", Value("33.6"), "Length scale of Mann's tensor. The default is 0.8 Λ₁ of IEC 61400-1 with Λ₁ = 42 m, for hubs at 60 m and higher."),
         key("anisotropy", from(0.0, 10.0), "–", Value("3.9"), "Anisotropy Γ of Mann's tensor; 0 is isotropic. The default is that of IEC 61400-1."),
-        key("seed", Kind::Whole { least: 0, most: SEED_MOST }, "–", Value("1"), "Seed of the turbulence; another seed is another hour of the same climate."),
+        key("seed", Holds::Whole { least: 0, most: SEED_MOST }, "–", Value("1"), "Seed of the turbulence; another seed is another hour of the same climate."),
         key("air_density", above(0.0, 5.0), "kg/m³", Value("1.225"), "Air density.")
             .mistaken(&[Slip { unit: "g/m³", factor: 0.001 }]),
         key("kinematic_viscosity", above(0.0, 1e-3), "m²/s", Value("1.46e-5"), "Kinematic viscosity of air; the default is air at 15 °C at sea level.")
             .mistaken(&[Slip { unit: "mm²/s", factor: 1e-6 }]),
-        key("turbulence_model", Kind::Choice(&["mann", "kaimal"]), "", Value("\"mann\""), "`mann`: Mann's spectral tensor. `kaimal`: Kaimal's spectra with the exponential coherence of IEC 61400-1, with `flow.solver = \"turbulence\"` only: the lattice needs wind that is free of divergence."),
-        key("planes", Kind::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. `speed` then only sets the Strouhal numbers and the rotor's first speed."),
+        key("turbulence_model", Holds::Choice(&["mann", "kaimal"]), "", Value("\"mann\""), "`mann`: Mann's spectral tensor. `kaimal`: Kaimal's spectra with the exponential coherence of IEC 61400-1, with `flow.solver = \"turbulence\"` only: the lattice needs wind that is free of divergence."),
+        key("planes", Holds::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. `speed` then only sets the Strouhal numbers and the rotor's first speed."),
         key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. Not with `flow.solver = \"planes\"`; with `\"lattice\"` between periodic sides, and by 60° at most up to the top of the domain.")
             .mistaken(&[Slip { unit: "deg per 100 m", factor: 0.01 }]),
-        key("event", Kind::Event, "", Otherwise("nothing happens"), "With `flow.solver = \"uniform\"`: what happens in time, at all places at once: `event = { kind = \"step\", start = 100.0, speed = 12.0 }`."),
+        key("event", Holds::Event, "", Otherwise("nothing happens"), "With `flow.solver = \"uniform\"`: what happens in time, at all places at once: `event = { kind = \"step\", start = 100.0, speed = 12.0 }`."),
     ],
 };
 
@@ -83,7 +83,7 @@ pub(super) static FLOW: Table = Table {
     keys: &[
         key(
             "solver",
-            Kind::Choice(&["lattice", "uniform", "turbulence", "planes"]),
+            Holds::Choice(&["lattice", "uniform", "turbulence", "planes"]),
             "",
             Value("\"lattice\""),
             "`lattice`: lattice Boltzmann large-eddy simulation with actuator lines; turbines feel each other's wakes. The others prescribe the wind, and each turbine makes its own induction by blade-element momentum, without wakes: `uniform` the mean profile with `wind.veer_deg_per_m` and `wind.event`, without turbulence, `turbulence` with turbulence on it, `planes` from `wind.planes`. Only `lattice` uses the keys from here to `sides`.",
@@ -119,14 +119,14 @@ pub(super) static FLOW: Table = Table {
         key("height_diameters", from(1.0, 50.0), "D", Value("4"), "Height of the domain."),
         key(
             "ground",
-            Kind::Ground(&GROUND),
+            Holds::Ground(&GROUND),
             "",
             Value("\"slip\""),
             "`\"slip\"`: the air slips along the ground. `{ roughness_length = 0.001 }`: wall stress after the logarithmic law.",
         ),
         key(
             "sides",
-            Kind::Choice(&["periodic", "slip"]),
+            Holds::Choice(&["periodic", "slip"]),
             "",
             Value("\"periodic\""),
             "`periodic`: what leaves on one side enters on the other. `slip`: the air slips along them.",
@@ -141,7 +141,7 @@ pub(super) static FLOW: Table = Table {
         .mistaken(&[Slip { unit: "ms", factor: 0.001 }]),
         key(
             "threads",
-            Kind::Whole { least: 1, most: 1024 },
+            Holds::Whole { least: 1, most: 1024 },
             "–",
             Otherwise("all cores"),
             "Threads. The result does not depend on it.",
@@ -192,49 +192,49 @@ pub(super) static TURBINE: Table = Table {
     keys: &[
         key(
             "name",
-            Kind::Name,
+            Holds::Name,
             "",
             Required,
             "Its name, such as `T1`: letters, digits, `-` and `_`.",
         ),
         key(
             "model",
-            Kind::Model,
+            Holds::Model,
             "",
             Required,
             "Turbine model of the library (`wakemix turbine list`), or the path of a turbine file, relative to this file.",
         ),
         key(
             "discon",
-            Kind::Text,
+            Holds::Text,
             "",
             Otherwise("the turbine's own controller"),
             "Input file of ROSCO (DISCON.IN, versions 2.6 to 2.10), relative to this file: the constants of the turbine's controller come from it instead of the turbine's file, with the table of coefficients that it names where that is there, and torque is controlled as it says.",
         ),
         key(
             "position_diameters",
-            Kind::Pair(Range { low: -500.0, open: false, high: 500.0 }),
+            Holds::Pair(Range { low: -500.0, open: false, high: 500.0 }),
             "D",
             Required,
             "Foot of the tower, x downwind and y to the left looking downwind, in diameters of the first turbine. At least 1 D from every other turbine.",
         ),
         key(
             "structure",
-            Kind::Choice(&["flexible", "rigid"]),
+            Holds::Choice(&["flexible", "rigid"]),
             "",
             Value("\"flexible\""),
             "`flexible`: blades, tower and drive train bend. `rigid`: only the rotor turns.",
         ),
         key(
             "stall",
-            Kind::Choice(&["dynamic", "steady"]),
+            Holds::Choice(&["dynamic", "steady"]),
             "",
             Otherwise("`dynamic` in prescribed wind, `steady` in solved air"),
             "`dynamic`: flow about the blades' sections separates and attaches with delay. `steady`: their polars hold at once.",
         ),
         key(
             "dynamic_inflow",
-            Kind::Choice(&["two-constant", "snel-schepers", "none"]),
+            Holds::Choice(&["two-constant", "snel-schepers", "none"]),
             "",
             Otherwise("`two-constant` in prescribed wind"),
             "How the rotor's induction follows its loads, in prescribed wind only: solved air has a wake of its own. `two-constant`: with two time constants, after Øye, as OpenFAST's DBEMT. `snel-schepers`: with the inertia of the air, after Snel and Schepers. `none`: at once.",
@@ -248,14 +248,14 @@ pub(super) static TURBINE: Table = Table {
         ),
         key(
             "tower_influence",
-            Kind::Choice(&["none", "potential", "potential-with-drag", "potential-and-shadow"]),
+            Holds::Choice(&["none", "potential", "potential-with-drag", "potential-and-shadow"]),
             "",
             Value("\"none\""),
             "What the tower does to the wind that the blades meet, in prescribed wind only: in solved air its drag acts on the air itself. `potential`: the wind parts as about a cylinder (AeroDyn's `TwrPotent` 1). `potential-with-drag`: and its drag slows the wind ahead, after Bak (`TwrPotent` 2). `potential-and-shadow`: as about a cylinder, and slow behind it, after Powles (`TwrShadow` 1).",
         ),
         key(
             "instruments",
-            Kind::Table(&INSTRUMENTS),
+            Holds::Table(&INSTRUMENTS),
             "",
             Otherwise("perfect instruments"),
             "What its controller sees of it: lag, bias, noise, resolution and drop-outs of each instrument.",
@@ -270,21 +270,21 @@ pub(super) static RUN: Table = Table {
     keys: &[
         key(
             "name",
-            Kind::Name,
+            Holds::Name,
             "",
             Required,
             "Its name, and that of the folder it leaves: letters, digits, `-` and `_`.",
         ),
         key(
             "compare_with",
-            Kind::Name,
+            Holds::Name,
             "",
             Otherwise("the first run; the first compares with none"),
             "Run that its gains compare with; it stands before this one.",
         ),
         key(
             "control",
-            Kind::Control,
+            Holds::Control,
             "",
             Otherwise("baseline on every turbine"),
             "What runs on each turbine, by the turbine's name: `control.T1 = { kind = \"helix\", … }`. Turbines not named run baseline.",
@@ -313,28 +313,28 @@ pub(super) static OUTPUT: Table = Table {
         ),
         key(
             "crosswind_diameters",
-            Kind::Numbers(Range { low: -50.0, open: false, high: 500.0 }),
+            Holds::Numbers(Range { low: -50.0, open: false, high: 500.0 }),
             "D",
             Value("[]"),
             "Crosswind planes at these distances behind the first turbine.",
         ),
         key(
             "helix_phases",
-            Kind::Whole { least: 4, most: 360 },
+            Holds::Whole { least: 4, most: 360 },
             "–",
             Otherwise("no averages by phase"),
             "Phases of the first helix in the row by which the hub-height plane of the analysed time is averaged; 36 is one every ten degrees.",
         ),
         key(
             "lines_at",
-            Kind::Turbines,
+            Holds::Turbines,
             "",
             Value("[]"),
             "Turbines at whose places runs without them keep the wind along 36 radial lines over the disc, as average, tilt and yaw: the true phase of a helix.",
         ),
         key(
             "inflow_at",
-            Kind::Turbines,
+            Holds::Turbines,
             "",
             Value("[]"),
             "Turbines at whose places runs without them record the wind over the rotor from the end of the spin-up on, a plane for every half cell that the wind crosses: `RUN/inflow-T2.bts`, a full field in TurbSim's format, which `flow.solver = \"planes\"` and OpenFAST read.",

@@ -15,7 +15,6 @@ mod phase_sync;
 mod reference;
 mod section;
 mod spelling;
-mod table;
 mod wind;
 mod write;
 

@@ -76,7 +76,8 @@ pub(super) fn momentum_text(turbine: &Placement) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::{fingerprint, keys, parse, table, write};
+    use crate::case::{fingerprint, keys, parse, write};
+    use basis::keys::Holds;
 
     const CASE: &str = r#"
 name = "small"
@@ -123,7 +124,7 @@ name = "baseline"
         }
         // The reader, the page and the schema know the same words.
         let key = keys::TURBINE.keys.iter().find(|key| key.name == "tower_influence");
-        let Some(table::Kind::Choice(words)) = key.map(|key| key.kind) else { panic!("no choice") };
+        let Some(Holds::Choice(words)) = key.map(|key| key.holds) else { panic!("no choice") };
         assert_eq!(words, TOWER_INFLUENCES.map(|(word, _)| word));
     }
 

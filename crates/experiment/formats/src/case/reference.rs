@@ -4,7 +4,7 @@ use super::keys::{
     CONTROLS, EVENTS, FLOW, GROUND, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME,
     TURBINE, WIND,
 };
-use super::table::{Default, Key, Kind, Table};
+use basis::keys::{Holds, Key, LeftOut, Table};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -28,10 +28,10 @@ fn write_table(page: &mut String, table: &Table) -> std::fmt::Result {
     writeln!(page, "\n## `{}`\n\n{}\n", table.heading, table.about)?;
     writeln!(page, "| key | holds | unit | default | meaning |\n| --- | --- | --- | --- | --- |")?;
     for key in table.keys {
-        let default = match key.default {
-            Default::Required => "required".to_owned(),
-            Default::Value(value) => format!("`{value}`"),
-            Default::Otherwise(words) => words.to_owned(),
+        let default = match key.left_out {
+            LeftOut::Required => "required".to_owned(),
+            LeftOut::Value(value) => format!("`{value}`"),
+            LeftOut::Otherwise(words) => words.to_owned(),
         };
         let unit = key.unit;
         writeln!(page, "| `{}` | {} | {unit} | {default} | {} |", key.name, holds(key), key.about)?;
@@ -40,24 +40,24 @@ fn write_table(page: &mut String, table: &Table) -> std::fmt::Result {
 }
 
 fn holds(key: &Key) -> String {
-    match key.kind {
-        Kind::Text => "text".into(),
-        Kind::Name => "name".into(),
-        Kind::Model => "model or path".into(),
-        Kind::Number(range) => range.describe("x", "–"),
-        Kind::Whole { least, most } if most > 1 << 32 => format!("whole, {least} or more"),
-        Kind::Whole { least, most } => format!("whole, {least} to {most}"),
-        Kind::Choice(words) => {
+    match key.holds {
+        Holds::Text => "text".into(),
+        Holds::Name => "name".into(),
+        Holds::Model => "model or path".into(),
+        Holds::Number(range) => range.describe("x", "–"),
+        Holds::Whole { least, most } if most > 1 << 32 => format!("whole, {least} or more"),
+        Holds::Whole { least, most } => format!("whole, {least} to {most}"),
+        Holds::Choice(words) => {
             words.iter().map(|w| format!("`\"{w}\"`")).collect::<Vec<_>>().join(", ")
         }
-        Kind::Pair(range) => format!("`[x, y]`, {} to {}", range.low, range.high),
-        Kind::Turbines => "list of turbines' names".to_owned(),
-        Kind::Numbers(range) => format!("list, each {} to {}", range.low, range.high),
-        Kind::Ground(_) => "`\"slip\"` or a table".into(),
-        Kind::Table(_) => "table".into(),
-        Kind::Tables(_) => "one table or more".into(),
-        Kind::Event => "a table".into(),
-        Kind::Control => "tables by turbine".into(),
+        Holds::Pair(range) => format!("`[x, y]`, {} to {}", range.low, range.high),
+        Holds::Turbines => "list of turbines' names".to_owned(),
+        Holds::Numbers(range) => format!("list, each {} to {}", range.low, range.high),
+        Holds::Ground(_) => "`\"slip\"` or a table".into(),
+        Holds::Table(_) => "table".into(),
+        Holds::Tables(_) => "one table or more".into(),
+        Holds::Event => "a table".into(),
+        Holds::Control => "tables by turbine".into(),
     }
 }
 
@@ -77,7 +77,7 @@ fn schema_of(table: &Table) -> Map<String, Value> {
     let required: Vec<&str> = table
         .keys
         .iter()
-        .filter(|key| matches!(key.default, Default::Required))
+        .filter(|key| matches!(key.left_out, LeftOut::Required))
         .map(|key| key.name)
         .collect();
     let mut schema = Map::new();
@@ -90,32 +90,32 @@ fn schema_of(table: &Table) -> Map<String, Value> {
 }
 
 fn schema_of_key(key: &Key) -> Value {
-    let number = |range: super::table::Range| {
+    let number = |range: basis::keys::Range| {
         let low = if range.open { "exclusiveMinimum" } else { "minimum" };
         json!({ "type": "number", low: range.low, "maximum": range.high })
     };
-    let mut schema = match key.kind {
-        Kind::Text | Kind::Model => json!({ "type": "string" }),
-        Kind::Name => json!({ "type": "string", "pattern": "^[A-Za-z0-9_-]{1,64}$" }),
-        Kind::Number(range) => number(range),
-        Kind::Whole { least, most } => {
+    let mut schema = match key.holds {
+        Holds::Text | Holds::Model => json!({ "type": "string" }),
+        Holds::Name => json!({ "type": "string", "pattern": "^[A-Za-z0-9_-]{1,64}$" }),
+        Holds::Number(range) => number(range),
+        Holds::Whole { least, most } => {
             json!({ "type": "integer", "minimum": least, "maximum": most })
         }
-        Kind::Choice(words) => json!({ "enum": words }),
-        Kind::Pair(range) => {
+        Holds::Choice(words) => json!({ "enum": words }),
+        Holds::Pair(range) => {
             json!({ "type": "array", "items": number(range), "minItems": 2, "maxItems": 2 })
         }
-        Kind::Turbines => json!({ "type": "array", "items": { "type": "string" } }),
-        Kind::Numbers(range) => json!({ "type": "array", "items": number(range) }),
-        Kind::Ground(table) => {
+        Holds::Turbines => json!({ "type": "array", "items": { "type": "string" } }),
+        Holds::Numbers(range) => json!({ "type": "array", "items": number(range) }),
+        Holds::Ground(table) => {
             json!({ "anyOf": [{ "const": "slip" }, Value::Object(schema_of(table))] })
         }
-        Kind::Table(table) => Value::Object(schema_of(table)),
-        Kind::Tables(table) => {
+        Holds::Table(table) => Value::Object(schema_of(table)),
+        Holds::Tables(table) => {
             json!({ "type": "array", "minItems": 1, "items": Value::Object(schema_of(table)) })
         }
-        Kind::Event => json!({ "oneOf": schemas_of_kinds(EVENTS) }),
-        Kind::Control => {
+        Holds::Event => json!({ "oneOf": schemas_of_kinds(EVENTS) }),
+        Holds::Control => {
             let kinds = schemas_of_kinds(CONTROLS);
             json!({ "type": "object", "additionalProperties": { "oneOf": kinds } })
         }
@@ -123,7 +123,7 @@ fn schema_of_key(key: &Key) -> Value {
     if let Value::Object(schema) = &mut schema {
         let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
         schema.insert("description".into(), json!(format!("{}{unit}", key.about)));
-        if let Default::Value(text) = key.default
+        if let LeftOut::Value(text) = key.left_out
             && let Some(value) = default_of(text)
         {
             schema.insert("default".into(), value);

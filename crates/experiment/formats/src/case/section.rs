@@ -3,7 +3,7 @@
 use super::document::{Entry, Node, Sources, Value, find};
 use super::error::{Problem, ProblemKind};
 use super::spelling::nearest;
-use super::table::{Default, Key, Kind, Range, Table};
+use basis::keys::{Holds, Key, LeftOut, Range, Table};
 use std::cell::RefCell;
 use std::ops;
 
@@ -124,7 +124,7 @@ impl<'a> Section<'a> {
     /// The entry of `key`; notes when it is missing but must be there.
     pub(super) fn entry(&self, key: &str) -> Option<&'a Entry> {
         let entry = find(self.entries, key);
-        if entry.is_none() && matches!(self.key(key).default, Default::Required) {
+        if entry.is_none() && matches!(self.key(key).left_out, LeftOut::Required) {
             let kind = ProblemKind::Missing { key: self.key_path(key) };
             let about = self.key(key).about;
             self.findings.note(self.span.clone(), kind, Some(format!("add it: {about}")));
@@ -149,7 +149,7 @@ impl<'a> Section<'a> {
 
     /// A number that may be left out.
     pub(super) fn optional_number(&self, key: &str) -> Option<f64> {
-        let Kind::Number(range) = self.key(key).kind else { return None };
+        let Holds::Number(range) = self.key(key).holds else { return None };
         self.entry(key).map(|entry| self.number_in(key, range, &entry.node))
     }
 
@@ -182,7 +182,7 @@ impl<'a> Section<'a> {
 
     /// A whole number that may be left out.
     pub(super) fn optional_whole(&self, key: &str) -> Option<u64> {
-        let Kind::Whole { least, most } = self.key(key).kind else { return None };
+        let Holds::Whole { least, most } = self.key(key).holds else { return None };
         let entry = self.entry(key)?;
         let Value::Whole(value) = entry.node.value else {
             self.wrong_type(key, &entry.node, "a whole number");
@@ -209,7 +209,7 @@ impl<'a> Section<'a> {
             self.wrong_type(key, &entry.node, "text in quotes");
             return None;
         };
-        if matches!(self.key(key).kind, Kind::Name) && !is_name(text) {
+        if matches!(self.key(key).holds, Holds::Name) && !is_name(text) {
             let kind = ProblemKind::BadName { key: self.key_path(key), name: text.clone() };
             let fix = Some(format!("try \"{}\"", tidied(text)));
             self.findings.note(entry.node.span.clone(), kind, fix);
@@ -224,7 +224,7 @@ impl<'a> Section<'a> {
 
     /// One of the words of the key; the default, or else the first one, when what stands there is wrong.
     pub(super) fn choice(&self, key: &str) -> &'static str {
-        let Kind::Choice(words) = self.key(key).kind else { return "" };
+        let Holds::Choice(words) = self.key(key).holds else { return "" };
         let default = self.default(key).map(|default| default.trim_matches('"'));
         let fallback =
             words.iter().copied().find(|word| Some(*word) == default).unwrap_or(words[0]);
@@ -249,7 +249,7 @@ impl<'a> Section<'a> {
 
     /// Two numbers; not numbers when what stands there is wrong.
     pub(super) fn pair(&self, key: &str) -> [f64; 2] {
-        let Kind::Pair(range) = self.key(key).kind else { return [f64::NAN; 2] };
+        let Holds::Pair(range) = self.key(key).holds else { return [f64::NAN; 2] };
         let Some(entry) = self.entry(key) else { return [f64::NAN; 2] };
         match &entry.node.value {
             Value::List(items) if items.len() == 2 => {
@@ -264,7 +264,7 @@ impl<'a> Section<'a> {
 
     /// Any count of numbers.
     pub(super) fn numbers(&self, key: &str) -> Vec<f64> {
-        let Kind::Numbers(range) = self.key(key).kind else { return Vec::new() };
+        let Holds::Numbers(range) = self.key(key).holds else { return Vec::new() };
         let Some(entry) = self.entry(key) else { return Vec::new() };
         let Value::List(items) = &entry.node.value else {
             self.wrong_type(key, &entry.node, "a list of numbers, such as [2.0, 4.0]");
@@ -330,8 +330,8 @@ impl<'a> Section<'a> {
     }
 
     fn default(&self, key: &str) -> Option<&'static str> {
-        match self.key(key).default {
-            Default::Value(value) => Some(value),
+        match self.key(key).left_out {
+            LeftOut::Value(value) => Some(value),
             _ => None,
         }
     }

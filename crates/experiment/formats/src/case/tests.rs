@@ -478,7 +478,7 @@ fn every_default_of_the_table_is_what_the_reader_uses() {
     let written = write(&case);
     for table in [&keys::WIND, &keys::FLOW, &keys::OUTPUT] {
         for key in table.keys {
-            let table::Default::Value(default) = key.default else { continue };
+            let basis::keys::LeftOut::Value(default) = key.left_out else { continue };
             let stated =
                 format!("{}.{}={default}", table.heading.trim_matches(['[', ']']), key.name);
             assert_eq!(

@@ -1,7 +1,7 @@
 //! Keys of what runs on a turbine.
 
-use super::super::table::Default::{Otherwise, Required, Value};
-use super::super::table::{Key, Kind, Table, above, from, key};
+use basis::keys::LeftOut::{Otherwise, Required, Value};
+use basis::keys::{Holds, Key, Table, above, from, key};
 
 /// Kinds of control, with the keys of each.
 pub(in crate::case) static CONTROLS: &[(&str, &Table)] = &[
@@ -18,7 +18,7 @@ pub(in crate::case) const CONTROL_KINDS: &[&str] =
     &["baseline", "helix", "pulse", "phase-sync", "meandering", "absent"];
 
 const KIND: Key =
-    key("kind", Kind::Choice(CONTROL_KINDS), "", Required, "What runs on the turbine.");
+    key("kind", Holds::Choice(CONTROL_KINDS), "", Required, "What runs on the turbine.");
 const AMPLITUDE: Key = key(
     "amplitude_deg",
     from(0.0, 10.0),
@@ -47,7 +47,7 @@ const STOP: Key = key(
     Otherwise("never"),
     "Time at which it fades out again, over one excitation period as it fades in; at least one period after `start`. After the end of the run it changes nothing.",
 );
-const PHASE_RANGE: Kind = from(-360.0, 360.0);
+const PHASE_RANGE: Holds = from(-360.0, 360.0);
 
 /// `kind = "baseline"`.
 pub(in crate::case) static BASELINE: Table = Table {
@@ -71,7 +71,7 @@ pub(in crate::case) static HELIX: Table = Table {
         KIND,
         key(
             "sense",
-            Kind::Choice(&["cw", "ccw"]),
+            Holds::Choice(&["cw", "ccw"]),
             "",
             Required,
             "`ccw`: blades pitch at rotor plus excitation frequency. `cw`: at rotor minus excitation frequency.",
@@ -127,7 +127,7 @@ pub(in crate::case) static PHASE_SYNC: Table = Table {
         ),
         key(
             "sense",
-            Kind::Choice(&["cw", "ccw"]),
+            Holds::Choice(&["cw", "ccw"]),
             "",
             Otherwise("that of the nearest turbine upstream with a helix"),
             "Which way the helix winds that it joins.",
@@ -150,14 +150,14 @@ pub(in crate::case) static PHASE_SYNC: Table = Table {
         ),
         key(
             "estimator",
-            Kind::Choice(&["robust", "published"]),
+            Holds::Choice(&["robust", "published"]),
             "",
             Value("\"robust\""),
             "`robust`: extended Kalman filter with states for shear, eddies and what else its model lacks. `published`: the four states of van Vondelen et al. (2025).",
         ),
         key(
             "fallback",
-            Kind::Choice(&["baseline", "none"]),
+            Holds::Choice(&["baseline", "none"]),
             "",
             Value("\"baseline\""),
             "What it does where the estimate cannot be trusted. `baseline`: it fades out, and comes back with the helix. `none`: it goes on.",
@@ -223,28 +223,28 @@ pub(in crate::case) static MEANDERING: Table = Table {
         ),
         key(
             "sense",
-            Kind::Choice(&["cw", "ccw"]),
+            Holds::Choice(&["cw", "ccw"]),
             "",
             Value("\"cw\""),
             "Way the load circles, looking downwind: the yaw moment a quarter period after the tilt moment (`cw`) or before it (`ccw`).",
         ),
         key(
             "leader",
-            Kind::Choice(&["both", "tilt", "yaw"]),
+            Holds::Choice(&["both", "tilt", "yaw"]),
             "",
             Value("\"both\""),
             "Moment that the loop is locked to. `both` takes them for one oscillation of the `sense` given; `yaw` is for a wake that meanders sideways.",
         ),
         key(
             "followed",
-            Kind::Choice(&["wake", "load"]),
+            Holds::Choice(&["wake", "load"]),
             "",
             Value("\"wake\""),
             "`wake`: the loads less what the pitch adds to them, each axis with its own phase. `load`: the loads as they are, as published; below a factor of about 0.5 the loop answers to its own pitch.",
         ),
         key(
             "reference",
-            Kind::Choice(&["observed", "learned", "given"]),
+            Holds::Choice(&["observed", "learned", "given"]),
             "",
             Value("\"observed\""),
             "Where the baseline's amplitudes come from. `observed`: from the loads less what the pitch adds, all the time. `learned`: from the loads before `start`. `given`: from a baseline run, as `reference_tilt_mnm` and `reference_yaw_mnm`.",
@@ -279,7 +279,7 @@ pub(in crate::case) static MEANDERING: Table = Table {
         ),
         key(
             "fallback",
-            Kind::Choice(&["baseline", "none"]),
+            Holds::Choice(&["baseline", "none"]),
             "",
             Value("\"baseline\""),
             "What it does while the loop is not locked. `baseline`: it fades out, and comes back with the lock. `none`: it pitches with whatever phase it believes in, as published.",

@@ -1,7 +1,7 @@
 //! Keys of what happens in time in a wind without turbulence.
 
-use super::super::table::Default::{Required, Value};
-use super::super::table::{Key, Kind, Slip, Table, above, from, key};
+use basis::keys::LeftOut::{Required, Value};
+use basis::keys::{Holds, Key, Slip, Table, above, from, key};
 
 /// Kinds of events, with the keys of each.
 pub(in crate::case) static EVENTS: &[(&str, &Table)] = &[
@@ -27,14 +27,14 @@ pub(in crate::case) const EVENT_KINDS: &[&str] = &[
     "rotating-disk",
 ];
 
-const KIND: Key = key("kind", Kind::Choice(EVENT_KINDS), "", Required, "What happens.");
+const KIND: Key = key("kind", Holds::Choice(EVENT_KINDS), "", Required, "What happens.");
 const START: Key =
     key("start", from(0.0, 1e6), "s", Required, "When it begins; before `time.duration`.");
 const SPEED: Key =
     key("speed", from(0.0, 40.0), "m/s", Required, "Speed at hub height afterwards.")
         .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }]);
-const CHANGE: Kind = from(-180.0, 180.0);
-const DURATION: Kind = above(0.0, 1e6);
+const CHANGE: Holds = from(-180.0, 180.0);
+const DURATION: Holds = above(0.0, 1e6);
 
 /// `kind = "step"`.
 pub(in crate::case) static STEP: Table = Table {
@@ -65,7 +65,7 @@ static STAIRCASE: Table = Table {
             Required,
             "Rise of the speed at hub height per step; negative falls, but never below calm.",
         ),
-        key("n_steps", Kind::Whole { least: 1, most: 1000 }, "–", Required, "Number of steps."),
+        key("n_steps", Holds::Whole { least: 1, most: 1000 }, "–", Required, "Number of steps."),
     ],
 };
 
@@ -207,7 +207,7 @@ static ROTATING_DISK: Table = Table {
         ),
         key(
             "sense",
-            Kind::Choice(&["cw", "ccw"]),
+            Holds::Choice(&["cw", "ccw"]),
             "",
             Value("\"cw\""),
             "Way it goes round, looking downwind.",

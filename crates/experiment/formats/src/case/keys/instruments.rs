@@ -1,54 +1,54 @@
 //! Keys of what a turbine's controller sees of it.
 
-use super::super::table::Default::{Otherwise, Value};
-use super::super::table::{Kind, Slip, Table, above, from, key};
+use basis::keys::LeftOut::{Otherwise, Value};
+use basis::keys::{Holds, Slip, Table, above, from, key};
 
 /// `[turbine.instruments]`.
 pub(in crate::case) static INSTRUMENTS: Table = Table {
     heading: "[turbine.instruments]",
     about: "What the controller of a turbine sees of it. Instruments that are not named are perfect, bit for bit. Series, statistics, loads and report hold the truth; only controllers, with their estimators, read instruments. Noise belongs to `wind.seed`, the turbine's place in the file, the channel and the number of the reading. What is found before the runs (`phase-sync`, `meandering`) is found with perfect instruments.",
     keys: &[
-        key("azimuth", Kind::Table(&ANGLE), "", PERFECT, "Azimuth encoder."),
+        key("azimuth", Holds::Table(&ANGLE), "", PERFECT, "Azimuth encoder."),
         key(
             "pitch",
-            Kind::Table(&ANGLE),
+            Holds::Table(&ANGLE),
             "",
             PERFECT,
             "Pitch encoders, alike on all blades and with noise of their own.",
         ),
-        key("rotor_speed", Kind::Table(&SPEED), "", PERFECT, "Encoder of rotor speed."),
+        key("rotor_speed", Holds::Table(&SPEED), "", PERFECT, "Encoder of rotor speed."),
         key(
             "generator_speed",
-            Kind::Table(&SPEED),
+            Holds::Table(&SPEED),
             "",
             PERFECT,
             "Encoder of generator speed, over the gear ratio: torque and collective pitch follow it.",
         ),
         key(
             "generator_torque",
-            Kind::Table(&MOMENT),
+            Holds::Table(&MOMENT),
             "",
             PERFECT,
             "Generator torque, times the gear ratio.",
         ),
         key(
             "flap_moments",
-            Kind::Table(&MOMENT),
+            Holds::Table(&MOMENT),
             "",
             PERFECT,
             "Strain gauges at the blade roots, out of plane: phase synchronisation, meandering and individual pitch follow them.",
         ),
         key(
             "edge_moments",
-            Kind::Table(&MOMENT),
+            Holds::Table(&MOMENT),
             "",
             PERFECT,
             "Strain gauges at the blade roots, in plane.",
         ),
-        key("power", Kind::Table(&POWER), "", PERFECT, "Electrical power."),
+        key("power", Holds::Table(&POWER), "", PERFECT, "Electrical power."),
         key(
             "tower_top_acceleration",
-            Kind::Table(&ACCELERATION),
+            Holds::Table(&ACCELERATION),
             "",
             PERFECT,
             "Accelerometer at the tower top, fore-aft.",
@@ -56,7 +56,7 @@ pub(in crate::case) static INSTRUMENTS: Table = Table {
     ],
 };
 
-const PERFECT: super::super::table::Default = Otherwise("perfect");
+const PERFECT: basis::keys::LeftOut = Otherwise("perfect");
 
 /// A table of one kind of instrument: figures in `$unit`, whose keys end in `$suffix`, up to `$most`.
 macro_rules! figures {

@@ -1,36 +1,36 @@
-//! What one table and one key of the case file are made of.
+//! Keys that a person may write: what a table of a case file is made of, as data that reader, reference and schema share.
 
 /// One table of the case file.
 #[derive(Debug)]
-pub(super) struct Table {
+pub struct Table {
     /// Heading in the file, such as `[wind]`.
-    pub(super) heading: &'static str,
+    pub heading: &'static str,
     /// What it is about, in a sentence.
-    pub(super) about: &'static str,
+    pub about: &'static str,
     /// Its keys, in the order in which they are written.
-    pub(super) keys: &'static [Key],
+    pub keys: &'static [Key],
 }
 
 /// One key.
 #[derive(Debug)]
-pub(super) struct Key {
+pub struct Key {
     /// Name in the file.
-    pub(super) name: &'static str,
+    pub name: &'static str,
     /// What it may hold.
-    pub(super) kind: Kind,
+    pub holds: Holds,
     /// Unit of a number, `–` without one.
-    pub(super) unit: &'static str,
+    pub unit: &'static str,
     /// What holds without it.
-    pub(super) default: Default,
+    pub left_out: LeftOut,
     /// What it means.
-    pub(super) about: &'static str,
+    pub about: &'static str,
     /// Units that people mistake for the right one, with the factor to the right one.
-    pub(super) slips: &'static [Slip],
+    pub slips: &'static [Slip],
 }
 
 /// What a key may hold.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Kind {
+pub enum Holds {
     /// Any text.
     Text,
     /// Letters, digits, `-` and `_`: it names folders, channels and keys.
@@ -68,23 +68,23 @@ pub(super) enum Kind {
 
 /// Numbers from `low` to `high`, `high` included, `low` only when not `open`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Range {
+pub struct Range {
     /// Lower end.
-    pub(super) low: f64,
+    pub low: f64,
     /// Whether the lower end itself is out.
-    pub(super) open: bool,
+    pub open: bool,
     /// Upper end.
-    pub(super) high: f64,
+    pub high: f64,
 }
 
 impl Range {
     /// Whether `value` is in it; what is not a number never is.
-    pub(super) fn contains(&self, value: f64) -> bool {
+    pub fn contains(&self, value: f64) -> bool {
         value <= self.high && if self.open { value > self.low } else { value >= self.low }
     }
 
     /// In words, such as `0 < speed <= 40 m/s`.
-    pub(super) fn describe(&self, name: &str, unit: &str) -> String {
+    pub fn describe(&self, name: &str, unit: &str) -> String {
         let sign = if self.open { "<" } else { "<=" };
         let unit = if unit == "–" { String::new() } else { format!(" {unit}") };
         format!("{} {sign} {name} <= {}{unit}", self.low, self.high)
@@ -93,7 +93,7 @@ impl Range {
 
 /// What holds when a key is left out.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Default {
+pub enum LeftOut {
     /// It cannot be left out.
     Required,
     /// This value, as it would stand in the file.
@@ -104,37 +104,37 @@ pub(super) enum Default {
 
 /// A mistaken unit.
 #[derive(Debug)]
-pub(super) struct Slip {
+pub struct Slip {
     /// The mistaken unit.
-    pub(super) unit: &'static str,
+    pub unit: &'static str,
     /// Factor to the right one.
-    pub(super) factor: f64,
+    pub factor: f64,
 }
 
 /// A number above `low`, up to `high`.
-pub(super) const fn above(low: f64, high: f64) -> Kind {
-    Kind::Number(Range { low, open: true, high })
+pub const fn above(low: f64, high: f64) -> Holds {
+    Holds::Number(Range { low, open: true, high })
 }
 
 /// A number from `low` to `high`.
-pub(super) const fn from(low: f64, high: f64) -> Kind {
-    Kind::Number(Range { low, open: false, high })
+pub const fn from(low: f64, high: f64) -> Holds {
+    Holds::Number(Range { low, open: false, high })
 }
 
 /// A key without a unit that people mistake for its own.
-pub(super) const fn key(
+pub const fn key(
     name: &'static str,
-    kind: Kind,
+    holds: Holds,
     unit: &'static str,
-    default: Default,
+    left_out: LeftOut,
     about: &'static str,
 ) -> Key {
-    Key { name, kind, unit, default, about, slips: &[] }
+    Key { name, holds, unit, left_out, about, slips: &[] }
 }
 
 impl Key {
     /// The same key, with the units that people mistake for its own.
-    pub(super) const fn mistaken(mut self, slips: &'static [Slip]) -> Self {
+    pub const fn mistaken(mut self, slips: &'static [Slip]) -> Self {
         self.slips = slips;
         self
     }
