@@ -3,7 +3,7 @@
 use crate::Setup;
 use analysis::phase::{Lines, lines_to_fixed_frame};
 use basis::{FixedFrame, Vector3};
-use farm::case::{Control, Run};
+use farm::case::Run;
 use flow::WindField;
 
 /// Radial lines over the disc (–). van Vondelen et al. (2025), §3.3.1.
@@ -25,7 +25,7 @@ pub(crate) struct WindLines {
 pub(crate) fn of(setup: &Setup, run: &Run) -> Vec<WindLines> {
     let places = setup.case.output.lines_at.iter().copied();
     places
-        .filter(|&index| run.control[index] == Control::Absent)
+        .filter(|&index| !run.control[index].is_there())
         .map(|index| {
             let rotor = &setup.models[index].definition;
             let center =

@@ -6,9 +6,8 @@ use crate::models::{self, Loaded};
 use crate::probes::Probes;
 use crate::simulate::VOLUME_STRIDE;
 use crate::watcher::{Estimate, Watcher};
-use basis::angle::wrap_to_turn;
 use farm::assemble::{Model, controller};
-use farm::case::{Case, Control, Decoupling, Solver};
+use farm::case::{Case, Solver};
 use farm::self_check::{SelfCheckError, Tunnel, self_check};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -20,7 +19,6 @@ use formats::case::objection;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -340,25 +338,17 @@ fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), Study
     for run in &case.runs {
         for ((control, placement), model) in run.control.iter().zip(&case.turbines).zip(models) {
             let n_blades = model.definition.n_blades;
-            let cyclic =
-                !matches!(control, Control::Absent | Control::Baseline | Control::Pulse(_));
-            if cyclic && n_blades < 3 {
+            if control.kind().pitches_individually() && n_blades < 3 {
                 let (run, turbine) = (run.name.clone(), placement.name.clone());
                 return Err(StudyError::TooFewBlades { run, turbine, n_blades });
             }
-            // What probes will find, if there are to be any, decides nothing here.
-            let model = model.clone().without_individual_pitch();
-            let mut control = *control;
-            match &mut control {
-                Control::Meandering(asked) => {
-                    let any = Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: 1.0 };
-                    asked.decoupling = asked.decoupling.or(Some(any));
-                }
-                Control::PhaseSync(asked) => {
-                    asked.azimuth_offset = asked.azimuth_offset.or(Some(0.0));
-                }
-                _ => {}
+            if !control.is_there() {
+                continue;
             }
+            // What is found before the runs, if there is to be anything, decides nothing here.
+            let model = model.clone().without_individual_pitch();
+            let mut control = control.clone();
+            control.response = control.response.or(control.kind().any_response());
             if let Err(source) = controller(&control, &model, case, plan) {
                 let (run, turbine) = (run.name.clone(), placement.name.clone());
                 return Err(StudyError::Control { run, turbine, source });
@@ -391,8 +381,7 @@ fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
             case.flow.cells_per_diameter
         ));
     }
-    let is_absent =
-        |index: usize| case.runs.iter().any(|run| run.control[index] == Control::Absent);
+    let is_absent = |index: usize| case.runs.iter().any(|run| !run.control[index].is_there());
     for &index in case.output.inflow_at.iter().filter(|&&index| !is_absent(index)) {
         let name = &case.turbines[index].name;
         warnings.push(format!("no wind is recorded at {name}: it stands there in every run"));
@@ -411,26 +400,10 @@ fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
     }
     for run in &case.runs {
         for (control, placement) in run.control.iter().zip(&case.turbines) {
-            let strouhal = match control {
-                Control::Helix(helix) => helix.strouhal,
-                Control::Pulse(pulse) => pulse.strouhal,
-                Control::PhaseSync(sync) => {
-                    if !(0.0..TAU).contains(&sync.offset) {
-                        let (asked, taken) = (sync.offset, wrap_to_turn(sync.offset));
-                        warnings.push(format!(
-                            "run {}: {}'s offset of {:.0}° is taken as {:.0}°",
-                            run.name,
-                            placement.name,
-                            asked.to_degrees(),
-                            taken.to_degrees()
-                        ));
-                    }
-                    sync.strouhal
-                }
-                // The slowest that it may follow.
-                Control::Meandering(meandering) => meandering.strouhal[0],
-                Control::Baseline | Control::Absent => continue,
-            };
+            for warning in control.kind().warnings(control) {
+                warnings.push(format!("run {}: {}{warning}", run.name, placement.name));
+            }
+            let Some(strouhal) = control.kind().slowest_strouhal(control) else { continue };
             let period = plan.diameter / (strouhal * case.wind.speed);
             let periods = (case.time.duration - case.time.spin_up) / period;
             if periods < 3.0 {

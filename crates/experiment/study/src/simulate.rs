@@ -11,7 +11,7 @@ use crate::wind_records::{self, WindRecord};
 use analysis::wake::PhaseAverage;
 use basis::Vector3;
 use basis::records::{Cost, Plane, PlaneAxes};
-use control::{ControllerState, excitation_rate};
+use control::excitation_rate;
 use farm::case::Run;
 use farm::{Air, Farm, assemble};
 use flow::inflow::prescribed::Clock;
@@ -54,7 +54,7 @@ struct RunState {
     wall_time: f64,
     series_bytes: u64,
     turbines: Vec<turbine::State>,
-    controllers: Vec<ControllerState>,
+    controllers: Vec<Vec<u8>>,
     averages: Vec<PlaneAverageState>,
     phases: Option<PhaseAverage>,
     n_plane_instants: u64,
@@ -213,12 +213,12 @@ impl<'a> Simulation<'a> {
             .zip(state.turbines.into_iter().zip(state.controllers))
         {
             machine.turbine.restore(turbine);
-            machine.controller.restore(controller);
+            machine.controller.restore(&controller)?;
         }
         if simulation.has_instruments() {
-            let stored: Vec<sensing::State> = reader.state("instruments")?;
+            let stored: Vec<sensing::SensingState> = reader.state("instruments")?;
             for (machine, stored) in simulation.farm.machines_mut().iter_mut().zip(stored) {
-                machine.sensing.restore(stored);
+                machine.sensing.restore(stored)?;
             }
         }
         for (average, stored) in simulation.averages.iter_mut().zip(state.averages) {
@@ -248,7 +248,7 @@ impl<'a> Simulation<'a> {
         self.farm.advance(&mut self.row).map_err(StepError::Flow)?;
         if kept {
             for (index, machine) in self.farm.machines().iter().enumerate() {
-                self.row.beliefs(index, machine);
+                self.row.signals(index, machine);
             }
             self.series.write(self.row.values())?;
         }
@@ -288,9 +288,9 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// Whether any instrument errs, and so has a state that a checkpoint must hold.
+    /// Whether any instrument or sensor has a state that a checkpoint must hold.
     fn has_instruments(&self) -> bool {
-        self.farm.machines().iter().any(|machine| !machine.sensing.instruments().are_perfect())
+        self.farm.machines().iter().any(|machine| machine.sensing.has_state())
     }
 
     fn wall_time(&self) -> f64 {
@@ -320,7 +320,7 @@ impl<'a> Simulation<'a> {
             wall_time: self.wall_time(),
             series_bytes,
             turbines: self.farm.machines().iter().map(|m| m.turbine.state().clone()).collect(),
-            controllers: self.farm.machines().iter().map(|m| m.controller.state()).collect(),
+            controllers: self.farm.machines().iter().map(|m| m.controller.save()).collect(),
             averages: self.averages.iter().map(PlaneAverage::state).collect(),
             phases: self.phases.clone(),
             n_plane_instants: self.n_plane_instants,
@@ -332,8 +332,8 @@ impl<'a> Simulation<'a> {
         writer.state("run", &state)?;
         writer.state(PEAK_MEMORY, &self.peak_memory())?;
         if self.has_instruments() {
-            let sensing: Vec<sensing::State> =
-                self.farm.machines().iter().map(|machine| *machine.sensing.state()).collect();
+            let sensing: Vec<sensing::SensingState> =
+                self.farm.machines().iter().map(|machine| machine.sensing.state()).collect();
             writer.state("instruments", &sensing)?;
         }
         match self.farm.flow_mut() {

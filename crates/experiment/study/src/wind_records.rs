@@ -2,7 +2,7 @@
 
 use crate::{Setup, StudyError};
 use basis::Vector3;
-use farm::case::{Control, Run};
+use farm::case::Run;
 use flow::WindField;
 use flow::inflow::PlaneGrid;
 use formats::records::RunFolder;
@@ -62,7 +62,7 @@ pub(crate) fn of(
     stored: Option<&[u64]>,
 ) -> Result<Vec<WindRecord>, StudyError> {
     let places = setup.case.output.inflow_at.iter().copied();
-    let absent = places.filter(|&index| run.control[index] == Control::Absent);
+    let absent = places.filter(|&index| !run.control[index].is_there());
     let begin = |(place, index): (usize, usize)| {
         let name = &setup.case.turbines[index].name;
         let (grid, stride) = grid(setup, index);

@@ -9,7 +9,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use wakemix::estimation::helix::tuning::Tuned;
 use wakemix::estimation::helix::{Form, Measurement};
-use wakemix::farm::case::PhaseEstimator;
+use wakemix::control::phase_sync::PhaseEstimator;
 use wakemix::study::{PhaseAnswer, PhaseAxis, PhaseQuestion, phases, tune};
 
 /// What to analyse.
@@ -260,8 +260,8 @@ fn tuned_json(tuned: &Tuned) -> Result<String> {
 mod tests {
     use super::*;
     use wakemix::analysis::phase::{Agreement, Coherence};
+    use wakemix::control::phase_sync::{PhaseNoise, PhaseSyncSettings};
     use wakemix::estimation::helix::Options;
-    use wakemix::farm::case::{Control, PhaseNoise};
     use wakemix::formats;
 
     /// An axis with an error of `error` (deg) at the helix's frequency, or in a record too short to tell.
@@ -343,8 +343,7 @@ control.T2 = {{ kind = "phase-sync", offset_deg = 90, amplitude_deg = 4, sense =
         );
         let case = formats::case::parse("pasted", &case, &[]);
         let case = case.unwrap_or_else(|error| panic!("{keys}: {}", error.to_lines()));
-        let Control::PhaseSync(sync) = case.runs[0].control[0] else { panic!("no phase-sync") };
-        sync.noise
+        PhaseSyncSettings::of(&case.runs[0].control[0]).expect("phase-sync").noise
     }
 
     #[test]
