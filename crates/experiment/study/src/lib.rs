@@ -1,6 +1,6 @@
 //! A study from case file to report: every run of a case, with its files.
 //!
-//! Reading order: [`run`], then `prepare` (what all runs share) with `models` (their turbines), `probes` (how pitch acts), `simulate` (one run), `summarise` (its numbers, from its `columns`), `gains` (over another run).
+//! Reading order: [`run`], then `prepare` (what all runs share) with `models` (their turbines), `probes` (how pitch acts), `simulate` (one run) with its `outputs`, `summarise` (its numbers, from its `columns`), `gains` (over another run).
 
 mod air;
 mod azimuth_offset;
@@ -8,12 +8,11 @@ mod channels;
 mod columns;
 mod error;
 mod gains;
-mod lines;
 mod loads;
 mod lock;
 mod meandering;
 mod models;
-mod outb;
+pub mod outputs;
 mod phase;
 mod prepare;
 mod probes;
@@ -23,11 +22,11 @@ mod summarise;
 mod synchronisation;
 mod tips;
 mod watcher;
-mod wind_records;
 
 pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;
 pub use lock::{LockAnswer, LockQuestion, lock};
+pub use outputs::Outputs;
 pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phases, tune};
 pub use prepare::Setup;
 pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
@@ -39,7 +38,7 @@ use farm::case::Run;
 use formats::case;
 use formats::records::{self, Manifest, RunFolder};
 use gains::Comparison;
-use simulate::{Ending, simulate};
+use simulate::{Ending, Job, simulate};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -91,6 +90,19 @@ pub fn run(
     stop: &AtomicBool,
     watcher: &mut dyn Watcher,
 ) -> Result<Outcome, StudyError> {
+    run_with(options, &Outputs::standard(), stop, watcher)
+}
+
+/// The same with other `outputs` than those that every study has, for example with one of your own added.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_with(
+    options: &Options,
+    outputs: &Outputs,
+    stop: &AtomicBool,
+    watcher: &mut dyn Watcher,
+) -> Result<Outcome, StudyError> {
     let mut setup = Setup::read(&options.case, &options.overrides)?;
     let wanted = wanted_runs(&setup, &options.runs)?;
     let directory = options
@@ -124,6 +136,7 @@ pub fn run(
     }
     let probes = setup.probes(&open, &directory, options.resume)?;
     let mut estimate = setup.estimate(open.len(), &probes);
+    estimate.disk += outputs.disk(&setup);
     watcher.estimated(&estimate);
     setup.check_memory(&estimate)?;
     for warning in &setup.warnings {
@@ -149,8 +162,9 @@ pub fn run(
         let run = &setup.case.runs[index];
         let folder = &folders[index];
         let manifest = begin_run(&setup, index, folder, options.resume)?;
-        let place = (place, open.len());
-        match simulate(&setup, run, folder, options.resume, place, stop, watcher)? {
+        let (resume, place) = (options.resume, (place, open.len()));
+        let job = Job { setup: &setup, run, folder, outputs, resume, place };
+        match simulate(&job, stop, watcher)? {
             Ending::Interrupted => return Ok(Outcome::Interrupted { directory }),
             Ending::Complete { cost, clipped_shares } => {
                 let mut columns = Columns::open(folder, &setup)?;

@@ -1,0 +1,67 @@
+//! Planes of the wind averaged over the analysed time: `planes/NAME-mean.nc`.
+
+use super::output::{FedBy, Output, OutputKind, Scene};
+use super::schedule::Schedule;
+use super::section::{Section, Stored};
+use super::slices::{self, POINT_BYTES, SUM_BYTES};
+use crate::error::StudyError;
+use flow::lattice::{PlaneAverage, PlaneAverageState};
+use formats::records::write_mean_plane;
+
+/// Planes are averaged from instants about this far apart (s).
+pub(super) const AVERAGING_INTERVAL: f64 = 2.0;
+
+pub(super) static KIND: OutputKind = OutputKind {
+    name: "mean planes",
+    keys: &["crosswind_diameters"],
+    fed_by: FedBy::ResolvedFlow,
+    disk: |setup, _| slices::n_points(setup) * (POINT_BYTES + SUM_BYTES),
+    begin,
+};
+
+struct MeanPlanes {
+    schedule: Schedule,
+    averages: Vec<PlaneAverage>,
+}
+
+fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
+    let Some(lattice) = scene.farm.flow().lattice() else { return Ok(None) };
+    let mut averages: Vec<PlaneAverage> = slices::of(scene.setup)
+        .into_iter()
+        .map(|slice| PlaneAverage::new(lattice, &slice.name, slice.axes, slice.position))
+        .collect();
+    if let Some(stored) = stored {
+        let states: Vec<PlaneAverageState> = stored.state()?;
+        for (average, state) in averages.iter_mut().zip(states) {
+            average.restore(state)?;
+        }
+    }
+    let schedule = Schedule::analysed(&scene.setup.plan, AVERAGING_INTERVAL);
+    Ok(Some(Box::new(MeanPlanes { schedule, averages })))
+}
+
+impl Output for MeanPlanes {
+    fn schedule(&self) -> Schedule {
+        self.schedule
+    }
+
+    fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        if let Some(lattice) = scene.farm.flow().lattice() {
+            self.averages.iter_mut().for_each(|average| average.add(lattice));
+        }
+        Ok(())
+    }
+
+    fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {
+        let states: Vec<PlaneAverageState> =
+            self.averages.iter().map(PlaneAverage::state).collect();
+        section.keep(&states)
+    }
+
+    fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        for average in self.averages.iter().filter(|average| average.n_instants() > 0) {
+            write_mean_plane(scene.folder, &average.mean())?;
+        }
+        Ok(())
+    }
+}
