@@ -163,7 +163,7 @@ pub fn run(
                     gains::add(&mut summary, (run, &mut columns), there)?;
                 }
                 for warning in &summary.warnings[setup.warnings.len()..] {
-                    watcher.warned(warning);
+                    watcher.warned(&warning.message);
                 }
                 // For these numbers columns of the series were read.
                 let peak_memory = formats::machine::peak_memory();
