@@ -10,7 +10,6 @@ mod error;
 mod gains;
 mod loads;
 mod lock;
-mod meandering;
 mod models;
 pub mod outputs;
 mod phase;
@@ -177,7 +176,7 @@ pub fn run_with(
                     gains::add(&mut summary, (run, &mut columns), there)?;
                 }
                 for warning in &summary.warnings[setup.warnings.len()..] {
-                    watcher.warned(warning);
+                    watcher.warned(&warning.message);
                 }
                 // For these numbers columns of the series were read.
                 let peak_memory = formats::machine::peak_memory();

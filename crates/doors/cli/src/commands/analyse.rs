@@ -7,9 +7,9 @@ use clap::{Args, Subcommand, ValueEnum};
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
 use std::path::PathBuf;
+use wakemix::control::phase_sync::PhaseEstimator;
 use wakemix::estimation::helix::tuning::Tuned;
 use wakemix::estimation::helix::{Form, Measurement};
-use wakemix::control::phase_sync::PhaseEstimator;
 use wakemix::study::{PhaseAnswer, PhaseAxis, PhaseQuestion, phases, tune};
 
 /// What to analyse.
