@@ -84,7 +84,7 @@ mod tests {
     /// Winds after two seconds in which something pulls at the air upstream of the points.
     fn wind_behind_a_pull(air: &mut Air) -> [Vector3; 3] {
         let position = Vector3::new(140.0, 110.0, 100.0);
-        let force = PointForce { position, force: Vector3::X * -4e5, smearing_length: 40.0 };
+        let force = PointForce::of_body(position, Vector3::X * -4e5, 40.0);
         for _ in 0..10 {
             air.advance(INTERVAL, &[force]).expect("it stays finite");
         }

@@ -89,7 +89,8 @@ impl Lattice {
             }
             let [x, y, z, fx, fy, fz, smearing_length] = values;
             let (position, force) = (Vector3::new(x, y, z), Vector3::new(fx, fy, fz));
-            self.forces.push(PointForce { position, force, smearing_length });
+            // The lattice feels nothing but these.
+            self.forces.push(PointForce::of_body(position, force, smearing_length));
         }
         self.spread();
         let mut bytes = Vec::with_capacity(CHUNK * size_of::<f32>());
