@@ -8,6 +8,7 @@ use crate::case::{
     Case, Control, DynamicInflow, Ground, PhaseEstimator, Placement, Run, Sides, Solver,
 };
 use crate::plan::{Footprint, Plan};
+use crate::solvers::Smearing;
 use crate::{Farm, Machine};
 use basis::Vector3;
 use basis::angle::wrap_to_turn;
@@ -20,7 +21,7 @@ use control::{
 use estimation::helix::{Options, Setting, Wake};
 use estimation::phase_locked;
 use estimation::{EstimationError, HelixEstimator};
-use flow::lattice;
+use flow::{FlowSolver, lattice};
 use sensing::{InstrumentError, Sensing};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -268,7 +269,7 @@ pub fn estimator_setting(sync: &PhaseSyncSettings, case: &Case, plan: &Plan) -> 
 /// Choices of an estimator in the air of `solver`, before calibration, with its own noise.
 pub fn estimator_options(estimator: PhaseEstimator, solver: Solver) -> Options {
     match estimator {
-        PhaseEstimator::Robust if solver.is_prescribed() => {
+        PhaseEstimator::Robust if !solver.resolves_induction => {
             // Momentum theory keeps the wake's delay with the blade, solved air where the blade has passed.
             let mut options = Options::default();
             options.rotor.wake = Wake::WithBlades { time_factor: 1.0 };
@@ -303,6 +304,9 @@ pub(crate) fn turbine_settings(
 ///
 /// # Errors
 /// [`AssemblyError`].
+///
+/// # Panics
+/// When `air` and the descriptor of the case's flow solver disagree on whether the wind contains the rotors' induction.
 pub fn farm(
     case: &Case,
     run: &Run,
@@ -310,6 +314,14 @@ pub fn farm(
     models: &[Model],
     air: Air,
 ) -> Result<Farm<Air>, AssemblyError> {
+    let solver = case.flow.solver;
+    // Turbines make their induction as the solver's descriptor says: once, and only if the air itself agrees.
+    assert_eq!(
+        air.resolves_induction(),
+        solver.resolves_induction,
+        "flow.solver = \"{}\" and its air disagree on whether the wind contains the rotors' induction",
+        solver.name
+    );
     let mut machines = Vec::with_capacity(models.len());
     for index in run.present() {
         let (model, placement, foot) =
@@ -337,7 +349,7 @@ fn tower_influence(model: &Model, placement: &Placement, foot: Vector3) -> Optio
     Some(TowerInfluence::new(&model.definition, foot, Effects { potential, shadow }))
 }
 
-/// Who solves the induction: the lattice itself, or momentum theory with the wake's delay and its skew.
+/// Who makes the induction: the flow itself, or momentum theory with the wake's delay and its skew.
 fn induction(
     case: &Case,
     plan: &Plan,
@@ -345,21 +357,18 @@ fn induction(
     tower: Option<TowerInfluence>,
 ) -> Induction {
     let dynamic_stall = placement.dynamic_stall;
-    match case.flow.solver {
-        Solver::Lattice => Induction::ByFlow {
-            smearing_length: SMEARING_CELLS * plan.spacing,
-            sample_spacing: plan.spacing,
+    let solver = case.flow.solver;
+    if solver.resolves_induction {
+        let Smearing { length, sample_spacing } = (solver.smearing)(plan);
+        Induction::ByFlow { smearing_length: length, sample_spacing, dynamic_stall }
+    } else {
+        Induction::ByMomentum(rotor::Settings {
+            induction: delay(placement.dynamic_inflow),
+            theory: Theory::default(),
+            skewed_wake: true,
             dynamic_stall,
-        },
-        Solver::Uniform | Solver::Turbulence | Solver::Planes => {
-            Induction::ByMomentum(rotor::Settings {
-                induction: delay(placement.dynamic_inflow),
-                theory: Theory::default(),
-                skewed_wake: true,
-                dynamic_stall,
-                tower,
-            })
-        }
+            tower,
+        })
     }
 }
 

@@ -14,8 +14,7 @@ use basis::records::{Cost, Plane, PlaneAxes};
 use control::{ControllerState, excitation_rate};
 use farm::case::Run;
 use farm::{Air, Farm, assemble};
-use flow::inflow::prescribed::Clock;
-use flow::lattice::{Lattice, PlaneAverage, PlaneAverageState};
+use flow::fields::{FieldSource, PlaneAverage, PlaneAverageState};
 use flow::{FlowError, WindField};
 use formats::checkpoint::{CheckpointReader, CheckpointWriter};
 use formats::records::{self, RunFolder, SeriesWriter};
@@ -31,6 +30,8 @@ const AVERAGING_INTERVAL: f64 = 2.0;
 pub(crate) const VOLUME_STRIDE: usize = 2;
 /// Section of a checkpoint with the most memory that the run has held so far; checkpoints of earlier programs have none.
 const PEAK_MEMORY: &str = "peak memory";
+/// Section of a checkpoint with the state of what moves the air.
+const AIR: &str = "air";
 /// Wall time between two reports of progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 
@@ -146,12 +147,12 @@ impl<'a> Simulation<'a> {
         let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
         let lines = lines::of(setup, run);
         let places: Vec<&str> = lines.iter().map(|lines| lines.name.as_str()).collect();
-        let all_loads = setup.case.flow.solver.is_prescribed();
+        let all_loads = !setup.case.flow.solver.resolves_induction;
         let row = Row::new(names.zip(farm.machines()), &places, all_loads);
-        let averages = match farm.flow().lattice() {
-            Some(lattice) => slices(setup)
+        let averages = match farm.flow().fields() {
+            Some(fields) => slices(setup)
                 .into_iter()
-                .map(|(name, axes, position)| PlaneAverage::new(lattice, &name, axes, position))
+                .map(|(name, axes, position)| PlaneAverage::new(fields, &name, axes, position))
                 .collect(),
             None => Vec::new(),
         };
@@ -224,10 +225,7 @@ impl<'a> Simulation<'a> {
         for (average, stored) in simulation.averages.iter_mut().zip(state.averages) {
             average.restore(stored)?;
         }
-        match simulation.farm.flow_mut() {
-            Air::Lattice(lattice) => reader.stream("air", |bytes| lattice.read_state(bytes))?,
-            Air::Prescribed(wind) => wind.restore(reader.state::<Clock>("wind")?)?,
-        }
+        reader.stream(AIR, |bytes| simulation.farm.flow_mut().read_state(bytes))?;
         Ok(simulation)
     }
 
@@ -258,15 +256,15 @@ impl<'a> Simulation<'a> {
                 inflow.see(since, self.farm.flow())?;
             }
         }
-        let Some(lattice) = self.farm.flow().lattice() else { return Ok(()) };
+        let Some(fields) = self.farm.flow().fields() else { return Ok(()) };
         if step > plan.n_spin_up_steps {
             let since = step - plan.n_spin_up_steps;
             if since.is_multiple_of(whole_steps(AVERAGING_INTERVAL, plan.interval)) {
                 for average in &mut self.averages {
-                    average.add(lattice);
+                    average.add(fields);
                 }
                 if let Some(phases) = &mut self.phases {
-                    phases.add(&hub_height(self.setup, lattice))?;
+                    phases.add(&hub_height(self.setup, fields))?;
                 }
             }
             let due = |every: Option<f64>| {
@@ -274,13 +272,13 @@ impl<'a> Simulation<'a> {
             };
             if due(self.setup.case.output.plane_interval) {
                 for (name, axes, position) in slices(self.setup) {
-                    let plane = lattice.plane(&name, axes, position);
+                    let plane = fields.plane(&name, axes, position);
                     records::write_instant_plane(self.folder, self.n_plane_instants, &plane)?;
                 }
                 self.n_plane_instants += 1;
             }
             if due(self.setup.case.output.volume_interval) {
-                let volume = lattice.volume(VOLUME_STRIDE);
+                let volume = fields.volume(VOLUME_STRIDE);
                 records::write_volume(self.folder, self.n_volumes, &volume)?;
                 self.n_volumes += 1;
             }
@@ -307,9 +305,7 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// [`StudyError::Diverged`] for air that no longer is worth keeping, [`StudyError::File`].
     fn checkpoint(&mut self, run: &Run) -> Result<(), StudyError> {
-        if let Air::Lattice(lattice) = self.farm.flow_mut()
-            && let Err(error) = lattice.check()
-        {
+        if let Err(error) = self.farm.flow_mut().check() {
             return Err(self.diverged(run, error));
         }
         let series_bytes = self.series.flush()?;
@@ -336,10 +332,7 @@ impl<'a> Simulation<'a> {
                 self.farm.machines().iter().map(|machine| *machine.sensing.state()).collect();
             writer.state("instruments", &sensing)?;
         }
-        match self.farm.flow_mut() {
-            Air::Lattice(lattice) => writer.stream("air", |bytes| lattice.write_state(bytes))?,
-            Air::Prescribed(wind) => writer.state("wind", &wind.state())?,
-        }
+        writer.stream(AIR, |bytes| self.farm.flow_mut().write_state(bytes))?;
         writer.finish()?;
         Ok(())
     }
@@ -378,27 +371,25 @@ impl<'a> Simulation<'a> {
         for inflow in &mut self.inflows {
             inflow.finish()?;
         }
-        if self.setup.case.flow.solver.is_prescribed() {
+        if !self.setup.case.flow.solver.resolves_induction {
             for index in run.present() {
                 outb::write(self.setup, run, self.folder, index)?;
             }
         }
         let (plan, wall_time) = (&self.setup.plan, self.wall_time());
-        let mut cost = Cost {
+        let cost = Cost {
             wall_time,
             n_cells: plan.cells() as u64,
             n_steps: plan.n_steps,
             updates_per_second: plan.updates() / wall_time,
-            n_threads: 1,
-            memory: 0,
+            n_threads: self.farm.flow().n_threads(),
+            memory: self.farm.flow().memory(),
             peak_memory: self.peak_memory(),
         };
-        if let Some(lattice) = self.farm.flow().lattice() {
-            cost.n_threads = lattice.n_threads();
-            cost.memory = lattice.memory();
+        if let Some(fields) = self.farm.flow().fields() {
             // The last instant is always kept: the report shows it.
             for (name, axes, position) in slices(self.setup) {
-                records::write_last_plane(self.folder, &lattice.plane(&name, axes, position))?;
+                records::write_last_plane(self.folder, &fields.plane(&name, axes, position))?;
             }
         }
         for average in &self.averages {
@@ -432,7 +423,7 @@ fn whole_steps(duration: f64, interval: f64) -> u64 {
 fn probe(setup: &Setup) -> Vector3 {
     let plan = &setup.plan;
     let foot = plan.positions[0];
-    if setup.case.flow.solver.is_prescribed() {
+    if !setup.case.flow.solver.resolves_induction {
         return Vector3::new(foot.x, foot.y, plan.hub_height);
     }
     let distance = (PROBE_DISTANCE * plan.diameter).min(0.5 * (foot.x - plan.origin.x));
@@ -440,8 +431,8 @@ fn probe(setup: &Setup) -> Vector3 {
 }
 
 /// The plane at hub height now.
-fn hub_height(setup: &Setup, lattice: &Lattice) -> Plane {
-    lattice.plane("hub-height", PlaneAxes::Horizontal, setup.plan.hub_height)
+fn hub_height(setup: &Setup, fields: &dyn FieldSource) -> Plane {
+    fields.plane("hub-height", PlaneAxes::Horizontal, setup.plan.hub_height)
 }
 
 /// Averages by phase, where the case asks for them and `run` has a helix.
@@ -449,7 +440,7 @@ fn phases(setup: &Setup, run: &Run, farm: &Farm<Air>) -> Option<PhaseAverage> {
     let count = setup.case.output.helix_phases?;
     let (_, strouhal) = setup.case.first_helix(run)?;
     let rate = excitation_rate(strouhal, setup.case.wind.speed, setup.plan.diameter);
-    let plane = hub_height(setup, farm.flow().lattice()?);
+    let plane = hub_height(setup, farm.flow().fields()?);
     Some(PhaseAverage::new(&plane, rate, count))
 }
 

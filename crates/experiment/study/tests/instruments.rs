@@ -61,12 +61,12 @@ fn case(overrides: &[String]) -> (Case, Plan, Vec<Model>) {
 }
 
 fn farm_of((case, plan, models): &(Case, Plan, Vec<Model>)) -> Farm<Air> {
-    let air = if case.flow.solver.is_prescribed() {
+    let air = if !case.flow.solver.resolves_induction {
         uniform_air(case)
     } else {
         let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
         let settings = assemble::lattice_settings(case, plan);
-        Air::Lattice(Box::new(Lattice::new(settings, profile).expect("such air can be")))
+        Box::new(Lattice::new(settings, profile).expect("such air can be"))
     };
     assemble::farm(case, &case.runs[0], plan, models, air).expect("such a farm can be")
 }
@@ -103,7 +103,7 @@ fn perfect_instruments_change_no_bit() {
         let recorded = records(&mut farm_of(&parts), 40);
         // The same turbines and controllers moved on by hand, with nothing between them; the air of the lattice feels
         // the turbines only through the farm, so that by hand it is asked for one step.
-        let n_steps = if parts.0.flow.solver.is_prescribed() { 40 } else { 1 };
+        let n_steps = if parts.0.flow.solver.resolves_induction { 1 } else { 40 };
         let mut by_hand = farm_of(&parts);
         for step in 0..n_steps {
             let interval = parts.1.interval;

@@ -1,10 +1,10 @@
 //! The table of keys as a page for people and as a schema for editors.
 
 use super::keys::{
-    CONTROLS, EVENTS, FLOW, GROUND, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME,
-    TURBINE, WIND,
+    CONTROLS, EVENTS, FLOW, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND,
 };
 use basis::keys::{Holds, Key, LeftOut, Table};
+use farm::solvers::GROUND;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 

@@ -5,7 +5,7 @@ use super::meandering::meandering_text;
 use super::momentum::momentum_text;
 use super::phase_sync::{azimuth_offset_text, noise_text};
 use super::wind::write_wind;
-use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides, Solver};
+use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides};
 use std::fmt::Write;
 
 /// The case file that reads back as `case`, with every default written out.
@@ -24,13 +24,7 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
     write_wind(text, &case.wind)?;
 
     let flow = &case.flow;
-    let solver = match flow.solver {
-        Solver::Lattice => "lattice",
-        Solver::Uniform => "uniform",
-        Solver::Turbulence => "turbulence",
-        Solver::Planes => "planes",
-    };
-    writeln!(text, "\n[flow]\nsolver = \"{solver}\"")?;
+    writeln!(text, "\n[flow]\nsolver = \"{}\"", flow.solver.name)?;
     writeln!(text, "cells_per_diameter = {:?}", flow.cells_per_diameter)?;
     writeln!(text, "upstream_diameters = {:?}", flow.upstream_diameters)?;
     writeln!(text, "downstream_diameters = {:?}", flow.downstream_diameters)?;
