@@ -23,5 +23,6 @@ pub(crate) fn begin(setup: &Setup) -> Result<Air, StudyError> {
         SolverError::Lattice(error) => error.into(),
         SolverError::Inflow(error) => error.into(),
         SolverError::Other(error) => StudyError::Solver(error),
+        error @ SolverError::NoPlanes { .. } => StudyError::Solver(Box::new(error)),
     })
 }

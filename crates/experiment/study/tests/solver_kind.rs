@@ -170,6 +170,12 @@ fn its_own_state_goes_through_a_checkpoint() {
 }
 
 #[test]
+#[should_panic(expected = "NoPlanes { solver: \"planes\" }")]
+fn planes_that_nobody_opened_are_refused() {
+    farm_in(Solver::PLANES);
+}
+
+#[test]
 #[should_panic(expected = "disagree on whether the wind contains the rotors' induction")]
 fn air_that_contradicts_its_descriptor_is_refused() {
     static LIAR: SolverKind =

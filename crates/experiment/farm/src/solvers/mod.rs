@@ -143,6 +143,12 @@ pub enum SolverError {
     /// Its wind cannot be had.
     #[error(transparent)]
     Inflow(#[from] InflowError),
+    /// [`WindSource::Planes`] without planes in [`Start::planes`].
+    #[error("flow.solver = \"{solver}\" takes planes of wind, and none were handed to it")]
+    NoPlanes {
+        /// The flow solver.
+        solver: &'static str,
+    },
     /// Another reason, of a kind of its own.
     #[error(transparent)]
     Other(Box<dyn std::error::Error + Send + Sync>),

@@ -51,6 +51,10 @@ pub static PLANES: SolverKind = SolverKind {
 };
 
 fn begin(start: Start) -> Result<Air, SolverError> {
+    let solver = start.site.case.flow.solver;
+    if solver.wind == WindSource::Planes && start.planes.is_none() {
+        return Err(SolverError::NoPlanes { solver: solver.name });
+    }
     Ok(Box::new(wind::prescribed(&start.site, start.inflow, start.planes)?))
 }
 
