@@ -1,19 +1,16 @@
 //! What all runs of a case share: turbines, domain, wind.
 
 use crate::StudyError;
-use crate::air;
 use crate::models::{self, Loaded};
 use crate::probes::Probes;
 use crate::watcher::{Estimate, Watcher};
 use farm::assemble::{Model, controller};
-use farm::case::{Case, Solver};
+use farm::case::Case;
 use farm::self_check::{SelfCheckError, Tunnel, self_check};
+use farm::wind::{self, Site};
 use farm::{Plan, plan};
 use flow::Inflow;
-use flow::inflow::deterministic::Event;
-use flow::inflow::sizing::Need;
-use flow::inflow::turbulent::BLOCKING_HEIGHT;
-use flow::inflow::{MeanProfile, TurbulentInflow, mann, size_box};
+use flow::inflow::MeanProfile;
 use formats::case::objection;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -32,10 +29,6 @@ const USUAL_THRUST: f64 = 0.8;
 const CELLS_TO_WARN: f64 = 16.0;
 /// Blocks below which an interval says little (–).
 const BLOCKS_TO_WARN: f64 = 3.0;
-/// Most memory that the turbulence may take (bytes); a longer run then meets the same wind again, and is warned of it.
-const TURBULENCE_MEMORY: u64 = 6 << 30;
-/// Bytes of a cell in the flow field, boundaries included.
-const CELL_BYTES: u64 = 80;
 
 /// A case with everything that its runs share.
 pub struct Setup {
@@ -117,20 +110,9 @@ impl Setup {
         let folder = PathBuf::new();
         let mut setup =
             Self { case, case_text, models, turbine_texts, plan, inflow, folder, warnings };
-        setup.inflow = setup.wind_without_turbulence()?;
-        let size = setup.needs_box().then(|| size_box(&setup.turbulence_need()));
-        if let Some(size) = size.filter(|size| !size.covers) {
-            setup.warnings.push(format!(
-                "the turbulence returns after {:.0} s: more would not fit in memory",
-                size.repeats_after
-            ));
-        }
-        if let Some(time) = air::made_grid(&setup).and_then(|grid| grid.repeats_after) {
-            setup.warnings.push(format!(
-                "the turbulence returns after {time:.0} s: more would not fit in the memory that one turbine may take; for a longer one \
-                 write a file with `wakemix inflow generate` and read it with flow.solver = \"planes\""
-            ));
-        }
+        setup.inflow = wind::without_turbulence(&setup.case, &setup.plan)?;
+        let turbulence = wind::turbulence(&setup.site());
+        setup.warnings.extend(turbulence.and_then(|turbulence| turbulence.warning));
         Ok(setup)
     }
 
@@ -139,27 +121,16 @@ impl Setup {
         &self.folder
     }
 
-    /// The mean profile that blows in.
-    pub(crate) fn profile(&self) -> MeanProfile {
-        farm::wind::profile(&self.case, &self.plan)
-    }
-
-    /// The mean profile, with veer and event where the case has them.
-    fn wind_without_turbulence(&self) -> Result<Arc<dyn Inflow>, StudyError> {
-        let wind = farm::wind::deterministic(&self.case, &self.plan);
-        if wind.veer == 0.0 && wind.event == Event::Steady {
-            // The same wind, found faster.
-            return Ok(Arc::new(wind.profile));
-        }
-        wind.check()?;
-        Ok(Arc::new(wind))
+    /// What the wind is made for.
+    pub(crate) fn site(&self) -> Site<'_> {
+        Site { case: &self.case, plan: &self.plan, models: &self.models }
     }
 
     /// The cost of `n_runs` runs and of `probes` before them, the machine's speed not known yet and the outputs left out.
     pub(crate) fn estimate(&self, n_runs: usize, probes: &Probes) -> Estimate {
         let plan = &self.plan;
         let costs = probes.costs();
-        let field = plan.cells() as u64 * CELL_BYTES;
+        let field = (self.case.flow.solver.memory)(plan);
         Estimate {
             n_runs,
             n_probes: costs.len(),
@@ -204,7 +175,7 @@ impl Setup {
         stop: &AtomicBool,
         watcher: &mut dyn Watcher,
     ) -> Result<ControlFlow<(), Option<f64>>, StudyError> {
-        if self.case.flow.solver.is_prescribed() {
+        if !self.case.flow.solver.needs_self_check {
             return Ok(ControlFlow::Continue(None));
         }
         let mut checked: Vec<(&str, Option<&str>)> = Vec::new();
@@ -252,60 +223,20 @@ impl Setup {
         Ok(ControlFlow::Continue(slowest))
     }
 
-    /// What the inlet needs of the turbulence: the box of air at the start, then a plane for every later step.
-    fn turbulence_need(&self) -> Need {
-        let plan = &self.plan;
-        let [length, width, height] = plan.n_cells.map(|n| n as f64 * plan.spacing);
-        Need {
-            length,
-            width,
-            height,
-            hub_speed: self.case.wind.speed,
-            duration: self.case.time.duration,
-            spacing: plan.spacing,
-            length_scale: self.case.wind.length_scale,
-            memory_limit: TURBULENCE_MEMORY,
-        }
-    }
-
     fn turbulence_memory(&self) -> u64 {
-        if self.needs_box() {
-            size_box(&self.turbulence_need()).peak_memory
-        } else {
-            air::made_grid(self).map_or(0, |grid| grid.memory)
-        }
+        wind::turbulence(&self.site()).map_or(0, |turbulence| turbulence.memory)
     }
 
-    /// Whether the inlet of a lattice is fed from a box of turbulence.
-    fn needs_box(&self) -> bool {
-        self.case.flow.solver == Solver::Lattice && self.case.wind.turbulence_intensity > 0.0
-    }
-
-    /// On return the inflow carries the case's turbulence.
+    /// On return the inflow carries the case's turbulence, where it enters a domain.
     ///
     /// # Errors
     /// [`StudyError::Inflow`] when it cannot be made.
     pub fn make_turbulence(&mut self, watcher: &mut dyn Watcher) -> Result<(), StudyError> {
-        let wind = &self.case.wind;
-        if self.needs_box() {
-            let size = size_box(&self.turbulence_need());
-            let settings = mann::Settings {
-                n_points: size.n_points,
-                spacing: size.spacing,
-                length_scale: wind.length_scale,
-                anisotropy: wind.anisotropy,
-                standard_deviation: wind.turbulence_intensity * wind.speed,
-                seed: wind.seed,
-                threads: self.case.flow.threads,
-            };
-            let watcher = RefCell::new(watcher);
-            let turbulence = mann::generate(&settings, |share| {
-                watcher.borrow_mut().preparing("turbulence", share);
-            })?;
-            let profile = self.profile();
-            let inflow = TurbulentInflow::aligned(Arc::new(turbulence), profile, self.plan.origin)?;
-            let inflow = inflow.blocked(BLOCKING_HEIGHT * wind.length_scale);
-            self.inflow = Arc::new(inflow.veering(wind.veer, self.plan.hub_height));
+        let watcher = RefCell::new(watcher);
+        let told = |share| watcher.borrow_mut().preparing("turbulence", share);
+        let entering = wind::entering(&self.site(), told)?;
+        if let Some(inflow) = entering {
+            self.inflow = inflow;
         }
         Ok(())
     }
@@ -353,8 +284,7 @@ fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
             100.0 * gain
         ));
     }
-    let lattice = case.flow.solver == Solver::Lattice;
-    if lattice && case.flow.cells_per_diameter < CELLS_TO_WARN {
+    if plan.cells() > 0 && case.flow.cells_per_diameter < CELLS_TO_WARN {
         warnings.push(format!(
             "{:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results",
             case.flow.cells_per_diameter

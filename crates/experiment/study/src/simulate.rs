@@ -130,9 +130,7 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// [`StudyError::Diverged`] for air that no longer is worth keeping, [`StudyError::File`].
     fn checkpoint(&mut self) -> Result<(), StudyError> {
-        if let Air::Lattice(lattice) = self.farm.flow_mut()
-            && let Err(error) = lattice.check()
-        {
+        if let Err(error) = self.farm.flow_mut().check() {
             return Err(self.diverged(error));
         }
         let (path, made) = (self.job.folder.checkpoint_path(), self.made());
@@ -183,14 +181,13 @@ impl<'a> Simulation<'a> {
     fn finish(mut self) -> Result<Ending, StudyError> {
         self.outputs.finish(&self.job.scene(&self.farm))?;
         let (plan, made) = (&self.job.setup.plan, self.made());
-        let lattice = self.farm.flow().lattice();
         let cost = Cost {
             wall_time: made.wall_time,
             n_cells: plan.cells() as u64,
             n_steps: plan.n_steps,
             updates_per_second: plan.updates() / made.wall_time,
-            n_threads: lattice.map_or(1, |lattice| lattice.n_threads()),
-            memory: lattice.map_or(0, |lattice| lattice.memory()),
+            n_threads: self.farm.flow().n_threads(),
+            memory: self.farm.flow().memory(),
             peak_memory: made.peak_memory,
         };
         let clipped_shares = self

@@ -288,7 +288,7 @@ fn collective_pitch(
 /// How the tip of the turbine at `index` outran the sound on the lattice in the analysed time; none where it did not, and
 /// where there is no lattice.
 fn outrun(analysed: &Analysed, index: usize, setup: &Setup) -> Result<Option<Outrun>, StudyError> {
-    if setup.case.flow.solver.is_prescribed() {
+    if setup.plan.cells() == 0 {
         return Ok(None);
     }
     let name = &setup.case.turbines[index].name;
@@ -315,8 +315,7 @@ fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyErr
         roughness_length,
         seed: case.wind.seed,
         rotor_diameter: setup.plan.diameter,
-        cells_per_diameter: (!case.flow.solver.is_prescribed())
-            .then_some(case.flow.cells_per_diameter),
+        cells_per_diameter: (setup.plan.cells() > 0).then_some(case.flow.cells_per_diameter),
         interval: setup.plan.interval,
         spin_up: case.time.spin_up,
         duration: case.time.duration,

@@ -27,7 +27,7 @@ fn plane() -> Plane {
 /// The files of a study of one run.
 fn study() -> Vec<(&'static str, Vec<u8>)> {
     let study = tempfile::tempdir().unwrap();
-    let case = parts();
+    let case = case::parse("quickstart.toml", CASE, &[]).unwrap();
     let folder = RunFolder::new(study.path(), "run");
     folder.create().unwrap();
     let manifest = Manifest::start("0.1.0", &case, CASE, 0, [("iea-15mw", "a turbine")]);

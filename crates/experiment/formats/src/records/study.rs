@@ -289,7 +289,7 @@ mod tests {
     fn a_summary_of_another_layout_says_who_wrote_it_and_what_to_do() {
         let study = tempfile::tempdir().unwrap();
         let folder = leave(study.path(), 0, CASE);
-        let mut other = |version: u32| {
+        let other = |version: u32| {
             let text = format!("{{\"schema_version\": {version}, \"case\": \"quickstart\"}}");
             fs::write(folder.summary_path(), text).unwrap();
             let error = read_summary(&folder).unwrap_err();

@@ -5,7 +5,7 @@ use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use super::slices::{self, POINT_BYTES, SUM_BYTES};
 use crate::error::StudyError;
-use flow::lattice::{PlaneAverage, PlaneAverageState};
+use flow::fields::{PlaneAverage, PlaneAverageState};
 use formats::records::write_mean_plane;
 
 /// Planes are averaged from instants about this far apart (s).
@@ -25,10 +25,10 @@ struct MeanPlanes {
 }
 
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
-    let Some(lattice) = scene.farm.flow().lattice() else { return Ok(None) };
+    let Some(fields) = scene.farm.flow().fields() else { return Ok(None) };
     let mut averages: Vec<PlaneAverage> = slices::of(scene.setup)
         .into_iter()
-        .map(|slice| PlaneAverage::new(lattice, &slice.name, slice.axes, slice.position))
+        .map(|slice| PlaneAverage::new(fields, &slice.name, slice.axes, slice.position))
         .collect();
     if let Some(stored) = stored {
         let states: Vec<PlaneAverageState> = stored.state()?;
@@ -46,8 +46,8 @@ impl Output for MeanPlanes {
     }
 
     fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        if let Some(lattice) = scene.farm.flow().lattice() {
-            self.averages.iter_mut().for_each(|average| average.add(lattice));
+        if let Some(fields) = scene.farm.flow().fields() {
+            self.averages.iter_mut().for_each(|average| average.add(fields));
         }
         Ok(())
     }

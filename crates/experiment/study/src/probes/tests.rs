@@ -183,7 +183,7 @@ fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
         let setup = setup(&format!("{keys}, azimuth_offset_deg = 0"), &[]);
         let control = &setup.case.runs[0].control[1];
         let given = PhaseSyncSettings::of(control).expect("phase-sync");
-        given.estimator_options(!setup.case.flow.solver.is_prescribed())
+        given.estimator_options(setup.case.flow.solver.resolves_induction)
     };
     let usual = options("");
     let given = options(", measurement_noise_mnm = 0.5, wandering_amplitude = 3e-3");
