@@ -10,6 +10,7 @@ pub use estimation;
 pub use farm;
 pub use flow;
 pub use formats;
+pub use postprocessing;
 pub use report;
 pub use study;
 pub use turbine;

@@ -1,11 +1,12 @@
 //! The air that a run starts with.
 
 use crate::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
+use crate::ready::Ready;
 use basis::Vector3;
-use farm::Air;
-use farm::assemble::lattice_settings;
-use farm::case::{Solver, TurbulenceModel};
+use farm::assemble::{Model, lattice_settings};
+use farm::case::{Case, Solver, TurbulenceModel};
+use farm::{Air, Plan};
 use flow::inflow::kaimal::{self, Scaling};
 use flow::inflow::planes::BoxPlanes;
 use flow::inflow::prescribed::Placement;
@@ -25,21 +26,22 @@ const MEMORY_LIMIT: u64 = 128 << 20;
 /// Places upstream and downstream of the outermost towers at which turbines may ask for the wind (m).
 const REACH: f64 = 50.0;
 
-/// The air of `setup` at time zero.
+/// The air of the study that is `ready` at time zero.
 ///
 /// # Errors
 /// [`StudyError`] when a lattice cannot be set up, turbulence cannot be made, or a file of wind cannot be read or does not
 /// cover the rotors.
-pub(crate) fn begin(setup: &Setup) -> Result<Air, StudyError> {
+pub(crate) fn begin(ready: &Ready) -> Result<Air, StudyError> {
+    let setup = &ready.prepared;
     let (case, plan) = (&setup.case, &setup.plan);
     let wind = match case.flow.solver {
         Solver::Lattice => {
-            let lattice = Lattice::new(lattice_settings(case, plan), setup.inflow.clone())?;
+            let lattice = Lattice::new(lattice_settings(case, plan), ready.inflow.clone())?;
             return Ok(Air::Lattice(Box::new(lattice)));
         }
-        Solver::Uniform => PrescribedWind::everywhere(setup.inflow.clone()),
-        Solver::Turbulence => match made_grid(setup) {
-            None => PrescribedWind::everywhere(setup.inflow.clone()),
+        Solver::Uniform => PrescribedWind::everywhere(ready.inflow.clone()),
+        Solver::Turbulence => match made_grid(case, plan, &setup.models) {
+            None => PrescribedWind::everywhere(ready.inflow.clone()),
             Some(grid) => {
                 let turbulence = Arc::new(made(setup, &grid)?);
                 let planes = BoxPlanes::new(turbulence, &setup.profile(), grid.lowest)?
@@ -69,14 +71,14 @@ pub(crate) struct MadeGrid {
     pub(crate) repeats_after: Option<f64>,
 }
 
-/// The grid of the turbulence that `setup` makes for prescribed wind; none where it makes none.
-pub(crate) fn made_grid(setup: &Setup) -> Option<MadeGrid> {
-    let (case, wind) = (&setup.case, &setup.case.wind);
+/// The grid of the turbulence that is made for prescribed wind in `case`; none where none is made.
+pub(crate) fn made_grid(case: &Case, plan: &Plan, models: &[Model]) -> Option<MadeGrid> {
+    let wind = &case.wind;
     if case.flow.solver != Solver::Turbulence || wind.turbulence_intensity == 0.0 {
         return None;
     }
-    let [low, high] = around_rotors(setup);
-    let diameter = setup.models.iter().map(|m| m.definition.rotor_diameter()).fold(0.0, f64::max);
+    let [low, high] = around_rotors(plan, models);
+    let diameter = models.iter().map(|m| m.definition.rotor_diameter()).fold(0.0, f64::max);
     let across = diameter / POINTS_ACROSS;
     // The middle of the width stands at y = 0.
     let half_width = low.y.abs().max(high.y.abs()) + MARGIN * diameter;
@@ -122,7 +124,7 @@ pub(crate) fn made_grid(setup: &Setup) -> Option<MadeGrid> {
 }
 
 /// The turbulence on `grid`.
-fn made(setup: &Setup, grid: &MadeGrid) -> Result<TurbulenceBox, StudyError> {
+fn made(setup: &Prepared, grid: &MadeGrid) -> Result<TurbulenceBox, StudyError> {
     let (case, wind) = (&setup.case, &setup.case.wind);
     let MadeGrid { n_points, spacing, lowest, .. } = *grid;
     let standard_deviation = wind.turbulence_intensity * wind.speed;
@@ -158,8 +160,8 @@ fn made(setup: &Setup, grid: &MadeGrid) -> Result<TurbulenceBox, StudyError> {
 }
 
 /// The wind of `planes`, checked to cover all rotors for the whole run.
-fn prescribed(setup: &Setup, planes: Box<dyn Planes>) -> Result<PrescribedWind, StudyError> {
-    let [low, high] = around_rotors(setup);
+fn prescribed(setup: &Prepared, planes: Box<dyn Planes>) -> Result<PrescribedWind, StudyError> {
+    let [low, high] = around_rotors(&setup.plan, &setup.models);
     let grid = planes.grid();
     // As OpenFAST has it: a record that does not repeat starts half its width upwind of the first turbine.
     let [left, right] = grid.across();
@@ -172,16 +174,16 @@ fn prescribed(setup: &Setup, planes: Box<dyn Planes>) -> Result<PrescribedWind, 
 }
 
 /// Corners of the box around all rotors (m).
-fn around_rotors(setup: &Setup) -> [Vector3; 2] {
+fn around_rotors(plan: &Plan, models: &[Model]) -> [Vector3; 2] {
     let reach = |sign: f64| {
-        move |(model, foot): (&farm::assemble::Model, &Vector3)| {
+        move |(model, foot): (&Model, &Vector3)| {
             let definition = &model.definition;
             let radius = definition.rotor_radius();
             let hub = *foot + Vector3::Z * definition.rotor.hub_height;
             hub + Vector3::new(0.0, radius, radius) * sign
         }
     };
-    let rotors = || setup.models.iter().zip(&setup.plan.positions);
+    let rotors = || models.iter().zip(&plan.positions);
     let low = rotors().map(reach(-1.0)).reduce(Vector3::min).unwrap_or_default();
     let high = rotors().map(reach(1.0)).reduce(Vector3::max).unwrap_or_default();
     [low, high]

@@ -1,7 +1,7 @@
 //! The columns of a run's series, a group at a time, so that memory does not grow with every channel of a long run.
 
 use crate::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use analysis::statistics::{BLOCK_LENGTH, statistic};
 use basis::records::{Series, Statistic};
 use formats::records::{RunFolder, SeriesFile};
@@ -30,7 +30,7 @@ impl Columns {
     ///
     /// # Errors
     /// [`StudyError::File`] for a series that cannot be read.
-    pub(crate) fn open(folder: &RunFolder, setup: &Setup) -> Result<Self, StudyError> {
+    pub(crate) fn open(folder: &RunFolder, setup: &Prepared) -> Result<Self, StudyError> {
         Self::within(BUDGET, folder, setup)
     }
 
@@ -38,7 +38,7 @@ impl Columns {
     pub(crate) fn within(
         budget: usize,
         folder: &RunFolder,
-        setup: &Setup,
+        setup: &Prepared,
     ) -> Result<Self, StudyError> {
         let file = SeriesFile::open(&folder.series_path())?;
         let plan = &setup.plan;

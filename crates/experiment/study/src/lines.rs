@@ -1,6 +1,6 @@
 //! The wind along radial lines at the place of a turbine that is not there: the ground truth of a helix's phase.
 
-use crate::Setup;
+use crate::Prepared;
 use analysis::phase::{Lines, lines_to_fixed_frame};
 use basis::{FixedFrame, Vector3};
 use farm::case::{Control, Run};
@@ -22,7 +22,7 @@ pub(crate) struct WindLines {
 }
 
 /// The lines that the case asks for and `run` leaves room for.
-pub(crate) fn of(setup: &Setup, run: &Run) -> Vec<WindLines> {
+pub(crate) fn of(setup: &Prepared, run: &Run) -> Vec<WindLines> {
     let places = setup.case.output.lines_at.iter().copied();
     places
         .filter(|&index| run.control[index] == Control::Absent)

@@ -1,7 +1,7 @@
 //! What OpenFAST's users expect of a turbine in prescribed wind: one `.outb` file.
 
 use crate::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use farm::case::Run;
 use formats::openfast_output::{Encoding, Layout, OutbWriter};
 use formats::records::RunFolder;
@@ -19,7 +19,7 @@ const RENAMED: [(&str, &str, &str, f64); 6] = [
 
 /// Writes `TURBINE.outb` into `folder`, from the run's complete series, for turbine number `index` of the case.
 pub(crate) fn write(
-    setup: &Setup,
+    setup: &Prepared,
     run: &Run,
     folder: &RunFolder,
     index: usize,

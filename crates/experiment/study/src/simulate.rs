@@ -1,11 +1,11 @@
 //! One run: from time zero, or from its checkpoint, to its last step.
 
 use crate::StudyError;
-use crate::air;
 use crate::channels::Row;
 use crate::lines::{self, WindLines};
 use crate::outb;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
+use crate::ready::Ready;
 use crate::watcher::{Progress, Watcher};
 use crate::wind_records::{self, WindRecord};
 use analysis::wake::PhaseAverage;
@@ -13,7 +13,7 @@ use basis::Vector3;
 use basis::records::{Cost, Plane, PlaneAxes};
 use control::{ControllerState, excitation_rate};
 use farm::case::Run;
-use farm::{Air, Farm, assemble};
+use farm::{Air, Farm};
 use flow::inflow::prescribed::Clock;
 use flow::lattice::{Lattice, PlaneAverage, PlaneAverageState};
 use flow::{FlowError, WindField};
@@ -64,7 +64,7 @@ struct RunState {
 
 /// A run under way.
 struct Simulation<'a> {
-    setup: &'a Setup,
+    setup: &'a Prepared,
     folder: &'a RunFolder,
     farm: Farm<Air>,
     row: Row,
@@ -86,7 +86,7 @@ struct Simulation<'a> {
 
 /// Makes `run`, or goes on with it from its checkpoint when `resume`; `place` is its place among the `n_runs` runs.
 pub(crate) fn simulate(
-    setup: &Setup,
+    ready: &Ready,
     run: &Run,
     folder: &RunFolder,
     resume: bool,
@@ -94,7 +94,8 @@ pub(crate) fn simulate(
     stop: &AtomicBool,
     watcher: &mut dyn Watcher,
 ) -> Result<Ending, StudyError> {
-    let mut simulation = Simulation::begin(setup, run, folder, resume)?;
+    let setup = &ready.prepared;
+    let mut simulation = Simulation::begin(ready, run, folder, resume)?;
     let n_steps = setup.plan.n_steps;
     let every = Duration::from_secs_f64(setup.case.output.checkpoint_interval);
     let mut last_checkpoint = Instant::now();
@@ -136,13 +137,13 @@ impl<T: Into<StudyError>> From<T> for StepError {
 
 impl<'a> Simulation<'a> {
     fn begin(
-        setup: &'a Setup,
+        ready: &'a Ready,
         run: &Run,
         folder: &'a RunFolder,
         resume: bool,
     ) -> Result<Self, StudyError> {
-        let air = air::begin(setup)?;
-        let farm = assemble::farm(&setup.case, run, &setup.plan, &setup.models, air)?;
+        let setup = &ready.prepared;
+        let farm = ready.farm(run)?;
         let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
         let lines = lines::of(setup, run);
         let places: Vec<&str> = lines.iter().map(|lines| lines.name.as_str()).collect();
@@ -429,7 +430,7 @@ fn whole_steps(duration: f64, interval: f64) -> u64 {
 }
 
 /// Point at hub height where the arriving wind is read (m): upstream of the first turbine, in prescribed wind at it.
-fn probe(setup: &Setup) -> Vector3 {
+fn probe(setup: &Prepared) -> Vector3 {
     let plan = &setup.plan;
     let foot = plan.positions[0];
     if setup.case.flow.solver.is_prescribed() {
@@ -440,12 +441,12 @@ fn probe(setup: &Setup) -> Vector3 {
 }
 
 /// The plane at hub height now.
-fn hub_height(setup: &Setup, lattice: &Lattice) -> Plane {
+fn hub_height(setup: &Prepared, lattice: &Lattice) -> Plane {
     lattice.plane("hub-height", PlaneAxes::Horizontal, setup.plan.hub_height)
 }
 
 /// Averages by phase, where the case asks for them and `run` has a helix.
-fn phases(setup: &Setup, run: &Run, farm: &Farm<Air>) -> Option<PhaseAverage> {
+fn phases(setup: &Prepared, run: &Run, farm: &Farm<Air>) -> Option<PhaseAverage> {
     let count = setup.case.output.helix_phases?;
     let (_, strouhal) = setup.case.first_helix(run)?;
     let rate = excitation_rate(strouhal, setup.case.wind.speed, setup.plan.diameter);
@@ -454,7 +455,7 @@ fn phases(setup: &Setup, run: &Run, farm: &Farm<Air>) -> Option<PhaseAverage> {
 }
 
 /// Planes that are averaged and kept: name, axes, position across them (m).
-fn slices(setup: &Setup) -> Vec<(String, PlaneAxes, f64)> {
+fn slices(setup: &Prepared) -> Vec<(String, PlaneAxes, f64)> {
     let plan = &setup.plan;
     let foot = plan.positions[0];
     let mut slices = vec![

@@ -4,7 +4,7 @@ use crate::StudyError;
 use crate::columns::{Analysed, Columns, add_to, names_of};
 use crate::loads;
 use crate::meandering;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use crate::probes::response_of;
 use crate::tips::Outrun;
 use analysis::AnalysisError;
@@ -32,7 +32,7 @@ const DELIVERED_SHARE: f64 = 0.95;
 /// `clipped_shares` (–) holds, for each turbine that is there, the share of control instants at which a pitch limit
 /// held a command back.
 pub(crate) fn summarise(
-    setup: &Setup,
+    setup: &Prepared,
     run: &Run,
     columns: &mut Columns,
     clipped_shares: &[f64],
@@ -114,7 +114,7 @@ pub(crate) fn summarise(
 }
 
 /// Channels that [`summarise`] asks for together, in its order; the columns of the run are called `names`.
-fn parts(setup: &Setup, run: &Run, names: &[String]) -> Vec<Vec<String>> {
+fn parts(setup: &Prepared, run: &Run, names: &[String]) -> Vec<Vec<String>> {
     let mut parts = Vec::new();
     for index in run.present() {
         let name = &setup.case.turbines[index].name;
@@ -173,7 +173,7 @@ fn delivered_pitch(
     name: &str,
     n_blades: usize,
     control: &Control,
-    setup: &Setup,
+    setup: &Prepared,
     clipped_share: f64,
 ) -> Result<Option<DeliveredPitch>, StudyError> {
     let (motion, amplitude, strouhal, start, stop) = match control {
@@ -281,7 +281,11 @@ fn warn_of_no_lock(
 
 /// How the tip of the turbine at `index` outran the sound on the lattice in the analysed time; none where it did not, and
 /// where there is no lattice.
-fn outrun(analysed: &Analysed, index: usize, setup: &Setup) -> Result<Option<Outrun>, StudyError> {
+fn outrun(
+    analysed: &Analysed,
+    index: usize,
+    setup: &Prepared,
+) -> Result<Option<Outrun>, StudyError> {
     if setup.case.flow.solver.is_prescribed() {
         return Ok(None);
     }
@@ -293,7 +297,7 @@ fn outrun(analysed: &Analysed, index: usize, setup: &Setup) -> Result<Option<Out
     Ok(Outrun::of(times, rotor_speeds, radius, plan.spacing, plan.interval))
 }
 
-fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyError> {
+fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, StudyError> {
     let arrived = analysed.statistic(WIND)?;
     let case = &setup.case;
     let (shear_exponent, roughness_length) = match case.wind.shear {

@@ -1,6 +1,6 @@
 //! The wind over the rotor of a turbine that is not there, as a full field that turbines elsewhere can stand in.
 
-use crate::{Setup, StudyError};
+use crate::{Prepared, StudyError};
 use basis::Vector3;
 use farm::case::{Control, Run};
 use flow::WindField;
@@ -29,7 +29,7 @@ pub(crate) struct WindRecord {
 /// Points of the planes at the place of turbine number `index`, and the steps from one to the next.
 ///
 /// A grid as fine as the cells, with a point at the hub, as far down as half a cell above the ground.
-fn grid(setup: &Setup, index: usize) -> (PlaneGrid, u64) {
+fn grid(setup: &Prepared, index: usize) -> (PlaneGrid, u64) {
     let (plan, rotor) = (&setup.plan, &setup.models[index].definition);
     let (spacing, hub_height) = (plan.spacing, rotor.rotor.hub_height);
     let reach = rotor.rotor_radius() + MARGIN * rotor.rotor_diameter();
@@ -56,7 +56,7 @@ fn grid(setup: &Setup, index: usize) -> (PlaneGrid, u64) {
 /// # Errors
 /// [`StudyError::File`].
 pub(crate) fn of(
-    setup: &Setup,
+    setup: &Prepared,
     run: &Run,
     folder: &RunFolder,
     stored: Option<&[u64]>,

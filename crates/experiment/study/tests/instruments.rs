@@ -11,12 +11,12 @@ use farm::{Air, Farm, Plan, Recorder};
 use flow::WindField;
 use flow::inflow::MeanProfile;
 use flow::lattice::Lattice;
-use small::{Silent, laid_out, options, uniform_air, written};
+use small::{laid_out, options, uniform_air, written};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Options, Outcome, Progress, Watcher};
+use study::{Options, Outcome, Progress, Silent, Watcher};
 
 const CASE: &str = r#"
 name = "instruments"

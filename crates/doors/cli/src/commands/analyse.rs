@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use wakemix::estimation::helix::tuning::Tuned;
 use wakemix::estimation::helix::{Form, Measurement};
 use wakemix::farm::case::PhaseEstimator;
-use wakemix::study::{PhaseAnswer, PhaseAxis, PhaseQuestion, phases, tune};
+use wakemix::postprocessing::{PhaseAnswer, PhaseAxis, PhaseQuestion, phases, tune};
 
 /// What to analyse.
 #[derive(Subcommand)]

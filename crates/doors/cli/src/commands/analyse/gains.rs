@@ -5,7 +5,7 @@ use clap::Args;
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
 use std::path::PathBuf;
-use wakemix::study::{GainsAnswer, GainsQuestion, PartGains, gains_over_seeds};
+use wakemix::postprocessing::{GainsAnswer, GainsQuestion, PartGains, gains_over_seeds};
 
 /// Arguments of `wakemix analyse gains`.
 #[derive(Args)]
@@ -100,7 +100,7 @@ fn json(answer: &GainsAnswer, studies: &[PathBuf]) -> serde_json::Value {
 mod tests {
     use super::*;
     use wakemix::basis::records::Statistic;
-    use wakemix::study::RunGains;
+    use wakemix::postprocessing::RunGains;
 
     fn answer() -> GainsAnswer {
         let part = |name: &str, gains: [f64; 2], half_width: f64| PartGains {

@@ -5,7 +5,7 @@ use miette::{IntoDiagnostic, Result};
 use serde_json::json;
 use std::path::PathBuf;
 use wakemix::basis::Sense;
-use wakemix::study::{LockAnswer, LockQuestion, lock};
+use wakemix::postprocessing::{LockAnswer, LockQuestion, lock};
 
 /// Arguments of `wakemix analyse lock`.
 #[derive(Args)]
