@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 const MAGIC: [u8; 8] = *b"wmcheckp";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const WHAT: &str = "the checkpoint";
 const IDENTITY: &str = "identity";
 /// Bytes of a chunk (–), and of the buffers.

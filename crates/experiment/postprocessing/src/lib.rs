@@ -2,12 +2,14 @@
 //!
 //! Records in, numbers out: nothing is simulated here. [`ANALYSES`] lists what `wakemix analyse` offers.
 
+pub mod analyses;
 mod error;
 mod lock;
 mod phase;
 mod seeds;
 mod synchronisation;
 
+pub use analyses::{ANALYSES, Analysis};
 pub use error::PostprocessingError;
 pub use lock::{LockAnswer, LockQuestion, lock};
 pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phases, tune};

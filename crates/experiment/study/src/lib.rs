@@ -5,11 +5,12 @@
 //! | [`Case`](farm::case::Case) | plain data: what the case file says | |
 //! | [`Prepared`] | checked, turbines loaded, domain laid out; its cost is known | `prepared`, `models`, `warnings`, `cost`, `self_check` |
 //! | [`Ready`] | pitch responses identified, turbulence made | `ready`, `probes`, `turbulence`, `air` |
-//! | run | from time zero to the last step | `simulate`, `channels` |
+//! | run | from time zero to the last step | `simulate` with its `outputs`, `channels` |
+//! | | the same as values, without files | `in_memory` |
 //! | summary | its numbers, and gains over another run | `summarise` from `columns`, `gains` |
 //!
 //! No stage is ever half built: each comes whole from the one before. The stages need no files; [`run`] takes a study through
-//! all of them in a folder, from the case file to the records.
+//! all of them in a folder, from the case file to the records; [`Ready::run_all`] makes the runs as values.
 
 mod air;
 mod azimuth_offset;
@@ -18,11 +19,11 @@ mod columns;
 mod cost;
 mod error;
 mod gains;
-mod lines;
+mod in_memory;
 mod loads;
 mod meandering;
 mod models;
-mod outb;
+pub mod outputs;
 mod prepared;
 mod probes;
 mod ready;
@@ -34,12 +35,13 @@ mod tips;
 mod turbulence;
 mod warnings;
 mod watcher;
-mod wind_records;
 
 pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;
+pub use in_memory::RunResult;
+pub use outputs::Outputs;
 pub use prepared::Prepared;
 pub use ready::Ready;
 pub use self_check::SelfChecked;
-pub use study::{Options, Outcome, run};
+pub use study::{Options, Outcome, run, run_with};
 pub use watcher::{Estimate, Probing, Progress, Silent, Watcher};

@@ -50,7 +50,7 @@ impl Prepared {
     /// The same of a `case` that stands in no file; files that it names are relative to the current folder.
     ///
     /// # Errors
-    /// Those of [`read`](Self::read); they point at the case as [`formats::case::write`] writes it.
+    /// Those of [`read`](Self::read); they point at the case as [`formats::case::write()`] writes it.
     pub fn of(case: Case) -> Result<Self, StudyError> {
         Self::of_file(&CaseFile::of(case)?)
     }

@@ -3,11 +3,12 @@
 use crate::columns::Columns;
 use crate::cost::check_memory;
 use crate::gains::{self, Comparison};
+use crate::outputs::Outputs;
 use crate::prepared::Prepared;
 use crate::probes::Probes;
 use crate::ready::Ready;
 use crate::self_check::SelfChecked;
-use crate::simulate::{Ending, simulate};
+use crate::simulate::{Ending, Job, simulate};
 use crate::summarise;
 use crate::{StudyError, Watcher};
 use basis::records::{Cost, Summary};
@@ -65,8 +66,21 @@ pub fn run(
     stop: &AtomicBool,
     watcher: &mut dyn Watcher,
 ) -> Result<Outcome, StudyError> {
+    run_with(options, &Outputs::standard(), stop, watcher)
+}
+
+/// The same with other `outputs` than those that every study has, for example with one of your own added.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_with(
+    options: &Options,
+    outputs: &Outputs,
+    stop: &AtomicBool,
+    watcher: &mut dyn Watcher,
+) -> Result<Outcome, StudyError> {
     let prepared = Prepared::read(&options.case, &options.overrides)?;
-    let study = Study::open(options, &prepared)?;
+    let study = Study::open(options, outputs, &prepared)?;
     let known = if options.resume { read_probes(&study.directory)? } else { Vec::new() };
     let probes = prepared.probes(&study.open, known);
     let interrupted = || Ok(Outcome::Interrupted { directory: study.directory.clone() });
@@ -101,7 +115,8 @@ pub fn run(
 }
 
 /// Folders of a study, and which of its runs are to be made.
-struct Study {
+struct Study<'a> {
+    outputs: &'a Outputs,
     directory: PathBuf,
     /// One per run of the case.
     folders: Vec<RunFolder>,
@@ -112,12 +127,16 @@ struct Study {
     resume: bool,
 }
 
-impl Study {
+impl<'a> Study<'a> {
     /// The study that `options` name; what its folder holds is left as it is.
     ///
     /// # Errors
     /// [`StudyError::UnknownRun`], [`StudyError::OutputExists`], [`StudyError::OtherCase`].
-    fn open(options: &Options, prepared: &Prepared) -> Result<Self, StudyError> {
+    fn open(
+        options: &Options,
+        outputs: &'a Outputs,
+        prepared: &Prepared,
+    ) -> Result<Self, StudyError> {
         let runs = &prepared.case.runs;
         let wanted = wanted_runs(runs, &options.runs)?;
         let directory = options
@@ -149,7 +168,7 @@ impl Study {
                 check_same(prepared, &runs[other], &folders[other])?;
             }
         }
-        Ok(Self { directory, folders, wanted, open, resume: options.resume })
+        Ok(Self { outputs, directory, folders, wanted, open, resume: options.resume })
     }
 
     /// Tells `watcher` what the open runs will cost, and checks the rotors where there are such runs; a break when `stop` asked
@@ -164,7 +183,7 @@ impl Study {
         stop: &AtomicBool,
         watcher: &mut dyn Watcher,
     ) -> Result<ControlFlow<(), SelfChecked>, StudyError> {
-        let mut estimate = prepared.estimate(self.open.len(), probes);
+        let mut estimate = prepared.estimate(self.open.len(), probes, self.outputs);
         watcher.estimated(&estimate);
         check_memory(&estimate)?;
         for warning in &prepared.warnings {
@@ -195,8 +214,9 @@ impl Study {
         let index = self.open[place];
         let (run, folder) = (&ready.prepared.case.runs[index], &self.folders[index]);
         let manifest = begin_run(&ready.prepared, index, folder, self.resume)?;
-        let place = (place, self.open.len());
-        match simulate(ready, run, folder, self.resume, place, stop, watcher)? {
+        let (outputs, resume, place) = (self.outputs, self.resume, (place, self.open.len()));
+        let job = Job { ready, run, folder, outputs, resume, place };
+        match simulate(&job, stop, watcher)? {
             Ending::Interrupted => Ok(ControlFlow::Break(())),
             Ending::Complete { cost, clipped_shares } => {
                 let summary = self.summary(ready, index, &clipped_shares, cost)?;

@@ -1,7 +1,8 @@
 //! The table of a study on the terminal.
 
 use std::fmt::Write;
-use wakemix::basis::records::{Statistic, Summary, TurbineSummary};
+use wakemix::basis::records::{Summary, TurbineSummary};
+use wakemix::postprocessing::analyses::with_interval;
 
 /// Loads of which the 1-Hz damage-equivalent is told: heading, channel, what it is.
 const LOADS: [(&str, &str, &str); 2] = [
@@ -131,19 +132,10 @@ impl<'a> Load<'a> {
     }
 }
 
-/// `statistic` times `scale` with so many `digits`, ± half of its 95 % interval where it has one.
-pub(crate) fn with_interval(statistic: &Statistic, scale: f64, digits: usize) -> String {
-    let mean = scale * statistic.mean;
-    match statistic.half_width_95 {
-        Some(half_width) => format!("{mean:.digits$} ± {:.digits$}", scale * half_width),
-        None => format!("{mean:.digits$}"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wakemix::basis::records::{Conditions, Cost, SCHEMA_VERSION};
+    use wakemix::basis::records::{Conditions, Cost, SCHEMA_VERSION, Statistic};
 
     fn statistic(mean: f64) -> Statistic {
         Statistic { mean, standard_deviation: 0.0, half_width_95: None, n_blocks: 1 }

@@ -43,7 +43,7 @@ pub struct CaseFile {
 }
 
 impl CaseFile {
-    /// A case that stands in no file, checked as if it did: its text is what [`write`](self::write) makes of it, and errors point
+    /// A case that stands in no file, checked as if it did: its text is what [`write()`] makes of it, and errors point
     /// there.
     ///
     /// # Errors

@@ -1,6 +1,10 @@
 //! What OpenFAST's users expect of a turbine in prescribed wind: one `.outb` file.
 
-use crate::StudyError;
+use super::output::{FedBy, Output, OutputKind, Scene};
+use super::schedule::Schedule;
+use super::section::Stored;
+use super::series;
+use crate::error::StudyError;
 use crate::prepared::Prepared;
 use farm::case::Run;
 use formats::openfast_output::{Encoding, Layout, OutbWriter};
@@ -17,13 +21,36 @@ const RENAMED: [(&str, &str, &str, f64); 6] = [
     ("{}.aerodynamic_torque_nm", "RtFldMxh", "N-m", 1.0),
 ];
 
+/// Bytes of a value in the file.
+const VALUE_BYTES: u64 = size_of::<i16>() as u64;
+
+pub(super) static KIND: OutputKind = OutputKind {
+    name: "outb",
+    keys: &[],
+    fed_by: FedBy::PrescribedWind,
+    disk: |setup, run| series::n_values(setup, run) * VALUE_BYTES,
+    begin,
+};
+
+struct Outb;
+
+fn begin(_scene: &Scene, _stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
+    Ok(Some(Box::new(Outb)))
+}
+
+impl Output for Outb {
+    fn schedule(&self) -> Schedule {
+        Schedule::at_the_end()
+    }
+
+    fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        let turbines = &mut scene.run.present();
+        turbines.try_for_each(|index| write(scene.setup, scene.run, scene.folder, index))
+    }
+}
+
 /// Writes `TURBINE.outb` into `folder`, from the run's complete series, for turbine number `index` of the case.
-pub(crate) fn write(
-    setup: &Prepared,
-    run: &Run,
-    folder: &RunFolder,
-    index: usize,
-) -> Result<(), StudyError> {
+fn write(setup: &Prepared, run: &Run, folder: &RunFolder, index: usize) -> Result<(), StudyError> {
     let turbine = setup.case.turbines[index].name.as_str();
     let mut reader = TableReader::open(&folder.series_path())?;
     let prefix = format!("{turbine}.");

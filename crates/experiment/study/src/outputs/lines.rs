@@ -1,6 +1,6 @@
 //! The wind along radial lines at the place of a turbine that is not there: the ground truth of a helix's phase.
 
-use crate::Prepared;
+use crate::prepared::Prepared;
 use analysis::phase::{Lines, lines_to_fixed_frame};
 use basis::{FixedFrame, Vector3};
 use farm::case::{Control, Run};
@@ -12,20 +12,29 @@ const N_LINES: usize = 36;
 const N_POINTS: usize = 24;
 
 /// Lines at one place, with room to work in.
-pub(crate) struct WindLines {
+pub(super) struct WindLines {
     /// Name of the turbine that is not there.
-    pub(crate) name: String,
+    pub(super) name: String,
     lines: Lines,
     positions: Vec<Vector3>,
     velocities: Vec<Vector3>,
     means: Vec<f64>,
 }
 
+/// Places of the turbines that are not there in `run` and at which the case asks for lines.
+fn places<'a>(setup: &'a Prepared, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
+    let asked = setup.case.output.lines_at.iter().copied();
+    asked.filter(|&index| run.control[index] == Control::Absent)
+}
+
+/// Places at which `run` has lines (–).
+pub(super) fn count(setup: &Prepared, run: &Run) -> u64 {
+    places(setup, run).count() as u64
+}
+
 /// The lines that the case asks for and `run` leaves room for.
-pub(crate) fn of(setup: &Prepared, run: &Run) -> Vec<WindLines> {
-    let places = setup.case.output.lines_at.iter().copied();
-    places
-        .filter(|&index| run.control[index] == Control::Absent)
+pub(super) fn of(setup: &Prepared, run: &Run) -> Vec<WindLines> {
+    places(setup, run)
         .map(|index| {
             let rotor = &setup.models[index].definition;
             let center =
@@ -46,7 +55,7 @@ pub(crate) fn of(setup: &Prepared, run: &Run) -> Vec<WindLines> {
 
 impl WindLines {
     /// Average, tilt and yaw of the wind (m/s) now.
-    pub(crate) fn wind(&mut self, field: &impl WindField) -> FixedFrame {
+    pub(super) fn wind(&mut self, field: &impl WindField) -> FixedFrame {
         field.sample(&self.positions, &mut self.velocities);
         self.lines.means(&self.velocities, &mut self.means);
         lines_to_fixed_frame(&self.means)

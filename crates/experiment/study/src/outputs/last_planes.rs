@@ -1,0 +1,37 @@
+//! Planes of the wind at the run's last instant, which the report shows: `planes/NAME-last.nc`.
+
+use super::output::{FedBy, Output, OutputKind, Scene};
+use super::schedule::Schedule;
+use super::section::Stored;
+use super::slices::{self, POINT_BYTES};
+use crate::error::StudyError;
+use formats::records::write_last_plane;
+
+pub(super) static KIND: OutputKind = OutputKind {
+    name: "last planes",
+    keys: &[],
+    fed_by: FedBy::ResolvedFlow,
+    disk: |setup, _| slices::n_points(setup) * POINT_BYTES,
+    begin,
+};
+
+struct LastPlanes;
+
+fn begin(_scene: &Scene, _stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
+    Ok(Some(Box::new(LastPlanes)))
+}
+
+impl Output for LastPlanes {
+    fn schedule(&self) -> Schedule {
+        Schedule::at_the_end()
+    }
+
+    fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        if let Some(lattice) = scene.farm.flow().lattice() {
+            for slice in slices::of(scene.setup) {
+                write_last_plane(scene.folder, &slice.plane(lattice))?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,76 @@
+//! Planes of the wind averaged over the analysed time: `planes/NAME-mean.nc`.
+
+use super::output::{FedBy, Output, OutputKind, Scene};
+use super::schedule::Schedule;
+use super::section::{Section, Stored};
+use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
+use crate::error::StudyError;
+use crate::prepared::Prepared;
+use flow::lattice::{Lattice, PlaneAverage, PlaneAverageState};
+use formats::records::write_mean_plane;
+
+/// Planes are averaged from instants about this far apart (s).
+pub(super) const AVERAGING_INTERVAL: f64 = 2.0;
+
+/// The averages of all planes, of no instant yet.
+pub(crate) fn averages(setup: &Prepared, lattice: &Lattice) -> Vec<PlaneAverage> {
+    let average =
+        |slice: Slice| PlaneAverage::new(lattice, &slice.name, slice.axes, slice.position);
+    slices::of(setup).into_iter().map(average).collect()
+}
+
+/// The steps that they are made of.
+pub(crate) fn schedule(setup: &Prepared) -> Schedule {
+    Schedule::analysed(&setup.plan, AVERAGING_INTERVAL)
+}
+
+pub(super) static KIND: OutputKind = OutputKind {
+    name: "mean planes",
+    keys: &["crosswind_diameters"],
+    fed_by: FedBy::ResolvedFlow,
+    disk: |setup, _| slices::n_points(setup) * (POINT_BYTES + SUM_BYTES),
+    begin,
+};
+
+struct MeanPlanes {
+    schedule: Schedule,
+    averages: Vec<PlaneAverage>,
+}
+
+fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
+    let Some(lattice) = scene.farm.flow().lattice() else { return Ok(None) };
+    let mut averages = averages(scene.setup, lattice);
+    if let Some(stored) = stored {
+        let states: Vec<PlaneAverageState> = stored.state()?;
+        for (average, state) in averages.iter_mut().zip(states) {
+            average.restore(state)?;
+        }
+    }
+    Ok(Some(Box::new(MeanPlanes { schedule: schedule(scene.setup), averages })))
+}
+
+impl Output for MeanPlanes {
+    fn schedule(&self) -> Schedule {
+        self.schedule
+    }
+
+    fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        if let Some(lattice) = scene.farm.flow().lattice() {
+            self.averages.iter_mut().for_each(|average| average.add(lattice));
+        }
+        Ok(())
+    }
+
+    fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {
+        let states: Vec<PlaneAverageState> =
+            self.averages.iter().map(PlaneAverage::state).collect();
+        section.keep(&states)
+    }
+
+    fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        for average in self.averages.iter().filter(|average| average.n_instants() > 0) {
+            write_mean_plane(scene.folder, &average.mean())?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,111 @@
+//! What an output is: the descriptor of its kind, and what writes it in one run.
+
+use super::schedule::Schedule;
+use super::section::{Section, Stored};
+use crate::error::StudyError;
+use crate::prepared::Prepared;
+use basis::{Commands, Measurements};
+use farm::case::{Case, Run};
+use farm::{Air, Farm};
+use formats::records::RunFolder;
+use std::path::PathBuf;
+
+/// All that a study must know of one kind of output.
+pub struct OutputKind {
+    /// Its name, one of its own; its section of the checkpoint bears it.
+    pub name: &'static str,
+    /// Keys of `[output]` in the case file that only this kind follows.
+    pub keys: &'static [&'static str],
+    /// The flows that it can be made of.
+    pub fed_by: FedBy,
+    /// About how much one run leaves on the disk (bytes), what it adds to two checkpoints included.
+    pub disk: fn(&Prepared, &Run) -> u64,
+    /// Begins it in a run, or takes it up from the checkpoint; none where the case does not ask for it.
+    ///
+    /// It begins anew whatever an earlier run of this name has left of it in the folder.
+    pub begin: Begin,
+}
+
+/// Begins an output at the start of a run, or with what a checkpoint holds of it.
+pub type Begin = fn(&Scene, Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError>;
+
+/// The flows that an output can be made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FedBy {
+    /// Any.
+    AnyFlow,
+    /// Resolved flow: planes and volumes need its cells.
+    ResolvedFlow,
+    /// Prescribed wind.
+    PrescribedWind,
+}
+
+impl FedBy {
+    /// Whether the flow of `case` is one of them.
+    pub fn admits(self, case: &Case) -> bool {
+        match self {
+            Self::AnyFlow => true,
+            Self::ResolvedFlow => !case.flow.solver.is_prescribed(),
+            Self::PrescribedWind => case.flow.solver.is_prescribed(),
+        }
+    }
+}
+
+/// What an output may look at: the study, the run and the farm as it stands.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// What all runs of the study share.
+    pub setup: &'a Prepared,
+    /// The run.
+    pub run: &'a Run,
+    /// Folder of the run.
+    pub folder: &'a RunFolder,
+    /// Turbines, controllers and air.
+    pub farm: &'a Farm<Air>,
+}
+
+/// One output of a run under way.
+///
+/// In every step that its schedule names, [`before_step`](Self::before_step) comes first, then the farm moves on and
+/// [`record`](Self::record) is called for each turbine, then comes [`write`](Self::write). These three allocate nothing that
+/// they can hold ready. The last call is [`finish`](Self::finish).
+pub trait Output {
+    /// When it is due; the same throughout the run.
+    fn schedule(&self) -> Schedule;
+
+    /// Takes in what it needs of the farm before a step that is due.
+    fn before_step(&mut self, _scene: &Scene) {}
+
+    /// Takes in how turbine number `turbine` fared when a step that is due began, the truth whatever its instruments showed,
+    /// and what its controller commanded.
+    fn record(&mut self, _turbine: usize, _truth: &Measurements, _commands: &Commands) {}
+
+    /// Takes in or writes what the farm shows at the end of a step that is due.
+    ///
+    /// # Errors
+    /// [`StudyError`]; the run ends with it.
+    fn write(&mut self, _scene: &Scene) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    /// Puts on the disk what was written so far, and leaves in `section` what [`OutputKind::begin`] needs to go on from here.
+    ///
+    /// # Errors
+    /// [`StudyError`]; the run ends with it, the checkpoint before stands.
+    fn checkpoint(&mut self, _section: Section) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    /// Puts on the disk what was written so far of a run whose flow has broken down; gives the file, where it is of use.
+    fn salvage(&mut self) -> Option<PathBuf> {
+        None
+    }
+
+    /// Completes its files after the last step of the run. Outputs finish in the order of their list.
+    ///
+    /// # Errors
+    /// [`StudyError`]; the run ends with it, the checkpoint before stands.
+    fn finish(&mut self, _scene: &Scene) -> Result<(), StudyError> {
+        Ok(())
+    }
+}

@@ -1,0 +1,76 @@
+//! The plane at hub height averaged by the phase of the first helix: `planes/hub-height-phase-010.nc`.
+
+use super::mean_planes::AVERAGING_INTERVAL;
+use super::output::{FedBy, Output, OutputKind, Scene};
+use super::schedule::Schedule;
+use super::section::{Section, Stored};
+use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
+use crate::error::StudyError;
+use crate::prepared::Prepared;
+use analysis::wake::PhaseAverage;
+use control::excitation_rate;
+use farm::case::Run;
+use formats::records::write_phase_plane;
+
+pub(super) static KIND: OutputKind = OutputKind {
+    name: "phase planes",
+    keys: &["helix_phases"],
+    fed_by: FedBy::ResolvedFlow,
+    disk,
+    begin,
+};
+
+/// Phases, and the rate of the helix (rad/s), where the case asks for them and `run` has a helix.
+fn asked(setup: &Prepared, run: &Run) -> Option<(usize, f64)> {
+    let n_phases = setup.case.output.helix_phases?;
+    let (_, strouhal) = setup.case.first_helix(run)?;
+    let rate = excitation_rate(strouhal, setup.case.wind.speed, setup.plan.diameter);
+    Some((n_phases, rate))
+}
+
+fn disk(setup: &Prepared, run: &Run) -> u64 {
+    let n_phases = asked(setup, run).map_or(0, |(n_phases, _)| n_phases as u64);
+    n_phases * slices::n_points_at_hub_height(setup) * (POINT_BYTES + SUM_BYTES)
+}
+
+struct PhasePlanes {
+    schedule: Schedule,
+    slice: Slice,
+    average: PhaseAverage,
+}
+
+fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
+    let asked = asked(scene.setup, scene.run).zip(scene.farm.flow().lattice());
+    let Some(((n_phases, rate), lattice)) = asked else { return Ok(None) };
+    let slice = slices::hub_height(scene.setup);
+    let average = match stored {
+        Some(stored) => stored.state()?,
+        None => PhaseAverage::new(&slice.plane(lattice), rate, n_phases),
+    };
+    let schedule = Schedule::analysed(&scene.setup.plan, AVERAGING_INTERVAL);
+    Ok(Some(Box::new(PhasePlanes { schedule, slice, average })))
+}
+
+impl Output for PhasePlanes {
+    fn schedule(&self) -> Schedule {
+        self.schedule
+    }
+
+    fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        if let Some(lattice) = scene.farm.flow().lattice() {
+            self.average.add(&self.slice.plane(lattice))?;
+        }
+        Ok(())
+    }
+
+    fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {
+        section.keep(&self.average)
+    }
+
+    fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        for phase in self.average.planes() {
+            write_phase_plane(scene.folder, phase.phase, &phase.plane)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,164 @@
+//! The series: one row a control instant or every few of them, all turbines, `series.csv`.
+
+use super::lines::{self, WindLines};
+use super::output::{FedBy, Output, OutputKind, Scene};
+use super::schedule::Schedule;
+use super::section::{Section, Stored};
+use crate::channels::Row;
+use crate::error::StudyError;
+use crate::prepared::Prepared;
+use basis::{Commands, Measurements, Vector3};
+use farm::case::Run;
+use farm::{Air, Farm, Recorder};
+use flow::WindField;
+use formats::records::SeriesWriter;
+use std::path::PathBuf;
+
+/// Distance of the wind probe upstream of the first turbine (rotor diameters), or halfway to the inlet if nearer.
+const PROBE_DISTANCE: f64 = 2.0;
+/// Channels before the turbines' own, and those of the wind along lines at one place (–).
+const N_SHARED: u64 = 4;
+const N_LINES: u64 = 3;
+/// Channels of a turbine with three blades in resolved flow, about (–).
+const N_RESOLVED: u64 = 40;
+/// Channels of a flexible one in prescribed wind, where all loads are kept, about (–).
+const N_PRESCRIBED: u64 = 135;
+/// Bytes of a value in the file, about.
+const VALUE_BYTES: u64 = 19;
+
+pub(super) static KIND: OutputKind = OutputKind {
+    name: "series",
+    keys: &["interval", "lines_at"],
+    fed_by: FedBy::AnyFlow,
+    disk,
+    begin,
+};
+
+/// The steps in which a row is due.
+pub(crate) fn schedule(setup: &Prepared) -> Schedule {
+    Schedule::steps(setup.plan.row_stride)
+}
+
+/// Values in the series of the turbines of `run`, about (–).
+pub(super) fn n_values(setup: &Prepared, run: &Run) -> u64 {
+    let is_prescribed = setup.case.flow.solver.is_prescribed();
+    let of_turbine = if is_prescribed { N_PRESCRIBED } else { N_RESOLVED };
+    let n_channels =
+        N_SHARED + of_turbine * run.present().count() as u64 + N_LINES * lines::count(setup, run);
+    n_channels * schedule(setup).count(setup.plan.n_steps)
+}
+
+fn disk(setup: &Prepared, run: &Run) -> u64 {
+    n_values(setup, run) * VALUE_BYTES
+}
+
+struct Series {
+    schedule: Schedule,
+    rows: Rows,
+    writer: SeriesWriter,
+}
+
+/// Point at hub height where the arriving wind is read (m): upstream of the first turbine, in prescribed wind at it.
+fn probe(setup: &Prepared) -> Vector3 {
+    let plan = &setup.plan;
+    let foot = plan.positions[0];
+    if setup.case.flow.solver.is_prescribed() {
+        return Vector3::new(foot.x, foot.y, plan.hub_height);
+    }
+    let distance = (PROBE_DISTANCE * plan.diameter).min(0.5 * (foot.x - plan.origin.x));
+    Vector3::new(foot.x - distance, foot.y, plan.hub_height)
+}
+
+/// The rows of a series, one at a time.
+pub(crate) struct Rows {
+    row: Row,
+    /// Where the arriving wind is read (m).
+    probe: Vector3,
+    lines: Vec<WindLines>,
+}
+
+impl Rows {
+    /// The rows of `run`, whose turbines are those of `farm`.
+    pub(crate) fn new(setup: &Prepared, run: &Run, farm: &Farm<Air>) -> Self {
+        let lines = lines::of(setup, run);
+        let places: Vec<&str> = lines.iter().map(|lines| lines.name.as_str()).collect();
+        let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
+        let all_loads = setup.case.flow.solver.is_prescribed();
+        let row = Row::new(names.zip(farm.machines()), &places, all_loads);
+        Self { row, probe: probe(setup), lines }
+    }
+
+    /// Names of the columns.
+    pub(crate) fn names(&self) -> &[String] {
+        self.row.names()
+    }
+
+    /// Starts the row of the step that `farm` is about to make.
+    pub(crate) fn start(&mut self, farm: &Farm<Air>) {
+        let mut wind = [Vector3::ZERO];
+        farm.flow().sample(&[self.probe], &mut wind);
+        self.row.start(farm.time(), wind[0]);
+        for (index, machine) in farm.machines().iter().enumerate() {
+            self.row.loads(index, &machine.turbine);
+        }
+        for (index, lines) in self.lines.iter_mut().enumerate() {
+            self.row.lines(index, lines.wind(farm.flow()));
+        }
+    }
+
+    /// The row, once `farm` has made the step.
+    pub(crate) fn complete(&mut self, farm: &Farm<Air>) -> &[f64] {
+        for (index, machine) in farm.machines().iter().enumerate() {
+            self.row.beliefs(index, machine);
+        }
+        self.row.values()
+    }
+}
+
+impl Recorder for Rows {
+    fn record(&mut self, turbine: usize, truth: &Measurements, commands: &Commands) {
+        self.row.record(turbine, truth, commands);
+    }
+}
+
+fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
+    let Scene { setup, run, folder, farm } = *scene;
+    let rows = Rows::new(setup, run, farm);
+    let writer = match stored {
+        // So many bytes of it are sure.
+        Some(stored) => SeriesWriter::resume(&folder.series_path(), stored.state()?)?,
+        None => SeriesWriter::create(&folder.series_path(), rows.names())?,
+    };
+    Ok(Some(Box::new(Series { schedule: schedule(setup), rows, writer })))
+}
+
+impl Output for Series {
+    fn schedule(&self) -> Schedule {
+        self.schedule
+    }
+
+    fn before_step(&mut self, scene: &Scene) {
+        self.rows.start(scene.farm);
+    }
+
+    fn record(&mut self, turbine: usize, truth: &Measurements, commands: &Commands) {
+        self.rows.record(turbine, truth, commands);
+    }
+
+    fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        Ok(self.writer.write(self.rows.complete(scene.farm))?)
+    }
+
+    fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {
+        let n_bytes: u64 = self.writer.flush()?;
+        section.keep(&n_bytes)
+    }
+
+    fn salvage(&mut self) -> Option<PathBuf> {
+        self.writer.flush().ok().map(|_| self.writer.part_path().to_owned())
+    }
+
+    fn finish(&mut self, _scene: &Scene) -> Result<(), StudyError> {
+        Ok(self.writer.finish()?)
+    }
+}

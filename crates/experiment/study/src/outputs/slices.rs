@@ -1,0 +1,60 @@
+//! The planes of resolved flow that a run keeps: averaged, now and then, and last of all.
+
+use crate::prepared::Prepared;
+use basis::records::{Plane, PlaneAxes};
+use flow::lattice::Lattice;
+
+/// Bytes of a point in a file: three components.
+pub(super) const POINT_BYTES: u64 = 3 * size_of::<f32>() as u64;
+/// Bytes of a point of a sum, three components, in a checkpoint and the one before it.
+pub(super) const SUM_BYTES: u64 = 2 * 3 * size_of::<f64>() as u64;
+
+/// Where a plane lies.
+pub(crate) struct Slice {
+    /// Its name.
+    pub(super) name: String,
+    /// What spans it.
+    pub(super) axes: PlaneAxes,
+    /// Its position along the third axis (m).
+    pub(super) position: f64,
+}
+
+impl Slice {
+    /// The wind on it now.
+    pub(crate) fn plane(&self, lattice: &Lattice) -> Plane {
+        lattice.plane(&self.name, self.axes, self.position)
+    }
+}
+
+/// The plane at hub height.
+pub(super) fn hub_height(setup: &Prepared) -> Slice {
+    let position = setup.plan.hub_height;
+    Slice { name: "hub-height".to_owned(), axes: PlaneAxes::Horizontal, position }
+}
+
+/// All planes that are kept: at hub height, along the wind through the first turbine, and across it where the case says.
+pub(crate) fn of(setup: &Prepared) -> Vec<Slice> {
+    let plan = &setup.plan;
+    let foot = plan.positions[0];
+    let streamwise =
+        Slice { name: "streamwise".to_owned(), axes: PlaneAxes::Streamwise, position: foot.y };
+    let across = setup.case.output.crosswind_diameters.iter().map(|distance| Slice {
+        name: format!("{distance}D"),
+        axes: PlaneAxes::Crosswind,
+        position: foot.x + distance * plan.diameter,
+    });
+    [hub_height(setup), streamwise].into_iter().chain(across).collect()
+}
+
+/// Points of the plane at hub height (–).
+pub(super) fn n_points_at_hub_height(setup: &Prepared) -> u64 {
+    let [n_x, n_y, _] = setup.plan.n_cells.map(|n| n as u64);
+    n_x * n_y
+}
+
+/// Points of all planes together (–).
+pub(super) fn n_points(setup: &Prepared) -> u64 {
+    let [n_x, n_y, n_z] = setup.plan.n_cells.map(|n| n as u64);
+    let n_across = setup.case.output.crosswind_diameters.len() as u64;
+    n_x * n_y + n_x * n_z + n_across * n_y * n_z
+}

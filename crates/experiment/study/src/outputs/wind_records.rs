@@ -1,0 +1,165 @@
+//! The wind over the rotor of a turbine that is not there, as a full field that turbines elsewhere can stand in.
+
+use super::output::{FedBy, Output, OutputKind, Scene};
+use super::schedule::Schedule;
+use super::section::{Section, Stored};
+use crate::error::StudyError;
+use crate::prepared::Prepared;
+use basis::Vector3;
+use farm::case::{Control, Run};
+use flow::WindField;
+use flow::inflow::PlaneGrid;
+use formats::turbulence_box::WindRecorder;
+
+/// Air around the rotor that is kept (rotor diameters): tower tops sway, and rotors are displaced.
+const MARGIN: f64 = 0.1;
+/// Cells that the wind crosses between two planes, at most (–).
+const CELLS_BETWEEN: f64 = 0.5;
+/// Bytes of a point: three components as they come, and three of the full field.
+const POINT_BYTES: u64 = 3 * (size_of::<f32>() + size_of::<i16>()) as u64;
+
+pub(super) static KIND: OutputKind = OutputKind {
+    name: "wind records",
+    keys: &["inflow_at"],
+    // The grid is as fine as the cells.
+    fed_by: FedBy::ResolvedFlow,
+    disk,
+    begin,
+};
+
+/// Steps from one plane to the next (–).
+fn stride(setup: &Prepared) -> u64 {
+    let crossing = CELLS_BETWEEN * setup.plan.spacing / setup.case.wind.speed;
+    (crossing / setup.plan.interval).floor().max(1.0) as u64
+}
+
+fn schedule(setup: &Prepared) -> Schedule {
+    Schedule::analysed_steps(&setup.plan, stride(setup))
+}
+
+/// Places of the turbines that are not there in `run` and whose wind the case asks for.
+fn places<'a>(setup: &'a Prepared, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
+    let asked = setup.case.output.inflow_at.iter().copied();
+    asked.filter(|&index| run.control[index] == Control::Absent)
+}
+
+/// Points of the planes at the place of turbine number `index`.
+///
+/// A grid as fine as the cells, with a point at the hub, as far down as half a cell above the ground.
+fn grid(setup: &Prepared, index: usize) -> PlaneGrid {
+    let (plan, rotor) = (&setup.plan, &setup.models[index].definition);
+    let (spacing, hub_height) = (plan.spacing, rotor.rotor.hub_height);
+    let reach = rotor.rotor_radius() + MARGIN * rotor.rotor_diameter();
+    let n_aside = (reach / spacing).ceil();
+    let n_down = n_aside.min((hub_height / spacing - 0.5).floor()).max(0.0);
+    PlaneGrid {
+        n_y: 2 * n_aside as usize + 1,
+        n_z: (n_aside + n_down) as usize + 1,
+        spacing: [spacing; 2],
+        first: [-n_aside * spacing, hub_height - n_down * spacing],
+        interval: stride(setup) as f64 * plan.interval,
+        speed: setup.case.wind.speed,
+        n_steps: 0,
+        repeats: false,
+    }
+}
+
+fn disk(setup: &Prepared, run: &Run) -> u64 {
+    let grids = places(setup, run).map(|index| grid(setup, index));
+    let n_points: usize = grids.map(|grid| grid.n_y * grid.n_z).sum();
+    schedule(setup).count(setup.plan.n_steps) * n_points as u64 * POINT_BYTES
+}
+
+struct WindRecords {
+    schedule: Schedule,
+    records: Vec<WindRecord>,
+}
+
+/// One record under way, with room to work in.
+struct WindRecord {
+    recorder: WindRecorder,
+    grid: PlaneGrid,
+    hub_height: f64,
+    description: String,
+    positions: Vec<Vector3>,
+    velocities: Vec<Vector3>,
+    wind: Vec<[f32; 3]>,
+}
+
+fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
+    let Scene { setup, run, .. } = *scene;
+    if places(setup, run).next().is_none() {
+        return Ok(None);
+    }
+    // So many bytes of each are sure.
+    let n_bytes: Option<Vec<u64>> = stored.map(Stored::state).transpose()?;
+    let records = places(setup, run).enumerate().map(|(place, index)| {
+        let n_bytes = n_bytes.as_ref().and_then(|n_bytes| n_bytes.get(place)).copied();
+        WindRecord::begin(scene, index, n_bytes)
+    });
+    let records = records.collect::<Result<_, _>>()?;
+    Ok(Some(Box::new(WindRecords { schedule: schedule(setup), records })))
+}
+
+impl Output for WindRecords {
+    fn schedule(&self) -> Schedule {
+        self.schedule
+    }
+
+    fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        self.records.iter_mut().try_for_each(|record| record.write(scene.farm.flow()))
+    }
+
+    fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {
+        let flushed = self.records.iter_mut().map(|record| record.recorder.flush());
+        let n_bytes: Vec<u64> = flushed.collect::<Result<_, _>>()?;
+        section.keep(&n_bytes)
+    }
+
+    fn finish(&mut self, _scene: &Scene) -> Result<(), StudyError> {
+        for WindRecord { recorder, grid, hub_height, description, .. } in &mut self.records {
+            recorder.finish(grid, *hub_height, description)?;
+        }
+        Ok(())
+    }
+}
+
+impl WindRecord {
+    /// Begins the record at the place of turbine number `index`, or goes on with it after its first `n_bytes`.
+    fn begin(scene: &Scene, index: usize, n_bytes: Option<u64>) -> Result<Self, StudyError> {
+        let Scene { setup, run, folder, .. } = *scene;
+        let (grid, foot) = (grid(setup, index), setup.plan.positions[index]);
+        let positions: Vec<Vector3> = (0..grid.n_z)
+            .flat_map(|row| (0..grid.n_y).map(move |column| (row, column)))
+            .map(|(row, column)| {
+                let y = grid.first[0] + column as f64 * grid.spacing[0];
+                let z = grid.first[1] + row as f64 * grid.spacing[1];
+                Vector3::new(foot.x, foot.y + y, z)
+            })
+            .collect();
+        let name = &setup.case.turbines[index].name;
+        let (path, n_points) = (folder.inflow_path(name), positions.len());
+        let recorder = match n_bytes {
+            Some(n_bytes) => WindRecorder::resume(&path, n_points, n_bytes)?,
+            None => WindRecorder::create(&path, n_points)?,
+        };
+        Ok(Self {
+            recorder,
+            hub_height: setup.models[index].definition.rotor.hub_height,
+            description: format!("wakemix: {}, run {}, at {name}", setup.case.name, run.name),
+            velocities: vec![Vector3::ZERO; n_points],
+            wind: vec![[0.0; 3]; n_points],
+            positions,
+            grid,
+        })
+    }
+
+    /// Keeps the wind of `field` now.
+    fn write(&mut self, field: &impl WindField) -> Result<(), StudyError> {
+        field.sample(&self.positions, &mut self.velocities);
+        for (wind, velocity) in self.wind.iter_mut().zip(&self.velocities) {
+            *wind = [velocity.x, velocity.y, velocity.z].map(|component| component as f32);
+        }
+        Ok(self.recorder.write(&self.wind)?)
+    }
+}

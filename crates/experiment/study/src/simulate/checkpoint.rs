@@ -1,0 +1,102 @@
+//! The checkpoint of a run: everything that time changes, a section for each part.
+
+use crate::StudyError;
+use crate::outputs::Writers;
+use control::ControllerState;
+use farm::{Air, Farm};
+use flow::inflow::prescribed::Clock;
+use formats::checkpoint::{CheckpointReader, CheckpointWriter};
+use serde::{Deserialize, Serialize};
+
+/// Sections, besides those of the outputs.
+const RUN: &str = "run";
+const INSTRUMENTS: &str = "instruments";
+const LATTICE: &str = "air";
+const PRESCRIBED: &str = "wind";
+/// Checkpoints of earlier programs have none.
+const PEAK_MEMORY: &str = "peak memory";
+
+/// What the sessions of a run before this one have made and cost.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Before {
+    /// Steps made (–).
+    pub(super) step: u64,
+    /// Wall time (s).
+    pub(super) wall_time: f64,
+    /// Most memory that a process has held at once (bytes); none where the system does not tell.
+    pub(super) peak_memory: Option<u64>,
+}
+
+/// The clocks, turbines and controllers.
+#[derive(Serialize, Deserialize)]
+struct RunState {
+    step: u64,
+    wall_time: f64,
+    turbines: Vec<turbine::State>,
+    controllers: Vec<ControllerState>,
+}
+
+/// Whether any instrument errs, and so has a state to be kept.
+fn has_instruments(farm: &Farm<Air>) -> bool {
+    farm.machines().iter().any(|machine| !machine.sensing.instruments().are_perfect())
+}
+
+/// Writes `farm` as it stands and the state of its `outputs`; `made` holds what all sessions have cost so far.
+///
+/// # Errors
+/// [`StudyError`] when a file cannot be written.
+pub(super) fn write(
+    mut writer: CheckpointWriter,
+    farm: &mut Farm<Air>,
+    outputs: &mut Writers,
+    made: Before,
+) -> Result<(), StudyError> {
+    outputs.checkpoint(&mut writer)?;
+    let state = RunState {
+        step: made.step,
+        wall_time: made.wall_time,
+        turbines: farm.machines().iter().map(|m| m.turbine.state().clone()).collect(),
+        controllers: farm.machines().iter().map(|m| m.controller.state()).collect(),
+    };
+    writer.state(RUN, &state)?;
+    writer.state(PEAK_MEMORY, &made.peak_memory)?;
+    if has_instruments(farm) {
+        let sensing: Vec<sensing::State> =
+            farm.machines().iter().map(|machine| *machine.sensing.state()).collect();
+        writer.state(INSTRUMENTS, &sensing)?;
+    }
+    match farm.flow_mut() {
+        Air::Lattice(lattice) => writer.stream(LATTICE, |bytes| lattice.write_state(bytes))?,
+        Air::Prescribed(wind) => writer.state(PRESCRIBED, &wind.state())?,
+    }
+    Ok(writer.finish()?)
+}
+
+/// On return `farm` stands where the checkpoint of `reader` was written; gives it with what the sessions before have cost.
+///
+/// # Errors
+/// [`StudyError::File`] when the checkpoint does not fit.
+pub(super) fn read(
+    reader: &mut CheckpointReader,
+    farm: Farm<Air>,
+) -> Result<(Farm<Air>, Before), StudyError> {
+    let state: RunState = reader.state(RUN)?;
+    let mut farm = farm.at_step(state.step);
+    let states = state.turbines.into_iter().zip(state.controllers);
+    for (machine, (turbine, controller)) in farm.machines_mut().iter_mut().zip(states) {
+        machine.turbine.restore(turbine);
+        machine.controller.restore(controller);
+    }
+    if has_instruments(&farm) {
+        let stored: Vec<sensing::State> = reader.state(INSTRUMENTS)?;
+        for (machine, stored) in farm.machines_mut().iter_mut().zip(stored) {
+            machine.sensing.restore(stored);
+        }
+    }
+    match farm.flow_mut() {
+        Air::Lattice(lattice) => reader.stream(LATTICE, |bytes| lattice.read_state(bytes))?,
+        Air::Prescribed(wind) => wind.restore(reader.state::<Clock>(PRESCRIBED)?)?,
+    }
+    let peak_memory = if reader.holds(PEAK_MEMORY) { reader.state(PEAK_MEMORY)? } else { None };
+    Ok((farm, Before { step: state.step, wall_time: state.wall_time, peak_memory }))
+}
