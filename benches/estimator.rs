@@ -64,7 +64,7 @@ fn record(
     definition: &Arc<turbine::Definition>,
     setting: &Setting,
     options: &Options,
-) -> Vec<Measurements> {
+) -> Vec<Measurements<'static>> {
     let mut model = MeasurementModel::new(definition, setting, options)
         .expect("the bench's own setting can be used");
     (0..N_UPDATES)
@@ -83,7 +83,6 @@ fn record(
                 rotor_speed: ROTOR_SPEED,
                 generator_speed: ROTOR_SPEED,
                 pitch,
-                rotor_wind_speed: 9.0,
                 flap_moments: moments,
                 ..Measurements::at_rest(3)
             }

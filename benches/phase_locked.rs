@@ -62,7 +62,6 @@ fn two_axes(settings: &Settings) -> f64 {
         interval: INTERVAL,
         rotor_speed: 0.7,
         generator_speed: 0.7,
-        rotor_wind_speed: 9.0,
         flap_moments: PerBlade::splat(3, 5e7),
         ..Measurements::at_rest(3)
     };

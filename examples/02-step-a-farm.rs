@@ -2,7 +2,7 @@
 //!
 //! cargo run --release -p wakemix --example 02-step-a-farm
 
-use wakemix::basis::{Commands, Measurements};
+use wakemix::basis::{Commands, Truth};
 use wakemix::farm::Recorder;
 use wakemix::formats::case;
 use wakemix::study::Prepared;
@@ -33,7 +33,7 @@ struct Last {
 }
 
 impl Recorder for Last {
-    fn record(&mut self, _turbine: usize, truth: &Measurements, _commands: &Commands) {
+    fn record(&mut self, _turbine: usize, truth: &Truth, _commands: &Commands) {
         self.power = truth.power;
     }
 }

@@ -228,7 +228,12 @@ fn own_model(
     Ok(errors.finish())
 }
 
-fn reading(time: f64, azimuth: f64, pitch: PerBlade<f64>, moments: PerBlade<f64>) -> Measurements {
+fn reading(
+    time: f64,
+    azimuth: f64,
+    pitch: PerBlade<f64>,
+    moments: PerBlade<f64>,
+) -> Measurements<'static> {
     Measurements {
         time,
         interval: INTERVAL,
@@ -236,7 +241,6 @@ fn reading(time: f64, azimuth: f64, pitch: PerBlade<f64>, moments: PerBlade<f64>
         rotor_speed: ROTOR_SPEED,
         generator_speed: ROTOR_SPEED,
         pitch,
-        rotor_wind_speed: SPEED,
         flap_moments: moments,
         ..Measurements::at_rest(3)
     }

@@ -1,7 +1,7 @@
 //! One turbine in prescribed wind, run and read as the reference was.
 
 use basis::Vector3;
-use control::{Baseline, Excitation, Helix, Sense, TurbineController};
+use control::{Baseline, Excitation, Helix, Sense};
 use farm::assemble::Model;
 use farm::case::Solver;
 use farm::farm::Recorder;
@@ -68,7 +68,7 @@ impl Run {
 struct Silent;
 
 impl Recorder for Silent {
-    fn record(&mut self, _: usize, _: &basis::Measurements, _: &basis::Commands) {}
+    fn record(&mut self, _: usize, _: &basis::Truth, _: &basis::Commands) {}
 }
 
 /// What becomes of the rotor's speed.
@@ -147,7 +147,7 @@ pub(super) fn run(asked: &Asked<'_>) -> Run {
         farm.advance(&mut Silent).expect("the wind does not end");
         if farm.time() > asked.window[0] && farm.step().is_multiple_of(asked.steps_per_sample) {
             let turbine = &farm.machines()[0].turbine;
-            let read = turbine.measurements(farm.time(), INTERVAL);
+            let read = turbine.truth(farm.time(), INTERVAL);
             result.power += 1e-6 * read.aerodynamic_torque * read.rotor_speed;
             result.thrust += 1e-6 * read.thrust;
             result.generator_power += 1e-6 * read.power;
@@ -203,13 +203,13 @@ fn machine(asked: &Asked<'_>) -> Machine {
     if asked.speed == Speed::Held {
         turbine = turbine.at_held_speed();
     }
-    let mut excitation = Excitation::None;
-    if asked.amplitude > 0.0 {
-        let amplitude = asked.amplitude.to_radians();
-        let sense = Sense::CounterClockwise;
-        excitation = Excitation::Helix(Helix::new(sense, amplitude, 0.25, asked.wind, diameter));
+    let baseline = Box::new(Baseline::new(model.constants));
+    if asked.amplitude == 0.0 {
+        return Machine::new(turbine, baseline);
     }
-    Machine::new(turbine, TurbineController::new(Baseline::new(model.constants), excitation))
+    let (amplitude, sense) = (asked.amplitude.to_radians(), Sense::CounterClockwise);
+    let helix = Helix::new(sense, amplitude, 0.25, asked.wind, diameter);
+    Machine::new(turbine, helix.on_top_of(baseline))
 }
 
 /// What blows.

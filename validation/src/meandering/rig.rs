@@ -99,7 +99,7 @@ impl Rig {
         add: impl FnOnce(&mut PerBlade<f64>, &Measurements),
     ) -> Reading {
         let time = self.step as f64 * INTERVAL;
-        let measurements = self.turbine.measurements(time, INTERVAL);
+        let measurements = self.turbine.truth(time, INTERVAL).measured();
         let mut commands = self.baseline.update(&measurements);
         add(&mut commands.pitch, &measurements);
         self.wind.sample(time, self.turbine.stations(), &mut self.winds);

@@ -144,7 +144,7 @@ pub(super) fn drive(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
     asked: &Asked,
-    mut heard: impl FnMut(&Measurements),
+    mut heard: impl FnMut(&Measurements<'static>),
 ) {
     let (amplitude, ahead) = asked.own;
     fly(definition, constants, asked, |reading| {
@@ -161,7 +161,7 @@ pub(super) fn fly(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
     asked: &Asked,
-    mut excite: impl FnMut(&Measurements) -> PerBlade<f64>,
+    mut excite: impl FnMut(&Measurements<'static>) -> PerBlade<f64>,
 ) {
     let settings = turbine::Settings {
         induction: Induction::ByMomentum(aero::rotor::Settings {
@@ -185,7 +185,7 @@ pub(super) fn fly(
     let mut shown = PerBlade::splat(definition.n_blades, 0.0);
     for step in 0..(asked.duration / INTERVAL) as usize {
         let time = step as f64 * INTERVAL;
-        let measurements = turbine.measurements(time, INTERVAL);
+        let measurements = turbine.truth(time, INTERVAL).measured();
         let mut commands = controller.update(&measurements);
         if time > FIRST_READING {
             let own = excite(&read(&measurements, asked.instruments, &mut shown, &mut noise));
@@ -198,11 +198,11 @@ pub(super) fn fly(
 
 /// `measurements` as the instruments show them.
 pub(super) fn read(
-    measurements: &Measurements,
+    measurements: &Measurements<'static>,
     instruments: Instruments,
     shown: &mut PerBlade<f64>,
     noise: &mut Noise,
-) -> Measurements {
+) -> Measurements<'static> {
     let scale = instruments.noise * measurements.flap_moments.mean().abs();
     let mut read = *measurements;
     for (reading, shown) in read.flap_moments.iter_mut().zip(shown.iter_mut()) {

@@ -38,7 +38,7 @@ struct Known {
     /// Largest error that is aimed at (deg).
     aim: f64,
     rate: f64,
-    record: Vec<Measurements>,
+    record: Vec<Measurements<'static>>,
     /// Phases of tilt and yaw (rad) over the angle of the excitation, of the wind and of the load.
     wind: [f64; 2],
     load: [f64; 2],

@@ -5,12 +5,13 @@ mod constants;
 mod estimator;
 mod filter;
 mod individual_pitch;
+mod kind;
 mod pitch;
 mod speed;
 mod torque;
 mod tower;
 
-use crate::Controller;
+use crate::controller::{Controller, ForeignState, from_bytes, to_bytes};
 use basis::{Commands, Measurements, PerBlade};
 pub use coefficients::{CoefficientTable, CoefficientTableError};
 pub use constants::{
@@ -20,6 +21,7 @@ pub use constants::{
 };
 use filter::LowPass;
 use individual_pitch::Individual;
+pub use kind::BASELINE;
 use pitch::{Pitch, least_pitch};
 use serde::{Deserialize, Serialize};
 use speed::{SpeedFilter, Wind};
@@ -96,6 +98,19 @@ impl Controller for Baseline {
             state.pitch.update(interval, rotor_speed, pitch_reference, least_pitch, constants);
         let pitch = state.add_damping(measurements, wind_speed, collective, least_pitch, constants);
         Commands { pitch, generator_torque }
+    }
+
+    fn describe(&self) -> String {
+        "baseline".to_owned()
+    }
+
+    fn save(&self) -> Vec<u8> {
+        to_bytes(&self.state)
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), ForeignState> {
+        self.state = from_bytes(state)?;
+        Ok(())
     }
 }
 

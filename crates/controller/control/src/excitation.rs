@@ -1,4 +1,4 @@
-//! Periodic pitch on top of the baseline, to mix the wake: the helix and the pulse.
+//! Pitch on top of what another controller decides, to mix the wake.
 //!
 //! # The sense of the helix
 //!
@@ -20,125 +20,95 @@
 //! The second line carries a minus that Eq. 7 leaves out; it is half a turn of phase and changes no frequency.
 //! Here **ccw is the upper sign: blades pitch at rotor frequency plus excitation frequency**.
 
-mod helix;
-mod pulse;
-
-pub use basis::Sense;
-pub use helix::Helix;
-pub use pulse::Pulse;
-
-use crate::meandering::Meandering;
-use crate::phase_sync::{PhaseSync, SyncState};
-use basis::{Measurements, PerBlade};
-use serde::{Deserialize, Serialize};
+use crate::controller::{Controller, ForeignState, from_bytes, to_bytes};
+use basis::{Commands, Measurements, PerBlade};
 use std::f64::consts::{PI, TAU};
 
-/// What is added to the baseline's pitch.
-#[derive(Clone, Debug, Default)]
-pub enum Excitation {
-    /// Nothing.
-    #[default]
-    None,
-    /// Individual pitch that moves the thrust centre on a circle.
-    Helix(Helix),
-    /// Collective pitch, periodic.
-    Pulse(Pulse),
-    /// Individual pitch that joins the helix that comes from upstream.
-    PhaseSync(Box<PhaseSync>),
-    /// Individual pitch that amplifies or attenuates a slow oscillation of the turbine's own loads.
-    Meandering(Box<Meandering>),
+/// Pitch on top of what another controller decides.
+pub trait Excitation: Send {
+    /// Adds the excitation at the instant of `measurements` to `pitch` (rad); amplitude zero leaves every bit as it was. Must not
+    /// allocate, block or fail.
+    fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements);
+
+    /// What it is, in a few words: "helix ccw 4.0° St 0.25".
+    fn describe(&self) -> String;
+
+    /// As [`Controller::signals`].
+    fn signals(&self) -> Vec<&'static str> {
+        Vec::new()
+    }
+
+    /// As [`Controller::write_signals`].
+    fn write_signals(&self, _values: &mut [f64]) {}
+
+    /// As [`Controller::save`]; nothing where it follows from time alone.
+    fn save(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// As [`Controller::restore`].
+    ///
+    /// # Errors
+    /// [`ForeignState`] for bytes that such an excitation did not write.
+    fn restore(&mut self, state: &[u8]) -> Result<(), ForeignState> {
+        if state.is_empty() { Ok(()) } else { Err(ForeignState) }
+    }
+
+    /// It, on top of `inner`.
+    fn on_top_of(self, inner: Box<dyn Controller>) -> Box<dyn Controller>
+    where
+        Self: Sized + 'static,
+    {
+        let n_signals = self.signals().len();
+        Box::new(OnTop { inner, excitation: self, n_signals })
+    }
 }
 
-/// Everything of an excitation that time changes.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub enum ExcitationState {
-    /// It follows from time alone.
-    #[default]
-    None,
-    /// Of [`Excitation::PhaseSync`].
-    PhaseSync(Box<SyncState>),
-    /// Of [`Excitation::Meandering`].
-    Meandering(Box<Meandering>),
+/// A controller with an excitation on top.
+pub struct OnTop<E> {
+    inner: Box<dyn Controller>,
+    excitation: E,
+    /// Signals of the excitation (–).
+    n_signals: usize,
 }
 
-impl Excitation {
-    /// Adds the excitation at `measurements.time` to `pitch` (rad); amplitude zero leaves every bit as it was.
-    pub fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
-        let silent = self.amplitude() == 0.0;
-        let added = match self {
-            Self::PhaseSync(sync) => sync.pitch(measurements),
-            Self::Meandering(meandering) => return meandering.add_to(pitch, measurements),
-            _ if silent => return,
-            Self::None => return,
-            Self::Helix(helix) => helix.pitch(measurements.time, measurements.azimuth, pitch.len()),
-            Self::Pulse(pulse) => PerBlade::splat(pitch.len(), pulse.pitch(measurements.time)),
-        };
-        if silent {
-            return;
-        }
-        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
-            *pitch += added;
-        }
+impl<E: Excitation> Controller for OnTop<E> {
+    fn update(&mut self, measurements: &Measurements) -> Commands {
+        let mut commands = self.inner.update(measurements);
+        self.excitation.add_to(&mut commands.pitch, measurements);
+        commands
     }
 
-    /// Pitch amplitude (rad); the largest allowed where it varies.
-    pub fn amplitude(&self) -> f64 {
-        match self {
-            Self::None => 0.0,
-            Self::Helix(helix) => helix.amplitude,
-            Self::Pulse(pulse) => pulse.amplitude,
-            Self::PhaseSync(sync) => sync.settings().amplitude,
-            Self::Meandering(meandering) => meandering.settings().maximum_amplitude,
-        }
+    fn describe(&self) -> String {
+        self.excitation.describe()
     }
 
-    /// Excitation rate ω_e in the fixed frame (rad/s), that believed in where it is estimated; zero without an excitation.
-    pub fn rate(&self) -> f64 {
-        match self {
-            Self::None => 0.0,
-            Self::Helix(helix) => helix.rate,
-            Self::Pulse(pulse) => pulse.rate,
-            Self::PhaseSync(sync) => sync.settings().rate,
-            Self::Meandering(meandering) => meandering.estimate().rate,
-        }
+    fn signals(&self) -> Vec<&'static str> {
+        let mut signals = self.inner.signals();
+        signals.extend(self.excitation.signals());
+        signals
     }
 
-    /// In words: "baseline", "helix ccw 4.0° St 0.25", "pulse 2.5° St 0.25", "synchronised ccw 4.0° at 150°",
-    /// "meandering × 1.5".
-    pub fn describe(&self) -> String {
-        let words = |kind: &str, amplitude: f64, strouhal: f64| {
-            format!("{kind} {:.1}° St {strouhal:.2}", amplitude.to_degrees())
-        };
-        match self {
-            Self::None => "baseline".to_owned(),
-            Self::Helix(helix) => {
-                words(&format!("helix {}", helix.sense), helix.amplitude, helix.strouhal)
-            }
-            Self::Pulse(pulse) => words("pulse", pulse.amplitude, pulse.strouhal),
-            Self::PhaseSync(sync) => sync.describe(),
-            Self::Meandering(meandering) => meandering.describe(),
-        }
+    fn write_signals(&self, values: &mut [f64]) {
+        let (inner, own) = values.split_at_mut(values.len() - self.n_signals);
+        self.inner.write_signals(inner);
+        self.excitation.write_signals(own);
     }
 
-    /// Everything that time changes, for a checkpoint.
-    pub fn state(&self) -> ExcitationState {
-        match self {
-            Self::PhaseSync(sync) => ExcitationState::PhaseSync(Box::new(sync.state())),
-            Self::Meandering(meandering) => ExcitationState::Meandering(meandering.clone()),
-            Self::None | Self::Helix(_) | Self::Pulse(_) => ExcitationState::None,
-        }
+    fn save(&self) -> Vec<u8> {
+        to_bytes(&[self.inner.save(), self.excitation.save()])
     }
 
-    /// Continues from `state`, which an excitation of the same settings gave; a state of another kind changes nothing.
-    pub fn restore(&mut self, state: ExcitationState) {
-        match (self, state) {
-            (Self::PhaseSync(sync), ExcitationState::PhaseSync(state)) => sync.restore(*state),
-            (Self::Meandering(meandering), ExcitationState::Meandering(state)) => {
-                *meandering = state;
-            }
-            _ => {}
-        }
+    fn restore(&mut self, state: &[u8]) -> Result<(), ForeignState> {
+        let [inner, own]: [Vec<u8>; 2] = from_bytes(state)?;
+        self.inner.restore(&inner)?;
+        self.excitation.restore(&own)
     }
+}
+
+/// "KIND 4.0° St 0.25" of an excitation of `amplitude` (rad) at `strouhal` (–).
+pub(crate) fn words(kind: &str, amplitude: f64, strouhal: f64) -> String {
+    format!("{kind} {:.1}° St {strouhal:.2}", amplitude.to_degrees())
 }
 
 /// Excitation rate ω_e = 2π St U / D (rad/s) of Strouhal number `strouhal` (–) in a free stream of
@@ -163,7 +133,7 @@ pub(crate) fn fade_in(time: f64, start: f64, rate: f64) -> f64 {
 /// Share of the amplitude (–) at `time` (s) of what fades in at `start` (s) and, where it has a `stop` (s), out from then
 /// on, each over one period of `rate` (rad/s). Both fades add up to one, so it lies between 0 and 1 for a stop at or after
 /// the start.
-fn share(time: f64, start: f64, stop: Option<f64>, rate: f64) -> f64 {
+pub(crate) fn share(time: f64, start: f64, stop: Option<f64>, rate: f64) -> f64 {
     fade_in(time, start, rate) - stop.map_or(0.0, |stop| fade_in(time, stop, rate))
 }
 

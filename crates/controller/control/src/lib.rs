@@ -1,25 +1,43 @@
-//! Decisions: what a turbine is told, from its measurements alone.
+//! Decisions: what a turbine does, from its measurements alone.
 //!
-//! Controllers compose by wrapping: an [`Excitation`] adds to what [`Baseline`] decides. Every controller is
-//! plain data, so a run that was killed goes on with the same bits. Nothing here allocates, blocks or fails
-//! in [`Controller::update`].
+//! A [`Controller`] runs on one turbine. Controllers compose by wrapping: an [`Excitation`] goes [on top](OnTop) of what another
+//! controller decides, in the end of [`Baseline`]. Each kind of controller has a folder of its own with its law and its
+//! [`ControllerKind`]: its keys in the case file, its checks, how it is built, what the summary says of it. The list of kinds is
+//! [`CONTROLLERS`]. Nothing here allocates, blocks or fails in [`Controller::update`].
 
+mod absent;
 pub mod baseline;
+mod controller;
 mod excitation;
+pub mod helix;
+mod keys;
+mod kind;
 pub mod meandering;
 pub mod phase_sync;
-mod turbine_controller;
+pub mod pulse;
 
+pub use absent::ABSENT;
 pub use baseline::Baseline;
-pub use excitation::{Excitation, Helix, Pulse, Sense, excitation_rate};
+pub use basis::Sense;
+pub use controller::{Controller, ForeignState, from_bytes, to_bytes};
+pub use excitation::{Excitation, OnTop, excitation_rate};
+pub use helix::Helix;
+pub use kind::{
+    Control, ControlError, ControllerKind, Identification, Motion, Pitching, Place, Site,
+};
 pub use meandering::Meandering;
 pub use phase_sync::PhaseSync;
-pub use turbine_controller::{ControllerState, TurbineController};
+pub use pulse::Pulse;
 
-use basis::{Commands, Measurements};
+use basis::registry::Registry;
 
-/// Runs on the turbine: must not allocate, block or fail.
-pub trait Controller: Send {
-    /// What the turbine is told until the next control instant, given its `measurements` at this one.
-    fn update(&mut self, measurements: &Measurements) -> Commands;
-}
+/// The kinds of controllers. A new kind is a folder beside these and a line here; a program built on wakemix
+/// [adds](Registry::add) its own.
+pub static CONTROLLERS: Registry<dyn ControllerKind> = Registry::new(&[
+    &baseline::BASELINE,
+    &helix::HELIX,
+    &pulse::PULSE,
+    &phase_sync::PHASE_SYNC,
+    &meandering::MEANDERING,
+    &ABSENT,
+]);

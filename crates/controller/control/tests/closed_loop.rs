@@ -4,7 +4,7 @@ mod rotor;
 
 use basis::PerBlade;
 use control::baseline::{Baseline, Constants, MinimumPitch};
-use control::{Controller, Excitation, Helix, Pulse, Sense, TurbineController};
+use control::{Controller, Excitation, Helix, Pulse, Sense};
 use proptest::prelude::*;
 use rotor::{RADIUS, RATED_POWER, RATED_SPEED, Rotor, bits, constants, gusts, spread};
 
@@ -37,7 +37,7 @@ fn holds_rated_speed_and_power_above_rated() {
                 let n_steps = (600.0 / interval) as usize;
                 // Feathered, as after a start: at fine pitch this rotor would stall in a storm.
                 let mut rotor = Rotor::new(interval, 1.2);
-                rotor.measurements.pitch = PerBlade::splat(3, 0.3);
+                rotor.truth.pitch = PerBlade::splat(3, 0.3);
                 let run = rotor.run(&mut baseline, n_steps, |_| wind_speed);
                 let tail = &run[n_steps - (100.0 / interval) as usize..];
                 let (speed, wobble) = spread(tail.iter().map(|m| m.rotor_speed));
@@ -127,46 +127,50 @@ proptest! {
 
 #[test]
 fn amplitude_zero_is_the_baseline_bit_for_bit() {
-    let fly = |excitation| {
-        let mut controller = TurbineController::new(Baseline::new(constants()), excitation);
-        bits(&Rotor::new(0.2, 1.0).run(&mut controller, 2000, gusts))
+    let baseline = || -> Box<dyn Controller> { Box::new(Baseline::new(constants())) };
+    let fly = |mut controller: Box<dyn Controller>| {
+        bits(&Rotor::new(0.2, 1.0).run(&mut *controller, 2000, gusts))
     };
-    let baseline = fly(Excitation::None);
+    let alone = fly(baseline());
     let helix = Helix::new(Sense::CounterClockwise, 0.0, 0.25, 10.5, 2.0 * RADIUS);
-    assert_eq!(baseline, fly(Excitation::Helix(helix)));
-    assert_eq!(baseline, fly(Excitation::Pulse(Pulse::new(0.0, 0.25, 10.5, 2.0 * RADIUS))));
-    assert_ne!(baseline, fly(Excitation::Helix(Helix { amplitude: 0.01, ..helix })));
+    assert_eq!(alone, fly(helix.on_top_of(baseline())));
+    let pulse = Pulse::new(0.0, 0.25, 10.5, 2.0 * RADIUS);
+    assert_eq!(alone, fly(pulse.on_top_of(baseline())));
+    assert_ne!(alone, fly(Helix { amplitude: 0.01, ..helix }.on_top_of(baseline())));
 }
 
 /// Before its start, an excitation of any amplitude is not there.
 #[test]
 fn nothing_is_added_before_the_start() {
-    let fly = |excitation| {
-        let mut controller = TurbineController::new(Baseline::new(constants()), excitation);
-        bits(&Rotor::new(0.2, 1.0).run(&mut controller, 500, gusts))
+    let baseline = || -> Box<dyn Controller> { Box::new(Baseline::new(constants())) };
+    let fly = |mut controller: Box<dyn Controller>| {
+        bits(&Rotor::new(0.2, 1.0).run(&mut *controller, 500, gusts))
     };
     let helix = Helix {
         start: 100.0,
         ..Helix::new(Sense::CounterClockwise, 0.07, 0.25, 10.5, 2.0 * RADIUS)
     };
-    assert_eq!(fly(Excitation::None), fly(Excitation::Helix(helix)));
+    assert_eq!(fly(baseline()), fly(helix.on_top_of(baseline())));
 }
 
 #[test]
 fn a_stored_controller_goes_on_with_the_same_bits() {
     let helix = Helix::new(Sense::CounterClockwise, 0.07, 0.25, 10.5, 2.0 * RADIUS);
-    let new = || TurbineController::new(Baseline::new(constants()), Excitation::Helix(helix));
+    let new = || helix.on_top_of(Box::new(Baseline::new(constants())));
     let mut rotor = Rotor::new(0.2, 1.0);
     let mut controller = new();
-    rotor.run(&mut controller, 777, gusts);
-    let stored = postcard::to_stdvec(&controller.state()).expect("plain data serialises");
+    rotor.run(&mut *controller, 777, gusts);
+    let stored = controller.save();
     let mut twin = rotor.clone();
     let mut restored = new();
-    restored.restore(postcard::from_bytes(&stored).expect("what was written is read"));
-    assert_eq!(restored.state(), controller.state());
-    let uninterrupted = bits(&rotor.run(&mut controller, 500, gusts));
-    assert_eq!(uninterrupted, bits(&twin.run(&mut restored, 500, gusts)));
-    assert_eq!(restored.state(), controller.state());
+    restored.restore(&stored).expect("its own state");
+    assert_eq!(restored.save(), controller.save());
+    let uninterrupted = bits(&rotor.run(&mut *controller, 500, gusts));
+    assert_eq!(uninterrupted, bits(&twin.run(&mut *restored, 500, gusts)));
+    assert_eq!(restored.save(), controller.save());
+    // What another controller saved is refused, and so is what was cut short.
+    assert!(restored.restore(&Baseline::new(constants()).save()).is_err());
+    assert!(restored.restore(&stored[..stored.len() - 1]).is_err());
 }
 
 #[test]
@@ -174,12 +178,12 @@ fn a_reading_that_is_no_number_gives_commands_that_are() {
     let mut baseline = Baseline::new(constants());
     let mut rotor = Rotor::new(0.2, 1.0);
     rotor.run(&mut baseline, 100, gusts);
-    rotor.measurements.rotor_speed = f64::NAN;
-    rotor.measurements.generator_speed = f64::NAN;
-    let commands = baseline.update(&rotor.measurements);
+    rotor.truth.rotor_speed = f64::NAN;
+    rotor.truth.generator_speed = f64::NAN;
+    let commands = baseline.update(&rotor.truth.measured());
     assert!(commands.generator_torque.is_finite() && commands.pitch[0].is_finite());
-    rotor.measurements.rotor_speed = 1.0;
-    rotor.measurements.generator_speed = 1.0;
-    let commands = baseline.update(&rotor.measurements);
+    rotor.truth.rotor_speed = 1.0;
+    rotor.truth.generator_speed = 1.0;
+    let commands = baseline.update(&rotor.truth.measured());
     assert!(commands.generator_torque > 0.0);
 }

@@ -3,7 +3,7 @@
 mod rotor;
 
 use basis::mbc::{blade_azimuth, to_fixed_frame};
-use basis::{FixedFrame, Measurements, PerBlade};
+use basis::{FixedFrame, PerBlade, Truth};
 use control::Controller;
 use control::baseline::{Baseline, Constants, IndividualPitch, PitchFloor, TowerDamping};
 use rotor::{Rotor, tracking_constants};
@@ -15,7 +15,7 @@ const INTERVAL: f64 = 0.05;
 fn tower_damping_ratio(constants: Constants) -> f64 {
     let (mass, rate, interval) = (4e5, TAU * 0.32, 0.01);
     let mut rotor = Rotor::heier(interval, constants.rated_rotor_speed);
-    let now = &mut rotor.measurements;
+    let now = &mut rotor.truth;
     now.pitch = PerBlade::splat(3, 0.2);
     let mut baseline = Baseline::new(constants);
     let (mut position, mut velocity) = (0.0, 0.5);
@@ -55,7 +55,7 @@ fn the_tower_damper_damps_as_much_as_its_gain_says() {
 }
 
 /// Root moments under a tilted load that pitch takes away with `per_pitch` (N m/rad), after the lag of the blades (rad).
-fn with_moments(measurements: &mut Measurements, load: FixedFrame, per_pitch: f64, lag: f64) {
+fn with_moments(measurements: &mut Truth, load: FixedFrame, per_pitch: f64, lag: f64) {
     let azimuth = measurements.azimuth;
     let pitch = to_fixed_frame(azimuth + lag, &measurements.pitch);
     let felt = FixedFrame {
@@ -80,15 +80,15 @@ fn individual_pitch_takes_tilt_and_yaw_moments_away() {
         let constants = Constants { individual_pitch: Some(individual), ..tracking_constants() };
         let mut baseline = Baseline::new(constants);
         let mut rotor = Rotor::heier(INTERVAL, 1.267);
-        rotor.measurements.pitch = PerBlade::splat(3, 0.2);
+        rotor.truth.pitch = PerBlade::splat(3, 0.2);
         let load = FixedFrame { average: 8e6, tilt: 2e6, yaw: -1e6 };
         for _ in 0..8000 {
-            with_moments(&mut rotor.measurements, load, 1e8, offset);
+            with_moments(&mut rotor.truth, load, 1e8, offset);
             rotor.run(&mut baseline, 1, |_| 16.0);
         }
-        with_moments(&mut rotor.measurements, load, 1e8, offset);
-        let moments = &rotor.measurements.flap_moments;
-        let left = to_fixed_frame(rotor.measurements.azimuth, moments);
+        with_moments(&mut rotor.truth, load, 1e8, offset);
+        let moments = &rotor.truth.flap_moments;
+        let left = to_fixed_frame(rotor.truth.azimuth, moments);
         // Pitch is held over an interval in which the rotor turns 3.6°.
         assert!(left.tilt.hypot(left.yaw) < 0.05 * 2.3e6, "{left:?}");
         assert!((left.average - 8e6).abs() < 1.0);
@@ -109,13 +109,13 @@ fn individual_pitch_keeps_its_amplitude_below_limit_ramp_and_floor() {
         let mut baseline =
             Baseline::new(Constants { individual_pitch: Some(individual), ..tracking_constants() });
         let mut rotor = Rotor::heier(INTERVAL, 1.1);
-        rotor.measurements.pitch = PerBlade::splat(3, if wind_speed > 12.0 { 0.2 } else { 0.0 });
+        rotor.truth.pitch = PerBlade::splat(3, if wind_speed > 12.0 { 0.2 } else { 0.0 });
         let mut last = (0.0, 0.0);
         for _ in 0..6000 {
-            let azimuth = rotor.measurements.azimuth;
-            rotor.measurements.flap_moments =
+            let azimuth = rotor.truth.azimuth;
+            rotor.truth.flap_moments =
                 PerBlade::from_fn(3, |blade| 5e7 * blade_azimuth(azimuth, blade, 3).cos());
-            let asked = baseline.update(&rotor.measurements).pitch;
+            let asked = baseline.update(&rotor.truth.measured()).pitch;
             let fixed = to_fixed_frame(azimuth, &asked);
             last = (fixed.tilt.hypot(fixed.yaw), fixed.average);
             rotor.run(&mut baseline, 1, |_| wind_speed);

@@ -2,12 +2,12 @@
 
 mod rotor;
 
-use basis::{Measurements, PerBlade};
+use basis::{PerBlade, Truth};
+use control::Controller;
 use control::baseline::{
     Baseline, CoefficientTable, Constants, MinimumPitch, PitchGains, SetPointSmoothing,
     TorqueControl, TorqueGains, WIND_SPEED_FILTER_CORNER,
 };
-use control::{Controller, Excitation, TurbineController};
 use proptest::prelude::*;
 use rotor::{
     RADIUS, RATED_POWER, RATED_SPEED, Rotor, bits, constants, gusts, spread, tracking_constants,
@@ -19,7 +19,7 @@ fn watch(
     rotor: &mut Rotor,
     n_steps: usize,
     wind: impl Fn(f64) -> f64 + Copy,
-) -> Vec<(Measurements, f64)> {
+) -> Vec<(Truth, f64)> {
     let mut step = || {
         let measurements = rotor.run(baseline, 1, wind)[0];
         (measurements, baseline.wind_speed().expect("it has been updated"))
@@ -32,7 +32,7 @@ fn started(interval: f64, wind_speed: f64) -> Rotor {
     let speed = (8.1 * wind_speed / RADIUS).clamp(0.5, 1.2);
     let mut rotor = Rotor::heier(interval, speed);
     let pitch = (0.03 * (wind_speed - 11.5)).clamp(0.0, 0.35);
-    rotor.measurements.pitch = PerBlade::splat(3, pitch);
+    rotor.truth.pitch = PerBlade::splat(3, pitch);
     rotor
 }
 
@@ -76,7 +76,7 @@ fn the_estimate_follows_a_gust() {
             calm + if inside { 1.5 * (1.0 - (std::f64::consts::TAU * phase).cos()) } else { 0.0 }
         };
         let mut rotor = started(0.1, calm);
-        rotor.measurements.pitch = PerBlade::splat(3, pitch);
+        rotor.truth.pitch = PerBlade::splat(3, pitch);
         let mut baseline = Baseline::new(tracking_constants());
         let run = watch(&mut baseline, &mut rotor, 4500, wind);
         let within = &run[2950..4200];
@@ -153,14 +153,14 @@ fn the_deck_may_ask_for_the_other_kind_of_torque_control() {
 
 #[test]
 fn a_stored_controller_goes_on_with_the_same_bits() {
-    let new = || TurbineController::new(Baseline::new(tracking_constants()), Excitation::None);
+    let new = || Baseline::new(tracking_constants());
     let mut rotor = Rotor::heier(0.1, 1.0);
     let mut controller = new();
     rotor.run(&mut controller, 777, gusts);
-    let stored = postcard::to_stdvec(&controller.state()).expect("plain data serialises");
+    let stored = controller.save();
     let mut twin = rotor.clone();
     let mut restored = new();
-    restored.restore(postcard::from_bytes(&stored).expect("what was written is read"));
+    restored.restore(&stored).expect("its own state");
     let uninterrupted = bits(&rotor.run(&mut controller, 500, gusts));
     assert_eq!(uninterrupted, bits(&twin.run(&mut restored, 500, gusts)));
 }
@@ -169,9 +169,9 @@ fn a_stored_controller_goes_on_with_the_same_bits() {
 fn readings_that_are_no_numbers_do_no_lasting_harm() {
     let mut baseline = Baseline::new(tracking_constants());
     let mut rotor = Rotor::heier(0.1, f64::NAN);
-    assert!(baseline.update(&rotor.measurements).generator_torque.is_finite());
-    rotor.measurements.rotor_speed = 1.0;
-    rotor.measurements.generator_speed = 1.0;
+    assert!(baseline.update(&rotor.truth.measured()).generator_torque.is_finite());
+    rotor.truth.rotor_speed = 1.0;
+    rotor.truth.generator_speed = 1.0;
     let run = rotor.run(&mut baseline, 6000, |_| 9.0);
     let ratio = run[5999].rotor_speed * RADIUS / 9.0 / baseline.constants().optimal_tip_speed_ratio;
     assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
@@ -270,14 +270,14 @@ fn a_table_that_is_too_low_gives_roscos_rotor_speeds() {
         let mut baseline = Baseline::new(constants.clone());
         let mut rotor = Rotor::heier(0.05, 9.0 * wind_speed / radius);
         for _ in 0..20_000 {
-            let commands = baseline.update(&rotor.measurements);
-            let now = &mut rotor.measurements;
+            let commands = baseline.update(&rotor.truth.measured());
+            let now = &mut rotor.truth;
             let torque = aerodynamic / now.rotor_speed - commands.generator_torque;
             now.rotor_speed += 0.05 * torque / 312_456_272.0;
             now.generator_speed = now.rotor_speed;
             now.generator_torque = commands.generator_torque;
         }
-        let speed = rotor.measurements.rotor_speed / rpm;
+        let speed = rotor.truth.rotor_speed / rpm;
         assert!((speed / expected - 1.0).abs() < 1e-3, "{wind_speed} m/s: {speed} rpm");
     }
 }

@@ -13,6 +13,7 @@ mod oscillation;
 pub use error::EstimationError;
 pub use helix::{HelixEstimate, HelixEstimator, LinearEstimator};
 pub use oscillation::{Oscillation, Quantity};
+pub use turbine::Definition;
 
 use basis::Measurements;
 use serde::Serialize;

@@ -52,7 +52,7 @@ struct Known {
     rate: f64,
     amplitude: f64,
     noisy: bool,
-    record: Vec<Measurements>,
+    record: Vec<Measurements<'static>>,
     /// Phases of tilt and yaw at time zero (rad), of the wind and of the load.
     wind: [f64; 2],
     load: [f64; 2],

@@ -1,28 +1,15 @@
 //! From case to farm: turbines, controllers and air put together.
 
 use crate::air::Air;
-use crate::case::Meandering as MeanderingSettings;
-use crate::case::PhaseSync as PhaseSyncSettings;
 use crate::case::TowerInfluence as AskedInfluence;
-use crate::case::{
-    Case, Control, DynamicInflow, Ground, PhaseEstimator, Placement, Run, Sides, Solver,
-};
+use crate::case::{Case, Control, DynamicInflow, Ground, Placement, Run, Sides, Solver};
 use crate::plan::{Footprint, Plan};
 use crate::{Farm, Machine};
 use basis::Vector3;
-use basis::angle::wrap_to_turn;
-use control::baseline::{Baseline, Constants};
-use control::meandering::{self, Decoupling, MeanderingError, TwoAxisSettings};
-use control::phase_sync::{self, SyncSettings};
-use control::{
-    Excitation, Helix, Meandering, PhaseSync, Pulse, TurbineController, excitation_rate,
-};
-use estimation::helix::{Options, Setting, Wake};
-use estimation::phase_locked;
-use estimation::{EstimationError, HelixEstimator};
+use control::baseline::Constants;
+use control::{ControlError, Controller, Site};
 use flow::lattice;
-use sensing::{InstrumentError, Sensing};
-use std::f64::consts::TAU;
+use sensing::{InstrumentError, Mount, Sensing};
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
 use turbine::aero::induction::{SnelSchepers, TwoConstant};
@@ -37,37 +24,14 @@ pub enum AssemblyError {
     /// A model's masses, stiffnesses or mode shapes make no structure.
     #[error(transparent)]
     Structure(#[from] StructureError),
-    /// The phase of a helix cannot be sought as asked.
-    #[error("the phase of the helix cannot be estimated")]
-    Estimation(#[from] EstimationError),
-    /// Meandering cannot be followed as asked.
-    #[error("the meandering cannot be followed")]
-    Meandering(#[from] MeanderingError),
-    /// Nobody found how pitch acts on the loads.
-    #[error("how pitch acts on the loads was neither given nor found before")]
-    NotDecoupled,
-    /// Nobody found the azimuth offset of a turbine that joins a helix.
-    #[error("the azimuth offset with which it pitches was neither given nor found before")]
-    NoAzimuthOffset,
+    /// A turbine cannot be controlled as the case has it.
+    #[error(transparent)]
+    Control(#[from] ControlError),
     /// Nobody found the azimuth offset of a turbine's individual pitch control.
     #[error(
         "the azimuth offset of its individual pitch control was neither given nor found before; give `azimuth_offset_deg` in `individual_pitch` of its turbine file's [controller]"
     )]
     NoIndividualPitchOffset,
-    /// An excitation that fades out before it has faded in.
-    #[error(
-        "stop = {stop} s comes before the excitation is whole: it starts at {start} s and fades in over one period of {period:.1} s; stop at {earliest} s or later, or leave `stop` out"
-    )]
-    StopsTooEarly {
-        /// Asked stop (s).
-        stop: f64,
-        /// Start (s).
-        start: f64,
-        /// Excitation period (s).
-        period: f64,
-        /// Earliest stop, in whole seconds (s).
-        earliest: f64,
-    },
     /// A turbine's instruments cannot be.
     #[error(transparent)]
     Instruments(#[from] InstrumentError),
@@ -152,130 +116,34 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
     settings
 }
 
-/// What runs on a turbine of `model`, at time steps of `plan`; Strouhal numbers are taken with the case's wind speed and the first turbine's diameter.
+/// What runs on a turbine of `model` under `control`, at time steps of `plan`.
 ///
 /// # Errors
-/// [`AssemblyError::Estimation`] when the phase of a helix cannot be sought as asked, [`AssemblyError::NoAzimuthOffset`] when it
-/// cannot be joined, [`AssemblyError::NoIndividualPitchOffset`] when individual pitch control cannot be told where its pitch acts,
-/// [`AssemblyError::Meandering`] and [`AssemblyError::NotDecoupled`] when meandering cannot be followed,
-/// [`AssemblyError::StopsTooEarly`] for an excitation that ends before it has begun.
+/// [`AssemblyError::Control`] for what cannot be controlled so, [`AssemblyError::NoIndividualPitchOffset`] when individual pitch
+/// control cannot know where its pitch acts.
 pub fn controller(
     control: &Control,
     model: &Model,
     case: &Case,
     plan: &Plan,
-) -> Result<TurbineController, AssemblyError> {
+) -> Result<Box<dyn Controller>, AssemblyError> {
     if model.lacks_individual_pitch_offset() {
         return Err(AssemblyError::NoIndividualPitchOffset);
     }
-    let (wind_speed, diameter) = (case.wind.speed, plan.diameter);
-    let excitation = match control {
-        Control::Baseline | Control::Absent => Excitation::None,
-        Control::Helix(asked) => {
-            let mut helix =
-                Helix::new(asked.sense, asked.amplitude, asked.strouhal, wind_speed, diameter);
-            helix.phase = asked.phase;
-            helix.azimuth_offset = asked.azimuth_offset;
-            helix.start = asked.start;
-            helix.stop = stop_of(asked.start, asked.stop, helix.rate)?;
-            Excitation::Helix(helix)
-        }
-        Control::Pulse(asked) => {
-            let mut pulse = Pulse::new(asked.amplitude, asked.strouhal, wind_speed, diameter);
-            pulse.phase = asked.phase;
-            pulse.start = asked.start;
-            pulse.stop = stop_of(asked.start, asked.stop, pulse.rate)?;
-            Excitation::Pulse(pulse)
-        }
-        Control::PhaseSync(asked) => {
-            let setting = estimator_setting(asked, case, plan);
-            let options = estimator_options(asked.estimator, case.flow.solver);
-            let options = asked.noise.apply(options);
-            let options = asked.calibration.map_or(options, |found| found.apply(options));
-            let estimator = HelixEstimator::new(&model.definition, &setting, options)?;
-            let settings = SyncSettings {
-                sense: asked.sense,
-                amplitude: asked.amplitude,
-                rate: setting.rate,
-                offset: wrap_to_turn(asked.offset),
-                azimuth_offset: asked.azimuth_offset.ok_or(AssemblyError::NoAzimuthOffset)?,
-                start: asked.start,
-                trust: asked.fallback.then_some(phase_sync::TRUST),
-            };
-            Excitation::PhaseSync(Box::new(PhaseSync::new(settings, estimator)))
-        }
-        Control::Meandering(asked) => {
-            let settings = meandering_settings(asked, case, plan)?;
-            Excitation::Meandering(Box::new(Meandering::new(settings, plan.interval)?))
-        }
-    };
-    Ok(TurbineController::new(Baseline::new(model.constants.clone()), excitation))
+    Ok(control.build(&site(model, case, plan))?)
 }
 
-/// The `stop` (s) of an excitation of `rate` (rad/s) that begins at `start` (s), which is to be whole before it ends.
-fn stop_of(start: f64, stop: Option<f64>, rate: f64) -> Result<Option<f64>, AssemblyError> {
-    let period = TAU / rate;
-    match stop {
-        Some(stop) if stop < start + period => {
-            let earliest = (start + period).ceil();
-            Err(AssemblyError::StopsTooEarly { stop, start, period, earliest })
-        }
-        stop => Ok(stop),
-    }
-}
-
-/// What meandering control is told.
-fn meandering_settings(
-    asked: &MeanderingSettings,
-    case: &Case,
-    plan: &Plan,
-) -> Result<meandering::Settings, AssemblyError> {
-    let rate = |strouhal| excitation_rate(strouhal, case.wind.speed, plan.diameter);
-    let signal = phase_locked::Settings::between(asked.strouhal.map(rate));
-    let watches = asked.amplitude == 0.0;
-    let decoupling = match asked.decoupling {
-        Some(decoupling) => decoupling,
-        // Nothing is pitched.
-        None if watches => Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: 1.0 },
-        None => return Err(AssemblyError::NotDecoupled),
-    };
-    Ok(meandering::Settings {
-        follower: TwoAxisSettings { signal, sense: asked.sense, leader: asked.leader },
-        followed: asked.followed,
-        factor: asked.factor,
-        reference: asked.reference,
-        decoupling,
-        bandwidth: asked.bandwidth,
-        proportional: 0.0,
-        maximum_amplitude: asked.amplitude,
-        maximum_offset: if watches { 0.0 } else { asked.offset },
-        needs_lock: asked.fallback,
-        start: asked.start,
-    })
-}
-
-/// What the phase estimator of `sync` is told.
-pub fn estimator_setting(sync: &PhaseSyncSettings, case: &Case, plan: &Plan) -> Setting {
-    Setting {
-        sense: sync.sense,
-        rate: excitation_rate(sync.strouhal, case.wind.speed, plan.diameter),
-        interval: plan.interval,
+/// What a controller of a turbine of `model` is built for, at time steps of `plan`; Strouhal numbers are taken with the case's wind
+/// speed and the first turbine's diameter.
+pub fn site<'a>(model: &'a Model, case: &Case, plan: &Plan) -> Site<'a> {
+    Site {
+        constants: &model.constants,
+        rotor: &model.definition,
+        wind_speed: case.wind.speed,
+        diameter: plan.diameter,
         air_density: case.wind.air_density,
-        n_elements: Setting::N_ELEMENTS,
-    }
-}
-
-/// Choices of an estimator in the air of `solver`, before calibration, with its own noise.
-pub fn estimator_options(estimator: PhaseEstimator, solver: Solver) -> Options {
-    match estimator {
-        PhaseEstimator::Robust if solver.is_prescribed() => {
-            // Momentum theory keeps the wake's delay with the blade, solved air where the blade has passed.
-            let mut options = Options::default();
-            options.rotor.wake = Wake::WithBlades { time_factor: 1.0 };
-            options
-        }
-        PhaseEstimator::Robust => Options::default(),
-        PhaseEstimator::Published => Options::published(),
+        interval: plan.interval,
+        flow_resolves_induction: !case.flow.solver.is_prescribed(),
     }
 }
 
@@ -319,7 +187,13 @@ pub fn farm(
         let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)?;
         let control = controller(&run.control[index], model, case, plan)?;
         let seed = sensing::seed_of_turbine(case.wind.seed, index);
-        let sensing = Sensing::new(placement.instruments, seed)?;
+        let mut sensing = Sensing::new(placement.instruments, seed)?;
+        for mounted in &placement.sensors {
+            let definition = turbine.definition();
+            let mount = Mount { definition, foot, interval: plan.interval, seed };
+            sensing =
+                sensing.with_sensor(&mounted.name, mounted.kind.build(&mounted.values, &mount));
+        }
         machines.push(Machine::new(turbine, control).with_instruments(sensing));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

@@ -1,14 +1,12 @@
 //! One study as plain data: what the case file says, in SI units.
 
-pub use control::Sense;
-pub use control::meandering::{Decoupling, Followed, Leader, Reference};
-pub use sensing::{Instrument, Instruments, Lag};
+pub use control::{Control, Sense};
+pub use sensing::{Instrument, Instruments, Lag, Mounted};
 
-use estimation::helix::{Calibration, Measurement, Options};
 use serde::{Deserialize, Serialize};
 
 /// A study: one wind, one row of turbines, several runs to compare.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Case {
     /// Name of the study.
     pub name: String,
@@ -255,7 +253,7 @@ pub struct Time {
 }
 
 /// One turbine in the layout.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
     /// Name, such as `T1`.
     pub name: String,
@@ -275,6 +273,8 @@ pub struct Placement {
     pub tower_influence: TowerInfluence,
     /// What its controller sees of it.
     pub instruments: Instruments,
+    /// Further sensors, whose readings its controller sees by their names.
+    pub sensors: Vec<Mounted>,
 }
 
 impl Placement {
@@ -323,7 +323,7 @@ pub enum TowerInfluence {
 }
 
 /// One run: who does what.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Run {
     /// Name of the run.
     pub name: String,
@@ -336,8 +336,7 @@ pub struct Run {
 impl Run {
     /// Places in [`Case::turbines`] of the turbines that are there in this run, in order: the farm's machines.
     pub fn present(&self) -> impl Iterator<Item = usize> + '_ {
-        let is_there =
-            |(index, control): (usize, &Control)| (*control != Control::Absent).then_some(index);
+        let is_there = |(index, control): (usize, &Control)| control.is_there().then_some(index);
         self.control.iter().enumerate().filter_map(is_there)
     }
 }
@@ -365,158 +364,6 @@ pub fn helix_upstream(
         .filter_map(|other| Some((x(other), controls[other].helix()?)))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|found| found.1)
-}
-
-/// What runs on a turbine, on top of torque and collective pitch control.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Control {
-    /// Greedy: most power below rated, rated power above.
-    Baseline,
-    /// The helix: individual pitch that moves the thrust centre on a circle.
-    Helix(Helix),
-    /// The pulse: collective pitch, periodic.
-    Pulse(Pulse),
-    /// The helix in step with the one that comes from upstream.
-    PhaseSync(PhaseSync),
-    /// Meandering of the wake that meets it, amplified or attenuated.
-    Meandering(Meandering),
-    /// The turbine is not there in this run.
-    Absent,
-}
-
-impl Control {
-    /// Sense and Strouhal number of the helix that a turbine makes, or joins.
-    pub fn helix(&self) -> Option<(Sense, f64)> {
-        match self {
-            Self::Helix(helix) => Some((helix.sense, helix.strouhal)),
-            Self::PhaseSync(sync) => Some((sync.sense, sync.strouhal)),
-            Self::Baseline | Self::Pulse(_) | Self::Meandering(_) | Self::Absent => None,
-        }
-    }
-}
-
-/// Settings of the helix.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Helix {
-    /// Which way it winds.
-    pub sense: Sense,
-    /// Pitch amplitude (rad).
-    pub amplitude: f64,
-    /// Strouhal number f D / U with the case's wind speed and the turbine's diameter (–).
-    pub strouhal: f64,
-    /// Phase of the tilt command at time zero (rad).
-    pub phase: f64,
-    /// Azimuth offset of the inverse multi-blade transformation (rad).
-    pub azimuth_offset: f64,
-    /// Time at which it fades in (s).
-    pub start: f64,
-    /// Time at which it fades out (s); never when absent.
-    #[serde(default)]
-    pub stop: Option<f64>,
-}
-
-/// Settings of the pulse.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pulse {
-    /// Pitch amplitude (rad).
-    pub amplitude: f64,
-    /// Strouhal number f D / U (–).
-    pub strouhal: f64,
-    /// Phase at time zero (rad).
-    pub phase: f64,
-    /// Time at which it fades in (s).
-    pub start: f64,
-    /// Time at which it fades out (s); never when absent.
-    #[serde(default)]
-    pub stop: Option<f64>,
-}
-
-/// Settings of a turbine that joins the helix that comes from upstream.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PhaseSync {
-    /// Which way the helix winds that it joins.
-    pub sense: Sense,
-    /// Pitch amplitude (rad); 0 is the baseline that watches.
-    pub amplitude: f64,
-    /// Strouhal number of the helix that it joins (–).
-    pub strouhal: f64,
-    /// Lead of the pitch over the wind that meets the rotor (rad, any turn).
-    pub offset: f64,
-    /// Azimuth offset of the inverse multi-blade transformation (rad); found [before the runs](crate::pitch_response::own_pitch)
-    /// when absent.
-    pub azimuth_offset: Option<f64>,
-    /// Time at which it fades in (s).
-    pub start: f64,
-    /// What finds the phase.
-    pub estimator: PhaseEstimator,
-    /// Whether it fades to the baseline where the estimate cannot be trusted.
-    pub fallback: bool,
-    /// Noise that the estimator is told to believe in.
-    #[serde(default)]
-    pub noise: PhaseNoise,
-    /// What the estimator makes of the turbine's own pitch; found [before the runs](crate::pitch_response::own_pitch).
-    pub calibration: Option<Calibration>,
-}
-
-/// Noise that a phase estimator is told to believe in; what is absent stays as the estimator has it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PhaseNoise {
-    /// Standard deviation of one blade's moment (N m).
-    pub measurement: Option<f64>,
-    /// Wandering of amplitudes, or of sine and cosine components ((m/s)²/s).
-    pub wandering_amplitude: Option<f64>,
-    /// Wandering of phases (rad²/s).
-    pub wandering_phase: Option<f64>,
-}
-
-impl PhaseNoise {
-    /// `options` with this noise.
-    pub fn apply(&self, options: Options) -> Options {
-        let mut options = options;
-        let noise = &mut options.noise;
-        noise.measurement = self.measurement.map_or(noise.measurement, Measurement::Moment);
-        noise.amplitude = self.wandering_amplitude.unwrap_or(noise.amplitude);
-        noise.phase = self.wandering_phase.unwrap_or(noise.phase);
-        options
-    }
-}
-
-/// What finds the phase of a helix.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum PhaseEstimator {
-    /// The extended Kalman filter with states for what its model lacks.
-    Robust,
-    /// The extended Kalman filter as it was published.
-    Published,
-}
-
-/// Settings of a turbine that amplifies or attenuates the meandering of the wake that meets it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Meandering {
-    /// Amplitude of the loads asked for over that of the baseline, α (–).
-    pub factor: f64,
-    /// Largest pitch amplitude on either axis (rad); 0 is the baseline that watches, whatever `offset` says.
-    pub amplitude: f64,
-    /// Largest constant pitch on either axis, to bring the loads' means to zero (rad).
-    pub offset: f64,
-    /// Lowest and highest Strouhal number f D / U that is followed (–).
-    pub strouhal: [f64; 2],
-    /// Way the loads circle.
-    pub sense: Sense,
-    /// Which moment the oscillator follows.
-    pub leader: Leader,
-    /// Loads as they are, or the wake's own part of them.
-    pub followed: Followed,
-    /// Where the baseline's amplitudes come from.
-    pub reference: Reference,
-    /// Integral action: amplitude added per time and amplitude missing (1/s).
-    pub bandwidth: f64,
-    /// How pitch acts on the loads; found before the runs when absent.
-    pub decoupling: Option<Decoupling>,
-    /// Whether it fades to the baseline where the loop is not locked.
-    pub fallback: bool,
-    /// Time at which it starts (s).
-    pub start: f64,
 }
 
 /// What is kept of a run, beside series and summary.

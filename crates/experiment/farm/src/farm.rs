@@ -1,18 +1,18 @@
 //! The loop: read, decide, sample, move rotors, move air.
 
-use basis::{Commands, Measurements, PerBlade, PointForce, Vector3};
-use control::{Controller, TurbineController};
-use flow::{FlowError, FlowSolver};
+use basis::{Commands, PerBlade, PointForce, Truth, Vector3};
+use control::Controller;
+use flow::{FlowError, FlowSolver, WindField};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
-use sensing::Sensing;
+use sensing::{Scene, Sensing};
 use turbine::Turbine;
 
 /// Watches a run: files, statistics, live plots.
 pub trait Recorder {
     /// Takes how turbine number `turbine` fared and what it was told at one control instant: the truth, whatever its
     /// instruments showed of it.
-    fn record(&mut self, turbine: usize, truth: &Measurements, commands: &Commands);
+    fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands);
 }
 
 /// Takes nothing down.
@@ -20,7 +20,7 @@ pub trait Recorder {
 pub struct Unrecorded;
 
 impl Recorder for Unrecorded {
-    fn record(&mut self, _turbine: usize, _truth: &Measurements, _commands: &Commands) {}
+    fn record(&mut self, _turbine: usize, _truth: &Truth, _commands: &Commands) {}
 }
 
 /// One turbine with what runs on it.
@@ -30,14 +30,14 @@ pub struct Machine {
     /// What stands between it and its controller.
     pub sensing: Sensing,
     /// What decides for it; sees only what the instruments show.
-    pub controller: TurbineController,
+    pub controller: Box<dyn Controller>,
     winds: Vec<Vector3>,
     commands: Commands,
 }
 
 impl Machine {
     /// A turbine under `controller`, with perfect instruments.
-    pub fn new(turbine: Turbine, controller: TurbineController) -> Self {
+    pub fn new(turbine: Turbine, controller: Box<dyn Controller>) -> Self {
         let winds = vec![Vector3::ZERO; turbine.stations().len()];
         let pitch = PerBlade::splat(turbine.definition().n_blades, 0.0);
         let commands = Commands { pitch, generator_torque: 0.0 };
@@ -49,11 +49,11 @@ impl Machine {
         Self { sensing, ..self }
     }
 
-    /// Reads the instruments at `time` (s) and decides for an `interval` (s); gives the truth that was read.
-    fn decide(&mut self, time: f64, interval: f64) -> Measurements {
-        let truth = self.turbine.measurements(time, interval);
-        let shown = self.sensing.read(&truth);
-        self.commands = self.controller.update(&shown);
+    /// Reads the instruments at `time` (s) in the `wind` and decides for an `interval` (s); gives the truth that was read.
+    fn decide(&mut self, time: f64, interval: f64, wind: &dyn WindField) -> Truth {
+        let truth = self.turbine.truth(time, interval);
+        let scene = Scene { truth: &truth, turbine: &self.turbine, wind };
+        self.commands = self.controller.update(&self.sensing.read(&scene));
         truth
     }
 
@@ -118,7 +118,7 @@ impl<Flow: FlowSolver + Sync> Farm<Flow> {
         let time = self.time();
         self.forces.clear();
         for (index, machine) in self.machines.iter_mut().enumerate() {
-            let truth = machine.decide(time, self.interval);
+            let truth = machine.decide(time, self.interval, &self.flow);
             recorder.record(index, &truth, &machine.commands);
         }
         let (flow, interval) = (&self.flow, self.interval);

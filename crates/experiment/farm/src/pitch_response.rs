@@ -11,15 +11,15 @@ pub use prescribed::{
 
 use crate::air::Air;
 use crate::assemble::{self, AssemblyError, Model};
-use crate::case::{Case, Control, Decoupling, Helix, Meandering, Sense};
+use crate::case::{Case, Control, Sense};
 use crate::farm::Recorder;
 use crate::plan::Plan;
 use crate::self_check::Tunnel;
 use crate::{Farm, Machine, Progress};
 use basis::mbc::to_fixed_frame;
-use basis::{Commands, Measurements, Vector3};
-use control::excitation_rate;
-use control::meandering::Answer;
+use basis::{Commands, Truth, Vector3};
+use control::meandering::{Answer, Decoupling};
+use control::{Excitation, Helix, excitation_rate};
 use estimation::EstimationError;
 use flow::FlowError;
 use flow::inflow::{MeanProfile, PrescribedWind};
@@ -67,15 +67,15 @@ pub struct ProbeCost {
 }
 
 /// Cost of [`decoupling`].
-pub fn decoupling_cost(case: &Case, plan: &Plan, model: &Model, asked: &Meandering) -> ProbeCost {
-    let rate = excitation_rate(middle(asked), case.wind.speed, plan.diameter);
+pub fn decoupling_cost(case: &Case, plan: &Plan, model: &Model, strouhal: [f64; 2]) -> ProbeCost {
+    let rate = excitation_rate(middle(strouhal), case.wind.speed, plan.diameter);
     let wind_speed = WAKE_SPEED * case.wind.speed;
     Course::new(wind_speed, plan, model, rate, COUNTED).cost(case, plan, model, 2)
 }
 
-/// Strouhal number in the middle of what `asked` follows (–).
-fn middle(asked: &Meandering) -> f64 {
-    0.5 * (asked.strouhal[0] + asked.strouhal[1])
+/// The middle of a range of Strouhal numbers (–).
+fn middle([low, high]: [f64; 2]) -> f64 {
+    0.5 * (low + high)
 }
 
 /// Steps of one trial: until the near wake has settled and the pitch, which fades in over a period, is whole; and after it.
@@ -114,7 +114,8 @@ impl Course {
     }
 }
 
-/// How pitch acts on tilt and yaw moment of turbine number `index` of `case` in the middle of what `asked` follows.
+/// How pitch acts on tilt and yaw moment of turbine number `index` of `case` in the middle of the range
+/// `strouhal` (–).
 ///
 /// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in prescribed wind as
 /// the case has it, with perfect instruments, and pitches a helix of [`PROBE`], first counter-clockwise, then clockwise; what
@@ -127,11 +128,10 @@ pub fn decoupling(
     plan: &Plan,
     model: &Model,
     index: usize,
-    asked: &Meandering,
+    strouhal: [f64; 2],
     progress: Progress,
 ) -> Result<Decoupling, CalibrationError> {
-    let strouhal = middle(asked);
-    let rate = excitation_rate(strouhal, case.wind.speed, plan.diameter);
+    let rate = excitation_rate(middle(strouhal), case.wind.speed, plan.diameter);
     let wind_speed = WAKE_SPEED * case.wind.speed;
     let [counter_clockwise, clockwise] =
         answers(case, plan, model, index, wind_speed, rate, progress)?;
@@ -172,8 +172,8 @@ pub fn answers(
 
 /// What a helix of [`PROBE`] at `rate` (rad/s) takes off the moments in `record`, whole periods of it in a steady wind: both
 /// axes correlated with their command and with the same a quarter period earlier.
-fn answer_to(record: &[Measurements], sense: Sense, rate: f64) -> Answer {
-    let moments = |of: &Measurements| to_fixed_frame(of.azimuth, &of.flap_moments);
+fn answer_to(record: &[Truth], sense: Sense, rate: f64) -> Answer {
+    let moments = |of: &Truth| to_fixed_frame(of.azimuth, &of.flap_moments);
     let n = record.len().max(1) as f64;
     let mean = record
         .iter()
@@ -217,28 +217,24 @@ fn pitching(
     index: usize,
     pitch: &Pitching,
     progress: Progress,
-) -> Result<Vec<Measurements>, CalibrationError> {
+) -> Result<Vec<Truth>, CalibrationError> {
     let diameter = model.definition.rotor_diameter();
     let rate = pitch.rate;
     let mut alone = case.clone();
     alone.wind.speed = pitch.wind_speed;
-    let helix = Control::Helix(Helix {
-        sense: pitch.sense,
-        amplitude: pitch.amplitude,
-        // Diameters of a case are its plan's.
-        strouhal: rate * plan.diameter / (TAU * alone.wind.speed),
-        phase: 0.0,
-        azimuth_offset: pitch.azimuth_offset,
-        start: 0.0,
-        stop: None,
-    });
+    // Diameters of a case are its plan's.
+    let strouhal = rate * plan.diameter / (TAU * alone.wind.speed);
+    let mut helix =
+        Helix::new(pitch.sense, pitch.amplitude, strouhal, alone.wind.speed, plan.diameter);
+    helix.azimuth_offset = pitch.azimuth_offset;
     // The rotor alone: no tower stands in its wind.
     let settings = assemble::turbine_settings(&alone, plan, model, &alone.turbines[index], None);
     let foot = Vector3::new(0.0, 0.0, -model.definition.rotor.hub_height);
     let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)
         .map_err(AssemblyError::from)?
         .without_bodies();
-    let controller = assemble::controller(&helix, model, &alone, plan)?;
+    let baseline = assemble::controller(&Control::baseline(), model, &alone, plan)?;
+    let controller = helix.on_top_of(baseline);
     let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
     let air = if alone.flow.solver.is_prescribed() {
         let profile = MeanProfile::Uniform { speed: alone.wind.speed };
@@ -251,7 +247,7 @@ fn pitching(
     let course = Course::new(pitch.wind_speed, plan, model, rate, pitch.periods);
     let n_steps = course.n_steps();
     let room = course.n_counted as usize;
-    let mut record = Record { measurements: Vec::with_capacity(room), on: false };
+    let mut record = Record { truths: Vec::with_capacity(room), on: false };
     for step in 0..n_steps {
         record.on = step >= course.n_settling;
         farm.advance(&mut record)?;
@@ -259,19 +255,19 @@ fn pitching(
             return Err(CalibrationError::BrokenOff);
         }
     }
-    Ok(record.measurements)
+    Ok(record.truths)
 }
 
 /// Keeps what was measured.
 struct Record {
-    measurements: Vec<Measurements>,
+    truths: Vec<Truth>,
     on: bool,
 }
 
 impl Recorder for Record {
-    fn record(&mut self, _: usize, measurements: &Measurements, _: &Commands) {
+    fn record(&mut self, _: usize, truth: &Truth, _: &Commands) {
         if self.on {
-            self.measurements.push(*measurements);
+            self.truths.push(*truth);
         }
     }
 }
@@ -284,7 +280,7 @@ mod tests {
 
     /// Measurements of a rotor whose moments lose `gain` (N m/rad) of a helix, `lead` (rad) ahead of it, beside constants and
     /// an oscillation at three times the rotor's frequency.
-    fn record(sense: Sense, rate: f64, gain: f64, lead: f64) -> Vec<Measurements> {
+    fn record(sense: Sense, rate: f64, gain: f64, lead: f64) -> Vec<Truth> {
         let (interval, rotor_speed) = (0.2, 0.61);
         let n = (COUNTED * TAU / rate / interval).round() as usize;
         (1000..1000 + n)
@@ -298,7 +294,7 @@ mod tests {
                     tilt: 2e6 + third - gain * PROBE * angle.sin(),
                     yaw: -1e6 + third - gain * PROBE * (angle + sense.yaw_lead()).sin(),
                 };
-                Measurements {
+                Truth {
                     time,
                     interval,
                     azimuth,

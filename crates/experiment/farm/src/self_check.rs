@@ -174,7 +174,7 @@ pub fn self_check(
         rotor.advance(interval, &winds, &commands);
         air.advance(interval, rotor.forces())?;
         if step >= n_settling {
-            let read = rotor.measurements(air.time(), interval);
+            let read = rotor.truth(air.time(), interval);
             power += read.aerodynamic_torque * read.rotor_speed / n_averaging as f64;
             thrust += read.thrust / n_averaging as f64;
         }

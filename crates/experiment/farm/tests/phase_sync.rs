@@ -63,7 +63,7 @@ impl Loop {
         }
     }
 
-    fn measure(&mut self, wind: FixedFrame) -> Measurements {
+    fn measure(&mut self, wind: FixedFrame) -> Measurements<'static> {
         let time = self.step as f64 * INTERVAL;
         let azimuth = ROTOR_SPEED * time;
         let moments = self.model.moments(INTERVAL, wind, azimuth, ROTOR_SPEED, &self.pitch);
@@ -75,7 +75,6 @@ impl Loop {
             rotor_speed: ROTOR_SPEED,
             generator_speed: ROTOR_SPEED,
             pitch: self.pitch,
-            rotor_wind_speed: 9.0,
             flap_moments: moments.map(|moment| moment + scale * self.dice.normal()),
             ..Measurements::at_rest(3)
         }
@@ -139,7 +138,7 @@ fn without_a_helix_it_fades_to_the_baseline_and_comes_back_with_it() {
     assert!(rotor.sync.share() > 0.9);
 }
 
-fn rotor_reading(rotor: &mut Loop) -> Measurements {
+fn rotor_reading(rotor: &mut Loop) -> Measurements<'static> {
     let reading = rotor.measure(wind(Sense::CounterClockwise, 0.0, 0.0, 0.0));
     rotor.step += 1;
     reading

@@ -6,11 +6,11 @@ use crate::phase::{column, moments, tells};
 use analysis::AnalysisError;
 use analysis::phase::uniform_interval;
 use basis::{FixedFrame, Sense};
+use control::ControlError;
 use control::excitation_rate;
-use control::meandering::MeanderingError;
+use control::meandering::{Leader, MeanderingError, MeanderingSettings};
 use estimation::phase_locked::{Settings, TwoAxisLoop, TwoAxisSettings};
 use farm::assemble::AssemblyError;
-use farm::case::{Control, Leader};
 use formats::case;
 use formats::records;
 use std::path::PathBuf;
@@ -66,7 +66,7 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingEr
     let is_asked = |&index: &usize| {
         let name = &case.turbines[index].name;
         let is_named = question.turbine.as_ref().is_none_or(|asked| asked == name);
-        is_named && control[index] != Control::Absent
+        is_named && control[index].is_there()
     };
     let turbines: Vec<usize> = (0..case.turbines.len()).filter(is_asked).collect();
     if turbines.is_empty() {
@@ -85,10 +85,7 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingEr
     let from = question.from.unwrap_or(case.time.spin_up);
     let mut answers = Vec::with_capacity(turbines.len());
     for index in turbines {
-        let own = match control[index] {
-            Control::Meandering(own) => Some(own),
-            _ => None,
-        };
+        let own = MeanderingSettings::of(&control[index]);
         let [low, high] = own.map_or(STROUHAL, |own| own.strouhal);
         let [asked_low, asked_high] = question.strouhal;
         let range = [asked_low.unwrap_or(low), asked_high.unwrap_or(high)];
@@ -135,6 +132,7 @@ fn hear(
     let interval = uniform_interval(times)?;
     let mut follower = TwoAxisLoop::new(settings, interval)
         .map_err(MeanderingError::from)
+        .map_err(ControlError::from)
         .map_err(AssemblyError::from)?;
     let (mut errors, mut rates, mut n_locked) = (Vec::new(), 0.0, 0_usize);
     for (time, moments) in times.iter().zip(moments) {

@@ -10,11 +10,13 @@ use analysis::phase::{
 use asked::{Asked, Records};
 use basis::records::Series;
 use basis::{FixedFrame, Measurements, PerBlade};
+use control::ControlError;
+use control::phase_sync::PhaseEstimator;
+use estimation::EstimationError;
 use estimation::HelixEstimator;
 use estimation::helix::tuning::{self, Tuned};
 use estimation::helix::{Options, Setting};
-use farm::assemble::{AssemblyError, estimator_options};
-use farm::case::PhaseEstimator;
+use farm::assemble::AssemblyError;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
@@ -314,10 +316,9 @@ fn replay(asked: &Asked<'_>, estimator: PhaseEstimator) -> Result<Estimates, Pos
     let setting = setting(asked, interval);
     let options = options(asked, estimator);
     let mut estimator =
-        HelixEstimator::new(&asked.definition, &setting, options).map_err(AssemblyError::from)?;
+        HelixEstimator::new(&asked.definition, &setting, options).map_err(not_estimated)?;
     let record = record(asked, interval)?;
-    let replayed =
-        tuning::replay(&mut estimator, &record, interval).map_err(AssemblyError::from)?;
+    let replayed = tuning::replay(&mut estimator, &record, interval).map_err(not_estimated)?;
     let mut estimates = Estimates {
         wind: Vec::new(),
         tilt: Wave::default(),
@@ -364,17 +365,21 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
     let options = options(&asked, estimator);
     let setting = setting(&asked, interval);
     let tuned = tuning::tune(&asked.definition, &setting, options, &measured, [&tilt, &yaw]);
-    Ok(tuned.map_err(AssemblyError::from)?)
+    Ok(tuned.map_err(not_estimated)?)
 }
 
 /// Choices of `estimator`, calibrated as in the run, with the noise that it was given there.
 fn options(asked: &Asked<'_>, estimator: PhaseEstimator) -> Options {
-    let options = estimator_options(estimator, asked.case.flow.solver);
+    let options = estimator.options(!asked.case.flow.solver.is_prescribed());
     let calibration = asked.calibration.filter(|_| estimator == PhaseEstimator::Robust);
     let options = calibration.map_or(options, |found| found.apply(options));
     // Noise is given to one estimator; another's states may wander otherwise.
     let sync = asked.sync.filter(|sync| sync.estimator == estimator);
     sync.map_or(options, |sync| sync.noise.apply(options))
+}
+
+fn not_estimated(error: EstimationError) -> AssemblyError {
+    ControlError::from(error).into()
 }
 
 /// What the estimator of the turbine is told.
@@ -389,7 +394,10 @@ fn setting(asked: &Asked<'_>, interval: f64) -> Setting {
 }
 
 /// What the turbine measured, row by row.
-fn record(asked: &Asked<'_>, interval: f64) -> Result<Vec<Measurements>, PostprocessingError> {
+fn record(
+    asked: &Asked<'_>,
+    interval: f64,
+) -> Result<Vec<Measurements<'static>>, PostprocessingError> {
     let (name, series, n_blades) = (asked.name, asked.series, asked.definition.n_blades);
     let channel = |what: &str| column(series, &format!("{name}.{what}"));
     let per_blade = |what: &str| {

@@ -14,7 +14,8 @@ use analysis::AnalysisError;
 use analysis::phase::Reference;
 use basis::angle::wrap_to_turn;
 use control::excitation_rate;
-use farm::case::{Case, Control, PhaseSync, Sense};
+use control::phase_sync::PhaseSyncSettings;
+use farm::case::{Case, Sense};
 use formats::case;
 use formats::records::{RunRecords, StudyRecords};
 use report::Synchronisation;
@@ -25,7 +26,7 @@ struct Joined {
     run: usize,
     /// Name of the run.
     name: String,
-    sync: PhaseSync,
+    sync: PhaseSyncSettings,
     /// Estimate against truth, where a run without the turbine tells the truth.
     answer: Option<PhaseAnswer>,
 }
@@ -55,11 +56,11 @@ struct Pairing {
     sense: Sense,
     strouhal: f64,
     /// Places of the runs in which it does, and how it was asked to.
-    runs: Vec<(usize, PhaseSync)>,
+    runs: Vec<(usize, PhaseSyncSettings)>,
 }
 
 impl Pairing {
-    fn is_of(&self, turbine: usize, sync: &PhaseSync) -> bool {
+    fn is_of(&self, turbine: usize, sync: &PhaseSyncSettings) -> bool {
         (self.turbine, self.sense, self.strouhal) == (turbine, sync.sense, sync.strouhal)
     }
 
@@ -81,7 +82,7 @@ fn pairings(case: &Case, run_indices: &[usize]) -> Vec<Pairing> {
     for (place, &index) in run_indices.iter().enumerate() {
         let control = case.runs.get(index).map(|run| run.control.as_slice()).unwrap_or_default();
         for (turbine, control) in control.iter().enumerate() {
-            let Control::PhaseSync(sync) = *control else { continue };
+            let Some(sync) = PhaseSyncSettings::of(control) else { continue };
             let run = (place, sync);
             match found.iter_mut().find(|pairing| pairing.is_of(turbine, &sync)) {
                 Some(pairing) => pairing.runs.push(run),

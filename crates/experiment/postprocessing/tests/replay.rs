@@ -4,7 +4,7 @@
 mod small;
 
 use basis::angle::wrap_to_half_turn;
-use farm::case::PhaseEstimator;
+use control::phase_sync::PhaseEstimator;
 use postprocessing::PhaseQuestion;
 use small::{ABSENT, DISK, behind_helix, done, options, written};
 use std::fs;

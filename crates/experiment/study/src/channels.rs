@@ -1,9 +1,9 @@
 //! The channels of a run's series, one row a control instant.
 
-use basis::{Commands, FixedFrame, Measurements, Vector3};
-use control::{Excitation, Meandering, PhaseSync};
+use basis::{Commands, FixedFrame, Truth, Vector3};
 use farm::Machine;
 use farm::farm::Recorder;
+use std::ops::Range;
 use turbine::Turbine;
 
 /// Channels before the turbines' own.
@@ -31,58 +31,10 @@ pub(crate) const LOADS: [&str; 18] = [
     "TTDspSS",
 ];
 
-/// What a turbine that seeks a helix believes, behind its measurements.
-const ESTIMATES: [&str; 9] = [
-    "estimated_wind_m_s",
-    "estimated_tilt_wind_m_s",
-    "estimated_yaw_wind_m_s",
-    "estimated_tilt_amplitude_m_s",
-    "estimated_yaw_amplitude_m_s",
-    "estimated_tilt_phase_rad",
-    "estimated_yaw_phase_rad",
-    "estimate_trust",
-    "sync_share",
-];
-
-/// What a turbine that follows meandering believes and asks for, behind its measurements.
-const MEANDERING: [&str; 14] = [
-    "meandering_rate_rad_s",
-    "meandering_phase_rad",
-    "meandering_tilt_amplitude_nm",
-    "meandering_yaw_amplitude_nm",
-    "meandering_tilt_phase_rad",
-    "meandering_yaw_phase_rad",
-    "meandering_tilt_offset_nm",
-    "meandering_yaw_offset_nm",
-    "meandering_tilt_reference_nm",
-    "meandering_yaw_reference_nm",
-    "meandering_lock",
-    "meandering_share",
-    "meandering_tilt_pitch_rad",
-    "meandering_yaw_pitch_rad",
-];
-
-/// What the controller of a machine believes.
-enum Belief<'a> {
-    /// Of a helix from upstream.
-    Helix(&'a PhaseSync),
-    /// Of its loads' slow oscillation.
-    Meandering(&'a Meandering),
-}
-
-impl Belief<'_> {
-    fn names(&self) -> &'static [&'static str] {
-        match self {
-            Self::Helix(_) => &ESTIMATES,
-            Self::Meandering(_) => &MEANDERING,
-        }
-    }
-}
-
 /// Gathers one row of the series from the turbines' signals.
 ///
 /// A row is: time, wind at the hub-height probe upstream of the first turbine, then for each
-/// turbine how it truly fared, whatever its instruments showed, what it was told, its loads, and what it believes where it seeks a helix or meandering; then the wind along
+/// turbine how it truly fared, whatever its instruments showed, its commands, its loads, the signals of its controller and what its further sensors show; then the wind along
 /// radial lines at the places of turbines that are not there.
 pub(crate) struct Row {
     names: Vec<String>,
@@ -90,8 +42,8 @@ pub(crate) struct Row {
     offsets: Vec<usize>,
     /// Of each turbine: where its loads begin, and places among its channels with the factor to the unit in the name.
     loads: Vec<(usize, Vec<(usize, f64)>)>,
-    /// Of each turbine that seeks a helix or meandering: where its beliefs begin.
-    estimates: Vec<Option<usize>>,
+    /// Of each turbine: where the signals of its controller begin and end; behind them is what its further sensors show.
+    signals: Vec<Range<usize>>,
     /// Where the winds along lines begin.
     lines: usize,
     /// All channels of one turbine.
@@ -106,7 +58,7 @@ impl Row {
         all_loads: bool,
     ) -> Self {
         let mut names: Vec<String> = SHARED.iter().map(|&name| name.to_owned()).collect();
-        let (mut offsets, mut loads, mut estimates) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut offsets, mut loads, mut signals) = (Vec::new(), Vec::new(), Vec::new());
         let mut n_channels = 0;
         for (name, machine) in machines {
             let turbine = &machine.turbine;
@@ -141,11 +93,12 @@ impl Row {
                 format!("{name}.{}_{}", channel.name, channel.unit)
             }));
             loads.push((first, kept.iter().map(|&i| (i, channels[i].scale)).collect()));
-            let belief = belief(machine);
-            estimates.push(belief.as_ref().map(|_| names.len()));
-            if let Some(belief) = belief {
-                names.extend(belief.names().iter().map(|channel| format!("{name}.{channel}")));
-            }
+            let first = names.len();
+            let own = machine.controller.signals();
+            names.extend(own.iter().map(|signal| format!("{name}.{signal}")));
+            signals.push(first..names.len());
+            let shown = machine.sensing.channels();
+            names.extend(shown.iter().map(|channel| format!("{name}.{channel}")));
         }
         let first_line = names.len();
         for place in lines {
@@ -154,7 +107,7 @@ impl Row {
         }
         let values = vec![0.0; names.len()];
         let channels = vec![0.0; n_channels];
-        Self { names, values, offsets, loads, estimates, lines: first_line, channels }
+        Self { names, values, offsets, loads, signals, lines: first_line, channels }
     }
 
     /// Takes the loads of turbine number `index` in, as they are before it moves on.
@@ -167,52 +120,17 @@ impl Row {
         }
     }
 
-    /// Takes in what `machine` number `index` believes after its last decision.
-    pub(crate) fn beliefs(&mut self, index: usize, machine: &Machine) {
-        let Some(first) = self.estimates[index] else { return };
-        match belief(machine) {
-            Some(Belief::Helix(sync)) => self.helix(first, sync),
-            Some(Belief::Meandering(meandering)) => self.meandering(first, meandering),
-            None => {}
+    /// Takes in the signals of the controller of `machine` number `index` after its last decision, and what its further sensors
+    /// showed it.
+    pub(crate) fn signals(&mut self, index: usize, machine: &Machine) {
+        let place = self.signals[index].clone();
+        let mut next = place.end;
+        machine.controller.write_signals(&mut self.values[place]);
+        for reading in machine.sensing.readings() {
+            let n_values = reading.values.len();
+            self.values[next..next + n_values].copy_from_slice(&reading.values);
+            next += n_values;
         }
-    }
-
-    fn helix(&mut self, first: usize, sync: &PhaseSync) {
-        let Some(belief) = sync.estimate() else { return };
-        self.values[first..first + ESTIMATES.len()].copy_from_slice(&[
-            belief.mean_wind,
-            belief.helix.tilt,
-            belief.helix.yaw,
-            belief.tilt.amplitude,
-            belief.yaw.amplitude,
-            belief.tilt.phase,
-            belief.yaw.phase,
-            belief.trust.overall(),
-            sync.share(),
-        ]);
-    }
-
-    fn meandering(&mut self, first: usize, meandering: &Meandering) {
-        let belief = meandering.estimate();
-        // Zero while it is not known yet.
-        let [tilt_reference, yaw_reference] = meandering.baseline().unwrap_or_default();
-        let commands = meandering.commands();
-        self.values[first..first + MEANDERING.len()].copy_from_slice(&[
-            belief.rate,
-            belief.phase,
-            belief.tilt.amplitude,
-            belief.yaw.amplitude,
-            belief.tilt.phase,
-            belief.yaw.phase,
-            belief.tilt.offset,
-            belief.yaw.offset,
-            tilt_reference,
-            yaw_reference,
-            f64::from(u8::from(belief.locked)),
-            meandering.authority(),
-            commands.tilt,
-            commands.yaw,
-        ]);
     }
 
     /// Takes in the `wind` (m/s) along the lines at place number `index`.
@@ -237,30 +155,19 @@ impl Row {
     }
 }
 
-/// What the controller of `machine` believes, if it seeks anything.
-fn belief(machine: &Machine) -> Option<Belief<'_>> {
-    match &machine.controller.excitation {
-        Excitation::PhaseSync(sync) => Some(Belief::Helix(sync)),
-        Excitation::Meandering(meandering) => Some(Belief::Meandering(meandering)),
-        Excitation::None | Excitation::Helix(_) | Excitation::Pulse(_) => None,
-    }
-}
-
 impl Recorder for Row {
-    fn record(&mut self, turbine: usize, measurements: &Measurements, commands: &Commands) {
+    fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands) {
         let scalars = [
-            measurements.power,
-            measurements.thrust,
-            measurements.rotor_speed,
-            measurements.azimuth,
-            measurements.generator_torque,
-            measurements.aerodynamic_torque,
-            measurements.rotor_wind_speed,
+            truth.power,
+            truth.thrust,
+            truth.rotor_speed,
+            truth.azimuth,
+            truth.generator_torque,
+            truth.aerodynamic_torque,
+            truth.rotor_wind_speed,
         ];
         let mut next = self.offsets[turbine];
-        for block in
-            [&scalars[..], &measurements.pitch, &commands.pitch, &measurements.flap_moments]
-        {
+        for block in [&scalars[..], &truth.pitch, &commands.pitch, &truth.flap_moments] {
             self.values[next..next + block.len()].copy_from_slice(block);
             next += block.len();
         }

@@ -42,6 +42,12 @@ pub enum StudyError {
     /// The turbines cannot be put together.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
+    /// A checkpoint holds the state of another controller.
+    #[error("the checkpoint does not fit the run's controllers")]
+    ForeignController(#[from] control::ForeignState),
+    /// A checkpoint holds the state of another sensor.
+    #[error("the checkpoint does not fit the run's sensors")]
+    ForeignSensor(#[from] sensing::ForeignState),
     /// A turbine's controller cannot be made.
     #[error("run {run}: {turbine} cannot be controlled so")]
     Control {

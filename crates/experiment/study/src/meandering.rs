@@ -5,6 +5,7 @@ use crate::columns::{Analysed, names_of};
 use basis::mbc::to_fixed_frame;
 use basis::records::{MeanderingAxis, MeanderingSummary};
 use basis::{FixedFrame, PerBlade};
+use control::meandering::MeanderingSettings;
 use farm::case::Control;
 use std::f64::consts::TAU;
 
@@ -41,7 +42,7 @@ pub(crate) fn followed(
     n_blades: usize,
     control: &Control,
 ) -> Result<Option<MeanderingSummary>, StudyError> {
-    let Control::Meandering(asked) = control else { return Ok(None) };
+    let Some(asked) = MeanderingSettings::of(control) else { return Ok(None) };
     let channel = |what: &str| analysed.column(&format!("{turbine}.{what}"));
     let (lock, rate) = (channel("meandering_lock")?, channel("meandering_rate_rad_s")?);
     let times = analysed.column("time_s")?;
@@ -111,7 +112,7 @@ mod tests {
     use super::*;
     use basis::mbc::to_blades;
     use basis::records::Series;
-    use farm::case::{Followed, Leader, Meandering, Reference, Sense};
+    use control::meandering::MEANDERING;
 
     /// Time between rows (s).
     const INTERVAL: f64 = 0.5;
@@ -119,20 +120,9 @@ mod tests {
     const RATE: f64 = TAU / 100.0;
 
     fn control() -> Control {
-        Control::Meandering(Meandering {
-            factor: 1.5,
-            amplitude: 0.07,
-            offset: 0.0,
-            strouhal: [0.15, 0.3],
-            sense: Sense::Clockwise,
-            leader: Leader::Both,
-            followed: Followed::Wake,
-            reference: Reference::Observed,
-            bandwidth: 0.01,
-            decoupling: None,
-            fallback: true,
-            start: 1000.0,
-        })
+        let values =
+            [("factor", 1.5.into()), ("amplitude_deg", 4.0.into()), ("start", 1000.0.into())];
+        Control::new(&MEANDERING, &values).expect("such control can be")
     }
 
     /// 2000 s, locked from `locked_from` (s) on; 3 MN m in tilt and 1 MN m in yaw once control starts, ten times as much before.
@@ -211,6 +201,6 @@ mod tests {
     fn a_turbine_that_follows_nothing_has_none() {
         let series = series(0.0);
         let analysed = Analysed::whole(&series, INTERVAL);
-        assert_eq!(followed(&analysed, "T1", 3, &Control::Baseline).expect("nothing"), None);
+        assert_eq!(followed(&analysed, "T1", 3, &Control::baseline()).expect("nothing"), None);
     }
 }

@@ -4,7 +4,7 @@ use crate::StudyError;
 use crate::models::{self, Machines};
 use crate::{turbulence, warnings};
 use farm::assemble::{Model, controller};
-use farm::case::{Case, Control, Decoupling};
+use farm::case::Case;
 use farm::{Plan, plan};
 use flow::Inflow;
 use flow::inflow::MeanProfile;
@@ -140,25 +140,17 @@ fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), Study
     for run in &case.runs {
         for ((control, placement), model) in run.control.iter().zip(&case.turbines).zip(models) {
             let n_blades = model.definition.n_blades;
-            let cyclic =
-                !matches!(control, Control::Absent | Control::Baseline | Control::Pulse(_));
-            if cyclic && n_blades < 3 {
+            if control.kind().pitches_individually() && n_blades < 3 {
                 let (run, turbine) = (run.name.clone(), placement.name.clone());
                 return Err(StudyError::TooFewBlades { run, turbine, n_blades });
             }
-            // What probes will find, if there are to be any, decides nothing here.
-            let model = model.clone().without_individual_pitch();
-            let mut control = *control;
-            match &mut control {
-                Control::Meandering(asked) => {
-                    let any = Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: 1.0 };
-                    asked.decoupling = asked.decoupling.or(Some(any));
-                }
-                Control::PhaseSync(asked) => {
-                    asked.azimuth_offset = asked.azimuth_offset.or(Some(0.0));
-                }
-                _ => {}
+            if !control.is_there() {
+                continue;
             }
+            // What is found before the runs, if there is to be anything, decides nothing here.
+            let model = model.clone().without_individual_pitch();
+            let mut control = control.clone();
+            control.response = control.response.or(control.kind().any_response());
             if let Err(source) = controller(&control, &model, case, plan) {
                 let (run, turbine) = (run.name.clone(), placement.name.clone());
                 return Err(StudyError::Control { run, turbine, source });

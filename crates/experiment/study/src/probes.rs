@@ -6,13 +6,12 @@ use crate::prepared::Prepared;
 use crate::ready::Keep;
 use crate::watcher::{Probing, Watcher};
 use basis::records::PitchResponse;
-use estimation::helix::Calibration;
+use control::Identification;
+use control::phase_sync::{PhaseEstimator, PhaseNoise, response_of};
 use farm::Progress;
-use farm::case::{
-    Control, Decoupling, DynamicInflow, Meandering, PhaseEstimator, PhaseNoise, PhaseSync,
-};
+use farm::case::DynamicInflow;
 use farm::pitch_response::{
-    CalibrationError, INDIVIDUAL_PITCH_STROUHAL, OwnPitch, ProbeCost, decoupling, decoupling_cost,
+    CalibrationError, INDIVIDUAL_PITCH_STROUHAL, ProbeCost, decoupling, decoupling_cost,
     individual_pitch_offset, individual_pitch_offset_cost, own_pitch, own_pitch_cost,
 };
 use formats::records::{ProbeRecord, sha256};
@@ -61,27 +60,8 @@ impl Probes {
 enum Asked {
     /// Azimuth offset of individual pitch control.
     IndividualPitch,
-    /// Azimuth offset and calibration of a turbine that joins a helix, what of both is to be found.
-    OwnPitch(PhaseSync),
-    Decoupling(Meandering),
-}
-
-impl Asked {
-    /// What `control` needs to have found; nothing where it is told, or pitches nothing.
-    fn of(control: &Control) -> Option<Self> {
-        match *control {
-            Control::PhaseSync(sync) => {
-                let open =
-                    sync.azimuth_offset.is_none() || sync.estimator == PhaseEstimator::Robust;
-                (open && sync.amplitude != 0.0).then_some(Self::OwnPitch(sync))
-            }
-            Control::Meandering(asked) => {
-                let needs = asked.decoupling.is_none() && asked.amplitude != 0.0;
-                needs.then_some(Self::Decoupling(asked))
-            }
-            _ => None,
-        }
-    }
+    /// What a kind of controller needs to know.
+    Control(Identification),
 }
 
 impl Prepared {
@@ -91,11 +71,11 @@ impl Prepared {
         let (mut first, mut rest) = (Vec::new(), Vec::new());
         for &run in runs {
             for (index, control) in self.case.runs[run].control.iter().enumerate() {
-                if *control != Control::Absent && self.models[index].lacks_individual_pitch_offset()
-                {
+                if control.is_there() && self.models[index].lacks_individual_pitch_offset() {
                     first.push((run, index, Asked::IndividualPitch));
                 }
-                rest.extend(Asked::of(control).map(|asked| (run, index, asked)));
+                let identification = control.kind().identification(control);
+                rest.extend(identification.map(|asked| (run, index, Asked::Control(asked))));
             }
         }
         first.append(&mut rest);
@@ -114,8 +94,12 @@ impl Prepared {
             let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
             let cost = match &asked {
                 Asked::IndividualPitch => individual_pitch_offset_cost(case, plan, model),
-                Asked::OwnPitch(sync) => own_pitch_cost(case, plan, model, sync),
-                Asked::Decoupling(asked) => decoupling_cost(case, plan, model, asked),
+                Asked::Control(Identification::OwnPitch(sync)) => {
+                    own_pitch_cost(case, plan, model, sync)
+                }
+                Asked::Control(Identification::Loads { strouhal }) => {
+                    decoupling_cost(case, plan, model, *strouhal)
+                }
             };
             wanted.push(Probe { places: vec![(run, index)], asked, key, cost });
         }
@@ -134,10 +118,12 @@ impl Prepared {
         };
         let asked = match asked {
             Asked::IndividualPitch => format!("individual pitch {INDIVIDUAL_PITCH_STROUHAL:?}"),
-            Asked::OwnPitch(sync) if sync.estimator == PhaseEstimator::Published => {
+            Asked::Control(Identification::OwnPitch(sync))
+                if sync.estimator == PhaseEstimator::Published =>
+            {
                 format!("azimuth offset {:?}", sync.strouhal)
             }
-            Asked::OwnPitch(sync) => format!(
+            Asked::Control(Identification::OwnPitch(sync)) => format!(
                 "calibration {:?} {:?} {:?} {}{}",
                 sync.sense,
                 sync.amplitude,
@@ -145,7 +131,9 @@ impl Prepared {
                 sync.azimuth_offset.map_or("found".to_owned(), |given| format!("{given:?}")),
                 trace(&sync.noise)
             ),
-            Asked::Decoupling(asked) => format!("decoupling {:?}", asked.strouhal),
+            Asked::Control(Identification::Loads { strouhal }) => {
+                format!("decoupling {strouhal:?}")
+            }
         };
         // The usual one leaves no trace, so that what was found before one could choose is still known.
         let usual = DynamicInflow::default();
@@ -245,10 +233,13 @@ impl Prepared {
         match asked {
             Asked::IndividualPitch => individual_pitch_offset(case, plan, model, index, progress)
                 .map(|azimuth_offset| PitchResponse::IndividualPitch { azimuth_offset }),
-            Asked::OwnPitch(sync) => own_pitch(case, plan, model, index, sync, progress)
-                .map(|found| record_of_own_pitch(&found)),
-            Asked::Decoupling(asked) => decoupling(case, plan, model, index, asked, progress)
-                .map(|found| record_of_decoupling(&found)),
+            Asked::Control(Identification::OwnPitch(sync)) => {
+                own_pitch(case, plan, model, index, sync, progress)
+                    .map(|found| response_of(found.azimuth_offset, found.calibration))
+            }
+            Asked::Control(Identification::Loads { strouhal }) => {
+                decoupling(case, plan, model, index, *strouhal, progress).map(PitchResponse::from)
+            }
         }
     }
 
@@ -260,8 +251,7 @@ impl Prepared {
                     control.azimuth_offset = Some(azimuth_offset);
                 }
             } else {
-                let control = &mut self.case.runs[run].control[index];
-                *control = told(*control, found);
+                self.case.runs[run].control[index].response = Some(*found);
             }
         }
     }
@@ -271,70 +261,6 @@ impl Prepared {
 /// give any is still known.
 fn trace(noise: &PhaseNoise) -> String {
     if *noise == PhaseNoise::default() { String::new() } else { format!(" {noise:?}") }
-}
-
-/// `control` when it is told what was `found` of its turbine's own pitch.
-fn told(control: Control, found: &PitchResponse) -> Control {
-    match control {
-        Control::PhaseSync(sync) => {
-            let azimuth_offset = sync.azimuth_offset.or(azimuth_offset_of(found));
-            let calibration = Calibration::of_record(found);
-            Control::PhaseSync(PhaseSync { azimuth_offset, calibration, ..sync })
-        }
-        Control::Meandering(asked) => {
-            Control::Meandering(Meandering { decoupling: decoupling_of(found), ..asked })
-        }
-        other => other,
-    }
-}
-
-/// What `control` was told of its turbine's own pitch, for the record.
-pub(crate) fn response_of(control: &Control) -> Option<PitchResponse> {
-    match control {
-        Control::PhaseSync(sync) => {
-            let azimuth_offset = sync.azimuth_offset.filter(|_| sync.amplitude != 0.0)?;
-            let calibration = sync.calibration;
-            Some(record_of_own_pitch(&OwnPitch { azimuth_offset, calibration }))
-        }
-        Control::Meandering(asked) => asked.decoupling.as_ref().map(record_of_decoupling),
-        _ => None,
-    }
-}
-
-fn record_of_own_pitch(found: &OwnPitch) -> PitchResponse {
-    let OwnPitch { azimuth_offset: transformation_offset, calibration } = *found;
-    match calibration {
-        None => PitchResponse::Transformation { azimuth_offset: transformation_offset },
-        Some(Calibration { gain, azimuth_offset, before, after }) => {
-            let transformation_offset = Some(transformation_offset);
-            PitchResponse::Estimator { gain, azimuth_offset, before, after, transformation_offset }
-        }
-    }
-}
-
-fn record_of_decoupling(found: &Decoupling) -> PitchResponse {
-    let Decoupling { azimuth_offset, delay, gain } = *found;
-    PitchResponse::Loads { azimuth_offset, delay, gain }
-}
-
-/// The azimuth offset (rad) in `response` with which a turbine that joins a helix pitches.
-fn azimuth_offset_of(response: &PitchResponse) -> Option<f64> {
-    match *response {
-        PitchResponse::Estimator { transformation_offset, .. } => transformation_offset,
-        PitchResponse::Transformation { azimuth_offset } => Some(azimuth_offset),
-        PitchResponse::IndividualPitch { .. } | PitchResponse::Loads { .. } => None,
-    }
-}
-
-fn decoupling_of(response: &PitchResponse) -> Option<Decoupling> {
-    match *response {
-        PitchResponse::Loads { azimuth_offset, delay, gain } => {
-            Some(Decoupling { azimuth_offset, delay, gain })
-        }
-        PitchResponse::Estimator { .. }
-        | PitchResponse::Transformation { .. }
-        | PitchResponse::IndividualPitch { .. } => None,
-    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ use crate::columns::{Analysed, Columns, add_to, names_of};
 use crate::loads;
 use crate::meandering;
 use crate::prepared::Prepared;
-use crate::probes::response_of;
 use crate::tips::Outrun;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
@@ -14,6 +13,9 @@ use basis::records::{
     Conditions, Cost, DeliveredPitch, MeanderingSummary, SCHEMA_VERSION, Statistic, Summary,
     TurbineSummary,
 };
+use control::Pitching;
+use control::meandering::{MEANDERING, MeanderingSettings};
+use control::phase_sync::{PHASE_SYNC, PhaseSyncSettings};
 use farm::assemble::controller;
 use farm::case::{Control, Run, Shear};
 use std::collections::BTreeMap;
@@ -63,7 +65,7 @@ pub(crate) fn summarise(
         let pitch = collective_pitch(&analysed, name, n_blades)?;
         let delivered_pitch = delivered_pitch(&analysed, name, n_blades, control, setup, share)?;
         // A phase that follows the wind spreads the line: what is missing of it was not held back.
-        let steady = !matches!(control, Control::PhaseSync(_));
+        let steady = control.kind().pitching(control).is_none_or(|own| own.is_steady);
         warn_of_clipping(name, &run.name, delivered_pitch, share, steady, &mut warnings);
 
         let analysed = columns.of(&beliefs(name, n_blades, control))?;
@@ -89,7 +91,7 @@ pub(crate) fn summarise(
             pitch,
             delivered_pitch,
             power_gain: None,
-            pitch_response: response_of(control),
+            pitch_response: control.kind().pitch_response(control),
             individual_pitch_offset: setup.models[index].individual_pitch_offset(),
             meandering,
             load_deviations,
@@ -145,10 +147,12 @@ fn pitching(turbine: &str, n_blades: usize) -> Vec<String> {
 
 /// What tells what `turbine`, of `n_blades` blades, believed under `control`; nothing where it seeks nothing.
 fn beliefs(turbine: &str, n_blades: usize, control: &Control) -> Vec<String> {
-    match control {
-        Control::PhaseSync(_) => names_of(turbine, &["sync_share"]),
-        Control::Meandering(_) => meandering::channels(turbine, n_blades),
-        Control::Absent | Control::Baseline | Control::Helix(_) | Control::Pulse(_) => Vec::new(),
+    if control.is(&PHASE_SYNC) {
+        names_of(turbine, &["sync_share"])
+    } else if control.is(&MEANDERING) {
+        meandering::channels(turbine, n_blades)
+    } else {
+        Vec::new()
     }
 }
 
@@ -176,18 +180,11 @@ fn delivered_pitch(
     setup: &Prepared,
     clipped_share: f64,
 ) -> Result<Option<DeliveredPitch>, StudyError> {
-    let (motion, amplitude, strouhal, start, stop) = match control {
-        Control::Helix(helix) => {
-            (Motion::Cyclic, helix.amplitude, helix.strouhal, helix.start, helix.stop)
-        }
-        Control::Pulse(pulse) => {
-            (Motion::Collective, pulse.amplitude, pulse.strouhal, pulse.start, pulse.stop)
-        }
-        Control::PhaseSync(sync) => {
-            (Motion::Cyclic, sync.amplitude, sync.strouhal, sync.start, None)
-        }
-        // The amplitude of meandering control is no constant.
-        Control::Meandering(_) | Control::Baseline | Control::Absent => return Ok(None),
+    let Some(own) = control.kind().pitching(control) else { return Ok(None) };
+    let Pitching { amplitude, strouhal, start, stop, .. } = own;
+    let motion = match own.motion {
+        control::Motion::Cyclic => Motion::Cyclic,
+        control::Motion::Collective => Motion::Collective,
     };
     if amplitude == 0.0 {
         return Ok(None);
@@ -246,7 +243,7 @@ fn warn_of_fading(
     run: &str,
     warnings: &mut Vec<String>,
 ) -> Result<(), StudyError> {
-    let Control::PhaseSync(sync) = control else { return Ok(()) };
+    let Some(sync) = PhaseSyncSettings::of(control) else { return Ok(()) };
     if sync.amplitude == 0.0 {
         return Ok(());
     }
@@ -271,7 +268,7 @@ fn warn_of_no_lock(
     warnings: &mut Vec<String>,
 ) {
     let Some(found) = found.filter(|found| found.locked_share < 1.0 - FADED_SHARE) else { return };
-    if matches!(control, Control::Meandering(asked) if asked.amplitude != 0.0 && asked.fallback) {
+    if MeanderingSettings::of(control).is_some_and(|own| own.amplitude != 0.0 && own.fallback) {
         warnings.push(format!(
             "{run}: {name} was locked to the wake's motion {:.0} % of the time, and pitched nothing of its own meanwhile",
             100.0 * found.locked_share

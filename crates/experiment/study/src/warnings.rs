@@ -1,9 +1,7 @@
 //! What a reader of the numbers must know of a case before it runs.
 
-use basis::angle::wrap_to_turn;
 use farm::Plan;
-use farm::case::{Case, Control, Run, Solver};
-use std::f64::consts::TAU;
+use farm::case::{Case, Run, Solver};
 use turbine::blockage::equivalent_speed_ratio;
 
 /// Rise of a rotor's power by the walls of the domain beyond which a reader must know (–).
@@ -61,7 +59,7 @@ fn of_domain(case: &Case, plan: &Plan) -> Vec<String> {
 
 /// Of places where the wind is to be kept, and where a turbine stands in every run.
 fn of_places(case: &Case) -> Vec<String> {
-    let stands = |index: usize| case.runs.iter().all(|run| run.control[index] != Control::Absent);
+    let stands = |index: usize| case.runs.iter().all(|run| run.control[index].is_there());
     let occupied = |places: &[usize]| {
         let names = places.iter().filter(|&&index| stands(index));
         names.map(|&index| case.turbines[index].name.clone()).collect::<Vec<_>>()
@@ -82,26 +80,10 @@ fn of_places(case: &Case) -> Vec<String> {
 fn of_run(case: &Case, plan: &Plan, run: &Run) -> Vec<String> {
     let mut warnings = Vec::new();
     for (control, placement) in run.control.iter().zip(&case.turbines) {
-        let strouhal = match control {
-            Control::Helix(helix) => helix.strouhal,
-            Control::Pulse(pulse) => pulse.strouhal,
-            Control::PhaseSync(sync) => {
-                if !(0.0..TAU).contains(&sync.offset) {
-                    let (asked, taken) = (sync.offset, wrap_to_turn(sync.offset));
-                    warnings.push(format!(
-                        "run {}: {}'s offset of {:.0}° is taken as {:.0}°",
-                        run.name,
-                        placement.name,
-                        asked.to_degrees(),
-                        taken.to_degrees()
-                    ));
-                }
-                sync.strouhal
-            }
-            // The slowest that it may follow.
-            Control::Meandering(meandering) => meandering.strouhal[0],
-            Control::Baseline | Control::Absent => continue,
-        };
+        for warning in control.kind().warnings(control) {
+            warnings.push(format!("run {}: {}{warning}", run.name, placement.name));
+        }
+        let Some(strouhal) = control.kind().slowest_strouhal(control) else { continue };
         let period = plan.diameter / (strouhal * case.wind.speed);
         let periods = (case.time.duration - case.time.spin_up) / period;
         if periods < PERIODS_TO_WARN {

@@ -4,7 +4,7 @@
 
 mod small;
 
-use basis::{Commands, Measurements};
+use basis::{Commands, Truth};
 use farm::assemble;
 use farm::{Air, Farm, Recorder};
 use small::{laid_out, uniform_air};
@@ -76,7 +76,7 @@ static ALLOCATOR: Counting = Counting;
 struct Last(f64);
 
 impl Recorder for Last {
-    fn record(&mut self, _turbine: usize, _truth: &Measurements, commands: &Commands) {
+    fn record(&mut self, _turbine: usize, _truth: &Truth, commands: &Commands) {
         self.0 = commands.pitch[0];
     }
 }

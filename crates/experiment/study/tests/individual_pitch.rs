@@ -137,7 +137,7 @@ fn control_without_its_offset_is_not_put_together() {
     let folder = folder("");
     let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
     let mut model = setup.models[0].clone();
-    let built = |model: &Model| controller(&Control::Baseline, model, &setup.case, &setup.plan);
+    let built = |model: &Model| controller(&Control::baseline(), model, &setup.case, &setup.plan);
     let Err(error) = built(&model) else { panic!("nobody found the offset") };
     assert!(matches!(error, AssemblyError::NoIndividualPitchOffset), "{error:?}");
     assert!(error.to_string().contains("azimuth_offset_deg"), "{error}");

@@ -2,7 +2,7 @@
 
 mod small;
 
-use basis::{Commands, Measurements, PerBlade};
+use basis::{Commands, PerBlade, Truth};
 use farm::assemble;
 use farm::{Air, Farm, Recorder};
 use small::{laid_out, uniform_air};
@@ -40,15 +40,15 @@ fn farm_of(overrides: &[&str]) -> Farm<Air> {
 }
 
 #[derive(Default)]
-struct Records(Vec<Measurements>);
+struct Records(Vec<Truth>);
 
 impl Recorder for Records {
-    fn record(&mut self, _turbine: usize, truth: &Measurements, _commands: &Commands) {
+    fn record(&mut self, _turbine: usize, truth: &Truth, _commands: &Commands) {
         self.0.push(*truth);
     }
 }
 
-fn records(overrides: &[&str]) -> Vec<Measurements> {
+fn records(overrides: &[&str]) -> Vec<Truth> {
     let mut farm = farm_of(overrides);
     let mut records = Records::default();
     for _ in 0..N_STEPS {
@@ -58,7 +58,7 @@ fn records(overrides: &[&str]) -> Vec<Measurements> {
 }
 
 /// Out-of-plane root moment of blade 1 that the tower adds (N m), instant after instant.
-fn added(influence: &str, free: &[Measurements]) -> Vec<f64> {
+fn added(influence: &str, free: &[Truth]) -> Vec<f64> {
     let felt = records(&[&format!("turbine.T1.tower_influence={influence}")]);
     felt.iter().zip(free).map(|(felt, free)| felt.flap_moments[0] - free.flap_moments[0]).collect()
 }
@@ -79,7 +79,7 @@ fn a_tower_takes_load_from_a_blade_once_a_turn() {
         free[1..].iter().map(|read| read.flap_moments[0]).sum::<f64>() / (N_STEPS - 1) as f64;
     assert!(dip < -0.01 * mean && dip > -0.2 * mean, "{dip} of {mean} N m");
 
-    let from_below = |read: &Measurements| (read.azimuth - PI).abs();
+    let from_below = |read: &Truth| (read.azimuth - PI).abs();
     let mut n_dips = 0;
     let mut is_in_dip = false;
     for (added, read) in added_by_cylinder.iter().zip(&free) {
@@ -122,7 +122,7 @@ fn thrusts(overrides: &[&str]) -> Vec<f64> {
         let pitch = if step as f64 * interval < STEP_AT { 0.0 } else { STEP };
         let pitch = PerBlade::splat(turbine.definition().n_blades, pitch);
         turbine.advance(interval, &winds, &Commands { pitch, generator_torque: 0.0 });
-        thrusts.push(turbine.measurements(0.0, interval).thrust);
+        thrusts.push(turbine.truth(0.0, interval).thrust);
     }
     thrusts
 }

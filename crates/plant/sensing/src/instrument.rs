@@ -3,6 +3,38 @@
 use crate::InstrumentError;
 use serde::{Deserialize, Serialize};
 
+/// The instruments of a turbine; those of the blades are alike and err apart. Figures are in the unit of the measurement.
+///
+/// Thrust, aerodynamic torque and the wind at the rotor have no instrument.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Instruments {
+    /// Azimuth encoder (rad).
+    pub azimuth: Instrument,
+    /// Encoder of rotor speed (rad/s).
+    pub rotor_speed: Instrument,
+    /// Encoder of generator speed, low-speed side (rad/s).
+    pub generator_speed: Instrument,
+    /// Generator torque (N m).
+    pub generator_torque: Instrument,
+    /// Electrical power (W).
+    pub power: Instrument,
+    /// Accelerometer at the tower top (m/s²).
+    pub tower_top_acceleration: Instrument,
+    /// Pitch encoders (rad).
+    pub pitch: Instrument,
+    /// Strain gauges at the blade roots, out of plane (N m).
+    pub flap_moments: Instrument,
+    /// Strain gauges at the blade roots, in plane (N m).
+    pub edge_moments: Instrument,
+}
+
+impl Instruments {
+    /// Whether all of them show the truth, bit for bit.
+    pub fn are_perfect(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// How one instrument falls short of the truth, in the order in which it happens; the default is perfect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Instrument {

@@ -1,55 +1,24 @@
-//! Instruments: what a controller sees of the truth, with lag, bias, noise, resolution and drop-outs.
+//! Instruments and sensors: what a controller sees of the truth.
 //!
-//! Instruments are perfect unless they are told otherwise, and then every bit of the truth goes through. Noise belongs to
-//! a seed, a channel and the number of the reading, so that a run that was killed goes on with the same noise.
+//! A turbine's standard [`Instruments`] show the truth with lag, bias, noise, resolution and drop-outs; they are perfect unless
+//! they are set otherwise, and then every bit of the truth goes through. Further [sensors](Sensor) have names and may look at the
+//! flow. Noise belongs to a seed, a quantity and the number of the reading, so that a run that was killed goes on with the same
+//! noise.
 
 mod channel;
 mod instrument;
 mod noise;
+mod quantity;
+mod sensor;
 
-pub use instrument::{Instrument, Lag};
+pub use instrument::{Instrument, Instruments, Lag};
+pub use sensor::{ForeignState, Mount, Mounted, SENSORS, Scene, Sensor, SensorKind};
 
-use basis::{Measurements, PerBlade};
+use basis::{Measurements, Reading, Truth};
 use channel::Channel;
+use quantity::{QUANTITIES, Quantity};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
-
-/// Channels of one turbine: six of the machine, three of each blade.
-const N_CHANNELS: usize = N_MACHINE + N_BLADE * basis::blades::MAXIMUM_BLADES;
-const N_MACHINE: usize = 6;
-const N_BLADE: usize = 3;
-
-/// The instruments of a turbine; those of the blades are alike and err apart. Figures are in the unit of the measurement.
-///
-/// Thrust, aerodynamic torque and the wind at the rotor have no instrument: records show the truth, controllers leave them alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Instruments {
-    /// Azimuth encoder (rad).
-    pub azimuth: Instrument,
-    /// Encoder of rotor speed (rad/s).
-    pub rotor_speed: Instrument,
-    /// Encoder of generator speed, low-speed side (rad/s).
-    pub generator_speed: Instrument,
-    /// Generator torque (N m).
-    pub generator_torque: Instrument,
-    /// Electrical power (W).
-    pub power: Instrument,
-    /// Accelerometer at the tower top (m/s²).
-    pub tower_top_acceleration: Instrument,
-    /// Pitch encoders (rad).
-    pub pitch: Instrument,
-    /// Strain gauges at the blade roots, out of plane (N m).
-    pub flap_moments: Instrument,
-    /// Strain gauges at the blade roots, in plane (N m).
-    pub edge_moments: Instrument,
-}
-
-impl Instruments {
-    /// Whether all of them show the truth, bit for bit.
-    pub fn are_perfect(&self) -> bool {
-        *self == Self::default()
-    }
-}
 
 /// The seed of the noise of turbine number `turbine` of a layout in a wind of `seed`: another wind and another turbine
 /// have other noise.
@@ -71,19 +40,32 @@ pub struct InstrumentError {
     pub found: f64,
 }
 
-/// The instruments of one turbine at work.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// One instrument that errs, at work on its quantity.
+#[derive(Clone, Debug)]
+struct Gauge {
+    quantity: &'static Quantity,
+    instrument: Instrument,
+    /// One for each value of the quantity.
+    channels: [Channel; basis::blades::MAXIMUM_BLADES],
+}
+
+/// What a turbine's controller sees it with.
 pub struct Sensing {
     instruments: Instruments,
     seed: u64,
-    state: State,
+    /// Those that err; the others show the truth.
+    gauges: Vec<Gauge>,
+    sensors: Vec<Box<dyn Sensor>>,
+    readings: Vec<Reading>,
+    n_readings: u64,
 }
 
-/// Everything of instruments that time changes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct State {
+/// Everything of instruments and sensors that time changes, each by its name.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SensingState {
     n_readings: u64,
-    channels: [Channel; N_CHANNELS],
+    gauges: Vec<(String, Vec<Channel>)>,
+    sensors: Vec<(String, Vec<u8>)>,
 }
 
 impl Sensing {
@@ -92,89 +74,136 @@ impl Sensing {
     /// # Errors
     /// [`InstrumentError`] naming the instrument and its figure that cannot be.
     pub fn new(instruments: Instruments, seed: u64) -> Result<Self, InstrumentError> {
-        for (name, instrument) in [
-            ("azimuth", instruments.azimuth),
-            ("rotor_speed", instruments.rotor_speed),
-            ("generator_speed", instruments.generator_speed),
-            ("generator_torque", instruments.generator_torque),
-            ("power", instruments.power),
-            ("tower_top_acceleration", instruments.tower_top_acceleration),
-            ("pitch", instruments.pitch),
-            ("flap_moments", instruments.flap_moments),
-            ("edge_moments", instruments.edge_moments),
-        ] {
-            instrument.check(name)?;
+        let mut gauges = Vec::new();
+        for quantity in &QUANTITIES {
+            let instrument = (quantity.instrument)(&instruments);
+            instrument.check(quantity.name)?;
+            if !instrument.is_perfect() {
+                gauges.push(Gauge { quantity, instrument, channels: Default::default() });
+            }
         }
-        Ok(Self { instruments, seed, state: State::default() })
+        let (sensors, readings) = (Vec::new(), Vec::new());
+        Ok(Self { instruments, seed, gauges, sensors, readings, n_readings: 0 })
     }
 
     /// Instruments that show the truth.
     pub fn perfect() -> Self {
-        Self { instruments: Instruments::default(), seed: 0, state: State::default() }
+        Self {
+            instruments: Instruments::default(),
+            seed: 0,
+            gauges: Vec::new(),
+            sensors: Vec::new(),
+            readings: Vec::new(),
+            n_readings: 0,
+        }
     }
 
-    /// Which instruments they are.
+    /// The same with `sensor`, whose readings go by `name`.
+    pub fn with_sensor(mut self, name: &str, sensor: Box<dyn Sensor>) -> Self {
+        let values = vec![0.0; sensor.channels().len()];
+        self.readings.push(Reading { sensor: name.to_owned(), values });
+        self.sensors.push(sensor);
+        self
+    }
+
+    /// Which standard instruments they are.
     pub fn instruments(&self) -> &Instruments {
         &self.instruments
     }
 
-    /// What the instruments show of `truth`.
-    pub fn read(&mut self, truth: &Measurements) -> Measurements {
-        let instruments = self.instruments;
-        let mut shown = *truth;
-        shown.azimuth = self.angle(0, instruments.azimuth, truth);
-        let scalars = [
-            (instruments.rotor_speed, &mut shown.rotor_speed),
-            (instruments.generator_speed, &mut shown.generator_speed),
-            (instruments.generator_torque, &mut shown.generator_torque),
-            (instruments.power, &mut shown.power),
-            (instruments.tower_top_acceleration, &mut shown.tower_top_acceleration),
-        ];
-        for (k, (instrument, value)) in scalars.into_iter().enumerate() {
-            *value = self.channel(1 + k, instrument, truth.interval, *value);
+    /// What the further sensors showed last, by their names.
+    pub fn readings(&self) -> &[Reading] {
+        &self.readings
+    }
+
+    /// Names of all values of the further sensors, `SENSOR.CHANNEL`, in the order of [`Self::readings`].
+    pub fn channels(&self) -> Vec<String> {
+        let named = self.readings.iter().zip(&self.sensors);
+        named
+            .flat_map(|(reading, sensor)| {
+                let channels = sensor.channels().into_iter();
+                channels.map(|channel| format!("{}.{channel}", reading.sensor))
+            })
+            .collect()
+    }
+
+    /// What instruments and sensors show of `scene`.
+    pub fn read(&mut self, scene: &Scene) -> Measurements<'_> {
+        let truth = scene.truth;
+        for (sensor, reading) in self.sensors.iter_mut().zip(&mut self.readings) {
+            sensor.read(scene, &mut reading.values);
         }
-        let blades: [(Instrument, &mut PerBlade<f64>); N_BLADE] = [
-            (instruments.pitch, &mut shown.pitch),
-            (instruments.flap_moments, &mut shown.flap_moments),
-            (instruments.edge_moments, &mut shown.edge_moments),
-        ];
-        for (k, (instrument, values)) in blades.into_iter().enumerate() {
-            for (blade, value) in values.iter_mut().enumerate() {
-                let index = N_MACHINE + N_BLADE * blade + k;
-                *value = self.channel(index, instrument, truth.interval, *value);
-            }
+        Measurements {
+            readings: &self.readings,
+            ..gauged(&mut self.gauges, self.seed, &mut self.n_readings, truth)
         }
-        self.state.n_readings += 1;
-        shown
+    }
+
+    /// What the standard instruments show of `truth`.
+    pub fn gauge(&mut self, truth: &Truth) -> Measurements<'static> {
+        gauged(&mut self.gauges, self.seed, &mut self.n_readings, truth)
+    }
+
+    /// Whether anything of it changes in time, so that a checkpoint must hold it.
+    pub fn has_state(&self) -> bool {
+        !self.gauges.is_empty() || !self.sensors.is_empty()
     }
 
     /// Everything that time changes, for a checkpoint.
-    pub fn state(&self) -> &State {
-        &self.state
-    }
-
-    /// Continues from `state`, which the same instruments gave.
-    pub fn restore(&mut self, state: State) {
-        self.state = state;
-    }
-
-    fn channel(&mut self, index: usize, instrument: Instrument, interval: f64, truth: f64) -> f64 {
-        if instrument.is_perfect() {
-            return truth;
+    pub fn state(&self) -> SensingState {
+        let gauge = |gauge: &Gauge| (gauge.quantity.name.to_owned(), gauge.channels.to_vec());
+        let named = self.readings.iter().zip(&self.sensors);
+        SensingState {
+            n_readings: self.n_readings,
+            gauges: self.gauges.iter().map(gauge).collect(),
+            sensors: named.map(|(reading, own)| (reading.sensor.clone(), own.save())).collect(),
         }
-        let noise = noise::Draw { seed: self.seed, channel: index, reading: self.state.n_readings };
-        self.state.channels[index].read(instrument, interval, truth, noise)
     }
 
-    /// As [`Sensing::channel`] for the azimuth: followed through full turns, shown within one.
-    fn angle(&mut self, index: usize, instrument: Instrument, truth: &Measurements) -> f64 {
-        if instrument.is_perfect() {
-            return truth.azimuth;
+    /// Continues from `state`, which the same instruments and sensors gave.
+    ///
+    /// # Errors
+    /// [`ForeignState`] where a sensor does not know its own.
+    pub fn restore(&mut self, state: SensingState) -> Result<(), ForeignState> {
+        self.n_readings = state.n_readings;
+        for gauge in &mut self.gauges {
+            let stored = state.gauges.iter().find(|(name, _)| name == gauge.quantity.name);
+            for (channel, stored) in gauge.channels.iter_mut().zip(stored.iter().flat_map(|s| &s.1))
+            {
+                *channel = *stored;
+            }
         }
-        let unrolled = self.state.channels[index].unrolled(truth.azimuth);
-        let shown = self.channel(index, instrument, truth.interval, unrolled);
-        basis::angle::wrap_to_turn(shown)
+        for (sensor, reading) in self.sensors.iter_mut().zip(&self.readings) {
+            let stored = state.sensors.iter().find(|(name, _)| *name == reading.sensor);
+            let foreign = || ForeignState { sensor: reading.sensor.clone() };
+            sensor.restore(&stored.ok_or_else(foreign)?.1)?;
+        }
+        Ok(())
     }
+}
+
+/// What `gauges` with noise of `seed` show of `truth`, `n_readings` after the first.
+fn gauged(
+    gauges: &mut [Gauge],
+    seed: u64,
+    n_readings: &mut u64,
+    truth: &Truth,
+) -> Measurements<'static> {
+    let mut shown = truth.measured();
+    for Gauge { quantity, instrument, channels } in gauges {
+        let values = (quantity.values)(&mut shown);
+        for (index, (value, channel)) in values.iter_mut().zip(channels).enumerate() {
+            let noise = noise::Draw { seed, channel: quantity.stream(index), reading: *n_readings };
+            // The azimuth is followed through full turns, and shown within one.
+            let input = if quantity.is_azimuth { channel.unrolled(*value) } else { *value };
+            *value = channel.read(*instrument, truth.interval, input, noise);
+            if quantity.is_azimuth {
+                *value = basis::angle::wrap_to_turn(*value);
+            }
+        }
+    }
+    *n_readings += 1;
+    shown
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! Perfect by default, and what each fault does, against its definition.
 
 use crate::{Instrument, Instruments, Lag, Sensing, seed_of_turbine};
-use basis::{Measurements, PerBlade};
+use basis::{Measurements, PerBlade, Truth};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
-fn truth(time: f64) -> Measurements {
-    Measurements {
+fn truth(time: f64) -> Truth {
+    Truth {
         time,
         interval: 0.1,
         azimuth: (0.7 * time).rem_euclid(TAU),
@@ -42,8 +42,8 @@ fn faulty() -> Instruments {
 proptest! {
     #[test]
     fn perfect_instruments_show_every_bit(speed in prop::num::f64::ANY, azimuth in prop::num::f64::ANY) {
-        let truth = Measurements { generator_speed: speed, azimuth, ..truth(3.0) };
-        let shown = sensing(Instruments::default()).read(&truth);
+        let truth = Truth { generator_speed: speed, azimuth, ..truth(3.0) };
+        let shown = sensing(Instruments::default()).gauge(&truth);
         prop_assert_eq!(shown.generator_speed.to_bits(), speed.to_bits());
         prop_assert_eq!(shown.azimuth.to_bits(), azimuth.to_bits());
         prop_assert_eq!(shown.pitch, truth.pitch);
@@ -58,7 +58,7 @@ fn noise_has_its_mean_and_deviation_and_differs_between_blades() {
     let (mut sum, mut squares, mut products) = (0.0, 0.0, 0.0);
     for step in 0..n {
         let truth = truth(0.1 * f64::from(step));
-        let shown = sensing.read(&truth);
+        let shown = sensing.gauge(&truth);
         let error = |blade: usize| shown.pitch[blade] - truth.pitch[blade];
         sum += error(0);
         squares += (error(0) - 0.005).powi(2);
@@ -76,11 +76,11 @@ fn a_lag_of_first_order_turns_a_ramp_into_one_that_is_late_by_its_time_constant(
     let lag = Lag::First { time_constant: 0.8 };
     let late = Instrument { lag, ..Instrument::default() };
     let mut sensing = sensing(Instruments { power: late, azimuth: late, ..Instruments::default() });
-    let mut last = (truth(0.0), truth(0.0));
+    let mut last = (truth(0.0), truth(0.0).measured());
     for step in 0..400 {
         let time = 0.1 * f64::from(step);
-        let truth = Measurements { power: 1e5 * time, ..truth(time) };
-        last = (truth, sensing.read(&truth));
+        let truth = Truth { power: 1e5 * time, ..truth(time) };
+        last = (truth, sensing.gauge(&truth));
     }
     let (truth, shown) = last;
     let late = (truth.power - shown.power) / 1e5;
@@ -101,7 +101,7 @@ fn an_encoder_shows_its_steps_and_a_dropout_repeats() {
         // Each reading a step further on, so that only a drop-out repeats.
         let mut truth = truth(time);
         truth.generator_speed = 0.01 * f64::from(step) + 0.003;
-        let shown = sensing.read(&truth).generator_speed;
+        let shown = sensing.gauge(&truth).generator_speed;
         repeats += i32::from(shown == last);
         let steps = shown / 0.01;
         assert!((steps - steps.round()).abs() < 1e-9, "{shown}");
@@ -113,14 +113,15 @@ fn an_encoder_shows_its_steps_and_a_dropout_repeats() {
 
 #[test]
 fn stored_and_restored_it_goes_on_with_the_same_bits() {
-    let read = |sensing: &mut Sensing, from: u32, to: u32| -> Vec<Measurements> {
-        (from..to).map(|step| sensing.read(&truth(0.1 * f64::from(step)))).collect()
+    let read = |sensing: &mut Sensing, from: u32, to: u32| -> Vec<Measurements<'static>> {
+        (from..to).map(|step| sensing.gauge(&truth(0.1 * f64::from(step)))).collect()
     };
     let mut one = sensing(faulty());
     read(&mut one, 0, 100);
-    let stored = postcard::to_stdvec(one.state()).expect("plain data serialises");
+    let stored = postcard::to_stdvec(&one.state()).expect("plain data serialises");
     let mut other = sensing(faulty());
-    other.restore(postcard::from_bytes(&stored).expect("what was written is read"));
+    let stored = postcard::from_bytes(&stored).expect("what was written is read");
+    other.restore(stored).expect("the same instruments");
     assert_eq!(read(&mut one, 100, 200), read(&mut other, 100, 200));
     let mut reseeded = Sensing::new(faulty(), 8).expect("such instruments can be");
     assert_ne!(read(&mut sensing(faulty()), 0, 9), read(&mut reseeded, 0, 9));
@@ -141,7 +142,7 @@ fn winds_and_turbines_have_their_own_seeds() {
 fn what_cannot_be_is_refused_by_name() {
     let refused = |pitch| {
         let instruments = Instruments { pitch, ..Instruments::default() };
-        Sensing::new(instruments, 0).expect_err("refused").to_string()
+        Sensing::new(instruments, 0).err().expect("refused").to_string()
     };
     let fine = Instrument::default();
     let message = refused(Instrument { noise: -1.0, ..fine });

@@ -15,7 +15,7 @@ use crate::structure::{
     StructureError,
 };
 use aerodynamics::Aerodynamics;
-use basis::{Commands, Measurements, PerBlade, PointForce, Vector3};
+use basis::{Commands, PerBlade, PointForce, Truth, Vector3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -306,14 +306,14 @@ impl Turbine {
         &self.workspace.forces
     }
 
-    /// What the instruments read now, at `time` (s), for a command that will hold for `interval` (s).
+    /// How the turbine fares now, at `time` (s), for a command that will hold for `interval` (s).
     ///
     /// Azimuth, speed and pitch are those of the instant; loads and power those of the interval before it.
-    pub fn measurements(&self, time: f64, interval: f64) -> Measurements {
+    pub fn truth(&self, time: f64, interval: f64) -> Truth {
         let State { pitch, readings, .. } = &self.state;
         let loads = self.structure.loads();
         let low_speed = self.structure.generator_speed() / self.definition.drive_train.gear_ratio;
-        Measurements {
+        Truth {
             time,
             interval,
             azimuth: self.structure.azimuth(),

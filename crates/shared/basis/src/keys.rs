@@ -64,6 +64,8 @@ pub enum Holds {
     Event,
     /// A table for each turbine that does more than baseline, by the turbine's name.
     Control,
+    /// A table for each further sensor, by the sensor's name.
+    Sensors,
 }
 
 /// Numbers from `low` to `high`, `high` included, `low` only when not `open`.
@@ -132,10 +134,164 @@ pub const fn key(
     Key { name, holds, unit, left_out, about, slips: &[] }
 }
 
+impl Holds {
+    /// Whether the key may hold `value`.
+    pub fn accepts(&self, value: &Value) -> bool {
+        match (self, value) {
+            (Self::Number(range), Value::Number(number)) => range.contains(*number),
+            (Self::Number(range), Value::Whole(number)) => range.contains(*number as f64),
+            (Self::Whole { least, most }, Value::Whole(number)) => (least..=most).contains(&number),
+            (Self::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
+            (Self::Text | Self::Name | Self::Model, Value::Text(_)) => true,
+            (Self::Numbers(range), Value::Numbers(numbers)) => {
+                numbers.iter().all(|number| range.contains(*number))
+            }
+            (Self::Pair(range), Value::Numbers(numbers)) => {
+                numbers.len() == 2 && numbers.iter().all(|number| range.contains(*number))
+            }
+            _ => false,
+        }
+    }
+}
+
 impl Key {
+    /// The key with what holds when it is left out; none where that is nothing that could stand in the file.
+    pub fn default(&self) -> Option<(&'static str, Value)> {
+        let LeftOut::Value(text) = self.left_out else { return None };
+        let value = match self.holds {
+            Holds::Number(_) => Value::Number(text.parse().ok()?),
+            Holds::Whole { .. } => Value::Whole(text.parse().ok()?),
+            Holds::Choice(_) | Holds::Text | Holds::Name | Holds::Model => {
+                Value::Text(text.trim_matches('"').to_owned())
+            }
+            _ => return None,
+        };
+        Some((self.name, value))
+    }
+
     /// The same key, with the units that people mistake for its own.
     pub const fn mistaken(mut self, slips: &'static [Slip]) -> Self {
         self.slips = slips;
         self
     }
+}
+
+/// What one key of a table holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number, in the key's unit.
+    Number(f64),
+    /// A whole number.
+    Whole(u64),
+    /// A text or one of some words.
+    Text(String),
+    /// Several numbers, in the key's unit.
+    Numbers(Vec<f64>),
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<u64> for Value {
+    fn from(number: u64) -> Self {
+        Self::Whole(number)
+    }
+}
+
+impl From<&str> for Value {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<Vec<f64>> for Value {
+    fn from(numbers: Vec<f64>) -> Self {
+        Self::Numbers(numbers)
+    }
+}
+
+/// What the keys of one table hold, those that are given or have a default; in the units of the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Values(Vec<(&'static str, Value)>);
+
+impl Values {
+    /// Puts `value` under `key`, in the place of what was there.
+    pub fn set(&mut self, key: &'static str, value: impl Into<Value>) {
+        let value = value.into();
+        match self.0.iter_mut().find(|(name, _)| *name == key) {
+            Some((_, old)) => *old = value,
+            None => self.0.push((key, value)),
+        }
+    }
+
+    /// Puts each of `values` under its key.
+    pub fn extend(&mut self, values: impl IntoIterator<Item = (&'static str, Value)>) {
+        for (key, value) in values {
+            self.set(key, value);
+        }
+    }
+
+    /// What stands under `key`.
+    pub fn get(&self, key: &str) -> Option<&Value> {
+        self.0.iter().find(|(name, _)| *name == key).map(|(_, value)| value)
+    }
+
+    /// Whether there is anything under `key`.
+    pub fn has(&self, key: &str) -> bool {
+        self.get(key).is_some()
+    }
+
+    /// The number under `key`, in the key's unit.
+    pub fn optional_number(&self, key: &str) -> Option<f64> {
+        match self.get(key)? {
+            Value::Number(number) => Some(*number),
+            Value::Whole(number) => Some(*number as f64),
+            Value::Text(_) | Value::Numbers(_) => None,
+        }
+    }
+
+    /// The number under `key`, in the key's unit; not a number when there is none.
+    pub fn number(&self, key: &str) -> f64 {
+        self.optional_number(key).unwrap_or(f64::NAN)
+    }
+
+    /// The angle under `key`, which is in degrees (rad).
+    pub fn angle(&self, key: &str) -> f64 {
+        self.number(key).to_radians()
+    }
+
+    /// The text or word under `key`; empty when there is none.
+    pub fn word(&self, key: &str) -> &str {
+        match self.get(key) {
+            Some(Value::Text(text)) => text,
+            _ => "",
+        }
+    }
+
+    /// The same in the order of the keys of `table`.
+    pub fn in_order_of(mut self, table: &Table) -> Self {
+        self.0.sort_by_key(|(name, _)| table.keys.iter().position(|key| key.name == *name));
+        self
+    }
+
+    /// Keys with what they hold, in the order in which they were set.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &Value)> {
+        self.0.iter().map(|(key, value)| (*key, value))
+    }
+}
+
+/// Something about the values of a table that cannot be, beyond what its keys say one by one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Objection {
+    /// Key that it is about; none where it is about the whole table.
+    pub key: Option<&'static str>,
+    /// What is wrong, lower case, no full stop; where there is a key, what follows after its name.
+    pub message: String,
+    /// A word or two at the very place, such as "too late".
+    pub label: &'static str,
+    /// What mends it.
+    pub fix: String,
 }

@@ -20,6 +20,7 @@ pub mod force;
 pub mod keys;
 pub mod mbc;
 pub mod records;
+pub mod registry;
 mod sense;
 pub mod signals;
 
@@ -28,4 +29,4 @@ pub use force::PointForce;
 pub use glam::{DMat3 as Matrix3, DVec3 as Vector3};
 pub use mbc::FixedFrame;
 pub use sense::Sense;
-pub use signals::{Commands, Measurements};
+pub use signals::{Commands, Measurements, Reading, Truth};

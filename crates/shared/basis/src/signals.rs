@@ -1,11 +1,11 @@
-//! What crosses the wall between plant and controller.
+//! What crosses the wall between plant and controller, and the truth behind it.
 
 use crate::PerBlade;
 use serde::{Deserialize, Serialize};
 
-/// What a turbine's instruments read at one control instant.
+/// How a turbine fares at one control instant: the truth, which records keep. Controllers never see it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Measurements {
+pub struct Truth {
     /// Time since the start of the run (s).
     pub time: f64,
     /// Control interval that the next command holds for (s).
@@ -30,14 +30,14 @@ pub struct Measurements {
     pub rotor_wind_speed: f64,
     /// Blade root out-of-plane bending moments, positive where thrust bends the blade (N m).
     pub flap_moments: PerBlade<f64>,
-    /// Blade root in-plane bending moments about the axis downwind (N m); zero where nothing tells them.
+    /// Blade root in-plane bending moments about the axis downwind (N m); zero where the model has none.
     pub edge_moments: PerBlade<f64>,
     /// Fore-aft acceleration of the tower top, positive downwind (m/s²); zero on a rigid tower.
     pub tower_top_acceleration: f64,
 }
 
-impl Measurements {
-    /// What a machine of `n_blades` at rest in still air reads at time zero: zeros, to be overwritten by what a trial is about.
+impl Truth {
+    /// How a machine of `n_blades` fares at rest in still air at time zero: zeros, to be overwritten by what a trial is about.
     pub fn at_rest(n_blades: usize) -> Self {
         let none = PerBlade::splat(n_blades, 0.0);
         Self {
@@ -56,6 +56,77 @@ impl Measurements {
             edge_moments: none,
             tower_top_acceleration: 0.0,
         }
+    }
+
+    /// What perfect instruments show of it: everything that has an instrument, bit for bit.
+    pub fn measured(&self) -> Measurements<'static> {
+        Measurements {
+            time: self.time,
+            interval: self.interval,
+            azimuth: self.azimuth,
+            rotor_speed: self.rotor_speed,
+            generator_speed: self.generator_speed,
+            pitch: self.pitch,
+            generator_torque: self.generator_torque,
+            power: self.power,
+            flap_moments: self.flap_moments,
+            edge_moments: self.edge_moments,
+            tower_top_acceleration: self.tower_top_acceleration,
+            readings: &[],
+        }
+    }
+}
+
+/// What a turbine's instruments show at one control instant.
+///
+/// Thrust, aerodynamic torque and the wind at the rotor have no instrument, so they are not here.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurements<'a> {
+    /// Time since the start of the run (s).
+    pub time: f64,
+    /// Control interval that the next command holds for (s).
+    pub interval: f64,
+    /// Rotor azimuth, blade 1, zero up, clockwise seen from upwind (rad, [0, 2π)).
+    pub azimuth: f64,
+    /// Rotor speed (rad/s).
+    pub rotor_speed: f64,
+    /// Generator speed on the low-speed side, over the gear ratio (rad/s).
+    pub generator_speed: f64,
+    /// Blade pitch angles, positive to feather (rad).
+    pub pitch: PerBlade<f64>,
+    /// Generator torque on the low-speed side (N m).
+    pub generator_torque: f64,
+    /// Electrical power (W).
+    pub power: f64,
+    /// Blade root out-of-plane bending moments, positive where thrust bends the blade (N m).
+    pub flap_moments: PerBlade<f64>,
+    /// Blade root in-plane bending moments about the axis downwind (N m).
+    pub edge_moments: PerBlade<f64>,
+    /// Fore-aft acceleration of the tower top, positive downwind (m/s²).
+    pub tower_top_acceleration: f64,
+    /// What the turbine's further sensors show, by their names.
+    pub readings: &'a [Reading],
+}
+
+/// What one further sensor shows, such as a lidar.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// Name of the sensor in the case file.
+    pub sensor: String,
+    /// Its values, in the order and units of its channels.
+    pub values: Vec<f64>,
+}
+
+impl Measurements<'_> {
+    /// What perfect instruments show of [`Truth::at_rest`].
+    pub fn at_rest(n_blades: usize) -> Self {
+        Truth::at_rest(n_blades).measured()
+    }
+
+    /// What the further sensor called `sensor` shows; none where the turbine has no such sensor.
+    pub fn reading(&self, sensor: &str) -> Option<&[f64]> {
+        let reading = self.readings.iter().find(|reading| reading.sensor == sensor)?;
+        Some(&reading.values)
     }
 }
 

@@ -17,12 +17,18 @@
 
 mod axis;
 mod decoupling;
+mod kind;
 mod reference;
+mod settings;
 
 pub use decoupling::{Answer, Decoupling, relative_gain};
 pub use estimation::phase_locked::{Leader, PhaseLockedError, TwoAxisEstimate, TwoAxisSettings};
+pub use kind::MEANDERING;
 pub use reference::Reference;
+pub use settings::MeanderingSettings;
 
+use crate::controller::{ForeignState, from_bytes, to_bytes};
+use crate::excitation::Excitation;
 use axis::AxisLoop;
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use basis::mbc::{to_blades, to_fixed_frame};
@@ -283,13 +289,71 @@ impl Meandering {
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
+}
 
-    /// In words: "meandering × 0.75 cw".
-    pub fn describe(&self) -> String {
+/// Signals in the series.
+const SIGNALS: [&str; 14] = [
+    "meandering_rate_rad_s",
+    "meandering_phase_rad",
+    "meandering_tilt_amplitude_nm",
+    "meandering_yaw_amplitude_nm",
+    "meandering_tilt_phase_rad",
+    "meandering_yaw_phase_rad",
+    "meandering_tilt_offset_nm",
+    "meandering_yaw_offset_nm",
+    "meandering_tilt_reference_nm",
+    "meandering_yaw_reference_nm",
+    "meandering_lock",
+    "meandering_share",
+    "meandering_tilt_pitch_rad",
+    "meandering_yaw_pitch_rad",
+];
+
+impl Excitation for Meandering {
+    fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
+        Meandering::add_to(self, pitch, measurements);
+    }
+
+    fn describe(&self) -> String {
         if self.settings.only_watches() {
             return "baseline, watching for meandering".to_owned();
         }
         format!("meandering × {} {}", self.settings.factor, self.settings.follower.sense)
+    }
+
+    fn signals(&self) -> Vec<&'static str> {
+        SIGNALS.to_vec()
+    }
+
+    fn write_signals(&self, values: &mut [f64]) {
+        let estimate = self.estimate();
+        // Zero while it is not known yet.
+        let [tilt_reference, yaw_reference] = self.baseline().unwrap_or_default();
+        values.copy_from_slice(&[
+            estimate.rate,
+            estimate.phase,
+            estimate.tilt.amplitude,
+            estimate.yaw.amplitude,
+            estimate.tilt.phase,
+            estimate.yaw.phase,
+            estimate.tilt.offset,
+            estimate.yaw.offset,
+            tilt_reference,
+            yaw_reference,
+            f64::from(u8::from(estimate.locked)),
+            self.authority,
+            self.commands.tilt,
+            self.commands.yaw,
+        ]);
+    }
+
+    fn save(&self) -> Vec<u8> {
+        to_bytes(self)
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), ForeignState> {
+        *self = from_bytes(state)?;
+        Ok(())
     }
 }
 

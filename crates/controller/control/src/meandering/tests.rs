@@ -1,7 +1,6 @@
 //! Control of loads that answer to pitch at once or late, turned or not, against what was asked for.
 
 use super::*;
-use crate::Excitation;
 use basis::mbc::to_fixed_frame;
 use basis::{PerBlade, Sense};
 use estimation::phase_locked::{Leader, Settings as Signal};
@@ -42,7 +41,7 @@ impl Rotor {
         }
     }
 
-    fn measurements(&self, step: usize) -> Measurements {
+    fn measurements(&self, step: usize) -> Measurements<'static> {
         let time = INTERVAL * step as f64;
         let azimuth = wrap_to_turn(ROTOR_SPEED * time);
         Measurements {
@@ -51,7 +50,6 @@ impl Rotor {
             azimuth,
             rotor_speed: ROTOR_SPEED,
             generator_speed: ROTOR_SPEED,
-            rotor_wind_speed: 9.0,
             flap_moments: to_blades(azimuth, self.moments(time), 3),
             ..Measurements::at_rest(3)
         }
@@ -340,10 +338,8 @@ fn watching_leaves_every_bit_of_the_pitch() {
 #[test]
 fn an_excitation_goes_on_from_its_state_with_the_same_bits() {
     let sense = Sense::CounterClockwise;
-    let new = || {
-        Excitation::Meandering(Box::new(Meandering::new(settings(sense, 0.5), INTERVAL).unwrap()))
-    };
-    let pitched = |excitation: &mut Excitation, step: usize| {
+    let new = || Meandering::new(settings(sense, 0.5), INTERVAL).unwrap();
+    let pitched = |excitation: &mut Meandering, step: usize| {
         let mut pitch = PerBlade::splat(3, 0.1);
         excitation.add_to(&mut pitch, &Rotor::new(sense, 1, 0.0).measurements(step));
         pitch
@@ -352,9 +348,8 @@ fn an_excitation_goes_on_from_its_state_with_the_same_bits() {
     for step in 0..3000 {
         pitched(&mut excitation, step);
     }
-    let stored = postcard::to_stdvec(&excitation.state()).unwrap();
     let mut resumed = new();
-    resumed.restore(postcard::from_bytes(&stored).unwrap());
+    resumed.restore(&excitation.save()).unwrap();
     for step in 3000..3500 {
         let pitch = pitched(&mut excitation, step);
         assert_eq!(pitch, pitched(&mut resumed, step));

@@ -1,7 +1,7 @@
 //! A rotor with a known power coefficient on a shaft, its constants, and figures of its runs.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
-use basis::Measurements;
+use basis::Truth;
 use control::Controller;
 use control::baseline::{
     CoefficientTable, Constants, PitchGains, SetPointSmoothing, TorqueGains,
@@ -136,18 +136,14 @@ pub(crate) fn tracking_constants() -> Constants {
 pub(crate) struct Rotor {
     coefficient: Coefficient,
     pub(crate) interval: f64,
-    pub(crate) measurements: Measurements,
+    pub(crate) truth: Truth,
 }
 
 impl Rotor {
     pub(crate) fn new(interval: f64, rotor_speed: f64) -> Self {
-        let measurements = Measurements {
-            interval,
-            rotor_speed,
-            generator_speed: rotor_speed,
-            ..Measurements::at_rest(3)
-        };
-        Self { coefficient: slootweg, interval, measurements }
+        let truth =
+            Truth { interval, rotor_speed, generator_speed: rotor_speed, ..Truth::at_rest(3) };
+        Self { coefficient: slootweg, interval, truth }
     }
 
     /// The rotor of [`heier`].
@@ -155,18 +151,18 @@ impl Rotor {
         Self { coefficient: heier, ..Self::new(interval, rotor_speed) }
     }
 
-    /// Runs `controller` for `n_steps` in `wind` (time to m/s); gives the measurements after each step.
+    /// Runs `controller` for `n_steps` in `wind` (time to m/s); gives the truth after each step.
     pub(crate) fn run(
         &mut self,
-        controller: &mut impl Controller,
+        controller: &mut dyn Controller,
         n_steps: usize,
         wind: impl Fn(f64) -> f64,
-    ) -> Vec<Measurements> {
-        let first = (self.measurements.time / self.interval).round() as usize;
+    ) -> Vec<Truth> {
+        let first = (self.truth.time / self.interval).round() as usize;
         (first..first + n_steps)
             .map(|step| {
-                let now = &mut self.measurements;
-                let commands = controller.update(now);
+                let now = &mut self.truth;
+                let commands = controller.update(&now.measured());
                 now.pitch = commands.pitch;
                 now.generator_torque = commands.generator_torque;
                 let wind_speed = wind(now.time);
@@ -197,7 +193,7 @@ pub(crate) fn gusts(time: f64) -> f64 {
     10.5 + 2.5 * (0.05 * time).sin() + (0.31 * time).sin()
 }
 
-pub(crate) fn bits(run: &[Measurements]) -> Vec<u64> {
+pub(crate) fn bits(run: &[Truth]) -> Vec<u64> {
     run.iter()
         .flat_map(|m| m.pitch.iter().copied().chain([m.generator_torque, m.rotor_speed]))
         .map(f64::to_bits)

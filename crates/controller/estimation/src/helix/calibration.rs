@@ -11,7 +11,6 @@
 use super::estimator::{HelixEstimator, Setting};
 use super::options::Options;
 use crate::{EstimationError, Estimator};
-use basis::records::PitchResponse;
 use basis::{Measurements, Sense};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -37,18 +36,6 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// The calibration that a record holds; none where it is of something else.
-    pub fn of_record(response: &PitchResponse) -> Option<Self> {
-        match *response {
-            PitchResponse::Estimator { gain, azimuth_offset, before, after, .. } => {
-                Some(Self { gain, azimuth_offset, before, after })
-            }
-            PitchResponse::Transformation { .. }
-            | PitchResponse::IndividualPitch { .. }
-            | PitchResponse::Loads { .. } => None,
-        }
-    }
-
     /// `options` with this calibration.
     pub fn apply(&self, options: Options) -> Options {
         let mut options = options;

@@ -185,7 +185,7 @@ impl World {
         step: usize,
         model: &mut MeasurementModel,
         dice: &mut Dice,
-    ) -> Measurements {
+    ) -> Measurements<'static> {
         let time = step as f64 * INTERVAL;
         let azimuth = ROTOR_SPEED * time;
         let angle = self.rate * time + self.own.1;
@@ -204,7 +204,6 @@ impl World {
             rotor_speed: ROTOR_SPEED,
             generator_speed: ROTOR_SPEED,
             pitch,
-            rotor_wind_speed: self.mean_wind,
             flap_moments: moments.map(|moment| moment + scale * dice.normal()),
             ..Measurements::at_rest(3)
         }

@@ -4,9 +4,11 @@ use super::prescribed::{found_offset, offset_cost};
 use super::{CalibrationError, Course, Pitching, ProbeCost, WAKE_SPEED, pitching};
 use crate::Progress;
 use crate::assemble::{self, Model};
-use crate::case::{Case, PhaseEstimator, PhaseSync};
+use crate::case::Case;
 use crate::plan::Plan;
+use basis::Truth;
 use control::excitation_rate;
+use control::phase_sync::{PhaseEstimator, PhaseSyncSettings};
 use estimation::helix::{Calibration, calibrate};
 use std::f64::consts::TAU;
 
@@ -23,7 +25,12 @@ pub struct OwnPitch {
 }
 
 /// Cost of [`own_pitch`].
-pub fn own_pitch_cost(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSync) -> ProbeCost {
+pub fn own_pitch_cost(
+    case: &Case,
+    plan: &Plan,
+    model: &Model,
+    sync: &PhaseSyncSettings,
+) -> ProbeCost {
     let [offset, calibration] = costs(case, plan, model, sync);
     ProbeCost {
         n_steps: offset.n_steps + calibration.n_steps,
@@ -32,13 +39,13 @@ pub fn own_pitch_cost(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSync)
 }
 
 /// Wind (m/s) in which the turbine is probed, and rate of the helix that it joins (rad/s).
-fn conditions(case: &Case, plan: &Plan, sync: &PhaseSync) -> (f64, f64) {
+fn conditions(case: &Case, plan: &Plan, sync: &PhaseSyncSettings) -> (f64, f64) {
     let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
     (WAKE_SPEED * case.wind.speed, rate)
 }
 
 /// Costs of the azimuth offset and of the calibration, nothing for what is not sought.
-fn costs(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSync) -> [ProbeCost; 2] {
+fn costs(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSyncSettings) -> [ProbeCost; 2] {
     let (wind_speed, rate) = conditions(case, plan, sync);
     let mut costs = [ProbeCost::default(); 2];
     if sync.azimuth_offset.is_none() {
@@ -61,7 +68,7 @@ pub fn own_pitch(
     plan: &Plan,
     model: &Model,
     index: usize,
-    sync: &PhaseSync,
+    sync: &PhaseSyncSettings,
     progress: Progress,
 ) -> Result<OwnPitch, CalibrationError> {
     let [first, second] = costs(case, plan, model, sync).map(|cost| cost.work);
@@ -95,7 +102,7 @@ fn calibration(
     plan: &Plan,
     model: &Model,
     index: usize,
-    sync: &PhaseSync,
+    sync: &PhaseSyncSettings,
     azimuth_offset: f64,
     progress: Progress,
 ) -> Result<Calibration, CalibrationError> {
@@ -109,9 +116,10 @@ fn calibration(
         periods: PERIODS[0] + PERIODS[1],
     };
     let record = pitching(case, plan, model, index, &pitch, progress)?;
-    let setting = assemble::estimator_setting(sync, case, plan);
-    let options = assemble::estimator_options(PhaseEstimator::Robust, case.flow.solver);
-    let options = sync.noise.apply(options);
+    let record: Vec<_> = record.iter().map(Truth::measured).collect();
+    let site = assemble::site(model, case, plan);
+    let setting = sync.estimator_setting(&site);
+    let options = sync.estimator_options(site.flow_resolves_induction);
     let settling = PERIODS[0] * TAU / setting.rate;
     Ok(calibrate(&model.definition, &setting, options, &record, settling)?)
 }

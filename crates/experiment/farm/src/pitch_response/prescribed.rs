@@ -4,9 +4,10 @@
 use super::{COUNTED, CalibrationError, Course, ProbeCost, answers};
 use crate::Progress;
 use crate::assemble::Model;
-use crate::case::{Case, Decoupling, Solver};
+use crate::case::{Case, Solver};
 use crate::plan::{Plan, without_air};
 use control::excitation_rate;
+use control::meandering::Decoupling;
 
 /// Strouhal number of the helices that tell the azimuth offset of individual pitch control, with the case's wind and the
 /// turbine's own diameter (–).

@@ -17,6 +17,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         dynamic_inflow: DynamicInflow::default(),
         tower_influence: TowerInfluence::None,
         instruments: Instruments::default(),
+        sensors: Vec::new(),
     };
     Case {
         name: "test".to_owned(),
@@ -52,7 +53,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         runs: vec![Run {
             name: "baseline".to_owned(),
             compare_with: None,
-            control: vec![Control::Baseline; positions.len()],
+            control: vec![Control::baseline(); positions.len()],
         }],
         output: Output {
             interval: None,

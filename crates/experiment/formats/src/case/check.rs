@@ -3,18 +3,19 @@
 use super::document::{Entry, Node, Sources, Value};
 use super::error::{Problem, ProblemKind};
 use super::instruments::instruments_of;
-use super::keys::{self, CONTROLS};
-use super::meandering::meandering_of;
+use super::keys;
+use super::kinds;
 use super::momentum::{dynamic_inflow_of, tower_influence_of};
-use super::phase_sync::{azimuth_offset_of, noise_of};
 use super::section::{Findings, Section, list};
 use super::spelling::nearest;
 use super::wind::{check_together, wind_of};
 use basis::keys::Table;
+use control::{CONTROLLERS, ControllerKind, Place};
 use farm::case::{
-    Case, Control, Flow, Ground, Helix, Output, PhaseEstimator, PhaseSync, Placement, Pulse, Run,
-    Sense, Sides, Solver, Time, helix_upstream,
+    Case, Control, Flow, Ground, Mounted, Output, Placement, Run, Sides, Solver, Time,
+    helix_upstream,
 };
+use sensing::{SENSORS, SensorKind};
 
 /// The case that `entries` describe.
 ///
@@ -125,6 +126,7 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
             dynamic_inflow: dynamic_inflow_of(section, solver),
             tower_influence: tower_influence_of(section, solver),
             instruments: instruments_of(section),
+            sensors: sensors_of(section),
         };
         if section.has("name") && turbines.iter().any(|other| other.name == placement.name) {
             note_duplicate(section, "turbine", &placement.name);
@@ -146,6 +148,34 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
     turbines
 }
 
+/// The further sensors of a turbine, by their names.
+fn sensors_of(turbine: &Section) -> Vec<Mounted> {
+    let Some(entry) = turbine.entry("sensors") else { return Vec::new() };
+    let Value::Table(entries) = &entry.node.value else {
+        turbine.wrong_type("sensors", &entry.node, "tables, such as sensors.NAME = { kind = … }");
+        return Vec::new();
+    };
+    let mut sensors = Vec::with_capacity(entries.len());
+    for entry in entries {
+        let path = format!("{}.{}", turbine.key_path("sensors"), entry.key);
+        let Value::Table(inner) = &entry.node.value else {
+            let expected = "a table, such as { kind = … }".to_owned();
+            let found = entry.node.kind().to_owned();
+            let kind = ProblemKind::WrongType { key: path, expected, found };
+            turbine.findings().note(entry.node.span.clone(), kind, None);
+            continue;
+        };
+        let table = |kind: &(dyn SensorKind + 'static)| kind.table();
+        let (at, findings) = ((entry.node.span.clone(), path), turbine.findings());
+        let what = "which kind of sensor it is";
+        let Some(read) = kinds::read(&SENSORS, table, what, inner, at, findings) else { continue };
+        read.note(read.kind.check(&read.values));
+        let (name, kind) = (entry.key.clone(), read.kind);
+        sensors.push(Mounted { name, kind, values: read.values });
+    }
+    sensors
+}
+
 fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
     let sections = root.sections("run", &keys::RUN);
     let mut runs: Vec<Run> = Vec::with_capacity(sections.len());
@@ -157,7 +187,7 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
         }
         let compare_with = section.optional_text("compare_with");
         let control = controls_of(section, turbines, time);
-        if !control.is_empty() && control.iter().all(|control| *control == Control::Absent) {
+        if !control.is_empty() && !control.iter().any(Control::is_there) {
             let kind = ProblemKind::NobodyThere { name: name.clone() };
             section.findings().note(section.span_of("control"), kind, None);
         }
@@ -190,7 +220,7 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
 }
 
 fn controls_of(run: &Section, turbines: &[Placement], time: Time) -> Vec<Control> {
-    let mut controls = vec![Control::Baseline; turbines.len()];
+    let mut controls = vec![Control::baseline(); turbines.len()];
     let Some(entry) = run.entry("control") else { return controls };
     let Value::Table(entries) = &entry.node.value else {
         run.wrong_type(
@@ -218,9 +248,9 @@ fn controls_of(run: &Section, turbines: &[Placement], time: Time) -> Vec<Control
         match &entry.node.value {
             Value::Table(inner) => {
                 let upstream = helix_upstream(index, turbines, &controls);
-                let name = &turbines[index].name;
-                let place = Place { name, upstream, path };
-                controls[index] = control_of(run.findings(), inner, &entry.node, place, time);
+                let turbine = &turbines[index].name;
+                let place = Place { turbine, upstream, duration: time.duration };
+                controls[index] = control_of(run.findings(), inner, &entry.node, path, &place);
             }
             _ => {
                 let kind = ProblemKind::WrongType {
@@ -239,101 +269,18 @@ fn control_of(
     findings: &Findings,
     entries: &[Entry],
     node: &Node,
-    Place { name: turbine, upstream, path }: Place,
-    time: Time,
-) -> Control {
-    let kind = entries.iter().find(|entry| entry.key == "kind").map(|entry| &entry.node.value);
-    let known = match kind {
-        Some(Value::Text(kind)) => CONTROLS.iter().find(|(name, _)| name == kind),
-        _ => None,
-    };
-    let Some((name, table)) = known else {
-        // Without a kind no other key can be judged.
-        let only_kind: Vec<Entry> =
-            entries.iter().filter(|entry| entry.key == "kind").cloned().collect();
-        Section::open(&keys::BASELINE, &only_kind, node.span.clone(), path, findings)
-            .choice("kind");
-        return Control::Baseline;
-    };
-    let section = Section::open(table, entries, node.span.clone(), path, findings);
-    let start = || {
-        let start = section.number("start");
-        if start >= time.duration {
-            let key = section.key_path("start");
-            let kind = ProblemKind::StartsTooLate { key, start, duration: time.duration };
-            section.findings().note(section.span_of("start"), kind, None);
-        }
-        start
-    };
-    match *name {
-        "helix" => Control::Helix(Helix {
-            sense: sense_of(&section),
-            amplitude: section.number("amplitude_deg").to_radians(),
-            strouhal: section.number("strouhal"),
-            phase: section.number("phase_deg").to_radians(),
-            azimuth_offset: section.number("azimuth_offset_deg").to_radians(),
-            start: start(),
-            stop: section.optional_number("stop"),
-        }),
-        "pulse" => Control::Pulse(Pulse {
-            amplitude: section.number("amplitude_deg").to_radians(),
-            strouhal: section.number("strouhal"),
-            phase: section.number("phase_deg").to_radians(),
-            start: start(),
-            stop: section.optional_number("stop"),
-        }),
-        "phase-sync" => Control::PhaseSync(phase_sync_of(&section, turbine, upstream, start())),
-        "meandering" => Control::Meandering(meandering_of(&section, start())),
-        "absent" => Control::Absent,
-        _ => Control::Baseline,
-    }
-}
-
-/// Whose control is read.
-struct Place<'a> {
-    name: &'a str,
-    /// Sense and Strouhal number of the helix that comes from upstream.
-    upstream: Option<(Sense, f64)>,
     path: String,
-}
-
-fn phase_sync_of(
-    section: &Section,
-    turbine: &str,
-    upstream: Option<(Sense, f64)>,
-    start: f64,
-) -> PhaseSync {
-    let own_sense = section.has("sense").then(|| sense_of(section));
-    let own_strouhal = section.optional_number("strouhal");
-    let sense = own_sense.or(upstream.map(|(sense, _)| sense));
-    let strouhal = own_strouhal.or(upstream.map(|(_, strouhal)| strouhal));
-    if sense.is_none() || strouhal.is_none() {
-        let kind = ProblemKind::NothingToJoin { turbine: turbine.to_owned() };
-        let fix = "give a turbine upstream a helix, or say which helix it is: sense = \"ccw\", strouhal = 0.25";
-        section.findings().note(section.span_of("kind"), kind, Some(fix.into()));
-    }
-    let estimator = if section.choice("estimator") == "published" {
-        PhaseEstimator::Published
-    } else {
-        PhaseEstimator::Robust
+    place: &Place,
+) -> Control {
+    let what = "what runs on the turbine";
+    let table = |kind: &(dyn ControllerKind + 'static)| kind.table();
+    let at = (node.span.clone(), path);
+    let Some(mut read) = kinds::read(&CONTROLLERS, table, what, entries, at, findings) else {
+        return Control::baseline();
     };
-    let amplitude = section.number("amplitude_deg").to_radians();
-    PhaseSync {
-        sense: sense.unwrap_or(Sense::CounterClockwise),
-        amplitude,
-        strouhal: strouhal.unwrap_or(f64::NAN),
-        offset: section.number("offset_deg").to_radians(),
-        azimuth_offset: azimuth_offset_of(section, amplitude),
-        start,
-        estimator,
-        fallback: section.choice("fallback") != "none",
-        noise: noise_of(section, estimator),
-        calibration: None,
-    }
-}
-
-pub(super) fn sense_of(section: &Section) -> Sense {
-    if section.choice("sense") == "cw" { Sense::Clockwise } else { Sense::CounterClockwise }
+    let objections = read.kind.check(&mut read.values, place);
+    read.note(objections);
+    Control::checked(read.kind, read.values)
 }
 
 /// Places in `turbines` of those that the list `key` names.

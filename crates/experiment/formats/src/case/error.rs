@@ -234,7 +234,7 @@ pub enum ProblemKind {
         /// Time not analysed (s).
         spin_up: f64,
     },
-    /// Control that would start after the end.
+    /// What would start after the end.
     #[error("`{key}` = {start} s is not before the end of the run, `time.duration` = {duration} s")]
     StartsTooLate {
         /// The key, dotted.
@@ -244,21 +244,13 @@ pub enum ProblemKind {
         /// End (s).
         duration: f64,
     },
-    /// A turbine that shall join a helix where none comes from upstream.
-    #[error("{turbine} shall join a helix, but no turbine upstream of it has one in this run")]
-    NothingToJoin {
-        /// The turbine.
-        turbine: String,
-    },
-    /// Strouhal numbers that are no range.
-    #[error("`{key}` = {low} is not below `strouhal_high` = {high}")]
-    NoRange {
-        /// The lower end's key, dotted.
-        key: String,
-        /// Lower end (–).
-        low: f64,
-        /// Upper end (–).
-        high: f64,
+    /// What a kind of controller or sensor objects to.
+    #[error("{message}")]
+    Objection {
+        /// What is wrong.
+        message: String,
+        /// A word or two at its place.
+        label: &'static str,
     },
     /// A key that another key's value leaves without use.
     #[error("`{key}` is of no use here: {why}")]
@@ -340,8 +332,7 @@ impl ProblemKind {
             Self::Overlap { .. } => "too close",
             Self::NothingAnalysed { .. } => "too short",
             Self::StartsTooLate { .. } => "too late",
-            Self::NothingToJoin { .. } => "joins what?",
-            Self::NoRange { .. } => "not below the other",
+            Self::Objection { label, .. } => label,
             Self::NoUse { .. } => "of no use",
             Self::ComparedWithItself { .. } => "itself",
             Self::ComparedWithLater { .. } => "comes later",

@@ -1,10 +1,8 @@
 //! The one table of keys: what the reader accepts, what the reference prints, what the schema says.
 
-mod control;
 mod event;
 mod instruments;
 
-pub(super) use control::{BASELINE, CONTROLS};
 pub(super) use event::{EVENTS, STEP};
 pub(super) use instruments::{
     ACCELERATION, ANGLE, INSTRUMENT_KINDS, INSTRUMENTS, MOMENT, POWER, SPEED,
@@ -259,6 +257,13 @@ pub(super) static TURBINE: Table = Table {
             "",
             Otherwise("perfect instruments"),
             "What its controller sees of it: lag, bias, noise, resolution and drop-outs of each instrument.",
+        ),
+        key(
+            "sensors",
+            Holds::Sensors,
+            "",
+            Otherwise("none"),
+            "Further sensors, each with a name of its own: `sensors.NAME = { kind = … }`. None comes with the program yet; programs built on it add theirs.",
         ),
     ],
 };

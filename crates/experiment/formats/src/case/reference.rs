@@ -1,10 +1,11 @@
 //! The table of keys as a page for people and as a schema for editors.
 
 use super::keys::{
-    CONTROLS, EVENTS, FLOW, GROUND, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME,
-    TURBINE, WIND,
+    EVENTS, FLOW, GROUND, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND,
 };
 use basis::keys::{Holds, Key, LeftOut, Table};
+use control::CONTROLLERS;
+use sensing::SENSORS;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -14,19 +15,35 @@ const PREFACE: &str = include_str!("preface.md");
 /// The page docs/case-file.md: how a case file is read, and every key with unit, range and default.
 pub fn reference() -> String {
     let mut page = PREFACE.to_owned();
-    let [controls, events] = [CONTROLS, EVENTS].map(|kinds| kinds.iter().map(|(_, table)| *table));
+    let events = EVENTS.iter().map(|(_, table)| *table);
     let air = [&FLOW, &GROUND, &TIME, &TURBINE, &INSTRUMENTS].into_iter().chain(INSTRUMENT_KINDS);
-    let tables = [&ROOT, &WIND].into_iter().chain(events).chain(air).chain([&RUN]).chain(controls);
-    for table in tables.chain([&OUTPUT]) {
-        // Writing to a string cannot fail.
-        let _ = write_table(&mut page, table);
+    let tables = [&ROOT, &WIND].into_iter().chain(events).chain(air).chain([&RUN]);
+    // Writing to a string cannot fail.
+    for table in tables {
+        let _ = write_table(&mut page, table, None);
     }
+    for kind in CONTROLLERS.all() {
+        let _ =
+            write_table(&mut page, kind.table(), Some((kind.name(), "What runs on the turbine.")));
+    }
+    for kind in SENSORS.all() {
+        let _ = write_table(
+            &mut page,
+            kind.table(),
+            Some((kind.name(), "Which kind of sensor it is.")),
+        );
+    }
+    let _ = write_table(&mut page, &OUTPUT, None);
     page
 }
 
-fn write_table(page: &mut String, table: &Table) -> std::fmt::Result {
+/// Writes `table`; where it is that of a kind, with the kind's name and what its key `kind` means.
+fn write_table(page: &mut String, table: &Table, kind: Option<(&str, &str)>) -> std::fmt::Result {
     writeln!(page, "\n## `{}`\n\n{}\n", table.heading, table.about)?;
     writeln!(page, "| key | holds | unit | default | meaning |\n| --- | --- | --- | --- | --- |")?;
+    if let Some((name, about)) = kind {
+        writeln!(page, "| `kind` | `\"{name}\"` |  | required | {about} |")?;
+    }
     for key in table.keys {
         let default = match key.left_out {
             LeftOut::Required => "required".to_owned(),
@@ -58,6 +75,7 @@ fn holds(key: &Key) -> String {
         Holds::Tables(_) => "one table or more".into(),
         Holds::Event => "a table".into(),
         Holds::Control => "tables by turbine".into(),
+        Holds::Sensors => "tables by name".into(),
     }
 }
 
@@ -116,8 +134,12 @@ fn schema_of_key(key: &Key) -> Value {
         }
         Holds::Event => json!({ "oneOf": schemas_of_kinds(EVENTS) }),
         Holds::Control => {
-            let kinds = schemas_of_kinds(CONTROLS);
-            json!({ "type": "object", "additionalProperties": { "oneOf": kinds } })
+            let all = CONTROLLERS.all();
+            tables_of_kinds(all.iter().map(|kind| (kind.name(), kind.table())))
+        }
+        Holds::Sensors => {
+            let all = SENSORS.all();
+            tables_of_kinds(all.iter().map(|kind| (kind.name(), kind.table())))
         }
     };
     if let Value::Object(schema) = &mut schema {
@@ -130,6 +152,23 @@ fn schema_of_key(key: &Key) -> Value {
         }
     }
     schema
+}
+
+/// Tables by name, each of one of `kinds`.
+fn tables_of_kinds<'k>(kinds: impl Iterator<Item = (&'k str, &'static Table)>) -> Value {
+    let one = |(name, table): (&str, &'static Table)| {
+        let mut schema = schema_of(table);
+        if let Some(keys) = schema.get_mut("properties").and_then(Value::as_object_mut) {
+            keys.insert("kind".into(), json!({ "const": name }));
+        }
+        if let Some(required) = schema.get_mut("required").and_then(Value::as_array_mut) {
+            required.insert(0, json!("kind"));
+        }
+        Value::Object(schema)
+    };
+    let kinds: Vec<Value> = kinds.map(one).collect();
+    let items = if kinds.is_empty() { json!(false) } else { json!({ "oneOf": kinds }) };
+    json!({ "type": "object", "additionalProperties": items })
 }
 
 /// Tables whose key `kind` says which one it is.

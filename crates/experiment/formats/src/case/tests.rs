@@ -1,9 +1,9 @@
 //! What the case file's users see: good files read, bad ones told where and how to mend.
 
 use super::*;
-use farm::case::{
-    Control, Followed, Ground, Leader, Meandering, PhaseNoise, PhaseSync, Reference, Sense, Sides,
-};
+use control::meandering::{Followed, Leader, MeanderingSettings, Reference};
+use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
+use farm::case::{Control, Ground, Sense, Sides};
 use proptest::prelude::*;
 use std::fs;
 
@@ -55,11 +55,11 @@ fn a_small_case_gets_the_documented_defaults() {
     assert_eq!((case.flow.ground, case.flow.sides), (Ground::Slip, Sides::Periodic));
     assert_eq!((case.flow.step, case.flow.threads), (None, None));
     assert_eq!(case.output.checkpoint_interval, 300.0);
-    assert_eq!(case.runs[0].control, [Control::Baseline, Control::Baseline]);
-    let Control::Helix(helix) = case.runs[1].control[0] else { panic!("no helix") };
-    assert_eq!(helix.sense, Sense::CounterClockwise);
-    assert_eq!(helix.amplitude, 4f64.to_radians());
-    assert_eq!(helix.start, 0.0);
+    assert_eq!(case.runs[0].control, [Control::baseline(), Control::baseline()]);
+    let helix = &case.runs[1].control[0];
+    assert_eq!(helix.helix(), Some((Sense::CounterClockwise, 0.25)));
+    assert_eq!(helix.values().angle("amplitude_deg"), 4f64.to_radians());
+    assert_eq!(helix.values().number("start"), 0.0);
 }
 
 #[test]
@@ -67,11 +67,7 @@ fn helix_and_pulse_may_stop() {
     for kind in ["\"helix\", sense = \"cw\"", "\"pulse\""] {
         let control = format!("kind = {kind}, amplitude_deg = 4, strouhal = 0.25, stop = 300.5");
         let case = small(&[&format!("run.helix.control.T1={{ {control} }}")]).unwrap();
-        let stop = match case.runs[1].control[0] {
-            Control::Helix(helix) => helix.stop,
-            Control::Pulse(pulse) => pulse.stop,
-            _ => None,
-        };
+        let stop = case.runs[1].control[0].values().optional_number("stop");
         assert_eq!(stop, Some(300.5), "{kind}");
         assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
     }
@@ -80,13 +76,12 @@ fn helix_and_pulse_may_stop() {
 }
 
 /// The meandering control of a small case that says `keys` beside factor and amplitude, after it was written and read.
-fn meandering(keys: &str) -> Meandering {
+fn meandering(keys: &str) -> MeanderingSettings {
     let control = format!("kind = \"meandering\", factor = 1.5, amplitude_deg = 4{keys}");
     let case = small(&[&format!("run.helix.control.T1={{ {control} }}")]);
     let case = case.unwrap_or_else(|error| panic!("{}", error.to_lines()));
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case, "{keys}");
-    let Control::Meandering(meandering) = case.runs[1].control[0] else { panic!("no meandering") };
-    meandering
+    MeanderingSettings::of(&case.runs[1].control[0]).expect("meandering")
 }
 
 #[test]
@@ -114,13 +109,12 @@ fn meandering_needs_little_to_be_said() {
 }
 
 /// The phase synchronisation of T2 in a small case that says `keys` beside the needed ones, after it was written and read.
-fn phase_sync(keys: &str) -> PhaseSync {
+fn phase_sync(keys: &str) -> PhaseSyncSettings {
     let control = format!("kind = \"phase-sync\", offset_deg = 90, amplitude_deg = 4{keys}");
     let case = small(&[&format!("run.helix.control.T2={{ {control} }}")]);
     let case = case.unwrap_or_else(|error| panic!("{}", error.to_lines()));
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case, "{keys}");
-    let Control::PhaseSync(sync) = case.runs[1].control[1] else { panic!("no phase-sync") };
-    sync
+    PhaseSyncSettings::of(&case.runs[1].control[1]).expect("phase-sync")
 }
 
 #[test]
@@ -146,15 +140,13 @@ fn the_azimuth_offset_of_a_turbine_in_step_is_found_unless_given() {
         small(&[&format!("run.helix.control.T2={{ {control}{keys} }}")]).unwrap()
     };
     let case = watching("");
-    let Control::PhaseSync(sync) = case.runs[1].control[1] else { panic!("no phase-sync") };
+    let sync = PhaseSyncSettings::of(&case.runs[1].control[1]).expect("phase-sync");
     assert_eq!(sync.azimuth_offset, Some(0.0));
     assert_eq!(case, watching(", azimuth_offset_deg = 0"));
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
     // An open helix is turned by nothing that it does not ask for.
     let case = small(&[]).unwrap();
-    assert!(
-        matches!(case.runs[1].control[0], Control::Helix(helix) if helix.azimuth_offset == 0.0)
-    );
+    assert_eq!(case.runs[1].control[0].values().number("azimuth_offset_deg"), 0.0);
 }
 
 #[test]
@@ -410,10 +402,9 @@ fn overrides_reach_every_key() {
     assert_eq!(case.flow.ground, Ground::Rough { roughness_length: 0.001 });
     assert_eq!(case.turbines[0].model, "iea-22mw");
     assert_eq!(case.turbines[1].position_diameters, [7.0, 0.0]);
-    assert!(
-        matches!(case.runs[1].control[0], Control::Helix(h) if h.amplitude == 3f64.to_radians())
-    );
-    assert!(matches!(case.runs[0].control[1], Control::Pulse(_)));
+    let helix = &case.runs[1].control[0];
+    assert_eq!(helix.values().angle("amplitude_deg"), 3f64.to_radians());
+    assert!(case.runs[0].control[1].is(&control::pulse::PULSE));
 }
 
 #[test]

@@ -1,6 +1,5 @@
 //! `[wind]`: its keys and what ties them to what moves the air, read and written.
 
-use super::check::sense_of;
 use super::document::{Entry, Node, Value};
 use super::error::ProblemKind;
 use super::keys::{self, EVENTS};
@@ -297,4 +296,8 @@ fn event_text(event: &WindEvent) -> String {
             )
         }
     }
+}
+
+fn sense_of(section: &Section) -> Sense {
+    if section.choice("sense") == "cw" { Sense::Clockwise } else { Sense::CounterClockwise }
 }

@@ -1,11 +1,10 @@
 //! A case as text: every key written out, defaults included.
 
 use super::instruments::instruments_text;
-use super::meandering::meandering_text;
+use super::kinds;
 use super::momentum::momentum_text;
-use super::phase_sync::{azimuth_offset_text, noise_text};
 use super::wind::write_wind;
-use farm::case::{Case, Control, Ground, PhaseEstimator, Sense, Sides, Solver};
+use farm::case::{Case, Ground, Sides, Solver};
 use std::fmt::Write;
 
 /// The case file that reads back as `case`, with every default written out.
@@ -67,6 +66,10 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         writeln!(text, "stall = \"{stall}\"")?;
         text.push_str(&momentum_text(turbine));
         text.push_str(&instruments_text(&turbine.instruments));
+        for sensor in &turbine.sensors {
+            let table = kinds::text(sensor.kind.name(), &sensor.values);
+            writeln!(text, "sensors.{} = {table}", sensor.name)?;
+        }
     }
     for run in &case.runs {
         writeln!(text, "\n[[run]]\nname = {}", quoted(&run.name))?;
@@ -74,7 +77,12 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
             writeln!(text, "compare_with = {}", quoted(other))?;
         }
         for (turbine, control) in case.turbines.iter().zip(&run.control) {
-            writeln!(text, "control.{} = {}", turbine.name, control_text(control))?;
+            writeln!(
+                text,
+                "control.{} = {}",
+                turbine.name,
+                kinds::text(control.kind().name(), control.values())
+            )?;
         }
     }
     let output = &case.output;
@@ -98,56 +106,6 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         writeln!(text, "volume_interval = {interval:?}")?;
     }
     writeln!(text, "checkpoint_interval = {:?}", output.checkpoint_interval)
-}
-
-fn control_text(control: &Control) -> String {
-    match control {
-        Control::Baseline => "{ kind = \"baseline\" }".to_owned(),
-        Control::Absent => "{ kind = \"absent\" }".to_owned(),
-        Control::Helix(helix) => {
-            let sense = if helix.sense == Sense::Clockwise { "cw" } else { "ccw" };
-            format!(
-                "{{ kind = \"helix\", sense = \"{sense}\", amplitude_deg = {:?}, strouhal = {:?}, phase_deg = {:?}, azimuth_offset_deg = {:?}, start = {:?}{} }}",
-                degrees(helix.amplitude),
-                helix.strouhal,
-                degrees(helix.phase),
-                degrees(helix.azimuth_offset),
-                helix.start,
-                stop_text(helix.stop),
-            )
-        }
-        Control::Pulse(pulse) => format!(
-            "{{ kind = \"pulse\", amplitude_deg = {:?}, strouhal = {:?}, phase_deg = {:?}, start = {:?}{} }}",
-            degrees(pulse.amplitude),
-            pulse.strouhal,
-            degrees(pulse.phase),
-            pulse.start,
-            stop_text(pulse.stop),
-        ),
-        Control::Meandering(meandering) => meandering_text(meandering),
-        Control::PhaseSync(sync) => {
-            let sense = if sync.sense == Sense::Clockwise { "cw" } else { "ccw" };
-            let estimator = match sync.estimator {
-                PhaseEstimator::Robust => "robust",
-                PhaseEstimator::Published => "published",
-            };
-            let fallback = if sync.fallback { "baseline" } else { "none" };
-            format!(
-                "{{ kind = \"phase-sync\", offset_deg = {:?}, amplitude_deg = {:?}, sense = \"{sense}\", strouhal = {:?}{}, estimator = \"{estimator}\", fallback = \"{fallback}\"{}, start = {:?} }}",
-                degrees(sync.offset),
-                degrees(sync.amplitude),
-                sync.strouhal,
-                azimuth_offset_text(sync.azimuth_offset),
-                noise_text(&sync.noise),
-                sync.start,
-            )
-        }
-    }
-}
-
-/// The key `stop` after a comma, only where it is used, so that the fingerprint of a case without it stays what it was.
-fn stop_text(stop: Option<f64>) -> String {
-    stop.map_or_else(String::new, |stop| format!(", stop = {stop:?}"))
 }
 
 /// The degrees with the fewest digits that give `angle` (rad) back, bit for bit where any do.

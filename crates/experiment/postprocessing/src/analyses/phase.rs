@@ -2,7 +2,7 @@
 
 use super::{Analysis, Answer, Of, Request, Setting, Takes};
 use crate::{PhaseAnswer, PhaseAxis, PhaseQuestion, PostprocessingError, phases};
-use farm::case::PhaseEstimator;
+use control::phase_sync::PhaseEstimator;
 use serde_json::json;
 
 /// The analysis.

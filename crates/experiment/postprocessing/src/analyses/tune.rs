@@ -82,8 +82,8 @@ fn json(tuned: &Tuned) -> serde_json::Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
     use estimation::helix::Options;
-    use farm::case::{Control, PhaseNoise};
 
     /// The noise of T2 in a case whose control holds `estimator` and the last line of what is told of `options`.
     fn pasted(options: Options, estimator: &str) -> PhaseNoise {
@@ -110,8 +110,7 @@ control.T2 = {{ kind = "phase-sync", offset_deg = 90, amplitude_deg = 4, sense =
         );
         let case = formats::case::parse("pasted", &case, &[]);
         let case = case.unwrap_or_else(|error| panic!("{keys}: {}", error.to_lines()));
-        let Control::PhaseSync(sync) = case.runs[0].control[0] else { panic!("no phase-sync") };
-        sync.noise
+        PhaseSyncSettings::of(&case.runs[0].control[0]).expect("phase-sync").noise
     }
 
     #[test]

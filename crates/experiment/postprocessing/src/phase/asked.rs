@@ -5,8 +5,9 @@ use crate::PostprocessingError;
 use analysis::phase::Reference;
 use basis::records::{Series, Summary};
 use control::excitation_rate;
+use control::phase_sync::{PHASE_SYNC, PhaseSyncSettings, calibration_of};
 use estimation::helix::Calibration;
-use farm::case::{Case, Control, PhaseSync, helix_upstream};
+use farm::case::{Case, Control, helix_upstream};
 use formats::records::{self, Manifest, RunFolder};
 use formats::{case, library, turbine_file};
 use std::collections::BTreeMap;
@@ -42,7 +43,7 @@ pub(super) struct Asked<'r> {
     /// What the run made of its own pitch, where it asked.
     pub(super) calibration: Option<Calibration>,
     /// How it was asked to join a helix, where it was.
-    pub(super) sync: Option<PhaseSync>,
+    pub(super) sync: Option<PhaseSyncSettings>,
     /// Whether it pitches a helix of its own.
     pub(super) pitches: bool,
     /// What [`tells`] of the phase, over time.
@@ -105,19 +106,13 @@ impl<'q> Records<'q> {
             turbine: turbine.name.clone(),
             directory: study,
         })?;
-        let pitches = match control[index] {
-            Control::Helix(helix) => helix.amplitude != 0.0,
-            Control::PhaseSync(sync) => sync.amplitude != 0.0,
-            _ => false,
-        };
-        let sync = match control[index] {
-            Control::PhaseSync(sync) => Some(sync),
-            _ => None,
-        };
+        let own = control[index].kind().pitching(&control[index]);
+        let pitches = own.is_some_and(|own| own.sense.is_some() && own.amplitude != 0.0);
+        let sync = PhaseSyncSettings::of(&control[index]);
         let definition = Arc::new(rotor(&turbine.model, manifest)?);
         let told = self.summary.turbines.iter().find(|told| told.name == turbine.name);
         let response = told.and_then(|told| told.pitch_response.as_ref());
-        let calibration = response.and_then(Calibration::of_record);
+        let calibration = response.and_then(calibration_of);
         Ok(Asked {
             run: &manifest.run,
             case,
@@ -163,7 +158,7 @@ fn turbines_of(
     let control = &case.runs[manifest.run_index].control;
     let is_asked = |&index: &usize| match &question.turbine {
         Some(name) => case.turbines[index].name == *name,
-        None => matches!(control[index], Control::PhaseSync(_)),
+        None => control[index].is(&PHASE_SYNC),
     };
     let turbines: Vec<usize> = (0..case.turbines.len()).filter(is_asked).collect();
     if turbines.is_empty() {
@@ -186,7 +181,7 @@ pub(crate) fn tells_truth(
 ) -> bool {
     let x = |turbine: usize| case.turbines[turbine].position_diameters[0];
     let mut upstream = (0..case.turbines.len()).filter(|&other| x(other) < x(index));
-    without[index] == Control::Absent && upstream.all(|other| without[other] == with[other])
+    !without[index].is_there() && upstream.all(|other| without[other] == with[other])
 }
 
 /// The turbine called `model` as it was in the run of `manifest`.

@@ -3,7 +3,7 @@
 use crate::prepared::Prepared;
 use analysis::phase::{Lines, lines_to_fixed_frame};
 use basis::{FixedFrame, Vector3};
-use farm::case::{Control, Run};
+use farm::case::Run;
 use flow::WindField;
 
 /// Radial lines over the disc (–). van Vondelen et al. (2025), §3.3.1.
@@ -24,7 +24,7 @@ pub(super) struct WindLines {
 /// Places of the turbines that are not there in `run` and at which the case asks for lines.
 fn places<'a>(setup: &'a Prepared, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
     let asked = setup.case.output.lines_at.iter().copied();
-    asked.filter(|&index| run.control[index] == Control::Absent)
+    asked.filter(|&index| !run.control[index].is_there())
 }
 
 /// Places at which `run` has lines (–).

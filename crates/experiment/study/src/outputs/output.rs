@@ -4,7 +4,7 @@ use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
-use basis::{Commands, Measurements};
+use basis::{Commands, Truth};
 use farm::case::{Case, Run};
 use farm::{Air, Farm};
 use formats::records::RunFolder;
@@ -78,7 +78,7 @@ pub trait Output {
 
     /// Takes in how turbine number `turbine` fared when a step that is due began, the truth whatever its instruments showed,
     /// and what its controller commanded.
-    fn record(&mut self, _turbine: usize, _truth: &Measurements, _commands: &Commands) {}
+    fn record(&mut self, _turbine: usize, _truth: &Truth, _commands: &Commands) {}
 
     /// Takes in or writes what the farm shows at the end of a step that is due.
     ///

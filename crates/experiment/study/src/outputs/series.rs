@@ -7,7 +7,7 @@ use super::section::{Section, Stored};
 use crate::channels::Row;
 use crate::error::StudyError;
 use crate::prepared::Prepared;
-use basis::{Commands, Measurements, Vector3};
+use basis::{Commands, Truth, Vector3};
 use farm::case::Run;
 use farm::{Air, Farm, Recorder};
 use flow::WindField;
@@ -116,7 +116,7 @@ impl Rows {
 }
 
 impl Recorder for Rows {
-    fn record(&mut self, turbine: usize, truth: &Measurements, commands: &Commands) {
+    fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands) {
         self.row.record(turbine, truth, commands);
     }
 }
@@ -141,7 +141,7 @@ impl Output for Series {
         self.rows.start(scene.farm);
     }
 
-    fn record(&mut self, turbine: usize, truth: &Measurements, commands: &Commands) {
+    fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands) {
         self.rows.record(turbine, truth, commands);
     }
 

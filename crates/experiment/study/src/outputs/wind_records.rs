@@ -6,7 +6,7 @@ use super::section::{Section, Stored};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use basis::Vector3;
-use farm::case::{Control, Run};
+use farm::case::Run;
 use flow::WindField;
 use flow::inflow::PlaneGrid;
 use formats::turbulence_box::WindRecorder;
@@ -40,7 +40,7 @@ fn schedule(setup: &Prepared) -> Schedule {
 /// Places of the turbines that are not there in `run` and whose wind the case asks for.
 fn places<'a>(setup: &'a Prepared, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
     let asked = setup.case.output.inflow_at.iter().copied();
-    asked.filter(|&index| run.control[index] == Control::Absent)
+    asked.filter(|&index| !run.control[index].is_there())
 }
 
 /// Points of the planes at the place of turbine number `index`.

@@ -3,7 +3,7 @@
 use super::output::{Output, OutputKind, Scene};
 use super::section::{Section, Stored};
 use crate::error::StudyError;
-use basis::{Commands, Measurements};
+use basis::{Commands, Truth};
 use farm::Recorder;
 use formats::checkpoint::{CheckpointReader, CheckpointWriter};
 use std::path::PathBuf;
@@ -87,7 +87,7 @@ impl Writers {
 }
 
 impl Recorder for Writers {
-    fn record(&mut self, turbine: usize, truth: &Measurements, commands: &Commands) {
+    fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands) {
         self.due().for_each(|output| output.record(turbine, truth, commands));
     }
 }

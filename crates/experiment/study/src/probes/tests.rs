@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::{OffsetQuestion, Silent, azimuth_offset};
-use control::Excitation;
+use control::phase_sync::PhaseSyncSettings;
 use estimation::helix::{Measurement, Options};
-use farm::assemble::controller;
+use farm::pitch_response::OwnPitch;
 use formats::records::{read_probes, write_probes};
 
 /// A case whose T2 joins the helix of T1 with `keys` beside the needed ones, under `overrides`.
@@ -44,14 +44,14 @@ control.T2 = {{ kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 2.0{keys
 
 fn key(keys: &str) -> String {
     let setup = setup(keys, &[]);
-    let asked = Asked::of(&setup.case.runs[0].control[1]).expect("a calibration");
-    setup.key(1, &asked)
+    let control = &setup.case.runs[0].control[1];
+    let asked = control.kind().identification(control).expect("a calibration");
+    setup.key(1, &Asked::Control(asked))
 }
 
 /// How T2 of `setup` is asked to join the helix, or was told to.
-fn sync_of(setup: &Prepared) -> PhaseSync {
-    let Control::PhaseSync(sync) = setup.case.runs[0].control[1] else { panic!("no phase-sync") };
-    sync
+fn sync_of(setup: &Prepared) -> PhaseSyncSettings {
+    PhaseSyncSettings::of(&setup.case.runs[0].control[1]).expect("phase-sync")
 }
 
 /// What T2 of `setup` is told of its own pitch, and the shares that its probe told.
@@ -152,11 +152,11 @@ fn a_resumed_study_is_told_the_same_to_the_last_bit() {
         let keep = &mut |found: &[_]| Ok(write_probes(folder.path(), found)?);
         let ended = setup.calibrate(probes, keep, &AtomicBool::new(false), &mut Silent);
         assert!(ended.expect("a sound turbine").is_continue());
-        (n_probes, setup.case.runs[0].control[1])
+        (n_probes, setup.case.runs[0].control[1].clone())
     };
     let (n_probes, joined) = told("", false);
     let Some(PitchResponse::Estimator { azimuth_offset, transformation_offset, .. }) =
-        response_of(&joined)
+        joined.kind().pitch_response(&joined)
     else {
         panic!("{joined:?}")
     };
@@ -166,11 +166,11 @@ fn a_resumed_study_is_told_the_same_to_the_last_bit() {
 
     let (n_probes, published) = told(", estimator = \"published\"", true);
     let response = PitchResponse::Transformation { azimuth_offset: found };
-    assert_eq!((n_probes, response_of(&published)), (1, Some(response)));
+    assert_eq!((n_probes, published.kind().pitch_response(&published)), (1, Some(response)));
     assert_eq!(told(", estimator = \"published\"", true), (0, published));
 
     let (_, given) = told(", azimuth_offset_deg = 10", true);
-    let Control::PhaseSync(given) = given else { panic!("{given:?}") };
+    let given = PhaseSyncSettings::of(&given).expect("phase-sync");
     assert_eq!(given.azimuth_offset, Some(10f64.to_radians()));
 }
 
@@ -179,11 +179,8 @@ fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
     let options = |keys: &str| -> Options {
         let setup = setup(&format!("{keys}, azimuth_offset_deg = 0"), &[]);
         let control = &setup.case.runs[0].control[1];
-        let built = controller(control, &setup.models[1], &setup.case, &setup.plan);
-        match built.expect("a controller").excitation {
-            Excitation::PhaseSync(sync) => *sync.estimator().options(),
-            other => panic!("{other:?}"),
-        }
+        let given = PhaseSyncSettings::of(control).expect("phase-sync");
+        given.estimator_options(!setup.case.flow.solver.is_prescribed())
     };
     let usual = options("");
     let given = options(", measurement_noise_mnm = 0.5, wandering_amplitude = 3e-3");

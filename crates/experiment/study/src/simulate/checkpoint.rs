@@ -2,7 +2,6 @@
 
 use crate::StudyError;
 use crate::outputs::Writers;
-use control::ControllerState;
 use farm::{Air, Farm};
 use flow::inflow::prescribed::Clock;
 use formats::checkpoint::{CheckpointReader, CheckpointWriter};
@@ -33,12 +32,12 @@ struct RunState {
     step: u64,
     wall_time: f64,
     turbines: Vec<turbine::State>,
-    controllers: Vec<ControllerState>,
+    controllers: Vec<Vec<u8>>,
 }
 
-/// Whether any instrument errs, and so has a state to be kept.
+/// Whether anything that a turbine senses with has a state to be kept.
 fn has_instruments(farm: &Farm<Air>) -> bool {
-    farm.machines().iter().any(|machine| !machine.sensing.instruments().are_perfect())
+    farm.machines().iter().any(|machine| machine.sensing.has_state())
 }
 
 /// Writes `farm` as it stands and the state of its `outputs`; `made` holds what all sessions have cost so far.
@@ -56,13 +55,13 @@ pub(super) fn write(
         step: made.step,
         wall_time: made.wall_time,
         turbines: farm.machines().iter().map(|m| m.turbine.state().clone()).collect(),
-        controllers: farm.machines().iter().map(|m| m.controller.state()).collect(),
+        controllers: farm.machines().iter().map(|m| m.controller.save()).collect(),
     };
     writer.state(RUN, &state)?;
     writer.state(PEAK_MEMORY, &made.peak_memory)?;
     if has_instruments(farm) {
-        let sensing: Vec<sensing::State> =
-            farm.machines().iter().map(|machine| *machine.sensing.state()).collect();
+        let sensing: Vec<sensing::SensingState> =
+            farm.machines().iter().map(|machine| machine.sensing.state()).collect();
         writer.state(INSTRUMENTS, &sensing)?;
     }
     match farm.flow_mut() {
@@ -85,12 +84,12 @@ pub(super) fn read(
     let states = state.turbines.into_iter().zip(state.controllers);
     for (machine, (turbine, controller)) in farm.machines_mut().iter_mut().zip(states) {
         machine.turbine.restore(turbine);
-        machine.controller.restore(controller);
+        machine.controller.restore(&controller)?;
     }
     if has_instruments(&farm) {
-        let stored: Vec<sensing::State> = reader.state(INSTRUMENTS)?;
+        let stored: Vec<sensing::SensingState> = reader.state(INSTRUMENTS)?;
         for (machine, stored) in farm.machines_mut().iter_mut().zip(stored) {
-            machine.sensing.restore(stored);
+            machine.sensing.restore(stored)?;
         }
     }
     match farm.flow_mut() {

@@ -136,9 +136,9 @@ fn winds(turbine: &Turbine) -> Vec<Vector3> {
 fn the_air_feels_what_the_blades_feel() {
     let mut turbine = turbine().without_bodies();
     let winds = winds(&turbine);
-    let speed = turbine.measurements(0.0, INTERVAL).rotor_speed;
+    let speed = turbine.truth(0.0, INTERVAL).rotor_speed;
     turbine.advance(INTERVAL, &winds, &commands(0.0));
-    let read = turbine.measurements(INTERVAL, INTERVAL);
+    let read = turbine.truth(INTERVAL, INTERVAL);
     let Frame { hub, shaft, .. } = *turbine.frame();
     let total: Vector3 = turbine.forces().iter().map(|point| point.force).sum();
     let moment: Vector3 =
@@ -180,9 +180,9 @@ fn bodies_hold_the_air_back() {
 fn the_rotor_spins_up_by_its_torques() {
     let mut turbine = turbine();
     let winds = winds(&turbine);
-    let before = turbine.measurements(0.0, INTERVAL);
+    let before = turbine.truth(0.0, INTERVAL);
     turbine.advance(INTERVAL, &winds, &commands(0.0));
-    let after = turbine.measurements(INTERVAL, INTERVAL);
+    let after = turbine.truth(INTERVAL, INTERVAL);
     let gained =
         (after.aerodynamic_torque - 1e6) * INTERVAL / turbine.definition().drive_train_inertia();
     // The middle of a step is found by iteration, to a millionth.
@@ -193,7 +193,7 @@ fn the_rotor_spins_up_by_its_torques() {
     assert!((after.power - 0.95 * 1e6 * after.rotor_speed).abs() < 1e-6);
     let mut held = self::turbine().at_held_speed();
     held.advance(INTERVAL, &winds, &commands(0.0));
-    assert_eq!(held.measurements(INTERVAL, INTERVAL).rotor_speed, 1.3);
+    assert_eq!(held.truth(INTERVAL, INTERVAL).rotor_speed, 1.3);
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn dynamic_stall_along_the_line_rests_at_the_polars() {
             let winds = vec![wind; turbine.stations().len()];
             let pitch = 0.1 + amplitude * (0.25 * f64::from(step)).sin();
             turbine.advance(0.05, &winds, &commands(pitch));
-            thrusts.push(turbine.measurements(0.0, 0.05).thrust);
+            thrusts.push(turbine.truth(0.0, 0.05).thrust);
         }
         thrusts
     };
@@ -278,7 +278,7 @@ fn the_correction_settles_and_forgets_where_it_began() {
         // The same wind for every blade, so that turning changes nothing.
         let winds = vec![Vector3::new(7.0, 0.0, 0.0); turbine.stations().len()];
         turbine.advance(0.01, &winds, &commands(0.0));
-        thrusts.push(turbine.measurements(0.0, 0.01).thrust);
+        thrusts.push(turbine.truth(0.0, 0.01).thrust);
     }
     let last = thrusts[59];
     assert!((thrusts[40] / last - 1.0).abs() < 1e-3, "{thrusts:?}");
@@ -304,7 +304,7 @@ fn under_prescribed_wind_the_turbine_finds_what_momentum_theory_says() {
         let winds = vec![Vector3::X * wind; turbine.stations().len()];
         turbine.advance(interval, &winds, &commands(0.0));
         if step >= 11 * n_turn {
-            let read = turbine.measurements(0.0, interval);
+            let read = turbine.truth(0.0, interval);
             power += read.aerodynamic_torque * read.rotor_speed / n_turn as f64;
             thrust += read.thrust / n_turn as f64;
         }
@@ -325,7 +325,7 @@ fn flexible_blades_bend_downwind_and_the_tower_with_them() {
         turbine.advance(INTERVAL, &winds, &commands(0.0));
     }
     let loads = turbine.structure().loads();
-    let read = turbine.measurements(60.0, INTERVAL);
+    let read = turbine.truth(60.0, INTERVAL);
     assert!(loads.blades.iter().all(|blade| blade.tip_deflection.x > 0.0), "{loads:?} {read:?}");
     assert!(loads.tower_top.x > 0.0 && loads.tower_base.moment.y > 0.0);
     assert!(read.flap_moments.iter().all(|moment| moment.is_finite() && *moment > 0.0));

@@ -1,6 +1,11 @@
 //! The pulse: periodic collective pitch, which makes the wake breathe.
 
-use super::{excitation_rate, share};
+mod kind;
+
+pub use kind::PULSE;
+
+use crate::excitation::{Excitation, excitation_rate, share, words};
+use basis::{Measurements, PerBlade};
 use serde::{Deserialize, Serialize};
 
 /// The pulse as it runs on one turbine; it has no state, its phase follows from time.
@@ -35,5 +40,21 @@ impl Pulse {
     pub fn pitch(&self, time: f64) -> f64 {
         let amplitude = self.amplitude * share(time, self.start, self.stop, self.rate);
         amplitude * (self.rate * time + self.phase).sin()
+    }
+}
+
+impl Excitation for Pulse {
+    fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
+        if self.amplitude == 0.0 {
+            return;
+        }
+        let added = Pulse::pitch(self, measurements.time);
+        for pitch in pitch.iter_mut() {
+            *pitch += added;
+        }
+    }
+
+    fn describe(&self) -> String {
+        words("pulse", self.amplitude, self.strouhal)
     }
 }

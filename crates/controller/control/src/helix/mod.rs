@@ -1,8 +1,12 @@
 //! The helix: tilt and yaw commands a quarter period apart, through the inverse multi-blade transformation.
 
-use super::{excitation_rate, share};
+mod kind;
+
+pub use kind::HELIX;
+
+use crate::excitation::{Excitation, excitation_rate, share, words};
 use basis::mbc::to_blades;
-use basis::{FixedFrame, PerBlade, Sense};
+use basis::{FixedFrame, Measurements, PerBlade, Sense};
 use serde::{Deserialize, Serialize};
 
 /// The helix as it runs on one turbine; it has no state, its phase follows from time.
@@ -64,5 +68,21 @@ impl Helix {
     /// van Vondelen et al. (2025), Eqs. 1 and 5.
     pub fn pitch(&self, time: f64, azimuth: f64, n_blades: usize) -> PerBlade<f64> {
         to_blades(azimuth + self.azimuth_offset, self.commands(time), n_blades)
+    }
+}
+
+impl Excitation for Helix {
+    fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
+        if self.amplitude == 0.0 {
+            return;
+        }
+        let added = Helix::pitch(self, measurements.time, measurements.azimuth, pitch.len());
+        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
+            *pitch += added;
+        }
+    }
+
+    fn describe(&self) -> String {
+        words(&format!("helix {}", self.sense), self.amplitude, self.strouhal)
     }
 }

@@ -16,7 +16,14 @@
 //! What the paper leaves open: the excitation is as strong as the estimate is trusted. Where the wind carries no helix, or
 //! the loads go missing, it fades to the baseline, and comes back when the helix does.
 
-use crate::excitation::fade_in;
+mod kind;
+mod settings;
+
+pub use kind::PHASE_SYNC;
+pub use settings::{PhaseEstimator, PhaseNoise, PhaseSyncSettings, calibration_of, response_of};
+
+use crate::controller::{ForeignState, from_bytes, to_bytes};
+use crate::excitation::{Excitation, fade_in};
 use basis::mbc::to_blades;
 use basis::{FixedFrame, Measurements, PerBlade, Sense};
 use estimation::helix::State as EstimatorState;
@@ -80,7 +87,7 @@ pub struct PhaseSync {
 
 /// Everything of it that time changes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SyncState {
+struct SyncState {
     estimator: EstimatorState,
     trusted: bool,
     share: f64,
@@ -167,34 +174,74 @@ impl PhaseSync {
         let target = if self.trusted { 1.0 } else { 0.0 };
         self.share += (target - self.share).clamp(-step, step);
     }
+}
 
-    /// Everything that time changes, for a checkpoint.
-    pub fn state(&self) -> SyncState {
-        SyncState {
-            estimator: self.estimator.state().clone(),
-            trusted: self.trusted,
-            share: self.share,
-            steady: self.steady,
+/// Signals in the series.
+const SIGNALS: [&str; 9] = [
+    "estimated_wind_m_s",
+    "estimated_tilt_wind_m_s",
+    "estimated_yaw_wind_m_s",
+    "estimated_tilt_amplitude_m_s",
+    "estimated_yaw_amplitude_m_s",
+    "estimated_tilt_phase_rad",
+    "estimated_yaw_phase_rad",
+    "estimate_trust",
+    "sync_share",
+];
+
+impl Excitation for PhaseSync {
+    fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
+        let added = PhaseSync::pitch(self, measurements);
+        if self.settings.amplitude == 0.0 {
+            return;
+        }
+        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
+            *pitch += added;
         }
     }
 
-    /// Continues from `state`, which a controller of the same settings gave.
-    pub fn restore(&mut self, state: SyncState) {
-        self.estimator.restore(state.estimator);
-        (self.trusted, self.share, self.steady) = (state.trusted, state.share, state.steady);
-    }
-
-    /// In words: "synchronised ccw 4.0° at 150°".
-    pub fn describe(&self) -> String {
+    fn describe(&self) -> String {
         let SyncSettings { sense, amplitude, offset, .. } = self.settings;
         if amplitude == 0.0 {
             return "baseline, watching".to_owned();
         }
-        format!(
-            "synchronised {sense} {:.1}° at {:.0}°",
-            amplitude.to_degrees(),
-            offset.to_degrees()
-        )
+        let (amplitude, offset) = (amplitude.to_degrees(), offset.to_degrees());
+        format!("synchronised {sense} {amplitude:.1}° at {offset:.0}°")
+    }
+
+    fn signals(&self) -> Vec<&'static str> {
+        SIGNALS.to_vec()
+    }
+
+    fn write_signals(&self, values: &mut [f64]) {
+        let Some(estimate) = &self.estimate else { return };
+        values.copy_from_slice(&[
+            estimate.mean_wind,
+            estimate.helix.tilt,
+            estimate.helix.yaw,
+            estimate.tilt.amplitude,
+            estimate.yaw.amplitude,
+            estimate.tilt.phase,
+            estimate.yaw.phase,
+            estimate.trust.overall(),
+            self.share,
+        ]);
+    }
+
+    fn save(&self) -> Vec<u8> {
+        to_bytes(&SyncState {
+            estimator: self.estimator.state().clone(),
+            trusted: self.trusted,
+            share: self.share,
+            steady: self.steady,
+        })
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), ForeignState> {
+        let state: SyncState = from_bytes(state)?;
+        self.estimator.restore(state.estimator);
+        (self.trusted, self.share, self.steady) = (state.trusted, state.share, state.steady);
+        Ok(())
     }
 }
 

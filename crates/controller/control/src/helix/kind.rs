@@ -1,0 +1,88 @@
+//! `kind = "helix"`: its keys, and how it is built.
+
+use super::Helix;
+use crate::Controller;
+use crate::excitation::Excitation;
+use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, sense, starts_too_late};
+use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site, stop_of};
+use basis::Sense;
+use basis::keys::LeftOut::{Required, Value};
+use basis::keys::{Holds, Objection, Table, Values, key};
+use basis::registry::Named;
+
+/// The helix.
+pub struct HelixKind;
+
+/// The kind.
+pub static HELIX: HelixKind = HelixKind;
+
+static TABLE: Table = Table {
+    heading: "control.T1 = { kind = \"helix\", … }",
+    about: "Individual pitch that moves the thrust centre on a circle, on top of baseline.",
+    keys: &[
+        key(
+            "sense",
+            Holds::Choice(&["cw", "ccw"]),
+            "",
+            Required,
+            "`ccw`: blades pitch at rotor plus excitation frequency. `cw`: at rotor minus excitation frequency.",
+        ),
+        AMPLITUDE,
+        STROUHAL,
+        key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero."),
+        key(
+            "azimuth_offset_deg",
+            PHASE_RANGE,
+            "deg",
+            Value("0"),
+            "Azimuth offset of the inverse multi-blade transformation. An open helix has a free phase, of which this is a part: it adds to `phase_deg` (`ccw`) or takes from it (`cw`).",
+        ),
+        START,
+        STOP,
+    ],
+};
+
+impl Named for HelixKind {
+    fn name(&self) -> &'static str {
+        "helix"
+    }
+}
+
+impl ControllerKind for HelixKind {
+    fn table(&self) -> &'static Table {
+        &TABLE
+    }
+
+    fn check(&self, values: &mut Values, place: &Place) -> Vec<Objection> {
+        Vec::from_iter(starts_too_late(values, place.duration))
+    }
+
+    fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
+        let values = control.values();
+        let (amplitude, strouhal) = (values.angle("amplitude_deg"), values.number("strouhal"));
+        let mut helix =
+            Helix::new(sense(values), amplitude, strouhal, site.wind_speed, site.diameter);
+        helix.phase = values.angle("phase_deg");
+        helix.azimuth_offset = values.angle("azimuth_offset_deg");
+        helix.start = values.number("start");
+        helix.stop = stop_of(helix.start, values.optional_number("stop"), helix.rate)?;
+        Ok(helix.on_top_of(site.baseline()))
+    }
+
+    fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
+        Some((sense(control.values()), control.values().number("strouhal")))
+    }
+
+    fn pitching(&self, control: &Control) -> Option<Pitching> {
+        let values = control.values();
+        Some(Pitching {
+            motion: Motion::Cyclic,
+            amplitude: values.angle("amplitude_deg"),
+            strouhal: values.number("strouhal"),
+            sense: Some(sense(values)),
+            start: values.number("start"),
+            stop: values.optional_number("stop"),
+            is_steady: true,
+        })
+    }
+}

@@ -1,0 +1,57 @@
+//! Keys that several kinds of controllers have.
+
+use basis::keys::LeftOut::{Otherwise, Required, Value};
+use basis::keys::{Holds, Key, Objection, Values, above, from, key};
+
+pub(crate) const AMPLITUDE: Key = key(
+    "amplitude_deg",
+    from(0.0, 10.0),
+    "deg",
+    Required,
+    "Pitch amplitude of a blade; 0 is the baseline, bit for bit.",
+);
+pub(crate) const STROUHAL: Key = key(
+    "strouhal",
+    above(0.0, 2.0),
+    "–",
+    Required,
+    "Strouhal number f D / U of the excitation, with `wind.speed` and the diameter of the first turbine.",
+);
+pub(crate) const START: Key = key(
+    "start",
+    from(0.0, 1e6),
+    "s",
+    Value("0"),
+    "Time at which it fades in; before `time.duration`.",
+);
+pub(crate) const STOP: Key = key(
+    "stop",
+    above(0.0, 1e6),
+    "s",
+    Otherwise("never"),
+    "Time at which it fades out again, over one excitation period as it fades in; at least one period after `start`. After the end of the run it changes nothing.",
+);
+pub(crate) const PHASE_RANGE: Holds = from(-360.0, 360.0);
+
+/// What about the key `start` in `values` cannot be in a run of `duration` (s).
+pub(crate) fn starts_too_late(values: &Values, duration: f64) -> Option<Objection> {
+    let start = values.number("start");
+    (start >= duration).then(|| Objection {
+        key: Some("start"),
+        message: format!(
+            "= {start} s is not before the end of the run, `time.duration` = {duration} s"
+        ),
+        label: "too late",
+        fix: "begin earlier, or raise `time.duration`, which counts from the start of the run"
+            .to_owned(),
+    })
+}
+
+/// The sense under the key `sense`.
+pub(crate) fn sense(values: &Values) -> basis::Sense {
+    if values.word("sense") == "cw" {
+        basis::Sense::Clockwise
+    } else {
+        basis::Sense::CounterClockwise
+    }
+}

@@ -1,0 +1,350 @@
+//! What the program knows of a kind of controller: its keys, its checks, how it is built, what the summary says of it.
+
+use crate::baseline::Constants;
+use crate::excitation::excitation_rate;
+use crate::meandering::MeanderingError;
+use crate::phase_sync::PhaseSyncSettings;
+use crate::{Baseline, Controller};
+use basis::Sense;
+use basis::keys::{LeftOut, Objection, Table, Value, Values};
+use basis::records::PitchResponse;
+use basis::registry::Named;
+use estimation::{Definition, EstimationError};
+use std::fmt;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// A kind of controller.
+///
+/// The methods without a body are all that a kind must have; the others say what a study can do with it.
+pub trait ControllerKind: Named + Sync {
+    /// Its keys in the case file, beside `kind`.
+    fn table(&self) -> &'static Table;
+
+    /// Completes `values` by what `place` tells; gives what about them cannot be, beyond what the keys say one by one.
+    fn check(&self, _values: &mut Values, _place: &Place) -> Vec<Objection> {
+        Vec::new()
+    }
+
+    /// What runs on the turbine at `site` under `control`.
+    ///
+    /// # Errors
+    /// [`ControlError`] for what cannot be controlled so.
+    fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError>;
+
+    /// Whether the turbine is there at all.
+    fn is_there(&self) -> bool {
+        true
+    }
+
+    /// Whether it pitches blades apart from each other, which takes three of them.
+    fn pitches_individually(&self) -> bool {
+        true
+    }
+
+    /// Sense and Strouhal number (–) of the helix that it makes, or joins.
+    fn helix(&self, _control: &Control) -> Option<(Sense, f64)> {
+        None
+    }
+
+    /// The periodic pitch whose amplitude at the blades is to be measured; none where there is none, or it varies.
+    fn pitching(&self, _control: &Control) -> Option<Pitching> {
+        None
+    }
+
+    /// Lowest Strouhal number (–) at which it excites the wake; none where it excites nothing.
+    fn slowest_strouhal(&self, control: &Control) -> Option<f64> {
+        self.pitching(control).map(|pitching| pitching.strouhal)
+    }
+
+    /// What must be known of how the turbine's pitch acts before it runs, and is not given.
+    fn identification(&self, _control: &Control) -> Option<Identification> {
+        None
+    }
+
+    /// How the turbine's pitch acts, as it is given or was found: for the record.
+    fn pitch_response(&self, control: &Control) -> Option<PitchResponse> {
+        control.response
+    }
+
+    /// Whatever response in the place of one that is yet to be found, so that a controller can be built for a check.
+    fn any_response(&self) -> Option<PitchResponse> {
+        None
+    }
+
+    /// What a reader of the numbers must know of the values of `control`, each as what follows "run R: T".
+    fn warnings(&self, _control: &Control) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// Where a controller stands in the layout, as far as its values may depend on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<'a> {
+    /// Name of the turbine.
+    pub turbine: &'a str,
+    /// Sense and Strouhal number of the helix of the nearest turbine upstream that has one.
+    pub upstream: Option<(Sense, f64)>,
+    /// Duration of the run (s).
+    pub duration: f64,
+}
+
+/// What a controller is built for.
+#[derive(Clone, Copy, Debug)]
+pub struct Site<'a> {
+    /// Constants of the turbine's torque and pitch control.
+    pub constants: &'a Constants,
+    /// The machine, as estimators model it.
+    pub rotor: &'a Arc<Definition>,
+    /// Mean speed at hub height of the first turbine (m/s): Strouhal numbers are taken with it.
+    pub wind_speed: f64,
+    /// Rotor diameter of the first turbine (m), likewise.
+    pub diameter: f64,
+    /// Air density (kg/m³).
+    pub air_density: f64,
+    /// Control interval (s).
+    pub interval: f64,
+    /// Whether the flow resolves the rotor's induction; otherwise momentum theory makes it, with the blades.
+    pub flow_resolves_induction: bool,
+}
+
+impl Site<'_> {
+    /// Excitation rate (rad/s) of `strouhal` (–).
+    pub fn rate(&self, strouhal: f64) -> f64 {
+        excitation_rate(strouhal, self.wind_speed, self.diameter)
+    }
+
+    /// Greedy control of the turbine, on top of which excitations go.
+    pub fn baseline(&self) -> Box<dyn Controller> {
+        Box::new(Baseline::new(self.constants.clone()))
+    }
+}
+
+/// How a periodic pitch moves the blades.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Each blade on its own: periodic in the fixed frame.
+    Cyclic,
+    /// All blades alike.
+    Collective,
+}
+
+/// A periodic pitch of constant amplitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pitching {
+    /// How it moves the blades.
+    pub motion: Motion,
+    /// Amplitude of a blade's pitch (rad).
+    pub amplitude: f64,
+    /// Strouhal number (–).
+    pub strouhal: f64,
+    /// Which way the helix winds; none of a collective pitch.
+    pub sense: Option<Sense>,
+    /// Time at which it fades in (s).
+    pub start: f64,
+    /// Time at which it fades out (s); never when absent.
+    pub stop: Option<f64>,
+    /// Whether its phase is steady; a phase that follows the wind spreads the line, so that less of it is one line.
+    pub is_steady: bool,
+}
+
+/// A pitch-response identification before the runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Identification {
+    /// How cyclic pitch acts on tilt and yaw moment, in the middle of a range of Strouhal numbers (–).
+    Loads {
+        /// Lowest and highest.
+        strouhal: [f64; 2],
+    },
+    /// Azimuth offset, and calibration of the estimator, of a turbine that joins a helix.
+    OwnPitch(PhaseSyncSettings),
+}
+
+/// Why a turbine cannot be controlled as the case has it.
+#[derive(Debug, Error)]
+pub enum ControlError {
+    /// The phase of a helix cannot be sought so.
+    #[error("the phase of the helix cannot be estimated")]
+    Estimation(#[from] EstimationError),
+    /// Meandering cannot be followed so.
+    #[error("the meandering cannot be followed")]
+    Meandering(#[from] MeanderingError),
+    /// How pitch acts on the loads is not known.
+    #[error("how pitch acts on the loads was neither given nor found before")]
+    NotDecoupled,
+    /// The azimuth offset of a turbine that joins a helix is not known.
+    #[error("the azimuth offset with which it pitches was neither given nor found before")]
+    NoAzimuthOffset,
+    /// An excitation that fades out before it has faded in.
+    #[error(
+        "stop = {stop} s comes before the excitation is whole: it starts at {start} s and fades in over one period of {period:.1} s; stop at {earliest} s or later, or leave `stop` out"
+    )]
+    StopsTooEarly {
+        /// Given stop (s).
+        stop: f64,
+        /// Start (s).
+        start: f64,
+        /// Excitation period (s).
+        period: f64,
+        /// Earliest stop, in whole seconds (s).
+        earliest: f64,
+    },
+    /// Nothing runs on a turbine that is not there.
+    #[error("the turbine is not there in this run")]
+    NotThere,
+    /// A key that the kind does not have, or a value that the key cannot hold.
+    #[error("`{key}` = {value:?} cannot be in {heading}; {about}")]
+    Key {
+        /// The kind's table.
+        heading: &'static str,
+        /// The key.
+        key: String,
+        /// Its value; none when it is missing.
+        value: Option<Value>,
+        /// What the key means, or which keys there are.
+        about: String,
+    },
+    /// What a kind that was added has to say.
+    #[error("{kind}: {source}")]
+    Added {
+        /// Name of the kind.
+        kind: &'static str,
+        /// What it says.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+}
+
+/// What runs on a turbine: a kind of controller with its values.
+#[derive(Clone)]
+pub struct Control {
+    kind: &'static dyn ControllerKind,
+    values: Values,
+    /// What was found of how the turbine's pitch acts, before the runs.
+    pub response: Option<PitchResponse>,
+}
+
+impl Control {
+    /// `kind` with `values` as they were read and checked.
+    pub fn checked(kind: &'static dyn ControllerKind, values: Values) -> Self {
+        let values = values.in_order_of(kind.table());
+        Self { kind, values, response: None }
+    }
+
+    /// `kind` with the values `given`, in the units of the case file; the others have their defaults.
+    ///
+    /// ```
+    /// let helix = control::Control::new(
+    ///     &control::helix::HELIX,
+    ///     &[("sense", "ccw".into()), ("amplitude_deg", 4.0.into()), ("strouhal", 0.25.into())],
+    /// )?;
+    /// assert_eq!(helix.values().number("start"), 0.0);
+    /// # Ok::<(), control::ControlError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ControlError::Key`] for a key that the kind does not have, a value that it cannot hold, and one that is missing.
+    pub fn new(
+        kind: &'static dyn ControllerKind,
+        given: &[(&str, Value)],
+    ) -> Result<Self, ControlError> {
+        let table = kind.table();
+        let refuse = |key: &str, value: Option<&Value>, about: String| ControlError::Key {
+            heading: table.heading,
+            key: key.to_owned(),
+            value: value.cloned(),
+            about,
+        };
+        let names = || table.keys.iter().map(|key| key.name).collect::<Vec<_>>().join(", ");
+        for (name, value) in given {
+            if !table.keys.iter().any(|key| key.name == *name) {
+                return Err(refuse(name, Some(value), format!("it knows {}", names())));
+            }
+        }
+        let mut values = Values::default();
+        for key in table.keys {
+            match given.iter().find(|(name, _)| *name == key.name) {
+                Some((_, value)) if key.holds.accepts(value) => values.set(key.name, value.clone()),
+                Some((_, value)) => {
+                    return Err(refuse(key.name, Some(value), key.about.to_owned()));
+                }
+                None if matches!(key.left_out, LeftOut::Required) => {
+                    return Err(refuse(key.name, None, format!("add it: {}", key.about)));
+                }
+                None => values.extend(key.default()),
+            }
+        }
+        Ok(Self::checked(kind, values))
+    }
+
+    /// Greedy control, nothing on top.
+    pub fn baseline() -> Self {
+        Self::checked(&crate::baseline::BASELINE, Values::default())
+    }
+
+    /// The turbine is not there.
+    pub fn absent() -> Self {
+        Self::checked(&crate::ABSENT, Values::default())
+    }
+
+    /// What kind of controller it is.
+    pub fn kind(&self) -> &'static dyn ControllerKind {
+        self.kind
+    }
+
+    /// What its keys hold, in the units of the case file.
+    pub fn values(&self) -> &Values {
+        &self.values
+    }
+
+    /// Whether it is of `kind`.
+    pub fn is(&self, kind: &dyn ControllerKind) -> bool {
+        self.kind.name() == kind.name()
+    }
+
+    /// Whether the turbine is there.
+    pub fn is_there(&self) -> bool {
+        self.kind.is_there()
+    }
+
+    /// Sense and Strouhal number (–) of the helix that it makes, or joins.
+    pub fn helix(&self) -> Option<(Sense, f64)> {
+        self.kind.helix(self)
+    }
+
+    /// What runs on the turbine at `site`.
+    ///
+    /// # Errors
+    /// [`ControlError`] for what cannot be controlled so.
+    pub fn build(&self, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
+        self.kind.build(self, site)
+    }
+}
+
+impl fmt::Debug for Control {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kind, values, response } = self;
+        write!(formatter, "{} {values:?} {response:?}", kind.name())
+    }
+}
+
+impl PartialEq for Control {
+    fn eq(&self, other: &Self) -> bool {
+        self.is(other.kind) && self.values == other.values && self.response == other.response
+    }
+}
+
+/// The `stop` (s) of an excitation of `rate` (rad/s) that begins at `start` (s), which is to be whole before it ends.
+pub(crate) fn stop_of(
+    start: f64,
+    stop: Option<f64>,
+    rate: f64,
+) -> Result<Option<f64>, ControlError> {
+    let period = std::f64::consts::TAU / rate;
+    match stop {
+        Some(stop) if stop < start + period => {
+            let earliest = (start + period).ceil();
+            Err(ControlError::StopsTooEarly { stop, start, period, earliest })
+        }
+        stop => Ok(stop),
+    }
+}

@@ -1,0 +1,138 @@
+//! `kind = "phase-sync"`: its checks, and how it is built.
+
+use super::settings::{PhaseEstimator, PhaseSyncSettings, TABLE, response_of};
+use super::{PhaseSync, SyncSettings};
+use crate::Controller;
+use crate::excitation::Excitation;
+use crate::keys::{sense, starts_too_late};
+use crate::kind::{
+    Control, ControlError, ControllerKind, Identification, Motion, Pitching, Place, Site,
+};
+use basis::Sense;
+use basis::angle::wrap_to_turn;
+use basis::keys::{Objection, Table, Values};
+use basis::records::PitchResponse;
+use basis::registry::Named;
+use estimation::HelixEstimator;
+use std::f64::consts::TAU;
+
+/// The helix in step with the one that comes from upstream.
+pub struct PhaseSyncKind;
+
+/// The kind.
+pub static PHASE_SYNC: PhaseSyncKind = PhaseSyncKind;
+
+impl Named for PhaseSyncKind {
+    fn name(&self) -> &'static str {
+        "phase-sync"
+    }
+}
+
+/// What `control`, which is of this kind, says.
+fn settings(control: &Control) -> Result<PhaseSyncSettings, ControlError> {
+    PhaseSyncSettings::of(control).ok_or(ControlError::NoAzimuthOffset)
+}
+
+impl ControllerKind for PhaseSyncKind {
+    fn table(&self) -> &'static Table {
+        &TABLE
+    }
+
+    fn check(&self, values: &mut Values, place: &Place) -> Vec<Objection> {
+        let mut objections = Vec::from_iter(starts_too_late(values, place.duration));
+        if let Some((sense, strouhal)) = place.upstream {
+            if !values.has("sense") {
+                values.set("sense", if sense == Sense::Clockwise { "cw" } else { "ccw" });
+            }
+            if !values.has("strouhal") {
+                values.set("strouhal", strouhal);
+            }
+        }
+        if !values.has("sense") || !values.has("strouhal") {
+            let turbine = place.turbine;
+            objections.push(Objection {
+                key: None,
+                message: format!(
+                    "{turbine} shall join a helix, but no turbine upstream of it has one in this run"
+                ),
+                label: "joins what?",
+                fix: "give a turbine upstream a helix, or say which helix it is: sense = \"ccw\", strouhal = 0.25"
+                    .to_owned(),
+            });
+        }
+        if values.number("amplitude_deg") == 0.0 && !values.has("azimuth_offset_deg") {
+            // Nothing is pitched, with whatever offset.
+            values.set("azimuth_offset_deg", 0.0);
+        }
+        if values.word("estimator") != "published" && values.has("wandering_phase") {
+            objections.push(Objection {
+                key: Some("wandering_phase"),
+                message: "is of no use here: it goes with estimator = \"published\"; the states of \"robust\" are sine and cosine components, which wander as wandering_amplitude says".to_owned(),
+                label: "of no use",
+                fix: "leave it out".to_owned(),
+            });
+        }
+        objections
+    }
+
+    fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
+        let given = settings(control)?;
+        let setting = given.estimator_setting(site);
+        let options = given.estimator_options(site.flow_resolves_induction);
+        let options = given.calibration.map_or(options, |found| found.apply(options));
+        let estimator = HelixEstimator::new(site.rotor, &setting, options)?;
+        let settings = SyncSettings {
+            sense: given.sense,
+            amplitude: given.amplitude,
+            rate: setting.rate,
+            offset: wrap_to_turn(given.offset),
+            azimuth_offset: given.azimuth_offset.ok_or(ControlError::NoAzimuthOffset)?,
+            start: given.start,
+            trust: given.trust(),
+        };
+        Ok(PhaseSync::new(settings, estimator).on_top_of(site.baseline()))
+    }
+
+    fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
+        Some((sense(control.values()), control.values().number("strouhal")))
+    }
+
+    fn pitching(&self, control: &Control) -> Option<Pitching> {
+        let given = PhaseSyncSettings::of(control)?;
+        Some(Pitching {
+            motion: Motion::Cyclic,
+            amplitude: given.amplitude,
+            strouhal: given.strouhal,
+            sense: Some(given.sense),
+            start: given.start,
+            stop: None,
+            is_steady: false,
+        })
+    }
+
+    fn identification(&self, control: &Control) -> Option<Identification> {
+        let given = PhaseSyncSettings::of(control)?;
+        let open = given.azimuth_offset.is_none() || given.estimator == PhaseEstimator::Robust;
+        (open && given.amplitude != 0.0).then_some(Identification::OwnPitch(given))
+    }
+
+    fn pitch_response(&self, control: &Control) -> Option<PitchResponse> {
+        let given = PhaseSyncSettings::of(control)?;
+        let azimuth_offset = given.azimuth_offset.filter(|_| given.amplitude != 0.0)?;
+        Some(response_of(azimuth_offset, given.calibration))
+    }
+
+    fn any_response(&self) -> Option<PitchResponse> {
+        Some(PitchResponse::Transformation { azimuth_offset: 0.0 })
+    }
+
+    fn warnings(&self, control: &Control) -> Vec<String> {
+        let given = control.values().angle("offset_deg");
+        if (0.0..TAU).contains(&given) {
+            return Vec::new();
+        }
+        let taken = wrap_to_turn(given);
+        let [given, taken] = [given, taken].map(f64::to_degrees);
+        vec![format!("'s offset of {given:.0}° is taken as {taken:.0}°")]
+    }
+}

@@ -1,0 +1,254 @@
+//! `kind = "phase-sync"`: its keys, and what they say.
+
+use super::TRUST;
+use crate::keys::{PHASE_RANGE, START, sense};
+use crate::kind::{Control, Site};
+use basis::Sense;
+use basis::keys::LeftOut::{Otherwise, Required, Value};
+use basis::keys::{Holds, Table, above, from, key};
+use basis::records::PitchResponse;
+use estimation::helix::{Calibration, Measurement, Options, Setting, Wake};
+
+pub(super) static TABLE: Table = Table {
+    heading: "control.T2 = { kind = \"phase-sync\", … }",
+    about: "The helix in step with the one that comes from upstream: its phase is found in the blade loads, and the pitch follows it with an offset.",
+    keys: &[
+        key(
+            "offset_deg",
+            from(-3600.0, 3600.0),
+            "deg",
+            Required,
+            "Lead of the pitch over the wind that meets the rotor, 0 to 360. 0: pitch rises where the wind does and takes load off; 180: it falls where the wind rises and adds load. Other angles are turned into the circle, with a warning.",
+        ),
+        key(
+            "amplitude_deg",
+            from(0.0, 10.0),
+            "deg",
+            Required,
+            "Pitch amplitude of a blade; 0 is the baseline, bit for bit, with the estimate in the series.",
+        ),
+        key(
+            "sense",
+            Holds::Choice(&["cw", "ccw"]),
+            "",
+            Otherwise("that of the nearest turbine upstream with a helix"),
+            "Which way the helix winds that it joins.",
+        ),
+        key(
+            "strouhal",
+            above(0.0, 2.0),
+            "–",
+            Otherwise("that of the nearest turbine upstream with a helix"),
+            "Strouhal number of the helix that it joins, with `wind.speed` and the diameter of the first turbine.",
+        ),
+        key(
+            "azimuth_offset_deg",
+            PHASE_RANGE,
+            "deg",
+            Otherwise(
+                "found before the runs, by a helix of a degree in either sense in prescribed wind",
+            ),
+            "Azimuth offset ψ of the inverse multi-blade transformation, with which tilt pitch answers in the tilt moment alone; 0 with `amplitude_deg = 0`. At one frequency the blades pitch with it as with none and an `offset_deg` greater (`ccw`) or less (`cw`) by ψ.",
+        ),
+        key(
+            "estimator",
+            Holds::Choice(&["robust", "published"]),
+            "",
+            Value("\"robust\""),
+            "`robust`: extended Kalman filter with states for shear, eddies and what else its model lacks. `published`: the four states of van Vondelen et al. (2025).",
+        ),
+        key(
+            "fallback",
+            Holds::Choice(&["baseline", "none"]),
+            "",
+            Value("\"baseline\""),
+            "What it does where the estimate cannot be trusted. `baseline`: it fades out, and comes back with the helix. `none`: it goes on.",
+        ),
+        key(
+            "measurement_noise_mnm",
+            above(0.0, 1e4),
+            "MN m",
+            Otherwise("5 % of the mean moment"),
+            "Standard deviation of the noise in a blade's moment that the estimator believes in. `wakemix analyse tune` finds it, and how the wave wanders, on the records of a run.",
+        ),
+        key(
+            "wandering_amplitude",
+            above(0.0, 1e6),
+            "m²/s³",
+            Otherwise("8e-4; 1e-4 with `estimator = \"published\"`"),
+            "Variance per time, (m/s)²/s, with which the helix's amplitude wanders in the estimator's belief; with `robust` each of its sine and cosine components.",
+        ),
+        key(
+            "wandering_phase",
+            above(0.0, 1e6),
+            "rad²/s",
+            Otherwise("1e-4; only with `estimator = \"published\"`"),
+            "Variance per time with which each phase wanders in the estimator's belief.",
+        ),
+        START,
+    ],
+};
+
+/// Newton metres of a meganewton metre.
+const MEGA: f64 = 1e6;
+
+/// Settings of a turbine that joins the helix that comes from upstream.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhaseSyncSettings {
+    /// Which way the helix winds that it joins.
+    pub sense: Sense,
+    /// Pitch amplitude (rad); 0 is the baseline that only estimates.
+    pub amplitude: f64,
+    /// Strouhal number of the helix that it joins (–).
+    pub strouhal: f64,
+    /// Lead of the pitch over the wind that meets the rotor (rad, any turn).
+    pub offset: f64,
+    /// Azimuth offset of the inverse multi-blade transformation (rad); found before the runs when absent.
+    pub azimuth_offset: Option<f64>,
+    /// Time at which it fades in (s).
+    pub start: f64,
+    /// What finds the phase.
+    pub estimator: PhaseEstimator,
+    /// Whether it fades to the baseline where the estimate cannot be trusted.
+    pub fallback: bool,
+    /// Noise that the estimator is told to believe in.
+    pub noise: PhaseNoise,
+    /// What the estimator makes of the turbine's own pitch; found before the runs.
+    pub calibration: Option<Calibration>,
+}
+
+impl PhaseSyncSettings {
+    /// What `control` says, and what was found before the runs; none where it is of another kind.
+    pub fn of(control: &Control) -> Option<Self> {
+        if !control.is(&super::PHASE_SYNC) {
+            return None;
+        }
+        let values = control.values();
+        let amplitude = values.angle("amplitude_deg");
+        let given = values.optional_number("azimuth_offset_deg").map(f64::to_radians);
+        Some(Self {
+            sense: sense(values),
+            amplitude,
+            strouhal: values.number("strouhal"),
+            offset: values.angle("offset_deg"),
+            // Nothing is pitched at amplitude zero, with whatever offset.
+            azimuth_offset: given
+                .or(control.response.as_ref().and_then(azimuth_offset_of))
+                .or((amplitude == 0.0).then_some(0.0)),
+            start: values.number("start"),
+            estimator: if values.word("estimator") == "published" {
+                PhaseEstimator::Published
+            } else {
+                PhaseEstimator::Robust
+            },
+            fallback: values.word("fallback") != "none",
+            noise: PhaseNoise {
+                measurement: values.optional_number("measurement_noise_mnm").map(|n| n * MEGA),
+                wandering_amplitude: values.optional_number("wandering_amplitude"),
+                wandering_phase: values.optional_number("wandering_phase"),
+            },
+            calibration: control.response.as_ref().and_then(calibration_of),
+        })
+    }
+
+    /// What its estimator is set to at `site`.
+    pub fn estimator_setting(&self, site: &Site) -> Setting {
+        Setting {
+            sense: self.sense,
+            rate: site.rate(self.strouhal),
+            interval: site.interval,
+            air_density: site.air_density,
+            n_elements: Setting::N_ELEMENTS,
+        }
+    }
+
+    /// Choices of its estimator with its own noise, before calibration.
+    pub fn estimator_options(&self, flow_resolves_induction: bool) -> Options {
+        self.noise.apply(self.estimator.options(flow_resolves_induction))
+    }
+
+    /// Trust below which the excitation fades out, and above which it comes back (–).
+    pub(super) fn trust(&self) -> Option<[f64; 2]> {
+        self.fallback.then_some(TRUST)
+    }
+}
+
+/// Noise that a phase estimator takes for granted; what is absent stays as the estimator has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhaseNoise {
+    /// Standard deviation of one blade's moment (N m).
+    pub measurement: Option<f64>,
+    /// Wandering of amplitudes, or of sine and cosine components ((m/s)²/s).
+    pub wandering_amplitude: Option<f64>,
+    /// Wandering of phases (rad²/s).
+    pub wandering_phase: Option<f64>,
+}
+
+impl PhaseNoise {
+    /// `options` with this noise.
+    pub fn apply(&self, options: Options) -> Options {
+        let mut options = options;
+        let noise = &mut options.noise;
+        noise.measurement = self.measurement.map_or(noise.measurement, Measurement::Moment);
+        noise.amplitude = self.wandering_amplitude.unwrap_or(noise.amplitude);
+        noise.phase = self.wandering_phase.unwrap_or(noise.phase);
+        options
+    }
+}
+
+/// What finds the phase of a helix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PhaseEstimator {
+    /// The extended Kalman filter with states for what its model lacks.
+    Robust,
+    /// The extended Kalman filter as it was published.
+    Published,
+}
+
+impl PhaseEstimator {
+    /// Its choices, before calibration, with the noise that it comes with.
+    pub fn options(self, flow_resolves_induction: bool) -> Options {
+        match self {
+            Self::Robust if !flow_resolves_induction => {
+                // Momentum theory keeps the wake's delay with the blade, a resolved flow where the blade has passed.
+                let mut options = Options::default();
+                options.rotor.wake = Wake::WithBlades { time_factor: 1.0 };
+                options
+            }
+            Self::Robust => Options::default(),
+            Self::Published => Options::published(),
+        }
+    }
+}
+
+/// The calibration of an estimator in `response`.
+pub fn calibration_of(response: &PitchResponse) -> Option<Calibration> {
+    match *response {
+        PitchResponse::Estimator { gain, azimuth_offset, before, after, .. } => {
+            Some(Calibration { gain, azimuth_offset, before, after })
+        }
+        PitchResponse::Transformation { .. }
+        | PitchResponse::IndividualPitch { .. }
+        | PitchResponse::Loads { .. } => None,
+    }
+}
+
+/// The azimuth offset (rad) in `response` with which a turbine that joins a helix pitches.
+fn azimuth_offset_of(response: &PitchResponse) -> Option<f64> {
+    match *response {
+        PitchResponse::Estimator { transformation_offset, .. } => transformation_offset,
+        PitchResponse::Transformation { azimuth_offset } => Some(azimuth_offset),
+        PitchResponse::IndividualPitch { .. } | PitchResponse::Loads { .. } => None,
+    }
+}
+
+/// The record of an `azimuth_offset` (rad) of the transformation and of what was found with it.
+pub fn response_of(azimuth_offset: f64, calibration: Option<Calibration>) -> PitchResponse {
+    let transformation_offset = Some(azimuth_offset);
+    match calibration {
+        None => PitchResponse::Transformation { azimuth_offset },
+        Some(Calibration { gain, azimuth_offset, before, after }) => {
+            PitchResponse::Estimator { gain, azimuth_offset, before, after, transformation_offset }
+        }
+    }
+}

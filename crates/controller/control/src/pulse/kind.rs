@@ -1,0 +1,71 @@
+//! `kind = "pulse"`: its keys, and how it is built.
+
+use super::Pulse;
+use crate::Controller;
+use crate::excitation::Excitation;
+use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, starts_too_late};
+use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site, stop_of};
+use basis::keys::LeftOut::Value;
+use basis::keys::{Objection, Table, Values, key};
+use basis::registry::Named;
+
+/// The pulse.
+pub struct PulseKind;
+
+/// The kind.
+pub static PULSE: PulseKind = PulseKind;
+
+static TABLE: Table = Table {
+    heading: "control.T1 = { kind = \"pulse\", … }",
+    about: "Collective pitch, periodic, on top of baseline.",
+    keys: &[
+        AMPLITUDE,
+        STROUHAL,
+        key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase at time zero."),
+        START,
+        STOP,
+    ],
+};
+
+impl Named for PulseKind {
+    fn name(&self) -> &'static str {
+        "pulse"
+    }
+}
+
+impl ControllerKind for PulseKind {
+    fn table(&self) -> &'static Table {
+        &TABLE
+    }
+
+    fn check(&self, values: &mut Values, place: &Place) -> Vec<Objection> {
+        Vec::from_iter(starts_too_late(values, place.duration))
+    }
+
+    fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
+        let values = control.values();
+        let (amplitude, strouhal) = (values.angle("amplitude_deg"), values.number("strouhal"));
+        let mut pulse = Pulse::new(amplitude, strouhal, site.wind_speed, site.diameter);
+        pulse.phase = values.angle("phase_deg");
+        pulse.start = values.number("start");
+        pulse.stop = stop_of(pulse.start, values.optional_number("stop"), pulse.rate)?;
+        Ok(pulse.on_top_of(site.baseline()))
+    }
+
+    fn pitches_individually(&self) -> bool {
+        false
+    }
+
+    fn pitching(&self, control: &Control) -> Option<Pitching> {
+        let values = control.values();
+        Some(Pitching {
+            motion: Motion::Collective,
+            amplitude: values.angle("amplitude_deg"),
+            strouhal: values.number("strouhal"),
+            sense: None,
+            start: values.number("start"),
+            stop: values.optional_number("stop"),
+            is_steady: true,
+        })
+    }
+}

@@ -1,0 +1,101 @@
+//! Sensors beyond the standard instruments: they see the turbine and look at the flow, and their readings cross the wall by name.
+
+use basis::keys::{Objection, Table, Values};
+use basis::registry::{Named, Registry};
+use basis::{Truth, Vector3};
+use flow::WindField;
+use std::fmt;
+use thiserror::Error;
+use turbine::Turbine;
+
+/// What a sensor can see at one control instant.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// How the turbine truly fares.
+    pub truth: &'a Truth,
+    /// The turbine that it is mounted on.
+    pub turbine: &'a Turbine,
+    /// The wind, everywhere, at this instant.
+    pub wind: &'a dyn WindField,
+}
+
+/// A sensor at work on one turbine.
+pub trait Sensor: Send {
+    /// Names of its values, each ending in its unit, such as `line_of_sight_1_m_s`.
+    fn channels(&self) -> Vec<String>;
+
+    /// On return `values`, one for each channel, hold what it shows of `scene`. Must not allocate.
+    fn read(&mut self, scene: &Scene, values: &mut [f64]);
+
+    /// Everything that time changes, for a checkpoint.
+    fn save(&self) -> Vec<u8>;
+
+    /// Continues from what a sensor of the same settings [saved](Self::save).
+    ///
+    /// # Errors
+    /// [`ForeignState`] for bytes that such a sensor did not write.
+    fn restore(&mut self, state: &[u8]) -> Result<(), ForeignState>;
+}
+
+/// Bytes that are no state of this sensor.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("the stored state of sensor `{sensor}` is not one of such a sensor")]
+pub struct ForeignState {
+    /// Name of the sensor.
+    pub sensor: String,
+}
+
+/// Where a sensor stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Mount<'a> {
+    /// The machine.
+    pub definition: &'a turbine::Definition,
+    /// Foot of its tower, farm frame (m).
+    pub foot: Vector3,
+    /// Control interval (s).
+    pub interval: f64,
+    /// Seed of its noise.
+    pub seed: u64,
+}
+
+/// A kind of sensor: everything that the program knows of it.
+pub trait SensorKind: Named + Sync {
+    /// Its keys in the case file, beside `kind`.
+    fn table(&self) -> &'static Table;
+
+    /// What about `values` cannot be, beyond what the keys say.
+    fn check(&self, _values: &Values) -> Vec<Objection> {
+        Vec::new()
+    }
+
+    /// The sensor with `values` at `mount`.
+    fn build(&self, values: &Values, mount: &Mount) -> Box<dyn Sensor>;
+}
+
+/// The kinds of sensors. None comes with the program yet; programs built on it add their own.
+pub static SENSORS: Registry<dyn SensorKind> = Registry::new(&[]);
+
+/// One sensor of a turbine, as the case file has it.
+#[derive(Clone)]
+pub struct Mounted {
+    /// Its name: readings go by it.
+    pub name: String,
+    /// What it is.
+    pub kind: &'static dyn SensorKind,
+    /// What its keys hold.
+    pub values: Values,
+}
+
+impl fmt::Debug for Mounted {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, kind, values } = self;
+        write!(formatter, "{name}: {} {values:?}", kind.name())
+    }
+}
+
+impl PartialEq for Mounted {
+    fn eq(&self, other: &Self) -> bool {
+        let parts = |own: &Self| (own.name.clone(), own.kind.name(), own.values.clone());
+        parts(self) == parts(other)
+    }
+}
