@@ -2,11 +2,10 @@
 
 mod small;
 
-use small::written;
+use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Options, Outcome, Progress, Watcher};
+use study::{Options, Outcome, Outputs, Prepared, Silent};
 
 const CASE: &str = r#"
 name = "small"
@@ -26,26 +25,22 @@ duration = 160.0
 name = "T1"
 model = "nrel-5mw"
 position_diameters = [0.0, 0.0]
+[[turbine]]
+name = "T2"
+model = "nrel-5mw"
+position_diameters = [1.5, 0.0]
 [[run]]
 name = "helix"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 3.0, strouhal = 0.3 }
+control.T2 = { kind = "absent" }
 [output]
+lines_at = ["T2"]
+inflow_at = ["T2"]
 plane_interval = 20.0
 volume_interval = 60.0
 helix_phases = 4
 crosswind_diameters = [1.0]
 "#;
-
-/// Asks for an end when a run of which little is made moves on.
-struct Impatient<'a>(&'a AtomicBool);
-
-impl Watcher for Impatient<'_> {
-    fn advanced(&mut self, progress: &Progress) {
-        if progress.step > 0 {
-            self.0.store(true, Ordering::Relaxed);
-        }
-    }
-}
 
 fn options(folder: &Path, output: &str) -> Options {
     Options { output: Some(folder.join(output)), ..small::options(folder) }
@@ -71,12 +66,12 @@ fn left(run: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 #[test]
 fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
     let folder = written(CASE);
-    let stop = AtomicBool::new(false);
     let outcome = small::run(&options(folder.path(), "whole"));
     assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{outcome:?}");
 
     let mut again = options(folder.path(), "stopped");
-    let outcome = study::run(&again, &stop, &mut Impatient(&stop));
+    let outputs = Outputs::standard().with(&HALFWAY);
+    let outcome = study::run_with(&again, &outputs, &STOP, &mut Silent);
     assert!(matches!(outcome, Ok(Outcome::Interrupted { .. })), "{outcome:?}");
     let run = folder.path().join("stopped/helix");
     assert!(run.join("checkpoint").is_file());
@@ -102,4 +97,10 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
     for ((name, before), (_, after)) in whole.iter().zip(&stopped) {
         assert!(before == after, "{} has other bits", name.display());
     }
+
+    // What it takes on the disk was known beforehand, within a factor of two.
+    let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
+    let told = Outputs::standard().disk(&setup) as f64;
+    let taken: usize = whole.iter().map(|(_, bytes)| bytes.len()).sum();
+    assert!((0.5..2.0).contains(&(told / taken as f64)), "{told} bytes told, {taken} taken");
 }

@@ -86,3 +86,6 @@ impl Default for Outputs {
         Self::standard()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use study::outputs::{FedBy, Output, OutputKind, Scene, Schedule};
 use study::{Options, Outcome, Silent, StudyError};
 use tempfile::TempDir;
 
@@ -121,4 +122,31 @@ pub(crate) fn laid_out(text: &str, overrides: &[String], model: &str) -> (Case, 
 pub(crate) fn uniform_air(case: &Case) -> Air {
     let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
     Air::Prescribed(Box::new(PrescribedWind::everywhere(profile)))
+}
+
+/// What [`HALFWAY`] asks for an end with; one study at a time may listen to it.
+pub(crate) static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Leaves nothing, and asks for an end when half of a run is made.
+pub(crate) static HALFWAY: OutputKind = OutputKind {
+    name: "halfway",
+    keys: &[],
+    fed_by: FedBy::AnyFlow,
+    disk: |_, _| 0,
+    begin: |_, _| Ok(Some(Box::new(Halfway))),
+};
+
+struct Halfway;
+
+impl Output for Halfway {
+    fn schedule(&self) -> Schedule {
+        Schedule::steps(1)
+    }
+
+    fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        if scene.farm.step() == scene.setup.plan.n_steps / 2 {
+            STOP.store(true, Ordering::Relaxed);
+        }
+        Ok(())
+    }
 }
