@@ -15,6 +15,14 @@ pub trait Recorder {
     fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands);
 }
 
+/// Takes nothing down.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Unrecorded;
+
+impl Recorder for Unrecorded {
+    fn record(&mut self, _turbine: usize, _truth: &Truth, _commands: &Commands) {}
+}
+
 /// One turbine with what runs on it.
 pub struct Machine {
     /// The machine in the air.

@@ -12,7 +12,7 @@ pub mod tracking;
 pub mod wind;
 
 pub use air::{Air, FarmFlow};
-pub use farm::{Farm, Machine, Recorder};
+pub use farm::{Farm, Machine, Recorder, Unrecorded};
 pub use plan::{Plan, plan};
 
 /// Is told the share (–) of something long that is done; a break ends it.

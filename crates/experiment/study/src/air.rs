@@ -1,16 +1,18 @@
 //! The air that a run starts with.
 
 use crate::StudyError;
-use crate::prepare::Setup;
+use crate::ready::Ready;
 use farm::Air;
 use farm::solvers::{SolverError, Start, WindSource};
+use std::sync::Arc;
 
-/// The air of `setup` at time zero.
+/// The air of the study that is `ready` at time zero.
 ///
 /// # Errors
 /// [`StudyError`] when its solver cannot be set up, turbulence cannot be made, or a file of wind cannot be read or does not
 /// cover the rotors.
-pub(crate) fn begin(setup: &Setup) -> Result<Air, StudyError> {
+pub(crate) fn begin(ready: &Ready) -> Result<Air, StudyError> {
+    let setup = &ready.prepared;
     let solver = setup.case.flow.solver;
     let planes = if solver.wind == WindSource::Planes {
         let name = setup.case.wind.planes.as_deref().unwrap_or_default();
@@ -18,7 +20,7 @@ pub(crate) fn begin(setup: &Setup) -> Result<Air, StudyError> {
     } else {
         None
     };
-    let start = Start { site: setup.site(), inflow: setup.inflow.clone(), planes };
+    let start = Start { site: setup.site(), inflow: Arc::clone(&ready.inflow), planes };
     (solver.begin)(start).map_err(|error| match error {
         SolverError::Lattice(error) => error.into(),
         SolverError::Inflow(error) => error.into(),

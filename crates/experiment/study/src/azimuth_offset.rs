@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use crate::models::turbine;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use control::excitation_rate;
 use control::meandering::Decoupling;
 use control::meandering::relative_gain;
@@ -60,7 +60,7 @@ pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyEr
     let model = Model { definition: Arc::new(file.definition), constants: file.controller };
     let model = model.without_individual_pitch();
     let loaded = BTreeMap::from([(question.model.clone(), model)]);
-    let Setup { case, plan, models, .. } = Setup::new(case, text, &loaded)?;
+    let Prepared { case, plan, models, .. } = Prepared::with_models(case, loaded)?;
     let rate = excitation_rate(question.strouhal, case.wind.speed, plan.diameter);
     let mut whole = |_| ControlFlow::Continue(());
     let [ccw, cw] = answers(&case, &plan, &models[0], 0, case.wind.speed, rate, &mut whole)?;

@@ -1,7 +1,7 @@
 //! The columns of a run's series, a group at a time, so that memory does not grow with every channel of a long run.
 
 use crate::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use analysis::statistics::{BLOCK_LENGTH, statistic};
 use basis::records::{Series, Statistic};
 use formats::records::{RunFolder, SeriesFile};
@@ -10,12 +10,20 @@ use std::collections::BTreeSet;
 /// Most that the columns of one run take at once (bytes), unless one result needs more of them together.
 const BUDGET: usize = 32 << 20;
 
-/// The series of one run on the disk, and those of its columns that are in memory.
+/// Where the columns of a run come from.
+enum Source {
+    /// The series on the disk.
+    File(SeriesFile),
+    /// All of them are in memory.
+    Memory,
+}
+
+/// The series of one run, and those of its columns that are in memory.
 ///
 /// What is asked for together is in memory together. What is expected to be asked for next comes with it, as far as the
 /// budget goes: a usual run is read once, a long one in a few passes, with the same numbers.
 pub(crate) struct Columns {
-    file: SeriesFile,
+    source: Source,
     first: usize,
     interval: f64,
     /// Most columns in memory.
@@ -30,7 +38,7 @@ impl Columns {
     ///
     /// # Errors
     /// [`StudyError::File`] for a series that cannot be read.
-    pub(crate) fn open(folder: &RunFolder, setup: &Setup) -> Result<Self, StudyError> {
+    pub(crate) fn open(folder: &RunFolder, setup: &Prepared) -> Result<Self, StudyError> {
         Self::within(BUDGET, folder, setup)
     }
 
@@ -38,23 +46,43 @@ impl Columns {
     pub(crate) fn within(
         budget: usize,
         folder: &RunFolder,
-        setup: &Setup,
+        setup: &Prepared,
     ) -> Result<Self, StudyError> {
         let file = SeriesFile::open(&folder.series_path())?;
         let plan = &setup.plan;
         Ok(Self {
-            first: plan.n_spin_up_steps.div_ceil(plan.row_stride) as usize,
+            first: first_row(setup),
             interval: plan.row_interval(),
             n_most: budget / (size_of::<f64>() * file.n_rows().max(1)),
             expected: Vec::new(),
             held: Series::default(),
-            file,
+            source: Source::File(file),
         })
+    }
+
+    /// The columns of a run whose `series` is in memory, whole.
+    pub(crate) fn of_series(series: Series, setup: &Prepared) -> Self {
+        Self {
+            source: Source::Memory,
+            first: first_row(setup),
+            interval: setup.plan.row_interval(),
+            n_most: usize::MAX,
+            expected: Vec::new(),
+            held: series,
+        }
+    }
+
+    /// The series in memory: whole where it was given so.
+    pub(crate) fn into_series(self) -> Series {
+        self.held
     }
 
     /// Names of all channels of the run.
     pub(crate) fn names(&self) -> &[String] {
-        self.file.names()
+        match &self.source {
+            Source::File(file) => file.names(),
+            Source::Memory => &self.held.names,
+        }
     }
 
     /// Says which channels will be asked for, those of each [`of`](Self::of) together, in its order.
@@ -67,16 +95,23 @@ impl Columns {
     /// # Errors
     /// [`StudyError::File`] for a series that cannot be read.
     pub(crate) fn of(&mut self, channels: &[String]) -> Result<Analysed<'_>, StudyError> {
-        let is_due =
-            |name: &String| self.held.column(name).is_none() && self.file.names().contains(name);
-        if channels.iter().any(is_due) {
+        if let Source::File(file) = &self.source
+            && channels
+                .iter()
+                .any(|name| self.held.column(name).is_none() && file.names().contains(name))
+        {
             let group = group(channels, &self.expected, self.n_most);
             // What was held goes before anything comes.
             self.held = Series::default();
-            self.held = self.file.read(|name| group.contains(name))?;
+            self.held = file.read(|name| group.contains(name))?;
         }
         Ok(Analysed { series: &self.held, first: self.first, interval: self.interval })
     }
+}
+
+/// First row that is analysed.
+fn first_row(setup: &Prepared) -> usize {
+    setup.plan.n_spin_up_steps.div_ceil(setup.plan.row_stride) as usize
 }
 
 /// `channels`, and what is `expected` after them as far as all are no more than `n_most`.

@@ -1,6 +1,5 @@
 //! Why a study could not be made.
 
-use crate::seeds::SeedsError;
 use analysis::AnalysisError;
 use farm::assemble::AssemblyError;
 use farm::pitch_response::CalibrationError;
@@ -13,7 +12,6 @@ use formats::atomic::FileError;
 use formats::case::CaseError;
 use formats::turbine_file::TurbineFileError;
 use miette::Diagnostic;
-use report::ReportError;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -72,13 +70,6 @@ pub enum StudyError {
     /// The records of a run cannot be analysed.
     #[error("the records cannot be analysed")]
     Analysis(#[from] AnalysisError),
-    /// Several studies tell no gains together.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Seeds(#[from] SeedsError),
-    /// The report cannot be made.
-    #[error("the report cannot be made")]
-    Report(#[from] ReportError),
     /// A stored average does not fit the grid.
     #[error("the checkpoint does not fit the grid")]
     PlaneSize(#[from] PlaneSizeError),
@@ -124,38 +115,6 @@ pub enum StudyError {
         /// Its folder.
         directory: PathBuf,
     },
-    /// No turbine of a run, or not the asked one, seeks a helix.
-    #[error("{}", nobody(run, asked))]
-    #[diagnostic(help("its turbines are {}; name one with --turbine", turbines.join(", ")))]
-    NobodySeeks {
-        /// Run.
-        run: String,
-        /// Asked turbine.
-        asked: Option<String>,
-        /// Turbines of the case.
-        turbines: Vec<String>,
-    },
-    /// No helix comes from upstream.
-    #[error(
-        "no helix comes from upstream of {turbine} in run {run}: there is no phase to be found"
-    )]
-    NoHelix {
-        /// Run.
-        run: String,
-        /// Turbine.
-        turbine: String,
-    },
-    /// No run holds the true wind at a turbine's place.
-    #[error("no run in {} holds the true wind at the place of {turbine}", directory.display())]
-    #[diagnostic(help(
-        "run the case with `output.lines_at = [\"{turbine}\"]` and a run in which {turbine} is absent and all upstream of it do as in this run, or name one with --truth"
-    ))]
-    NoTruth {
-        /// Turbine.
-        turbine: String,
-        /// Folder of the study.
-        directory: PathBuf,
-    },
     /// A rotor of one or two blades shall pitch them cyclically.
     #[error("run {run}: {turbine} has {n_blades} blades; tilt and yaw take three or more")]
     #[diagnostic(help(
@@ -187,13 +146,6 @@ pub enum StudyError {
         /// Channel.
         channel: String,
     },
-}
-
-fn nobody(run: &str, asked: &Option<String>) -> String {
-    match asked {
-        Some(name) => format!("run {run} has no turbine called `{name}`"),
-        None => format!("no turbine of run {run} seeks a helix"),
-    }
 }
 
 fn kept(checkpoint: &Option<PathBuf>, series: &Option<PathBuf>) -> String {

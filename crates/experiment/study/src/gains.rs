@@ -2,8 +2,9 @@
 
 use crate::columns::{Columns, add_to};
 use crate::loads;
-use crate::prepare::Setup;
-use crate::{StudyError, Watcher, check_same};
+use crate::prepared::Prepared;
+use crate::study::check_same;
+use crate::{StudyError, Watcher};
 use analysis::statistics::{BLOCK_LENGTH, gain};
 use basis::records::{Summary, TurbineSummary};
 use farm::case::Run;
@@ -22,7 +23,7 @@ pub(crate) enum Comparison<'a> {
 }
 
 /// Number of the run that run number `index` compares with.
-pub(crate) fn compared(setup: &Setup, index: usize) -> Option<usize> {
+pub(crate) fn compared(setup: &Prepared, index: usize) -> Option<usize> {
     let runs = &setup.case.runs;
     let other = match &runs[index].compare_with {
         Some(name) => runs.iter().position(|run| run.name == *name),
@@ -36,7 +37,7 @@ pub(crate) fn compared(setup: &Setup, index: usize) -> Option<usize> {
 /// # Errors
 /// [`StudyError::File`] for records that cannot be read.
 pub(crate) fn comparison<'a>(
-    setup: &'a Setup,
+    setup: &'a Prepared,
     index: usize,
     folders: &[RunFolder],
 ) -> Result<Comparison<'a>, StudyError> {
@@ -109,7 +110,7 @@ fn power(turbine: &str) -> [String; 1] {
 /// # Errors
 /// [`StudyError::File`] for records that cannot be read or written.
 pub(crate) fn catch_up(
-    setup: &Setup,
+    setup: &Prepared,
     index: usize,
     folders: &[RunFolder],
     watcher: &mut dyn Watcher,

@@ -2,7 +2,8 @@
 
 use crate::StudyError;
 use farm::assemble::Model;
-use farm::case::Placement;
+use farm::case::{Case, Placement};
+use farm::plan::Footprint;
 use formats::case::{CaseFile, objection};
 use formats::rosco::{self, Discon};
 use formats::turbine_file::{TurbineFile, TurbineFileError};
@@ -14,9 +15,9 @@ use turbine::Definition;
 /// Radius of the rotor in a controller's input file over the turbine's, less one, beyond which a reader must know (–).
 const RADIUS_TO_WARN: f64 = 0.05;
 
-/// What is read beside the case file.
+/// The kinds of machine that stand in a case.
 #[derive(Default)]
-pub(crate) struct Loaded {
+pub(crate) struct Machines {
     /// By the name of the machine, [`Placement::machine`].
     pub(crate) models: BTreeMap<String, Model>,
     /// Text of each turbine model's file by the model's name, and of each controller's input file and its table by the
@@ -26,32 +27,50 @@ pub(crate) struct Loaded {
     pub(crate) warnings: Vec<String>,
 }
 
+impl Machines {
+    /// What the layout needs to know of each, in a mean wind of `wind_speed` (m/s).
+    pub(crate) fn footprints(&self, wind_speed: f64) -> BTreeMap<String, Footprint> {
+        let of = |(name, model): (&String, &Model)| (name.clone(), model.footprint(wind_speed));
+        self.models.iter().map(of).collect()
+    }
+
+    /// The model of each turbine of `case`, in its order, equipped for its wind; all kinds are there.
+    pub(crate) fn equipped(&self, case: &Case) -> Vec<Model> {
+        // Once a kind, not once a turbine and run: a table of coefficients takes a fraction of a second.
+        let equip =
+            |model: &Model| model.equipped(case.flow.solver, case.wind.air_density).into_owned();
+        let equipped: BTreeMap<&String, Model> =
+            self.models.iter().map(|(name, model)| (name, equip(model))).collect();
+        case.turbines.iter().map(|placement| equipped[&placement.machine()].clone()).collect()
+    }
+}
+
 /// The machines of the case in `file`.
 ///
 /// # Errors
 /// [`StudyError`] for a turbine or a controller's input file that cannot be used.
-pub(crate) fn load(file: &CaseFile) -> Result<Loaded, StudyError> {
-    let mut loaded = Loaded::default();
+pub(crate) fn load(file: &CaseFile) -> Result<Machines, StudyError> {
+    let mut machines = Machines::default();
     for placement in &file.case.turbines {
-        if loaded.models.contains_key(&placement.machine()) {
+        if machines.models.contains_key(&placement.machine()) {
             continue;
         }
         let (text, turbine) = turbine(&placement.model, file.folder())?;
-        loaded.texts.insert(placement.model.clone(), text);
+        machines.texts.insert(placement.model.clone(), text);
         let mut constants = turbine.controller;
         if let Some(path) = &placement.discon {
             let discon = discon_of(file, placement, path)?;
-            loaded.warnings.extend(warnings(placement, path, &discon, &turbine.definition));
+            machines.warnings.extend(warnings(placement, path, &discon, &turbine.definition));
             let [name, table_name] = text_names(path);
-            loaded.texts.insert(name, discon.text);
+            machines.texts.insert(name, discon.text);
             // Empty where there is none, so that one that appears later is noticed.
-            loaded.texts.insert(table_name, discon.table_text);
+            machines.texts.insert(table_name, discon.table_text);
             constants = discon.constants;
         }
         let model = Model { definition: Arc::new(turbine.definition), constants };
-        loaded.models.insert(placement.machine(), model);
+        machines.models.insert(placement.machine(), model);
     }
-    Ok(loaded)
+    Ok(machines)
 }
 
 /// Names under which the texts of the controller's input file at `path` and of its table of coefficients are kept.

@@ -2,7 +2,8 @@
 
 use crate::StudyError;
 use crate::models::text_names;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
+use crate::ready::Keep;
 use crate::watcher::{Probing, Watcher};
 use basis::records::PitchResponse;
 use control::Identification;
@@ -13,9 +14,8 @@ use farm::pitch_response::{
     CalibrationError, INDIVIDUAL_PITCH_STROUHAL, ProbeCost, decoupling, decoupling_cost,
     individual_pitch_offset, individual_pitch_offset_cost, own_pitch, own_pitch_cost,
 };
-use formats::records::{ProbeRecord, read_probes, sha256, write_probes};
+use formats::records::{ProbeRecord, sha256};
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -64,7 +64,7 @@ enum Asked {
     Control(Identification),
 }
 
-impl Setup {
+impl Prepared {
     /// What `runs` need to have found, each with the run and the turbine that need it. Individual pitch control comes first: it
     /// is at work while a turbine is probed for the rest.
     fn asked(&self, runs: &[usize]) -> Vec<(usize, usize, Asked)> {
@@ -82,17 +82,8 @@ impl Setup {
         first
     }
 
-    /// What `runs` need to have found, each once; with `resume` what an earlier session found in the folder `directory` is known.
-    ///
-    /// # Errors
-    /// [`StudyError::File`].
-    pub(crate) fn probes(
-        &self,
-        runs: &[usize],
-        directory: &Path,
-        resume: bool,
-    ) -> Result<Probes, StudyError> {
-        let known = if resume { read_probes(directory)? } else { Vec::new() };
+    /// What `runs` need to have found, each once, where `known` was found before.
+    pub(crate) fn probes(&self, runs: &[usize], known: Vec<ProbeRecord>) -> Probes {
         let mut wanted: Vec<Probe> = Vec::new();
         for (run, index, asked) in self.asked(runs) {
             let key = self.key(index, &asked);
@@ -112,7 +103,7 @@ impl Setup {
             };
             wanted.push(Probe { places: vec![(run, index)], asked, key, cost });
         }
-        Ok(Probes { wanted, known })
+        Probes { wanted, known }
     }
 
     /// Digest of everything that decides what is found for turbine number `index`: offset, start and fallback do not.
@@ -172,15 +163,15 @@ impl Setup {
 
     /// On return the models know the azimuth offset of every individual pitch control, and the case with which azimuth offset
     /// every turbine pitches that joins a helix, and what its phase estimator makes of that, and how pitch acts on the loads of
-    /// every turbine that acts on meandering and is not told, as far as `probes` name them. What is found is kept in the folder
-    /// `directory`. A break when `stop` asked for an end before all was found.
+    /// every turbine that acts on meandering and is not told, as far as `probes` name them. What is found goes to `keep`. A
+    /// break when `stop` asked for an end before all was found.
     ///
     /// # Errors
-    /// [`StudyError::Calibration`] when it cannot be found, [`StudyError::File`] when it cannot be kept.
+    /// [`StudyError::Calibration`] when it cannot be found, and what `keep` errs with.
     pub(crate) fn calibrate(
         &mut self,
         probes: Probes,
-        directory: &Path,
+        keep: Keep,
         stop: &AtomicBool,
         watcher: &mut dyn Watcher,
     ) -> Result<ControlFlow<()>, StudyError> {
@@ -224,7 +215,7 @@ impl Setup {
             place += 1;
             done += probe.cost.work;
             known.push(ProbeRecord { key: probe.key.clone(), turbine: name.clone(), response });
-            write_probes(directory, &known)?;
+            keep(&known)?;
             watcher.probed(&name, &response, false);
             self.tell(probe, &response);
         }

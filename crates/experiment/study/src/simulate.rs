@@ -3,14 +3,13 @@
 mod checkpoint;
 
 use crate::StudyError;
-use crate::air;
 use crate::outputs::{Outputs, Scene, Writers};
-use crate::prepare::Setup;
+use crate::ready::Ready;
 use crate::watcher::{Progress, Watcher};
 use basis::records::Cost;
 use checkpoint::Before;
 use farm::case::Run;
-use farm::{Air, Farm, assemble};
+use farm::{Air, Farm, Machine, Plan};
 use flow::FlowError;
 use formats::checkpoint::{CheckpointReader, CheckpointWriter};
 use formats::records::RunFolder;
@@ -23,7 +22,7 @@ const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 /// One run to be made.
 pub(crate) struct Job<'a> {
     /// What it shares with the others.
-    pub(crate) setup: &'a Setup,
+    pub(crate) ready: &'a Ready,
     /// The run.
     pub(crate) run: &'a Run,
     /// Its folder.
@@ -39,7 +38,7 @@ pub(crate) struct Job<'a> {
 impl<'a> Job<'a> {
     /// What the outputs see of `farm`.
     fn scene(&self, farm: &'a Farm<Air>) -> Scene<'a> {
-        Scene { setup: self.setup, run: self.run, folder: self.folder, farm }
+        Scene { setup: &self.ready.prepared, run: self.run, folder: self.folder, farm }
     }
 }
 
@@ -75,8 +74,8 @@ pub(crate) fn simulate(
     watcher: &mut dyn Watcher,
 ) -> Result<Ending, StudyError> {
     let mut simulation = Simulation::begin(job)?;
-    let n_steps = job.setup.plan.n_steps;
-    let every = Duration::from_secs_f64(job.setup.case.output.checkpoint_interval);
+    let n_steps = job.ready.prepared.plan.n_steps;
+    let every = Duration::from_secs_f64(job.ready.prepared.case.output.checkpoint_interval);
     let mut last_checkpoint = Instant::now();
     let mut last_progress = Instant::now();
     while simulation.farm.step() < n_steps {
@@ -99,12 +98,11 @@ pub(crate) fn simulate(
 
 impl<'a> Simulation<'a> {
     fn begin(job: &'a Job<'a>) -> Result<Self, StudyError> {
-        let Job { setup, run, folder, outputs, .. } = *job;
-        let air = air::begin(setup)?;
-        let farm = assemble::farm(&setup.case, run, &setup.plan, &setup.models, air)?;
+        let Job { ready, run, folder, outputs, .. } = *job;
+        let farm = ready.farm(run)?;
         let path = folder.checkpoint_path();
         let mut stored = if job.resume && path.exists() {
-            Some(CheckpointReader::open(&path, &setup.case_text, &run.name)?)
+            Some(CheckpointReader::open(&path, &ready.prepared.case_text, &run.name)?)
         } else {
             None
         };
@@ -135,7 +133,7 @@ impl<'a> Simulation<'a> {
         }
         let (path, made) = (self.job.folder.checkpoint_path(), self.made());
         let name = &self.job.run.name;
-        let writer = CheckpointWriter::create(&path, &self.job.setup.case_text, name)?;
+        let writer = CheckpointWriter::create(&path, &self.job.ready.prepared.case_text, name)?;
         checkpoint::write(writer, &mut self.farm, &mut self.outputs, made)
     }
 
@@ -162,7 +160,7 @@ impl<'a> Simulation<'a> {
 
     fn progress(&self) -> Progress<'a> {
         let Job { run, place: (run_index, n_runs), .. } = *self.job;
-        let plan = &self.job.setup.plan;
+        let plan = &self.job.ready.prepared.plan;
         let made = (self.farm.step() - self.before.step) as f64;
         let steps_per_second = made / self.started.elapsed().as_secs_f64();
         let runs_after = (n_runs - run_index - 1) as f64;
@@ -180,25 +178,36 @@ impl<'a> Simulation<'a> {
 
     fn finish(mut self) -> Result<Ending, StudyError> {
         self.outputs.finish(&self.job.scene(&self.farm))?;
-        let (plan, made) = (&self.job.setup.plan, self.made());
-        let cost = Cost {
-            wall_time: made.wall_time,
-            n_cells: plan.cells() as u64,
-            n_steps: plan.n_steps,
-            updates_per_second: plan.updates() / made.wall_time,
-            n_threads: self.farm.flow().n_threads(),
-            memory: self.farm.flow().memory(),
-            peak_memory: made.peak_memory,
-        };
-        let clipped_shares = self
-            .farm
-            .machines()
-            .iter()
-            .map(|machine| {
-                let (instants, limited) = machine.turbine.limited_instants();
-                limited as f64 / instants.max(1) as f64
-            })
-            .collect();
+        let (plan, made) = (&self.job.ready.prepared.plan, self.made());
+        let cost = cost(plan, &self.farm, made.wall_time, made.peak_memory);
+        let clipped_shares = clipped_shares(&self.farm);
         Ok(Ending::Complete { cost, clipped_shares })
     }
+}
+
+/// What the run that `farm` has made took of wall time (s) and, at most, of memory (bytes).
+pub(crate) fn cost(
+    plan: &Plan,
+    farm: &Farm<Air>,
+    wall_time: f64,
+    peak_memory: Option<u64>,
+) -> Cost {
+    Cost {
+        wall_time,
+        n_cells: plan.cells() as u64,
+        n_steps: plan.n_steps,
+        updates_per_second: plan.updates() / wall_time,
+        n_threads: farm.flow().n_threads(),
+        memory: farm.flow().memory(),
+        peak_memory,
+    }
+}
+
+/// Share of instants at which a pitch limit held a command back, turbine by turbine of `farm` (–).
+pub(crate) fn clipped_shares(farm: &Farm<Air>) -> Vec<f64> {
+    let share = |machine: &Machine| {
+        let (instants, limited) = machine.turbine.limited_instants();
+        limited as f64 / instants.max(1) as f64
+    };
+    farm.machines().iter().map(share).collect()
 }

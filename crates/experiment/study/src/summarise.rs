@@ -5,7 +5,7 @@ mod warnings;
 use crate::StudyError;
 use crate::columns::{Analysed, Columns, add_to, names_of};
 use crate::loads;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use crate::tips::Outrun;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
@@ -26,7 +26,7 @@ const WIND: &str = "wind.u_m_s";
 /// `clipped_shares` (–) holds, for each turbine that is there, the share of control instants at which a pitch limit
 /// held a command back.
 pub(crate) fn summarise(
-    setup: &Setup,
+    setup: &Prepared,
     run: &Run,
     columns: &mut Columns,
     clipped_shares: &[f64],
@@ -63,7 +63,7 @@ pub(crate) fn summarise(
 
 /// A turbine in a run.
 struct Turbine<'a> {
-    setup: &'a Setup,
+    setup: &'a Prepared,
     run: &'a Run,
     /// Its place in the case.
     index: usize,
@@ -75,7 +75,7 @@ struct Turbine<'a> {
 }
 
 impl<'a> Turbine<'a> {
-    fn new(setup: &'a Setup, run: &'a Run, index: usize, clipped_share: f64) -> Self {
+    fn new(setup: &'a Prepared, run: &'a Run, index: usize, clipped_share: f64) -> Self {
         Self {
             setup,
             run,
@@ -234,7 +234,7 @@ fn moments(turbine: &str, columns: &mut Columns) -> Result<Vec<Load>, StudyError
 }
 
 /// Channels that [`summarise`] asks for together, in its order; the columns of the run are called `names`.
-fn parts(setup: &Setup, run: &Run, names: &[String]) -> Vec<Vec<String>> {
+fn parts(setup: &Prepared, run: &Run, names: &[String]) -> Vec<Vec<String>> {
     let mut parts = Vec::new();
     for index in run.present() {
         let name = &setup.case.turbines[index].name;
@@ -287,7 +287,11 @@ fn collective_pitch(
 
 /// How the tip of the turbine at `index` outran the sound on the lattice in the analysed time; none where it did not, and
 /// where there is no lattice.
-fn outrun(analysed: &Analysed, index: usize, setup: &Setup) -> Result<Option<Outrun>, StudyError> {
+fn outrun(
+    analysed: &Analysed,
+    index: usize,
+    setup: &Prepared,
+) -> Result<Option<Outrun>, StudyError> {
     if setup.plan.cells() == 0 {
         return Ok(None);
     }
@@ -299,7 +303,7 @@ fn outrun(analysed: &Analysed, index: usize, setup: &Setup) -> Result<Option<Out
     Ok(Outrun::of(times, rotor_speeds, radius, plan.spacing, plan.interval))
 }
 
-fn conditions(analysed: &Analysed, setup: &Setup) -> Result<Conditions, StudyError> {
+fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, StudyError> {
     let realised = analysed.statistic(WIND)?;
     let case = &setup.case;
     let (shear_exponent, roughness_length) = match case.wind.shear {

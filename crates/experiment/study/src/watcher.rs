@@ -104,3 +104,9 @@ pub trait Watcher {
     /// Something that a reader of the numbers must know.
     fn warned(&mut self, _warning: &str) {}
 }
+
+/// Hears nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Silent;
+
+impl Watcher for Silent {}

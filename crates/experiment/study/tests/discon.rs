@@ -5,7 +5,7 @@ mod small;
 use small::{NREL_5MW, options};
 use std::fs;
 use std::path::Path;
-use study::{Options, Outcome, Setup, StudyError};
+use study::{Options, Outcome, Prepared, StudyError};
 use tempfile::TempDir;
 
 fn case() -> String {
@@ -76,8 +76,8 @@ fn written(discon: &str) -> TempDir {
     folder
 }
 
-fn setup(folder: &Path) -> Result<Setup, StudyError> {
-    Setup::read(&folder.join("case.toml"), &[])
+fn setup(folder: &Path) -> Result<Prepared, StudyError> {
+    Prepared::read(&folder.join("case.toml"), &[])
 }
 
 #[test]

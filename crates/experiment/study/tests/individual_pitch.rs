@@ -11,7 +11,9 @@ use small::written;
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use study::{Estimate, OffsetQuestion, Options, Outcome, Probing, Setup, Watcher, azimuth_offset};
+use study::{
+    Estimate, OffsetQuestion, Options, Outcome, Prepared, Probing, Watcher, azimuth_offset,
+};
 use tempfile::TempDir;
 
 const MINE: &str = r#"model = "mine.toml""#;
@@ -133,7 +135,7 @@ fn the_command_tells_what_the_study_finds() {
 #[test]
 fn control_without_its_offset_is_not_put_together() {
     let folder = folder("");
-    let setup = Setup::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
+    let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
     let mut model = setup.models[0].clone();
     let built = |model: &Model| controller(&Control::baseline(), model, &setup.case, &setup.plan);
     let Err(error) = built(&model) else { panic!("nobody found the offset") };

@@ -4,19 +4,18 @@
 mod small;
 
 use basis::{Commands, Truth, Vector3};
-use control::Controller;
 use farm::assemble::{self, Model};
 use farm::case::Case;
 use farm::{Air, Farm, Plan, Recorder};
 use flow::WindField;
 use flow::inflow::MeanProfile;
 use flow::lattice::Lattice;
-use small::{Silent, laid_out, options, uniform_air, written};
+use small::{laid_out, options, uniform_air, written};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Options, Outcome, Progress, Watcher};
+use study::{Options, Outcome, Progress, Silent, Watcher};
 
 const CASE: &str = r#"
 name = "instruments"

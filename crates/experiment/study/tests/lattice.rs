@@ -2,10 +2,10 @@
 
 mod small;
 
-use small::{HALFWAY, STOP, Silent, written};
+use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::{Path, PathBuf};
-use study::{Options, Outcome, Outputs, Setup};
+use study::{Options, Outcome, Outputs, Prepared, Silent};
 
 const CASE: &str = r#"
 name = "small"
@@ -99,7 +99,7 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
     }
 
     // What it takes on the disk was known beforehand, within a factor of two.
-    let setup = Setup::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
+    let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
     let told = Outputs::standard().disk(&setup) as f64;
     let taken: usize = whole.iter().map(|(_, bytes)| bytes.len()).sum();
     assert!((0.5..2.0).contains(&(told / taken as f64)), "{told} bytes told, {taken} taken");

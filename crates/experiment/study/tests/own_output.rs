@@ -6,11 +6,11 @@ use basis::{Commands, Truth};
 use formats::FileError;
 use formats::checkpoint::CheckpointProblem;
 use formats::records::read_series;
-use small::{HALFWAY, NREL_5MW, STOP, Silent, written};
+use small::{HALFWAY, NREL_5MW, STOP, written};
 use std::fs;
 use std::path::Path;
 use study::outputs::{FedBy, Output, OutputKind, Scene, Schedule, Section, Stored};
-use study::{Options, Outcome, Outputs, StudyError};
+use study::{Options, Outcome, Outputs, Silent, StudyError};
 
 /// The largest power that any turbine has had, in `largest-power.txt`.
 static LARGEST_POWER: OutputKind =

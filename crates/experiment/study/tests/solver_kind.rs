@@ -2,7 +2,7 @@
 
 mod small;
 
-use basis::{Commands, Measurements, PointForce, Vector3};
+use basis::{Commands, Truth, PointForce, Vector3};
 use farm::case::{Case, Solver};
 use farm::solvers::{PRESCRIBED, SolverError, SolverKind, Start};
 use farm::{Air, Farm, FarmFlow, Plan, Recorder, assemble};
@@ -124,7 +124,7 @@ fn farm_in(solver: Solver) -> (Case, Plan, Farm<Air>) {
 struct Last([f64; 2]);
 
 impl Recorder for Last {
-    fn record(&mut self, turbine: usize, truth: &Measurements, _: &Commands) {
+    fn record(&mut self, turbine: usize, truth: &Truth, _: &Commands) {
         self.0[turbine] = truth.rotor_wind_speed;
     }
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use wakemix::farm::case::Solver;
 use wakemix::flow::inflow::{PlaneGrid, sampled};
 use wakemix::formats::turbulence_box::{self, StoredBox};
-use wakemix::study::Setup;
+use wakemix::study::Prepared;
 
 /// Width and height of the grid over the first rotor's diameter (–), where no spacing is given.
 const REACH: f64 = 1.2;
@@ -41,7 +41,7 @@ pub(crate) struct SampleArguments {
 /// A case that cannot be read or has another kind of wind, a grid that makes no sense, a file that cannot be written.
 pub(crate) fn run(arguments: &SampleArguments) -> miette::Result<()> {
     turbulence_box::check_name(&arguments.output)?;
-    let setup = Setup::read(&arguments.case, &arguments.overrides)?;
+    let setup = Prepared::read(&arguments.case, &arguments.overrides)?;
     if setup.case.flow.solver != Solver::UNIFORM {
         return Err(miette!(
             help =
@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &SampleArguments) -> miette::Result<()> {
         n_steps: (setup.case.time.duration / arguments.time_step).ceil() as usize + 1,
         repeats: true,
     };
-    let (turbulence, mean_speeds) = sampled(&*setup.inflow, &grid).into_diagnostic()?;
+    let (turbulence, mean_speeds) = sampled(&*setup.mean_inflow, &grid).into_diagnostic()?;
     let stored = StoredBox {
         turbulence,
         hub_speed: wind.speed,

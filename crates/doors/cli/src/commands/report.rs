@@ -5,7 +5,7 @@ use std::path::Path;
 
 /// Rebuilds the report of the study in `directory`; its path goes to stdout.
 pub(crate) fn run(directory: &Path) -> Result<()> {
-    let (_, page) = wakemix::study::report(directory)?;
+    let (_, page) = wakemix::postprocessing::report(directory)?;
     println!("{}", page.display());
     Ok(())
 }

@@ -5,7 +5,7 @@ use crate::commands::table;
 use clap::Args;
 use indicatif::{HumanBytes, HumanDuration, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,6 +13,7 @@ use std::time::Duration;
 use wakemix::basis::records::{PitchResponse, Summary};
 use wakemix::farm::pitch_response::CalibrationError;
 use wakemix::farm::self_check::{SelfCheck, SelfCheckError, TOLERANCE};
+use wakemix::postprocessing;
 use wakemix::study::{self, Estimate, Options, Outcome, Probing, Progress, StudyError, Watcher};
 
 /// Longest time left that is shown (s): a year.
@@ -73,18 +74,7 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
     let outcome = study::run(&options, &stop, &mut screen);
     screen.bar.finish_and_clear();
     match outcome {
-        Ok(Outcome::Done { summaries, report }) => {
-            if arguments.json {
-                match serde_json::to_string_pretty(&summaries) {
-                    Ok(text) => println!("{text}"),
-                    Err(error) => eprintln!("error: the summaries cannot be printed: {error}"),
-                }
-            } else {
-                print!("{}", table::render(&summaries));
-            }
-            eprintln!("report: {}", report.display());
-            ExitCode::SUCCESS
-        }
+        Ok(Outcome::Done { directory, .. }) => done(&directory, arguments.json),
         Ok(Outcome::Estimated) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted { directory }) => {
             eprintln!(
@@ -106,6 +96,27 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
             ExitCode::from(code)
         }
     }
+}
+
+/// Makes the report of the complete study in `directory`, and prints its summaries.
+fn done(directory: &Path, as_json: bool) -> ExitCode {
+    let (summaries, page) = match postprocessing::report(directory) {
+        Ok(made) => made,
+        Err(error) => {
+            eprintln!("{:?}", miette::Report::new(error));
+            return ExitCode::from(BAD_INPUT);
+        }
+    };
+    if as_json {
+        match serde_json::to_string_pretty(&summaries) {
+            Ok(text) => println!("{text}"),
+            Err(error) => eprintln!("error: the summaries cannot be printed: {error}"),
+        }
+    } else {
+        print!("{}", table::render(&summaries));
+    }
+    eprintln!("report: {}", page.display());
+    ExitCode::SUCCESS
 }
 
 /// The runs and overrides of `arguments` as they were given, for the same command once more.

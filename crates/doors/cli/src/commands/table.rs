@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use wakemix::basis::records::{Conditions, Load, LoadKind, Statistic, Summary, TurbineSummary};
+use wakemix::postprocessing::analyses::with_interval;
 
 /// Loads of which the 1-Hz damage-equivalent is told: heading, channel, what it is.
 const LOADS: [(&str, &str, &str); 2] = [
@@ -140,15 +141,6 @@ impl<'a> Column<'a> {
 /// A gain or change in percent with so many `digits`; empty where there is none.
 fn percent(change: Option<&Statistic>, digits: usize) -> String {
     change.map_or(String::new(), |change| with_interval(change, 100.0, digits))
-}
-
-/// `statistic` times `scale` with so many `digits`, ± half of its 95 % interval where it has one.
-pub(crate) fn with_interval(statistic: &Statistic, scale: f64, digits: usize) -> String {
-    let mean = scale * statistic.mean;
-    match statistic.half_width_95 {
-        Some(half_width) => format!("{mean:.digits$} ± {:.digits$}", scale * half_width),
-        None => format!("{mean:.digits$}"),
-    }
 }
 
 #[cfg(test)]

@@ -42,10 +42,45 @@ pub struct CaseFile {
 }
 
 impl CaseFile {
+    /// A case that stands in no file, checked as if it did: its text is what [`write()`] makes of it, and errors point
+    /// there.
+    ///
+    /// # Errors
+    /// [`CaseError::Invalid`] with everything that is wrong in it.
+    pub fn of(case: Case) -> Result<Self, CaseError> {
+        let path = PathBuf::from("the case");
+        let file = Self { text: String::new(), overrides: Vec::new(), path, case };
+        if let Some(message) = misfit(&file.case) {
+            return Err(objection(&file, &[], message));
+        }
+        let text = write(&file.case);
+        parse("the case", &text, &[])?;
+        Ok(Self { text, ..file })
+    }
+
     /// Folder that paths in the case are relative to.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
     }
+}
+
+/// What of `case` no file could say: places of turbines that are not there, and controls for more or fewer than there are.
+fn misfit(case: &Case) -> Option<String> {
+    let n_turbines = case.turbines.len();
+    let run = case.runs.iter().find(|run| run.control.len() != n_turbines);
+    if let Some(run) = run {
+        let n_controls = run.control.len();
+        let name = &run.name;
+        return Some(format!(
+            "run {name} has {n_controls} controls for {n_turbines} turbines; give one for each, in their order"
+        ));
+    }
+    let mut places = case.output.lines_at.iter().chain(&case.output.inflow_at);
+    places.find(|&&place| place >= n_turbines).map(|place| {
+        format!(
+            "output names turbine number {place}, and the case has {n_turbines}; the first is number 0"
+        )
+    })
 }
 
 /// Reads the case file at `path` and applies `overrides`, each `key.path=value` such as `wind.speed=8`.

@@ -5,7 +5,7 @@ use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use super::slices::{self, POINT_BYTES, Slice};
 use crate::error::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use farm::case::Run;
 use formats::records::write_instant_plane;
 
@@ -17,11 +17,11 @@ pub(super) static KIND: OutputKind = OutputKind {
     begin,
 };
 
-fn schedule(setup: &Setup) -> Option<Schedule> {
+fn schedule(setup: &Prepared) -> Option<Schedule> {
     setup.case.output.plane_interval.map(|interval| Schedule::analysed(&setup.plan, interval))
 }
 
-fn disk(setup: &Setup, _run: &Run) -> u64 {
+fn disk(setup: &Prepared, _run: &Run) -> u64 {
     let n_times = schedule(setup).map_or(0, |schedule| schedule.count(setup.plan.n_steps));
     n_times * slices::n_points(setup) * POINT_BYTES
 }

@@ -1,6 +1,6 @@
 //! The wind along radial lines at the place of a turbine that is not there: the ground truth of a helix's phase.
 
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use analysis::phase::{Lines, lines_to_fixed_frame};
 use basis::{FixedFrame, Vector3};
 use farm::case::Run;
@@ -22,18 +22,18 @@ pub(super) struct WindLines {
 }
 
 /// Places of the turbines that are not there in `run` and at which the case asks for lines.
-fn places<'a>(setup: &'a Setup, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
+fn places<'a>(setup: &'a Prepared, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
     let asked = setup.case.output.lines_at.iter().copied();
     asked.filter(|&index| !run.control[index].is_there())
 }
 
 /// Places at which `run` has lines (–).
-pub(super) fn count(setup: &Setup, run: &Run) -> u64 {
+pub(super) fn count(setup: &Prepared, run: &Run) -> u64 {
     places(setup, run).count() as u64
 }
 
 /// The lines that the case asks for and `run` leaves room for.
-pub(super) fn of(setup: &Setup, run: &Run) -> Vec<WindLines> {
+pub(super) fn of(setup: &Prepared, run: &Run) -> Vec<WindLines> {
     places(setup, run)
         .map(|index| {
             let rotor = &setup.models[index].definition;

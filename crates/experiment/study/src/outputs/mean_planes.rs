@@ -3,13 +3,25 @@
 use super::output::{FedBy, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
-use super::slices::{self, POINT_BYTES, SUM_BYTES};
+use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
 use crate::error::StudyError;
-use flow::fields::{PlaneAverage, PlaneAverageState};
+use crate::prepared::Prepared;
+use flow::fields::{FieldSource, PlaneAverage, PlaneAverageState};
 use formats::records::write_mean_plane;
 
 /// Planes are averaged from instants about this far apart (s).
 pub(super) const AVERAGING_INTERVAL: f64 = 2.0;
+
+/// The averages of all planes, of no instant yet.
+pub(crate) fn averages(setup: &Prepared, fields: &dyn FieldSource) -> Vec<PlaneAverage> {
+    let average = |slice: Slice| PlaneAverage::new(fields, &slice.name, slice.axes, slice.position);
+    slices::of(setup).into_iter().map(average).collect()
+}
+
+/// The steps that they are made of.
+pub(crate) fn schedule(setup: &Prepared) -> Schedule {
+    Schedule::analysed(&setup.plan, AVERAGING_INTERVAL)
+}
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "mean planes",
@@ -26,18 +38,14 @@ struct MeanPlanes {
 
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
     let Some(fields) = scene.farm.flow().fields() else { return Ok(None) };
-    let mut averages: Vec<PlaneAverage> = slices::of(scene.setup)
-        .into_iter()
-        .map(|slice| PlaneAverage::new(fields, &slice.name, slice.axes, slice.position))
-        .collect();
+    let mut averages = averages(scene.setup, fields);
     if let Some(stored) = stored {
         let states: Vec<PlaneAverageState> = stored.state()?;
         for (average, state) in averages.iter_mut().zip(states) {
             average.restore(state)?;
         }
     }
-    let schedule = Schedule::analysed(&scene.setup.plan, AVERAGING_INTERVAL);
-    Ok(Some(Box::new(MeanPlanes { schedule, averages })))
+    Ok(Some(Box::new(MeanPlanes { schedule: schedule(scene.setup), averages })))
 }
 
 impl Output for MeanPlanes {

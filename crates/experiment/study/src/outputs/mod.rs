@@ -7,14 +7,14 @@
 mod instant_planes;
 mod last_planes;
 mod lines;
-mod mean_planes;
+pub(crate) mod mean_planes;
 mod outb;
 mod output;
 mod phase_planes;
 mod schedule;
 mod section;
-mod series;
-mod slices;
+pub(crate) mod series;
+pub(crate) mod slices;
 mod volumes;
 mod wind_records;
 mod writers;
@@ -25,7 +25,7 @@ pub use section::{Section, Stored};
 
 pub(crate) use writers::Writers;
 
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 
 /// The kinds of output that every study has; they finish in this order.
 pub static STANDARD: [&OutputKind; 8] = [
@@ -74,7 +74,7 @@ impl Outputs {
     }
 
     /// About how much the run of `setup` that leaves most puts on the disk (bytes).
-    pub fn disk(&self, setup: &Setup) -> u64 {
+    pub fn disk(&self, setup: &Prepared) -> u64 {
         let fed = || self.0.iter().filter(|kind| kind.fed_by.admits(&setup.case));
         let of_run = |run| fed().map(|kind| (kind.disk)(setup, run)).sum();
         setup.case.runs.iter().map(of_run).max().unwrap_or(0)

@@ -5,7 +5,7 @@ use super::schedule::Schedule;
 use super::section::Stored;
 use super::series;
 use crate::error::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use farm::case::Run;
 use formats::openfast_output::{Encoding, Layout, OutbWriter};
 use formats::records::RunFolder;
@@ -50,7 +50,7 @@ impl Output for Outb {
 }
 
 /// Writes `TURBINE.outb` into `folder`, from the run's complete series, for turbine number `index` of the case.
-fn write(setup: &Setup, run: &Run, folder: &RunFolder, index: usize) -> Result<(), StudyError> {
+fn write(setup: &Prepared, run: &Run, folder: &RunFolder, index: usize) -> Result<(), StudyError> {
     let turbine = setup.case.turbines[index].name.as_str();
     let mut reader = TableReader::open(&folder.series_path())?;
     let prefix = format!("{turbine}.");

@@ -3,7 +3,7 @@
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use crate::error::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use basis::{Commands, Truth};
 use farm::case::{Case, Run};
 use farm::{Air, Farm};
@@ -19,7 +19,7 @@ pub struct OutputKind {
     /// The flows that it can be made of.
     pub fed_by: FedBy,
     /// About how much one run leaves on the disk (bytes), what it adds to two checkpoints included.
-    pub disk: fn(&Setup, &Run) -> u64,
+    pub disk: fn(&Prepared, &Run) -> u64,
     /// Begins it in a run, or takes it up from the checkpoint; none where the case does not ask for it.
     ///
     /// It begins anew whatever an earlier run of this name has left of it in the folder.
@@ -55,7 +55,7 @@ impl FedBy {
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
     /// What all runs of the study share.
-    pub setup: &'a Setup,
+    pub setup: &'a Prepared,
     /// The run.
     pub run: &'a Run,
     /// Folder of the run.

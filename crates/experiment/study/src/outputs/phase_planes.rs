@@ -6,7 +6,7 @@ use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
 use crate::error::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use analysis::wake::PhaseAverage;
 use control::excitation_rate;
 use farm::case::Run;
@@ -21,14 +21,14 @@ pub(super) static KIND: OutputKind = OutputKind {
 };
 
 /// Phases, and the rate of the helix (rad/s), where the case asks for them and `run` has a helix.
-fn asked(setup: &Setup, run: &Run) -> Option<(usize, f64)> {
+fn asked(setup: &Prepared, run: &Run) -> Option<(usize, f64)> {
     let n_phases = setup.case.output.helix_phases?;
     let (_, strouhal) = setup.case.first_helix(run)?;
     let rate = excitation_rate(strouhal, setup.case.wind.speed, setup.plan.diameter);
     Some((n_phases, rate))
 }
 
-fn disk(setup: &Setup, run: &Run) -> u64 {
+fn disk(setup: &Prepared, run: &Run) -> u64 {
     let n_phases = asked(setup, run).map_or(0, |(n_phases, _)| n_phases as u64);
     n_phases * slices::n_points_at_hub_height(setup) * (POINT_BYTES + SUM_BYTES)
 }

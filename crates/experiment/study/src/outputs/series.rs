@@ -6,10 +6,10 @@ use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use crate::channels::Row;
 use crate::error::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use basis::{Commands, Truth, Vector3};
-use farm::Recorder;
 use farm::case::Run;
+use farm::{Air, Farm, Recorder};
 use flow::WindField;
 use formats::records::SeriesWriter;
 use std::path::PathBuf;
@@ -34,12 +34,13 @@ pub(super) static KIND: OutputKind = OutputKind {
     begin,
 };
 
-fn schedule(setup: &Setup) -> Schedule {
+/// The steps in which a row is due.
+pub(crate) fn schedule(setup: &Prepared) -> Schedule {
     Schedule::steps(setup.plan.row_stride)
 }
 
 /// Values in the series of the turbines of `run`, about (–).
-pub(super) fn n_values(setup: &Setup, run: &Run) -> u64 {
+pub(super) fn n_values(setup: &Prepared, run: &Run) -> u64 {
     let is_prescribed = !setup.case.flow.solver.resolves_induction;
     let of_turbine = if is_prescribed { N_PRESCRIBED } else { N_RESOLVED };
     let n_channels =
@@ -47,21 +48,18 @@ pub(super) fn n_values(setup: &Setup, run: &Run) -> u64 {
     n_channels * schedule(setup).count(setup.plan.n_steps)
 }
 
-fn disk(setup: &Setup, run: &Run) -> u64 {
+fn disk(setup: &Prepared, run: &Run) -> u64 {
     n_values(setup, run) * VALUE_BYTES
 }
 
 struct Series {
     schedule: Schedule,
-    row: Row,
+    rows: Rows,
     writer: SeriesWriter,
-    /// Where the arriving wind is read (m).
-    probe: Vector3,
-    lines: Vec<WindLines>,
 }
 
 /// Point at hub height where the arriving wind is read (m): upstream of the first turbine, in prescribed wind at it.
-fn probe(setup: &Setup) -> Vector3 {
+fn probe(setup: &Prepared) -> Vector3 {
     let plan = &setup.plan;
     let foot = plan.positions[0];
     if !setup.case.flow.solver.resolves_induction {
@@ -71,29 +69,32 @@ fn probe(setup: &Setup) -> Vector3 {
     Vector3::new(foot.x - distance, foot.y, plan.hub_height)
 }
 
-fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
-    let Scene { setup, run, folder, farm } = *scene;
-    let lines = lines::of(setup, run);
-    let places: Vec<&str> = lines.iter().map(|lines| lines.name.as_str()).collect();
-    let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
-    let all_loads = !setup.case.flow.solver.resolves_induction;
-    let row = Row::new(names.zip(farm.machines()), &places, all_loads);
-    let writer = match stored {
-        // So many bytes of it are sure.
-        Some(stored) => SeriesWriter::resume(&folder.series_path(), stored.state()?)?,
-        None => SeriesWriter::create(&folder.series_path(), row.names())?,
-    };
-    let (schedule, probe) = (schedule(setup), probe(setup));
-    Ok(Some(Box::new(Series { schedule, row, writer, probe, lines })))
+/// The rows of a series, one at a time.
+pub(crate) struct Rows {
+    row: Row,
+    /// Where the arriving wind is read (m).
+    probe: Vector3,
+    lines: Vec<WindLines>,
 }
 
-impl Output for Series {
-    fn schedule(&self) -> Schedule {
-        self.schedule
+impl Rows {
+    /// The rows of `run`, whose turbines are those of `farm`.
+    pub(crate) fn new(setup: &Prepared, run: &Run, farm: &Farm<Air>) -> Self {
+        let lines = lines::of(setup, run);
+        let places: Vec<&str> = lines.iter().map(|lines| lines.name.as_str()).collect();
+        let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
+        let all_loads = !setup.case.flow.solver.resolves_induction;
+        let row = Row::new(names.zip(farm.machines()), &places, all_loads);
+        Self { row, probe: probe(setup), lines }
     }
 
-    fn before_step(&mut self, scene: &Scene) {
-        let farm = scene.farm;
+    /// Names of the columns.
+    pub(crate) fn names(&self) -> &[String] {
+        self.row.names()
+    }
+
+    /// Starts the row of the step that `farm` is about to make.
+    pub(crate) fn start(&mut self, farm: &Farm<Air>) {
         let mut wind = [Vector3::ZERO];
         farm.flow().sample(&[self.probe], &mut wind);
         self.row.start(farm.time(), wind[0]);
@@ -105,15 +106,47 @@ impl Output for Series {
         }
     }
 
+    /// The row, once `farm` has made the step.
+    pub(crate) fn complete(&mut self, farm: &Farm<Air>) -> &[f64] {
+        for (index, machine) in farm.machines().iter().enumerate() {
+            self.row.signals(index, machine);
+        }
+        self.row.values()
+    }
+}
+
+impl Recorder for Rows {
     fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands) {
         self.row.record(turbine, truth, commands);
     }
+}
+
+fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
+    let Scene { setup, run, folder, farm } = *scene;
+    let rows = Rows::new(setup, run, farm);
+    let writer = match stored {
+        // So many bytes of it are sure.
+        Some(stored) => SeriesWriter::resume(&folder.series_path(), stored.state()?)?,
+        None => SeriesWriter::create(&folder.series_path(), rows.names())?,
+    };
+    Ok(Some(Box::new(Series { schedule: schedule(setup), rows, writer })))
+}
+
+impl Output for Series {
+    fn schedule(&self) -> Schedule {
+        self.schedule
+    }
+
+    fn before_step(&mut self, scene: &Scene) {
+        self.rows.start(scene.farm);
+    }
+
+    fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands) {
+        self.rows.record(turbine, truth, commands);
+    }
 
     fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        for (index, machine) in scene.farm.machines().iter().enumerate() {
-            self.row.signals(index, machine);
-        }
-        Ok(self.writer.write(self.row.values())?)
+        Ok(self.writer.write(self.rows.complete(scene.farm))?)
     }
 
     fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {

@@ -1,6 +1,6 @@
 //! The planes of resolved flow that a run keeps: averaged, now and then, and last of all.
 
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use basis::records::{Plane, PlaneAxes};
 use flow::fields::FieldSource;
 
@@ -10,7 +10,7 @@ pub(super) const POINT_BYTES: u64 = 3 * size_of::<f32>() as u64;
 pub(super) const SUM_BYTES: u64 = 2 * 3 * size_of::<f64>() as u64;
 
 /// Where a plane lies.
-pub(super) struct Slice {
+pub(crate) struct Slice {
     /// Its name.
     pub(super) name: String,
     /// What spans it.
@@ -21,19 +21,19 @@ pub(super) struct Slice {
 
 impl Slice {
     /// The wind on it now.
-    pub(super) fn plane(&self, fields: &dyn FieldSource) -> Plane {
+    pub(crate) fn plane(&self, fields: &dyn FieldSource) -> Plane {
         fields.plane(&self.name, self.axes, self.position)
     }
 }
 
 /// The plane at hub height.
-pub(super) fn hub_height(setup: &Setup) -> Slice {
+pub(super) fn hub_height(setup: &Prepared) -> Slice {
     let position = setup.plan.hub_height;
     Slice { name: "hub-height".to_owned(), axes: PlaneAxes::Horizontal, position }
 }
 
 /// All planes that are kept: at hub height, along the wind through the first turbine, and across it where the case says.
-pub(super) fn of(setup: &Setup) -> Vec<Slice> {
+pub(crate) fn of(setup: &Prepared) -> Vec<Slice> {
     let plan = &setup.plan;
     let foot = plan.positions[0];
     let streamwise =
@@ -47,13 +47,13 @@ pub(super) fn of(setup: &Setup) -> Vec<Slice> {
 }
 
 /// Points of the plane at hub height (–).
-pub(super) fn n_points_at_hub_height(setup: &Setup) -> u64 {
+pub(super) fn n_points_at_hub_height(setup: &Prepared) -> u64 {
     let [n_x, n_y, _] = setup.plan.n_cells.map(|n| n as u64);
     n_x * n_y
 }
 
 /// Points of all planes together (–).
-pub(super) fn n_points(setup: &Setup) -> u64 {
+pub(super) fn n_points(setup: &Prepared) -> u64 {
     let [n_x, n_y, n_z] = setup.plan.n_cells.map(|n| n as u64);
     let n_across = setup.case.output.crosswind_diameters.len() as u64;
     n_x * n_y + n_x * n_z + n_across * n_y * n_z

@@ -5,7 +5,7 @@ use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use super::slices::POINT_BYTES;
 use crate::error::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use farm::case::Run;
 use formats::records::write_volume;
 
@@ -20,11 +20,11 @@ pub(super) static KIND: OutputKind = OutputKind {
     begin,
 };
 
-fn schedule(setup: &Setup) -> Option<Schedule> {
+fn schedule(setup: &Prepared) -> Option<Schedule> {
     setup.case.output.volume_interval.map(|interval| Schedule::analysed(&setup.plan, interval))
 }
 
-fn disk(setup: &Setup, _run: &Run) -> u64 {
+fn disk(setup: &Prepared, _run: &Run) -> u64 {
     let n_times = schedule(setup).map_or(0, |schedule| schedule.count(setup.plan.n_steps));
     let n_points: usize = setup.plan.n_cells.iter().map(|n| n.div_ceil(STRIDE)).product();
     n_times * n_points as u64 * POINT_BYTES

@@ -4,7 +4,7 @@ use super::output::{FedBy, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use crate::error::StudyError;
-use crate::prepare::Setup;
+use crate::prepared::Prepared;
 use basis::Vector3;
 use farm::case::Run;
 use flow::WindField;
@@ -28,17 +28,17 @@ pub(super) static KIND: OutputKind = OutputKind {
 };
 
 /// Steps from one plane to the next (–).
-fn stride(setup: &Setup) -> u64 {
+fn stride(setup: &Prepared) -> u64 {
     let crossing = CELLS_BETWEEN * setup.plan.spacing / setup.case.wind.speed;
     (crossing / setup.plan.interval).floor().max(1.0) as u64
 }
 
-fn schedule(setup: &Setup) -> Schedule {
+fn schedule(setup: &Prepared) -> Schedule {
     Schedule::analysed_steps(&setup.plan, stride(setup))
 }
 
 /// Places of the turbines that are not there in `run` and whose wind the case asks for.
-fn places<'a>(setup: &'a Setup, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
+fn places<'a>(setup: &'a Prepared, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
     let asked = setup.case.output.inflow_at.iter().copied();
     asked.filter(|&index| !run.control[index].is_there())
 }
@@ -46,7 +46,7 @@ fn places<'a>(setup: &'a Setup, run: &'a Run) -> impl Iterator<Item = usize> + '
 /// Points of the planes at the place of turbine number `index`.
 ///
 /// A grid as fine as the cells, with a point at the hub, as far down as half a cell above the ground.
-fn grid(setup: &Setup, index: usize) -> PlaneGrid {
+fn grid(setup: &Prepared, index: usize) -> PlaneGrid {
     let (plan, rotor) = (&setup.plan, &setup.models[index].definition);
     let (spacing, hub_height) = (plan.spacing, rotor.rotor.hub_height);
     let reach = rotor.rotor_radius() + MARGIN * rotor.rotor_diameter();
@@ -64,7 +64,7 @@ fn grid(setup: &Setup, index: usize) -> PlaneGrid {
     }
 }
 
-fn disk(setup: &Setup, run: &Run) -> u64 {
+fn disk(setup: &Prepared, run: &Run) -> u64 {
     let grids = places(setup, run).map(|index| grid(setup, index));
     let n_points: usize = grids.map(|grid| grid.n_y * grid.n_z).sum();
     schedule(setup).count(setup.plan.n_steps) * n_points as u64 * POINT_BYTES

@@ -1,13 +1,14 @@
 //! What is asked of a probe, and what a run is told of it.
 
 use super::*;
-use crate::{OffsetQuestion, azimuth_offset};
+use crate::{OffsetQuestion, Silent, azimuth_offset};
 use control::phase_sync::PhaseSyncSettings;
 use estimation::helix::{Measurement, Options};
 use farm::pitch_response::OwnPitch;
+use formats::records::{read_probes, write_probes};
 
 /// A case whose T2 joins the helix of T1 with `keys` beside the needed ones, under `overrides`.
-fn setup(keys: &str, overrides: &[&str]) -> Setup {
+fn setup(keys: &str, overrides: &[&str]) -> Prepared {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("case.toml");
     let text = format!(
@@ -38,7 +39,7 @@ control.T2 = {{ kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 2.0{keys
     );
     std::fs::write(&path, text).expect("a file");
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-    Setup::read(&path, &overrides).expect("a sound case")
+    Prepared::read(&path, &overrides).expect("a sound case")
 }
 
 fn key(keys: &str) -> String {
@@ -49,12 +50,12 @@ fn key(keys: &str) -> String {
 }
 
 /// How T2 of `setup` is asked to join the helix, or was told to.
-fn sync_of(setup: &Setup) -> PhaseSyncSettings {
+fn sync_of(setup: &Prepared) -> PhaseSyncSettings {
     PhaseSyncSettings::of(&setup.case.runs[0].control[1]).expect("phase-sync")
 }
 
 /// What T2 of `setup` is told of its own pitch, and the shares that its probe told.
-fn told_of(setup: &Setup) -> (OwnPitch, Vec<f64>) {
+fn told_of(setup: &Prepared) -> (OwnPitch, Vec<f64>) {
     let (case, plan, model) = (&setup.case, &setup.plan, &setup.models[1]);
     let mut shares = Vec::new();
     let mut told = |share: f64| {
@@ -125,7 +126,7 @@ fn the_offset_is_the_turbines_whatever_moves_the_air() {
     // Torque is controlled otherwise in solved air, so that the rotor turns a little slower or faster.
     assert!((found.azimuth_offset - alone).abs() < 5f64.to_radians(), "{found:?}, alone {alone}");
     // Its steps are those of prescribed wind, not the lattice's.
-    let steps = |setup: &Setup| {
+    let steps = |setup: &Prepared| {
         let (case, plan, model) = (&setup.case, &setup.plan, &setup.models[1]);
         own_pitch_cost(case, plan, model, &sync_of(setup)).n_steps
     };
@@ -141,19 +142,18 @@ fn both_parts_of_a_probe_move_its_progress() {
     assert!(first > 0.0 && (last - 1.0).abs() < 1e-12, "{first} to {last}");
 }
 
-struct Silent;
-
-impl Watcher for Silent {}
-
 #[test]
 fn a_resumed_study_is_told_the_same_to_the_last_bit() {
     let folder = tempfile::tempdir().expect("a folder");
     // How many probes were made, and how T2 was told to join the helix.
     let told = |keys: &str, resume: bool| {
         let mut setup = setup(keys, &["turbine.T2.structure=rigid"]);
-        let probes = setup.probes(&[0], folder.path(), resume).expect("sound records");
+        let known =
+            if resume { read_probes(folder.path()).expect("sound records") } else { Vec::new() };
+        let probes = setup.probes(&[0], known);
         let n_probes = probes.costs().len();
-        let ended = setup.calibrate(probes, folder.path(), &AtomicBool::new(false), &mut Silent);
+        let keep = &mut |found: &[_]| Ok(write_probes(folder.path(), found)?);
+        let ended = setup.calibrate(probes, keep, &AtomicBool::new(false), &mut Silent);
         assert!(ended.expect("a sound turbine").is_continue());
         (n_probes, setup.case.runs[0].control[1].clone())
     };

@@ -33,8 +33,8 @@ struct RunState {
     controllers: Vec<Vec<u8>>,
 }
 
-/// Whether any instrument or sensor has a state to be kept.
-fn has_sensing_state(farm: &Farm<Air>) -> bool {
+/// Whether anything that a turbine senses with has a state to be kept.
+fn has_instruments(farm: &Farm<Air>) -> bool {
     farm.machines().iter().any(|machine| machine.sensing.has_state())
 }
 
@@ -57,7 +57,7 @@ pub(super) fn write(
     };
     writer.state(RUN, &state)?;
     writer.state(PEAK_MEMORY, &made.peak_memory)?;
-    if has_sensing_state(farm) {
+    if has_instruments(farm) {
         let sensing: Vec<sensing::SensingState> =
             farm.machines().iter().map(|machine| machine.sensing.state()).collect();
         writer.state(INSTRUMENTS, &sensing)?;
@@ -81,7 +81,7 @@ pub(super) fn read(
         machine.turbine.restore(turbine);
         machine.controller.restore(&controller)?;
     }
-    if has_sensing_state(&farm) {
+    if has_instruments(&farm) {
         let stored: Vec<sensing::SensingState> = reader.state(INSTRUMENTS)?;
         for (machine, stored) in farm.machines_mut().iter_mut().zip(stored) {
             machine.sensing.restore(stored)?;

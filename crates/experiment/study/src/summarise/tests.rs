@@ -47,7 +47,7 @@ const N_ROWS: u32 = 3250;
 const BUDGETS: [usize; 3] = [0, 9 * 8 * N_ROWS as usize, usize::MAX];
 
 /// Leaves the first `n_rows` rows of the series of run number `run`, without the channel called `without`.
-fn leave(study: &Path, setup: &Setup, run: usize, n_rows: u32, without: &str) -> RunFolder {
+fn leave(study: &Path, setup: &Prepared, run: usize, n_rows: u32, without: &str) -> RunFolder {
     let folder = RunFolder::new(study, &setup.case.runs[run].name);
     folder.create().expect("a folder");
     let mut names = vec!["time_s".to_owned(), WIND.to_owned()];
@@ -83,10 +83,10 @@ fn leave(study: &Path, setup: &Setup, run: usize, n_rows: u32, without: &str) ->
     folder
 }
 
-fn setup(folder: &Path) -> Setup {
+fn setup(folder: &Path) -> Prepared {
     let path = folder.join("case.toml");
     std::fs::write(&path, CASE).expect("a file");
-    Setup::read(&path, &[]).expect("a sound case")
+    Prepared::read(&path, &[]).expect("a sound case")
 }
 
 #[test]

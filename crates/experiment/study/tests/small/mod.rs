@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::outputs::{FedBy, Output, OutputKind, Scene, Schedule};
-use study::{Options, Outcome, StudyError, Watcher};
+use study::{Options, Outcome, Silent, StudyError};
 use tempfile::TempDir;
 
 /// What a turbine of [`case`] is.
@@ -93,20 +93,15 @@ pub(crate) fn options(folder: &Path) -> Options {
     }
 }
 
-/// Hears nothing.
-pub(crate) struct Silent;
-
-impl Watcher for Silent {}
-
 /// What becomes of a study that is left alone.
 pub(crate) fn run(options: &Options) -> Result<Outcome, StudyError> {
     study::run(options, &AtomicBool::new(false), &mut Silent)
 }
 
-/// Runs a study to its end; gives the report's path.
+/// Runs a study to its end; gives the folder of its records.
 pub(crate) fn done(options: &Options) -> PathBuf {
     match run(options) {
-        Ok(Outcome::Done { report, .. }) => report,
+        Ok(Outcome::Done { directory, .. }) => directory,
         outcome => panic!("{outcome:?}"),
     }
 }

@@ -1,7 +1,7 @@
 //! Power and loads over the phase offset, with the curve that a Gaussian process puts through them.
 
 use super::{Joined, Synchronised};
-use crate::StudyError;
+use crate::PostprocessingError;
 use analysis::statistics::{BLOCK_LENGTH, gain};
 use basis::records::{Series, Statistic, TurbineSummary};
 use formats::records::RunRecords;
@@ -24,7 +24,7 @@ const LOADS: [(&str, &str); 4] = [
 ];
 
 /// The figures.
-pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, StudyError> {
+pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, PostprocessingError> {
     let joined: Vec<&Joined> = study
         .runs
         .iter()
@@ -152,7 +152,7 @@ fn together(
     study: &Synchronised,
     run: &Joined,
     names: &[&str],
-) -> Result<Option<Statistic>, StudyError> {
+) -> Result<Option<Statistic>, PostprocessingError> {
     let Some(other) = compared(study, run) else { return Ok(None) };
     let powers: Vec<String> = names.iter().map(|name| format!("{name}.power_w")).collect();
     let read = |run: &RunRecords| {

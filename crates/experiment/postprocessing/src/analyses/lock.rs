@@ -1,68 +1,66 @@
-//! `wakemix analyse lock`: how well a meandering loop would lock to the loads of a turbine in records.
+//! `lock`: how well a meandering loop would lock to the loads of a turbine in records.
 
-use clap::{Args, ValueEnum};
-use miette::{IntoDiagnostic, Result};
+use super::{Analysis, Answer, Of, Request, Setting, Takes};
+use crate::{LockAnswer, LockQuestion, PostprocessingError, lock};
+use basis::Sense;
 use serde_json::json;
-use std::path::PathBuf;
-use wakemix::basis::Sense;
-use wakemix::study::{LockAnswer, LockQuestion, lock};
 
-/// Arguments of `wakemix analyse lock`.
-#[derive(Args)]
-pub(crate) struct LockArguments {
-    /// Folder of a run, such as runs/meandering/baseline
-    run: PathBuf,
-    /// Turbine whose blades are listened to; each that is there when left out
-    #[arg(long, value_name = "NAME")]
-    turbine: Option<String>,
-    /// Lowest Strouhal number that is followed; the turbine's own, or 0.15, when left out
-    #[arg(long, value_name = "ST")]
-    strouhal_low: Option<f64>,
-    /// Highest Strouhal number that is followed; the turbine's own, or 0.3, when left out
-    #[arg(long, value_name = "ST")]
-    strouhal_high: Option<f64>,
-    /// Way the loads circle, looking downwind; the turbine's own, or cw, when left out
-    #[arg(long, value_name = "WAY")]
-    sense: Option<Way>,
-    /// First time that counts (s); the end of the spin-up when left out
-    #[arg(long, value_name = "T")]
-    from: Option<f64>,
-    /// Print JSON on stdout instead of the table
-    #[arg(long)]
-    json: bool,
-}
+/// The analysis.
+pub(super) const ANALYSIS: Analysis = Analysis {
+    name: "lock",
+    about: "How well a phase-locked loop would follow the slow swing of a turbine's blade moments in the records of a run, whatever its control",
+    of: Of::Run("Folder of a run, such as runs/meandering/baseline"),
+    settings: &[
+        Setting {
+            name: "turbine",
+            value: "NAME",
+            takes: Takes::Text,
+            about: "Turbine whose blades are listened to; each that is there when left out",
+        },
+        Setting {
+            name: "strouhal-low",
+            value: "ST",
+            takes: Takes::Number,
+            about: "Lowest Strouhal number that is followed; the turbine's own, or 0.15, when left out",
+        },
+        Setting {
+            name: "strouhal-high",
+            value: "ST",
+            takes: Takes::Number,
+            about: "Highest Strouhal number that is followed; the turbine's own, or 0.3, when left out",
+        },
+        Setting {
+            name: "sense",
+            value: "WAY",
+            takes: Takes::Choice(&[("cw", "Clockwise"), ("ccw", "Counter-clockwise")]),
+            about: "Way the loads circle, looking downwind; the turbine's own, or cw, when left out",
+        },
+        Setting {
+            name: "from",
+            value: "T",
+            takes: Takes::Number,
+            about: "First time that counts (s); the end of the spin-up when left out",
+        },
+    ],
+    run,
+};
 
-/// Ways to circle.
-#[derive(Clone, Copy, ValueEnum)]
-enum Way {
-    /// Clockwise
-    Cw,
-    /// Counter-clockwise
-    Ccw,
-}
-
-/// Prints what the loops found; data goes to stdout.
-///
-/// # Errors
-/// Records that cannot be read or do not hold what is asked for.
-pub(super) fn run(arguments: &LockArguments) -> Result<()> {
+fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let answers = lock(&LockQuestion {
-        run: arguments.run.clone(),
-        turbine: arguments.turbine.clone(),
-        strouhal: [arguments.strouhal_low, arguments.strouhal_high],
-        sense: arguments.sense.map(|way| match way {
-            Way::Cw => Sense::Clockwise,
-            Way::Ccw => Sense::CounterClockwise,
+        run: request.run().to_owned(),
+        turbine: request.text("turbine").map(str::to_owned),
+        strouhal: ["strouhal-low", "strouhal-high"].map(|name| request.number(name)),
+        sense: request.text("sense").map(|way| match way {
+            "ccw" => Sense::CounterClockwise,
+            _ => Sense::Clockwise,
         }),
-        from: arguments.from,
+        from: request.number("from"),
     })?;
-    if arguments.json {
-        let told: Vec<serde_json::Value> = answers.iter().map(json).collect();
-        println!("{}", serde_json::to_string_pretty(&told).into_diagnostic()?);
-    } else {
-        print!("{}", text(&answers));
-    }
-    Ok(())
+    Ok(Answer {
+        text: text(&answers),
+        json: answers.iter().map(json).collect(),
+        remarks: Vec::new(),
+    })
 }
 
 /// Turbine by turbine: what was followed, the median phase error, how often it was locked; the convention below.

@@ -1,6 +1,6 @@
 //! What a meandering loop finds in the records of a run, run over them in hindsight: how well it would lock, on any turbine.
 
-use crate::StudyError;
+use crate::PostprocessingError;
 use crate::phase::asked::folder_of;
 use crate::phase::{column, moments, tells};
 use analysis::AnalysisError;
@@ -57,8 +57,8 @@ pub struct LockAnswer {
 /// pitch did to them is among them.
 ///
 /// # Errors
-/// [`StudyError`] for records that cannot be read, lack a channel or have gaps, and for Strouhal numbers that no loop follows.
-pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, StudyError> {
+/// [`PostprocessingError`] for records that cannot be read, lack a channel or have gaps, and for Strouhal numbers that no loop follows.
+pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingError> {
     let folder = folder_of(&question.run);
     let manifest = records::read_manifest(&folder)?;
     let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
@@ -70,7 +70,7 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, StudyError> {
     };
     let turbines: Vec<usize> = (0..case.turbines.len()).filter(is_asked).collect();
     if turbines.is_empty() {
-        return Err(StudyError::NobodySeeks {
+        return Err(PostprocessingError::NobodySeeks {
             run: manifest.run.clone(),
             asked: question.turbine.clone(),
             turbines: case.turbines.iter().map(|turbine| turbine.name.clone()).collect(),
@@ -128,7 +128,7 @@ fn hear(
     moments: &[FixedFrame],
     settings: &TwoAxisSettings,
     from: f64,
-) -> Result<Heard, StudyError> {
+) -> Result<Heard, PostprocessingError> {
     let interval = uniform_interval(times)?;
     let mut follower = TwoAxisLoop::new(settings, interval)
         .map_err(MeanderingError::from)
@@ -207,6 +207,9 @@ mod tests {
             leader: Leader::Both,
         };
         let found = hear(&[0.0, 0.5], &[FixedFrame::default(); 2], &settings, 1.0);
-        assert!(matches!(found, Err(StudyError::Analysis(AnalysisError::TooShort { .. }))));
+        assert!(matches!(
+            found,
+            Err(PostprocessingError::Analysis(AnalysisError::TooShort { .. }))
+        ));
     }
 }

@@ -7,7 +7,7 @@ mod offsets;
 mod tracks;
 mod wake;
 
-use crate::StudyError;
+use crate::PostprocessingError;
 use crate::phase::asked::tells_truth;
 use crate::phase::{PhaseAnswer, Truth, compare, recorded, tells, truth};
 use analysis::AnalysisError;
@@ -103,8 +103,10 @@ fn pairings(case: &Case, run_indices: &[usize]) -> Vec<Pairing> {
 /// The data of the figures and the lines of the table of phases, for each turbine and each helix that it joins.
 ///
 /// # Errors
-/// [`StudyError`] for records that cannot be analysed.
-pub(crate) fn synchronisation(records: &StudyRecords) -> Result<Vec<Synchronisation>, StudyError> {
+/// [`PostprocessingError`] for records that cannot be analysed.
+pub(crate) fn synchronisation(
+    records: &StudyRecords,
+) -> Result<Vec<Synchronisation>, PostprocessingError> {
     let case = case::parse("the manifest's case", &records.case_text, &[])?;
     let run_indices: Vec<usize> = records.runs.iter().map(|run| run.manifest.run_index).collect();
     let pairings = pairings(&case, &run_indices);
@@ -121,7 +123,7 @@ fn synchronised(
     records: &StudyRecords,
     pairing: &Pairing,
     name: String,
-) -> Result<Synchronisation, StudyError> {
+) -> Result<Synchronisation, PostprocessingError> {
     let turbine = pairing.turbine;
     let (first, _) = pairing.runs[0];
     let diameter = records.runs[first].summary.conditions.rotor_diameter;
@@ -130,7 +132,7 @@ fn synchronised(
     let own_name = &case.turbines[turbine].name;
     // Without a true wind there is nothing to compare with; a short run says nothing of phases.
     let control = |run: &RunRecords| case.runs[run.manifest.run_index].control.as_slice();
-    let truth_of = |own: &RunRecords| -> Result<Option<Truth>, StudyError> {
+    let truth_of = |own: &RunRecords| -> Result<Option<Truth>, PostprocessingError> {
         for run in &records.runs {
             if !tells_truth(case, control(run), control(own), turbine) {
                 continue;
@@ -153,7 +155,7 @@ fn synchronised(
                 let estimates = recorded(&series, own_name)?;
                 match compare(own, own_name, &series, &estimates, &truth, &reference, from) {
                     Ok(answer) => Some(answer),
-                    Err(StudyError::Analysis(_)) => None,
+                    Err(PostprocessingError::Analysis(_)) => None,
                     Err(error) => return Err(error),
                 }
             }
@@ -175,9 +177,11 @@ fn synchronised(
 }
 
 /// `found`, or nothing to show where records are too short for it: that is no reason to withhold the rest of a report.
-fn unless_short<T: Default>(found: Result<T, StudyError>) -> Result<T, StudyError> {
+fn unless_short<T: Default>(
+    found: Result<T, PostprocessingError>,
+) -> Result<T, PostprocessingError> {
     match found {
-        Err(StudyError::Analysis(AnalysisError::TooShort { .. })) => Ok(T::default()),
+        Err(PostprocessingError::Analysis(AnalysisError::TooShort { .. })) => Ok(T::default()),
         found => found,
     }
 }

@@ -74,7 +74,7 @@ fn study(seed: u64, gains: [f64; 3]) -> TempDir {
     folder
 }
 
-fn ask(studies: &[&TempDir], runs: &[&str]) -> Result<GainsAnswer, StudyError> {
+fn ask(studies: &[&TempDir], runs: &[&str]) -> Result<GainsAnswer, PostprocessingError> {
     gains_over_seeds(&GainsQuestion {
         studies: studies.iter().map(|study| study.path().to_owned()).collect(),
         runs: runs.iter().map(|&run| run.to_owned()).collect(),
@@ -126,7 +126,7 @@ fn turbines_that_are_away_are_not_counted_together() {
 /// Why `studies` tell nothing of `runs`.
 fn refused(studies: &[&TempDir], runs: &[&str]) -> SeedsError {
     match ask(studies, runs) {
-        Err(StudyError::Seeds(error)) => error,
+        Err(PostprocessingError::Seeds(error)) => error,
         other => panic!("{other:?}"),
     }
 }

@@ -1,7 +1,7 @@
 //! The wake by phase of the helix: seen from above with its centre line, and its deficit about its own centre.
 
 use super::{Joined, Synchronised};
-use crate::StudyError;
+use crate::PostprocessingError;
 use analysis::AnalysisError;
 use analysis::wake::{PhasePlane, centre_line, recentred_deficit};
 use basis::records::Plane;
@@ -26,7 +26,7 @@ struct Shown<'a> {
 /// Both figures; none where no planes were averaged by phase.
 pub(super) fn wake(
     study: &Synchronised,
-) -> Result<(Option<SliceFigure>, Option<DeficitFigure>), StudyError> {
+) -> Result<(Option<SliceFigure>, Option<DeficitFigure>), PostprocessingError> {
     let (Some(best), Some(worst)) = (ranked(study, true), ranked(study, false)) else {
         return Ok((None, None));
     };
@@ -83,7 +83,7 @@ fn deficits(
     study: &Synchronised,
     cases: &[Shown],
     width: f64,
-) -> Result<Option<DeficitFigure>, StudyError> {
+) -> Result<Option<DeficitFigure>, PostprocessingError> {
     let turbine = &study.case.turbines[study.turbine];
     let half = HALF_WIDTH * study.diameter;
     let offsets: Vec<f64> =

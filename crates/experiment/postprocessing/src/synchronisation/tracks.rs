@@ -1,7 +1,7 @@
 //! Signals over time and over frequency: estimates beside the truth, and what the rotor makes of its pitch.
 
 use super::{Joined, Synchronised};
-use crate::StudyError;
+use crate::PostprocessingError;
 use crate::phase::tells;
 use analysis::phase::{Band, fixed_frame_moments, narrowband};
 use analysis::spectra::amplitude;
@@ -41,7 +41,7 @@ pub(super) fn table(study: &Synchronised) -> Vec<PhaseRow> {
 }
 
 /// Estimated and true phases, and the answer to the pitch.
-pub(super) fn tracks(study: &Synchronised) -> Result<Vec<TrackFigure>, StudyError> {
+pub(super) fn tracks(study: &Synchronised) -> Result<Vec<TrackFigure>, PostprocessingError> {
     let name = &study.case.turbines[study.turbine].name;
     let mut figures: Vec<TrackFigure> =
         study.runs.iter().filter_map(|run| estimate(study, run, name)).collect();
@@ -91,7 +91,7 @@ fn shown<'a>(study: &'a Synchronised) -> Vec<&'a Joined> {
 }
 
 /// Estimated wind, pitch and moment of the tilt axis around the excitation.
-fn answer(study: &Synchronised, name: &str) -> Result<Option<TrackFigure>, StudyError> {
+fn answer(study: &Synchronised, name: &str) -> Result<Option<TrackFigure>, PostprocessingError> {
     let band = Band::around(study.reference.frequency(), Band::RATIO);
     let mut rows: Vec<TrackRow> =
         ["estimated tilt wind (m/s)", "tilt pitch (deg)", "tilt moment (MN m)"]
@@ -136,7 +136,7 @@ fn answer(study: &Synchronised, name: &str) -> Result<Option<TrackFigure>, Study
 }
 
 /// Spectra of the tilt moment.
-pub(super) fn spectra(study: &Synchronised) -> Result<Vec<SpectrumFigure>, StudyError> {
+pub(super) fn spectra(study: &Synchronised) -> Result<Vec<SpectrumFigure>, PostprocessingError> {
     let name = &study.case.turbines[study.turbine].name;
     let mut lines = Vec::new();
     for (colour, run) in shown(study).into_iter().enumerate() {

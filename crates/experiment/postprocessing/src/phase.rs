@@ -2,7 +2,7 @@
 
 pub(crate) mod asked;
 
-use crate::StudyError;
+use crate::PostprocessingError;
 use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
     fixed_frame_moments, ground_truth, uniform_interval,
@@ -89,7 +89,7 @@ pub struct PhaseAnswers {
     /// Turbine by turbine, in the case's order.
     pub answers: Vec<PhaseAnswer>,
     /// Why others have none: no run kept the true wind at their place.
-    pub without_truth: Vec<StudyError>,
+    pub without_truth: Vec<PostprocessingError>,
 }
 
 /// Estimates over the time of a series.
@@ -116,8 +116,8 @@ pub(crate) struct Truth {
 /// How well the phase of the helix was estimated in the run that `question` names.
 ///
 /// # Errors
-/// [`StudyError`] for records that cannot be read, lack a channel, have gaps, or hold no helix.
-pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
+/// [`PostprocessingError`] for records that cannot be read, lack a channel, have gaps, or hold no helix.
+pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, PostprocessingError> {
     let mut records = Records::read(question)?;
     let first = records.turbines[0];
     answer(question, &records.asked(first)?)
@@ -126,13 +126,13 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, StudyError> {
 /// What [`phase`] answers for the turbine that `question` names, for each that seeks a helix where it names none.
 ///
 /// # Errors
-/// As [`phase`]; [`StudyError::NoTruth`] only where no turbine has an answer.
-pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, StudyError> {
+/// As [`phase`]; [`PostprocessingError::NoTruth`] only where no turbine has an answer.
+pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, PostprocessingError> {
     let mut records = Records::read(question)?;
     let mut found = PhaseAnswers { answers: Vec::new(), without_truth: Vec::new() };
     for index in records.turbines.clone() {
         match records.asked(index) {
-            Err(error @ StudyError::NoTruth { .. }) => found.without_truth.push(error),
+            Err(error @ PostprocessingError::NoTruth { .. }) => found.without_truth.push(error),
             asked => found.answers.push(answer(question, &asked?)?),
         }
     }
@@ -143,7 +143,7 @@ pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, StudyError> {
 }
 
 /// What the records that are `asked` tell of one turbine.
-fn answer(question: &PhaseQuestion, asked: &Asked<'_>) -> Result<PhaseAnswer, StudyError> {
+fn answer(question: &PhaseQuestion, asked: &Asked<'_>) -> Result<PhaseAnswer, PostprocessingError> {
     let Asked { run, case, name, reference, series, truth, .. } = asked;
     let estimates = match question.estimator {
         Some(estimator) => replay(asked, estimator)?,
@@ -162,7 +162,11 @@ fn answer(question: &PhaseQuestion, asked: &Asked<'_>) -> Result<PhaseAnswer, St
 }
 
 /// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m) stand for winds.
-fn hindsight(series: &Series, name: &str, reference: &Reference) -> Result<Estimates, StudyError> {
+fn hindsight(
+    series: &Series,
+    name: &str,
+    reference: &Reference,
+) -> Result<Estimates, PostprocessingError> {
     let moments = moments(series, name)?;
     let times = column(series, "time_s")?;
     let band = Band::around(reference.frequency(), Band::RATIO);
@@ -177,7 +181,7 @@ fn hindsight(series: &Series, name: &str, reference: &Reference) -> Result<Estim
 }
 
 /// Moments of the blades of turbine `name` in the fixed frame (N m), row by row.
-pub(crate) fn moments(series: &Series, name: &str) -> Result<Vec<FixedFrame>, StudyError> {
+pub(crate) fn moments(series: &Series, name: &str) -> Result<Vec<FixedFrame>, PostprocessingError> {
     let blade = |blade: usize| series.column(&format!("{name}.flap_moment_{blade}_nm"));
     let blades: Vec<&[f64]> = (1..).map_while(blade).collect();
     Ok(fixed_frame_moments(column(series, &format!("{name}.azimuth_rad"))?, &blades)?)
@@ -186,7 +190,7 @@ pub(crate) fn moments(series: &Series, name: &str) -> Result<Vec<FixedFrame>, St
 /// What `estimates` over the rows of `series` are worth against `truth`, from the time `from` (s) on.
 ///
 /// # Errors
-/// [`StudyError::Analysis`] for records that are too short or have gaps.
+/// [`PostprocessingError::Analysis`] for records that are too short or have gaps.
 pub(crate) fn compare(
     run: &str,
     turbine: &str,
@@ -195,7 +199,7 @@ pub(crate) fn compare(
     Truth { run: truth_run, wind: truth }: &Truth,
     reference: &Reference,
     from: f64,
-) -> Result<PhaseAnswer, StudyError> {
+) -> Result<PhaseAnswer, PostprocessingError> {
     let times = column(series, "time_s")?;
     let interval = uniform_interval(times)?;
     let places: Vec<(usize, usize)> = (0..times.len())
@@ -222,7 +226,7 @@ pub(crate) fn compare(
         } else {
             None
         };
-        Ok::<PhaseAxis, StudyError>(PhaseAxis {
+        Ok::<PhaseAxis, PostprocessingError>(PhaseAxis {
             amplitude: mean(&pick(&estimate.amplitude)),
             true_amplitude: mean(&pick_true(&truth.amplitude)),
             agreement: agreement(&phase, &true_phase, interval, block)?,
@@ -256,21 +260,24 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// The samples of `channel`.
-pub(crate) fn column<'a>(series: &'a Series, channel: &str) -> Result<&'a [f64], StudyError> {
-    let missing = || StudyError::MissingChannel { channel: channel.to_owned() };
+pub(crate) fn column<'a>(
+    series: &'a Series,
+    channel: &str,
+) -> Result<&'a [f64], PostprocessingError> {
+    let missing = || PostprocessingError::MissingChannel { channel: channel.to_owned() };
     series.column(channel).ok_or_else(missing)
 }
 
 /// The true wind at the place of turbine `name` in the `series` of `run`; nothing where that was not kept.
 ///
 /// # Errors
-/// [`StudyError::Analysis`] for a record that is too short or has gaps.
+/// [`PostprocessingError::Analysis`] for a record that is too short or has gaps.
 pub(crate) fn truth(
     run: &str,
     name: &str,
     series: &Series,
     reference: &Reference,
-) -> Result<Option<Truth>, StudyError> {
+) -> Result<Option<Truth>, PostprocessingError> {
     let part = |axis: &str| series.column(&format!("{name}.lines_{axis}_m_s"));
     let (Some(average), Some(tilt), Some(yaw)) = (part("average"), part("tilt"), part("yaw"))
     else {
@@ -287,10 +294,10 @@ pub(crate) fn truth(
 }
 
 /// What turbine `name` believed during the run.
-pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, StudyError> {
+pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, PostprocessingError> {
     let channel = |what: &str| column(series, &format!("{name}.{what}")).map(<[f64]>::to_vec);
     let wave = |axis: &str| {
-        Ok::<Wave, StudyError>(Wave {
+        Ok::<Wave, PostprocessingError>(Wave {
             amplitude: channel(&format!("estimated_{axis}_amplitude_m_s"))?,
             phase: channel(&format!("estimated_{axis}_phase_rad"))?,
         })
@@ -304,7 +311,7 @@ pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, StudyEr
 }
 
 /// What `estimator` believes when it is given the records of the turbine row by row, calibrated as it was in the run.
-fn replay(asked: &Asked<'_>, estimator: PhaseEstimator) -> Result<Estimates, StudyError> {
+fn replay(asked: &Asked<'_>, estimator: PhaseEstimator) -> Result<Estimates, PostprocessingError> {
     let interval = uniform_interval(column(asked.series, "time_s")?)?;
     let setting = setting(asked, interval);
     let options = options(asked, estimator);
@@ -337,7 +344,7 @@ fn replay(asked: &Asked<'_>, estimator: PhaseEstimator) -> Result<Estimates, Stu
 ///
 /// # Errors
 /// As [`phase`].
-pub fn tune(question: &PhaseQuestion) -> Result<Tuned, StudyError> {
+pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
     let mut records = Records::read(question)?;
     let first = records.turbines[0];
     let asked = records.asked(first)?;
@@ -387,7 +394,10 @@ fn setting(asked: &Asked<'_>, interval: f64) -> Setting {
 }
 
 /// What the turbine measured, row by row.
-fn record(asked: &Asked<'_>, interval: f64) -> Result<Vec<Measurements<'static>>, StudyError> {
+fn record(
+    asked: &Asked<'_>,
+    interval: f64,
+) -> Result<Vec<Measurements<'static>>, PostprocessingError> {
     let (name, series, n_blades) = (asked.name, asked.series, asked.definition.n_blades);
     let channel = |what: &str| column(series, &format!("{name}.{what}"));
     let per_blade = |what: &str| {

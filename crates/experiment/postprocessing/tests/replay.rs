@@ -1,12 +1,13 @@
 //! An estimator that is run over the records of a run believes what it believed in the run: same rotor, same calibration.
 
+#[path = "../../study/tests/small/mod.rs"]
 mod small;
 
 use basis::angle::wrap_to_half_turn;
 use control::phase_sync::PhaseEstimator;
+use postprocessing::PhaseQuestion;
 use small::{ABSENT, DISK, behind_helix, done, options, written};
 use std::fs;
-use study::PhaseQuestion;
 
 /// The turbines stand side by side in the path of one disk of slow air, whose waves T2 takes for a helix of T1; `keys` are
 /// in the control of T2.
@@ -47,7 +48,7 @@ fn assert_believed(keys: &str) {
     let ask = |estimator| {
         let question =
             PhaseQuestion { run: output.join("joined"), estimator, ..PhaseQuestion::default() };
-        study::phase(&question).expect("a sound record")
+        postprocessing::phase(&question).expect("a sound record")
     };
     let (believed, replayed) = (ask(None), ask(Some(PhaseEstimator::Robust)));
     assert!(believed.times.len() > 100, "{} instants", believed.times.len());

@@ -1,41 +1,30 @@
-//! `wakemix analyse gains`: gains of one case in several winds, and all of them together.
+//! `gains`: gains of one case in several winds, and all of them together.
 
-use crate::commands::table::with_interval;
-use clap::Args;
-use miette::{IntoDiagnostic, Result};
+use super::{Analysis, Answer, Of, Request, Setting, Takes, with_interval};
+use crate::{GainsAnswer, GainsQuestion, PartGains, PostprocessingError, gains_over_seeds};
 use serde_json::json;
 use std::path::PathBuf;
-use wakemix::study::{GainsAnswer, GainsQuestion, PartGains, gains_over_seeds};
 
-/// Arguments of `wakemix analyse gains`.
-#[derive(Args)]
-pub(crate) struct GainsArguments {
-    /// Folders of two studies or more of one case that differ in wind.seed
-    #[arg(required = true, value_name = "STUDY")]
-    studies: Vec<PathBuf>,
-    /// Only this run (may be repeated); all that compare with another when left out
-    #[arg(long = "run", value_name = "NAME")]
-    runs: Vec<String>,
-    /// Print JSON on stdout instead of the table
-    #[arg(long)]
-    json: bool,
-}
+/// The analysis.
+pub(super) const ANALYSIS: Analysis = Analysis {
+    name: "gains",
+    about: "Gains of one case in several winds, from studies that differ in wind.seed, each and all together with a 95 % interval",
+    of: Of::Studies("Folders of two studies or more of one case that differ in wind.seed"),
+    settings: &[Setting {
+        name: "run",
+        value: "NAME",
+        takes: Takes::Texts,
+        about: "Only this run (may be repeated); all that compare with another when left out",
+    }],
+    run,
+};
 
-/// Prints the gains; data goes to stdout.
-///
-/// # Errors
-/// Studies that cannot be read or do not belong together.
-pub(super) fn run(arguments: &GainsArguments) -> Result<()> {
+fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let question =
-        GainsQuestion { studies: arguments.studies.clone(), runs: arguments.runs.clone() };
+        GainsQuestion { studies: request.folders.clone(), runs: request.texts("run").to_vec() };
     let answer = gains_over_seeds(&question)?;
-    if arguments.json {
-        let told = json(&answer, &question.studies);
-        println!("{}", serde_json::to_string_pretty(&told).into_diagnostic()?);
-    } else {
-        print!("{}", text(&answer));
-    }
-    Ok(())
+    let json = json(&answer, &question.studies);
+    Ok(Answer { text: text(&answer), json, remarks: Vec::new() })
 }
 
 /// Runs × turbines: gain in each wind and in all of them, in percent; the conventions below.
@@ -99,8 +88,8 @@ fn json(answer: &GainsAnswer, studies: &[PathBuf]) -> serde_json::Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wakemix::basis::records::Statistic;
-    use wakemix::study::RunGains;
+    use crate::RunGains;
+    use basis::records::Statistic;
 
     fn answer() -> GainsAnswer {
         let part = |name: &str, gains: [f64; 2], half_width: f64| PartGains {

@@ -1,7 +1,7 @@
 //! The records that a question about phases is put to.
 
 use super::{PhaseQuestion, Truth, tells, truth};
-use crate::StudyError;
+use crate::PostprocessingError;
 use analysis::phase::Reference;
 use basis::records::{Series, Summary};
 use control::excitation_rate;
@@ -52,7 +52,7 @@ pub(super) struct Asked<'r> {
 }
 
 impl<'q> Records<'q> {
-    pub(super) fn read(question: &'q PhaseQuestion) -> Result<Self, StudyError> {
+    pub(super) fn read(question: &'q PhaseQuestion) -> Result<Self, PostprocessingError> {
         let folder = folder_of(&question.run);
         let manifest = records::read_manifest(&folder)?;
         let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
@@ -67,14 +67,14 @@ impl<'q> Records<'q> {
     /// What is asked of turbine number `index` of the case.
     ///
     /// # Errors
-    /// [`StudyError::NoHelix`], [`StudyError::NoTruth`], and [`StudyError`] for records that cannot be read.
-    pub(super) fn asked(&mut self, index: usize) -> Result<Asked<'_>, StudyError> {
+    /// [`PostprocessingError::NoHelix`], [`PostprocessingError::NoTruth`], and [`PostprocessingError`] for records that cannot be read.
+    pub(super) fn asked(&mut self, index: usize) -> Result<Asked<'_>, PostprocessingError> {
         let (manifest, case, without) = (&self.manifest, &self.case, &mut self.without);
         let turbines = &self.turbines;
         let turbine = &case.turbines[index];
         let control = &case.runs[manifest.run_index].control;
         let helix = control[index].helix().or(helix_upstream(index, &case.turbines, control));
-        let (sense, strouhal) = helix.ok_or_else(|| StudyError::NoHelix {
+        let (sense, strouhal) = helix.ok_or_else(|| PostprocessingError::NoHelix {
             run: manifest.run.clone(),
             turbine: turbine.name.clone(),
         })?;
@@ -102,7 +102,7 @@ impl<'q> Records<'q> {
             }
             None => None,
         };
-        let truth = truth.ok_or_else(|| StudyError::NoTruth {
+        let truth = truth.ok_or_else(|| PostprocessingError::NoTruth {
             turbine: turbine.name.clone(),
             directory: study,
         })?;
@@ -138,7 +138,7 @@ fn read_once(
     read: &mut BTreeMap<PathBuf, Series>,
     path: PathBuf,
     wanted: impl Fn(&str) -> bool,
-) -> Result<&Series, StudyError> {
+) -> Result<&Series, PostprocessingError> {
     Ok(match read.entry(path) {
         Entry::Occupied(found) => found.into_mut(),
         Entry::Vacant(place) => {
@@ -154,7 +154,7 @@ fn turbines_of(
     question: &PhaseQuestion,
     case: &Case,
     manifest: &Manifest,
-) -> Result<Vec<usize>, StudyError> {
+) -> Result<Vec<usize>, PostprocessingError> {
     let control = &case.runs[manifest.run_index].control;
     let is_asked = |&index: &usize| match &question.turbine {
         Some(name) => case.turbines[index].name == *name,
@@ -162,7 +162,7 @@ fn turbines_of(
     };
     let turbines: Vec<usize> = (0..case.turbines.len()).filter(is_asked).collect();
     if turbines.is_empty() {
-        return Err(StudyError::NobodySeeks {
+        return Err(PostprocessingError::NobodySeeks {
             run: manifest.run.clone(),
             asked: question.turbine.clone(),
             turbines: case.turbines.iter().map(|turbine| turbine.name.clone()).collect(),
@@ -185,7 +185,7 @@ pub(crate) fn tells_truth(
 }
 
 /// The turbine called `model` as it was in the run of `manifest`.
-fn rotor(model: &str, manifest: &Manifest) -> Result<Definition, StudyError> {
+fn rotor(model: &str, manifest: &Manifest) -> Result<Definition, PostprocessingError> {
     let file = match manifest.own_turbines.get(model) {
         Some(text) => turbine_file::parse(&format!("{model} of run {}", manifest.run), text)?,
         None => library::load(model)?,

@@ -1,12 +1,13 @@
 //! A row in which each turbine seeks the helix of the one before: all of them are answered for, in analysis and report.
 
+#[path = "../../study/tests/small/mod.rs"]
 mod small;
 
 use basis::angle::wrap_to_half_turn;
+use postprocessing::{PhaseAnswers, PhaseQuestion, PostprocessingError};
 use small::{ABSENT, DISK, NREL_5MW, WATCHING, behind_helix, done, options, written};
 use std::fs;
 use std::path::Path;
-use study::{PhaseAnswers, PhaseQuestion, StudyError};
 
 /// All turbines stand in the path of one disk of slow air, whose waves T2 and T3 take for a helix.
 fn case() -> String {
@@ -25,14 +26,14 @@ lines_at = ["T2", "T3"]
 /// What is answered of the run "both" of the study in `output`.
 fn both(output: &Path) -> PhaseAnswers {
     let question = PhaseQuestion { run: output.join("both"), ..PhaseQuestion::default() };
-    study::phases(&question).expect("sound records")
+    postprocessing::phases(&question).expect("sound records")
 }
 
 #[test]
 fn every_turbine_that_seeks_a_helix_is_answered_for() {
     let folder = written(&case());
     let output = folder.path().join("out");
-    let report = done(&options(folder.path()));
+    let (_, report) = postprocessing::report(&done(&options(folder.path()))).expect("a report");
 
     let found = both(&output);
     assert!(found.without_truth.is_empty(), "{:?}", found.without_truth);
@@ -69,6 +70,6 @@ fn every_turbine_that_seeks_a_helix_is_answered_for() {
     assert_eq!(found.answers.len(), 1);
     assert_eq!(found.answers[0].turbine, "T2");
     let reasons = found.without_truth.as_slice();
-    let [StudyError::NoTruth { turbine, .. }] = reasons else { panic!("{reasons:?}") };
+    let [PostprocessingError::NoTruth { turbine, .. }] = reasons else { panic!("{reasons:?}") };
     assert_eq!(turbine, "T3");
 }

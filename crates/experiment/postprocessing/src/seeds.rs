@@ -4,7 +4,7 @@ mod error;
 
 pub use error::SeedsError;
 
-use crate::StudyError;
+use crate::PostprocessingError;
 use analysis::AnalysisError;
 use analysis::statistics::independent;
 use basis::records::{Statistic, Summary};
@@ -91,8 +91,8 @@ struct Pair<'s> {
 /// independent.
 ///
 /// # Errors
-/// [`StudyError::Seeds`] for studies that do not belong together, and [`StudyError`] for records that cannot be read.
-pub fn gains_over_seeds(question: &GainsQuestion) -> Result<GainsAnswer, StudyError> {
+/// [`PostprocessingError::Seeds`] for studies that do not belong together, and [`PostprocessingError`] for records that cannot be read.
+pub fn gains_over_seeds(question: &GainsQuestion) -> Result<GainsAnswer, PostprocessingError> {
     if question.studies.len() < 2 {
         return Err(SeedsError::TooFew { n_studies: question.studies.len() }.into());
     }
@@ -227,7 +227,7 @@ fn downstream(case: &Case) -> Vec<String> {
 }
 
 /// Gains of the run of `pairs`, wind by wind; `downstream` holds the turbines downstream of the first.
-fn run_gains(pairs: &[Pair<'_>], downstream: &[String]) -> Result<RunGains, StudyError> {
+fn run_gains(pairs: &[Pair<'_>], downstream: &[String]) -> Result<RunGains, PostprocessingError> {
     let [here, there] = [pairs[0].run, pairs[0].other].map(|(_, summary)| turbine_names(summary));
     let behind = |all: &[String]| -> Vec<String> {
         all.iter().filter(|name| downstream.contains(name)).cloned().collect()

@@ -1,0 +1,130 @@
+//! What `wakemix analyse` offers: a file here and a line in [`ANALYSES`] each.
+//!
+//! An analysis reads the records of runs and answers in text and in JSON. The command line makes its arguments and its help from
+//! the descriptor; a program calls [`Analysis::run`] with a [`Request`].
+
+mod gains;
+mod lock;
+mod phase;
+mod tune;
+
+use crate::PostprocessingError;
+use basis::records::Statistic;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// All analyses, in the order in which they are listed.
+pub const ANALYSES: &[Analysis] =
+    &[phase::ANALYSIS, tune::ANALYSIS, gains::ANALYSIS, lock::ANALYSIS];
+
+/// One analysis.
+#[derive(Clone, Copy, Debug)]
+pub struct Analysis {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it tells, in a sentence without a full stop.
+    pub about: &'static str,
+    /// The records that it is about.
+    pub of: Of,
+    /// What else can be set.
+    pub settings: &'static [Setting],
+    /// Makes the answer.
+    pub run: fn(&Request) -> Result<Answer, PostprocessingError>,
+}
+
+/// The records that an analysis is about, in words for who gives their folders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    /// One run.
+    Run(&'static str),
+    /// Whole studies, one or more.
+    Studies(&'static str),
+}
+
+/// Something that can be set of an analysis, and may be left out.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// Name on the command line, after `--`.
+    pub name: &'static str,
+    /// What stands for its value in the help, such as `NAME`.
+    pub value: &'static str,
+    /// What it takes.
+    pub takes: Takes,
+    /// What it means, and what holds without it.
+    pub about: &'static str,
+}
+
+/// What a setting takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// Any text.
+    Text,
+    /// Any text, more than once.
+    Texts,
+    /// A number.
+    Number,
+    /// One of some words, each with its meaning.
+    Choice(&'static [(&'static str, &'static str)]),
+}
+
+/// What is asked of an analysis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Request {
+    /// Folders of the records.
+    pub folders: Vec<PathBuf>,
+    /// What is set, as text, by the name of the setting.
+    pub values: BTreeMap<String, Vec<String>>,
+}
+
+impl Request {
+    /// The records in `folder`, nothing set.
+    pub fn of(folder: impl Into<PathBuf>) -> Self {
+        Self { folders: vec![folder.into()], values: BTreeMap::new() }
+    }
+
+    /// The same with the setting called `name`.
+    pub fn with(mut self, name: &str, value: &str) -> Self {
+        self.values.entry(name.to_owned()).or_default().push(value.to_owned());
+        self
+    }
+
+    /// Folder of the run, the first of the folders.
+    pub fn run(&self) -> &Path {
+        self.folders.first().map_or(Path::new(""), PathBuf::as_path)
+    }
+
+    /// The text of the setting called `name`.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.texts(name).first().map(String::as_str)
+    }
+
+    /// All texts of the setting called `name`.
+    pub fn texts(&self, name: &str) -> &[String] {
+        self.values.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// The number of the setting called `name`; not a number where its text is none.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.text(name).map(|text| text.parse().unwrap_or(f64::NAN))
+    }
+}
+
+/// What an analysis found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Answer {
+    /// For people: a table, with its conventions below.
+    pub text: String,
+    /// For programs.
+    pub json: serde_json::Value,
+    /// What has no answer, and why.
+    pub remarks: Vec<String>,
+}
+
+/// `statistic` times `scale` with so many `digits`, ± half of its 95 % interval where it has one.
+pub fn with_interval(statistic: &Statistic, scale: f64, digits: usize) -> String {
+    let mean = scale * statistic.mean;
+    match statistic.half_width_95 {
+        Some(half_width) => format!("{mean:.digits$} ± {:.digits$}", scale * half_width),
+        None => format!("{mean:.digits$}"),
+    }
+}

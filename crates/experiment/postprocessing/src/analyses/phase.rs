@@ -1,0 +1,233 @@
+//! `phase`: how well a turbine finds the phase of the helix that meets it.
+
+use super::{Analysis, Answer, Of, Request, Setting, Takes};
+use crate::{PhaseAnswer, PhaseAxis, PhaseQuestion, PostprocessingError, phases};
+use control::phase_sync::PhaseEstimator;
+use serde_json::json;
+
+/// The analysis.
+pub(super) const ANALYSIS: Analysis = Analysis {
+    name: "phase",
+    about: "How well a turbine finds the phase of the helix that meets it, against the true wind of a run without it",
+    of: Of::Run("Folder of a run, such as runs/synchronised-helix/offset-150"),
+    settings: SETTINGS,
+    run,
+};
+
+/// What can be set of it, and of `tune`.
+pub(super) const SETTINGS: &[Setting] = &[
+    Setting {
+        name: "turbine",
+        value: "NAME",
+        takes: Takes::Text,
+        about: "Turbine that the helix meets; when left out each that seeks one, for `tune` the first of them",
+    },
+    Setting {
+        name: "truth",
+        value: "RUN",
+        takes: Takes::Text,
+        about: "Folder of a run without that turbine, with the wind along lines at its place; one beside RUN when left out",
+    },
+    Setting {
+        name: "estimator",
+        value: "NAME",
+        takes: Takes::Choice(&[
+            ("robust", "With states for what its model lacks"),
+            ("published", "The four states of van Vondelen et al. (2025)"),
+        ]),
+        about: "Run this estimator over the records, instead of reading what the run itself believed",
+    },
+    Setting {
+        name: "from",
+        value: "T",
+        takes: Takes::Number,
+        about: "First time that counts (s); the end of the spin-up when left out",
+    },
+];
+
+/// The question that `request` puts.
+pub(super) fn question(request: &Request) -> PhaseQuestion {
+    PhaseQuestion {
+        run: request.run().to_owned(),
+        turbine: request.text("turbine").map(str::to_owned),
+        truth: request.text("truth").map(Into::into),
+        estimator: request.text("estimator").map(|name| match name {
+            "published" => PhaseEstimator::Published,
+            _ => PhaseEstimator::Robust,
+        }),
+        from: request.number("from"),
+    }
+}
+
+fn run(request: &Request) -> Result<Answer, PostprocessingError> {
+    let found = phases(&question(request))?;
+    let texts: Vec<String> = found.answers.iter().map(text).collect();
+    Ok(Answer {
+        text: texts.join("\n"),
+        json: all_json(&found.answers),
+        remarks: found.without_truth.iter().map(ToString::to_string).collect(),
+    })
+}
+
+/// An object, or a list of them where several turbines seek a helix.
+fn all_json(answers: &[PhaseAnswer]) -> serde_json::Value {
+    match answers {
+        [answer] => json(answer),
+        several => several.iter().map(json).collect(),
+    }
+}
+
+fn text(answer: &PhaseAnswer) -> String {
+    let [estimated, truth] = answer.mean_winds;
+    let span = match (answer.times.first(), answer.times.last()) {
+        (Some(first), Some(last)) => format!("{first:.0} to {last:.0} s"),
+        _ => "no time".to_owned(),
+    };
+    let mut text = format!(
+        "{} in {}, against the wind of {} at its place; {span}\nmean wind {estimated:.2} m/s estimated, {truth:.2} m/s true; trust {:.2}\n",
+        answer.turbine, answer.run, answer.truth, answer.trust
+    );
+    text += &format!(
+        "{:<6} {:>14} {:>10} {:>10} {:>16} {:>10} {:>9} {:>11} {:>18}\n",
+        "axis",
+        "amplitude m/s",
+        "true m/s",
+        "RMSE deg",
+        "bias deg",
+        "spread deg",
+        "locking",
+        "coherence",
+        "phase error deg"
+    );
+    for (name, axis) in [("tilt", &answer.tilt), ("yaw", &answer.yaw)] {
+        let agreement = &axis.agreement;
+        let bias = match agreement.bias_half_width_95 {
+            Some(half) => with_interval(agreement.bias, half),
+            None => format!("{:.1}", agreement.bias.to_degrees()),
+        };
+        let coherence =
+            axis.coherence.map_or("–".to_owned(), |found| format!("{:.3}", found.coherence));
+        let error = axis.coherence.map_or("–".to_owned(), |found| {
+            with_interval(found.phase_error, found.phase_error_half_width_95)
+        });
+        text += &format!(
+            "{name:<6} {:>14.2} {:>10.2} {:>10.1} {bias:>16} {:>10.1} {:>9.3} {coherence:>11} {error:>18}\n",
+            axis.amplitude,
+            axis.true_amplitude,
+            agreement.rmse.to_degrees(),
+            agreement.spread.to_degrees(),
+            agreement.locking,
+        );
+    }
+    text += "± 95 %; coherence and phase error, estimate before truth, at the helix's frequency, from the cross-spectrum\n";
+    if let Some([tilt, yaw]) = answer.hindsight {
+        let [tilt, yaw] =
+            [tilt, yaw].map(|found| (found.spread.to_degrees(), found.bias.to_degrees()));
+        text += &format!(
+            "in hindsight, the same blade moments through the filter of the truth: spread {:.1}° about {:+.1}° in tilt, {:.1}° about {:+.1}° in yaw\n",
+            tilt.0, tilt.1, yaw.0, yaw.1
+        );
+    }
+    text
+}
+
+/// An angle and its half width (rad), in degrees.
+fn with_interval(angle: f64, half_width: f64) -> String {
+    format!("{:.1} ± {:.1}", angle.to_degrees(), half_width.to_degrees())
+}
+
+fn json(answer: &PhaseAnswer) -> serde_json::Value {
+    let axis = |axis: &PhaseAxis| {
+        let agreement = &axis.agreement;
+        json!({
+            "amplitude_m_s": axis.amplitude,
+            "true_amplitude_m_s": axis.true_amplitude,
+            "rmse_deg": agreement.rmse.to_degrees(),
+            "bias_deg": agreement.bias.to_degrees(),
+            "bias_half_width_95_deg": agreement.bias_half_width_95.map(f64::to_degrees),
+            "spread_deg": agreement.spread.to_degrees(),
+            "locking": agreement.locking,
+            "coherence": axis.coherence.map(|found| found.coherence),
+            "coherence_95": axis.coherence.map(|found| found.coherence_95),
+            "phase_error_deg": axis.coherence.map(|found| found.phase_error.to_degrees()),
+            "phase_error_half_width_95_deg":
+                axis.coherence.map(|found| found.phase_error_half_width_95.to_degrees()),
+        })
+    };
+    json!({
+        "run": answer.run,
+        "turbine": answer.turbine,
+        "truth": answer.truth,
+        "from_s": answer.times.first(),
+        "to_s": answer.times.last(),
+        "mean_wind_m_s": answer.mean_winds[0],
+        "true_mean_wind_m_s": answer.mean_winds[1],
+        "trust": answer.trust,
+        "tilt": axis(&answer.tilt),
+        "yaw": axis(&answer.yaw),
+        "hindsight": answer.hindsight.map(|axes| axes.map(|found| json!({
+            "spread_deg": found.spread.to_degrees(),
+            "bias_deg": found.bias.to_degrees(),
+        }))),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use analysis::phase::{Agreement, Coherence};
+
+    /// An axis with an error of `error` (deg) at the helix's frequency, or in a record too short to tell.
+    fn axis(error: Option<f64>) -> PhaseAxis {
+        let coherence = error.map(|error| Coherence {
+            coherence: 0.9,
+            coherence_95: [0.8, 0.95],
+            floor_95: 0.2,
+            phase_error: error.to_radians(),
+            phase_error_half_width_95: 4.56_f64.to_radians(),
+            gain: 1.0,
+            n_segments: 8,
+        });
+        PhaseAxis {
+            amplitude: 1.0,
+            true_amplitude: 1.1,
+            agreement: Agreement {
+                rmse: 0.2,
+                rmse_95: None,
+                bias: 0.1,
+                bias_half_width_95: Some(0.05),
+                spread: 0.17,
+                locking: 0.98,
+            },
+            coherence,
+            phase: vec![0.0],
+            true_phase: vec![0.0],
+        }
+    }
+
+    #[test]
+    fn the_phase_error_at_the_helix_frequency_stands_in_text_and_json() {
+        let answer = PhaseAnswer {
+            run: "joined".into(),
+            turbine: "T2".into(),
+            truth: "alone".into(),
+            times: vec![600.0],
+            mean_winds: [8.0, 8.1],
+            tilt: axis(Some(-12.34)),
+            yaw: axis(None),
+            trust: 0.5,
+            hindsight: None,
+        };
+        let text = text(&answer);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[2].ends_with("coherence    phase error deg"), "{text}");
+        assert!(lines[3].starts_with("tilt") && lines[3].ends_with(" -12.3 ± 4.6"), "{text}");
+        assert!(lines[4].starts_with("yaw") && lines[4].ends_with(" –"), "{text}");
+        let width = |line: &str| line.chars().count();
+        assert_eq!([width(lines[3]), width(lines[4])], [width(lines[2]); 2], "{text}");
+        let json = json(&answer);
+        let half_width = json["tilt"]["phase_error_half_width_95_deg"].as_f64().expect("a number");
+        assert!((half_width - 4.56).abs() < 1e-9, "{half_width}");
+        assert!(json["yaw"]["phase_error_half_width_95_deg"].is_null());
+    }
+}

@@ -1,0 +1,131 @@
+//! `tune`: noise for a phase estimator, from records.
+
+use super::phase::{SETTINGS, question};
+use super::{Analysis, Answer, Of, Request};
+use crate::{PostprocessingError, tune};
+use estimation::helix::tuning::Tuned;
+use estimation::helix::{Form, Measurement};
+use serde_json::json;
+
+/// The analysis.
+pub(super) const ANALYSIS: Analysis = Analysis {
+    name: "tune",
+    about: "Noise for the phase estimator from the record of a run and the true wind of another, after Algorithm 1 of van Vondelen et al. (2025)",
+    of: Of::Run("Folder of a run, such as runs/synchronised-helix/offset-150"),
+    settings: SETTINGS,
+    run,
+};
+
+fn run(request: &Request) -> Result<Answer, PostprocessingError> {
+    let tuned = tune(&question(request))?;
+    Ok(Answer { text: text(&tuned), json: json(&tuned), remarks: Vec::new() })
+}
+
+/// Standard deviation of a moment, with its unit.
+fn measurement(tuned: &Tuned) -> (f64, &'static str) {
+    match tuned.options.noise.measurement {
+        Measurement::Moment(deviation) => (deviation, "N m"),
+        Measurement::Share(share) => (share, "of the mean moment"),
+    }
+}
+
+/// What of `tuned` a case file takes: keys of `kind = "phase-sync"`, to four figures.
+fn case_keys(tuned: &Tuned) -> String {
+    let noise = &tuned.options.noise;
+    let mut keys = Vec::new();
+    if let Measurement::Moment(deviation) = noise.measurement {
+        keys.push(("measurement_noise_mnm", 1e-6 * deviation));
+    }
+    keys.push(("wandering_amplitude", noise.amplitude));
+    if tuned.options.form != Form::Quadrature {
+        keys.push(("wandering_phase", noise.phase));
+    }
+    let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
+    let keys: Vec<String> =
+        keys.into_iter().map(|(key, value)| format!("{key} = {:?}", rounded(value))).collect();
+    keys.join(", ")
+}
+
+fn text(tuned: &Tuned) -> String {
+    let noise = &tuned.options.noise;
+    let (deviation, unit) = measurement(tuned);
+    let estimator = if tuned.options.form == Form::Quadrature { "robust" } else { "published" };
+    format!(
+        "R: standard deviation of a blade's moment {deviation:.4e} {unit}\n\
+         Q: amplitude {:.3e} (m/s)²/s, phase {:.3e} rad²/s, mean wind {:.3e} (m/s)²/s; scaled by {:.3}\n\
+         phase error {:.1}° on this record\n\
+         for kind = \"phase-sync\" with estimator = \"{estimator}\":\n{}\n",
+        noise.amplitude,
+        noise.phase,
+        noise.mean_wind,
+        tuned.scale,
+        tuned.error.to_degrees(),
+        case_keys(tuned),
+    )
+}
+
+fn json(tuned: &Tuned) -> serde_json::Value {
+    let noise = &tuned.options.noise;
+    let (deviation, unit) = measurement(tuned);
+    json!({
+        "measurement_deviation": deviation,
+        "measurement_unit": unit,
+        "amplitude_wandering_m2_s3": noise.amplitude,
+        "phase_wandering_rad2_s": noise.phase,
+        "mean_wind_wandering_m2_s3": noise.mean_wind,
+        "scale": tuned.scale,
+        "phase_error_deg": tuned.error.to_degrees(),
+        "case_keys": case_keys(tuned),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
+    use estimation::helix::Options;
+
+    /// The noise of T2 in a case whose control holds `estimator` and the last line of what is told of `options`.
+    fn pasted(options: Options, estimator: &str) -> PhaseNoise {
+        let text = super::text(&Tuned { options, scale: 1.0, error: 0.2 });
+        let (head, keys) = text.trim_end().rsplit_once('\n').expect("lines");
+        assert!(head.ends_with(&format!("estimator = \"{estimator}\":")), "{text}");
+        let case = format!(
+            r#"
+name = "tuned"
+[wind]
+speed = 9.0
+turbulence_intensity = 0.05
+[time]
+spin_up = 300.0
+duration = 900.0
+[[turbine]]
+name = "T2"
+model = "iea-15mw"
+position_diameters = [0.0, 0.0]
+[[run]]
+name = "joined"
+control.T2 = {{ kind = "phase-sync", offset_deg = 90, amplitude_deg = 4, sense = "ccw", strouhal = 0.25, estimator = "{estimator}", {keys} }}
+"#
+        );
+        let case = formats::case::parse("pasted", &case, &[]);
+        let case = case.unwrap_or_else(|error| panic!("{keys}: {}", error.to_lines()));
+        PhaseSyncSettings::of(&case.runs[0].control[0]).expect("phase-sync").noise
+    }
+
+    #[test]
+    fn what_tuning_tells_can_be_pasted_into_a_case() {
+        let with_noise = |mut options: Options| {
+            options.noise.measurement = Measurement::Moment(314_159.0);
+            options.noise.amplitude = 7.654_32e-6;
+            options.noise.phase = 2.5e-4;
+            options
+        };
+        let robust = pasted(with_noise(Options::default()), "robust");
+        let measurement = robust.measurement.expect("a number");
+        assert!((measurement - 314_200.0).abs() < 1e-3, "{measurement}");
+        assert_eq!((robust.wandering_amplitude, robust.wandering_phase), (Some(7.654e-6), None));
+        let published = pasted(with_noise(Options::published()), "published");
+        assert_eq!(published.wandering_phase, Some(2.5e-4));
+    }
+}

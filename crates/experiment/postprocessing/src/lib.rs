@@ -1,0 +1,54 @@
+//! What records of runs tell afterwards: the phase of a helix, gains over several winds, what a loop would lock to; and the report.
+//!
+//! Records in, numbers out: nothing is simulated here. [`ANALYSES`] lists what `wakemix analyse` offers.
+
+pub mod analyses;
+mod error;
+mod lock;
+mod phase;
+mod seeds;
+mod synchronisation;
+
+pub use analyses::{ANALYSES, Analysis};
+pub use error::PostprocessingError;
+pub use lock::{LockAnswer, LockQuestion, lock};
+pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phases, tune};
+pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
+
+use basis::records::Summary;
+use formats::records;
+use std::path::{Path, PathBuf};
+
+/// Makes the report of the study in `directory` from its records; gives the summaries and the report's path.
+///
+/// # Errors
+/// [`PostprocessingError::File`] for records that cannot be read, [`PostprocessingError::Report`] for a report that cannot be
+/// written.
+pub fn report(directory: &Path) -> Result<(Vec<Summary>, PathBuf), PostprocessingError> {
+    let study = records::read_study(directory)?;
+    let synchronisation = synchronisation::synchronisation(&study)?;
+    let mut runs = Vec::with_capacity(study.runs.len());
+    let mut summaries = Vec::with_capacity(study.runs.len());
+    for run in study.runs {
+        let mut summary = run.summary;
+        let series = run.series.read(|channel| report::draws(&summary, channel))?;
+        summaries.push(summary.clone());
+        summary.warnings.extend(study.warnings.iter().cloned());
+        runs.push(report::RunRecords {
+            summary,
+            series,
+            mean_planes: run.mean_planes,
+            instant_planes: run.last_planes,
+        });
+    }
+    let study = report::StudyRecords {
+        case_name: study.case_name,
+        description: study.description,
+        case_text: study.case_text,
+        runs,
+        synchronisation,
+        version: study.version,
+    };
+    report::write(&study, directory)?;
+    Ok((summaries, directory.join("report.html")))
+}

@@ -1,0 +1,150 @@
+//! The first stage: a case that is checked, its turbines loaded, its domain laid out. Nothing is simulated yet.
+
+use crate::StudyError;
+use crate::models::{self, Machines};
+use crate::warnings;
+use farm::assemble::{Model, controller};
+use farm::case::Case;
+use farm::wind::{self, Site};
+use farm::{Plan, plan};
+use flow::Inflow;
+use formats::case::{CaseFile, objection};
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A case with everything that its runs share, as far as it is known without a simulation.
+///
+/// The next stage is [`Ready`](crate::Ready).
+pub struct Prepared {
+    /// The study.
+    pub case: Case,
+    /// The case as run, overrides included (TOML).
+    pub case_text: String,
+    /// One per turbine, in the case's order.
+    pub models: Vec<Model>,
+    /// Text of each turbine model's file, and of each controller's own input file with its table; none of models that were
+    /// given as values.
+    pub turbine_texts: BTreeMap<String, String>,
+    /// Domain and steps.
+    pub plan: Plan,
+    /// The wind that enters, its turbulence left out.
+    pub mean_inflow: Arc<dyn Inflow>,
+    /// What a reader of the numbers must know.
+    pub warnings: Vec<String>,
+    /// Folder that paths in the case are relative to.
+    folder: PathBuf,
+}
+
+impl Prepared {
+    /// Reads the case at `path` with `overrides`, loads its turbines and lays out its domain.
+    ///
+    /// # Errors
+    /// [`StudyError`] for a case, a turbine or a layout that cannot be used.
+    pub fn read(path: &Path, overrides: &[String]) -> Result<Self, StudyError> {
+        Self::of_file(&formats::case::read(path, overrides)?)
+    }
+
+    /// The same of a `case` that stands in no file; files that it names are relative to the current folder.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read); they point at the case as [`formats::case::write()`] writes it.
+    pub fn of(case: Case) -> Result<Self, StudyError> {
+        Self::of_file(&CaseFile::of(case)?)
+    }
+
+    /// The same of a `case` whose turbines are `models`, by the names of
+    /// [`Placement::machine`](farm::case::Placement::machine), rather than those of library or files.
+    ///
+    /// # Errors
+    /// Those of [`of`](Self::of); [`StudyError::Plan`] names a model that is not there.
+    pub fn with_models(case: Case, models: BTreeMap<String, Model>) -> Result<Self, StudyError> {
+        let file = CaseFile::of(case)?;
+        let machines = Machines { models, ..Machines::default() };
+        Self::new(&file, machines).map_err(|error| pointed_at(&file, error))
+    }
+
+    fn of_file(file: &CaseFile) -> Result<Self, StudyError> {
+        let machines = models::load(file)?;
+        Self::new(file, machines).map_err(|error| pointed_at(file, error))
+    }
+
+    fn new(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
+        let case = file.case.clone();
+        let plan = plan(&case, &machines.footprints(case.wind.speed))?;
+        let models = machines.equipped(&case);
+        check_control(&case, &plan, &models)?;
+        let mean_inflow = wind::without_turbulence(&case, &plan)?;
+        let mut warnings = warnings::of(&case, &plan);
+        let site = Site { case: &case, plan: &plan, models: &models };
+        warnings.extend(wind::turbulence(&site).and_then(|turbulence| turbulence.warning));
+        warnings.extend(machines.warnings);
+        Ok(Self {
+            case_text: formats::case::write(&case),
+            turbine_texts: machines.texts,
+            folder: file.folder().to_owned(),
+            case,
+            models,
+            plan,
+            mean_inflow,
+            warnings,
+        })
+    }
+
+    /// Folder that paths in the case are relative to.
+    pub(crate) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// What the wind is made for.
+    pub(crate) fn site(&self) -> Site<'_> {
+        Site { case: &self.case, plan: &self.plan, models: &self.models }
+    }
+}
+
+/// `error`, with an arrow at the key in `file` where only the turbines tell that it does not fit.
+fn pointed_at(file: &CaseFile, error: StudyError) -> StudyError {
+    match error {
+        StudyError::Plan(error) => {
+            StudyError::Case(objection(file, &error.key(), error.to_string()))
+        }
+        StudyError::Control { run, turbine, source } => {
+            let mut message = format!("{turbine} cannot be controlled so: {source}");
+            let mut cause = source.source();
+            while let Some(deeper) = cause {
+                message += &format!(": {deeper}");
+                cause = deeper.source();
+            }
+            let path = ["run", run.as_str(), "control", turbine.as_str()];
+            StudyError::Case(objection(file, &path, message))
+        }
+        error => error,
+    }
+}
+
+/// Whether every rotor that shall pitch by tilt and yaw has the blades for it, and every controller can be made: known now,
+/// not when its run begins after hours of others.
+fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), StudyError> {
+    for run in &case.runs {
+        for ((control, placement), model) in run.control.iter().zip(&case.turbines).zip(models) {
+            let n_blades = model.definition.n_blades;
+            if control.kind().pitches_individually() && n_blades < 3 {
+                let (run, turbine) = (run.name.clone(), placement.name.clone());
+                return Err(StudyError::TooFewBlades { run, turbine, n_blades });
+            }
+            if !control.is_there() {
+                continue;
+            }
+            // What is found before the runs, if there is to be anything, decides nothing here.
+            let model = model.clone().without_individual_pitch();
+            let mut control = control.clone();
+            control.response = control.response.or(control.kind().any_response());
+            if let Err(source) = controller(&control, &model, case, plan) {
+                let (run, turbine) = (run.name.clone(), placement.name.clone());
+                return Err(StudyError::Control { run, turbine, source });
+            }
+        }
+    }
+    Ok(())
+}

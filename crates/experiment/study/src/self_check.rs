@@ -1,0 +1,90 @@
+//! The rotors of a prepared study against blade-element momentum, on its grid.
+
+use crate::StudyError;
+use crate::prepared::Prepared;
+use crate::watcher::Watcher;
+use farm::assemble::Model;
+use farm::self_check::{SelfCheck, SelfCheckError, Tunnel, self_check};
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What the self-check of a study's rotors found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SelfChecked {
+    /// Slowest rate of cell updates met (1/s); absent where no flow is resolved.
+    pub updates_per_second: Option<f64>,
+    /// Of each model that falls short.
+    pub warnings: Vec<String>,
+}
+
+impl Prepared {
+    /// Checks each turbine model against blade-element momentum; a break when `stop` asked for an end.
+    ///
+    /// # Errors
+    /// [`StudyError::SelfCheck`] when a check cannot be made; a model that falls short is a warning.
+    pub fn self_check(
+        &self,
+        stop: &AtomicBool,
+        watcher: &mut dyn Watcher,
+    ) -> Result<ControlFlow<(), SelfChecked>, StudyError> {
+        let mut found = SelfChecked::default();
+        if !self.case.flow.solver.needs_self_check {
+            return Ok(ControlFlow::Continue(found));
+        }
+        let mut checked: Vec<(&str, Option<&str>)> = Vec::new();
+        for (model, placement) in self.models.iter().zip(&self.case.turbines) {
+            let machine = (model.definition.name.as_str(), placement.discon.as_deref());
+            if checked.contains(&machine) {
+                continue;
+            }
+            checked.push(machine);
+            let check = match self.check(model, stop, watcher) {
+                Err(SelfCheckError::BrokenOff) => return Ok(ControlFlow::Break(())),
+                check => check?,
+            };
+            watcher.checked(&check);
+            if !check.passes() {
+                let warning = warning(&model.definition.name, &check);
+                watcher.warned(&warning);
+                found.warnings.push(warning);
+            }
+            let speed = check.updates_per_second;
+            let slowest = found.updates_per_second.map_or(speed, |slowest| slowest.min(speed));
+            found.updates_per_second = Some(slowest);
+        }
+        Ok(ControlFlow::Continue(found))
+    }
+
+    /// One model alone in a tunnel with the study's cells and step.
+    fn check(
+        &self,
+        model: &Model,
+        stop: &AtomicBool,
+        watcher: &mut dyn Watcher,
+    ) -> Result<SelfCheck, SelfCheckError> {
+        let what = format!("checking {}", model.definition.name);
+        self_check(
+            model,
+            &self.case.wind,
+            &Tunnel::of_study(self.plan.spacing, self.plan.interval),
+            self.case.flow.threads,
+            &mut |share| {
+                watcher.preparing(&what, share);
+                if stop.load(Ordering::Relaxed) {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            },
+        )
+    }
+}
+
+fn warning(name: &str, check: &SelfCheck) -> String {
+    format!(
+        "{name} alone in a steady {:.1} m/s gives {:+.1} % power and {:+.1} % thrust of blade-element momentum on this grid",
+        check.wind_speed,
+        100.0 * check.power_error(),
+        100.0 * check.thrust_error()
+    )
+}

@@ -1,0 +1,97 @@
+//! What a reader of the numbers must know of a case before it runs.
+
+use farm::Plan;
+use farm::case::{Case, Run, Solver};
+use turbine::blockage::equivalent_speed_ratio;
+
+/// Rise of a rotor's power by the walls of the domain beyond which a reader must know (–).
+const WALL_GAIN_TO_WARN: f64 = 0.05;
+/// Thrust coefficient of a rotor below rated, with which that rise is estimated (–).
+const USUAL_THRUST: f64 = 0.8;
+/// Cells per diameter below which wakes are smeared (–).
+const CELLS_TO_WARN: f64 = 16.0;
+/// Blocks below which an interval says little (–).
+const BLOCKS_TO_WARN: f64 = 3.0;
+/// Periods of an excitation below which its analysis says little (–).
+const PERIODS_TO_WARN: f64 = 3.0;
+
+/// Rise of a rotor's power (–) in a domain of which it takes `blockage` (–), over that in unbounded air.
+pub(crate) fn wall_gain(blockage: f64) -> f64 {
+    equivalent_speed_ratio(USUAL_THRUST, blockage).powi(3) - 1.0
+}
+
+/// All warnings of `case` as it is laid out in `plan`.
+pub(crate) fn of(case: &Case, plan: &Plan) -> Vec<String> {
+    let mut warnings = Vec::from_iter(farm::wind::off_balance(case));
+    warnings.extend(of_domain(case, plan));
+    warnings.extend(of_places(case));
+    let blocks = (case.time.duration - case.time.spin_up) / analysis::statistics::BLOCK_LENGTH;
+    if blocks < BLOCKS_TO_WARN {
+        warnings.push(format!(
+            "{blocks:.1} blocks of ten minutes are analysed; with fewer than {BLOCKS_TO_WARN:.0} the intervals say little"
+        ));
+    }
+    warnings.extend(case.runs.iter().flat_map(|run| of_run(case, plan, run)));
+    warnings
+}
+
+/// Of walls that are near, and cells that are coarse.
+fn of_domain(case: &Case, plan: &Plan) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let gain = wall_gain(plan.blockage);
+    if gain > WALL_GAIN_TO_WARN {
+        warnings.push(format!(
+            "a rotor takes {:.1} % of the domain's cross-section: the walls raise its power by about {:.0} %, in every run alike; \
+             raise flow.width_diameters or flow.height_diameters",
+            100.0 * plan.blockage,
+            100.0 * gain
+        ));
+    }
+    let lattice = case.flow.solver == Solver::LATTICE;
+    if lattice && case.flow.cells_per_diameter < CELLS_TO_WARN {
+        warnings.push(format!(
+            "{:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results",
+            case.flow.cells_per_diameter
+        ));
+    }
+    warnings
+}
+
+/// Of places where the wind is to be kept, and where a turbine stands in every run.
+fn of_places(case: &Case) -> Vec<String> {
+    let stands = |index: usize| case.runs.iter().all(|run| run.control[index].is_there());
+    let occupied = |places: &[usize]| {
+        let names = places.iter().filter(|&&index| stands(index));
+        names.map(|&index| case.turbines[index].name.clone()).collect::<Vec<_>>()
+    };
+    let mut warnings = Vec::new();
+    for name in occupied(&case.output.inflow_at) {
+        warnings.push(format!("no wind is recorded at {name}: it stands there in every run"));
+    }
+    for name in occupied(&case.output.lines_at) {
+        warnings.push(format!(
+            "no run tells the true wind at {name}, as it stands there in every run: add one with control.{name} = {{ kind = \"absent\" }}"
+        ));
+    }
+    warnings
+}
+
+/// Of phase offsets beyond a turn, and of excitations that are analysed over too few periods.
+fn of_run(case: &Case, plan: &Plan, run: &Run) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (control, placement) in run.control.iter().zip(&case.turbines) {
+        for warning in control.kind().warnings(control) {
+            warnings.push(format!("run {}: {}{warning}", run.name, placement.name));
+        }
+        let Some(strouhal) = control.kind().slowest_strouhal(control) else { continue };
+        let period = plan.diameter / (strouhal * case.wind.speed);
+        let periods = (case.time.duration - case.time.spin_up) / period;
+        if periods < PERIODS_TO_WARN {
+            warnings.push(format!(
+                "run {}: only {periods:.1} periods of {}'s excitation ({period:.0} s) are analysed",
+                run.name, placement.name
+            ));
+        }
+    }
+    warnings
+}

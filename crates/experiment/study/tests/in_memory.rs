@@ -1,0 +1,56 @@
+//! A case as a value, run in memory, comes to the numbers that the same case comes to in a folder.
+
+mod small;
+
+use basis::records::{Cost, Summary};
+use small::{NREL_5MW, behind_helix, options, written};
+use study::{Outcome, Prepared, StudyError};
+
+fn text() -> String {
+    let runs = "[[run]]\nname = \"baseline\"\n".to_owned()
+        + &behind_helix("helix", &[])
+        + "[output]\ninterval = 0.4\n";
+    small::case("memory", "shear_exponent = 0.1\n", [20.0, 80.0], &[NREL_5MW; 2], &runs)
+}
+
+/// Without what tells of the machine and the hour.
+fn numbers(summary: &Summary) -> Summary {
+    Summary { cost: Cost::default(), ..summary.clone() }
+}
+
+#[test]
+fn a_case_without_files_comes_to_the_same_numbers() {
+    let folder = written(&text());
+    let outcome = small::run(&options(folder.path()));
+    let Ok(Outcome::Done { summaries, directory }) = outcome else { panic!("{outcome:?}") };
+
+    let case = formats::case::parse("case", &text(), &[]).expect("a sound case");
+    let ready = Prepared::of(case).and_then(Prepared::ready).expect("a sound case");
+    let results = ready.run_all().expect("runs");
+    assert_eq!(results.len(), 2);
+    for (result, summary) in results.iter().zip(&summaries) {
+        assert_eq!(numbers(&result.summary), numbers(summary));
+        let run = formats::records::RunFolder::new(&directory, &summary.run);
+        let series = formats::records::read_series(&run.series_path(), |_| true);
+        assert_eq!(result.series, series.expect("a series"));
+        assert!(result.last_planes.is_empty());
+    }
+    assert!(results[1].summary.array_power_gain.is_some());
+    assert!(matches!(ready.run("pulse"), Err(StudyError::UnknownRun { .. })));
+}
+
+#[test]
+fn a_value_that_no_file_could_hold_is_refused_as_a_file_would_be() {
+    let case = formats::case::parse("case", &text(), &[]).expect("a sound case");
+    let refused = |change: &dyn Fn(&mut farm::case::Case), said: &str| {
+        let mut case = case.clone();
+        change(&mut case);
+        let Err(StudyError::Case(error)) = Prepared::of(case).map(|_| ()) else { panic!("{said}") };
+        let problem = error.problems()[0].to_string();
+        assert!(problem.contains(said), "{problem}");
+    };
+    refused(&|case| case.wind.speed = -1.0, "speed");
+    refused(&|case| case.output.lines_at = vec![7], "turbine number 7");
+    refused(&|case| drop(case.runs[1].control.pop()), "1 controls for 2 turbines");
+    refused(&|case| case.turbines[1].position_diameters = [0.1, 0.0], "T2");
+}
