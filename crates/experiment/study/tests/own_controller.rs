@@ -10,10 +10,10 @@ use control::{
     CONTROLLERS, Control, ControlError, Controller, ControllerKind, ForeignState, Place, Site,
     from_bytes, to_bytes,
 };
-use small::{Silent, case, done, options, written};
+use small::{case, done, options, written};
 use std::fs;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Outcome, Progress, Watcher};
+use study::{Outcome, Progress, Silent, Watcher};
 
 /// Less torque than greedy control asks for, by a share that grows with the number of instants: it has a state.
 struct Derated {

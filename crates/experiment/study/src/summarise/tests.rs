@@ -56,7 +56,7 @@ fn leave(study: &Path, setup: &Prepared, run: usize, n_rows: u32, without: &str)
         names.extend(pitching(turbine, 3));
         let loads = ["RootMyc1", "RootMxb1", "RootMyb1", "TwrBsMyt", "Spn1FLxb1"];
         names.extend(loads.map(|channel| format!("{turbine}.{channel}_kN-m")));
-        names.extend(beliefs(turbine, 3, &setup.case.runs[run].control[2]));
+        names.extend(outcome_channels(turbine, 3, &setup.case.runs[run].control[2]));
         names.extend(names_of(turbine, &["sync_share", "generator_torque_nm"]));
     }
     names.sort();
@@ -116,7 +116,7 @@ fn groups_of_columns_make_the_same_summary_as_all_at_once() {
     assert_eq!(kinds.collect::<Vec<_>>(), ["helix", "phase-sync", "meandering"]);
     let [helix, sync] = [first, second].map(|turbine| turbine.control.excitation);
     let helix = helix.expect("a helix");
-    assert_eq!((helix.sense, helix.strouhal), (Some(Sense::CounterClockwise), 0.25));
+    assert_eq!((helix.sense, helix.strouhal), (Some(basis::Sense::CounterClockwise), 0.25));
     assert!((helix.amplitude_deg - 4.0).abs() < 1e-12 && helix.phase_offset_deg.is_none());
     let offset = sync.and_then(|sync| sync.phase_offset_deg).expect("a helix to join");
     assert!((offset - 90.0).abs() < 1e-12);
