@@ -19,7 +19,7 @@
 use crate::excitation::fade_in;
 use basis::mbc::to_blades;
 use basis::{FixedFrame, Measurements, PerBlade, Sense};
-use estimation::helix::State as EstimatorState;
+use estimation::helix::HelixEstimatorState as EstimatorState;
 use estimation::{Estimator, HelixEstimate, HelixEstimator};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

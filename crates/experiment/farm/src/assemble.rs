@@ -17,7 +17,7 @@ use control::phase_sync::{self, SyncSettings};
 use control::{
     Excitation, Helix, Meandering, PhaseSync, Pulse, TurbineController, excitation_rate,
 };
-use estimation::helix::{Options, Setting, Wake};
+use estimation::helix::{HelixSettings, Options, Wake};
 use estimation::phase_locked;
 use estimation::{EstimationError, HelixEstimator};
 use flow::lattice;
@@ -231,7 +231,7 @@ fn meandering_settings(
     plan: &Plan,
 ) -> Result<meandering::Settings, AssemblyError> {
     let rate = |strouhal| excitation_rate(strouhal, case.wind.speed, plan.diameter);
-    let signal = phase_locked::Settings::between(asked.strouhal.map(rate));
+    let signal = phase_locked::PhaseLockedSettings::between(asked.strouhal.map(rate));
     let watches = asked.amplitude == 0.0;
     let decoupling = match asked.decoupling {
         Some(decoupling) => decoupling,
@@ -255,13 +255,13 @@ fn meandering_settings(
 }
 
 /// What the phase estimator of `sync` is told.
-pub fn estimator_setting(sync: &PhaseSyncSettings, case: &Case, plan: &Plan) -> Setting {
-    Setting {
+pub fn estimator_setting(sync: &PhaseSyncSettings, case: &Case, plan: &Plan) -> HelixSettings {
+    HelixSettings {
         sense: sync.sense,
         rate: excitation_rate(sync.strouhal, case.wind.speed, plan.diameter),
         interval: plan.interval,
         air_density: case.wind.air_density,
-        n_elements: Setting::N_ELEMENTS,
+        n_elements: HelixSettings::N_ELEMENTS,
     }
 }
 
@@ -287,8 +287,8 @@ pub(crate) fn turbine_settings(
     model: &Model,
     placement: &Placement,
     tower: Option<TowerInfluence>,
-) -> turbine::Settings {
-    turbine::Settings {
+) -> turbine::TurbineSettings {
+    turbine::TurbineSettings {
         induction: induction(case, plan, placement, tower),
         flexible: placement.flexible,
         air_density: case.wind.air_density,
@@ -352,7 +352,7 @@ fn induction(
             dynamic_stall,
         },
         Solver::Uniform | Solver::Turbulence | Solver::Planes => {
-            Induction::ByMomentum(rotor::Settings {
+            Induction::ByMomentum(rotor::BemSettings {
                 induction: delay(placement.dynamic_inflow),
                 theory: Theory::default(),
                 skewed_wake: true,

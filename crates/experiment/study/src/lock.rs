@@ -8,7 +8,7 @@ use analysis::phase::uniform_interval;
 use basis::{FixedFrame, Sense};
 use control::excitation_rate;
 use control::meandering::MeanderingError;
-use estimation::phase_locked::{Settings, TwoAxisLoop, TwoAxisSettings};
+use estimation::phase_locked::{PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings};
 use farm::assemble::AssemblyError;
 use farm::case::{Control, Leader};
 use formats::case;
@@ -94,7 +94,7 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, StudyError> {
         let range = [asked_low.unwrap_or(low), asked_high.unwrap_or(high)];
         let sense = question.sense.unwrap_or(own.map_or(SENSE, |own| own.sense));
         let settings = TwoAxisSettings {
-            signal: Settings::between(range.map(|strouhal| strouhal * rate_of_one)),
+            signal: PhaseLockedSettings::between(range.map(|strouhal| strouhal * rate_of_one)),
             sense,
             leader: own.map_or(Leader::Both, |own| own.leader),
         };
@@ -170,7 +170,7 @@ mod tests {
     /// four fifths of it.
     fn heard(disturbance: f64) -> Heard {
         let settings = TwoAxisSettings {
-            signal: Settings::between([0.6 * RATE, 1.4 * RATE]),
+            signal: PhaseLockedSettings::between([0.6 * RATE, 1.4 * RATE]),
             sense: SENSE,
             leader: Leader::Both,
         };
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn a_time_after_the_record_is_too_late() {
         let settings = TwoAxisSettings {
-            signal: Settings::between([0.6 * RATE, 1.4 * RATE]),
+            signal: PhaseLockedSettings::between([0.6 * RATE, 1.4 * RATE]),
             sense: SENSE,
             leader: Leader::Both,
         };

@@ -12,7 +12,7 @@ use basis::records::Series;
 use basis::{FixedFrame, Measurements, PerBlade};
 use estimation::HelixEstimator;
 use estimation::helix::tuning::{self, Tuned};
-use estimation::helix::{Options, Setting};
+use estimation::helix::{HelixSettings, Options};
 use farm::assemble::{AssemblyError, estimator_options};
 use farm::case::PhaseEstimator;
 use std::f64::consts::TAU;
@@ -371,13 +371,13 @@ fn options(asked: &Asked<'_>, estimator: PhaseEstimator) -> Options {
 }
 
 /// What the estimator of the turbine is told.
-fn setting(asked: &Asked<'_>, interval: f64) -> Setting {
-    Setting {
+fn setting(asked: &Asked<'_>, interval: f64) -> HelixSettings {
+    HelixSettings {
         sense: asked.reference.sense,
         rate: asked.reference.rate,
         interval,
         air_density: asked.case.wind.air_density,
-        n_elements: Setting::N_ELEMENTS,
+        n_elements: HelixSettings::N_ELEMENTS,
     }
 }
 

@@ -53,7 +53,7 @@ struct RunState {
     step: u64,
     wall_time: f64,
     series_bytes: u64,
-    turbines: Vec<turbine::State>,
+    turbines: Vec<turbine::TurbineState>,
     controllers: Vec<ControllerState>,
     averages: Vec<PlaneAverageState>,
     phases: Option<PhaseAverage>,
