@@ -7,7 +7,7 @@ use basis::angle::wrap_to_turn;
 use basis::mbc::to_blades;
 use basis::{FixedFrame, Measurements, Sense};
 use estimation::Estimator;
-use estimation::helix::{HelixEstimator, Jacobian, MeasurementModel, Options, Setting};
+use estimation::helix::{HelixEstimator, HelixSettings, Jacobian, MeasurementModel, Options};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -23,18 +23,18 @@ fn main() {
     let definition = Arc::new(file.definition);
     let differences = Jacobian::CentralDifferences { step: 1e-5 };
     let cases = [
-        ("robust", Options::default(), Setting::N_ELEMENTS),
+        ("robust", Options::default(), HelixSettings::N_ELEMENTS),
         ("robust, 32 elements", Options::default(), 32),
         (
             "robust, by differences",
             Options { jacobian: differences, ..Options::default() },
-            Setting::N_ELEMENTS,
+            HelixSettings::N_ELEMENTS,
         ),
-        ("published", Options::published(), Setting::N_ELEMENTS),
+        ("published", Options::published(), HelixSettings::N_ELEMENTS),
     ];
     println!("microseconds an update, best of {n_repeats}");
     for (name, options, n_elements) in cases {
-        let setting = Setting {
+        let setting = HelixSettings {
             sense: Sense::CounterClockwise,
             rate: TAU / 91.4,
             interval: INTERVAL,
@@ -62,7 +62,7 @@ fn main() {
 
 fn record(
     definition: &Arc<turbine::Definition>,
-    setting: &Setting,
+    setting: &HelixSettings,
     options: &Options,
 ) -> Vec<Measurements<'static>> {
     let mut model = MeasurementModel::new(definition, setting, options)

@@ -6,7 +6,7 @@
 use basis::{Measurements, PerBlade, Sense};
 use estimation::Estimator;
 use estimation::phase_locked::{
-    Kind, Leader, PhaseLockedLoop, Settings, TwoAxisLoop, TwoAxisSettings,
+    Kind, Leader, PhaseLockedLoop, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings,
 };
 use std::f64::consts::SQRT_2;
 use std::hint::black_box;
@@ -27,8 +27,9 @@ fn main() {
     };
     for (name, generator) in [("SOGI", Kind::Second), ("ESOGI", extended), ("MSTOGI", Kind::Mixed)]
     {
-        let signal = Settings { generator, ..Settings::between([0.03, 0.09]) };
-        let best = |cost: fn(&Settings) -> f64| {
+        let signal =
+            PhaseLockedSettings { generator, ..PhaseLockedSettings::between([0.03, 0.09]) };
+        let best = |cost: fn(&PhaseLockedSettings) -> f64| {
             (0..n_repeats).map(|_| cost(&signal)).fold(f64::INFINITY, f64::min)
         };
         println!("{name:<10} {:>12.0} {:>12.0}", best(one_signal), best(two_axes));
@@ -36,7 +37,7 @@ fn main() {
 }
 
 /// Nanoseconds an update of one signal.
-fn one_signal(settings: &Settings) -> f64 {
+fn one_signal(settings: &PhaseLockedSettings) -> f64 {
     let mut follower = match PhaseLockedLoop::new(settings, INTERVAL) {
         Ok(follower) => follower,
         Err(error) => panic!("the bench's own settings: {error}"),
@@ -51,7 +52,7 @@ fn one_signal(settings: &Settings) -> f64 {
 }
 
 /// Nanoseconds an update of a turbine's two signals, the multi-blade transformation among them.
-fn two_axes(settings: &Settings) -> f64 {
+fn two_axes(settings: &PhaseLockedSettings) -> f64 {
     let settings =
         TwoAxisSettings { signal: *settings, sense: Sense::Clockwise, leader: Leader::Both };
     let mut follower = match TwoAxisLoop::new(&settings, INTERVAL) {

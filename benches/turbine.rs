@@ -16,9 +16,9 @@ use std::sync::Arc;
 use std::time::Instant;
 use turbine::aero::blade_element::Theory;
 use turbine::aero::induction::{Induction as Inflow, TwoConstant};
-use turbine::aero::rotor::{self, Posture, RotorAerodynamics};
+use turbine::aero::rotor::{self, RotorAerodynamics, RotorKinematics};
 use turbine::structure::{AppliedLoads, ElementLoad, Pitch, Structure};
-use turbine::{Definition, Induction, Settings, Turbine};
+use turbine::{Definition, Induction, Turbine, TurbineSettings};
 
 const INTERVAL: f64 = 0.02;
 const AIR_DENSITY: f64 = 1.225;
@@ -56,8 +56,8 @@ fn main() {
     say(&format!("row of {n_channels} channels, .outb"), &mut || outb(n_channels));
 }
 
-fn theory() -> rotor::Settings {
-    rotor::Settings {
+fn theory() -> rotor::BemSettings {
+    rotor::BemSettings {
         induction: Inflow::TwoConstant(TwoConstant::varying()),
         theory: Theory::default(),
         skewed_wake: true,
@@ -67,7 +67,7 @@ fn theory() -> rotor::Settings {
 }
 
 fn machine(definition: &Arc<Definition>, induction: Induction) -> Turbine {
-    let settings = Settings {
+    let settings = TurbineSettings {
         induction,
         flexible: true,
         air_density: AIR_DENSITY,
@@ -125,7 +125,7 @@ impl StructureAlone {
 /// The blades of a stiff rotor that turns at one speed.
 struct BladesAlone {
     rotor: RotorAerodynamics,
-    state: rotor::State,
+    state: rotor::BemState,
     loads: rotor::Loads,
     structure: Structure,
     pitch: Vec<Pitch>,
@@ -161,10 +161,10 @@ impl BladesAlone {
             .collect();
         let frame = structure.frame(0.0);
         per_step(N_STEPS, |step| {
-            // A posture for five steps, so that the rotor turns at about its speed.
+            // The same kinematics for five steps, so that the rotor turns at about its speed.
             let (motions, winds) = &turn[step / 5 % turn.len()];
-            let posture = Posture { frame: &frame, elements: motions, pitch };
-            rotor.advance(INTERVAL, black_box(winds), posture, state, loads);
+            let kinematics = RotorKinematics { frame: &frame, elements: motions, pitch };
+            rotor.advance(INTERVAL, black_box(winds), kinematics, state, loads);
             black_box(&loads);
         })
     }

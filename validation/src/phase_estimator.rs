@@ -15,7 +15,7 @@ pub use side_by_side::estimators;
 use crate::Row;
 use basis::{FixedFrame, Measurements, PerBlade, Sense, Vector3};
 use estimation::helix::{
-    HelixEstimate, HelixEstimator, MeasurementModel, Options, Rotor, Setting, Wake, calibrate,
+    HelixEstimate, HelixEstimator, HelixSettings, MeasurementModel, Options, Rotor, Wake, calibrate,
 };
 use estimation::{EstimationError, Estimator};
 use flow::Inflow;
@@ -105,13 +105,13 @@ impl Machine {
     }
 }
 
-fn setting(sense: Sense) -> Setting {
-    Setting {
+fn setting(sense: Sense) -> HelixSettings {
+    HelixSettings {
         sense,
         rate: TAU / PERIOD,
         interval: INTERVAL,
         air_density: AIR_DENSITY,
-        n_elements: Setting::N_ELEMENTS,
+        n_elements: HelixSettings::N_ELEMENTS,
     }
 }
 
@@ -205,7 +205,7 @@ fn own_model(
     seed: u64,
 ) -> Result<Errors, EstimationError> {
     let options = Options::default();
-    let finer = Setting { n_elements: 32, ..setting(sense) };
+    let finer = HelixSettings { n_elements: 32, ..setting(sense) };
     let mut model = MeasurementModel::new(&machine.definition, &finer, &options)?;
     let mut estimator = machine.estimator(&machine.definition, sense, options)?;
     let calm = machine.gradient(sense, 0.0);

@@ -3,7 +3,9 @@
 use crate::Row;
 use basis::Vector3;
 use turbine::Definition;
-use turbine::structure::{AppliedLoads, Freedom, GRAVITY, Pitch, Settings, Structure};
+use turbine::structure::{
+    AppliedLoads, DegreeOfFreedom, GRAVITY, Pitch, Structure, StructureSettings,
+};
 
 /// Step of the free vibrations (s): the default.
 const STEP: f64 = 0.02;
@@ -27,14 +29,18 @@ fn definition_of(name: &str) -> Definition {
 }
 
 /// `definition` with `held` held, as `settings` have it.
-fn built(definition: &Definition, settings: &Settings<'_>, held: &[Freedom]) -> Structure {
+fn built(
+    definition: &Definition,
+    settings: &StructureSettings<'_>,
+    held: &[DegreeOfFreedom],
+) -> Structure {
     let mut structure = Structure::new(definition, settings).expect("library turbines are sound");
     structure.hold(held);
     structure
 }
 
 /// Frequencies (Hz) that `kind` dominates, rising.
-fn frequencies(structure: &Structure, kind: Freedom) -> Vec<f64> {
+fn frequencies(structure: &Structure, kind: DegreeOfFreedom) -> Vec<f64> {
     let modes = structure.natural_modes();
     modes.iter().filter(|mode| mode.dominant() == kind).map(|mode| mode.frequency).collect()
 }
@@ -48,25 +54,53 @@ fn frequency_row(what: String, measured: Option<f64>, expected: f64, share: f64)
 /// Whole machines: NREL 5 MW parked, after table 9-1 of Jonkman et al., NREL/TP-500-38060 (2009), its FAST column; IEA 15 MW
 /// turning at 6.45 rpm, after the spectral peaks of an OpenFAST 5.0.0 run from an impulsive start.
 fn machine_rows(rows: &mut Vec<Row>) {
-    let nrel = built(&definition_of("nrel-5mw"), &Settings::AT_REST, &[Freedom::Generator]);
-    let turning = Settings { rotor_speed: 0.6753, ..Settings::AT_REST };
+    let nrel = built(
+        &definition_of("nrel-5mw"),
+        &StructureSettings::AT_REST,
+        &[DegreeOfFreedom::Generator],
+    );
+    let turning = StructureSettings { rotor_speed: 0.6753, ..StructureSettings::AT_REST };
     let iea = built(&definition_of("iea-15mw"), &turning, &[]);
     for (name, structure, kind, what, place, expected, share) in [
-        ("nrel-5mw", &nrel, Freedom::TowerForeAft1, "tower fore-aft 1", 0, 0.3240, 0.02),
-        ("nrel-5mw", &nrel, Freedom::TowerSideToSide1, "tower side-to-side 1", 0, 0.3120, 0.02),
-        ("nrel-5mw", &nrel, Freedom::TowerForeAft2, "tower fore-aft 2", 0, 2.9003, 0.02),
-        ("nrel-5mw", &nrel, Freedom::TowerSideToSide2, "tower side-to-side 2", 0, 2.9361, 0.02),
-        ("nrel-5mw", &nrel, Freedom::DriveTrain, "drive train", 0, 0.6205, 0.02),
-        ("nrel-5mw", &nrel, Freedom::Flap1, "flapwise 1, yawing", 0, 0.6664, 0.03),
-        ("nrel-5mw", &nrel, Freedom::Flap1, "flapwise 1, tilting", 1, 0.6675, 0.03),
-        ("nrel-5mw", &nrel, Freedom::Flap1, "flapwise 1, collective", 2, 0.6993, 0.03),
-        ("nrel-5mw", &nrel, Freedom::Edge1, "edgewise 1, vertical", 0, 1.0793, 0.03),
-        ("nrel-5mw", &nrel, Freedom::Edge1, "edgewise 1, horizontal", 1, 1.0898, 0.03),
-        ("nrel-5mw", &nrel, Freedom::Flap2, "flapwise 2, yawing", 0, 1.9223, 0.03),
-        ("nrel-5mw", &nrel, Freedom::Flap2, "flapwise 2, collective", 2, 2.0205, 0.03),
-        ("iea-15mw", &iea, Freedom::TowerSideToSide1, "tower side-to-side 1", 0, 0.2374, 0.02),
-        ("iea-15mw", &iea, Freedom::Edge1, "edgewise 1", 0, 0.765, 0.03),
-        ("iea-15mw", &iea, Freedom::Edge1, "edgewise 1, collective", 2, 1.765, 0.03),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::TowerForeAft1, "tower fore-aft 1", 0, 0.3240, 0.02),
+        (
+            "nrel-5mw",
+            &nrel,
+            DegreeOfFreedom::TowerSideToSide1,
+            "tower side-to-side 1",
+            0,
+            0.3120,
+            0.02,
+        ),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::TowerForeAft2, "tower fore-aft 2", 0, 2.9003, 0.02),
+        (
+            "nrel-5mw",
+            &nrel,
+            DegreeOfFreedom::TowerSideToSide2,
+            "tower side-to-side 2",
+            0,
+            2.9361,
+            0.02,
+        ),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::DriveTrain, "drive train", 0, 0.6205, 0.02),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::Flap1, "flapwise 1, yawing", 0, 0.6664, 0.03),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::Flap1, "flapwise 1, tilting", 1, 0.6675, 0.03),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::Flap1, "flapwise 1, collective", 2, 0.6993, 0.03),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::Edge1, "edgewise 1, vertical", 0, 1.0793, 0.03),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::Edge1, "edgewise 1, horizontal", 1, 1.0898, 0.03),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::Flap2, "flapwise 2, yawing", 0, 1.9223, 0.03),
+        ("nrel-5mw", &nrel, DegreeOfFreedom::Flap2, "flapwise 2, collective", 2, 2.0205, 0.03),
+        (
+            "iea-15mw",
+            &iea,
+            DegreeOfFreedom::TowerSideToSide1,
+            "tower side-to-side 1",
+            0,
+            0.2374,
+            0.02,
+        ),
+        ("iea-15mw", &iea, DegreeOfFreedom::Edge1, "edgewise 1", 0, 0.765, 0.03),
+        ("iea-15mw", &iea, DegreeOfFreedom::Edge1, "edgewise 1, collective", 2, 1.765, 0.03),
     ] {
         let found = frequencies(structure, kind).get(place).copied();
         rows.push(frequency_row(format!("{name}: {what}"), found, expected, share));
@@ -75,16 +109,21 @@ fn machine_rows(rows: &mut Vec<Row>) {
 
 /// Single blades at rest beside finite-element cantilevers of the same mass, stiffness and twist (200 elements, own computation).
 fn blade_rows(rows: &mut Vec<Row>) {
-    let held = &Freedom::ALL[..6];
+    let held = &DegreeOfFreedom::ALL[..6];
     for (name, flapwise, edgewise) in
         [("nrel-5mw", 0.6775, 1.0863), ("iea-15mw", 0.5387, 0.7279), ("iea-22mw", 0.3958, 0.5388)]
     {
         let mut definition = definition_of(name);
         definition.rotor.precone = 0.0;
-        let alone = built(&definition, &Settings { gravity: 0.0, ..Settings::AT_REST }, held);
-        for (kind, what, expected) in
-            [(Freedom::Flap1, "flapwise", flapwise), (Freedom::Edge1, "edgewise", edgewise)]
-        {
+        let alone = built(
+            &definition,
+            &StructureSettings { gravity: 0.0, ..StructureSettings::AT_REST },
+            held,
+        );
+        for (kind, what, expected) in [
+            (DegreeOfFreedom::Flap1, "flapwise", flapwise),
+            (DegreeOfFreedom::Edge1, "edgewise", edgewise),
+        ] {
             let found = frequencies(&alone, kind).first().copied();
             let what = format!("{name}: blade alone, {what} 1, beside finite elements");
             rows.push(frequency_row(what, found, expected, 0.03));
@@ -102,10 +141,10 @@ fn energy_rows(rows: &mut Vec<Row>) {
         modes.iter_mut().for_each(|mode| mode.damping_ratio = 0.0);
     }
     for (what, held, rotor_speed, duration) in [
-        ("at rest, 1000 periods of the tower", &[Freedom::Generator][..], 0.0, 4300.0),
+        ("at rest, 1000 periods of the tower", &[DegreeOfFreedom::Generator][..], 0.0, 4300.0),
         ("turning freely, 1100 edgewise periods", &[][..], 0.79, 600.0),
     ] {
-        let mut structure = built(&definition, &Settings::AT_REST, held);
+        let mut structure = built(&definition, &StructureSettings::AT_REST, held);
         let mut state = structure.state().clone();
         // A metre per second at the tips, less at the tower.
         state.velocities.shared = [0.4, -0.1, 0.3, 0.05, rotor_speed, 0.0];
@@ -157,8 +196,9 @@ fn spinning_rows(rows: &mut Vec<Row>) {
     let (cone_sine, cone_cosine) = definition.rotor.precone.sin_cos();
     let tilt_cosine = definition.rotor.shaft_tilt.cos();
     let spun = |gravity: f64| {
-        let settings = Settings { gravity, rotor_speed: SPEED, ..Settings::AT_REST };
-        let mut structure = built(&definition, &settings, &Freedom::ALL);
+        let settings =
+            StructureSettings { gravity, rotor_speed: SPEED, ..StructureSettings::AT_REST };
+        let mut structure = built(&definition, &settings, &DegreeOfFreedom::ALL);
         (0..100).for_each(|_| structure.advance(STEP, &AppliedLoads::NONE, &STILL));
         let root: Vec<(Vector3, Vector3)> =
             structure.loads().blades.iter().map(|b| (b.root.force, b.root.moment)).collect();

@@ -182,8 +182,8 @@ fn machine(asked: &Asked<'_>) -> Machine {
     }
     let diameter = definition.rotor_diameter();
     let tower = asked.tower.map(|effects| TowerInfluence::new(&definition, Vector3::ZERO, effects));
-    let settings = turbine::Settings {
-        induction: Induction::ByMomentum(aero::rotor::Settings {
+    let settings = turbine::TurbineSettings {
+        induction: Induction::ByMomentum(aero::rotor::BemSettings {
             induction: aero::Induction::TwoConstant(TwoConstant::fixed(asked.slow_constant)),
             theory: Theory::default(),
             skewed_wake: true,

@@ -44,7 +44,7 @@ impl Table {
 /// Power and thrust coefficient of `definition` without its tilt, at `tip_speed_ratio` (–) and `pitch` (rad), in the duct `flow`.
 ///
 /// The number of blades enters as in blade-element momentum: a blade feels the mean induction of its ring over Prandtl's factor,
-/// and swirl is that of momentum theory. Not numbers where flow and loads do not settle on each other. A leaning blade slows the air along the shaft by one cosine of its force and feels one of what is slowed.
+/// and swirl is that of momentum theory. Not numbers where flow and loads do not converge. The local cone angle enters by two cosines: of the blade force along the shaft, and of the induced velocity normal to the blade.
 pub(crate) fn coefficients(
     definition: &Definition,
     tip_speed_ratio: f64,
@@ -87,7 +87,7 @@ pub(crate) fn coefficients(
     for round in 0..N_ROUNDS {
         if round >= N_PREPARING {
             for ((onset, ring), element) in onsets.iter_mut().zip(&states).zip(elements) {
-                onset.normal = ring.felt * element.cone.cos();
+                onset.normal = ring.felt * element.cone_angle.cos();
                 onset.tangential = rotor_speed * element.radius * (1.0 + ring.swirl);
             }
             line.loads_under(&onsets, &pitches, &mut QuasiSteady(&line), &unsmeared, &mut loads);
@@ -100,7 +100,7 @@ pub(crate) fn coefficients(
                     tip_radius: radius,
                     chord: element.chord,
                     section_pitch: element.twist + pitch,
-                    lean: element.cone,
+                    cone_angle: element.cone_angle,
                 };
                 let sine = onset.normal / onset.normal.hypot(onset.tangential);
                 let loss = loss_factor(&annulus, Theory::default(), sine.abs());
@@ -124,7 +124,7 @@ pub(crate) fn coefficients(
         let last = found.power;
         let area = 0.5 * definition.rotor_area() / n_blades;
         let sum = |part: &dyn Fn(usize) -> f64| (0..elements.len()).map(part).sum::<f64>() / area;
-        found.thrust = sum(&|i| loads[i].normal * elements[i].cone.cos() * elements[i].width);
+        found.thrust = sum(&|i| loads[i].normal * elements[i].cone_angle.cos() * elements[i].width);
         found.torque =
             sum(&|i| loads[i].tangential * elements[i].radius * elements[i].width) / radius;
         found.power = found.torque * tip_speed_ratio;

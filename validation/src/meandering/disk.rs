@@ -8,7 +8,7 @@ use crate::Row;
 use basis::{FixedFrame, Sense};
 use control::meandering::{Decoupling, Followed, Meandering, Reference, Settings, TwoAxisSettings};
 use estimation::Estimator;
-use estimation::phase_locked::{Leader, Settings as Signal, TwoAxisLoop};
+use estimation::phase_locked::{Leader, PhaseLockedSettings as Signal, TwoAxisLoop};
 use flow::inflow::deterministic::Event;
 use flow::inflow::deterministic::RotatingDisk;
 use flow::inflow::{DeterministicWind, MeanProfile};

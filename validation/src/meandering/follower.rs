@@ -3,7 +3,7 @@
 use super::spring_mass::{SpringMass, answer};
 use control::meandering::Followed;
 use estimation::phase_locked::{
-    Estimate, Kind, LoopSettings, Order, PhaseLockedError, PhaseLockedLoop, Settings,
+    Estimate, Kind, LoopSettings, Order, PhaseLockedError, PhaseLockedLoop, PhaseLockedSettings,
 };
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2, TAU};
 
@@ -62,7 +62,7 @@ pub(super) struct Instant {
 /// Settings of the loop around a generator of `kind`: between St 0.14 and 0.33, ω_n = 0.01 rad/s, ξ = 1/√2, k = √2.
 ///
 /// The source gives ξ and k, and ω_n only as less than ω₀.
-pub(super) fn settings(kind: Kind) -> Settings {
+pub(super) fn settings(kind: Kind) -> PhaseLockedSettings {
     let rates = [rate_of(0.14), rate_of(0.33)];
     let follower = LoopSettings {
         order: Order::QuasiTwo,
@@ -70,7 +70,7 @@ pub(super) fn settings(kind: Kind) -> Settings {
         damping_ratio: FRAC_1_SQRT_2,
         rates,
     };
-    Settings { generator: kind, damping: SQRT_2, follower }
+    PhaseLockedSettings { generator: kind, damping: SQRT_2, follower }
 }
 
 /// Integral gain of amplitude and offset (1/s), slow against the masses' own memory, which near their resonance is some

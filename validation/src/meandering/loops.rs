@@ -3,7 +3,7 @@
 use crate::Row;
 use basis::angle::wrap_to_half_turn;
 use estimation::phase_locked::{
-    Gains, Generator, Kind, Order, PhaseLockedLoop, Settings, transfer,
+    Gains, Generator, Kind, Order, PhaseLockedLoop, PhaseLockedSettings, transfer,
 };
 use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2, TAU};
 
@@ -24,8 +24,9 @@ pub(super) fn kinds() -> [(&'static str, Kind); 3] {
     [("SOGI", Kind::Second), ("ESOGI", extended), ("MSTOGI", Kind::Mixed)]
 }
 
-fn follower(kind: Kind, order: Order) -> (Settings, PhaseLockedLoop) {
-    let mut settings = Settings { generator: kind, ..Settings::between(RATES) };
+fn follower(kind: Kind, order: Order) -> (PhaseLockedSettings, PhaseLockedLoop) {
+    let mut settings =
+        PhaseLockedSettings { generator: kind, ..PhaseLockedSettings::between(RATES) };
     settings.follower.order = order;
     if order == Order::Three {
         // A type-three loop with ESOGI is unstable at the natural rate of the others.
@@ -284,7 +285,7 @@ impl Large {
 
 /// Where loops come to rest from 32 × 17 phase and frequency errors, and whether they stay there.
 fn equilibria() -> Vec<Row> {
-    let natural = Settings::between(RATES).follower.natural_rate;
+    let natural = PhaseLockedSettings::between(RATES).follower.natural_rate;
     let gains = Gains::new(Order::QuasiTwo, natural, FRAC_1_SQRT_2);
     let [half, plain] = [half_tangent, sine].map(|error| Large { gains, error });
     let share = |large: &Large| {

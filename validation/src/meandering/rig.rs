@@ -63,8 +63,8 @@ impl Rig {
         let table = coefficient_table(&file.definition);
         let inertia = file.definition.drive_train_inertia();
         let constants = file.controller.with_estimator(inertia, AIR_DENSITY, table);
-        let settings = turbine::Settings {
-            induction: Induction::ByMomentum(rotor::Settings {
+        let settings = turbine::TurbineSettings {
+            induction: Induction::ByMomentum(rotor::BemSettings {
                 induction: aero::Induction::TwoConstant(TwoConstant::fixed(SLOW_CONSTANT)),
                 theory: Theory::default(),
                 skewed_wake: true,

@@ -163,8 +163,8 @@ pub(super) fn fly(
     asked: &Asked,
     mut excite: impl FnMut(&Measurements<'static>) -> PerBlade<f64>,
 ) {
-    let settings = turbine::Settings {
-        induction: Induction::ByMomentum(aero::rotor::Settings {
+    let settings = turbine::TurbineSettings {
+        induction: Induction::ByMomentum(aero::rotor::BemSettings {
             induction: aero::Induction::TwoConstant(TwoConstant::varying()),
             theory: Theory::default(),
             skewed_wake: true,

@@ -12,8 +12,8 @@ use super::{
 use crate::Row;
 use basis::mbc::to_fixed_frame;
 use basis::{FixedFrame, Measurements, PerBlade, Sense};
-use estimation::helix::{HelixEstimator, MeasurementModel, Options, Setting};
-use estimation::phase_locked::{Kind, Leader, Settings, TwoAxisLoop, TwoAxisSettings};
+use estimation::helix::{HelixEstimator, HelixSettings, MeasurementModel, Options};
+use estimation::phase_locked::{Kind, Leader, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings};
 use estimation::{EstimationError, Estimator, Oscillation, Quantity};
 use rig::INTERVAL;
 use std::f64::consts::{SQRT_2, TAU};
@@ -129,7 +129,7 @@ fn filter(machine: &Machine, options: Options) -> Result<HelixEstimator, Estimat
 /// What the loops were told: St 0.15 to 0.3, the helix at 0.25.
 fn loops(kind: Kind) -> TwoAxisLoop {
     let rates = [0.6, 1.2].map(|factor| factor * TAU / PERIOD);
-    let signal = Settings { generator: kind, ..Settings::between(rates) };
+    let signal = PhaseLockedSettings { generator: kind, ..PhaseLockedSettings::between(rates) };
     let settings = TwoAxisSettings { signal, sense: SENSE, leader: Leader::Both };
     TwoAxisLoop::new(&settings, INTERVAL).expect("a sound loop")
 }
@@ -199,7 +199,7 @@ fn own_model(
     off: f64,
 ) -> Result<Known, EstimationError> {
     let rate = off * TAU / PERIOD;
-    let finer = Setting { n_elements: 32, ..setting(SENSE) };
+    let finer = HelixSettings { n_elements: 32, ..setting(SENSE) };
     let mut calm = machine.gradient(SENSE, 0.0);
     calm.rate = rate;
     let made = |instruments| {

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Why an estimator cannot be made as asked.
+/// Why an estimator cannot be made with these settings, or a record cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum EstimationError {
     /// A setting out of its range.
@@ -15,7 +15,7 @@ pub enum EstimationError {
         /// What was expected.
         expected: &'static str,
     },
-    /// A covariance that no noise can have.
+    /// A noise covariance that is not positive definite.
     #[error(
         "the {name} noise is not positive definite: {entry} = {value}, and every variance must be above zero"
     )]
@@ -27,22 +27,22 @@ pub enum EstimationError {
         /// Its value.
         value: f64,
     },
-    /// A record without a whole excitation period after the settling.
-    #[error("{found} samples are too few to calibrate with, {needed} are needed")]
+    /// A record without a whole excitation period after the settling time.
+    #[error("{found} samples are too few for a calibration; {needed} are needed")]
     RecordTooShort {
         /// Samples given (–).
         found: usize,
-        /// Fewest samples that would do (–).
+        /// Fewest samples that are enough (–).
         needed: usize,
     },
     /// A record of a rotor that did not pitch.
     #[error(
-        "the rotor of the record does not pitch at the excitation's rate: there is nothing to calibrate"
+        "the rotor of the record does not pitch at the excitation rate: there is nothing to calibrate"
     )]
     NothingToCalibrate,
-    /// The samples are too few for what is to be seen.
+    /// The update interval is too long to resolve the excitation.
     #[error(
-        "an excitation of {rate:.4} rad/s on a rotor that turns with up to {rotor_speed:.3} rad/s cannot be seen in samples {interval} s apart, which end at {nyquist:.3} rad/s; update more often"
+        "an excitation of {rate:.4} rad/s on a rotor that turns at up to {rotor_speed:.3} rad/s cannot be resolved by samples {interval} s apart, whose Nyquist rate is {nyquist:.3} rad/s; update more often"
     )]
     AboveNyquist {
         /// Excitation rate (rad/s).
@@ -54,18 +54,18 @@ pub enum EstimationError {
         /// Nyquist rate of the updates (rad/s).
         nyquist: f64,
     },
-    /// A rotor that tilt and yaw cannot be told on.
+    /// A rotor with too few blades for tilt and yaw components.
     #[error(
-        "tilt and yaw cannot be told on a rotor of {n_blades} blades; three at least are needed"
+        "a rotor of {n_blades} blades has no tilt and yaw components; at least three blades are needed"
     )]
     FewBlades {
         /// Blades.
         n_blades: usize,
     },
-    /// A record too short for what is asked of it.
-    #[error("the record has {n_samples} samples, and {needed} are needed for {purpose}")]
+    /// A record too short for its purpose.
+    #[error("the record has {n_samples} samples; {needed} are needed for {purpose}")]
     TooShort {
-        /// Samples there are.
+        /// Samples given.
         n_samples: usize,
         /// Samples needed.
         needed: usize,

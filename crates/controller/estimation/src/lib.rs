@@ -1,8 +1,8 @@
-//! Beliefs: what a turbine's own measurements tell of the wind that no instrument sees.
+//! State estimation: from a turbine's own measurements to the wind that no instrument measures.
 //!
 //! Estimators run at control rate beside the controller: no allocation, no blocking, no failure in
-//! [`Estimator::update`]. Parameters are made once from the case; the belief itself is plain data, so that a run that
-//! was killed goes on with the same bits.
+//! [`Estimator::update`]. Parameters are made once from the case; the state is plain data, so that a run that was killed
+//! continues with the same bits.
 
 pub mod phase_locked;
 
@@ -19,19 +19,19 @@ use basis::Measurements;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Turns measurements into a belief, one control instant at a time.
+/// Turns measurements into a state estimate, one control instant at a time.
 pub trait Estimator {
-    /// What is believed; each kind of estimator says more, all of them an [`Oscillation`].
+    /// The estimate; each kind of estimator has its own, and all convert into an [`Oscillation`].
     type Estimate: Copy + Into<Oscillation>;
-    /// Everything that time changes, for a checkpoint.
+    /// State of the estimator, for a checkpoint.
     type State: Clone + PartialEq + Serialize + DeserializeOwned;
 
-    /// The belief after `measurements` of this instant.
+    /// The estimate after the `measurements` of this instant.
     fn update(&mut self, measurements: &Measurements) -> Self::Estimate;
 
-    /// Everything that time changes.
+    /// The state.
     fn state(&self) -> &Self::State;
 
-    /// Continues with the same bits from `state`, which an estimator made alike gave.
+    /// Continues with the same bits from `state`, which came from an estimator with the same settings.
     fn restore(&mut self, state: Self::State);
 }

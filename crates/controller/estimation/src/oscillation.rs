@@ -1,20 +1,21 @@
-//! What every estimator says alike, whatever it is made of: where the slow swing of tilt and yaw stands now.
+//! The common part of every estimate: phase, rate and amplitude of the slow oscillation of tilt and yaw.
 
 use serde::{Deserialize, Serialize};
 
-/// What an estimator finds the swing of.
+/// The oscillating quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
-    /// Wind that meets the rotor (m/s), what the rotor's own pitch does to the moments taken off.
+    /// Wind at the rotor (m/s); the effect of the rotor's own pitch on the moments is removed.
     Wind,
-    /// Moments at the blade roots (N m) as they are: later than the wind by what blades and wake take, own pitch among them.
+    /// Moments at the blade roots (N m) as measured: with the lag of blades and wake, and with the effect of the rotor's own
+    /// pitch.
     Load,
 }
 
-/// Tilt A sin θ and yaw A' sin θ' of a [`Quantity`], each about a middle of its own.
+/// Tilt A sin θ and yaw A' sin θ' of a [`Quantity`], each about an offset of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Oscillation {
-    /// Of what.
+    /// The oscillating quantity.
     pub quantity: Quantity,
     /// Rate of both phases (rad/s).
     pub rate: f64,
@@ -22,8 +23,8 @@ pub struct Oscillation {
     pub phases: [f64; 2],
     /// Amplitudes A of tilt and A' of yaw (m/s or N m).
     pub amplitudes: [f64; 2],
-    /// How far the phases can be trusted (–), from 0, not at all, to 1; a loop that locks or does not knows these two alone.
+    /// Confidence in the phases (–), from 0 to 1; a phase-locked loop gives 1 in lock and 0 otherwise.
     pub trust: f64,
-    /// Whether the last measurements told nothing and the belief went on without them.
+    /// Whether the last measurements were unusable and the estimate was only predicted.
     pub held: bool,
 }

@@ -6,7 +6,7 @@ use basis::angle::wrap_to_half_turn;
 use basis::mbc::to_fixed_frame;
 use basis::{Measurements, Sense};
 use estimation::helix::{HelixEstimator, Options};
-use estimation::phase_locked::{Kind, Leader, Settings, TwoAxisLoop, TwoAxisSettings};
+use estimation::phase_locked::{Kind, Leader, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings};
 use estimation::{Estimator, Oscillation, Quantity};
 use machine::*;
 use proptest::prelude::*;
@@ -22,7 +22,7 @@ const CW: Sense = Sense::Clockwise;
 const PERIODS: f64 = 10.0;
 /// Beginning of the dropout, its length, and where its marks are judged again, in periods (–).
 const DROPOUT: [f64; 3] = [4.5, 0.5, 7.5];
-/// Trust above which a phase is used, and under which none is (–): what synchronisation takes for the first.
+/// Confidence above which a phase is used, and under which none is (–): synchronisation's threshold for the first.
 const TRUSTED: f64 = 0.15;
 
 /// What an estimator promises, with 5 % of noise on a helix of 1 m/s and without noise; noise counts for more on a weaker one.
@@ -79,7 +79,7 @@ impl Known {
         Self { name, sense, rate, amplitude, noisy: noise > 0.0, record, wind, load }
     }
 
-    /// Errors of `believed` (rad) at `time` (s).
+    /// Errors of the estimate `believed` (rad) at `time` (s).
     fn errors(&self, believed: &Oscillation, time: f64) -> [f64; 2] {
         let truth = match believed.quantity {
             Quantity::Wind => self.wind,
@@ -149,7 +149,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// What `estimator` believes after `read`; no number of it is none, nothing is allocated for it.
+/// Estimate of `estimator` after `read`; all its numbers are finite, and nothing is allocated for it.
 fn believed<E: Estimator>(estimator: &mut E, read: &Measurements) -> Oscillation {
     let before = COUNT.with(Cell::get);
     let oscillation: Oscillation = estimator.update(read).into();
@@ -197,7 +197,7 @@ fn finds<E: Estimator>(promise: &Promise, known: &Known, estimator: &mut E) {
     assert!(rms(&rates) < rate, "{}: rate off by {}", known.name, rms(&rates));
 }
 
-/// Half a period without numbers, and single ones missing: said so, and got over.
+/// Half a period without numbers, and single ones missing: flagged and bridged.
 fn bridges<E: Estimator>(promise: &Promise, known: &Known, estimator: &mut E) {
     let period = TAU / known.rate;
     let [begin, length, again] = DROPOUT.map(|periods| periods * period);
@@ -246,7 +246,7 @@ fn resumes<E: Estimator>(known: &Known, make: &impl Fn(f64, Sense) -> E) {
     }
 }
 
-/// Where nothing swings nothing is trusted.
+/// Without an oscillation there is no confidence.
 fn trusts_no_noise<E: Estimator>(mut estimator: E) {
     let mut model = model(&definition(), CCW, &Options::default());
     let (mut world, mut dice, mut trust) = (World::new(CCW, 1.0), Dice(9), Vec::new());
@@ -289,10 +289,10 @@ fn survives<E: Estimator>(blank: &E::State, estimator: &mut E) {
     outcome.expect("numbers");
 }
 
-fn filter(options: Options, told: f64) -> impl Fn(f64, Sense) -> HelixEstimator {
+fn filter(options: Options, factor: f64) -> impl Fn(f64, Sense) -> HelixEstimator {
     let definition = definition();
     move |rate, sense| {
-        let setting = estimation::helix::Setting { rate: told * rate, ..setting(sense) };
+        let setting = estimation::helix::HelixSettings { rate: factor * rate, ..setting(sense) };
         HelixEstimator::new(&definition, &setting, options).expect("a sound setting")
     }
 }
@@ -300,7 +300,7 @@ fn filter(options: Options, told: f64) -> impl Fn(f64, Sense) -> HelixEstimator 
 fn phase_locked(kind: Kind) -> impl Fn(f64, Sense) -> TwoAxisLoop {
     move |_, sense| {
         let rates = [0.6, 1.2].map(|factor| factor * TAU / PERIOD);
-        let signal = Settings { generator: kind, ..Settings::between(rates) };
+        let signal = PhaseLockedSettings { generator: kind, ..PhaseLockedSettings::between(rates) };
         let settings = TwoAxisSettings { signal, sense, leader: Leader::Both };
         TwoAxisLoop::new(&settings, INTERVAL).expect("a sound loop")
     }

@@ -92,7 +92,7 @@ fn the_published_form_and_separate_amplitudes_find_the_phase_too() {
     }
 }
 
-/// In a world that is as the filter believes, its own variances tell its errors, and innovations are white.
+/// In a world like the filter's model its variances are those of its errors, and innovations are white.
 #[test]
 fn innovations_and_errors_keep_within_their_chi_square_bounds() {
     let density = 2e-4;
@@ -115,7 +115,7 @@ fn innovations_and_errors_keep_within_their_chi_square_bounds() {
         let mut estimator = HelixEstimator::new(&definition, &set, options).unwrap();
         let mut noise = Dice(1 + seed);
         let mut world = World::new(Sense::CounterClockwise, 0.0);
-        // Sine and cosine components, which wander; eddies, which forget themselves.
+        // Sine and cosine components as random walks; eddies as Gauss-Markov noise.
         let mut parts = [0.9, 0.4, 0.9, 0.4];
         let bias = [0.3 * noise.normal(), 0.3 * noise.normal()];
         let mut passing = [0.0; 2];
@@ -292,7 +292,7 @@ fn a_rate_that_is_not_the_nominal_one_is_found() {
     let record = run(options, world, 1500.0, still);
     let last = record.last().unwrap().2;
     assert!((last.rate / world.rate - 1.0).abs() < 2e-3, "{}", last.rate / world.rate);
-    // Phases are told against the nominal excitation, on which the helix gains.
+    // Phases refer to the nominal excitation, on which the helix gains.
     let truth = 1.0 + 0.02 * TAU / PERIOD * 1499.8;
     assert!(wrap_to_half_turn(last.tilt.phase - truth).abs() < 0.05);
 }
@@ -353,7 +353,7 @@ fn tuning_finds_the_noise_and_a_scale_that_serves() {
     let Measurement::Moment(deviation) = tuned.options.noise.measurement else { panic!() };
     let expected = 0.05 * record[50].flap_moments.mean();
     assert!((0.8..1.3).contains(&(deviation / expected)), "{}", deviation / expected);
-    // A gap, another interval, a lost azimuth and a truth of another length are told.
+    // A gap, another interval, a lost azimuth and a truth of another length are reported.
     let tune = |record: &[_], truth| {
         tuning::tune(&definition, &setting(sense), options, record, truth).unwrap_err()
     };
@@ -373,12 +373,12 @@ fn the_usual_elements_are_enough() {
     let definition = definition();
     let options = Options::default();
     let reading = |n_elements: usize| {
-        let setting = Setting { n_elements, ..setting(Sense::CounterClockwise) };
+        let setting = HelixSettings { n_elements, ..setting(Sense::CounterClockwise) };
         let mut model = MeasurementModel::new(&definition, &setting, &options).unwrap();
         let world = World { noise: 0.0, ..World::new(Sense::CounterClockwise, 0.0) };
         (0..100).map(|step| world.read(step, &mut model, &mut Dice(1)).flap_moments).last().unwrap()
     };
-    let (few, many) = (reading(Setting::N_ELEMENTS), reading(60));
+    let (few, many) = (reading(HelixSettings::N_ELEMENTS), reading(60));
     for (few, many) in few.iter().zip(many.iter()) {
         assert!((few / many - 1.0).abs() < 0.01, "{}", few / many);
     }
@@ -409,13 +409,13 @@ fn a_resumed_estimator_goes_on_with_the_same_bits() {
 fn what_cannot_work_is_said_at_once() {
     let definition = definition();
     let good = setting(Sense::Clockwise);
-    let error = |setting: Setting, options: Options| {
+    let error = |setting: HelixSettings, options: Options| {
         HelixEstimator::new(&definition, &setting, options).unwrap_err()
     };
     let options = Options::default();
-    let slow = error(Setting { interval: 4.0, ..good }, options);
+    let slow = error(HelixSettings { interval: 4.0, ..good }, options);
     assert!(matches!(slow, EstimationError::AboveNyquist { .. }), "{slow}");
-    let fast = error(Setting { rate: 20.0, ..good }, options);
+    let fast = error(HelixSettings { rate: 20.0, ..good }, options);
     assert!(matches!(fast, EstimationError::AboveNyquist { .. }), "{fast}");
     let rare = error(good, Options { update_every: 30, ..options });
     assert!(matches!(rare, EstimationError::AboveNyquist { .. }), "{rare}");
@@ -427,7 +427,7 @@ fn what_cannot_work_is_said_at_once() {
     assert!(matches!(silent, EstimationError::NotPositiveDefinite { name: "measurement", .. }));
     let round = error(good, Options { roundness: 1.0, ..options });
     assert!(matches!(round, EstimationError::NotPositiveDefinite { name: "process", .. }));
-    let none = error(Setting { rate: f64::NAN, ..good }, options);
+    let none = error(HelixSettings { rate: f64::NAN, ..good }, options);
     assert!(matches!(none, EstimationError::Setting { .. }), "{none}");
     let mut two = (*definition).clone();
     two.n_blades = 2;

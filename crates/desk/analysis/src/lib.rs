@@ -1,4 +1,4 @@
-//! What an engineer reads from records: means with their uncertainty, spectra, fatigue, delivered pitch, phases, wakes.
+//! Analysis of records: means with their uncertainty, spectra, fatigue, delivered pitch, phases, wakes.
 
 pub mod fatigue;
 pub mod line;
@@ -14,79 +14,81 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum AnalysisError {
     /// The record has too few samples.
-    #[error("{n_samples} samples are too few, {needed} are needed")]
+    #[error("{n_samples} samples are too few; {needed} are needed")]
     TooShort {
         /// Samples given (–).
         n_samples: usize,
-        /// Fewest samples that would do (–).
+        /// Fewest samples that are enough (–).
         needed: usize,
     },
     /// Two records that belong together differ in length.
-    #[error("records of {first} and {second} samples do not belong together")]
+    #[error(
+        "records of {first} and {second} samples cannot be compared; they must have the same length"
+    )]
     UnequalLengths {
         /// Samples of one (–).
         first: usize,
         /// Samples of the other (–).
         second: usize,
     },
-    /// A length of time that does not hold one sample.
+    /// A length of time that is not positive.
     #[error("{quantity} must be positive, not {value} s")]
     NotPositive {
         /// What it is, in words.
         quantity: &'static str,
-        /// What was given (s).
+        /// Its value (s).
         value: f64,
     },
-    /// A sample that is infinite or no number.
+    /// A sample that is infinite or not a number.
     #[error("sample {index} is not a finite number")]
     NotFinite {
-        /// Its place in the record, the first is 0.
+        /// Its index in the record, from 0.
         index: usize,
     },
-    /// An S-N slope that no material has.
-    #[error("the slope must be a number of at least 1, not {slope}")]
+    /// An S-N slope out of range.
+    #[error("the S-N slope must be a number of at least 1, not {slope}")]
     Slope {
-        /// What was given (–).
+        /// Its value (–).
         slope: f64,
     },
     /// A ratio to a mean of zero.
-    #[error("the compared record has a mean of zero")]
+    #[error("the reference record has a mean of zero")]
     ZeroMean,
     /// A ratio to a figure that is zero, of a whole record or of a block.
     #[error(
-        "what the compared record, or a block of it, comes to is zero: there is no ratio to it"
+        "the value of the reference record, or of a block of it, is zero: there is no ratio to it"
     )]
     NoReference,
-    /// A rotor whose blades do not make a fixed frame.
-    #[error("a rotor of {n_blades} blades has no tilt and yaw, 3 are needed")]
+    /// A rotor with too few blades for the fixed frame.
+    #[error("a rotor of {n_blades} blades has no tilt and yaw components; 3 blades are needed")]
     TooFewBlades {
         /// Blades (–).
         n_blades: usize,
     },
-    /// Lines over a disc that do not make a fixed frame.
-    #[error("{n_lines} lines have no tilt and yaw, 3 are needed")]
+    /// Too few lines over a disc for the fixed frame.
+    #[error("{n_lines} lines have no tilt and yaw components; 3 lines are needed")]
     TooFewLines {
         /// Lines (–).
         n_lines: usize,
     },
-    /// Times that do not keep one distance.
+    /// Times that are not evenly spaced.
     #[error(
-        "the times are not evenly spaced: sample {index} follows after {step} s, the others after {interval} s"
+        "the times are not evenly spaced: sample {index} is {step} s after the one before; the mean interval is {interval} s"
     )]
     UnevenTimes {
-        /// The first sample with another distance to the one before, the first of all is 0.
+        /// The first sample with another interval, from 0.
         index: usize,
-        /// That distance (s).
+        /// That interval (s).
         step: f64,
-        /// The mean distance (s).
+        /// The mean interval (s).
         interval: f64,
     },
     /// A frequency that the sampling does not resolve.
-    #[error("{frequency} Hz is not below {nyquist} Hz, half the sampling rate")]
+    #[error("{frequency} Hz is not below the Nyquist frequency of {nyquist} Hz")]
     AboveNyquist {
-        /// What was asked for (Hz).
+        /// Frequency given (Hz).
         frequency: f64,
-        /// Half the sampling rate (Hz).
+        /// Nyquist frequency (Hz).
         nyquist: f64,
     },
     /// A band that holds no frequency.
@@ -98,7 +100,7 @@ pub enum AnalysisError {
         high: f64,
     },
     /// A plane with the wrong axes.
-    #[error("plane {name} spans {found:?}, {needed} is needed")]
+    #[error("plane {name} spans {found:?}; {needed} is needed")]
     WrongPlane {
         /// Name of the plane.
         name: String,

@@ -6,7 +6,7 @@ use realfft::RealFftPlanner;
 use realfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Fewest samples in which a sine is looked for.
+/// Fewest samples for the fit of a sine (–).
 pub const FEWEST_SAMPLES: usize = 16;
 
 /// One frequency of a record, `amplitude` cos(2π `frequency` t + `phase`) with t from the first sample.

@@ -1,4 +1,4 @@
-//! What the pitch actuators delivered of an excitation.
+//! Delivered pitch: the part of an excitation that the pitch actuators realise.
 
 use crate::line::{strongest, strongest_rotation};
 use crate::{AnalysisError, statistics::mean};
@@ -23,10 +23,10 @@ pub enum Motion {
 /// (s) while the excitation runs at full amplitude; `commanded_amplitude` (rad) and `clipped_share` (–) are
 /// passed through.
 ///
-/// A helix is looked for in the fixed frame, where it stays one line however rotor speed varies: tilt and yaw of
+/// A helix is identified in the fixed frame, where it is one spectral line even with varying rotor speed: tilt and yaw of
 /// the delivered pitch turn together at −ω_e (ccw) or +ω_e (cw). The line in the blade's frame then lies at mean
 /// rotor frequency minus the signed frequency of that turning, and has the same amplitude. A pulse is
-/// looked for in the mean over the blades and has one frequency in both frames.
+/// identified in the mean over the blades and has one frequency in both frames.
 ///
 /// Source: van Vondelen et al. (2025), Eqs. 4-7. Limits: collective pitch control that moves at the pulse's frequency counts
 /// as delivered pulse.

@@ -1,4 +1,4 @@
-//! How the variance of a record spreads over frequency.
+//! Spectra: distribution of a record's variance over frequency.
 
 use crate::{AnalysisError, line::FEWEST_SAMPLES, statistics::mean};
 use realfft::RealFftPlanner;
@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 /// Values at equally spaced frequencies, the first at zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Distance of neighbouring frequencies (Hz).
+    /// Frequency step (Hz).
     pub frequency_step: f64,
     /// One value per frequency, in the unit that the function which made it names.
     pub values: Vec<f64>,
@@ -44,8 +44,8 @@ pub fn power_density(
 /// Amplitude of the sine at each frequency of `samples` (any unit, every `interval` s), in their unit: a sine of
 /// amplitude A shows a peak of A, at worst 1.5 % less, half-way between two frequencies.
 ///
-/// One Hann-windowed transform of the whole record, mean removed, at frequencies a quarter of its resolution apart. Where
-/// the amplitude itself is wanted, ask [`strongest`](crate::line::strongest).
+/// One Hann-windowed transform of the whole record, mean removed, at frequencies a quarter of its resolution apart. For
+/// the exact amplitude of one sine use [`strongest`](crate::line::strongest).
 ///
 /// # Errors
 /// As [`power_density`].

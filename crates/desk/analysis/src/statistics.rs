@@ -10,7 +10,7 @@ pub use student::student_97_5;
 
 /// Length of the blocks whose means are taken as independent (s): ten minutes, the field's averaging time.
 pub const BLOCK_LENGTH: f64 = 600.0;
-/// Share of one block that may be missing of all together (–).
+/// Share of a block that may be missing at the end of a record (–).
 const SHORT: f64 = 0.01;
 
 /// Mean of `samples` (any unit, every `interval` s), standard deviation, and the half width of the 95 % interval
@@ -154,7 +154,7 @@ fn blocks(
     Ok(samples.chunks_exact(n_samples).take(n_blocks))
 }
 
-/// Refuses two records that do not belong together.
+/// Refuses two records of different length.
 fn check_lengths(first: &[f64], second: &[f64]) -> Result<(), AnalysisError> {
     let (first, second) = (first.len(), second.len());
     if first == second { Ok(()) } else { Err(AnalysisError::UnequalLengths { first, second }) }

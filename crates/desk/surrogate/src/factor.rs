@@ -1,10 +1,10 @@
-//! The covariance of observations, factorised.
+//! Cholesky factor of the covariance of observations.
 
 use crate::{Hyperparameters, Observations, Shape, SurrogateError};
 use faer::linalg::solvers::{DenseSolveCore, Llt, Solve};
 use faer::{Mat, Side};
 
-/// Cholesky factor of K = k(X, X) + noise, and what follows from it.
+/// Cholesky factor of K = k(X, X) + noise, with solutions, inverse and determinant.
 #[derive(Clone, Debug)]
 pub(crate) struct Factor {
     cholesky: Llt<f64>,
@@ -36,7 +36,7 @@ impl Factor {
         let n = matrix.nrows();
         let cholesky =
             matrix.llt(Side::Lower).map_err(|_| SurrogateError::NotPositiveDefinite { n })?;
-        // A covariance of numbers that are none factorises without complaint.
+        // A covariance that contains NaN factorises without an error.
         let finite = (0..n).all(|index| cholesky.L()[(index, index)].is_finite());
         finite.then_some(Self { cholesky, n }).ok_or(SurrogateError::NotPositiveDefinite { n })
     }

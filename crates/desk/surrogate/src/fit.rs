@@ -1,4 +1,4 @@
-//! Hyperparameters of greatest marginal likelihood: limited-memory BFGS from several starts, inside bounds.
+//! Hyperparameters of maximum marginal likelihood: limited-memory BFGS from several starts, inside bounds.
 
 use crate::likelihood::{Likelihood, Mean};
 use crate::sample::Normals;
@@ -8,22 +8,22 @@ use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 use std::cell::RefCell;
 
-/// What is left to find about the noise.
+/// Whether a noise variance is estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Noise {
-    /// One variance for all observations, beside what is known of each.
+    /// One variance for all observations is estimated, in addition to the known ones.
     #[default]
-    Found,
-    /// What is known of each observation is all; without known variances the curve goes through every value.
+    Estimated,
+    /// Only the known variances; without them the curve goes through every value.
     Known,
 }
 
 /// How a process is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// What the process returns to far from observations.
+pub struct FitSettings {
+    /// Mean of the process far from observations.
     pub mean: Mean,
-    /// What is left to find about the noise.
+    /// Whether a noise variance is estimated.
     pub noise: Noise,
     /// Starts of the search (–); the first is fixed, the others drawn.
     pub n_starts: usize,
@@ -31,7 +31,7 @@ pub struct Settings {
     pub seed: u64,
 }
 
-impl Default for Settings {
+impl Default for FitSettings {
     fn default() -> Self {
         Self { mean: Mean::default(), noise: Noise::default(), n_starts: 8, seed: 1 }
     }
@@ -40,16 +40,16 @@ impl Default for Settings {
 /// Iterations of one search at most; a handful of parameters settle within a few dozen.
 const MAXIMUM_ITERATIONS: u64 = 200;
 
-/// The hyperparameters under which `observations` are most probable.
+/// The hyperparameters of maximum marginal likelihood for `observations`.
 ///
-/// Each is sought between bounds that are wide against the data: the signal's variance within 10⁻⁴ to 10⁴ of the
+/// Each is searched between bounds that are wide against the data: the signal's variance within 10⁻⁴ to 10⁴ of the
 /// values' own, lengths from a hundredth of the inputs' range to a hundred times it (0.05 to 50 for a periodic
 /// kernel), the noise's variance within 10⁻⁸ to 10² of the values'. The search runs over the logit of each
 /// logarithm's place between its bounds, so that no step leaves them.
 pub(crate) fn hyperparameters(
     shape: Shape,
     observations: &Observations,
-    settings: &Settings,
+    settings: &FitSettings,
 ) -> Result<Hyperparameters, SurrogateError> {
     let search = Search::new(shape, observations, settings);
     let mut normals = Normals::new(settings.seed);
@@ -61,7 +61,7 @@ pub(crate) fn hyperparameters(
         };
         let line_search = MoreThuenteLineSearch::new();
         let solver = LBFGS::new(line_search, 7);
-        // A search that cannot go on has still left its best place behind.
+        // A search that stops early has still recorded its best place.
         let _ = Executor::new(&search, solver)
             .configure(|state| state.param(place).max_iters(MAXIMUM_ITERATIONS))
             .timer(false)
@@ -76,15 +76,15 @@ struct Search<'a> {
     shape: Shape,
     observations: &'a Observations,
     mean: Mean,
-    /// Logarithms of the ends within which each parameter is sought.
+    /// Logarithms of the bounds of each parameter.
     bounds: Vec<[f64; 2]>,
-    /// Noise variance where none is sought.
+    /// Noise variance where none is estimated.
     fixed_noise: Option<f64>,
     best: RefCell<Option<(f64, Hyperparameters)>>,
 }
 
 impl<'a> Search<'a> {
-    fn new(shape: Shape, observations: &'a Observations, settings: &Settings) -> Self {
+    fn new(shape: Shape, observations: &'a Observations, settings: &FitSettings) -> Self {
         let n = observations.len() as f64;
         let values = &observations.values;
         let center = match settings.mean {
@@ -109,11 +109,11 @@ impl<'a> Search<'a> {
             });
         }
         let fixed_noise = match settings.noise {
-            Noise::Found => {
+            Noise::Estimated => {
                 bounds.push([1e-8 * spread, 1e2 * spread]);
                 None
             }
-            // Enough to factorise by, too little to see.
+            // Enough to factorise, too little to matter.
             Noise::Known => Some(1e-10 * spread),
         };
         let bounds = bounds.into_iter().map(|ends| ends.map(f64::ln)).collect();
@@ -162,7 +162,7 @@ impl CostFunction for &Search<'_> {
 
     fn cost(&self, place: &Vec<f64>) -> Result<f64, Error> {
         let (parameters, _) = self.parameters(place);
-        // Where the covariance does not factorise nothing is probable; the line search turns back.
+        // Where the covariance does not factorise the likelihood is zero; the line search turns back.
         let Some(found) = self.likelihood(&parameters) else { return Ok(f64::MAX.sqrt()) };
         let mut best = self.best.borrow_mut();
         if best.as_ref().is_none_or(|(log, _)| found.log > *log) {

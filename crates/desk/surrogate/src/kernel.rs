@@ -1,4 +1,4 @@
-//! How alike values at two inputs are: covariance functions and their slopes.
+//! Covariance kernels and their derivatives.
 //!
 //! Source: Rasmussen and Williams, "Gaussian Processes for Machine Learning", 2006, §4.2; the periodic one MacKay,
 //! "Introduction to Gaussian processes", 1998, as in their Eq. 4.31.
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// Covariance function up to its scale, over r² = Σ ((x − x′)/ℓ)² unless it says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// exp(−2 Σ sin²(π (x − x′)/p)/ℓ²): values that come back after a period, smooth.
+    /// exp(−2 Σ sin²(π (x − x′)/p)/ℓ²): periodic and smooth.
     Periodic {
         /// Period p, in the unit of the inputs.
         period: f64,
@@ -22,7 +22,7 @@ pub enum Shape {
     Matern52,
 }
 
-/// What a marginal likelihood is maximised over.
+/// Hyperparameters, over which the marginal likelihood is maximised.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hyperparameters {
     /// Variance of the values about their mean (unit of the values, squared).

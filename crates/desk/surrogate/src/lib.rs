@@ -1,17 +1,17 @@
-//! Surrogates: a few expensive results made into a curve with its uncertainty.
+//! Surrogate models: a curve with its uncertainty from a few expensive results.
 //!
-//! [`GaussianProcess`] is exact Gaussian-process regression: a covariance of neighbouring inputs, noise that is known, found
-//! or both, hyperparameters of greatest marginal likelihood. Power over a phase offset is one circle and a handful of
-//! runs; its kernel is [`Shape::Periodic`].
+//! [`GaussianProcess`] is exact Gaussian-process regression: a covariance kernel, noise that is known, estimated or both, and
+//! hyperparameters of maximum marginal likelihood. Power over a phase offset is periodic and known from a handful of runs;
+//! its kernel is [`Shape::Periodic`].
 //!
 //! ```
-//! use surrogate::{GaussianProcess, Observations, Settings, Shape};
+//! use surrogate::{GaussianProcess, Observations, FitSettings, Shape};
 //! use std::f64::consts::TAU;
 //! // Eight offsets, a gain that has one summit at 150°.
 //! let offsets: Vec<f64> = (0..8).map(|i| TAU * f64::from(i) / 8.0).collect();
 //! let gains = offsets.iter().map(|o| 0.1 * (o - 150_f64.to_radians()).cos()).collect();
 //! let observations = Observations::of_curve(offsets, gains);
-//! let process = GaussianProcess::fit(Shape::Periodic { period: TAU }, observations, &Settings::default())?;
+//! let process = GaussianProcess::fit(Shape::Periodic { period: TAU }, observations, &FitSettings::default())?;
 //! let [low, high] = process.predict(&[150_f64.to_radians()])?.band_95();
 //! assert!(low < 0.1 && 0.1 < high && high - low < 0.02);
 //! # Ok::<(), surrogate::SurrogateError>(())
@@ -25,15 +25,15 @@ mod observations;
 mod process;
 mod sample;
 
-pub use fit::{Noise, Settings};
+pub use fit::{FitSettings, Noise};
 pub use kernel::{Hyperparameters, Shape};
 pub use likelihood::Mean;
 pub use observations::Observations;
-pub use process::{GaussianProcess, LeftOut, Prediction};
+pub use process::{GaussianProcess, LeaveOneOut, Prediction};
 
 use thiserror::Error;
 
-/// Why there is no surrogate.
+/// Why a surrogate cannot be made.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SurrogateError {
     /// Too few observations.
@@ -41,7 +41,7 @@ pub enum SurrogateError {
     TooFew {
         /// Observations given (–).
         n: usize,
-        /// Fewest that would do (–).
+        /// Fewest that are enough (–).
         needed: usize,
     },
     /// Parts of the data that do not belong together.
@@ -70,7 +70,7 @@ pub enum SurrogateError {
         /// What was given, in its unit.
         value: f64,
     },
-    /// A covariance that is none, as when two noiseless observations share their input.
+    /// A covariance that is not positive definite, as of two noiseless observations at the same input.
     #[error(
         "the covariance of {n} observations is not positive definite; allow for noise or remove repeated inputs"
     )]

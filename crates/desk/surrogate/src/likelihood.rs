@@ -1,16 +1,16 @@
-//! How probable the observations are under hyperparameters, and the slopes of that.
+//! Marginal likelihood of observations under hyperparameters, and its derivatives.
 //!
-//! Source: Rasmussen and Williams (2006), Eqs. 5.8 and 5.9; a mean that is found, §2.7 with its generalised least squares.
+//! Source: Rasmussen and Williams (2006), Eqs. 5.8 and 5.9; an estimated mean, §2.7 with its generalised least squares.
 
 use crate::factor::{Factor, dot};
 use crate::{Hyperparameters, Observations, Shape, SurrogateError};
 
-/// What the process returns to far from observations.
+/// Mean of the process far from observations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mean {
     /// Zero, as in van Vondelen et al. (2025): for differences to a reference.
     Zero,
-    /// A constant, found by generalised least squares; its uncertainty is part of every band.
+    /// A constant, estimated by generalised least squares; its uncertainty is part of every band.
     #[default]
     Constant,
 }

@@ -1,4 +1,4 @@
-//! What a surrogate learns from.
+//! Observations behind a surrogate.
 
 use crate::SurrogateError;
 
@@ -11,12 +11,12 @@ pub struct Observations {
     pub n_dimensions: usize,
     /// Observed values, `n` (any unit).
     pub values: Vec<f64>,
-    /// What is known of each value's own variance, `n` or empty (unit of the values, squared).
+    /// Known variance of each value, `n` or empty (unit of the values, squared).
     pub variances: Vec<f64>,
 }
 
 impl Observations {
-    /// Values over one input, nothing known of their variances.
+    /// Values over one input, without known variances.
     pub fn of_curve(inputs: Vec<f64>, values: Vec<f64>) -> Self {
         Self { inputs, n_dimensions: 1, values, variances: Vec::new() }
     }

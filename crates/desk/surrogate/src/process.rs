@@ -1,10 +1,10 @@
-//! A fitted Gaussian process: its curve, band, samples and what it makes of observations that it has not seen.
+//! A fitted Gaussian process: predictions, bands, samples and leave-one-out validation.
 
 use crate::factor::{Factor, dot};
 use crate::fit;
 use crate::likelihood::{Likelihood, Mean};
 use crate::sample::Normals;
-use crate::{Hyperparameters, Observations, Settings, Shape, SurrogateError};
+use crate::{FitSettings, Hyperparameters, Observations, Shape, SurrogateError};
 use faer::Mat;
 
 /// 97.5 % point of the normal distribution (–).
@@ -12,7 +12,7 @@ const NORMAL_97_5: f64 = 1.959_963_984_540_054;
 
 /// Exact Gaussian-process regression.
 ///
-/// Memory grows with the square of the observations and work with their cube: made for up to a few thousand.
+/// Memory grows with the square of the number of observations and work with its cube: for up to a few thousand.
 #[derive(Clone, Debug)]
 pub struct GaussianProcess {
     shape: Shape,
@@ -22,58 +22,59 @@ pub struct GaussianProcess {
     likelihood: Likelihood,
 }
 
-/// What the process says of one input.
+/// Prediction at one input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
     /// Most probable value (unit of the values).
     pub mean: f64,
-    /// Standard deviation of the curve about it (unit of the values).
+    /// Standard deviation of the curve (unit of the values).
     pub standard_deviation: f64,
-    /// Standard deviation of one more observation with the found noise (unit of the values).
+    /// Standard deviation of one more observation with the estimated noise (unit of the values).
     pub observation_deviation: f64,
 }
 
 impl Prediction {
-    /// Within which the curve lies with 95 % (unit of the values).
+    /// 95 % interval of the curve (unit of the values).
     pub fn band_95(&self) -> [f64; 2] {
         [-1.0, 1.0].map(|sign| self.mean + sign * NORMAL_97_5 * self.standard_deviation)
     }
 
-    /// Within which one more observation lies with 95 % (unit of the values).
+    /// 95 % interval of one more observation (unit of the values).
     pub fn observation_band_95(&self) -> [f64; 2] {
         [-1.0, 1.0].map(|sign| self.mean + sign * NORMAL_97_5 * self.observation_deviation)
     }
 }
 
-/// An observation as the others foretell it.
+/// An observation and its prediction from the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeftOut {
-    /// What was observed (unit of the values).
+pub struct LeaveOneOut {
+    /// Observed value (unit of the values).
     pub value: f64,
-    /// What the others foretell (unit of the values).
+    /// Prediction from the others (unit of the values).
     pub mean: f64,
-    /// Standard deviation with which they do, its noise included (unit of the values).
+    /// Standard deviation of the prediction, noise included (unit of the values).
     pub standard_deviation: f64,
 }
 
-impl LeftOut {
-    /// How many standard deviations the observation lies above what was foretold (–); beyond ±2 about one time in twenty.
+impl LeaveOneOut {
+    /// Standardised residual: standard deviations that the observation lies above its prediction (–); beyond ±2 about one
+    /// time in twenty.
     pub fn standardised(&self) -> f64 {
         (self.value - self.mean) / self.standard_deviation
     }
 }
 
 impl GaussianProcess {
-    /// The process of kernel `shape` whose hyperparameters make `observations` most probable.
+    /// The process of kernel `shape` with the hyperparameters of maximum marginal likelihood for `observations`.
     ///
     /// # Errors
-    /// [`SurrogateError::TooFew`] with fewer than three observations, from which no length can be told;
+    /// [`SurrogateError::TooFew`] with fewer than three observations, too few to estimate a length;
     /// [`SurrogateError::Lengths`], [`SurrogateError::NotFinite`], [`SurrogateError::NotPositive`] for bad data;
     /// [`SurrogateError::NotPositiveDefinite`].
     pub fn fit(
         shape: Shape,
         observations: Observations,
-        settings: &Settings,
+        settings: &FitSettings,
     ) -> Result<Self, SurrogateError> {
         observations.check()?;
         shape.check()?;
@@ -106,12 +107,12 @@ impl GaussianProcess {
         &self.parameters
     }
 
-    /// What the process learned from.
+    /// The observations behind the process.
     pub fn observations(&self) -> &Observations {
         &self.observations
     }
 
-    /// What the process returns to far from observations (unit of the values).
+    /// Mean of the process far from observations (unit of the values).
     pub fn mean(&self) -> f64 {
         self.likelihood.mean
     }
@@ -127,7 +128,7 @@ impl GaussianProcess {
         self.likelihood.slopes(self.shape, &self.parameters, &self.observations)
     }
 
-    /// What the process says of `input`. Rasmussen and Williams (2006), Eqs. 2.25, 2.26, 2.41 and 2.42.
+    /// Prediction at `input`. Rasmussen and Williams (2006), Eqs. 2.25, 2.26, 2.41 and 2.42.
     ///
     /// # Errors
     /// [`SurrogateError::Lengths`] for an input of other dimensions.
@@ -147,11 +148,11 @@ impl GaussianProcess {
         })
     }
 
-    /// Every observation as the others foretell it, hyperparameters unchanged.
+    /// Leave-one-out predictions: each observation predicted from the others, hyperparameters unchanged.
     ///
-    /// Source: Rasmussen and Williams (2006), Eqs. 5.10-5.12; with a mean that is found, Dubrule, "Cross validation of
+    /// Source: Rasmussen and Williams (2006), Eqs. 5.10-5.12; with an estimated mean, Dubrule, "Cross validation of
     /// kriging in a unique neighborhood", Math. Geol. 15, 1983.
-    pub fn leave_one_out(&self) -> Vec<LeftOut> {
+    pub fn leave_one_out(&self) -> Vec<LeaveOneOut> {
         let inverse = self.likelihood.factor.inverse();
         let of_ones = &self.likelihood.of_ones;
         let total: f64 = of_ones.iter().sum();
@@ -163,16 +164,16 @@ impl GaussianProcess {
             let precision = inverse[(index, index)] - lost;
             let value = self.observations.values[index];
             let mean = value - self.likelihood.weights[index] / precision;
-            LeftOut { value, mean, standard_deviation: precision.recip().sqrt() }
+            LeaveOneOut { value, mean, standard_deviation: precision.recip().sqrt() }
         };
         (0..self.observations.len()).map(leave).collect()
     }
 
-    /// `n_samples` curves that the observations allow, each at all `inputs`: `n_samples × inputs`. The same `seed` gives the
-    /// same curves.
+    /// `n_samples` curves drawn from the process, each at all `inputs`: `n_samples × inputs`. The same `seed` gives the same
+    /// curves.
     ///
     /// # Errors
-    /// As [`predict`](Self::predict); [`SurrogateError::NotPositiveDefinite`] for a covariance that rounding has spoilt.
+    /// As [`predict`](Self::predict); [`SurrogateError::NotPositiveDefinite`] for a covariance that is not positive definite after rounding.
     pub fn samples(
         &self,
         inputs: &[Vec<f64>],
@@ -187,7 +188,7 @@ impl GaussianProcess {
             inputs.iter().map(|input| self.covariances(input)).collect();
         let solved: Vec<Vec<f64>> =
             covariances.iter().map(|column| self.likelihood.factor.solve(column)).collect();
-        // Neighbouring inputs of a smooth curve are so alike that only a little of its own keeps them apart.
+        // A small diagonal term: neighbouring inputs of a smooth curve make the covariance nearly singular.
         let own = 1e-9 * self.parameters.signal_variance;
         let matrix = Mat::from_fn(inputs.len(), inputs.len(), |row, column| {
             let prior = self.shape.covariance(&self.parameters, &inputs[row], &inputs[column]);
@@ -220,7 +221,7 @@ impl GaussianProcess {
         (0..self.observations.len()).map(covariance).collect()
     }
 
-    /// What not knowing the mean adds to the covariance of two inputs with `first` and `second` covariances.
+    /// Contribution of the estimated mean's uncertainty to the covariance of two inputs with `first` and `second` covariances.
     fn mean_share(&self, first: &[f64], second: &[f64]) -> f64 {
         let of_ones = &self.likelihood.of_ones;
         match self.mean {

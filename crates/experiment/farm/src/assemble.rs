@@ -156,8 +156,8 @@ pub(crate) fn turbine_settings(
     model: &Model,
     placement: &Placement,
     tower: Option<TowerInfluence>,
-) -> turbine::Settings {
-    turbine::Settings {
+) -> turbine::TurbineSettings {
+    turbine::TurbineSettings {
         induction: induction(case, plan, placement, tower),
         flexible: placement.flexible,
         air_density: case.wind.air_density,
@@ -236,7 +236,7 @@ fn induction(
         let Smearing { length, sample_spacing } = (solver.smearing)(plan);
         Induction::ByFlow { smearing_length: length, sample_spacing, dynamic_stall }
     } else {
-        Induction::ByMomentum(rotor::Settings {
+        Induction::ByMomentum(rotor::BemSettings {
             induction: delay(placement.dynamic_inflow),
             theory: Theory::default(),
             skewed_wake: true,

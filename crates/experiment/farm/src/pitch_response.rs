@@ -295,9 +295,8 @@ mod tests {
                     azimuth,
                     rotor_speed,
                     generator_speed: rotor_speed,
-                    rotor_wind_speed: 8.0,
                     flap_moments: to_blades(azimuth, moments, 3),
-                    ..Measurements::at_rest(3)
+                    ..Truth::at_rest(3)
                 }
             })
             .collect()

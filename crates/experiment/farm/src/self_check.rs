@@ -145,7 +145,7 @@ pub fn self_check(
     let mut rotor = Turbine::new(
         Arc::clone(definition),
         Vector3::new(0.0, 0.0, -definition.rotor.hub_height),
-        turbine::Settings {
+        turbine::TurbineSettings {
             induction: Induction::ByFlow {
                 smearing_length: SMEARING_CELLS * tunnel.spacing,
                 sample_spacing: tunnel.spacing,

@@ -9,7 +9,7 @@ use basis::{FixedFrame, Sense};
 use control::ControlError;
 use control::excitation_rate;
 use control::meandering::{Leader, MeanderingError, MeanderingSettings};
-use estimation::phase_locked::{Settings, TwoAxisLoop, TwoAxisSettings};
+use estimation::phase_locked::{PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings};
 use farm::assemble::AssemblyError;
 use formats::case;
 use formats::records;
@@ -91,7 +91,7 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingEr
         let range = [asked_low.unwrap_or(low), asked_high.unwrap_or(high)];
         let sense = question.sense.unwrap_or(own.map_or(SENSE, |own| own.sense));
         let settings = TwoAxisSettings {
-            signal: Settings::between(range.map(|strouhal| strouhal * rate_of_one)),
+            signal: PhaseLockedSettings::between(range.map(|strouhal| strouhal * rate_of_one)),
             sense,
             leader: own.map_or(Leader::Both, |own| own.leader),
         };
@@ -168,7 +168,7 @@ mod tests {
     /// four fifths of it.
     fn heard(disturbance: f64) -> Heard {
         let settings = TwoAxisSettings {
-            signal: Settings::between([0.6 * RATE, 1.4 * RATE]),
+            signal: PhaseLockedSettings::between([0.6 * RATE, 1.4 * RATE]),
             sense: SENSE,
             leader: Leader::Both,
         };
@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn a_time_after_the_record_is_too_late() {
         let settings = TwoAxisSettings {
-            signal: Settings::between([0.6 * RATE, 1.4 * RATE]),
+            signal: PhaseLockedSettings::between([0.6 * RATE, 1.4 * RATE]),
             sense: SENSE,
             leader: Leader::Both,
         };

@@ -15,7 +15,7 @@ use control::phase_sync::PhaseEstimator;
 use estimation::EstimationError;
 use estimation::HelixEstimator;
 use estimation::helix::tuning::{self, Tuned};
-use estimation::helix::{Options, Setting};
+use estimation::helix::{HelixSettings, Options};
 use farm::assemble::AssemblyError;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -383,13 +383,13 @@ fn not_estimated(error: EstimationError) -> AssemblyError {
 }
 
 /// What the estimator of the turbine is told.
-fn setting(asked: &Asked<'_>, interval: f64) -> Setting {
-    Setting {
+fn setting(asked: &Asked<'_>, interval: f64) -> HelixSettings {
+    HelixSettings {
         sense: asked.reference.sense,
         rate: asked.reference.rate,
         interval,
         air_density: asked.case.wind.air_density,
-        n_elements: Setting::N_ELEMENTS,
+        n_elements: HelixSettings::N_ELEMENTS,
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod small;
 
-use basis::{Commands, Truth, PointForce, Vector3};
+use basis::{Commands, PointForce, Truth, Vector3};
 use farm::case::{Case, Solver};
 use farm::solvers::{PRESCRIBED, SolverError, SolverKind, Start};
 use farm::{Air, Farm, FarmFlow, Plan, Recorder, assemble};

@@ -1,4 +1,4 @@
-//! Blades as lines of elements in wind that already contains the rotor's own, smeared induction.
+//! Actuator lines: blades as lines of elements in a wind that already contains the rotor's own, smeared induction.
 
 use crate::aero::Polar;
 use crate::definition::{BladeStation, Definition};
@@ -9,9 +9,9 @@ use basis::Vector3;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Sweeps of the lifting-line fixed point per step; what they reach carries over to the next, so that few suffice.
+/// Sweeps of the lifting-line fixed point per step (–); each step starts from the last result, so few suffice.
 const N_SWEEPS: usize = 4;
-/// Relaxation of a sweep at an element whose circulation does not react to what it induces (–).
+/// Relaxation of a sweep at an element whose circulation does not react to its own induction (–).
 const RELAXATION: f64 = 0.6;
 /// Share of uniform spacing among the elements' borders (–); the rest is cosine spacing, finer at root and tip.
 const UNIFORM_SHARE: f64 = 0.5;
@@ -35,8 +35,8 @@ pub struct Element {
     pub prebend: f64,
     /// Distance of its middle from the shaft's axis (m).
     pub radius: f64,
-    /// Angle of the blade's line out of the rotor plane here, tips upwind: precone and prebend (rad).
-    pub cone: f64,
+    /// Local cone angle: of the blade's line out of the rotor plane, tips upwind, precone and prebend (rad).
+    pub cone_angle: f64,
     /// Length along the blade's line (m).
     pub width: f64,
     /// Chord (m).
@@ -46,7 +46,7 @@ pub struct Element {
     /// Polars of the definition's stations on either side, and the share of the second (–).
     pub(crate) polars: [usize; 2],
     pub(crate) share: f64,
-    /// Relaxation of its missing velocity (–).
+    /// Relaxation of its smearing correction (–).
     relaxation: f64,
 }
 
@@ -70,14 +70,14 @@ pub struct Load {
     pub circulation: f64,
 }
 
-/// How the sections of a rotor answer to the wind that they feel.
+/// How the sections of a rotor respond to the wind at them.
 pub trait Sections {
     /// Lift and drag coefficient (–) of element number `index`, blade after blade, at `angle_of_attack` (rad) and a relative
-    /// `speed` (m/s). It may be asked several times for one instant; the last answer counts.
+    /// `speed` (m/s). It may be called several times for one instant; the last call counts.
     fn coefficients(&mut self, index: usize, angle_of_attack: f64, speed: f64) -> [f64; 2];
 }
 
-/// Sections whose polars hold at once.
+/// Quasi-steady sections: their polars hold at once.
 #[derive(Clone, Copy, Debug)]
 pub struct QuasiSteady<'a>(pub &'a ActuatorLine);
 
@@ -149,7 +149,7 @@ impl ActuatorLine {
                     span: geometry.hub_radius + middle.span,
                     prebend: middle.prebend,
                     radius: radius(&middle),
-                    cone: geometry.precone + bend.atan2(length),
+                    cone_angle: geometry.precone + bend.atan2(length),
                     width: length.hypot(bend),
                     chord: middle.chord,
                     twist: middle.twist,
@@ -185,17 +185,17 @@ impl ActuatorLine {
 
     /// Loads of all elements in the winds `onsets`, sections turned by `pitch` (rad) beside their twist, with the smearing correction.
     ///
-    /// `onsets`, `pitch`, `missing` and `loads` hold `n_blades × n_elements` values, blade after blade. `missing` is the state of
-    /// the correction, the velocity that smearing hides, axial and along the rotation (m/s); on return it has moved on
-    /// towards what belongs to `loads`. `rotor_speed` (rad/s) sets the pitch of the helical wake together with the mean
-    /// wind through the rotor; `sections` answer to the wind at each element.
+    /// `onsets`, `pitch`, `corrections` and `loads` hold `n_blades × n_elements` values, blade after blade. `corrections` is the
+    /// state of the smearing correction: the induced velocity lost by smearing, axial and along the rotation (m/s). On return it
+    /// has been relaxed towards the value that belongs to `loads`. `rotor_speed` (rad/s) sets the pitch of the helical wake
+    /// together with the mean wind through the rotor; `sections` respond to the wind at each element.
     pub fn loads(
         &self,
         onsets: &[Onset],
         rotor_speed: f64,
         pitch: &[f64],
         sections: &mut impl Sections,
-        missing: &mut [[f64; 2]],
+        corrections: &mut [[f64; 2]],
         loads: &mut [Load],
         scratch: &mut Scratch,
     ) {
@@ -203,7 +203,7 @@ impl ActuatorLine {
         let carried = self.mean_wind(onsets);
         let helix = self.correction.helix(carried / rotor_speed.max(1e-3));
         for sweep in 0..=N_SWEEPS {
-            self.loads_under(onsets, pitch, sections, missing, loads);
+            self.loads_under(onsets, pitch, sections, corrections, loads);
             for (circulation, load) in scratch.circulations.iter_mut().zip(&*loads) {
                 *circulation = load.circulation;
             }
@@ -211,8 +211,8 @@ impl ActuatorLine {
                 break;
             }
             self.nonlinear_part(onsets, carried, scratch);
-            for (index, missing) in missing.iter_mut().enumerate() {
-                let (axial, tangential) = self.correction.missing_velocity(
+            for (index, corrections) in corrections.iter_mut().enumerate() {
+                let (axial, tangential) = self.correction.velocity_correction(
                     helix,
                     index / n,
                     index % n,
@@ -220,30 +220,30 @@ impl ActuatorLine {
                 );
                 let axial = axial + scratch.excess[index % n];
                 let relaxation = self.elements[index % n].relaxation;
-                missing[0] += relaxation * (axial - missing[0]);
-                missing[1] += relaxation * (tangential - missing[1]);
+                corrections[0] += relaxation * (axial - corrections[0]);
+                corrections[1] += relaxation * (tangential - corrections[1]);
             }
         }
     }
 
-    /// Loads of all elements as [`ActuatorLine::loads`] has them, with the velocity `missing` (m/s) as it is.
+    /// Loads of all elements like [`ActuatorLine::loads`], with the smearing `corrections` (m/s) held.
     pub fn loads_under(
         &self,
         onsets: &[Onset],
         pitch: &[f64],
         sections: &mut impl Sections,
-        missing: &[[f64; 2]],
+        corrections: &[[f64; 2]],
         loads: &mut [Load],
     ) {
         for (index, (load, onset)) in loads.iter_mut().zip(onsets).enumerate() {
-            let [axial, tangential] = missing[index];
+            let [axial, tangential] = corrections[index];
             let felt =
                 Onset { normal: onset.normal + axial, tangential: onset.tangential - tangential };
             *load = self.load(index, felt, pitch[index], sections);
         }
     }
 
-    /// On return `scratch.excess` holds what momentum theory adds to the linear wake on each ring (m/s).
+    /// On return `scratch.excess` holds the nonlinear part of the smearing correction on each ring (m/s), by momentum theory.
     fn nonlinear_part(&self, onsets: &[Onset], carried: f64, scratch: &mut Scratch) {
         let n = self.elements.len();
         let Scratch { circulations, thrusts, speeds, excess: parts } = scratch;

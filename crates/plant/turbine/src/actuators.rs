@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Sub-steps are no longer than this share of 1/ω, so that a rate limit that sets in between them is felt.
+/// Longest sub-step as a share of 1/ω (–), so that a rate limit acts soon after it is reached.
 const LONGEST_SUBSTEP: f64 = 0.1;
 
-/// What a blade's pitch actuator can do.
+/// Parameters of a blade's pitch actuator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PitchActuator {
     /// Natural frequency ω (rad/s).
@@ -20,7 +20,7 @@ pub struct PitchActuator {
     pub maximum_pitch: f64,
 }
 
-/// Where one blade's pitch stands.
+/// State of one blade's pitch actuator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PitchState {
     /// Pitch, positive to feather (rad).
@@ -30,10 +30,10 @@ pub struct PitchState {
 }
 
 impl PitchActuator {
-    /// Moves `state` on by `interval` (s) towards `command` (rad), held meanwhile; says whether a limit held it back.
+    /// Advances `state` by `interval` (s) towards the constant `command` (rad); true if a limit acted.
     ///
     /// Between limits θ″ = ω² (command − θ) − 2 ζ ω θ′ is followed exactly for any interval. The rate is limited sub-step
-    /// by sub-step; at a position limit the blade stands still. A command out of range counts as held back.
+    /// by sub-step; at a position limit the blade stands still. A command out of range counts as limited.
     pub fn advance(&self, state: &mut PitchState, interval: f64, command: f64) -> bool {
         let target = command.clamp(self.minimum_pitch, self.maximum_pitch);
         let mut limited = target != command;

@@ -1,6 +1,6 @@
-//! What the walls of a channel do to a rotor in it: the free stream that an open sky would need for the same rotor state.
+//! Blockage of a rotor in a channel: the unbounded free stream that gives the same rotor state.
 
-/// Greatest thrust coefficient that momentum theory without mixing carries (–).
+/// Largest thrust coefficient for which momentum theory without mixing holds (–).
 const GREATEST_THRUST: f64 = 0.96;
 
 /// Ratio of the equivalent unbounded free-stream speed to the channel's inflow speed (–), never below one.

@@ -1,4 +1,4 @@
-//! Bluff bodies in the air: tower segments and the nacelle with its hub, as drag at points.
+//! Bluff bodies: tower segments and the nacelle with its hub, as point drag forces.
 
 use crate::definition::{Definition, TowerProfile};
 use crate::rotor::Frame;
@@ -11,16 +11,16 @@ const NACELLE_DRAG_COEFFICIENT: f64 = 0.85;
 /// Tower segments are no longer than this share of the smearing length, so that their Gaussians blend.
 const LONGEST_SEGMENT: f64 = 0.75;
 
-/// A body that holds the air back along the wind.
+/// A bluff body with drag along the wind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Centre, farm frame (m).
     pub position: Vector3,
     /// Drag area, coefficient × frontal area (m²).
     pub drag_area: f64,
-    /// Share of the free wind that is missing at the centre of the body's own smeared drag (–).
+    /// Deficit at the body's centre due to its own smeared drag, over the free wind (–).
     self_induction: f64,
-    /// Direction that the body extends along and feels no drag in; zero for a compact one.
+    /// Axis of the body, along which it has no drag; zero for a compact one.
     axis: Vector3,
 }
 
@@ -93,15 +93,15 @@ impl Body {
         Self { position, drag_area, self_induction, axis: Vector3::ZERO }
     }
 
-    /// From now on the wind that it is handed is the free one: nothing of its own drag is in it.
-    pub fn feel_free_wind(&mut self) {
+    /// From now on the wind given to the body is the free wind, without the effect of its own drag.
+    pub fn use_free_wind(&mut self) {
         self.self_induction = 0.0;
     }
 
     /// Force on the air in `wind` (m/s) sampled at the body's position, ½ ρ c_d A |v| v against the free wind v.
     pub fn force(&self, wind: Vector3, air_density: f64, smearing_length: f64) -> PointForce {
         let across = wind - self.axis * wind.dot(self.axis);
-        // A body wider than its smearing would hide its own wind altogether; half of it is the most that is given back.
+        // A body wider than its smearing would reduce its own wind to nothing; at most half of the wind is restored.
         let free = across / (1.0 - self.self_induction.min(0.5));
         let force = free * (-0.5 * air_density * self.drag_area * free.length());
         PointForce::of_body(self.position, force, smearing_length)

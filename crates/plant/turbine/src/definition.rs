@@ -1,4 +1,4 @@
-//! What a turbine is: geometry, polars, masses, stiffnesses, mode shapes, drive train, actuators.
+//! Definition of a turbine: geometry, polars, masses, stiffnesses, mode shapes, drive train, actuators.
 //!
 //! Signs are those of the reports on upwind turbines: precone, shaft tilt, overhang and prebend are
 //! positive when they carry the blade tips *away from the tower*; twist and pitch are positive to feather.
@@ -14,7 +14,7 @@ pub struct Definition {
     pub name: String,
     /// Blades (–).
     pub n_blades: usize,
-    /// Where the rotor stands.
+    /// Position of the rotor.
     pub rotor: RotorGeometry,
     /// Aerodynamic stations of a blade, root to tip; the first at span 0.
     pub blade: Vec<BladeStation>,
@@ -38,7 +38,7 @@ pub struct Definition {
     pub rated_rotor_speed: f64,
 }
 
-/// Where the rotor stands, and how its axes lean.
+/// Position and angles of the rotor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RotorGeometry {
     /// Rotor apex to blade root, along the blade's pitch axis (m).
@@ -124,7 +124,7 @@ pub struct Tower {
     pub top_height: f64,
     /// Yaw bearing to the shaft, on the yaw axis, up (m).
     pub top_to_shaft: f64,
-    /// What the wind meets, bottom to top.
+    /// Outer shape, bottom to top.
     pub profile: Vec<TowerProfile>,
     /// Structural sections, bottom to top.
     pub sections: Vec<TowerSection>,
@@ -158,7 +158,7 @@ pub struct TowerSection {
     pub side_to_side_stiffness: f64,
 }
 
-/// What the blades sit on.
+/// The hub.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hub {
     /// Mass (kg).
@@ -167,7 +167,7 @@ pub struct Hub {
     pub inertia: f64,
 }
 
-/// What sits on the tower.
+/// Nacelle and yaw bearing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nacelle {
     /// Nacelle mass without hub and yaw bearing (kg).

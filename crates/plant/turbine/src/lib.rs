@@ -17,4 +17,6 @@ mod turbine;
 pub use aero::polar::Polar;
 pub use definition::Definition;
 pub use rotor::Frame;
-pub use turbine::{Induction, LONGEST_STRUCTURAL_STEP, N_ELEMENTS, Settings, State, Turbine};
+pub use turbine::{
+    Induction, LONGEST_STRUCTURAL_STEP, N_ELEMENTS, Turbine, TurbineSettings, TurbineState,
+};

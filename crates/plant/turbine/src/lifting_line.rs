@@ -1,18 +1,18 @@
-//! The induction that a smeared actuator line misses, from the helical wake that its blades trail.
+//! Smearing correction of an actuator line: the induction lost by smearing, from the helical wake that the blades trail.
 //!
 //! Spreading a blade's force over a Gaussian of width ε convolves its whole wake with that Gaussian: to first order in
-//! the disturbance, the flow around the actuator line is the thin wake's flow, smeared. What the blade should feel and
-//! does not is thus known,
+//! the disturbance, the flow around the actuator line is the thin wake's flow, smeared. The velocity to be added at the
+//! blade is thus known,
 //!
 //! ```text
-//! missing(x) = Σ_filaments  γ/4π ∫ [q(d/ε_core) − q(d/ε)]  dl × d / |d|³,        d = x − filament point,
+//! correction(x) = Σ_filaments  γ/4π ∫ [q(d/ε_core) − q(d/ε)]  dl × d / |d|³,        d = x − filament point,
 //! q(s) = erf(s) − 2 s exp(−s²)/√π,
 //! ```
 //!
-//! with q the share of a vortex element's circulation within the distance s of a Gaussian blob. The bracket dies out as
-//! exp(−d²/ε²): only the wake within some 3 ε of the blade counts, its helical shape included, as do the filaments of
-//! the other blades and earlier turns that pass within reach. The flow solves the rest. With ε at the core ε_core, the
-//! optimal width of a quarter chord, nothing is missing and nothing is added.
+//! with q the share of a vortex element's circulation within the distance s of a Gaussian blob. The bracket decays as
+//! exp(−d²/ε²): only the wake within some 3 ε of the blade counts, with its helical shape and with the filaments of
+//! other blades and earlier turns that pass within reach. The flow solver resolves the rest. With ε at the core ε_core, the
+//! optimal width of a quarter chord, the correction is zero.
 //!
 //! Sources: the Gaussian-smeared line as a lifting line with a viscous core, Martínez-Tossas (2019) and
 //! Meyer Forsting (2019); ε_core = c/4, Martínez-Tossas (2017); q is the radial integral of the Gaussian blob
@@ -45,7 +45,7 @@ pub struct Span {
     pub cores: Vec<f64>,
 }
 
-/// Velocities that smearing hides from the blades, linear in their circulations.
+/// Smearing correction: induced velocities lost by smearing, linear in the blades' circulations.
 #[derive(Clone, Debug)]
 pub struct SmearingCorrection {
     n_blades: usize,
@@ -90,7 +90,7 @@ impl SmearingCorrection {
                     {
                         let helix = Helix { radius: trailing, advance, lead };
                         let (axial, tangential) =
-                            helix.missing_influence(centre, core, smearing_length);
+                            helix.correction_influence(centre, core, smearing_length);
                         // A border trails what the inner element's circulation exceeds the outer's.
                         if border > 0 {
                             correction.axial[slot + border - 1] += axial;
@@ -116,11 +116,11 @@ impl SmearingCorrection {
         HelixShare { index, share: position - index as f64 }
     }
 
-    /// Axial (downwind) and tangential (along the rotation) velocity (m/s) missing at element `station` of `blade`.
+    /// Smearing correction at element `station` of `blade` (m/s): axial (downwind) and tangential (along the rotation).
     ///
     /// `circulations` (m²/s) holds `n_blades × n_stations` values, positive where the lift drives the rotor and pushes
     /// it downwind.
-    pub fn missing_velocity(
+    pub fn velocity_correction(
         &self,
         helix: HelixShare,
         blade: usize,
@@ -155,9 +155,9 @@ struct Helix {
 }
 
 impl Helix {
-    /// Axial and tangential velocity (1/m, per unit circulation) at radius `r` (m) of the blade at azimuth zero that
-    /// smearing over `smearing_length` (m) instead of `core` (m) hides.
-    fn missing_influence(&self, r: f64, core: f64, smearing_length: f64) -> (f64, f64) {
+    /// Axial and tangential velocity (1/m, per unit circulation) lost at radius `r` (m) of the blade at azimuth zero by
+    /// smearing over `smearing_length` (m) instead of `core` (m).
+    fn correction_influence(&self, r: f64, core: f64, smearing_length: f64) -> (f64, f64) {
         let mut total = (0.0, 0.0);
         let reach = REACH * smearing_length;
         // The filament passes the blade's azimuth once a turn; each passage is integrated on either side, the points
@@ -184,9 +184,9 @@ impl Helix {
         total
     }
 
-    /// Integrand of [`Self::missing_influence`] at `theta` (rad) of wake age.
+    /// Integrand of [`Self::correction_influence`] at `theta` (rad) of wake age.
     fn element(&self, r: f64, theta: f64, core: f64, smearing_length: f64) -> (f64, f64) {
-        // Symbols: axes are downwind, radial of the felt blade, tangential along the rotation, right-handed.
+        // Symbols: axes are downwind, radial of the blade at azimuth zero, tangential along the rotation, right-handed.
         // Filament point (h θ, ρ cos α, ρ sin α) with α = lead − θ; d from it to (0, r, 0); l its derivative to θ.
         let (rho, h) = (self.radius, self.advance);
         let (sine, cosine) = (self.lead - theta).sin_cos();
@@ -203,7 +203,7 @@ impl Helix {
     }
 }
 
-/// [`blob_share`] from a table, to 3e-7: it is asked for millions of times.
+/// [`blob_share`] from a table, to 3e-7: it is evaluated millions of times.
 fn tabulated_share(s: f64) -> f64 {
     const END: f64 = 5.0;
     const N: usize = 4096;
@@ -285,7 +285,7 @@ mod tests {
         span.centres.iter().map(|r| (1.0 - ((r - middle) / half_span).powi(2)).sqrt()).collect()
     }
 
-    /// Missing downwash at each station, by direct integration of a helix so slow that it passes only once.
+    /// Correction of the downwash at each station, by direct integration of a helix so slow that it passes only once.
     fn missing(span: &Span, circulation: &[f64], core: f64, smearing_length: f64) -> Vec<f64> {
         let n = circulation.len();
         let advance = 10.0 * smearing_length;
@@ -297,7 +297,7 @@ mod tests {
                         let inner = if border > 0 { circulation[border - 1] } else { 0.0 };
                         let outer = if border < n { circulation[border] } else { 0.0 };
                         let helix = Helix { radius: span.borders[border], advance, lead: 0.0 };
-                        (inner - outer) * helix.missing_influence(r, core, smearing_length).0
+                        (inner - outer) * helix.correction_influence(r, core, smearing_length).0
                     })
                     .sum()
             })
@@ -322,7 +322,7 @@ mod tests {
         for y in [0.05, 0.3, 1.0, 2.5] {
             let helix = Helix { radius: 1e4 + y, advance: 10.0, lead: 0.0 };
             let exact = -(-(y * y) / (width * width)).exp() / (4.0 * PI * y);
-            let (axial, _) = helix.missing_influence(1e4, core, width);
+            let (axial, _) = helix.correction_influence(1e4, core, width);
             assert!((axial / exact - 1.0).abs() < 2e-3, "{axial} against {exact} at {y}");
         }
     }
@@ -372,12 +372,12 @@ mod tests {
         let helix = correction.helix(60.0 * 0.08);
         let circulations = vec![50.0; 48];
         let tips: Vec<_> =
-            (0..3).map(|b| correction.missing_velocity(helix, b, 15, &circulations)).collect();
+            (0..3).map(|b| correction.velocity_correction(helix, b, 15, &circulations)).collect();
         for tip in &tips {
             assert!(tip.0 < 0.0 && tip.1 < 0.0, "upwind and against the rotation: {tip:?}");
             assert!((tip.0 - tips[0].0).abs() < 1e-12);
         }
-        let middle = correction.missing_velocity(helix, 0, 7, &circulations);
+        let middle = correction.velocity_correction(helix, 0, 7, &circulations);
         assert!(middle.0.abs() < 0.2 * tips[0].0.abs());
     }
 
@@ -390,12 +390,12 @@ mod tests {
         let advance = 60.0 * 0.0776;
         let circulations = vec![50.0; 24];
         let (axial, tangential) =
-            correction.missing_velocity(correction.helix(advance), 1, 7, &circulations);
+            correction.velocity_correction(correction.helix(advance), 1, 7, &circulations);
         let mut exact = (0.0, 0.0);
         for ahead in 0..3 {
             for (radius, sign) in [(borders[0], -1.0), (borders[8], 1.0)] {
                 let helix = Helix { radius, advance, lead: TAU * f64::from(ahead) / 3.0 };
-                let influence = helix.missing_influence(centres[7], 0.5, 15.0);
+                let influence = helix.correction_influence(centres[7], 0.5, 15.0);
                 exact.0 += sign * 50.0 * influence.0;
                 exact.1 += sign * 50.0 * influence.1;
             }

@@ -1,16 +1,16 @@
-//! What smearing hides from a heavily loaded disc, beyond the linear wake of [`crate::lifting_line`].
+//! Nonlinear part of the smearing correction of a heavily loaded disc, beyond the linear wake of [`crate::lifting_line`].
 //!
-//! Linear in the circulation, the smeared wake lacks the induction of load that was moved past the tip. A loaded disc
-//! is not linear: the wake of a lighter annulus is carried off faster and induces less than in proportion. Annulus by
+//! In linear theory the smeared wake lacks the induction of the load that smearing moves beyond the tip. A loaded disc
+//! is not linear: the wake of a lighter annulus is convected faster and induces less than in proportion. Annulus by
 //! annulus, momentum theory gives both the flow that the solver should find under the smeared load τ_s and the one
-//! under the thin blades' load τ (N/m²), from the speed u through the disc and nothing else:
+//! under the thin blades' load τ (N/m²), from the speed u through the disc alone:
 //!
 //! ```text
-//! U − u_s = τ_s / (2 ρ u_s),        u_t (U − u_t) = τ / (2 ρ),        missing = u_t − u_s.
+//! U − u_s = τ_s / (2 ρ u_s),        u_t (U − u_t) = τ / (2 ρ),        correction = u_t − u_s.
 //! ```
 //!
-//! Replacing the linear (τ_s − τ) / (2 ρ u_c), which is what the helices carried at u_c amount to on average over the
-//! azimuth, leaves the difference that [`excess`] gives. It vanishes for light loads and for narrow smearing.
+//! The helices convected at u_c give the linear (τ_s − τ) / (2 ρ u_c) on average over the azimuth; [`excess`] gives the
+//! difference. It vanishes for light loads and for narrow smearing.
 //! Source: axial momentum theory; above an induction of 0.4 its tangent, as Glauert's empirical relation.
 
 use std::f64::consts::PI;
@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 /// Axial induction factor beyond which momentum theory is continued by its tangent (–).
 const GREATEST_INDUCTION: f64 = 0.4;
 
-/// How much of each ring's load smearing brings to each other ring.
+/// Share of each ring's load that smearing moves to each other ring.
 #[derive(Clone, Debug)]
 pub struct Loading {
     /// Share per area (1/m²), receiving station × ring of origin.
@@ -50,7 +50,7 @@ impl Loading {
 }
 
 /// Axial velocity (m/s) that the linear wake leaves out: `speed` (m/s) is sampled through the disc, `smeared` and `thin`
-/// are the loads there over the air's density (m²/s²), `carried` the speed at which the linear wake is carried (m/s).
+/// are the loads there over the air's density (m²/s²), `carried` the speed at which the linear wake is convected (m/s).
 pub fn excess(speed: f64, smeared: f64, thin: f64, carried: f64) -> f64 {
     if speed <= 0.0 || carried <= 0.0 || thin <= 0.0 {
         return 0.0;
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn load_that_smearing_does_not_move_misses_nothing_however_slow_the_air() {
+    fn load_that_smearing_does_not_move_needs_no_correction_however_slow_the_air() {
         // Momentum theory has two roots; taking the wrong one drives a stalled wake's rotor into a runaway.
         for speed in [0.01, 0.3, 1.0, 2.0, 4.0, 8.0, 20.0] {
             for load in [0.5, 10.0, 30.0, 60.0] {

@@ -1,4 +1,4 @@
-//! Where the elements of a blade are and how they move: what structure tells aerodynamics.
+//! Kinematics of blade elements: from the structure to the aerodynamics.
 
 use crate::rotor::BladeFrame;
 use basis::Vector3;
@@ -10,9 +10,9 @@ pub struct ElementMotion {
     pub position: Vector3,
     /// Velocity of its middle, farm frame (m/s).
     pub velocity: Vector3,
-    /// Directions at it: precone, prebend and bending included, pitch and twist not.
+    /// Its directions: precone, prebend and bending included, pitch and twist not.
     pub axes: BladeFrame,
-    /// Turn of the section about `axes.span`, away from facing `axes.normal`, positive to feather (rad): pitch, and what bending
-    /// out of the plane and in it at once adds; twist not.
+    /// Rotation of the section about `axes.span`, away from facing `axes.normal`, positive to feather (rad): pitch, and the
+    /// rotation by combined out-of-plane and in-plane bending; twist not.
     pub pitch: f64,
 }

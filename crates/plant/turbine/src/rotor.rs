@@ -1,4 +1,4 @@
-//! Where a rotor's parts are, in the farm frame.
+//! Directions of rotor and blades in the farm frame.
 
 use basis::Vector3;
 

@@ -5,7 +5,7 @@ use crate::aero::blade_element::{self, Annulus, Inflow, Theory};
 use crate::{Definition, Polar};
 use std::f64::consts::TAU;
 
-/// Rings of air that a blade is cut into; eight times as many change power by less than 0.1 %.
+/// Elements of a blade (–); eight times as many change power by less than 0.1 %.
 const N_ELEMENTS: usize = 80;
 /// Positions in a turn over which a tilted rotor is averaged.
 const N_AZIMUTHS: usize = 8;
@@ -22,14 +22,14 @@ pub struct Coefficients {
     pub torque: f64,
 }
 
-/// What happens at one place of a blade, averaged over the turn.
+/// Inflow and force at one place of a blade, averaged over the turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpanwisePoint {
     /// Distance from the apex along the pitch axis (m).
     pub radius: f64,
     /// Chord (m).
     pub chord: f64,
-    /// State of the air; speeds are over the free-stream speed (–).
+    /// Inflow; speeds are over the free-stream speed (–).
     pub inflow: Inflow,
     /// Force per metre of blade across the plane of rotation, downwind, over ½ρU² (m).
     pub normal_force: f64,
@@ -37,11 +37,11 @@ pub struct SpanwisePoint {
     pub tangential_force: f64,
 }
 
-/// A rotor cut into rings, ready for many operating points; evaluating it allocates nothing.
+/// A rotor divided into rings, ready for many operating points; evaluating it allocates nothing.
 ///
 /// The blade is rigid. Wind and force at a section are those across the local, coned and prebent blade
-/// line; the ring's radius is the distance from the shaft, so that cone and prebend take from swept area and
-/// moving air alike. Tilt enters through the wind's components at each of eight azimuths; there is no further
+/// line; the ring's radius is the distance from the shaft, so that cone and prebend reduce swept area and
+/// mass flow alike. Tilt enters through the wind's components at each of eight azimuths; there is no further
 /// correction for a skewed wake. Sweep moves no section and blade pitch does not turn the prebend.
 #[derive(Clone, Debug)]
 pub struct SteadyRotor<'a> {
@@ -63,10 +63,10 @@ struct Element {
     radius: f64,
     /// Distance from the shaft (m).
     distance: f64,
-    /// Length of the blade line that it stands for (m).
+    /// Length of its part of the blade line (m).
     length: f64,
-    /// Lean of the blade line out of the plane across the shaft, tip upwind (rad).
-    lean: f64,
+    /// Local cone angle: of the blade line out of the plane across the shaft, tip upwind (rad).
+    cone_angle: f64,
     chord: f64,
     twist: f64,
     section: Section,
@@ -87,7 +87,7 @@ pub fn steady(definition: &Definition, tip_speed_ratio: f64, pitch: f64) -> Coef
 }
 
 impl<'a> SteadyRotor<'a> {
-    /// Cuts the blades of `definition` into equal lengths; sections are blended linearly between its stations.
+    /// Divides the blades of `definition` into equal lengths; sections are interpolated linearly between its stations.
     pub fn new(definition: &'a Definition, theory: Theory) -> Self {
         let length = definition.blade_length();
         let edge = |k: usize| length * k as f64 / N_ELEMENTS as f64;
@@ -95,8 +95,8 @@ impl<'a> SteadyRotor<'a> {
         Self::with_elements(definition, theory, elements)
     }
 
-    /// Takes the stations of `definition` for nodes and joins their loads by the trapezoidal rule, with no load at root
-    /// and tip: coarser near the tip than [`SteadyRotor::new`], but what programs do that published tables come from.
+    /// Takes the stations of `definition` as nodes and integrates their loads by the trapezoidal rule, with no load at root
+    /// and tip: coarser near the tip than [`SteadyRotor::new`], but the method behind published tables.
     pub fn at_stations(definition: &'a Definition, theory: Theory) -> Self {
         let blade = &definition.blade;
         let nodes = blade.windows(3).map(|stations| {
@@ -122,13 +122,13 @@ impl<'a> SteadyRotor<'a> {
         }
     }
 
-    /// The same rotor with the air's momentum balanced along the shaft instead of across the leaning blades: what resolved
-    /// air does, and a few percent more power for cone and prebend than programs give that published tables come from.
+    /// The same rotor with momentum balanced along the shaft instead of normal to the coned blades, as in a resolved flow. With
+    /// cone and prebend this gives a few percent more power than the programs behind published tables.
     pub fn along_shaft(self) -> Self {
         Self { along_shaft: true, ..self }
     }
 
-    /// Places along the blade at which [`SteadyRotor::distribution`] gives numbers (–).
+    /// Stations along the blade in [`SteadyRotor::distribution`] (–).
     pub fn n_elements(&self) -> usize {
         self.elements.len()
     }
@@ -139,7 +139,7 @@ impl<'a> SteadyRotor<'a> {
         let mut torque = 0.0;
         for element in &self.elements {
             let point = self.point(element, tip_speed_ratio, pitch);
-            thrust += point.normal_force * element.lean.cos() * element.length;
+            thrust += point.normal_force * element.cone_angle.cos() * element.length;
             torque += point.tangential_force * element.distance * element.length;
         }
         let scale = self.n_blades as f64 / self.rotor_area;
@@ -163,18 +163,18 @@ impl<'a> SteadyRotor<'a> {
             tip_radius: self.tip_radius,
             chord: element.chord,
             section_pitch: element.twist + pitch,
-            lean: if self.along_shaft { element.lean } else { 0.0 },
+            cone_angle: if self.along_shaft { element.cone_angle } else { 0.0 },
         };
         let rotation = tip_speed_ratio * element.distance / self.tip_radius;
         let (tilt_sine, tilt_cosine) = self.shaft_tilt.sin_cos();
-        let (lean_sine, lean_cosine) = element.lean.sin_cos();
+        let (cone_sine, cone_cosine) = element.cone_angle.sin_cos();
         let n_azimuths = if tilt_sine == 0.0 { 1 } else { N_AZIMUTHS };
         let mut point =
             SpanwisePoint { radius: element.radius, chord: element.chord, ..Default::default() };
         let share = 1.0 / n_azimuths as f64;
         for index in 0..n_azimuths {
             let (sine, cosine) = (TAU * index as f64 * share).sin_cos();
-            let axial = tilt_cosine * lean_cosine + tilt_sine * cosine * lean_sine;
+            let axial = tilt_cosine * cone_cosine + tilt_sine * cosine * cone_sine;
             let tangential = rotation + tilt_sine * sine;
             let inflow = blade_element::solve(
                 &annulus,
@@ -220,7 +220,7 @@ fn element(definition: &Definition, from: f64, to: f64) -> Element {
         radius,
         distance: definition.distance_from_shaft(radius, blend(low.prebend, high.prebend)),
         length: (to - from) * slope.hypot(1.0),
-        lean: definition.rotor.precone + slope.atan(),
+        cone_angle: definition.rotor.precone + slope.atan(),
         chord: blend(low.chord, high.chord),
         twist: blend(low.twist, high.twist),
         section: Section { polars: [low.polar, high.polar], share },

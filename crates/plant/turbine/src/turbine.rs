@@ -1,4 +1,4 @@
-//! One turbine in the air: handed wind at its stations and commands, it turns, pitches, bends and pushes on the air.
+//! One turbine: given commands and the wind at its stations, it turns, pitches, bends and exerts forces on the flow.
 
 mod aerodynamics;
 mod separation;
@@ -11,7 +11,7 @@ use crate::definition::Definition;
 use crate::motion::ElementMotion;
 use crate::rotor::{BladeFrame, Frame};
 use crate::structure::{
-    AppliedLoads, Channel, ElementLoad, Freedom, GRAVITY, Pitch, Projection, Structure,
+    AppliedLoads, Channel, DegreeOfFreedom, ElementLoad, GRAVITY, Pitch, Projection, Structure,
     StructureError,
 };
 use aerodynamics::Aerodynamics;
@@ -25,10 +25,10 @@ pub const N_ELEMENTS: usize = 32;
 /// flapwise one. Longer intervals are cut into equal steps, over which the wind at each element is held.
 pub const LONGEST_STRUCTURAL_STEP: f64 = 0.025;
 
-/// How a turbine stands in the air when time begins.
+/// Aerodynamic model and initial condition of a turbine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
-    /// Who solves what the rotor does to the air.
+pub struct TurbineSettings {
+    /// Which model gives the rotor's induction.
     pub induction: Induction,
     /// Whether blades, tower and drive train bend; otherwise only the rotor turns.
     pub flexible: bool,
@@ -42,23 +42,23 @@ pub struct Settings {
     pub pitch: f64,
 }
 
-/// Who solves what the rotor does to the air.
+/// Which model gives the rotor's induction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Induction {
-    /// The flow: winds that the turbine is handed contain it, and the flow feels the turbine's forces.
+    /// The resolved flow: the winds given to the turbine contain it, and the flow receives the turbine's forces.
     ByFlow {
         /// Gaussian width of the forces (m).
         smearing_length: f64,
         /// Distance of the points between which the flow interpolates the wind (m); 0 where it does not.
         sample_spacing: f64,
-        /// Whether flow about the sections separates with delay; otherwise their polars hold at once.
+        /// Whether sections have dynamic stall; otherwise their polars hold at once.
         dynamic_stall: bool,
     },
-    /// The turbine itself, by momentum theory: winds are those without it.
-    ByMomentum(rotor::Settings),
+    /// Blade-element momentum theory in the turbine: the winds given do not contain it.
+    ByMomentum(rotor::BemSettings),
 }
 
-/// A turbine: definition and what follows from it, state, and working memory.
+/// A turbine: definition, derived parameters, state, and working memory.
 #[derive(Clone, Debug)]
 pub struct Turbine {
     definition: Arc<Definition>,
@@ -66,26 +66,26 @@ pub struct Turbine {
     aerodynamics: Aerodynamics,
     structure: Structure,
     bodies: Vec<Body>,
-    held: Vec<Freedom>,
+    held: Vec<DegreeOfFreedom>,
     frame: Frame,
     air_density: f64,
     smearing_length: f64,
-    state: State,
+    state: TurbineState,
     workspace: Workspace,
 }
 
-/// Everything of a turbine that time changes; restoring it continues with the same bits.
+/// State of a turbine; a run restored from it continues with the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct State {
-    structure: crate::structure::State,
+pub struct TurbineState {
+    structure: crate::structure::StructureState,
     pitch: PerBlade<PitchState>,
-    aerodynamics: aerodynamics::State,
+    aerodynamics: aerodynamics::AerodynamicState,
     readings: Readings,
     n_instants: u64,
     n_limited: u64,
 }
 
-/// What the instruments read over the last interval.
+/// Loads and wind over the last interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Readings {
     generator_torque: f64,
@@ -94,14 +94,14 @@ struct Readings {
     rotor_wind_speed: f64,
 }
 
-impl State {
-    /// Velocity that smearing hides from each blade element, axial and along the rotation (m/s), blade after blade; empty
-    /// where momentum theory makes the induction.
-    pub fn missing(&self) -> &[[f64; 2]] {
+impl TurbineState {
+    /// Smearing correction of each blade element, axial and along the rotation (m/s), blade after blade; empty where momentum
+    /// theory gives the induction.
+    pub fn smearing_corrections(&self) -> &[[f64; 2]] {
         match &self.aerodynamics {
-            aerodynamics::State::Line(missing)
-            | aerodynamics::State::SeparatingLine(missing, _) => missing,
-            aerodynamics::State::Momentum(_) => &[],
+            aerodynamics::AerodynamicState::Line(corrections)
+            | aerodynamics::AerodynamicState::SeparatingLine(corrections, _) => corrections,
+            aerodynamics::AerodynamicState::Momentum(_) => &[],
         }
     }
 }
@@ -109,7 +109,7 @@ impl State {
 #[derive(Clone, Debug)]
 struct Workspace {
     stations: Vec<Vector3>,
-    /// Directions at the blade elements where the winds are sampled.
+    /// Directions of the blade elements where the winds are sampled.
     axes: Vec<BladeFrame>,
     motions: Vec<ElementMotion>,
     loads: Vec<ElementLoad>,
@@ -130,13 +130,13 @@ impl Turbine {
     pub fn new(
         definition: Arc<Definition>,
         position: Vector3,
-        settings: Settings,
+        settings: TurbineSettings,
     ) -> Result<Self, StructureError> {
         let (smearing_length, sample_spacing) = match settings.induction {
             Induction::ByFlow { smearing_length, sample_spacing, .. } => {
                 (smearing_length, sample_spacing)
             }
-            // Nothing is spread; the length only cuts the tower into segments.
+            // Nothing is smeared; the length only divides the tower into segments.
             Induction::ByMomentum(_) => (0.1 * definition.rotor_radius(), 0.0),
         };
         let line = ActuatorLine::new(
@@ -153,7 +153,7 @@ impl Turbine {
         let frame = Frame::new(apex, geometry.shaft_tilt);
         let mut bodies = bodies::of(&definition, position, &frame, smearing_length);
         if matches!(settings.induction, Induction::ByMomentum(_)) {
-            bodies.iter_mut().for_each(Body::feel_free_wind);
+            bodies.iter_mut().for_each(Body::use_free_wind);
         }
         let aerodynamics = Aerodynamics::new(&definition, &line, &settings);
         let spans: Vec<f64> = line.elements().iter().map(|element| element.span).collect();
@@ -162,7 +162,7 @@ impl Turbine {
             bodies[..bodies.len() - 1].iter().map(|body| body.position.z - position.z).collect();
         let structure = Structure::new(
             &definition,
-            &crate::structure::Settings {
+            &crate::structure::StructureSettings {
                 position,
                 yaw: 0.0,
                 gravity: GRAVITY,
@@ -176,7 +176,7 @@ impl Turbine {
         let n_blades = definition.n_blades;
         let n = n_blades * N_ELEMENTS;
         let pitch = PitchState { pitch: settings.pitch, rate: 0.0 };
-        let state = State {
+        let state = TurbineState {
             structure: structure.state().clone(),
             pitch: PerBlade::splat(n_blades, pitch),
             aerodynamics: aerodynamics.start(),
@@ -203,7 +203,10 @@ impl Turbine {
         let held = if settings.flexible {
             Vec::new()
         } else {
-            Freedom::ALL.into_iter().filter(|freedom| *freedom != Freedom::Generator).collect()
+            DegreeOfFreedom::ALL
+                .into_iter()
+                .filter(|degree| *degree != DegreeOfFreedom::Generator)
+                .collect()
         };
         let mut turbine = Self {
             definition,
@@ -234,24 +237,24 @@ impl Turbine {
 
     /// The same turbine on a test rig that holds its rotor speed whatever the torques.
     pub fn at_held_speed(mut self) -> Self {
-        self.held.push(Freedom::Generator);
+        self.held.push(DegreeOfFreedom::Generator);
         self.structure.hold(&self.held);
         self
     }
 
-    /// The same turbine, its blade elements seen as `projection` has them.
+    /// The same turbine, its blade elements projected as `projection` says.
     pub fn projecting(mut self, projection: Projection) -> Self {
         self.structure.project(projection);
         self.place_stations();
         self
     }
 
-    /// Points where the turbine wants to know the wind, farm frame (m): blade elements, then bodies.
+    /// Points at which the turbine needs the wind, farm frame (m): blade elements, then bodies.
     pub fn stations(&self) -> &[Vector3] {
         &self.workspace.stations
     }
 
-    /// Moves the turbine on by `interval` (s) under `commands`, held meanwhile.
+    /// Advances the turbine by `interval` (s) under constant `commands`.
     ///
     /// `winds` (m/s) holds the wind at each of [`Turbine::stations`] now, the rotor's induction included as far as the
     /// flow resolves it. On return [`Turbine::forces`] holds the forces that act on the air throughout the interval.
@@ -262,7 +265,7 @@ impl Turbine {
         let turning = self.structure.generator_speed() > 0.0;
         let generator_torque = if turning { commands.generator_torque } else { 0.0 };
         let (element_winds, body_winds) = winds.split_at(self.workspace.motions.len());
-        let nacelle = self.hold_back(body_winds);
+        let nacelle = self.drag_of_bodies(body_winds);
         self.workspace.sums.fill([0.0; 2]);
         self.workspace.circulations.fill(0.0);
         let mut readings = Readings {
@@ -316,7 +319,7 @@ impl Turbine {
     ///
     /// Azimuth, speed and pitch are those of the instant; loads and power those of the interval before it.
     pub fn truth(&self, time: f64, interval: f64) -> Truth {
-        let State { pitch, readings, .. } = &self.state;
+        let TurbineState { pitch, readings, .. } = &self.state;
         let loads = self.structure.loads();
         let low_speed = self.structure.generator_speed() / self.definition.drive_train.gear_ratio;
         Truth {
@@ -342,7 +345,7 @@ impl Turbine {
         (self.state.n_instants, self.state.n_limited)
     }
 
-    /// What the machine is.
+    /// The definition of the turbine.
     pub fn definition(&self) -> &Definition {
         &self.definition
     }
@@ -372,19 +375,19 @@ impl Turbine {
         self.structure.write_channels(values);
     }
 
-    /// Everything that time changes, for a checkpoint.
-    pub fn state(&self) -> &State {
+    /// The state, for a checkpoint.
+    pub fn state(&self) -> &TurbineState {
         &self.state
     }
 
     /// Continues from `state`, which a turbine of the same definition gave.
-    pub fn restore(&mut self, state: State) {
+    pub fn restore(&mut self, state: TurbineState) {
         self.structure.restore(state.structure.clone());
         self.state = state;
         self.place_stations();
     }
 
-    /// Moves the pitch actuators on by `step` (s); gives pitch in the middle of it.
+    /// Advances the pitch actuators by `step` (s); gives pitch in the middle of it.
     fn pitch_blades(
         &mut self,
         step: f64,
@@ -409,7 +412,7 @@ impl Turbine {
 
     /// On return the workspace holds the drag of the tower in `winds` (m/s), and the forces of all bodies on the air are
     /// the last of its forces; gives the drag of the nacelle (N).
-    fn hold_back(&mut self, winds: &[Vector3]) -> Vector3 {
+    fn drag_of_bodies(&mut self, winds: &[Vector3]) -> Vector3 {
         let Workspace { forces, tower, .. } = &mut self.workspace;
         forces.clear();
         let mut nacelle = Vector3::ZERO;

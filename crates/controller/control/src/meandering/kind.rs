@@ -93,7 +93,7 @@ impl ControllerKind for MeanderingKind {
     fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
         let given = MeanderingSettings::of(control).ok_or(ControlError::NotDecoupled)?;
         let range = given.strouhal.map(|strouhal| site.rate(strouhal));
-        let signal = phase_locked::Settings::between(range);
+        let signal = phase_locked::PhaseLockedSettings::between(range);
         let only_follows = given.amplitude == 0.0;
         let decoupling = match given.decoupling {
             Some(decoupling) => decoupling,

@@ -3,7 +3,7 @@
 use super::*;
 use basis::mbc::to_fixed_frame;
 use basis::{PerBlade, Sense};
-use estimation::phase_locked::{Leader, Settings as Signal};
+use estimation::phase_locked::{Leader, PhaseLockedSettings as Signal};
 use std::collections::VecDeque;
 use std::f64::consts::FRAC_PI_3;
 

@@ -26,7 +26,7 @@ use crate::controller::{ForeignState, from_bytes, to_bytes};
 use crate::excitation::{Excitation, fade_in};
 use basis::mbc::to_blades;
 use basis::{FixedFrame, Measurements, PerBlade, Sense};
-use estimation::helix::State as EstimatorState;
+use estimation::helix::HelixEstimatorState as EstimatorState;
 use estimation::{Estimator, HelixEstimate, HelixEstimator};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

@@ -7,7 +7,7 @@ use basis::Sense;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Table, above, from, key};
 use basis::records::PitchResponse;
-use estimation::helix::{Calibration, Measurement, Options, Setting, Wake};
+use estimation::helix::{Calibration, HelixSettings, Measurement, Options, Wake};
 
 pub(super) static TABLE: Table = Table {
     heading: "control.T2 = { kind = \"phase-sync\", … }",
@@ -152,13 +152,13 @@ impl PhaseSyncSettings {
     }
 
     /// What its estimator is set to at `site`.
-    pub fn estimator_setting(&self, site: &Site) -> Setting {
-        Setting {
+    pub fn estimator_setting(&self, site: &Site) -> HelixSettings {
+        HelixSettings {
             sense: self.sense,
             rate: site.rate(self.strouhal),
             interval: site.interval,
             air_density: site.air_density,
-            n_elements: Setting::N_ELEMENTS,
+            n_elements: HelixSettings::N_ELEMENTS,
         }
     }
 

@@ -1,20 +1,20 @@
-//! A normal distribution over the estimator's states, and what a reading does to it.
+//! The estimator's states as a normal distribution: mean and covariance, prediction and correction.
 
 use serde::{Deserialize, Serialize};
 
-/// States, at most; those that a form does not use have no variance and stay where they are.
+/// Largest number of states (–); states that a form does not use have no variance and do not change.
 pub(super) const N_STATES: usize = 12;
 /// Mean wind over the rotor (m/s).
 pub(super) const MEAN_WIND: usize = 0;
 /// First of the four parameters of the wave.
 pub(super) const WAVE: usize = 1;
-/// Lasting tilt and yaw of the wind (m/s).
+/// Constant tilt and yaw of the wind, as of shear (m/s).
 pub(super) const BIAS: usize = 5;
-/// Passing tilt and yaw of the wind (m/s).
+/// Tilt and yaw of the wind in passing eddies (m/s).
 pub(super) const PASSING: usize = 7;
-/// Excitation rate over the nominal one (rad/s).
+/// Difference of the excitation rate from the nominal one (rad/s).
 pub(super) const RATE: usize = 9;
-/// What the model makes too little of the rotor's own pitch: in phase and a quarter turn ahead (–).
+/// Error of the model's response to the rotor's own pitch: in phase and a quarter turn ahead (–).
 pub(super) const RESPONSE: usize = 10;
 
 /// One value for each state.
@@ -28,7 +28,7 @@ pub(super) struct Belief {
 }
 
 impl Belief {
-    /// Nothing but zeros.
+    /// Zero mean and covariance.
     pub(super) fn zero() -> Self {
         Self { mean: [0.0; N_STATES], covariance: [[0.0; N_STATES]; N_STATES] }
     }
@@ -38,8 +38,7 @@ impl Belief {
         dot(&self.along(slopes), slopes)
     }
 
-    /// Moves on by x → F x + w, where `transition` holds F's change of the covariance; `noise` is the variance that comes
-    /// in on the diagonal, `pairs` that on pairs of states.
+    /// Adds process noise to the covariance: `noise` on the diagonal, `pairs` on pairs of states.
     pub(super) fn spread(&mut self, noise: &Vector, pairs: &[(usize, usize, f64)]) {
         for (state, variance) in noise.iter().enumerate() {
             self.covariance[state][state] += variance;
@@ -50,7 +49,7 @@ impl Belief {
         }
     }
 
-    /// P → F P Fᵀ.
+    /// P → F P Fᵀ with F = `transition`.
     pub(super) fn carry(&mut self, transition: &[Vector; N_STATES]) {
         let mut half = [[0.0; N_STATES]; N_STATES];
         for (row, carried) in transition.iter().zip(&mut half) {
@@ -69,8 +68,8 @@ impl Belief {
         }
     }
 
-    /// Takes in one reading: `innovation` over what was expected, where the reading goes with `slopes` of the states and has
-    /// a noise of `variance`. Joseph's form: the covariance stays symmetric and positive whatever the rounding.
+    /// Corrects by one measurement: its `innovation`, its derivatives by the states `slopes`, and its noise `variance`. Joseph's
+    /// form: the covariance stays symmetric and positive whatever the rounding.
     pub(super) fn correct(&mut self, slopes: &Vector, innovation: f64, variance: f64) {
         // Symbols: P covariance, h slopes, r variance, k gain; P' = (I − k hᵀ) P (I − k hᵀ)ᵀ + r k kᵀ.
         let along = self.along(slopes);

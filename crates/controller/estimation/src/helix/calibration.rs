@@ -1,14 +1,14 @@
-//! What the model makes too much or too little of its own rotor's pitch, found on a record without a helix in the wind.
+//! Calibration of the model's response to the rotor's own pitch, on a record without a helix in the wind.
 //!
-//! A rotor that pitches at the rate at which it looks for a helix takes for wind whatever its model misses of its own
-//! pitch: a few percent of four degrees are as much wind as a helix brings over five diameters. In a steady wind there is no
-//! helix, so all that the filter finds is that mistake. It grows in proportion to the factor on the pitch, a complex one:
-//! gain and azimuth offset. Two trials tell the factor with which nothing is left.
+//! A rotor that pitches at the rate of the helix that it estimates takes every error of its pitch response for wind: a few
+//! percent of four degrees are as much wind as a helix five diameters downstream. In a steady wind there is no helix, so
+//! whatever the filter finds is that error. It is linear in a complex factor on the pitch, gain and azimuth offset. Two trials
+//! give the factor with which no error is left.
 //!
 //! The paper identifies an azimuth offset for the same end (van Vondelen et al., 2025, §2.4) and names calibration against
 //! experiments as a remedy for its biases (§4.2).
 
-use super::estimator::{HelixEstimator, Setting};
+use super::estimator::{HelixEstimator, HelixSettings};
 use super::options::Options;
 use crate::{EstimationError, Estimator};
 use basis::{Measurements, Sense};
@@ -19,19 +19,19 @@ use turbine::Definition;
 
 /// Step of the factor between the two trials (–).
 const TRIAL: f64 = 0.1;
-/// Rounds; the mistake is all but linear in the factor.
+/// Rounds (–); the error is nearly linear in the factor.
 const N_ROUNDS: usize = 2;
 
-/// Factor on the pitch, and what it leaves.
+/// Complex factor on the pitch, and the error with and without it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Factor on tilt and yaw of the pitch (–).
     pub gain: f64,
-    /// Angle by which a blade runs ahead of its pitch (rad).
+    /// Azimuth offset: angle by which a blade leads its pitch (rad).
     pub azimuth_offset: f64,
-    /// Amplitude of the helix that the filter found where there was none, before (m/s).
+    /// Amplitude of the spurious helix before calibration (m/s).
     pub before: f64,
-    /// The same after (m/s).
+    /// Amplitude of the spurious helix after calibration (m/s).
     pub after: f64,
 }
 
@@ -48,31 +48,31 @@ impl Calibration {
 /// A complex number: real and imaginary part.
 type Complex = [f64; 2];
 
-/// Calibrates `options` on `record`: measurements at every [`Setting::interval`] of a rotor that pitches a helix of the
-/// setting's rate and sense in a steady wind. The first `settling` (s) teach the filter, whole periods after it count.
+/// Calibrates `options` on `record`: measurements at every [`HelixSettings::interval`] of a rotor that pitches a helix with
+/// the rate and sense of `settings` in a steady wind. The filter settles for `settling` (s); whole periods after that count.
 ///
 /// # Errors
-/// Those of [`HelixEstimator::new`]; [`EstimationError::RecordTooShort`] without a whole period after the settling;
+/// Those of [`HelixEstimator::new`]; [`EstimationError::RecordTooShort`] without a whole period after the settling time;
 /// [`EstimationError::NothingToCalibrate`] when the rotor did not pitch.
 pub fn calibrate(
     definition: &Arc<Definition>,
-    setting: &Setting,
+    settings: &HelixSettings,
     options: Options,
     record: &[Measurements],
     settling: f64,
 ) -> Result<Calibration, EstimationError> {
-    let period = TAU / setting.rate;
-    let n_settling = (settling / setting.interval).ceil() as usize;
+    let period = TAU / settings.rate;
+    let n_settling = (settling / settings.interval).ceil() as usize;
     let n_left = record.len().saturating_sub(n_settling);
-    let n_period = period / setting.interval;
+    let n_period = period / settings.interval;
     let n_counted = ((n_left as f64 / n_period).floor() * n_period).round() as usize;
     if n_counted == 0 {
         let (found, needed) = (record.len(), n_settling + n_period.ceil() as usize);
         return Err(EstimationError::RecordTooShort { found, needed });
     }
     let found = |factor: Complex| -> Result<Complex, EstimationError> {
-        let options = with_factor(options, setting.sense, factor);
-        let mut estimator = HelixEstimator::new(definition, setting, options)?;
+        let options = with_factor(options, settings.sense, factor);
+        let mut estimator = HelixEstimator::new(definition, settings, options)?;
         let mut sum = [0.0; 2];
         for (index, measurements) in record.iter().take(n_settling + n_counted).enumerate() {
             let estimate = estimator.update(measurements);
@@ -101,7 +101,7 @@ pub fn calibrate(
         factor = [factor[0] - change[0], factor[1] - change[1]];
         left = found(factor)?;
     }
-    let rotor = with_factor(options, setting.sense, factor).rotor;
+    let rotor = with_factor(options, settings.sense, factor).rotor;
     Ok(Calibration {
         gain: rotor.pitch_gain,
         azimuth_offset: rotor.pitch_azimuth_offset,

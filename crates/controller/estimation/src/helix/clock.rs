@@ -1,36 +1,35 @@
-//! Which instants and readings can be used.
+//! Which instants and measurements can be used.
 
 use super::filter::Readings;
 use basis::{Measurements, PerBlade};
 use serde::{Deserialize, Serialize};
 
-/// Share of the rated rotor speed below which the model says nothing (–).
+/// Share of the rated rotor speed below which the model is not valid (–).
 const LEAST_SPEED: f64 = 0.2;
 
-/// Share of the nominal interval below which no time has passed (–).
+/// Share of the nominal interval below which an instant counts as repeated (–).
 const LEAST_INTERVAL: f64 = 1e-3;
-/// Interval beyond which waiting longer makes nothing less certain (s).
+/// Longest interval of one prediction (s).
 const LONGEST_INTERVAL: f64 = 3600.0;
 
-/// What is remembered of the last instant.
+/// State of the clock.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Clock {
     /// Time of the last update (s); none before the first.
     last: Option<f64>,
-    /// Moments at the last control instant (N m): a reading that repeats itself to the last bit is an instrument that
-    /// shows its last value.
+    /// Moments at the last control instant (N m): a reading that repeats to the last bit comes from a stuck instrument.
     moments: PerBlade<f64>,
     /// Control instants since the last update (–).
     waited: usize,
 }
 
-/// What an instant is good for.
+/// What an instant can be used for.
 pub(super) enum Use {
-    /// Nothing: no time has passed, or the next update is still to come.
+    /// Nothing: no time has passed, or the next update is not yet due.
     Nothing,
-    /// The belief goes on by itself for the interval (s): where the rotor stands is not known.
+    /// Prediction alone over the interval (s): the state of the rotor is not known.
     Blind(f64),
-    /// All of the rotor is known, and the moments as far as they are told; interval (s) since the last update.
+    /// Prediction over the interval (s) since the last update, and correction by the usable moments.
     Seen(f64, Readings),
 }
 
@@ -39,8 +38,8 @@ impl Clock {
         Self { last: None, moments: PerBlade::splat(n_blades, 0.0), waited: 0 }
     }
 
-    /// What `measurements` are good for, at every `every`-th control instant, a `nominal` interval (s) apart, on a rotor rated
-    /// at `rated_speed` (rad/s).
+    /// What `measurements` can be used for; updates are due at every `every`-th control instant, a `nominal` interval (s)
+    /// apart, on a rotor with rated speed `rated_speed` (rad/s).
     pub(super) fn look(
         &mut self,
         measurements: &Measurements,

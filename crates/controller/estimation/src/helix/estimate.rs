@@ -1,4 +1,4 @@
-//! What an estimator of the helix believes.
+//! Estimate of the helix in the wind.
 
 use super::belief::{BIAS, MEAN_WIND, PASSING, RATE};
 use super::filter::{Filter, FilterState};
@@ -9,7 +9,7 @@ use basis::angle::wrap_to_turn;
 use basis::{FixedFrame, Sense};
 use serde::{Deserialize, Serialize};
 
-/// Belief about the helix in the wind that meets the rotor, at one control instant.
+/// Estimate of the helix in the wind at the rotor, at one control instant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HelixEstimate {
     /// Mean wind over the rotor (m/s).
@@ -18,41 +18,41 @@ pub struct HelixEstimate {
     pub mean_wind_variance: f64,
     /// Helix in the tilt component.
     pub tilt: Axis,
-    /// Helix in the yaw component; its phase leaves the sense's lead of yaw over tilt aside.
+    /// Helix in the yaw component; its phase is without the sense's lead of yaw over tilt.
     pub yaw: Axis,
     /// The helix's wind now; its average is zero (m/s).
     pub helix: FixedFrame,
-    /// Tilt and yaw that last or pass without the helix: shear, eddies, what the model lacks (m/s); average zero.
+    /// Tilt and yaw without the helix: shear, eddies and model error (m/s); average zero.
     pub other: FixedFrame,
-    /// Wind as the last moments alone tell it (m/s).
-    pub told: FixedFrame,
-    /// Which way the helix winds that was looked for.
+    /// Instantaneous wind from the last moments alone (m/s).
+    pub instantaneous: FixedFrame,
+    /// Sense of the estimated helix.
     pub sense: Sense,
-    /// Angle of the excitation, against which the phases of tilt and yaw are told (rad, [0, 2π)).
+    /// Angle of the excitation, the reference of the phases of tilt and yaw (rad, [0, 2π)).
     pub angle: f64,
     /// Excitation rate (rad/s): the nominal one, unless it is estimated.
     pub rate: f64,
-    /// Mean of the normalised innovation squared over an excitation period (–): one in a filter that knows its noise.
+    /// Mean of the normalised innovation squared over an excitation period (–): one where the filter's noise is right.
     pub innovation: f64,
-    /// How far the phases can be trusted.
+    /// Confidence in the phases.
     pub trust: Trust,
-    /// What the last measurements were good for.
+    /// How the last measurements were used.
     pub status: Status,
 }
 
-/// What the last measurements were good for.
+/// How the last measurements were used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
-    /// Nothing has been read yet.
+    /// No measurement has been used yet.
     #[default]
     Waiting,
-    /// All blades were heard.
+    /// The moments of all blades were used.
     Tracking,
-    /// Some blades' moments were no numbers or stood still; the others were heard.
+    /// Some blades' moments were not numbers or did not change; the others were used.
     Partial,
-    /// No blade was heard: the belief goes on by itself and grows less certain.
+    /// No moment was usable: the estimate is predicted and its variance grows.
     Holding,
-    /// The numbers had come to no good; the filter began anew.
+    /// The state was not finite; the filter was restarted.
     Restarted,
 }
 
@@ -70,13 +70,14 @@ impl HelixEstimate {
         let trust = if status == Status::Waiting {
             Trust::default()
         } else {
-            // What the model may get wrong of the rotor's own pitch looks like a helix.
-            let wrong = filter.options.doubt * state.own[0].hypot(state.own[1]);
+            // An error of the model's response to the rotor's own pitch looks like a helix.
+            let wrong =
+                filter.options.model_uncertainty * state.pitch_wind[0].hypot(state.pitch_wind[1]);
             let variance = |axis: &Axis| {
                 let turned = wrong / axis.amplitude.max(f64::MIN_POSITIVE);
                 axis.phase_variance + (turned * turned).min(UNKNOWN_PHASE)
             };
-            state.watch.trust(variance(&tilt).max(variance(&yaw)))
+            state.monitor.trust(variance(&tilt).max(variance(&yaw)))
         };
         Self {
             mean_wind: belief.mean[MEAN_WIND],
@@ -89,11 +90,11 @@ impl HelixEstimate {
                 yaw: wind.yaw - other.yaw,
             },
             other,
-            told: state.told,
+            instantaneous: state.instantaneous,
             sense: filter.sense,
             angle: wrap_to_turn(angle),
             rate: filter.rate + belief.mean[RATE],
-            innovation: state.watch.innovation(),
+            innovation: state.monitor.innovation(),
             trust,
             status,
         }

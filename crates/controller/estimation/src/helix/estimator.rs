@@ -1,4 +1,4 @@
-//! The extended Kalman filter with the rotor's blade-element model inside.
+//! The extended Kalman filter with the rotor's blade-element model as measurement function.
 
 use super::belief::{MEAN_WIND, N_STATES, Vector};
 use super::clock::{Clock, Use};
@@ -6,7 +6,7 @@ use super::estimate::{HelixEstimate, Status};
 use super::filter::{Filter, FilterState, Instant, Readings};
 use super::flap::Bend;
 use super::options::{Jacobian, Options, positive};
-use super::rotor::{self, Posture, Rotor};
+use super::rotor::{self, Rotor, RotorKinematics};
 use crate::{EstimationError, Estimator};
 use basis::{Measurements, PerBlade, Sense};
 use serde::{Deserialize, Serialize};
@@ -14,10 +14,10 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use turbine::Definition;
 
-/// What an estimator must be told of its turbine and of the helix that it looks for.
+/// Settings of an estimator: the helix that it looks for and its turbine.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Setting {
-    /// Which way the helix winds.
+pub struct HelixSettings {
+    /// Sense of the helix.
     pub sense: Sense,
     /// Excitation rate ω_e in the fixed frame (rad/s).
     pub rate: f64,
@@ -25,20 +25,20 @@ pub struct Setting {
     pub interval: f64,
     /// Air density (kg/m³).
     pub air_density: f64,
-    /// Elements of each blade in the model (–); [`Setting::N_ELEMENTS`] are enough.
+    /// Elements of each blade in the model (–); [`HelixSettings::N_ELEMENTS`] are enough.
     pub n_elements: usize,
 }
 
-impl Setting {
-    /// Elements of each blade (–) with which what the pitch of a rotor of this century does to its moments is right to well
-    /// within a percent: an error there counts several times in the phase, as pitch does more to the moments than the helix.
+impl HelixSettings {
+    /// Elements of each blade (–) that give the effect of pitch on the moments of a modern rotor to well within a percent. An
+    /// error there counts several times in the phase, since pitch changes the moments more than the helix does.
     pub const N_ELEMENTS: usize = 16;
 }
 
-/// Finds mean wind, amplitude and phases of a helix in the moments at the blade roots, while its own rotor pitches.
+/// Estimates mean wind, amplitude and phases of a helix from the moments at the blade roots, while its own rotor pitches.
 ///
-/// The filter of van Vondelen et al. (2025), Eqs. 8-21, with what they leave open as [`Options`]. Parameters come from the
-/// case; [`HelixEstimator::state`] is all that time changes.
+/// The filter of van Vondelen et al. (2025), Eqs. 8-21; [`Options`] hold what they leave open. Parameters come from the case;
+/// [`HelixEstimator::state`] is the whole state.
 #[derive(Clone, Debug)]
 pub struct HelixEstimator {
     filter: Filter,
@@ -47,14 +47,14 @@ pub struct HelixEstimator {
     /// Control interval (s).
     interval: f64,
     memory: rotor::Memory,
-    state: State,
+    state: HelixEstimatorState,
 }
 
-/// Everything that time changes; restoring it continues with the same bits.
+/// State of the estimator; a run restored from it continues with the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct State {
+pub struct HelixEstimatorState {
     filter: FilterState,
-    rotor: rotor::State,
+    rotor: rotor::RotorModelState,
     clock: Clock,
     status: Status,
 }
@@ -67,70 +67,79 @@ impl HelixEstimator {
     /// rate of the updates, or a rotor of fewer than three blades.
     pub fn new(
         definition: &Arc<Definition>,
-        setting: &Setting,
+        settings: &HelixSettings,
         options: Options,
     ) -> Result<Self, EstimationError> {
-        check(definition, setting, &options)?;
+        check(definition, settings, &options)?;
         let filter = Filter {
             options,
-            sense: setting.sense,
-            rate: setting.rate,
+            sense: settings.sense,
+            rate: settings.rate,
             diameter: definition.rotor_diameter(),
         };
-        let rotor = Rotor::new(definition, setting, &options);
-        let state = State {
+        let rotor = Rotor::new(definition, settings, &options);
+        let state = HelixEstimatorState {
             filter: filter.blank(),
             rotor: rotor.start(),
             clock: Clock::new(definition.n_blades),
             status: Status::Waiting,
         };
         let memory = rotor.memory();
-        let (rated_speed, interval) = (definition.rated_rotor_speed, setting.interval);
+        let (rated_speed, interval) = (definition.rated_rotor_speed, settings.interval);
         Ok(Self { filter, rotor, rated_speed, interval, memory, state })
     }
 
-    /// Choices.
+    /// Its options.
     pub fn options(&self) -> &Options {
         &self.filter.options
     }
 
-    /// Angle of the excitation (rad) when the moments of `measurements` were made.
+    /// Angle of the excitation (rad) at the time of the moments of `measurements`, reading delay included.
     fn angle(&self, measurements: &Measurements) -> f64 {
         self.filter.rate * (measurements.time - self.filter.options.rotor.reading_delay)
     }
 
-    /// Begins with the uniform wind that the mean of the moments tells; false where not all are told.
-    fn begin(&mut self, posture: &Posture, readings: &Readings) -> bool {
+    /// Initialises with the uniform wind that gives the mean of the moments; false unless all moments are usable.
+    fn begin(&mut self, kinematics: &RotorKinematics, readings: &Readings) -> bool {
         if readings.iter().any(Option::is_none) {
             return false;
         }
         let mean_moment = readings.map(|reading| reading.unwrap_or(0.0)).mean();
         let Self { rotor, memory, state, .. } = self;
-        let wind = rotor.settle(mean_moment, posture, &mut state.rotor, memory);
+        let wind = rotor.settle(mean_moment, kinematics, &mut state.rotor, memory);
         state.filter = self.filter.blank();
         state.filter.belief = self.filter.start(wind);
         true
     }
 
-    fn see(&mut self, interval: f64, readings: &Readings, measurements: &Measurements) -> Status {
-        let posture = self.rotor.posture(measurements);
+    fn assimilate(
+        &mut self,
+        interval: f64,
+        readings: &Readings,
+        measurements: &Measurements,
+    ) -> Status {
+        let kinematics = self.rotor.kinematics(measurements);
         if self.state.status == Status::Waiting {
-            return if self.begin(&posture, readings) { Status::Tracking } else { Status::Waiting };
+            return if self.begin(&kinematics, readings) {
+                Status::Tracking
+            } else {
+                Status::Waiting
+            };
         }
         let angle = self.angle(measurements);
         let Self { filter, rotor, memory, state, .. } = self;
         filter.predict(interval, &mut state.filter);
-        let own = rotor.worth(&posture);
-        let (wind, wind_slopes) = filter.wind(&state.filter.belief.mean, angle, own);
-        let expected = rotor.advance(interval, wind, &posture, &mut state.rotor, memory);
+        let pitch_wind = rotor.wind_equivalent_of_pitch(&kinematics);
+        let (wind, wind_slopes) = filter.wind(&state.filter.belief.mean, angle, pitch_wind);
+        let expected = rotor.advance(interval, wind, &kinematics, &mut state.rotor, memory);
         let slopes = match filter.options.jacobian {
-            Jacobian::Analytic => Filter::blade_slopes(posture.azimuth, &expected, &wind_slopes),
+            Jacobian::Analytic => Filter::blade_slopes(kinematics.azimuth, &expected, &wind_slopes),
             Jacobian::CentralDifferences { step } => {
-                self.differences(step, angle, &posture, &expected.bend)
+                self.differences(step, angle, &kinematics, &expected.bend)
             }
         };
-        let now = Instant { interval, angle, azimuth: posture.azimuth, wind, own };
-        let n_heard = {
+        let now = Instant { interval, angle, azimuth: kinematics.azimuth, wind, pitch_wind };
+        let n_used = {
             let Self { filter, state, .. } = self;
             filter.correct(&now, &expected, &slopes, readings, &mut state.filter)
         };
@@ -140,7 +149,7 @@ impl HelixEstimator {
             self.state.filter.belief = self.filter.start(wind);
             return Status::Restarted;
         }
-        match n_heard {
+        match n_used {
             0 => Status::Holding,
             n if n < readings.len() => Status::Partial,
             _ => Status::Tracking,
@@ -153,18 +162,18 @@ impl HelixEstimator {
         &self,
         step: f64,
         angle: f64,
-        posture: &Posture,
+        kinematics: &RotorKinematics,
         bend: &Bend,
     ) -> PerBlade<Vector> {
         let mean = &self.state.filter.belief.mean;
-        let own = self.rotor.worth(posture);
+        let pitch_wind = self.rotor.wind_equivalent_of_pitch(kinematics);
         let mut slopes = PerBlade::splat(self.rotor.n_blades(), [0.0; N_STATES]);
         for index in 0..N_STATES {
             let beside = |distance: f64| {
                 let mut beside = *mean;
                 beside[index] += distance;
-                let (wind, _) = self.filter.wind(&beside, angle, own);
-                self.rotor.moments_beside(wind, posture, bend, &self.memory, &self.state.rotor)
+                let (wind, _) = self.filter.wind(&beside, angle, pitch_wind);
+                self.rotor.moments_beside(wind, kinematics, bend, &self.memory, &self.state.rotor)
             };
             let (up, down) = (beside(0.5 * step), beside(-0.5 * step));
             for ((slopes, up), down) in slopes.iter_mut().zip(up.iter()).zip(down.iter()) {
@@ -177,7 +186,7 @@ impl HelixEstimator {
 
 impl Estimator for HelixEstimator {
     type Estimate = HelixEstimate;
-    type State = State;
+    type State = HelixEstimatorState;
 
     fn update(&mut self, measurements: &Measurements) -> HelixEstimate {
         let every = self.filter.options.update_every;
@@ -191,7 +200,7 @@ impl Estimator for HelixEstimator {
                 }
             }
             Use::Seen(interval, readings) => {
-                self.state.status = self.see(interval, &readings, measurements);
+                self.state.status = self.assimilate(interval, &readings, measurements);
             }
         }
         let angle = self.filter.rate * measurements.time;
@@ -199,21 +208,21 @@ impl Estimator for HelixEstimator {
         HelixEstimate::of(&self.filter, &self.state.filter, angle, self.state.status)
     }
 
-    fn state(&self) -> &State {
+    fn state(&self) -> &HelixEstimatorState {
         &self.state
     }
 
-    fn restore(&mut self, state: State) {
+    fn restore(&mut self, state: HelixEstimatorState) {
         self.state = state;
     }
 }
 
 pub(super) fn check(
     definition: &Definition,
-    setting: &Setting,
+    settings: &HelixSettings,
     options: &Options,
 ) -> Result<(), EstimationError> {
-    let Setting { rate, interval, air_density, n_elements, .. } = *setting;
+    let HelixSettings { rate, interval, air_density, n_elements, .. } = *settings;
     options.check()?;
     if definition.n_blades < 3 {
         return Err(EstimationError::FewBlades { n_blades: definition.n_blades });
@@ -231,7 +240,7 @@ pub(super) fn check(
 }
 
 impl HelixEstimator {
-    /// Mean wind now believed (m/s); zero before the first reading.
+    /// Estimated mean wind (m/s); zero before the first measurement.
     pub fn mean_wind(&self) -> f64 {
         self.state.filter.belief.mean[MEAN_WIND]
     }

@@ -1,24 +1,24 @@
-//! The Kalman filter proper: states move on, moments correct them, noise is learnt.
+//! The Kalman filter proper: prediction of the states, correction by the moments, adaptation of the noise.
 
 use super::belief::{BIAS, Belief, MEAN_WIND, N_STATES, PASSING, RATE, RESPONSE, Vector, WAVE};
 use super::options::{Adaptation, Measurement, Options};
 use super::rotor::{Expected, WINDS};
-use super::trust::Watch;
+use super::trust::TrustMonitor;
 use super::wave::Axis;
 use basis::angle::wrap_to_half_turn;
 use basis::mbc::{blade_azimuth, to_fixed_frame};
 use basis::{FixedFrame, PerBlade, Sense};
 use serde::{Deserialize, Serialize};
 
-/// Innovations beyond this many of their standard deviations count with less weight, after Huber (–).
-const DOUBTFUL: f64 = 3.0;
+/// Innovations beyond this many standard deviations have less weight, after Huber (–).
+const HUBER_LIMIT: f64 = 3.0;
 /// Standard deviation of the mean wind at the start (m/s).
 const INITIAL_WIND: f64 = 1.0;
-/// Standard deviation of the lasting tilt and yaw at the start over the mean wind (–).
+/// Standard deviation of the constant tilt and yaw at the start over the mean wind (–).
 const INITIAL_BIAS: f64 = 0.15;
 /// Standard deviation of the excitation rate at the start over the nominal rate (–).
 const INITIAL_RATE: f64 = 0.03;
-/// Standard deviation of a phase of which nothing is known (rad).
+/// Standard deviation of an unknown phase (rad).
 const INITIAL_PHASE: f64 = 1.8;
 
 /// Parameters.
@@ -32,21 +32,21 @@ pub(super) struct Filter {
     pub(super) diameter: f64,
 }
 
-/// What time changes.
+/// State of the filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct FilterState {
     pub(super) belief: Belief,
-    pub(super) watch: Watch,
-    /// Learnt variance of the moments over that of the options (–).
+    pub(super) monitor: TrustMonitor,
+    /// Adapted variance of the moments over that of the options (–).
     measurement: f64,
-    /// Learnt variance of the eddies (m²/s²).
+    /// Adapted variance of the eddies (m²/s²).
     eddies: f64,
-    /// Learnt wandering of the wave over that of the options (–).
-    wandering: f64,
-    /// Wind as the blades tell it now (m/s).
-    pub(super) told: FixedFrame,
-    /// Tilt and yaw that the rotor's own pitch was worth last (m/s).
-    pub(super) own: [f64; 2],
+    /// Adapted process noise intensity of the wave over that of the options (–).
+    process_noise: f64,
+    /// Instantaneous wind from the blade moments (m/s).
+    pub(super) instantaneous: FixedFrame,
+    /// Wind equivalent of the rotor's own pitch at the last update, tilt and yaw (m/s).
+    pub(super) pitch_wind: [f64; 2],
 }
 
 /// Slopes of the wind's average, tilt and yaw over the states.
@@ -57,7 +57,7 @@ pub(super) struct WindSlopes {
     yaw: Vector,
 }
 
-/// When and where readings are taken, and the wind that was expected.
+/// Instant of an update, and the predicted wind.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instant {
     /// Time since the last update (s).
@@ -68,27 +68,27 @@ pub(super) struct Instant {
     pub(super) azimuth: f64,
     /// Wind in the fixed frame (m/s).
     pub(super) wind: FixedFrame,
-    /// Tilt and yaw that the rotor's pitch is worth (m/s).
-    pub(super) own: [f64; 2],
+    /// Wind equivalent of the rotor's pitch, tilt and yaw (m/s).
+    pub(super) pitch_wind: [f64; 2],
 }
 
-/// What the blades say: moment (N m) where it can be used.
+/// Blade-root moments (N m), where they are usable.
 pub(super) type Readings = PerBlade<Option<f64>>;
 
 impl Filter {
     pub(super) fn blank(&self) -> FilterState {
         FilterState {
             belief: Belief::zero(),
-            watch: Watch::default(),
+            monitor: TrustMonitor::default(),
             measurement: 1.0,
             eddies: self.options.eddies.map_or(0.0, |eddies| eddies.deviation.powi(2)),
-            wandering: 1.0,
-            told: FixedFrame::default(),
-            own: [0.0; 2],
+            process_noise: 1.0,
+            instantaneous: FixedFrame::default(),
+            pitch_wind: [0.0; 2],
         }
     }
 
-    /// The belief when nothing but the mean `wind` (m/s) is known.
+    /// The initial state when only the mean `wind` (m/s) is known.
     pub(super) fn start(&self, wind: f64) -> Belief {
         let Options { form, noise, bias, rate, .. } = self.options;
         let mut belief = Belief::zero();
@@ -121,7 +121,7 @@ impl Filter {
         belief
     }
 
-    /// Moves the belief on by `interval` (s).
+    /// Prediction over `interval` (s).
     pub(super) fn predict(&self, interval: f64, state: &mut FilterState) {
         let Options { form, noise, bias, eddies, rate, .. } = self.options;
         let mut incoming = [0.0; N_STATES];
@@ -129,12 +129,12 @@ impl Filter {
             self.turn(interval, &mut state.belief);
         }
         incoming[MEAN_WIND] = noise.mean_wind * interval;
-        // The wave is taken to wander as the eddies are strong, so that the time over which the filter looks for it stays
-        // the same: learnt eddies alone would make it ever slower, and a slow filter takes the helix for eddies.
+        // The process noise of the wave scales with the variance of the eddies, so that the filter keeps its bandwidth: with
+        // adapted eddies alone it would become ever slower, and a slow filter takes the helix for eddies.
         let stirred = eddies.map_or(1.0, |eddies| state.eddies / eddies.deviation.powi(2));
         for index in (0..4).filter(|index| form.is_used(*index)) {
             let density = if form.is_phase(index) { noise.phase } else { noise.amplitude };
-            incoming[WAVE + index] = stirred * state.wandering * density * interval;
+            incoming[WAVE + index] = stirred * state.process_noise * density * interval;
         }
         incoming[BIAS..BIAS + 2].fill(bias.unwrap_or(0.0) * interval);
         incoming[RATE] = rate.unwrap_or(0.0) * interval;
@@ -154,13 +154,13 @@ impl Filter {
         state.belief.spread(&incoming, &pairs);
     }
 
-    /// The fixed frame's wind (m/s) at `angle` (rad) of the excitation where the states are `mean`, and its slopes; `own` is
-    /// what the rotor's pitch is worth in tilt and yaw (m/s).
+    /// The fixed frame's wind (m/s) at `angle` (rad) of the excitation where the states are `mean`, and its derivatives by them;
+    /// `pitch_wind` is the wind equivalent of the rotor's pitch, tilt and yaw (m/s).
     pub(super) fn wind(
         &self,
         mean: &Vector,
         angle: f64,
-        own: [f64; 2],
+        pitch_wind: [f64; 2],
     ) -> (FixedFrame, WindSlopes) {
         let swing = self.options.form.swing(self.sense, &mean[WAVE..WAVE + 4], angle);
         let mut slopes =
@@ -172,11 +172,11 @@ impl Filter {
             slopes.tilt[lasting] = 1.0;
             slopes.yaw[lasting + 1] = 1.0;
         }
-        slopes.tilt[RESPONSE..RESPONSE + 2].copy_from_slice(&[own[0], -own[1]]);
-        slopes.yaw[RESPONSE..RESPONSE + 2].copy_from_slice(&[own[1], own[0]]);
+        slopes.tilt[RESPONSE..RESPONSE + 2].copy_from_slice(&[pitch_wind[0], -pitch_wind[1]]);
+        slopes.yaw[RESPONSE..RESPONSE + 2].copy_from_slice(&[pitch_wind[1], pitch_wind[0]]);
         let missed = [
-            mean[RESPONSE] * own[0] - mean[RESPONSE + 1] * own[1],
-            mean[RESPONSE] * own[1] + mean[RESPONSE + 1] * own[0],
+            mean[RESPONSE] * pitch_wind[0] - mean[RESPONSE + 1] * pitch_wind[1],
+            mean[RESPONSE] * pitch_wind[1] + mean[RESPONSE + 1] * pitch_wind[0],
         ];
         let wind = FixedFrame {
             average: mean[MEAN_WIND],
@@ -186,8 +186,8 @@ impl Filter {
         (wind, slopes)
     }
 
-    /// Corrects `state` by what the blades say `now`, where `expected` was expected with `slopes` over the states; gives how
-    /// many blades were heard.
+    /// Corrects `state` by the `readings` of `now`, given the `expected` moments and their `slopes` over the states; gives the
+    /// number of blades used.
     pub(super) fn correct(
         &self,
         now: &Instant,
@@ -196,7 +196,7 @@ impl Filter {
         readings: &Readings,
         state: &mut FilterState,
     ) -> usize {
-        state.own = now.own;
+        state.pitch_wind = now.pitch_wind;
         let n_blades = readings.len();
         let mean_moment = expected.moments.mean().abs();
         let nominal = match self.options.noise.measurement {
@@ -206,7 +206,7 @@ impl Filter {
         .max(f64::MIN_POSITIVE);
         let variance = nominal * state.measurement;
         let before = state.belief.mean;
-        let (mut n_heard, mut square, mut left) = (0, 0.0, 0.0);
+        let (mut n_used, mut square, mut left) = (0, 0.0, 0.0);
         for blade in 0..n_blades {
             let Some(reading) = readings[blade] else { continue };
             let slopes = &slopes[blade];
@@ -216,31 +216,30 @@ impl Filter {
             let spread = state.belief.variance_along(slopes);
             let total = spread + variance;
             let distance = innovation.abs() / total.sqrt();
-            let doubt = (distance / DOUBTFUL).max(1.0);
-            let believed = doubt * total - spread;
-            state.belief.correct(slopes, innovation, believed);
-            n_heard += 1;
+            let inflation = (distance / HUBER_LIMIT).max(1.0);
+            let inflated = inflation * total - spread;
+            state.belief.correct(slopes, innovation, inflated);
+            n_used += 1;
             square += (distance * distance).min(1e6);
-            // Posterior residual and what of the state is still unknown: together the reading's own noise.
-            let residual = (innovation * believed / (doubt * total)).abs();
-            let doubtful = DOUBTFUL * variance.sqrt();
-            left +=
-                (residual.min(doubtful).powi(2) + state.belief.variance_along(slopes)) / nominal;
+            // Posterior residual plus the remaining uncertainty of the state: an estimate of the measurement noise.
+            let residual = (innovation * inflated / (inflation * total)).abs();
+            let limit = HUBER_LIMIT * variance.sqrt();
+            left += (residual.min(limit).powi(2) + state.belief.variance_along(slopes)) / nominal;
         }
-        if n_heard == 0 {
+        if n_used == 0 {
             return 0;
         }
         self.options.form.tidy(&mut state.belief);
         state.belief.mean[MEAN_WIND] = state.belief.mean[MEAN_WIND].clamp(WINDS[0], WINDS[1]);
-        if n_heard == n_blades {
-            self.hear(now, expected, readings, state);
+        if n_used == n_blades {
+            self.record_instantaneous_wind(now, expected, readings, state);
         }
-        let n = n_heard as f64;
-        state.watch.compare(now.interval, self.rate, square / n);
+        let n = n_used as f64;
+        state.monitor.compare(now.interval, self.rate, square / n);
         if let Some(adaptation) = self.options.adaptation {
             self.learn(now.interval, adaptation, left / n, &before, state);
         }
-        n_heard
+        n_used
     }
 
     /// Slopes of each blade's moment over the states, by the chain rule, blade 1 at `azimuth` (rad).
@@ -271,8 +270,8 @@ impl Filter {
         self.options.form.axes(belief)
     }
 
-    /// Takes down the wind that the blades tell `now`: the expected one and what their moments are over the expected ones.
-    fn hear(
+    /// Records the instantaneous wind: the predicted one plus the innovation of the moments in terms of wind.
+    fn record_instantaneous_wind(
         &self,
         now: &Instant,
         expected: &Expected,
@@ -288,26 +287,30 @@ impl Filter {
             if slope > 0.0 { over[blade] / slope } else { 0.0 }
         });
         let over = to_fixed_frame(now.azimuth, &over);
-        state.told = FixedFrame {
+        state.instantaneous = FixedFrame {
             average: now.wind.average + over.average,
             tilt: now.wind.tilt + over.tilt,
             yaw: now.wind.yaw + over.yaw,
         };
         let mean = &state.belief.mean;
-        let (own, missed) = (now.own, &mean[RESPONSE..RESPONSE + 2]);
+        let (pitch_wind, missed) = (now.pitch_wind, &mean[RESPONSE..RESPONSE + 2]);
         let passing = FixedFrame {
-            tilt: state.told.tilt - mean[BIAS] - missed[0] * own[0] + missed[1] * own[1],
-            yaw: state.told.yaw - mean[BIAS + 1] - missed[0] * own[1] - missed[1] * own[0],
-            ..state.told
+            tilt: state.instantaneous.tilt - mean[BIAS] - missed[0] * pitch_wind[0]
+                + missed[1] * pitch_wind[1],
+            yaw: state.instantaneous.yaw
+                - mean[BIAS + 1]
+                - missed[0] * pitch_wind[1]
+                - missed[1] * pitch_wind[0],
+            ..state.instantaneous
         };
-        // Moments that no wind makes would blind the watch for periods.
+        // Moments that no wind can cause would spoil the running means for periods.
         if passing.tilt.abs().max(passing.yaw.abs()) < WINDS[1] {
-            state.watch.see(now.interval, self.rate, now.angle, passing);
+            state.monitor.observe(now.interval, self.rate, now.angle, passing);
         }
     }
 
-    /// Learns noise: `left` is the mean of the readings' own noise squared over the nominal variance (–), `before` the states
-    /// before the correction.
+    /// Adapts the noise: `left` is the estimated measurement variance over the nominal one (–), `before` are the states before
+    /// the correction.
     fn learn(
         &self,
         interval: f64,
@@ -322,7 +325,7 @@ impl Filter {
         state.measurement = state.measurement.clamp(1.0 / bound, bound);
         let Belief { mean, covariance } = &state.belief;
         if let Some(eddies) = self.options.eddies {
-            // What the eddies' states are expected to be, squared: their mean's square and their variance.
+            // Expected square of the eddies' states: square of the mean plus variance.
             let square = |k: usize| mean[k] * mean[k] + covariance[k][k];
             let seen = 0.5 * (square(PASSING) + square(PASSING + 1));
             let nominal = eddies.deviation * eddies.deviation;
@@ -330,7 +333,7 @@ impl Filter {
             state.eddies = state.eddies.clamp(nominal / bound, nominal * bound);
         }
         if adaptation.wave {
-            // In a steady filter corrections have the variance of what comes in.
+            // In a steady filter the corrections have the variance of the process noise.
             let noise = self.options.noise;
             let (mut sum, mut n) = (0.0, 0.0);
             for index in (0..4).filter(|index| self.options.form.is_used(*index)) {
@@ -340,12 +343,12 @@ impl Filter {
                 sum += step * step / (density * interval);
                 n += 1.0;
             }
-            state.wandering += share * (sum / n - state.wandering);
-            state.wandering = state.wandering.clamp(1.0 / bound, bound);
+            state.process_noise += share * (sum / n - state.process_noise);
+            state.process_noise = state.process_noise.clamp(1.0 / bound, bound);
         }
     }
 
-    /// Covariances of what comes in on tilt and on yaw, where `variance` is that of each state of the wave.
+    /// Covariances of the process noise of tilt and yaw, where `variance` is that of each state of the wave.
     fn pairs(&self, variance: impl Fn(usize) -> f64) -> [(usize, usize, f64); 2] {
         let mut pairs = [(WAVE, WAVE + 1, 0.0); 2];
         for (pair, (a, b)) in pairs.iter_mut().zip(self.options.form.pairs()) {
@@ -355,7 +358,7 @@ impl Filter {
         pairs
     }
 
-    /// Turns the wave ahead by its own rate over the nominal one, for `interval` (s).
+    /// Turns the wave ahead for `interval` (s) by the difference of its rate from the nominal one.
     fn turn(&self, interval: f64, belief: &mut Belief) {
         let form = self.options.form;
         let angle = belief.mean[RATE] * interval;

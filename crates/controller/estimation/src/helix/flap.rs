@@ -1,8 +1,8 @@
-//! The first flapwise mode of a blade, which delays what the air does to its root.
+//! The first flapwise mode of a blade, which delays the effect of aerodynamic loads on its root.
 //!
 //! Symbols: q deflection of the tip downwind, φ mode shape, s span from the root, r distance from the shaft, μ mass per
-//! length, Ω rotor speed, M moment of the air on a blade that does not move, U its wind, g chord × r, which the force's
-//! slope over the wind goes with, ω rate of what the blade feels.
+//! length, Ω rotor speed, M aerodynamic moment on a rigid blade, U its wind, g chord × r, to which the derivative of the
+//! force by the wind is proportional, ω rate of the excitation in the blade.
 //!
 //! ```text
 //! m q̈ + d q̇ + k q = a M               m = ∫ μ φ² ds,   a = ∫ g φ ds / ∫ g s ds,
@@ -11,15 +11,15 @@
 //!                                       b = ∫ g φ s ds / ∫ g s ds,   i = ∫ μ φ s ds,   c = ∫ μ r φ ds
 //! ```
 //!
-//! What tilt and yaw make of it swings in the blade at the rotor's rate and the helix's; the response at that rate is a gain
-//! and a lag, which turn tilt and yaw together. They are taken at once: an estimate that trembles must not make the model's
-//! blades tremble.
+//! Tilt and yaw excite the blade at the sum of the rotor's and the helix's rate; the response at that rate is a gain and a lag,
+//! which rotate tilt and yaw into each other. The steady-state response is used, so that noise in the estimate does not excite
+//! the model's blades.
 
 use basis::PerBlade;
 use basis::mbc::{blade_azimuth, to_fixed_frame};
 use turbine::Definition;
 
-/// Points of the integrals over a blade.
+/// Points of the integrals over a blade (–).
 const N_POINTS: usize = 200;
 
 /// Integrals of a blade.
@@ -27,7 +27,7 @@ const N_POINTS: usize = 200;
 pub(super) struct Flap {
     mass: f64,
     stiffness: f64,
-    /// Stiffness by rotation over the square of the rotor speed (kg).
+    /// Centrifugal stiffness over the square of the rotor speed (kg).
     centrifugal: f64,
     /// a (1/m), d over ∂M/∂U (1/m), b (–).
     drive: f64,
@@ -38,7 +38,7 @@ pub(super) struct Flap {
     tension: f64,
 }
 
-/// What bending makes of moments: a gain of their average, a gain and a turn of their tilt and yaw.
+/// Effect of blade bending on root moments: a gain of the average, a complex gain of tilt and yaw.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bend {
     azimuth: f64,
@@ -96,8 +96,8 @@ impl Flap {
         flap
     }
 
-    /// What bending makes of moments that swing with `rate` (rad/s) in the blade at `azimuth` (rad) of blade 1, where they grow
-    /// with the wind by `slope` (N m/(m/s)).
+    /// Effect of bending on moments that oscillate at `rate` (rad/s) in the blade, with blade 1 at `azimuth` (rad); their
+    /// derivative by the wind is `slope` (N m/(m/s)).
     pub(super) fn bend(&self, rate: f64, rotor_speed: f64, azimuth: f64, slope: f64) -> Bend {
         let (held, square) = (self.held(rotor_speed), rotor_speed * rotor_speed);
         let slope = slope.max(0.0);
@@ -122,17 +122,17 @@ impl Flap {
 }
 
 impl Bend {
-    /// Of blades that do not bend.
+    /// Rigid blades.
     pub(super) fn none(azimuth: f64) -> Self {
         Self { azimuth, average: 1.0, swing: [1.0, 0.0] }
     }
 
-    /// What reaches the roots of `moments` on still blades.
+    /// Root moments from the `moments` on rigid blades.
     pub(super) fn apply(&self, moments: &PerBlade<f64>) -> PerBlade<f64> {
         self.times(moments, self.average, self.swing)
     }
 
-    /// The moments on still blades of which `moments` reach the roots.
+    /// Moments on rigid blades that give the root `moments`.
     pub(super) fn undo(&self, moments: &PerBlade<f64>) -> PerBlade<f64> {
         let [real, imaginary] = self.swing;
         let square = real * real + imaginary * imaginary;
@@ -156,7 +156,7 @@ impl Bend {
     }
 }
 
-/// Straight line through `rows` of span (m) and value at `span`.
+/// Linear interpolation at `span` (m) in `rows` of span (m) and value.
 pub(super) fn between(rows: impl Iterator<Item = (f64, f64)>, span: f64) -> f64 {
     let mut before: Option<(f64, f64)> = None;
     for (place, value) in rows {

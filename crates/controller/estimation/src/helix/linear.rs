@@ -2,16 +2,16 @@
 //!
 //! After van Vondelen et al. (2023), "Phase synchronization for Helix enhanced wake mixing in downstream wind turbines",
 //! IFAC-PapersOnLine 56, 8426: moments are linear in wind and pitch, the helix an undamped oscillator, which here stands
-//! still as sine and cosine components against the excitation. Kept to compare with.
+//! still as sine and cosine components against the excitation. Kept for comparison.
 
 use super::belief::MEAN_WIND;
 use super::clock::{Clock, Use};
 use super::estimate::{HelixEstimate, Status};
-use super::estimator::{Setting, check};
+use super::estimator::{HelixSettings, check};
 use super::filter::{Filter, FilterState, Instant};
 use super::flap::Bend;
 use super::options::{Options, Rotor as RotorOptions, Wake, positive};
-use super::rotor::{Expected, Posture, Rotor};
+use super::rotor::{Expected, Rotor, RotorKinematics};
 use super::wave::Form;
 use crate::{EstimationError, Estimator};
 use basis::mbc::to_blades;
@@ -24,7 +24,7 @@ use turbine::Definition;
 const WIND_STEP: f64 = 0.2;
 const PITCH_STEP: f64 = 0.005;
 
-/// Where the moments are taken to be linear.
+/// Operating point of the linearisation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OperatingPoint {
     /// Mean wind (m/s).
@@ -35,7 +35,7 @@ pub struct OperatingPoint {
     pub pitch: f64,
 }
 
-/// Finds the helix by a linear model of the moments around one operating point.
+/// Estimates the helix with a model of the moments linearised about one operating point.
 #[derive(Clone, Debug)]
 pub struct LinearEstimator {
     filter: Filter,
@@ -46,12 +46,12 @@ pub struct LinearEstimator {
     moment: f64,
     wind_slope: f64,
     pitch_slope: f64,
-    state: LinearState,
+    state: LinearEstimatorState,
 }
 
-/// Everything that time changes; restoring it continues with the same bits.
+/// State of the estimator; a run restored from it continues with the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LinearState {
+pub struct LinearEstimatorState {
     filter: FilterState,
     clock: Clock,
     status: Status,
@@ -59,13 +59,13 @@ pub struct LinearState {
 
 impl LinearEstimator {
     /// An estimator on a turbine of `definition`, linear around `point`, with the noise and control intervals of `options`;
-    /// slopes are those of a wake that has come to rest and of blades that do not bend.
+    /// derivatives are those of a steady wake and of rigid blades.
     ///
     /// # Errors
     /// Those of [`HelixEstimator::new`](super::HelixEstimator::new), and for an operating point out of range.
     pub fn new(
         definition: &Arc<Definition>,
-        setting: &Setting,
+        settings: &HelixSettings,
         point: OperatingPoint,
         options: Options,
     ) -> Result<Self, EstimationError> {
@@ -81,32 +81,32 @@ impl LinearEstimator {
             roundness: 0.0,
             ..options
         };
-        check(definition, setting, &options)?;
+        check(definition, settings, &options)?;
         positive("wind of the operating point (m/s)", point.wind)?;
         positive("rotor speed of the operating point (rad/s)", point.rotor_speed)?;
         let n_blades = definition.n_blades;
-        let model = Rotor::new(definition, setting, &options);
+        let model = Rotor::new(definition, settings, &options);
         let mean_moment = |wind: f64, pitch: f64| {
             let (mut state, mut memory) = (model.start(), model.memory());
             let wind = FixedFrame { average: wind, ..FixedFrame::default() };
-            let posture = Posture {
+            let kinematics = RotorKinematics {
                 azimuth: 0.0,
                 rotor_speed: point.rotor_speed,
                 pitch: PerBlade::splat(n_blades, pitch),
             };
-            model.rest(wind, &posture, &mut state, &mut memory);
-            model.advance(1.0, wind, &posture, &mut state, &mut memory).moments.mean()
+            model.rest(wind, &kinematics, &mut state, &mut memory);
+            model.advance(1.0, wind, &kinematics, &mut state, &mut memory).moments.mean()
         };
         let between = |step: f64, up: f64, down: f64| (up - down) / step;
         let OperatingPoint { wind, pitch, .. } = point;
         let half = [0.5 * WIND_STEP, 0.5 * PITCH_STEP];
         let filter = Filter {
             options,
-            sense: setting.sense,
-            rate: setting.rate,
+            sense: settings.sense,
+            rate: settings.rate,
             diameter: definition.rotor_diameter(),
         };
-        let state = LinearState {
+        let state = LinearEstimatorState {
             filter: filter.blank(),
             clock: Clock::new(n_blades),
             status: Status::Waiting,
@@ -114,7 +114,7 @@ impl LinearEstimator {
         Ok(Self {
             filter,
             rated_speed: definition.rated_rotor_speed,
-            interval: setting.interval,
+            interval: settings.interval,
             point,
             moment: mean_moment(wind, pitch),
             wind_slope: between(
@@ -145,13 +145,13 @@ impl LinearEstimator {
 
 impl Estimator for LinearEstimator {
     type Estimate = HelixEstimate;
-    type State = LinearState;
+    type State = LinearEstimatorState;
 
     fn update(&mut self, measurements: &Measurements) -> HelixEstimate {
         let every = self.filter.options.update_every;
         let angle = self.filter.rate * measurements.time;
         let look = self.state.clock.look(measurements, every, self.interval, self.rated_speed);
-        let LinearState { filter: state, status, .. } = &mut self.state;
+        let LinearEstimatorState { filter: state, status, .. } = &mut self.state;
         if *status == Status::Waiting {
             if let Use::Seen(..) = look {
                 state.belief = self.filter.start(self.point.wind);
@@ -170,10 +170,10 @@ impl Estimator for LinearEstimator {
                     let azimuth = measurements.azimuth;
                     let expected = self.expected(wind, measurements);
                     let slopes = Filter::blade_slopes(azimuth, &expected, &wind_slopes);
-                    let now = Instant { interval, angle, azimuth, wind, own: [0.0; 2] };
+                    let now = Instant { interval, angle, azimuth, wind, pitch_wind: [0.0; 2] };
                     let state = &mut self.state.filter;
-                    let n_heard = self.filter.correct(&now, &expected, &slopes, &readings, state);
-                    self.state.status = match n_heard {
+                    let n_used = self.filter.correct(&now, &expected, &slopes, &readings, state);
+                    self.state.status = match n_used {
                         0 => Status::Holding,
                         n if n < readings.len() => Status::Partial,
                         _ => Status::Tracking,
@@ -190,17 +190,17 @@ impl Estimator for LinearEstimator {
         HelixEstimate::of(&self.filter, &self.state.filter, angle, self.state.status)
     }
 
-    fn state(&self) -> &LinearState {
+    fn state(&self) -> &LinearEstimatorState {
         &self.state
     }
 
-    fn restore(&mut self, state: LinearState) {
+    fn restore(&mut self, state: LinearEstimatorState) {
         self.state = state;
     }
 }
 
 impl LinearEstimator {
-    /// Mean wind now believed (m/s); zero before the first reading.
+    /// Estimated mean wind (m/s); zero before the first measurement.
     pub fn mean_wind(&self) -> f64 {
         self.state.filter.belief.mean[MEAN_WIND]
     }

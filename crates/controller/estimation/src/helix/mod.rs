@@ -1,9 +1,9 @@
-//! Where the helix stands that meets a rotor: its amplitude and phases, from the moments at the blade roots.
+//! Estimation of the helix in the wind at a rotor: its amplitude and phases, from the moments at the blade roots.
 //!
 //! After van Vondelen et al. (2025), "Synchronized Helix wake mixing control", Wind Energ. Sci. 10, 2411: the wind that
-//! meets the rotor has a tilt and a yaw component that swing at the excitation's rate; blades feel them as they turn; a
-//! blade-element model with a wake says what moments they make of it; an extended Kalman filter finds the wind for which
-//! those are the measured ones. Pitch is an input of the model, so the rotor may pitch as it likes meanwhile.
+//! meets the rotor has a tilt and a yaw component that oscillate at the excitation rate, which the rotating blades sample. A
+//! blade-element model with a wake predicts the blade moments; an extended Kalman filter estimates the wind for which they
+//! equal the measured ones. Pitch is an input of the model, so the rotor may pitch in any way meanwhile.
 
 mod belief;
 mod calibration;
@@ -23,8 +23,8 @@ mod weight;
 
 pub use calibration::{Calibration, calibrate};
 pub use estimate::{HelixEstimate, Status};
-pub use estimator::{HelixEstimator, Setting, State};
-pub use linear::{LinearEstimator, LinearState, OperatingPoint};
+pub use estimator::{HelixEstimator, HelixEstimatorState, HelixSettings};
+pub use linear::{LinearEstimator, LinearEstimatorState, OperatingPoint};
 pub use model::MeasurementModel;
 pub use options::{Adaptation, Eddies, Jacobian, Measurement, Noise, Options, Rotor, Wake};
 pub use trust::Trust;

@@ -1,20 +1,20 @@
-//! The measurement model by itself, to make blade moments of a known wind.
+//! The measurement function by itself, to compute blade moments for a known wind.
 
-use super::estimator::{Setting, check};
+use super::estimator::{HelixSettings, check};
 use super::options::Options;
-use super::rotor::{Memory, Posture, Rotor, State};
+use super::rotor::{Memory, Rotor, RotorKinematics, RotorModelState};
 use crate::EstimationError;
 use basis::{FixedFrame, PerBlade};
 use std::sync::Arc;
 use turbine::Definition;
 
-/// The rotor that a [`HelixEstimator`](super::HelixEstimator) with the same setting and options believes in.
+/// The rotor model of a [`HelixEstimator`](super::HelixEstimator) with the same settings and options.
 ///
-/// For trials on known winds: what it makes is what the filter expects.
+/// For trials with known winds: its moments are those that the filter expects.
 #[derive(Clone, Debug)]
 pub struct MeasurementModel {
     rotor: Rotor,
-    state: State,
+    state: RotorModelState,
     memory: Memory,
     settled: bool,
 }
@@ -24,18 +24,18 @@ impl MeasurementModel {
     /// Those of [`HelixEstimator::new`](super::HelixEstimator::new).
     pub fn new(
         definition: &Arc<Definition>,
-        setting: &Setting,
+        settings: &HelixSettings,
         options: &Options,
     ) -> Result<Self, EstimationError> {
-        check(definition, setting, options)?;
-        let rotor = Rotor::new(definition, setting, options);
+        check(definition, settings, options)?;
+        let rotor = Rotor::new(definition, settings, options);
         let (state, memory) = (rotor.start(), rotor.memory());
         Ok(Self { rotor, state, memory, settled: false })
     }
 
     /// Moments at the blade roots (N m) an `interval` (s) after the last ones, blade 1 at `azimuth` (rad), the rotor turning
-    /// with `rotor_speed` (rad/s), blades pitched by `pitch` (rad), in the fixed frame's `wind` (m/s). The first call comes
-    /// to rest in its mean wind.
+    /// with `rotor_speed` (rad/s), blades pitched by `pitch` (rad), in the fixed frame's `wind` (m/s). The first call starts
+    /// from the steady wake in its mean wind.
     pub fn moments(
         &mut self,
         interval: f64,
@@ -44,17 +44,17 @@ impl MeasurementModel {
         rotor_speed: f64,
         pitch: &PerBlade<f64>,
     ) -> PerBlade<f64> {
-        let posture = Posture { azimuth, rotor_speed, pitch: *pitch };
+        let kinematics = RotorKinematics { azimuth, rotor_speed, pitch: *pitch };
         let Self { rotor, state, memory, settled } = self;
         if !*settled {
             rotor.rest(
                 FixedFrame { average: wind.average, ..FixedFrame::default() },
-                &posture,
+                &kinematics,
                 state,
                 memory,
             );
             *settled = true;
         }
-        rotor.advance(interval, wind, &posture, state, memory).moments
+        rotor.advance(interval, wind, &kinematics, state, memory).moments
     }
 }

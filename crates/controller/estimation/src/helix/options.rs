@@ -1,132 +1,133 @@
-//! What can be chosen about the helix estimator, and its two ready-made choices.
+//! Options of the helix estimator, with its two presets.
 
 use super::wave::Form;
 use crate::EstimationError;
 use serde::{Deserialize, Serialize};
 
-/// Choices; [`Options::default`] is the robust form, [`Options::published`] that of the authors.
+/// Options; [`Options::default`] is the robust form, [`Options::published`] that of the authors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {
-    /// What the states of the wave are.
+    /// States of the wave.
     pub form: Form,
-    /// The rotor that the filter believes in.
+    /// Rotor model of the filter.
     pub rotor: Rotor,
-    /// Noise that the filter believes in.
+    /// Noise model of the filter.
     pub noise: Noise,
-    /// Lasting tilt and yaw that the model knows nothing of, as shear, gravity and the shaft's tilt make: how fast they
-    /// wander ((m/s)²/s, a variance per time); none without such states.
+    /// Constant tilt and yaw outside the model, as of shear, gravity and shaft tilt: their process noise intensity ((m/s)²/s);
+    /// none without such states.
     pub bias: Option<f64>,
-    /// Tilt and yaw of passing eddies; none without such states. With them the wave's wandering grows and falls with their
-    /// variance as it is learnt.
+    /// Tilt and yaw of passing eddies; none without such states. With them the process noise intensity of the wave scales with
+    /// their adapted variance.
     pub eddies: Option<Eddies>,
-    /// How wrong the model's answer to the rotor's own pitch may be at first (–, a standard deviation over the wind that the
-    /// pitch is worth), learnt as the pitch begins or changes; none where the model is believed.
+    /// Initial uncertainty of the model's response to the rotor's own pitch (–, a standard deviation over the wind equivalent of
+    /// the pitch), with states that estimate it as the pitch begins or changes; none without such states.
     pub response: Option<f64>,
-    /// How wrong the model's answer to the rotor's own pitch is taken to be when trust is judged (–, a standard deviation over
-    /// the wind that the pitch is worth): it does not shrink with time, as what noise does, and changes no estimate.
-    pub doubt: f64,
-    /// How fast the excitation rate wanders ((rad/s)²/s); none where it is taken to be the nominal one.
+    /// Uncertainty of the model's response to the rotor's own pitch in the confidence of the phases (–, a standard deviation
+    /// over the wind equivalent of the pitch). It does not decrease with time, as the effect of noise does, and it changes no
+    /// estimate.
+    pub model_uncertainty: f64,
+    /// Process noise intensity of the excitation rate ((rad/s)²/s); none where the rate is taken to be the nominal one.
     pub rate: Option<f64>,
-    /// Noise learnt from the innovation; none where it stays as it is.
+    /// Adaptation of the noise to the innovation; none for constant noise.
     pub adaptation: Option<Adaptation>,
-    /// Correlation of what comes in on tilt and on yaw (–, 0 to below 1): one would be a helix that stays round.
+    /// Correlation of the process noise of tilt and yaw (–, 0 to below 1): one would be a helix that stays round.
     pub roundness: f64,
-    /// How slopes are found.
+    /// Method for the Jacobian.
     pub jacobian: Jacobian,
     /// Control instants from one update to the next (–).
     pub update_every: usize,
 }
 
-/// The rotor that the filter believes in.
+/// Rotor model of the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rotor {
-    /// How its wake answers.
+    /// Model of its wake.
     pub wake: Wake,
-    /// Whether its blades bend: first flapwise mode, with the air's damping.
+    /// Whether its blades bend: first flapwise mode, with aerodynamic damping.
     pub flexible: bool,
-    /// Factor on tilt and yaw of the pitch (–): what the blades make of it over what the model makes of it.
+    /// Factor on tilt and yaw of the pitch (–): the blades' response to it over the model's.
     pub pitch_gain: f64,
-    /// Angle by which a blade runs ahead of its pitch (rad): the pitch that acts is that measured this much of a turn
-    /// before. For lags that neither the wake nor the blades' bending make.
+    /// Angle by which a blade leads its pitch (rad): the pitch that acts is the one measured this part of a turn before. For
+    /// lags outside the models of wake and bending.
     pub pitch_azimuth_offset: f64,
-    /// Age of the moments when they are read (s): lag of the instruments, or half a step of a simulation.
+    /// Age of the moments when they are read (s): delay of the instruments, or half a step of a simulation.
     pub reading_delay: f64,
 }
 
-/// How the wake's induction answers to a change.
+/// Dynamics of the wake's induction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Wake {
-    /// At once: blade-element momentum at every instant.
+    /// Quasi-steady: blade-element momentum at every instant.
     Static,
-    /// With the delay of Snel and Schepers times `time_factor` (–), which runs with each blade.
+    /// Dynamic inflow of Snel and Schepers, time constant times `time_factor` (–), in the rotating frame of each blade.
     WithBlades {
         /// Factor on the model's time constant (–).
         time_factor: f64,
     },
-    /// With the same delay, which runs in the air that the blades cross.
+    /// The same dynamic inflow in the non-rotating frame, fixed in space.
     ///
-    /// A load that swings from side to side of the rotor moves less induction, and sooner, than one that changes everywhere
-    /// alike (as in Pitt and Peters's inflow, whose tilt and yaw have half the average's time constant). In large-eddy
-    /// records of rotors that pitch a helix in a wind without one, a factor of 0.4 and a share of 0.6 leave the least helix
-    /// that is not there; docs/phase-estimation.md has the table.
+    /// A load that oscillates from side to side of the rotor changes the induction less, and sooner, than one that changes
+    /// uniformly (as in Pitt and Peters's inflow, whose tilt and yaw have half the average's time constant). In records of
+    /// resolved flow with rotors that pitch a helix in a wind without one, a factor of 0.4 and a share of 0.6 leave the
+    /// smallest spurious helix; docs/phase-estimation.md has the table.
     InAir {
         /// Factor on the model's time constant (–).
         time_factor: f64,
-        /// Share of momentum theory's induction that a tilt or yaw of the load makes (–).
+        /// Share of momentum theory's induction caused by a tilt or yaw of the load (–).
         share: f64,
     },
 }
 
-/// Noise that the filter believes in; variances per time grow with the time between updates.
+/// Noise model of the filter; process noise intensities are variances per time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
-    /// Of one blade's moment at one instant.
+    /// Measurement noise of one blade's moment.
     pub measurement: Measurement,
-    /// Wandering of the mean wind ((m/s)²/s).
+    /// Process noise intensity of the mean wind ((m/s)²/s).
     pub mean_wind: f64,
-    /// Wandering of amplitudes, or of sine and cosine components ((m/s)²/s).
+    /// Process noise intensity of amplitudes, or of sine and cosine components ((m/s)²/s).
     pub amplitude: f64,
-    /// Wandering of phases (rad²/s).
+    /// Process noise intensity of phases (rad²/s).
     pub phase: f64,
-    /// Standard deviation of what is not known of amplitudes at first (m/s).
+    /// Initial standard deviation of the amplitudes (m/s).
     pub initial_amplitude: f64,
 }
 
-/// Noise of one blade's moment.
+/// Measurement noise of one blade's moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Measurement {
     /// Standard deviation (N m).
     Moment(f64),
-    /// Standard deviation over the mean moment of the moment (–).
+    /// Standard deviation over the mean of the moment (–).
     Share(f64),
 }
 
-/// Tilt and yaw of passing eddies: noise that forgets itself.
+/// Tilt and yaw of passing eddies: first-order Gauss-Markov noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Eddies {
     /// Standard deviation of each axis (m/s).
     pub deviation: f64,
-    /// Time in which they forget themselves, over rotor diameter over mean wind (–).
+    /// Correlation time, over rotor diameter over mean wind (–).
     pub time_constant: f64,
 }
 
-/// Noise learnt from the innovation.
+/// Adaptation of the noise to the innovation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptation {
-    /// Time over which is learnt (s).
+    /// Time constant of the adaptation (s).
     pub time_constant: f64,
     /// Largest factor on the standard deviations of noise and eddies, up and down (–).
     pub bound: f64,
-    /// Whether the wandering of the wave is learnt too.
+    /// Whether the process noise intensity of the wave is adapted too.
     pub wave: bool,
 }
 
-/// How the slopes of the moments over the states are found.
+/// Method for the derivatives of the moments by the states.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Jacobian {
-    /// By the chain rule: one slope per blade, from its sections' polars.
+    /// Chain rule: one derivative per blade, from its sections' polars.
     Analytic,
-    /// By central differences over all of the model, each state tried a `step` (m/s or rad) apart.
+    /// Central differences of the whole model, each state varied by a `step` (m/s or rad).
     CentralDifferences {
         /// Distance of the two trials (m/s or rad).
         step: f64,
@@ -154,7 +155,7 @@ impl Default for Options {
             bias: Some(1e-5),
             eddies: Some(Eddies { deviation: 0.6, time_constant: 0.5 }),
             response: None,
-            doubt: 0.03,
+            model_uncertainty: 0.03,
             rate: None,
             adaptation: Some(Adaptation { time_constant: 200.0, bound: 5.0, wave: false }),
             roundness: 0.7,
@@ -190,7 +191,7 @@ impl Options {
             bias: None,
             eddies: None,
             response: None,
-            doubt: 0.03,
+            model_uncertainty: 0.03,
             rate: None,
             adaptation: None,
             roundness: 0.0,
@@ -205,17 +206,17 @@ impl Options {
         let Noise { measurement, mean_wind, amplitude, phase, initial_amplitude } = self.noise;
         let (Measurement::Moment(noise) | Measurement::Share(noise)) = measurement;
         positive_variance("measurement", "standard deviation of a moment", noise)?;
-        positive_variance("process", "wandering of the mean wind", mean_wind)?;
-        positive_variance("process", "wandering of the amplitudes", amplitude)?;
+        positive_variance("process", "intensity for the mean wind", mean_wind)?;
+        positive_variance("process", "intensity for the amplitudes", amplitude)?;
         if self.form != Form::Quadrature {
-            positive_variance("process", "wandering of the phases", phase)?;
+            positive_variance("process", "intensity for the phases", phase)?;
         }
-        positive("initial deviation of the amplitudes (m/s)", initial_amplitude)?;
+        positive("initial standard deviation of the amplitudes (m/s)", initial_amplitude)?;
         if let Some(bias) = self.bias {
-            positive_variance("process", "wandering of the bias", bias)?;
+            positive_variance("process", "intensity for the constant tilt and yaw", bias)?;
         }
         if let Some(rate) = self.rate {
-            positive_variance("process", "wandering of the excitation rate", rate)?;
+            positive_variance("process", "intensity for the excitation rate", rate)?;
         }
         if let Some(Eddies { deviation, time_constant }) = self.eddies {
             positive_variance("process", "standard deviation of the eddies", deviation)?;
@@ -242,10 +243,19 @@ impl Options {
             let good = (0.0..=1.5).contains(&share);
             within("share of the induction (–)", share, good, "from 0 to 1.5")?;
         }
-        let sane = (0.0..1.0).contains(&self.doubt);
-        within("doubt of the pitch's effect (–)", self.doubt, sane, "from 0 to below 1")?;
+        let sane = (0.0..1.0).contains(&self.model_uncertainty);
+        within(
+            "model uncertainty of the pitch response (–)",
+            self.model_uncertainty,
+            sane,
+            "from 0 to below 1",
+        )?;
         if let Some(response) = self.response {
-            positive_variance("process", "initial deviation of the pitch's effect", response)?;
+            positive_variance(
+                "process",
+                "initial standard deviation of the pitch response",
+                response,
+            )?;
         }
         let delay = self.rotor.reading_delay;
         within(

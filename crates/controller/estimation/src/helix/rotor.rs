@@ -1,6 +1,6 @@
 //! The measurement function: from the wind in the fixed frame to the moments at the blade roots.
 
-use super::estimator::Setting;
+use super::estimator::HelixSettings;
 use super::flap::{Bend, Flap};
 use super::options::{self, Options};
 use super::weight::Weight;
@@ -15,16 +15,16 @@ use turbine::aero::blade_element::Theory;
 use turbine::aero::blade_moments::{BladeMoments, Conditions, Wake};
 use turbine::aero::induction::SnelSchepers;
 
-/// Least and largest mean wind that the model is asked for (m/s).
+/// Range of the mean wind in the model (m/s).
 pub(super) const WINDS: [f64; 2] = [1.0, 50.0];
-/// Steps, and their length (s), in which a wake comes to rest at the start.
+/// Steps (–), and their length (s), over which the wake settles at the start.
 const N_SETTLING: usize = 120;
 const SETTLING: f64 = 2.0;
-/// Share of the way that a step of the search for the first wind goes (–).
+/// Relaxation of the search for the initial wind (–).
 const CAUTION: f64 = 0.3;
-/// Radius over the rotor's at which most of a blade's moment is made (–).
+/// Effective radius of a blade's moment, over the rotor's (–).
 const EFFECTIVE_RADIUS: f64 = 0.75;
-/// Wind in which the wake is laid out before anything has been read (m/s).
+/// Wind of the initial wake, before the first measurement (m/s).
 const NOMINAL_WIND: f64 = 9.0;
 
 /// Parameters.
@@ -33,7 +33,7 @@ pub(super) struct Rotor {
     blades: BladeMoments,
     weight: Weight,
     flap: Option<Flap>,
-    /// Share of tilt and yaw of the induction, where sectors of air hold it (–).
+    /// Share of tilt and yaw of the induction, where it is fixed in space (–).
     in_air: Option<f64>,
     pitch_gain: f64,
     /// Rate of the helix in the blade over the rotor's (rad/s): positive for ccw.
@@ -45,10 +45,10 @@ pub(super) struct Rotor {
     settled: Wake,
 }
 
-/// What time changes.
+/// State of the rotor model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct State {
-    /// Induction of the blades, or of sectors that stand in the air.
+pub(super) struct RotorModelState {
+    /// Induction of the blades, or of sectors fixed in space.
     wake: Wake,
 }
 
@@ -58,28 +58,32 @@ pub(super) struct Memory {
     met: Wake,
 }
 
-/// What turns and pitches, as measured, and where it stood when the moments were read.
+/// Rotor kinematics at the time of the moments, from the measurements.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Posture {
+pub(super) struct RotorKinematics {
     pub(super) azimuth: f64,
     pub(super) rotor_speed: f64,
     pub(super) pitch: PerBlade<f64>,
 }
 
-/// What is expected of the blades.
+/// Expected blade-root moments, with their derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected {
     /// Moments at the roots (N m).
     pub(super) moments: PerBlade<f64>,
-    /// How the moment of the air on each still blade grows with its wind (N m/(m/s)).
+    /// Derivative of the aerodynamic moment on each rigid blade by its wind (N m/(m/s)).
     pub(super) slopes: PerBlade<f64>,
-    /// What bending makes of the air's moments.
+    /// Effect of blade bending on the moments.
     pub(super) bend: Bend,
 }
 
 impl Rotor {
-    pub(super) fn new(definition: &Arc<Definition>, setting: &Setting, options: &Options) -> Self {
-        let Setting { n_elements, air_density, .. } = *setting;
+    pub(super) fn new(
+        definition: &Arc<Definition>,
+        settings: &HelixSettings,
+        options: &Options,
+    ) -> Self {
+        let HelixSettings { n_elements, air_density, .. } = *settings;
         let radius = definition.rotor_radius();
         let line =
             ActuatorLine::new(Arc::clone(definition), n_elements, air_density, 0.1 * radius, 0.0);
@@ -107,9 +111,9 @@ impl Rotor {
                 _ => None,
             },
             pitch_gain: options.rotor.pitch_gain,
-            swing_rate: match setting.sense {
-                Sense::CounterClockwise => setting.rate,
-                Sense::Clockwise => -setting.rate,
+            swing_rate: match settings.sense {
+                Sense::CounterClockwise => settings.rate,
+                Sense::Clockwise => -settings.rate,
             },
             pitch_azimuth_offset: options.rotor.pitch_azimuth_offset,
             reading_delay: options.rotor.reading_delay,
@@ -120,8 +124,8 @@ impl Rotor {
         }
     }
 
-    pub(super) fn start(&self) -> State {
-        State { wake: self.settled.clone() }
+    pub(super) fn start(&self) -> RotorModelState {
+        RotorModelState { wake: self.settled.clone() }
     }
 
     pub(super) fn memory(&self) -> Memory {
@@ -132,8 +136,8 @@ impl Rotor {
         self.n_blades
     }
 
-    /// How the rotor stood when the moments of `measurements` were made.
-    pub(super) fn posture(&self, measurements: &Measurements) -> Posture {
+    /// Rotor kinematics at the time of the moments of `measurements`, reading delay included.
+    pub(super) fn kinematics(&self, measurements: &Measurements) -> RotorKinematics {
         let azimuth = measurements.azimuth - self.reading_delay * measurements.rotor_speed;
         let untouched =
             self.pitch_gain == 1.0 && self.pitch_azimuth_offset == 0.0 && self.reading_delay == 0.0;
@@ -146,33 +150,33 @@ impl Rotor {
             let fixed = FixedFrame { average, tilt, yaw };
             to_blades(azimuth - self.pitch_azimuth_offset, fixed, self.n_blades)
         };
-        Posture { azimuth, rotor_speed: measurements.rotor_speed, pitch }
+        RotorKinematics { azimuth, rotor_speed: measurements.rotor_speed, pitch }
     }
 
-    /// Tilt and yaw of the wind (m/s) that the pitch of `posture` is about worth: the angle times the speed of the blades
-    /// where most of their moment is made.
-    pub(super) fn worth(&self, posture: &Posture) -> [f64; 2] {
-        let fixed = to_fixed_frame(posture.azimuth, &posture.pitch);
-        let speed = EFFECTIVE_RADIUS * self.radius * posture.rotor_speed;
+    /// Approximate wind equivalent of the pitch of `kinematics`, tilt and yaw (m/s): the angle times the blades' speed at the
+    /// effective radius.
+    pub(super) fn wind_equivalent_of_pitch(&self, kinematics: &RotorKinematics) -> [f64; 2] {
+        let fixed = to_fixed_frame(kinematics.azimuth, &kinematics.pitch);
+        let speed = EFFECTIVE_RADIUS * self.radius * kinematics.rotor_speed;
         [-speed * fixed.tilt, -speed * fixed.yaw]
     }
 
-    /// Finds the uniform wind (m/s) that makes the `mean_moment` (N m); on return `state` has come to rest in it.
+    /// Finds the uniform wind (m/s) that gives the `mean_moment` (N m); on return `state` is the steady wake in it.
     pub(super) fn settle(
         &self,
         mean_moment: f64,
-        posture: &Posture,
-        state: &mut State,
+        kinematics: &RotorKinematics,
+        state: &mut RotorModelState,
         memory: &mut Memory,
     ) -> f64 {
         let mut wind = NOMINAL_WIND;
         for _ in 0..N_SETTLING {
             let fixed = FixedFrame { average: wind, ..FixedFrame::default() };
-            self.move_wake(SETTLING, fixed, posture, state, memory);
-            let expected = self.still(fixed, posture, state, memory);
+            self.move_wake(SETTLING, fixed, kinematics, state, memory);
+            let expected = self.still(fixed, kinematics, state, memory);
             let moment = expected.moments.mean();
             let slope = expected.bend.apply(&expected.slopes).mean();
-            // The wake's answer makes the lasting slope smaller than the one at once.
+            // The wake's response makes the steady derivative smaller than the immediate one.
             if slope > 0.0 {
                 let change = CAUTION * (mean_moment - moment) / slope;
                 wind = (wind + change.clamp(-1.0, 1.0)).clamp(WINDS[0], WINDS[1]);
@@ -181,60 +185,60 @@ impl Rotor {
         wind
     }
 
-    /// On return `state` has come to rest in `wind` (m/s).
+    /// On return `state` is the steady wake in `wind` (m/s).
     pub(super) fn rest(
         &self,
         wind: FixedFrame,
-        posture: &Posture,
-        state: &mut State,
+        kinematics: &RotorKinematics,
+        state: &mut RotorModelState,
         memory: &mut Memory,
     ) {
         for _ in 0..N_SETTLING {
-            self.move_wake(SETTLING, wind, posture, state, memory);
+            self.move_wake(SETTLING, wind, kinematics, state, memory);
         }
     }
 
-    /// Moves `state` on by `interval` (s) to the instant of `posture`, at which the fixed frame's wind is `wind` (m/s);
-    /// gives what is expected of the blade roots.
+    /// Advances `state` by `interval` (s) to the instant of `kinematics`, at which the fixed frame's wind is `wind` (m/s); gives
+    /// the expected moments.
     pub(super) fn advance(
         &self,
         interval: f64,
         wind: FixedFrame,
-        posture: &Posture,
-        state: &mut State,
+        kinematics: &RotorKinematics,
+        state: &mut RotorModelState,
         memory: &mut Memory,
     ) -> Expected {
-        self.move_wake(interval, wind, posture, state, memory);
-        self.still(wind, posture, state, memory)
+        self.move_wake(interval, wind, kinematics, state, memory);
+        self.still(wind, kinematics, state, memory)
     }
 
-    /// Moments (N m) that `wind` (m/s) would make in the wake as it is, blades bending by `bend`.
+    /// Moments (N m) in `wind` (m/s) with the wake held, blades bending by `bend`.
     pub(super) fn moments_beside(
         &self,
         wind: FixedFrame,
-        posture: &Posture,
+        kinematics: &RotorKinematics,
         bend: &Bend,
         memory: &Memory,
-        state: &State,
+        state: &RotorModelState,
     ) -> PerBlade<f64> {
-        let conditions = self.conditions(wind, posture);
-        let weight = self.weight.moment(posture.rotor_speed);
+        let conditions = self.conditions(wind, kinematics);
+        let weight = self.weight.moment(kinematics.rotor_speed);
         let moments = self.blades.moments(&conditions, self.met(state, memory));
         bend.apply(&moments.map(|moment| moment + weight))
     }
 
-    /// What is expected in the wake as it is.
+    /// Expected moments with the wake held.
     fn still(
         &self,
         wind: FixedFrame,
-        posture: &Posture,
-        state: &State,
+        kinematics: &RotorKinematics,
+        state: &RotorModelState,
         memory: &Memory,
     ) -> Expected {
-        let conditions = self.conditions(wind, posture);
+        let conditions = self.conditions(wind, kinematics);
         let (moments, slopes) =
             self.blades.moments_with_slopes(&conditions, self.met(state, memory));
-        let Posture { azimuth, rotor_speed, .. } = *posture;
+        let RotorKinematics { azimuth, rotor_speed, .. } = *kinematics;
         let bend = match &self.flap {
             Some(flap) => {
                 flap.bend(rotor_speed + self.swing_rate, rotor_speed, azimuth, slopes.mean())
@@ -245,15 +249,15 @@ impl Rotor {
         Expected { moments: bend.apply(&moments.map(|moment| moment + weight)), slopes, bend }
     }
 
-    fn conditions(&self, wind: FixedFrame, posture: &Posture) -> Conditions {
+    fn conditions(&self, wind: FixedFrame, kinematics: &RotorKinematics) -> Conditions {
         Conditions {
-            winds: to_blades(posture.azimuth, wind, self.n_blades),
-            rotor_speed: posture.rotor_speed,
-            pitch: posture.pitch,
+            winds: to_blades(kinematics.azimuth, wind, self.n_blades),
+            rotor_speed: kinematics.rotor_speed,
+            pitch: kinematics.pitch,
         }
     }
 
-    fn met<'a>(&self, state: &'a State, memory: &'a Memory) -> &'a Wake {
+    fn met<'a>(&self, state: &'a RotorModelState, memory: &'a Memory) -> &'a Wake {
         if self.in_air.is_some() { &memory.met } else { &state.wake }
     }
 
@@ -261,22 +265,22 @@ impl Rotor {
         &self,
         interval: f64,
         wind: FixedFrame,
-        posture: &Posture,
-        state: &mut State,
+        kinematics: &RotorKinematics,
+        state: &mut RotorModelState,
         memory: &mut Memory,
     ) {
         if let Some(share) = self.in_air {
-            // Each sector answers to the wind where it stands, and to a blade pitched as one that passes there.
-            let pitch = to_fixed_frame(posture.azimuth, &posture.pitch);
+            // Each sector responds to the wind at its azimuth, and to a blade with the pitch of one that passes there.
+            let pitch = to_fixed_frame(kinematics.azimuth, &kinematics.pitch);
             let conditions = Conditions {
                 winds: to_blades(0.0, wind, self.n_blades),
-                rotor_speed: posture.rotor_speed,
+                rotor_speed: kinematics.rotor_speed,
                 pitch: to_blades(0.0, pitch, self.n_blades),
             };
             self.blades.advance(interval, &conditions, &mut state.wake);
-            self.blades.meet(&state.wake, posture.azimuth, share, &mut memory.met);
+            self.blades.meet(&state.wake, kinematics.azimuth, share, &mut memory.met);
         } else {
-            self.blades.advance(interval, &self.conditions(wind, posture), &mut state.wake);
+            self.blades.advance(interval, &self.conditions(wind, kinematics), &mut state.wake);
         }
     }
 }

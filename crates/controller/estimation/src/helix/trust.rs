@@ -1,24 +1,24 @@
-//! How far an estimate can be trusted: spread of its phases, steadiness of what it follows, size of what it leaves over.
+//! Confidence in an estimate: variance of its phases, coherence of the estimated wave, consistency of the innovation.
 
 use basis::FixedFrame;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Excitation periods over which the helix is picked out of the wind (–).
+/// Excitation periods over which the wind's component at the excitation rate is averaged (–).
 const PICKING: f64 = 1.0;
-/// Excitation periods over which its steadiness is judged (–).
+/// Excitation periods over which its coherence is judged (–).
 const JUDGING: f64 = 4.0;
 
-/// How far the phases can be trusted; all numbers from 0, not at all, to 1, fully.
+/// Confidence in the phases; all numbers from 0, none, to 1, full.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Trust {
-    /// exp(−σ²/2) of the less certain axis, σ² the variance of its phase by noise and by what the model may get wrong of the
-    /// rotor's own pitch (–): the length that the mean of a unit vector of that phase keeps.
+    /// exp(−σ²/2) of the less certain axis (–), σ² the variance of its phase by noise and by the model uncertainty of the pitch
+    /// response: the length of the mean unit vector of that phase.
     pub certainty: f64,
     /// How steadily the wind's component at the excitation rate keeps its phase against the excitation (–): near 1 for a
     /// helix, near 0 for turbulence alone.
     pub coherence: f64,
-    /// 1 while the innovations are as small as the filter believes, less as they grow (–).
+    /// 1 while the innovations have the predicted variance, less as they grow (–).
     pub consistency: f64,
 }
 
@@ -29,9 +29,9 @@ impl Trust {
     }
 }
 
-/// Running sums.
+/// Monitor of the confidence: running means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Watch {
+pub(super) struct TrustMonitor {
     /// Tilt's and yaw's component at the excitation rate: in phase and a quarter ahead (m/s), over one period.
     picked: [[f64; 2]; 2],
     picked_weight: f64,
@@ -44,10 +44,10 @@ pub(super) struct Watch {
     innovation_weight: f64,
 }
 
-impl Watch {
-    /// Takes in the `wind` (m/s) as the blades tell it now, lasting parts aside, at `angle` (rad) of an excitation of `rate`
-    /// (rad/s), an `interval` (s) after the last one.
-    pub(super) fn see(&mut self, interval: f64, rate: f64, angle: f64, wind: FixedFrame) {
+impl TrustMonitor {
+    /// Takes in the instantaneous `wind` (m/s), without constant parts, at `angle` (rad) of an excitation of `rate` (rad/s), an
+    /// `interval` (s) after the last one.
+    pub(super) fn observe(&mut self, interval: f64, rate: f64, angle: f64, wind: FixedFrame) {
         let period = TAU / rate;
         let (sine, cosine) = angle.sin_cos();
         let share = share(interval, PICKING * period);
@@ -76,7 +76,7 @@ impl Watch {
         lean(&mut self.innovation_weight, share, 1.0);
     }
 
-    /// Mean of the normalised innovation squared over an excitation period (–), one in a filter that knows its noise.
+    /// Mean of the normalised innovation squared over an excitation period (–), one where the filter's noise is right.
     pub(super) fn innovation(&self) -> f64 {
         if self.innovation_weight > 0.0 { self.innovation / self.innovation_weight } else { 1.0 }
     }
@@ -96,7 +96,7 @@ impl Watch {
         }
         let mean: f64 = self.mean.iter().flatten().map(|mean| mean * mean).sum();
         let steady = mean / (self.square * self.weight);
-        // What is left of noise alone, whose components forget themselves within the picking time.
+        // Expected value for noise alone, whose components are correlated over the averaging time.
         let chance = 1.0 / (1.0 + self.weight * JUDGING / PICKING);
         ((steady - chance) / (1.0 - chance)).clamp(0.0, 1.0)
     }

@@ -1,10 +1,10 @@
-//! Noise of the filter from records: measurement noise, wandering of the wave, and the scale that serves best.
+//! Noise of the filter from records: measurement noise, process noise intensity of the wave, and its best scale.
 //!
 //! Algorithm 1 of van Vondelen et al. (2025): the variance of high-passed moments, the variance of the derivative of the
 //! filtered true wave, and a factor on the latter found by trial against the truth. Pure functions on slices.
 
 use super::options::{Measurement, Options, positive};
-use super::{HelixEstimate, HelixEstimator, Setting};
+use super::{HelixEstimate, HelixEstimator, HelixSettings};
 use crate::{EstimationError, Estimator};
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use basis::{Measurements, Sense};
@@ -17,28 +17,28 @@ const UNEVEN: f64 = 0.01;
 /// Steps of the golden section.
 const N_REFINEMENTS: usize = 8;
 
-/// How a wave wanders, as variances per time.
+/// Process noise intensities of a wave: variances per time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wandering {
+pub struct ProcessNoise {
     /// Of the amplitude ((m/s)²/s).
     pub amplitude: f64,
     /// Of the phase (rad²/s).
     pub phase: f64,
 }
 
-/// What tuning came to.
+/// Result of tuning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuned {
-    /// Options with the noise that served best.
+    /// Options with the best noise.
     pub options: Options,
-    /// Factor on the wandering of the wave that served best (–).
+    /// Best factor on the process noise intensity of the wave (–).
     pub scale: f64,
-    /// Root-mean-square phase error of tilt and yaw together with it (rad).
+    /// Root-mean-square phase error of tilt and yaw together with these options (rad).
     pub error: f64,
 }
 
 /// # Errors
-/// [`EstimationError`] when `record` is not sampled every `interval` (s) without a gap, or an azimuth is no number.
+/// [`EstimationError`] when `record` is not sampled every `interval` (s) without a gap, or an azimuth is not a number.
 pub fn check_record(record: &[Measurements], interval: f64) -> Result<(), EstimationError> {
     positive("sampling interval (s)", interval)?;
     if record.len() < 2 {
@@ -161,18 +161,18 @@ fn moving_mean(column: &[f64], n: usize) -> Vec<f64> {
     means
 }
 
-/// How amplitude and phase of a helix wander, from the true fixed-frame winds `tilt` and `yaw` (m/s) sampled every
-/// `interval` (s) from `start` (s) on: Algorithm 1, step 2. Variances of the derivatives times the interval, which are the
+/// Process noise intensities of amplitude and phase of a helix, from the true fixed-frame winds `tilt` and `yaw` (m/s) sampled
+/// every `interval` (s) from `start` (s) on: Algorithm 1, step 2. Variances of the derivatives times the interval, which are the
 /// variances per time of a walk with such steps.
 ///
 /// # Errors
 /// Those of [`wave`], and columns of different length.
-pub fn wandering(
+pub fn process_noise(
     [tilt, yaw]: [&[f64]; 2],
     start: f64,
     interval: f64,
     rate: f64,
-) -> Result<Wandering, EstimationError> {
+) -> Result<ProcessNoise, EstimationError> {
     if tilt.len() != yaw.len() {
         let (found, expected) = (yaw.len(), tilt.len());
         return Err(EstimationError::Length { name: "the true yaw wind", found, expected });
@@ -186,14 +186,14 @@ pub fn wandering(
         }
     }
     let [amplitude, phase] = sums;
-    Ok(Wandering { amplitude, phase })
+    Ok(ProcessNoise { amplitude, phase })
 }
 
 /// True phases φ_tilt and φ_yaw (rad, [0, 2π)) at each sample of the true winds, as [`wave`] gives them; the yaw's without
 /// the lead of its `sense`. The first and last period repeat their neighbours.
 ///
 /// # Errors
-/// Those of [`wandering`].
+/// Those of [`process_noise`].
 pub fn true_phases(
     [tilt, yaw]: [&[f64]; 2],
     start: f64,
@@ -216,7 +216,7 @@ pub fn true_phases(
         .collect())
 }
 
-/// What `estimator` makes of `record`, one estimate a sample.
+/// Estimates of `estimator` on `record`, one for each sample.
 ///
 /// # Errors
 /// Those of [`check_record`].
@@ -271,23 +271,23 @@ pub fn best_scale(range: [f64; 2], mut cost: impl FnMut(f64) -> f64) -> (f64, f6
 }
 
 /// Algorithm 1 whole: measurement noise from the `record`'s moments above twice the excitation rate in the fixed frame's
-/// tilt, wandering from the `truth` (tilt and yaw wind, m/s, sample by sample), its scale by trial.
+/// tilt, process noise intensity from the `truth` (tilt and yaw wind, m/s, sample by sample), its scale by trial.
 ///
 /// # Errors
 /// [`EstimationError`] for a record that is uneven, too short, or of another length than the truth.
 pub fn tune(
     definition: &Arc<Definition>,
-    setting: &Setting,
+    settings: &HelixSettings,
     options: Options,
     record: &[Measurements],
     truth: [&[f64]; 2],
 ) -> Result<Tuned, EstimationError> {
-    check_record(record, setting.interval)?;
+    check_record(record, settings.interval)?;
     if truth[0].len() != record.len() {
         let (found, expected) = (truth[0].len(), record.len());
         return Err(EstimationError::Length { name: "the true tilt wind", found, expected });
     }
-    let (start, interval, rate) = (record[0].time, setting.interval, setting.rate);
+    let (start, interval, rate) = (record[0].time, settings.interval, settings.rate);
     let tilt: Vec<f64> = record
         .iter()
         .map(|read| basis::mbc::to_fixed_frame(read.azimuth, &read.flap_moments).tilt)
@@ -295,8 +295,8 @@ pub fn tune(
     // Noise of one blade from that of the tilt component, which is √(2/n) times it.
     let share = 0.5 * definition.n_blades as f64;
     let moment = (share * high_passed_variance(&tilt, interval, 2.0 * rate)?).sqrt();
-    let found = wandering(truth, start, interval, rate)?;
-    let phases = true_phases(truth, start, interval, rate, setting.sense)?;
+    let found = process_noise(truth, start, interval, rate)?;
+    let phases = true_phases(truth, start, interval, rate, settings.sense)?;
     let settled = (3.0 * TAU / rate / interval).round() as usize;
     if record.len() <= settled {
         let (n_samples, needed) = (record.len(), settled + 1);
@@ -310,9 +310,9 @@ pub fn tune(
         tuned.noise.phase = (scale * found.phase).max(f64::MIN_POSITIVE);
         tuned
     };
-    HelixEstimator::new(definition, setting, with(1.0))?;
+    HelixEstimator::new(definition, settings, with(1.0))?;
     let (scale, error) = best_scale([1e-3, 1e3], |scale| {
-        let Ok(mut estimator) = HelixEstimator::new(definition, setting, with(scale)) else {
+        let Ok(mut estimator) = HelixEstimator::new(definition, settings, with(scale)) else {
             return f64::INFINITY;
         };
         let estimates: Vec<_> = record.iter().map(|read| estimator.update(read)).collect();
@@ -353,7 +353,7 @@ mod tests {
 
     /// A walk of the phase comes back as its variance per time, less what one period's mean smooths away.
     #[test]
-    fn a_wave_tells_amplitude_phase_and_how_they_wander() {
+    fn a_wave_gives_amplitude_phase_and_their_process_noise() {
         let (rate, interval) = (TAU / 100.0, 0.5);
         let signal: Vec<f64> = (0..4000)
             .map(|k| 3.0 + 0.8 * (rate * (7.0 + interval * f64::from(k)) + 1.2).sin())
@@ -361,12 +361,12 @@ mod tests {
         let (amplitudes, phases) = wave(&signal, 7.0, interval, rate).unwrap();
         assert!(amplitudes.iter().all(|amplitude| (amplitude - 0.8).abs() < 1e-9));
         assert!(phases.iter().all(|phase| (phase - 1.2).abs() < 1e-9));
-        let found = wandering([&signal, &signal], 7.0, interval, rate).unwrap();
+        let found = process_noise([&signal, &signal], 7.0, interval, rate).unwrap();
         assert!(found.amplitude < 1e-18 && found.phase < 1e-18);
         // A phase that runs ahead steadily has the variance of its steps.
         let ahead: Vec<f64> =
             (0..4000).map(|k| (1.01 * rate * interval * f64::from(k)).sin()).collect();
-        let found = wandering([&ahead, &ahead], 0.0, interval, rate).unwrap();
+        let found = process_noise([&ahead, &ahead], 0.0, interval, rate).unwrap();
         let expected = (0.01 * rate).powi(2) * interval;
         assert!((found.phase / expected - 1.0).abs() < 0.1, "{} {expected}", found.phase);
     }

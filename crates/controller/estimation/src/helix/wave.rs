@@ -6,10 +6,10 @@ use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Variance of a phase of which nothing is known, uniform on the circle (rad²).
+/// Variance of an unknown phase, uniform on the circle (rad²).
 pub(super) const UNKNOWN_PHASE: f64 = PI * PI / 3.0;
 
-/// What the wave's states are.
+/// States of the wave.
 ///
 /// In every form the wind of a helix is, with the excitation's angle θ = ω_e t and the sense's lead λ of yaw over tilt
 /// (π/2 for ccw, −π/2 for cw),
@@ -26,8 +26,8 @@ pub enum Form {
     SharedAmplitude,
     /// An amplitude and a phase for each axis.
     SeparateAmplitudes,
-    /// A sine and a cosine component for each axis: the wind is linear in them, and a helix that fades leaves no phase
-    /// behind that is not there.
+    /// A sine and a cosine component for each axis: the wind is linear in them, and a helix that fades leaves no spurious
+    /// phase.
     Quadrature,
 }
 
@@ -40,7 +40,7 @@ pub struct Axis {
     pub amplitude_variance: f64,
     /// Phase φ against the excitation's angle ω_e t (rad, [0, 2π)).
     pub phase: f64,
-    /// Its variance (rad²), at most that of a phase of which nothing is known, π²/3.
+    /// Its variance (rad²), at most that of an unknown phase, π²/3.
     pub phase_variance: f64,
 }
 
@@ -86,7 +86,7 @@ impl Form {
         }
     }
 
-    /// Pairs of wave states that a round helix moves together.
+    /// Pairs of wave states that are equal in a round helix.
     pub(super) fn pairs(self) -> &'static [(usize, usize)] {
         match self {
             Self::SharedAmplitude => &[(1, 2)],
@@ -125,7 +125,7 @@ impl Form {
         }
     }
 
-    /// Tilt and yaw axis as `belief` holds them.
+    /// Tilt and yaw axis of `belief`.
     pub(super) fn axes(self, belief: &Belief) -> [Axis; 2] {
         let variance = |index: usize| belief.covariance[WAVE + index][WAVE + index];
         let state = |index: usize| belief.mean[WAVE + index];
@@ -197,7 +197,7 @@ mod tests {
     }
 
     proptest! {
-        /// All forms speak of the same wind, that of Eq. 20; turning ahead adds to its phase; the axes tell it.
+        /// All forms give the same wind, that of Eq. 20; turning ahead adds to its phase; the axes hold that phase.
         #[test]
         fn every_form_is_the_helix(amplitude in 0.1..3.0_f64, phase in -3.0..3.0_f64, angle in -20.0..20.0_f64) {
             for form in FORMS {

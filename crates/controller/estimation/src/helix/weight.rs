@@ -1,20 +1,21 @@
-//! What a blade's weight and its turning do at its root, beside the air: the same on all blades, and so worth wind.
+//! Root moments by gravity and centrifugal force: the same on all blades, and so equivalent to a change of the mean wind.
 //!
-//! The shaft leans, so a share of gravity pulls along it; the blades lean upwind, by precone and prebend, so turning pulls
-//! them flat. On a rotor of 15 MW both together are a fifth of the moment that the wind makes.
+//! The shaft is tilted, so that gravity has a component along it; the blades are coned and prebent upwind, so that centrifugal
+//! force straightens them. On a rotor of 15 MW both together are a fifth of the aerodynamic moment.
 //!
 //! ```text
 //! M = g sin τ ∫ μ s ds + Ω² ∫ μ r x ds        μ mass per length, s span from the root, r distance from the shaft,
 //!                                              x distance upwind of the root, τ tilt of the shaft, Ω rotor speed
 //! ```
 //!
-//! What gravity does in turning, once a revolution, is a lasting tilt or yaw of the moments, for which the filter has states.
+//! The part of gravity that varies once per revolution is a constant tilt or yaw of the moments, for which the filter has
+//! states.
 
 use super::flap::{between, mass_at};
 use turbine::Definition;
 use turbine::structure::GRAVITY;
 
-/// Points of the integrals over a blade.
+/// Points of the integrals over a blade (–).
 const N_POINTS: usize = 200;
 
 /// Integrals of a blade.
@@ -22,7 +23,7 @@ const N_POINTS: usize = 200;
 pub(super) struct Weight {
     /// Moment of gravity (N m).
     still: f64,
-    /// Moment of turning over the square of the rotor speed (kg m²).
+    /// Moment of centrifugal force over the square of the rotor speed (kg m²).
     turning: f64,
 }
 

@@ -1,42 +1,42 @@
-//! Whether an amplitude that control brings to a reference by what a generator tells of it comes to rest there.
+//! Stability of a loop that controls an amplitude, measured by a generator, to a reference.
 //!
-//! To a slow change of amplitude a generator is a lag τ (see [`Kind::lag`](super::Kind::lag) over the rate). With proportional
-//! and integral action P and I, and a delay T until what is added stands in the signal,
+//! For a slow change of amplitude a generator is a lag τ (see [`Kind::lag`](super::Kind::lag) over the rate). With proportional
+//! and integral action P and I, and a delay T from the control action to the signal,
 //!
 //! ```text
 //! s (1 + τ s) + (P s + I) e^(−s T) = 0 ,    at the border, s = jν:   P + cos νT = τν sin νT ,   I = ν (τν cos νT + sin νT)
 //! ```
 //!
-//! which without delay is stable for every I. This promises too much where I or 1/T comes near the rate itself: the signals
-//! of a disturbed generator breathe at twice the rate. So the loop itself is asked, with the phase in lock.
+//! which without delay is stable for every I. This is too optimistic where I or 1/T comes near the rate itself: the signals
+//! of a disturbed generator pulsate at twice the rate. So the loop itself is simulated, with the phase in lock.
 
 use super::PhaseLockedError;
 use super::generator::Generator;
 use super::oscillator::Pole;
-use super::single::Settings;
-use super::whole::settled;
+use super::single::PhaseLockedSettings;
+use super::stability::settled;
 use std::f64::consts::{PI, TAU};
 
-/// Samples a period.
+/// Samples per period (–).
 const N_SAMPLES: i32 = 200;
-/// Periods from which errors are compared with those of as many periods later, and the end.
+/// Periods at which the early and the late window of the errors begin, and at which the simulation ends (–).
 const EARLY: i32 = 10;
 const LATE: i32 = 25;
 const END: i32 = 40;
-/// First push, and the error that has run away from it, over the amplitude (–).
+/// Initial disturbance, and the error that counts as diverged, over the amplitude (–).
 const PUSH: f64 = 1e-6;
 const AWAY: f64 = 1.0;
 
-/// Proportional and integral action on the amplitude that a generator tells, whose sum joins the signal in phase.
+/// Proportional and integral action on the amplitude measured by a generator; their sum is added to the signal in phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmplitudeLoop {
-    /// Integral action: amplitude added per time and amplitude missing (1/s).
+    /// Integral action: amplitude added per time and amplitude error (1/s).
     pub integral: f64,
-    /// Proportional action: amplitude added per amplitude missing (–).
+    /// Proportional action: amplitude added per amplitude error (–).
     pub proportional: f64,
-    /// Time until what is asked for stands in the signal (s); below zero it is there at once.
+    /// Delay from the control action to the signal (s); none below zero.
     pub delay: f64,
-    /// Whether what is asked for is taken off the signal before the generator sees it, and counted apart.
+    /// Whether the control action is subtracted from the signal before the generator, and counted separately.
     pub is_taken_off: bool,
 }
 
@@ -44,9 +44,9 @@ impl AmplitudeLoop {
     /// Checks the loop around the generator of `signal`, whose rates are sound, at the lowest and the highest of them.
     ///
     /// # Errors
-    /// [`PhaseLockedError::AmplitudeUnstable`] with the pole that is and the integral action that would do; those of
+    /// [`PhaseLockedError::AmplitudeUnstable`] with the unstable pole and the largest stable integral action; those of
     /// [`Generator::new`].
-    pub fn check(&self, signal: &Settings) -> Result<(), PhaseLockedError> {
+    pub fn check(&self, signal: &PhaseLockedSettings) -> Result<(), PhaseLockedError> {
         let generator = settled(&Generator::new(signal.generator, signal.damping)?, N_SAMPLES);
         for rate in signal.follower.rates {
             let pole = self.pole(&generator, rate);
@@ -58,26 +58,26 @@ impl AmplitudeLoop {
         Ok(())
     }
 
-    /// Growth and turning of a small error of the amplitude of a tone of `rate` (rad/s) that `generator` has settled on.
+    /// Growth and frequency of a small amplitude error about a tone of `rate` (rad/s) that `generator` has settled on.
     fn pole(&self, generator: &Generator, rate: f64) -> Pole {
         let turned = TAU / f64::from(N_SAMPLES);
         let interval = turned / rate;
         let mut generator = *generator;
-        // What is asked for now is there at the next sample at the earliest; beyond the end nothing comes back.
+        // An action takes effect at the next sample at the earliest; a delay beyond the end has no effect.
         let n_late = (self.delay.max(0.0) / interval).min(f64::from(END * N_SAMPLES)).round();
-        let mut asked = vec![0.0; n_late as usize + 1];
+        let mut delayed = vec![0.0; n_late as usize + 1];
         let (mut integral, mut sum) = (PUSH, 0.0);
         let (mut early, mut late, mut before) = (0.0_f64, 0.0_f64, 0.0);
         let mut crossings = Crossings::default();
         for step in 1..=END * N_SAMPLES {
-            let place = step as usize % asked.len();
+            let place = step as usize % delayed.len();
             let own = if self.is_taken_off { sum } else { 0.0 };
-            let amplitude = 1.0 + asked[place] - own;
+            let amplitude = 1.0 + delayed[place] - own;
             generator.update(turned, amplitude * (turned * f64::from(step)).sin());
             let error = 1.0 - generator.amplitude() - own;
             integral += self.integral * interval * error;
             sum = integral + self.proportional * error;
-            asked[place] = sum;
+            delayed[place] = sum;
             if error * before < 0.0 {
                 crossings.add(step);
             }
@@ -99,11 +99,11 @@ impl AmplitudeLoop {
         Pole { real, imaginary: crossings.rate() / interval }
     }
 
-    /// Integral action (1/s), below this loop's own, up to which it is stable at `rate` (rad/s); zero where none is.
+    /// Largest stable integral action (1/s) at `rate` (rad/s), below this loop's own; zero where none is stable.
     fn border(&self, generator: &Generator, rate: f64) -> f64 {
         let is_stable = |integral: f64| Self { integral, ..*self }.pole(generator, rate).real < 0.0;
         let part = |n: i32| self.integral * f64::from(n) / 32.0;
-        // From below, since beyond the first gains that are unstable there may be some that are not.
+        // From below, since beyond the first unstable gain there may be stable ones again.
         let first = (1..32).find(|&n| !is_stable(part(n))).unwrap_or(32);
         let (mut low, mut high) = (part(first - 1), part(first));
         for _ in 0..20 {
@@ -118,7 +118,7 @@ impl AmplitudeLoop {
     }
 }
 
-/// When an error passes through zero, by steps.
+/// Zero crossings of an error, by steps.
 #[derive(Default)]
 struct Crossings {
     first: Option<i32>,
@@ -163,12 +163,12 @@ mod tests {
         [low, low * (lag * low * cosine + sine)]
     }
 
-    fn signal(generator: Kind) -> Settings {
-        Settings { generator, ..Settings::between([RATE, 1.01 * RATE]) }
+    fn signal(generator: Kind) -> PhaseLockedSettings {
+        PhaseLockedSettings { generator, ..PhaseLockedSettings::between([RATE, 1.01 * RATE]) }
     }
 
-    /// With a delay of three periods everything is slow against the rate, and the lag is all that a generator is: borders
-    /// within 3 % of the closed form, the pole that crosses it within 5 % of ν.
+    /// With a delay of three periods everything is slow against the rate, and a generator is a pure lag: borders within 3 % of
+    /// the closed form, the frequency of the pole that crosses within 5 % of ν.
     #[test]
     fn the_border_is_that_of_the_closed_form_where_the_delay_is_long() {
         for kind in [Kind::Second, Kind::extended(SQRT_2, 1.0).unwrap(), Kind::Mixed] {
@@ -181,20 +181,20 @@ mod tests {
             };
             assert_eq!(with(0.95).check(&signal(kind)), Ok(()));
             let refused = with(1.05).check(&signal(kind));
-            let Err(PhaseLockedError::AmplitudeUnstable { pole, rate, largest: told, .. }) =
+            let Err(PhaseLockedError::AmplitudeUnstable { pole, rate, largest: found, .. }) =
                 refused
             else {
                 panic!("{kind:?}: {refused:?}")
             };
             assert_eq!(rate, RATE);
             assert!(pole.real > 0.0 && (pole.imaginary / turning - 1.0).abs() < 0.05, "{pole}");
-            assert!((told / largest - 1.0).abs() < 0.03, "{kind:?}: {told} {largest}");
+            assert!((found / largest - 1.0).abs() < 0.03, "{kind:?}: {found} {largest}");
         }
     }
 
-    /// Without delay the closed form knows no border; the second-order generator has one near its own rate, the mixed one none.
+    /// Without delay the closed form has no border; the second-order generator has one near its own rate, the mixed one none.
     #[test]
-    fn what_breathes_is_refused_although_the_closed_form_allows_it() {
+    fn pulsation_is_refused_although_the_closed_form_allows_it() {
         let at_once = AmplitudeLoop {
             integral: 2.0 * RATE,
             proportional: 0.0,
@@ -213,9 +213,9 @@ mod tests {
         assert_eq!(at_once.check(&signal(Kind::Mixed)), Ok(()));
     }
 
-    /// What is taken off first and counted apart closes its loop at once: stable for proportional action below one.
+    /// Subtracted before the generator, the control action acts at once: stable for proportional action below one.
     #[test]
-    fn what_is_taken_off_first_is_stable_up_to_a_proportional_action_of_one() {
+    fn a_subtracted_control_action_is_stable_up_to_a_proportional_action_of_one() {
         let with = |proportional: f64| {
             AmplitudeLoop { integral: 0.1 * RATE, proportional, delay: 0.0, is_taken_off: true }
                 .check(&signal(Kind::Mixed))

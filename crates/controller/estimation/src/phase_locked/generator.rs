@@ -1,4 +1,4 @@
-//! Generators of quadrature signals: a slow oscillation and the same a quarter period later, its offset apart.
+//! Quadrature signal generators: a slow oscillation and the same a quarter period later, without its offset.
 //!
 //! All are linear with every integrator running at the centre rate ω, so that a state x of an input u obeys
 //!
@@ -13,11 +13,11 @@
 //! behind, is x₂, in the mixed one x₂ − x₃; the offset is x₃, in the mixed one x₃/k.
 //! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, Eqs..
 //!
-//! # How they move on
+//! # Discretisation
 //!
 //! By the trapezoidal rule with 2 tan(φ/2) in place of φ = ω × interval. Three things follow. A sine at the centre passes
 //! with gain one and without delay *exactly*, whatever the interval, and while the centre moves too: what is left of the
-//! equations in lock is a rotation, and its Cayley transform with tan(φ/2) turns by φ. The gains of a constant are exact as
+//! equations in lock is a rotation, and its Cayley transform with tan(φ/2) turns by φ. The gains for a constant are exact as
 //! well. And however the centre moves, the filter stays stable: each step multiplies the state by a rational function of the
 //! one matrix A, these functions commute, and each maps the left half plane into the unit disk. (The exponential of φ A has
 //! the last property, not the first two: with the input interpolated linearly its gain at the centre is φ²/12 short.)
@@ -25,25 +25,25 @@
 use super::PhaseLockedError;
 use serde::{Deserialize, Serialize};
 
-/// Magnitude (any unit) from which a sample is taken for no number: beyond, squares overflow.
+/// Magnitude (any unit) from which a sample is unusable: beyond, squares overflow.
 const TOO_LARGE: f64 = 1e150;
 
-/// Whether `sample` (any unit) is a number to calculate with.
-pub(super) fn tells(sample: f64) -> bool {
+/// Whether `sample` (any unit) is a usable number.
+pub(super) fn is_usable(sample: f64) -> bool {
     sample.abs() < TOO_LARGE
 }
 
-/// Which integrators make the generator.
+/// Structure of the generator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Kind {
-    /// Second-order generalised integrator (SOGI): knows no offset, which disturbs its quadrature signal.
+    /// Second-order generalised integrator (SOGI): does not estimate the offset, which disturbs its quadrature signal.
     Second,
-    /// Extended by a third integrator that takes the offset away from the input (ESOGI).
+    /// Extended by a third integrator that removes the offset from the input (ESOGI).
     Extended {
         /// Gain of the offset's integrator (–), see [`dc_gain`].
         dc_gain: f64,
     },
-    /// Mixed with a third-order branch that takes the offset away from the quadrature signal (MSTOGI).
+    /// Mixed second- and third-order (MSTOGI): a third-order branch removes the offset from the quadrature signal.
     Mixed,
 }
 
@@ -56,7 +56,7 @@ impl Kind {
         Ok(Self::Extended { dc_gain: dc_gain(damping, pole_ratio)? })
     }
 
-    /// Delay of a slow change of phase, times the centre rate (rad).
+    /// Lag of a slow change of phase, times the centre rate (rad).
     ///
     /// Group delay of the two signals at the centre, averaged: 2/k of all, and half a radian more where the quadrature
     /// signal passes an all-pass. It is the time constant τ of Eqs. 2-25 and 2-30.
@@ -67,7 +67,7 @@ impl Kind {
 
 /// Gain κ (–) of the extended generator's offset that puts its real pole at −m α beside the pair −α ± jβ.
 ///
-/// `damping` is k (–), `pole_ratio` is m (–): 1 lets offset and oscillation settle alike, less makes the offset the slower.
+/// `damping` is k (–), `pole_ratio` is m (–): with 1 offset and oscillation settle alike, with less the offset is slower.
 /// Source: van Veldhoven (2024), Eqs. 2-12 to 2-14: the positive root of
 /// κ³ + 3 k κ² + (3 k² + ((m+2)/m)²) κ + k³ − (m+2)² k / (2 m) = 0, which rises with κ and so has one at most.
 ///
@@ -102,19 +102,19 @@ pub fn dc_gain(damping: f64, pole_ratio: f64) -> Result<f64, PhaseLockedError> {
     Ok(gain)
 }
 
-/// A generator in motion; serialises whole.
+/// A generator with its state; serialises whole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Generator {
     kind: Kind,
     damping: f64,
     /// x₁, x₂, x₃ in the unit of the samples.
     state: [f64; 3],
-    /// Sample before; nothing before the first.
+    /// Previous sample; none before the first.
     last: Option<f64>,
 }
 
 impl Generator {
-    /// A generator of `kind` with `damping` k (–) that has seen nothing.
+    /// A generator of `kind` with `damping` k (–), before the first sample.
     ///
     /// # Errors
     /// [`PhaseLockedError::Damping`] unless 0 < k < 2, beyond which a real pole slows it down;
@@ -133,10 +133,10 @@ impl Generator {
 
     /// Takes in `sample` (any unit), the centre having turned by `turned` (rad, below π) since the sample before.
     ///
-    /// The first sample is taken for the offset, so that a large one makes no transient. A sample that is no number is
-    /// replaced by what the generator expects: it turns on undisturbed and gives false.
+    /// The first sample is taken as the offset, so that a large one causes no transient. An unusable sample is replaced by
+    /// the expected one: the generator turns on undisturbed, and the result is false.
     pub fn update(&mut self, turned: f64, sample: f64) -> bool {
-        if !tells(sample) {
+        if !is_usable(sample) {
             self.coast(turned);
             return false;
         }
@@ -183,7 +183,7 @@ impl Generator {
         }
     }
 
-    /// The oscillation A sin θ, its offset apart (unit of the samples).
+    /// The oscillation A sin θ without its offset (unit of the samples).
     pub fn in_phase(&self) -> f64 {
         self.state[0]
     }
@@ -196,7 +196,7 @@ impl Generator {
         }
     }
 
-    /// Offset b (unit of the samples); zero from the second-order generator, which knows none.
+    /// Offset b (unit of the samples); zero from the second-order generator, which does not estimate it.
     pub fn offset(&self) -> f64 {
         match self.kind {
             Kind::Second => 0.0,
@@ -210,7 +210,7 @@ impl Generator {
         self.in_phase().hypot(self.quadrature())
     }
 
-    /// What of the last sample is neither oscillation nor offset (unit of the samples).
+    /// Residual: the last sample without oscillation and offset (unit of the samples).
     pub fn residual(&self) -> f64 {
         self.last.map_or(0.0, |last| last - self.in_phase() - self.offset())
     }

@@ -1,18 +1,18 @@
-//! Whether a loop has locked: small phase error, and an oscillation that stands out of the rest.
+//! Lock detection: small phase error, and an oscillation that is large against the residual.
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Root mean square of the phase error below which a loop locks (rad). What is done in phase with an oscillation that wanders
-/// by so much (normally distributed) still does exp(−σ²/2) = 78 % of its work.
+/// Root mean square of the phase error below which a loop locks (rad). An action with a phase error of this standard deviation
+/// (normally distributed) still has exp(−σ²/2) = 78 % of its effect.
 const LOCKS_BELOW: f64 = 0.7;
-/// Root mean square of the phase error above which it has lost the lock (rad): below half of the work. A loop with nothing to
-/// follow, whose error is anywhere, has 2 to 4 rad.
+/// Root mean square of the phase error above which it has lost the lock (rad): below half of the effect. A loop without an
+/// oscillation to follow has 2 to 4 rad.
 const LOSES_ABOVE: f64 = 1.2;
-/// Least power of the oscillation, A²/2, over that of what is neither oscillation nor offset (–); half of it loses the lock.
+/// Least power of the oscillation, A²/2, over that of the residual (–); half of it loses the lock.
 const LEAST_POWER_RATIO: f64 = 0.5;
 
-/// Phase (rad) over which missing samples on end are bridged; then nothing is believed any more.
+/// Phase (rad) over which missing samples in a row are bridged; beyond it the lock is lost.
 const BRIDGED: f64 = 0.5 * TAU;
 
 /// Lock detection; means are exponential over one period of the oscillation.
@@ -60,7 +60,7 @@ impl Lock {
         if self.locked && !holds {
             self.turned = 0.0;
         }
-        // A lock counts from one period on, when the means have something to say.
+        // No lock in the first period, before the means are meaningful.
         self.locked = holds && (self.locked || self.turned > TAU);
     }
 

@@ -1,4 +1,4 @@
-//! Phase-locked loops: frequency, phase, amplitude and offset of a slow, wandering oscillation such as a wake's meandering.
+//! Phase-locked loops: frequency, phase, amplitude and offset of a slow, irregular oscillation such as wake meandering.
 //!
 //! ```text
 //!            ┌───────────┐ A sin θ   ┌─────────────┐ θ̃  ┌─────────────┐
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! [`PhaseLockedLoop`] follows one signal, [`TwoAxisLoop`] a rotor's tilt and yaw moments as an [`Estimator`](crate::Estimator);
-//! [`follow`] takes a whole record. `docs/phase-locked-loops.md` has the theory.
+//! [`follow`] follows a whole record. `docs/phase-locked-loops.md` has the theory.
 //!
 //! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, chapter 2.
 
@@ -21,23 +21,23 @@ mod lock;
 mod oscillator;
 mod record;
 mod single;
+mod stability;
 mod transfer;
 mod two_axis;
-mod whole;
 
 pub use amplitude::AmplitudeLoop;
 pub use generator::{Generator, Kind, dc_gain};
 pub use oscillator::{Gains, LoopSettings, Order, Oscillator, Pole};
 pub use record::{FEWEST_PERIODS, follow};
-pub use single::{Estimate, PhaseLockedLoop, Settings};
+pub use single::{Estimate, PhaseLockedLoop, PhaseLockedSettings};
 pub use transfer::{Response, Transfer, transfer};
 pub use two_axis::{Axis, Leader, TwoAxisEstimate, TwoAxisLoop, TwoAxisSettings};
 
-/// What keeps a phase-locked loop from being built, or a record from being followed.
+/// Why a phase-locked loop cannot be made, or a record cannot be followed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PhaseLockedError {
     /// Rates do not span a range above zero.
-    #[error("rates from {lowest} to {highest} rad/s do not make a range above zero")]
+    #[error("rates from {lowest} to {highest} rad/s are not a range above zero")]
     Rates {
         /// Lowest rate (rad/s).
         lowest: f64,
@@ -46,32 +46,32 @@ pub enum PhaseLockedError {
     },
     /// Too few samples a period.
     #[error(
-        "samples every {interval} s are too far apart for the highest rate; at most {longest:.3} s will do"
+        "samples every {interval} s are too far apart for the highest rate; the interval can be {longest:.3} s at most"
     )]
     Interval {
-        /// Interval asked for (s).
+        /// Interval given (s).
         interval: f64,
-        /// Longest that will do (s).
+        /// Longest possible interval (s).
         longest: f64,
     },
     /// Damping of a generator out of range.
-    #[error("damping {damping} of the generator does not lie between 0 and {most:.4}")]
+    #[error("damping {damping} of the generator is not between 0 and {most:.4}")]
     Damping {
-        /// Damping asked for (–).
+        /// Damping given (–).
         damping: f64,
-        /// Where the range ends (–).
+        /// Upper end of the range (–).
         most: f64,
     },
     /// Ratio of poles out of range.
     #[error("ratio {pole_ratio} of the offset's pole to the oscillation's is not positive")]
     PoleRatio {
-        /// Ratio asked for (–).
+        /// Ratio given (–).
         pole_ratio: f64,
     },
     /// Gain of the offset out of range.
     #[error("gain {dc_gain} of the generator's offset is not positive")]
     DcGain {
-        /// Gain asked for (–).
+        /// Gain given (–).
         dc_gain: f64,
     },
     /// A number of the loop out of range.
@@ -79,35 +79,35 @@ pub enum PhaseLockedError {
     LoopSetting {
         /// Which number, with its unit.
         name: &'static str,
-        /// What it is (unit as in `name`).
+        /// Its value (unit as in `name`).
         value: f64,
     },
-    /// Gains with which errors grow.
+    /// Unstable gains.
     #[error(
         "the loop is unstable at {rate:.4} rad/s: a pole at {pole}; lower its natural rate or raise its damping"
     )]
     Unstable {
-        /// The pole furthest to the right.
+        /// The rightmost pole.
         pole: Pole,
-        /// Rate at which it stands there (rad/s).
+        /// Rate of the oscillation at which it is unstable (rad/s).
         rate: f64,
     },
-    /// Control of the amplitude with which errors grow.
+    /// Unstable control of the amplitude.
     #[error(
         "the amplitude loop is unstable at {rate:.4} rad/s: a pole at {pole} with an integral gain of {integral} 1/s; it is stable up to {largest:.4} 1/s"
     )]
     AmplitudeUnstable {
-        /// The pole, as an error of the amplitude moves.
+        /// The pole of an amplitude error.
         pole: Pole,
-        /// Rate at which it stands there (rad/s).
+        /// Rate of the oscillation at which it is unstable (rad/s).
         rate: f64,
-        /// Integral gain asked for (1/s).
+        /// Integral gain given (1/s).
         integral: f64,
-        /// Up to which it is stable at that rate (1/s); zero where the proportional gain alone is too large.
+        /// Largest stable integral gain at that rate (1/s); zero where the proportional gain alone is too large.
         largest: f64,
     },
     /// Too few samples to follow anything.
-    #[error("{n_samples} samples are too few, {needed} make three periods of the lowest rate")]
+    #[error("{n_samples} samples are too few; three periods of the lowest rate are {needed}")]
     TooShort {
         /// Samples given (–).
         n_samples: usize,
@@ -115,7 +115,7 @@ pub enum PhaseLockedError {
         needed: usize,
     },
     /// Nothing to follow.
-    #[error("none of the {n_samples} samples differs from the others")]
+    #[error("the {n_samples} samples are all equal: there is no oscillation to follow")]
     Constant {
         /// Samples given (–).
         n_samples: usize,

@@ -3,18 +3,18 @@
 //! Symbols of van Veldhoven (2024), §2-3: θ phase of the input, θ̂ of the oscillator, θ̃ = θ − θ̂; k_p, k_i, k_a gains.
 //!
 //! The oscillator turns at ω̂ = k_p e + ∫(k_i e + ∫k_a e), with the phase error e = 2 tan(θ̃/2) (Eq. 2-21, doubled so that
-//! small errors pass with gain one and the gains mean what they say). It rises without bound towards half a turn, so that no
-//! second equilibrium stands there, and depends on no amplitude.
+//! small errors pass with gain one and the gains have their usual meaning). It rises without bound towards half a turn, so that
+//! there is no second equilibrium, and it does not depend on the amplitude.
 //!
-//! A loop with k_p and k_i alone (type 2) follows a frequency ramp at a constant distance e = ω̇/k_i. The quasi-type-2 loop
-//! adds the whole of θ̃ to the phase that it gives out, not to the one that it compares with: then
+//! A loop with k_p and k_i alone (type 2) follows a frequency ramp with a constant error e = ω̇/k_i. The quasi-type-2 loop
+//! adds the whole of θ̃ to its output phase, not to the phase in the comparison: then
 //!
 //! ```text
 //! θ_out/θ = F + (1 − F) θ̂/θ ,   θ̂/θ = F L/(s + F L) ,   L = k_p + k_i/s ,   F = 1/(1 + τ s)
 //! ```
 //!
-//! whose open loop is (s² + k_p s + k_i)/(τ s³), that of Eq. 2-30: type 3, at the price of type 2. Half of θ̃, which is what
-//! tan(θ̃/2) would add, leaves half of the distance.
+//! whose open loop is (s² + k_p s + k_i)/(τ s³), that of Eq. 2-30: type 3 with the gains of type 2. Half of θ̃, which
+//! tan(θ̃/2) would add, leaves half of the error.
 
 use super::PhaseLockedError;
 use super::complex::{Complex, roots};
@@ -23,10 +23,10 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::fmt;
 
-/// Largest phase error that the loop filter is given (rad), 2 tan at 143°: with steps in time the true one has no bound.
+/// Largest phase error in the loop filter (rad), 2 tan at 143°: in discrete time the true one has no bound.
 const LARGEST_ERROR: f64 = 6.0;
 
-/// Turn of the oscillator from one sample to the next (rad) beyond which the sample says nothing of what was between.
+/// Longest turn of the oscillator from one sample to the next (rad); beyond it the sample is not used.
 pub(super) const LONGEST_TURN: f64 = 1.0;
 
 /// Type of the loop.
@@ -34,7 +34,7 @@ pub(super) const LONGEST_TURN: f64 = 1.0;
 pub enum Order {
     /// Proportional and integral: lags behind a frequency ramp.
     Two,
-    /// The same, the phase error added to the phase given out: no error on a ramp.
+    /// The same with the phase error added to the output phase: no error on a ramp.
     #[default]
     QuasiTwo,
     /// Twice integral: no error on a ramp, slower and less stable.
@@ -71,7 +71,7 @@ impl Gains {
         }
     }
 
-    /// Rightmost pole of the loop closed over a generator that delays phase by `lag` τ (s), the root of
+    /// Rightmost pole of the loop closed over a generator with phase lag `lag` τ (s), the root of
     /// s³ (1 + τ s) + k_p s² + k_i s + k_a that decays least. Eqs. 2-26 and 2-29 for small errors.
     pub fn slowest_pole(&self, lag: f64) -> Pole {
         // In units of the lag, so that coefficients are of order one.
@@ -83,7 +83,7 @@ impl Gains {
         let rightmost = |roots: &[Complex]| {
             roots.iter().fold(roots[0], |most, root| if root.re > most.re { *root } else { most })
         };
-        // Without a double integral the integrator that is not there is left out.
+        // Without double integral action that integrator is left out.
         let root = if a == 0.0 {
             rightmost(&roots([i, p, 1.0]))
         } else {
@@ -98,7 +98,7 @@ impl Gains {
 pub struct Pole {
     /// Growth (1/s), negative where it decays.
     pub real: f64,
-    /// Rate of turning (rad/s).
+    /// Frequency (rad/s).
     pub imaginary: f64,
 }
 
@@ -108,7 +108,7 @@ impl fmt::Display for Pole {
     }
 }
 
-/// How a loop is built.
+/// Settings of the loop filter and oscillator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoopSettings {
     /// Type of the loop.
@@ -117,13 +117,13 @@ pub struct LoopSettings {
     pub natural_rate: f64,
     /// Damping ratio ξ (–), 1/√2 as a rule.
     pub damping_ratio: f64,
-    /// Lowest and highest rate (rad/s) that it may believe in.
+    /// Lowest and highest rate of the estimate (rad/s).
     pub rates: [f64; 2],
 }
 
 impl LoopSettings {
     /// A quasi-type-2 loop between `rates` (rad/s) that starts at their middle, with ξ = 1/√2 and ω_n 0.3 times the lowest
-    /// rate: two thirds of what would be unstable there with any generator of k = √2.
+    /// rate: two thirds of the stability limit there with any generator of k = √2.
     pub fn between(rates: [f64; 2]) -> Self {
         let natural_rate = 0.3 * rates[0];
         Self { order: Order::QuasiTwo, natural_rate, damping_ratio: FRAC_1_SQRT_2, rates }
@@ -139,11 +139,11 @@ impl LoopSettings {
         Gains::new(self.order, self.natural_rate, self.damping_ratio)
     }
 
-    /// Checks everything against a generator that delays phase by `lag` (rad) over its centre rate, at `interval` (s).
+    /// Checks the settings with a generator of phase lag `lag` (rad) over its centre rate, at `interval` (s).
     ///
     /// # Errors
     /// [`PhaseLockedError::Rates`], [`PhaseLockedError::Interval`], [`PhaseLockedError::LoopSetting`], and
-    /// [`PhaseLockedError::Unstable`] with the pole that is.
+    /// [`PhaseLockedError::Unstable`] with the unstable pole.
     pub fn check(&self, lag: f64, interval: f64) -> Result<(), PhaseLockedError> {
         let [lowest, highest] = self.rates;
         if !(lowest > 0.0 && highest > lowest && highest.is_finite()) {
@@ -170,7 +170,7 @@ impl LoopSettings {
     }
 }
 
-/// Oscillator and loop filter in motion; serialises whole.
+/// Oscillator and loop filter with their state; serialises whole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Oscillator {
     order: Order,
@@ -186,7 +186,7 @@ pub struct Oscillator {
     rate: f64,
     /// θ̃ (rad).
     error: f64,
-    /// Last interval that was a number (s), in place of one that is none.
+    /// Last valid interval (s), used in place of an invalid one.
     interval: f64,
 }
 
@@ -207,7 +207,7 @@ impl Oscillator {
         }
     }
 
-    /// Turns on by `interval` (s), or by the last one where this is no number or runs backwards; gives by how much (rad).
+    /// Turns on by `interval` (s), or by the last one where this is not a number or negative; gives the angle (rad).
     pub(super) fn turn(&mut self, interval: f64) -> f64 {
         if interval.is_finite() && interval >= 0.0 {
             self.interval = interval;
@@ -232,10 +232,10 @@ impl Oscillator {
         let error = (2.0 * (0.5 * self.error).tan()).clamp(-LARGEST_ERROR, LARGEST_ERROR);
         let [lowest, highest] = self.rates;
         let Gains { proportional, integral, double_integral } = self.gains;
-        let asked = self.integral + proportional * error;
-        self.rate = asked.clamp(lowest, highest);
-        // At a limit the integrals do not run on outwards.
-        let outwards = (asked - self.rate) * error > 0.0;
+        let target = self.integral + proportional * error;
+        self.rate = target.clamp(lowest, highest);
+        // Anti-windup: at a limit the integrals do not grow outwards.
+        let outwards = (target - self.rate) * error > 0.0;
         if !outwards {
             self.acceleration += double_integral * error * interval;
             let growth = integral * error + self.acceleration;
@@ -245,7 +245,7 @@ impl Oscillator {
         }
     }
 
-    /// Goes on without a sample, at the rate believed in.
+    /// Goes on without a sample, at the estimated rate.
     pub(super) fn coast(&mut self) {
         self.error = 0.0;
         self.rate = self.integral;

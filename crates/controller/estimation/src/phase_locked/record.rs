@@ -1,21 +1,21 @@
 //! A recorded signal, followed from end to end.
 
 use super::PhaseLockedError;
-use super::single::{Estimate, PhaseLockedLoop, Settings};
+use super::single::{Estimate, PhaseLockedLoop, PhaseLockedSettings};
 use std::f64::consts::TAU;
 
-/// Periods of the lowest rate that a record must hold: two for generator and loop to settle, one to be judged by.
+/// Least length of a record in periods of the lowest rate (–): two for generator and loop to settle, one for the estimate.
 pub const FEWEST_PERIODS: f64 = 3.0;
 
-/// Belief after each of `samples` (any unit, every `interval` s) of a signal that is looked for with `settings`.
+/// Estimate after each of `samples` (any unit, every `interval` s) of a signal followed with `settings`.
 ///
 /// # Errors
 /// [`PhaseLockedError::TooShort`] when the record has fewer than [`FEWEST_PERIODS`] periods of the lowest rate,
-/// [`PhaseLockedError::Constant`] when it does not move or has no numbers, and those of [`PhaseLockedLoop::new`].
+/// [`PhaseLockedError::Constant`] when it is constant or has no numbers, and those of [`PhaseLockedLoop::new`].
 pub fn follow(
     samples: &[f64],
     interval: f64,
-    settings: &Settings,
+    settings: &PhaseLockedSettings,
 ) -> Result<Vec<Estimate>, PhaseLockedError> {
     let mut follower = PhaseLockedLoop::new(settings, interval)?;
     let needed = (FEWEST_PERIODS * TAU / (settings.follower.rates[0] * interval)).ceil() as usize;

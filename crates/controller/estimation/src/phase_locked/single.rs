@@ -1,16 +1,16 @@
-//! One signal: generator, loop and lock together.
+//! Phase-locked loop for one signal: generator, loop filter, oscillator and lock detection.
 
 use super::PhaseLockedError;
 use super::generator::{Generator, Kind};
 use super::lock::Lock;
 use super::oscillator::{LONGEST_TURN, LoopSettings, Oscillator, Pole};
-use super::whole::growth;
+use super::stability::growth;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::SQRT_2;
 
-/// How a signal is followed.
+/// Settings of a phase-locked loop for one signal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Settings {
+pub struct PhaseLockedSettings {
     /// Generator of the two quadrature signals.
     pub generator: Kind,
     /// Damping k of the generator (–), √2 as a rule.
@@ -19,14 +19,14 @@ pub struct Settings {
     pub follower: LoopSettings,
 }
 
-impl Settings {
+impl PhaseLockedSettings {
     /// A mixed generator of damping √2 in a quasi-type-2 loop between `rates` (rad/s), see [`LoopSettings::between`].
     pub fn between(rates: [f64; 2]) -> Self {
         let follower = LoopSettings::between(rates);
         Self { generator: Kind::Mixed, damping: SQRT_2, follower }
     }
 
-    /// The generator, when everything can be used at `interval` (s).
+    /// The generator, if all settings are valid at `interval` (s).
     ///
     /// # Errors
     /// Those of [`Generator::new`] and [`LoopSettings::check`].
@@ -48,7 +48,7 @@ impl Settings {
     }
 }
 
-/// What is believed of one signal b + A sin θ.
+/// Estimate of one signal b + A sin θ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Phase θ (rad, [0, 2π)).
@@ -57,21 +57,21 @@ pub struct Estimate {
     pub rate: f64,
     /// Amplitude A (unit of the samples).
     pub amplitude: f64,
-    /// Offset b (unit of the samples); zero where the generator knows none.
+    /// Offset b (unit of the samples); zero where the generator does not estimate it.
     pub offset: f64,
     /// Whether the loop has locked.
     pub locked: bool,
-    /// Whether the last sample was no number and the belief went on without it.
+    /// Whether the last sample was unusable and the estimate was held.
     pub held: bool,
 }
 
 /// A phase-locked loop that follows one signal; serialises whole.
 ///
 /// ```
-/// use estimation::phase_locked::{PhaseLockedLoop, Settings};
+/// use estimation::phase_locked::{PhaseLockedLoop, PhaseLockedSettings};
 /// // 3 + 2 sin(0.05 t) sampled ten times a second, looked for between 0.03 and 0.08 rad/s
 /// let interval = 0.1;
-/// let mut follower = PhaseLockedLoop::new(&Settings::between([0.03, 0.08]), interval)?;
+/// let mut follower = PhaseLockedLoop::new(&PhaseLockedSettings::between([0.03, 0.08]), interval)?;
 /// // 60 periods: what is left of the first error fades with exp(−0.3 · 0.03 rad/s · t/√2)
 /// for step in 0..75_400 {
 ///     follower.update(interval, 3.0 + 2.0 * (0.05 * interval * f64::from(step)).sin());
@@ -93,8 +93,8 @@ impl PhaseLockedLoop {
     /// A loop of `settings` for samples every `interval` (s).
     ///
     /// # Errors
-    /// [`PhaseLockedError`] names what cannot be used; gains that would not be stable come with the pole that is not.
-    pub fn new(settings: &Settings, interval: f64) -> Result<Self, PhaseLockedError> {
+    /// [`PhaseLockedError`] names the invalid setting; unstable gains come with the unstable pole.
+    pub fn new(settings: &PhaseLockedSettings, interval: f64) -> Result<Self, PhaseLockedError> {
         let generator = settings.checked(interval)?;
         let oscillator = Oscillator::new(&settings.follower);
         Ok(Self { generator, oscillator, lock: Lock::new(), held: false })
@@ -102,11 +102,11 @@ impl PhaseLockedLoop {
 
     /// Takes in `sample` (any unit), `interval` (s) after the one before.
     ///
-    /// A sample that is no number moves oscillator and generator on as they turned before, and says so in
-    /// [`Estimate::held`]; after half a period of them the lock counts as lost.
+    /// With an unusable sample oscillator and generator turn on as before, and [`Estimate::held`] is true; after half a period
+    /// of them the lock is lost.
     pub fn update(&mut self, interval: f64, sample: f64) -> Estimate {
         let turned = self.oscillator.turn(interval);
-        // After a gap the sample says nothing of what was between.
+        // After a long gap the sample is not used.
         let sample = if turned > LONGEST_TURN { f64::NAN } else { sample };
         self.held = !self.generator.update(turned, sample);
         if self.held {
@@ -122,7 +122,7 @@ impl PhaseLockedLoop {
         self.estimate()
     }
 
-    /// What is believed now.
+    /// The present estimate.
     pub fn estimate(&self) -> Estimate {
         Estimate {
             phase: self.oscillator.phase(),

@@ -15,11 +15,11 @@ fn kinds() -> [Kind; 3] {
     [Kind::Second, Kind::extended(SQRT_2, 1.0).unwrap(), Kind::Mixed]
 }
 
-fn settings(generator: Kind) -> Settings {
-    Settings { generator, ..Settings::between(RATES) }
+fn settings(generator: Kind) -> PhaseLockedSettings {
+    PhaseLockedSettings { generator, ..PhaseLockedSettings::between(RATES) }
 }
 
-/// Distance of a loop's belief from 3 + 2 sin(0.4 + ∫ω dt): of the phase (rad), the rate and the amplitude (–).
+/// Error of a loop's estimate of 3 + 2 sin(0.4 + ∫ω dt): of the phase (rad), the rate and the amplitude (–).
 fn distance(estimate: &Estimate, phase: f64, rate: f64) -> [f64; 3] {
     let phase = wrap_to_half_turn(estimate.phase - phase);
     [phase.abs(), (estimate.rate / rate - 1.0).abs(), (estimate.amplitude / 2.0 - 1.0).abs()]
@@ -248,7 +248,7 @@ fn samples_that_are_no_numbers_are_bridged_and_flagged() {
     }
 }
 
-/// Every third sample missing is no reason for doubt; the phase stays right.
+/// Every third sample missing does not cost the lock; the phase stays right.
 #[test]
 fn scattered_gaps_do_not_cost_the_lock() {
     for kind in kinds() {
@@ -278,7 +278,7 @@ fn noise_alone_does_not_lock() {
 
 #[test]
 fn what_cannot_be_built_says_why() {
-    let build = |change: fn(&mut Settings)| {
+    let build = |change: fn(&mut PhaseLockedSettings)| {
         let mut settings = settings(Kind::Mixed);
         change(&mut settings);
         PhaseLockedLoop::new(&settings, INTERVAL).unwrap_err()
@@ -374,7 +374,7 @@ fn the_whole_loop_is_stable_where_it_can_be_built() {
 }
 
 #[test]
-fn a_belief_survives_being_written_and_read() {
+fn a_state_survives_being_written_and_read() {
     let mut follower = PhaseLockedLoop::new(&settings(Kind::Mixed), INTERVAL).unwrap();
     let sample = |step: i32| 3.0 + 2.0 * (0.05 * INTERVAL * f64::from(step)).sin();
     for step in 0..5000 {

@@ -1,4 +1,4 @@
-//! What the generators do to a steady sine, in closed form.
+//! Frequency responses of the generators, in closed form.
 
 use super::complex::Complex;
 use super::generator::Kind;
@@ -12,7 +12,7 @@ pub struct Response {
     pub phase: f64,
 }
 
-/// A generator's three outputs beside its input.
+/// Frequency responses of a generator's three outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transfer {
     /// To the in-phase signal.

@@ -1,10 +1,10 @@
-//! A turbine's own two signals: tilt and yaw moments of its blades, followed by one oscillator.
+//! Phase-locked loop for two signals of a turbine: tilt and yaw moments of its blades, followed by one oscillator.
 
 use super::PhaseLockedError;
-use super::generator::{Generator, tells};
+use super::generator::{Generator, is_usable};
 use super::lock::Lock;
 use super::oscillator::{LONGEST_TURN, Oscillator};
-use super::single::Settings;
+use super::single::PhaseLockedSettings;
 use crate::{Estimator, Oscillation, Quantity};
 use basis::angle::wrap_to_turn;
 use basis::mbc::to_fixed_frame;
@@ -16,37 +16,37 @@ use serde::{Deserialize, Serialize};
 pub enum Leader {
     /// The tilt moment alone.
     Tilt,
-    /// The yaw moment alone, its lead taken off.
+    /// The yaw moment alone, without its lead.
     Yaw,
     /// Both, each with the weight of its amplitude.
     #[default]
     Both,
 }
 
-/// How the two signals are followed.
+/// Settings of a phase-locked loop for two axes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TwoAxisSettings {
     /// Generator of each, and the loop.
-    pub signal: Settings,
-    /// Way the load circles, looking downwind; the yaw moment leads the tilt moment by [`Sense::yaw_lead`].
+    pub signal: PhaseLockedSettings,
+    /// Sense in which the load circles, looking downwind; the yaw moment leads the tilt moment by [`Sense::yaw_lead`].
     /// van Veldhoven (2024), Eq. 2-5, whose signs of yaw and sense are the opposite of ours.
     pub sense: Sense,
     /// Which signal the oscillator follows.
     pub leader: Leader,
 }
 
-/// What is believed of one axis, b + A sin θ.
+/// Estimate of one axis, b + A sin θ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Amplitude A (N m).
     pub amplitude: f64,
-    /// Offset b (N m); zero where the generator knows none.
+    /// Offset b (N m); zero where the generator does not estimate it.
     pub offset: f64,
     /// Phase of this axis' own signal (rad, [0, 2π)).
     pub phase: f64,
 }
 
-/// What is believed of a rotor's slow oscillation.
+/// Estimate of a rotor's slow oscillation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TwoAxisEstimate {
     /// Phase θ of the oscillation, the tilt moment's (rad, [0, 2π)).
@@ -59,7 +59,7 @@ pub struct TwoAxisEstimate {
     pub yaw: Axis,
     /// Whether the loop has locked.
     pub locked: bool,
-    /// Whether the last moments were no numbers and the belief went on without them.
+    /// Whether the last moments were unusable and the estimate was held.
     pub held: bool,
 }
 
@@ -95,11 +95,11 @@ impl TwoAxisLoop {
 
     /// Takes in `moments` (N m, fixed frame), `interval` (s) after the ones before.
     ///
-    /// Where either is no number, or comes after a gap, both axes go on as they turned before, which
-    /// [`TwoAxisEstimate::held`] tells.
+    /// Where either is unusable, or comes after a long gap, both axes turn on as before, and [`TwoAxisEstimate::held`] is
+    /// true.
     pub fn follow(&mut self, interval: f64, moments: FixedFrame) -> TwoAxisEstimate {
         let turned = self.oscillator.turn(interval);
-        self.held = turned > LONGEST_TURN || !tells(moments.tilt) || !tells(moments.yaw);
+        self.held = turned > LONGEST_TURN || !is_usable(moments.tilt) || !is_usable(moments.yaw);
         if self.held {
             self.tilt.coast(turned);
             self.yaw.coast(turned);
@@ -134,13 +134,13 @@ impl TwoAxisLoop {
         }
     }
 
-    /// Root mean square of the oscillator's phase error, an exponential mean over one period of the oscillation (rad): what a
-    /// lock is judged by, 1 before the first sample.
+    /// Root mean square of the oscillator's phase error, an exponential mean over one period of the oscillation (rad): the
+    /// criterion of the lock, 1 before the first sample.
     pub fn phase_error(&self) -> f64 {
         self.lock.phase_error()
     }
 
-    /// What is believed now.
+    /// The present estimate.
     pub fn estimate(&self) -> TwoAxisEstimate {
         let phase = self.oscillator.phase();
         let axis = |generator: &Generator| Axis {
@@ -165,7 +165,7 @@ impl Estimator for TwoAxisLoop {
     type Estimate = TwoAxisEstimate;
     type State = Self;
 
-    /// The belief after the blades' out-of-plane moments of this instant.
+    /// The estimate after the blades' out-of-plane moments of this instant.
     fn update(&mut self, measurements: &Measurements) -> TwoAxisEstimate {
         let moments = to_fixed_frame(measurements.azimuth, &measurements.flap_moments);
         self.follow(measurements.interval, moments)

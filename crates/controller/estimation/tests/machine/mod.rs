@@ -5,7 +5,7 @@
 use basis::angle::wrap_to_turn;
 use basis::mbc::to_blades;
 use basis::{FixedFrame, Measurements, Sense, Vector3};
-use estimation::helix::{MeasurementModel, Options, Setting};
+use estimation::helix::{HelixSettings, MeasurementModel, Options};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 use turbine::actuators::PitchActuator;
@@ -117,10 +117,16 @@ pub(crate) fn definition() -> Arc<Definition> {
     })
 }
 
-/// What is looked for.
-pub(crate) fn setting(sense: Sense) -> Setting {
+/// Settings of the estimator.
+pub(crate) fn setting(sense: Sense) -> HelixSettings {
     let (rate, interval) = (TAU / PERIOD, INTERVAL);
-    Setting { sense, rate, interval, air_density: 1.225, n_elements: Setting::N_ELEMENTS }
+    HelixSettings {
+        sense,
+        rate,
+        interval,
+        air_density: 1.225,
+        n_elements: HelixSettings::N_ELEMENTS,
+    }
 }
 
 /// Random numbers.
@@ -216,6 +222,6 @@ pub(crate) fn model(
     sense: Sense,
     options: &Options,
 ) -> MeasurementModel {
-    let setting = Setting { n_elements: 24, ..setting(sense) };
+    let setting = HelixSettings { n_elements: 24, ..setting(sense) };
     MeasurementModel::new(definition, &setting, options).unwrap()
 }

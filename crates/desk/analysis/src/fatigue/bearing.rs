@@ -1,4 +1,4 @@
-//! What pitching under load does to the bearing at a blade's root.
+//! Fatigue of a pitch bearing: pitch travel under load.
 
 use super::Damage;
 use super::load::check_duration;
@@ -13,7 +13,7 @@ pub const REFERENCE_TRAVEL_RATE: f64 = PI / 180.0;
 /// Slope of a pitch bearing's equivalent load (–), after the same.
 pub const BEARING_SLOPE: f64 = 3.0;
 
-/// Positions of a pitch bearing's ring that are looked at (–): every 10°, after the same.
+/// Positions round a pitch bearing's ring (–): every 10°, after the same.
 pub const N_BEARING_POSITIONS: usize = 36;
 
 /// The convention of pitch-bearing load and pitch travel in words, for printing beside a figure: moments and pitch of one
@@ -37,7 +37,7 @@ pub struct BearingLoad {
     pub load: f64,
 }
 
-/// Adds up the damage of one pitch bearing, at positions all round its ring, while pitch and moments arrive.
+/// Accumulates the damage of one pitch bearing at positions round its ring, sample by sample.
 ///
 /// Where the ring is pressed, the moment there counts to the power m, weighted with the pitch travelled since the sample
 /// before; where it is relieved, nothing. The equivalent load is that moment which does the same over the reference travel,

@@ -1,4 +1,4 @@
-//! The sum that turns cycles into one equivalent load.
+//! Linear damage accumulation, from cycles to one equivalent load.
 
 use crate::AnalysisError;
 

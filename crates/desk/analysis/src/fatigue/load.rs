@@ -12,7 +12,7 @@ pub struct EquivalentLoad {
     pub load: f64,
 }
 
-/// What the count of one channel gave.
+/// Fatigue loads of one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fatigue {
     /// From the first sample to the last (s).
@@ -21,11 +21,11 @@ pub struct Fatigue {
     pub n_cycles: f64,
     /// Largest range, peak to peak, in the unit of the load.
     pub largest_range: f64,
-    /// 1-Hz damage-equivalent loads, one per slope, in the order in which they were asked for.
+    /// 1-Hz damage-equivalent loads, one per slope, in the order of the slopes given.
     pub loads: Vec<EquivalentLoad>,
 }
 
-/// Adds up the damage of one channel while its load arrives.
+/// Accumulates the damage of one channel, sample by sample.
 ///
 /// Memory does not grow with the record; see [`Rainflow`] for how cycles are counted and [the module](super) for the
 /// convention.
@@ -54,7 +54,7 @@ impl Tally {
 }
 
 impl LoadCounter {
-    /// A counter that has seen nothing, for the slopes `slopes` (–).
+    /// A counter before the first sample, for the slopes `slopes` (–).
     ///
     /// # Errors
     /// [`AnalysisError::Slope`].
@@ -110,7 +110,7 @@ impl LoadCounter {
     }
 }
 
-/// Refuses a duration (s) over which nothing can repeat.
+/// Refuses a duration (s) that is not positive.
 pub(super) fn check_duration(duration: f64) -> Result<(), AnalysisError> {
     if !duration.is_finite() || duration <= 0.0 {
         return Err(AnalysisError::NotPositive { quantity: "the duration", value: duration });

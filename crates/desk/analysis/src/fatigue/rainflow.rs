@@ -16,7 +16,7 @@ pub struct Cycle {
     pub count: f64,
 }
 
-/// Counts cycles while the load arrives.
+/// Counts cycles sample by sample.
 ///
 /// ASTM E1049-85 (2017), §5.4.4: the first sample, every change of direction and the last sample are reversals; with X the
 /// latest range and Y the one before, Y is counted once X is no smaller, as one cycle, or as one half when it holds the
@@ -54,7 +54,7 @@ impl Default for Rainflow {
 }
 
 impl Rainflow {
-    /// A counter that has seen nothing.
+    /// A counter before the first sample.
     pub fn new() -> Self {
         Self { open: Vec::with_capacity(RESERVE), latest: 0.0, rising: None, n_samples: 0 }
     }

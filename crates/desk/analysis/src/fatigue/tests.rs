@@ -114,7 +114,7 @@ fn no_unit_overflows_the_sum() {
 }
 
 #[test]
-fn what_cannot_be_counted_is_told() {
+fn what_cannot_be_counted_is_reported() {
     let mut counter = LoadCounter::new(&[4.0]).unwrap();
     counter.extend(&[1.0, 2.0, 0.0]).unwrap();
     let error = counter.extend(&[3.0, f64::NAN, 1.0]).unwrap_err();

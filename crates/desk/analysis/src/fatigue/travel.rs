@@ -1,9 +1,9 @@
-//! How much a pitch actuator works.
+//! Pitch travel: the duty of a pitch actuator.
 
 use super::load::check_duration;
 use crate::AnalysisError;
 
-/// Adds up the motion of one blade's pitch while it arrives.
+/// Accumulates the motion of one blade's pitch, sample by sample.
 #[derive(Clone, Debug, Default)]
 pub struct PitchTravel {
     pitch: f64,
@@ -15,7 +15,7 @@ pub struct PitchTravel {
     direction: f64,
 }
 
-/// What a pitch actuator did over a record.
+/// Duty of a pitch actuator over a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Travel {
     /// Sum of all motion, whichever way (rad).
@@ -80,7 +80,7 @@ impl PitchTravel {
 }
 
 impl Travel {
-    /// Actuator duty cycle (–): the mean rate over the fastest that the actuator can, `maximum_rate` (rad/s).
+    /// Actuator duty cycle (–): the mean rate over the actuator's largest rate, `maximum_rate` (rad/s).
     ///
     /// Source: Bottasso et al., "Optimization-based study of bend-twist coupled rotor blades for passive and integrated
     /// passive/active load alleviation", Wind Energy 16, 2013.

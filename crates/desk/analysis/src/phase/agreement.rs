@@ -1,4 +1,4 @@
-//! How well an estimated phase follows the true one, over time.
+//! Agreement of an estimated phase with the true one, over time.
 
 use crate::AnalysisError;
 use crate::statistics::{block_means, mean, statistic};
@@ -11,11 +11,11 @@ pub struct Agreement {
     pub rmse: f64,
     /// 95 % interval of `rmse` (rad); absent with fewer than two blocks.
     pub rmse_95: Option<[f64; 2]>,
-    /// Circular mean of estimate minus truth (rad, [−π, π)): what a constant correction would mend.
+    /// Circular mean of estimate minus truth (rad, [−π, π)): a constant correction would remove it.
     pub bias: f64,
     /// Half width of the 95 % interval of `bias` (rad); absent with fewer than two blocks.
     pub bias_half_width_95: Option<f64>,
-    /// Root mean square of what remains without the bias (rad).
+    /// Root mean square of the difference without the bias (rad).
     pub spread: f64,
     /// Phase locking |mean of e^{iΔ}| (–): 1 for a constant difference, 0 for one that goes round.
     pub locking: f64,

@@ -1,4 +1,4 @@
-//! How well one record follows another at one frequency: coherence, gain and phase error.
+//! Coherence, gain and phase error of one record against another at one frequency.
 
 use crate::{AnalysisError, statistics::mean};
 use realfft::num_complex::Complex64;
@@ -16,7 +16,7 @@ pub struct Coherence {
     pub coherence: f64,
     /// Its 95 % interval (–).
     pub coherence_95: [f64; 2],
-    /// What unrelated records exceed one time in twenty (–); a coherence below it shows nothing.
+    /// Coherence that unrelated records exceed one time in twenty (–); a smaller one is not significant.
     pub floor_95: f64,
     /// Phase of the estimate minus that of the truth (rad, [−π, π]): positive when the estimate is ahead.
     pub phase_error: f64,
@@ -33,7 +33,7 @@ pub struct Coherence {
 ///
 /// The cross-spectrum is taken at `frequency` itself, not at the nearest of a grid. A segment should hold at least three
 /// periods; with p periods it tells the frequency from others a share 2/p of it away. Two pure sines are coherent whatever
-/// their phases; here coherence tells of amplitudes and phases that wander differently from segment to segment.
+/// their phases; here coherence is reduced by amplitudes and phases that change differently from segment to segment.
 ///
 /// Source: Welch (1967); Bendat and Piersol, "Random Data", 4th ed., 2010, §9.2 (errors of coherence and phase), with the
 /// segments counted for as many as are independent (Harris, Proc. IEEE 66, 1978, Eq. 17).

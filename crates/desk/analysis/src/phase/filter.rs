@@ -14,7 +14,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// Ratio of edge to centre in [`Band::around`] unless another is asked for (–).
+    /// Ratio of edge to centre in [`Band::around`] unless another is given (–).
     pub const RATIO: f64 = 1.5;
 
     /// From `frequency` / `ratio` to `frequency` · `ratio` (Hz; `ratio` > 1): passes `frequency` itself unchanged.

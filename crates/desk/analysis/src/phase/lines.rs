@@ -22,7 +22,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Where the wind is asked for, farm frame (m): `n_lines × n_points`, the points of a line together.
+    /// Sampling points of the wind, farm frame (m): `n_lines × n_points`, the points of a line together.
     pub fn positions(&self) -> Vec<Vector3> {
         let point = |line: usize, point: usize| {
             let (sine, cosine) = line_azimuth(line, self.n_lines).sin_cos();

@@ -1,16 +1,16 @@
-//! Phases of a helix in the wind: where it truly is, and how well an estimate follows it.
+//! Phases of a helix in the wind: the true ones, and how well an estimate follows them.
 //!
 //! # What a wind phase is
 //!
 //! Symbols of van Vondelen et al. (2025), Eq. 20: ω_e excitation rate, t time since the run's start, A amplitude,
-//! φ wind phase. The wind that arrives at a rotor is, in the fixed frame,
+//! φ wind phase. The wind at a rotor is, in the fixed frame,
 //!
 //! ```text
 //! U_tilt = A_tilt sin(ω_e t + φ_tilt)
 //! U_yaw  = A_yaw  sin(ω_e t ± π/2 + φ_yaw)        upper sign: ccw, for which this is A_yaw cos(ω_e t + φ_yaw)
 //! ```
 //!
-//! so that a helix which arrives whole has φ_tilt = φ_yaw in either sense, and a pitch command with the same phases is in
+//! so that an undistorted helix has φ_tilt = φ_yaw in either sense, and a pitch command with the same phases is in
 //! phase with the wind (their Eq. 22). Eq. 20 itself writes the upper sign alone. Positive tilt is more wind on the upper rotor
 //! half, positive yaw more wind at azimuth 90°, the right half looking downwind.
 
@@ -32,12 +32,12 @@ use crate::AnalysisError;
 use basis::Sense;
 use std::f64::consts::TAU;
 
-/// What phases are measured against: the upstream turbine's excitation.
+/// Reference of the phases: the upstream turbine's excitation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
     /// Excitation rate ω_e in the fixed frame (rad/s).
     pub rate: f64,
-    /// Which way the helix winds; its yaw leads its tilt by [`Sense::yaw_lead`].
+    /// Sense of the helix; its yaw leads its tilt by [`Sense::yaw_lead`].
     pub sense: Sense,
 }
 

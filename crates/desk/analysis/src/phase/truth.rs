@@ -1,4 +1,4 @@
-//! The ground truth of a wake's phase, from the wind without the rotor that meets it.
+//! The ground truth of a wake's phase, from the wind in the absence of the downstream rotor.
 
 use super::{Band, Narrowband, Reference, narrowband};
 use crate::AnalysisError;
@@ -23,7 +23,7 @@ pub struct AxisWind {
 pub struct GroundTruth {
     /// Time of the first sample since the run's start (s).
     pub start: f64,
-    /// Distance of the samples (s).
+    /// Sampling interval (s).
     pub interval: f64,
     /// Mean wind over the disc (m/s), not filtered.
     pub average: Vec<f64>,
@@ -53,7 +53,7 @@ impl GroundTruth {
 ///
 /// Each of tilt and yaw goes through [`narrowband`]; the angle of the analytic signal, less what the
 /// reference has turned, is the wind phase as the [module](super) defines it. A [`Band::around`] the excitation with
-/// [`Band::RATIO`] lets phases wander within about two periods and keeps turbulence beyond the neighbouring octave out.
+/// [`Band::RATIO`] follows changes of phase within about two periods and removes turbulence beyond the neighbouring octave.
 ///
 /// Source: van Vondelen et al. (2025), Algorithm 2 and §3.3.1.
 ///

@@ -1,4 +1,4 @@
-//! Closed forms of one and two observations, slopes by differences, leaving out by leaving out, scikit-learn.
+//! Closed forms of one and two observations, slopes by differences, leave-one-out by refitting, scikit-learn.
 
 use super::*;
 use crate::Noise;
@@ -45,7 +45,7 @@ fn one_observation_is_a_line_through_the_origin() {
     assert!((left_out.standard_deviation - total.sqrt()).abs() < 1e-14);
 }
 
-/// Two observations, the inverse of their covariance written out; a mean that is found is theirs.
+/// Two observations, the inverse of their covariance written out; an estimated mean is theirs.
 #[test]
 fn two_observations_share_their_weight() {
     let (signal, noise, length) = (1.7, 0.3, 0.9);
@@ -105,7 +105,7 @@ fn slopes_of_the_likelihood_are_its_differences() {
 }
 
 #[test]
-fn what_the_others_foretell_is_a_process_of_the_others() {
+fn a_leave_one_out_prediction_is_a_process_of_the_others() {
     let all = surface(9);
     for mean in [Mean::Zero, Mean::Constant] {
         let make = |observations: Observations| {
@@ -131,9 +131,9 @@ fn what_the_others_foretell_is_a_process_of_the_others() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// With a mean that is found, a constant on all values is a constant on the curve, and the band stays.
+    /// With an estimated mean, a constant added to all values is added to the curve, and the band does not change.
     #[test]
-    fn a_found_mean_follows_the_values(added in -50.0..50.0_f64, at in -2.0..2.0_f64) {
+    fn an_estimated_mean_follows_the_values(added in -50.0..50.0_f64, at in -2.0..2.0_f64) {
         let of = |added: f64| {
             let mut observations = surface(8);
             observations.values.iter_mut().for_each(|value| *value += added);
@@ -148,7 +148,7 @@ proptest! {
         prop_assert!((moved.standard_deviation - still.standard_deviation).abs() < 1e-12);
     }
 
-    /// A turn further on is the same offset, and nothing is surer than the noise allows.
+    /// A full turn gives the same prediction, with a deviation below that of the prior.
     #[test]
     fn a_periodic_curve_closes(offset in -7.0..7.0_f64, turns in -3..4_i32) {
         let offsets: Vec<f64> = (0..6).map(f64::from).collect();
@@ -173,7 +173,7 @@ fn samples_spread_as_the_band_says() {
     let process = GaussianProcess::fit(
         Shape::Periodic { period: TAU },
         Observations::of_curve(offsets, values).with_deviations(&[0.3; 8]),
-        &Settings { noise: Noise::Known, ..Settings::default() },
+        &FitSettings { noise: Noise::Known, ..FitSettings::default() },
     )
     .expect("good");
     let inputs: Vec<Vec<f64>> = (0..24).map(|i| vec![TAU * f64::from(i) / 24.0]).collect();
@@ -261,7 +261,7 @@ fn scikit_learn_finds_the_same() {
             assert!((found.mean - mean).abs() < 1e-8, "{}: {found:?} {mean}", case.name);
             assert!((found.observation_deviation / deviation - 1.0).abs() < 1e-5, "{}", case.name);
         }
-        let settings = Settings { mean: Mean::Zero, ..Settings::default() };
+        let settings = FitSettings { mean: Mean::Zero, ..FitSettings::default() };
         let fitted =
             GaussianProcess::fit(case.shape, observations.clone(), &settings).expect("good");
         let best_log = case.numbers("best-log")[0];
@@ -279,7 +279,7 @@ fn scikit_learn_finds_the_same() {
 #[test]
 fn bad_data_is_refused_by_name() {
     let fit = |observations| {
-        GaussianProcess::fit(Shape::Matern52, observations, &Settings::default())
+        GaussianProcess::fit(Shape::Matern52, observations, &FitSettings::default())
             .expect_err("bad data")
     };
     let good = || Observations::of_curve(vec![0.0, 1.0, 2.0], vec![1.0, 2.0, 1.5]);
@@ -293,7 +293,8 @@ fn bad_data_is_refused_by_name() {
     assert_eq!(fit(gap), SurrogateError::NotFinite { what: "the values", index: 1 });
     let negative = Observations { variances: vec![0.1, -0.1, 0.1], ..good() };
     assert!(matches!(fit(negative), SurrogateError::NotPositive { .. }));
-    let still = GaussianProcess::fit(Shape::Periodic { period: 0.0 }, good(), &Settings::default());
+    let still =
+        GaussianProcess::fit(Shape::Periodic { period: 0.0 }, good(), &FitSettings::default());
     assert!(matches!(still, Err(SurrogateError::NotPositive { what: "the period", .. })));
     let repeated = GaussianProcess::new(
         Shape::SquaredExponential,
@@ -302,10 +303,10 @@ fn bad_data_is_refused_by_name() {
         Mean::Zero,
     );
     assert!(matches!(repeated, Err(SurrogateError::NotPositiveDefinite { n: 2 })));
-    let process = GaussianProcess::fit(Shape::Matern52, good(), &Settings::default());
+    let process = GaussianProcess::fit(Shape::Matern52, good(), &FitSettings::default());
     assert!(process.expect("three observations").predict(&[0.0, 1.0]).is_err());
     // Values without any spread make a flat curve, not an error.
     let flat = Observations::of_curve(vec![0.0, 1.0, 2.0], vec![5.0; 3]);
-    let flat = GaussianProcess::fit(Shape::Matern52, flat, &Settings::default()).expect("flat");
+    let flat = GaussianProcess::fit(Shape::Matern52, flat, &FitSettings::default()).expect("flat");
     assert!((flat.predict(&[0.5]).expect("one input").mean - 5.0).abs() < 1e-5);
 }

@@ -7,7 +7,7 @@ use basis::records::{Series, Statistic, TurbineSummary};
 use formats::records::RunRecords;
 use report::{CurvePoint, OffsetFigure, OffsetPanel, OffsetPoint};
 use std::f64::consts::TAU;
-use surrogate::{GaussianProcess, Observations, Settings, Shape};
+use surrogate::{FitSettings, GaussianProcess, Observations, Shape};
 
 /// Fewest offsets through which a curve is drawn (–).
 const FEWEST: usize = 6;
@@ -123,7 +123,7 @@ fn curve(points: &[OffsetPoint]) -> Option<Vec<CurvePoint>> {
         None => observations,
     };
     let shape = Shape::Periodic { period: TAU };
-    let process = GaussianProcess::fit(shape, observations, &Settings::default()).ok()?;
+    let process = GaussianProcess::fit(shape, observations, &FitSettings::default()).ok()?;
     (0..N_CURVE)
         .map(|index| {
             let offset = TAU * index as f64 / (N_CURVE - 1) as f64;

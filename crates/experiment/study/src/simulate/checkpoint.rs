@@ -29,7 +29,7 @@ pub(super) struct Before {
 struct RunState {
     step: u64,
     wall_time: f64,
-    turbines: Vec<turbine::State>,
+    turbines: Vec<turbine::TurbineState>,
     controllers: Vec<Vec<u8>>,
 }
 

@@ -1,4 +1,4 @@
-//! Blade-element momentum in one annulus: the inflow angle at which blades and air agree on the force.
+//! Blade-element momentum theory in one annulus: the inflow angle at which blade force and change of momentum balance.
 //!
 //! Source: Ning, "A simple solution method for the blade element momentum equations with guaranteed
 //! convergence", Wind Energy 17, 2014: one residual in the inflow angle φ, bracketed, never diverging.
@@ -10,9 +10,9 @@ use super::SectionCoefficients;
 use std::f64::consts::{FRAC_PI_2, PI};
 pub use warm_start::{Factors, WarmStart, solve_near};
 
-/// Smallest inflow angle that is searched (rad): the blade's drag outweighs the air there for any section that has some.
+/// Smallest inflow angle of the search (rad): there the drag of any section that has some outweighs the momentum.
 const SMALLEST_ANGLE: f64 = 1e-15;
-/// Inflow angles agree with the air to this (rad).
+/// Tolerance of the inflow angle (rad).
 const ANGLE_TOLERANCE: f64 = 1e-13;
 /// Bisection alone needs 44 halvings from a right angle to the tolerance; Brent's method falls back on it.
 const MAXIMUM_ITERATIONS: usize = 200;
@@ -22,14 +22,14 @@ const LEAST_SHARE: f64 = 1e-9;
 /// Exponent of Prandtl's formula (–) from which the loss is less than the rounding of one.
 const NO_LOSS: f64 = 38.0;
 
-/// Which parts of the theory act.
+/// Which parts of the theory are active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theory {
     /// Prandtl's tip loss.
     pub tip_loss: bool,
     /// Prandtl's loss at the hub.
     pub hub_loss: bool,
-    /// Drag takes part in the induction, axial and tangential; it acts on the blade in any case.
+    /// Drag contributes to the induction, axial and tangential; it acts on the blade in any case.
     pub drag_in_induction: bool,
 }
 
@@ -54,21 +54,21 @@ pub struct Annulus {
     pub chord: f64,
     /// Twist plus pitch, positive to feather (rad).
     pub section_pitch: f64,
-    /// Lean of the blade's line out of the plane across the shaft (rad), as far as the air's momentum feels it.
+    /// Local cone angle (rad) in the momentum balance: angle of the blade's line out of the plane across the shaft.
     ///
-    /// A leaning blade loses cos² of it: of its force one cosine slows the air along the shaft, and of that slowing one
-    /// cosine crosses the blade. Zero balances the momentum across the blade instead, as most programs do.
-    pub lean: f64,
+    /// It enters by its squared cosine: one cosine for the component of the blade force along the shaft, one for the component
+    /// of the induced velocity normal to the blade. Zero balances momentum normal to the blade instead, as most programs do.
+    pub cone_angle: f64,
 }
 
 impl Annulus {
-    /// Share of a leaning blade's force across itself that the air's momentum feels (–).
+    /// Share of a coned blade's normal force that enters the momentum balance (–).
     pub(super) fn momentum_share(&self) -> f64 {
-        if self.lean == 0.0 { 1.0 } else { self.lean.cos().powi(2) }
+        if self.cone_angle == 0.0 { 1.0 } else { self.cone_angle.cos().powi(2) }
     }
 }
 
-/// Where blades and air agree.
+/// Inflow that satisfies blade-element momentum theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inflow {
     /// Angle of the relative wind to the plane of rotation φ (rad).
@@ -104,8 +104,8 @@ impl Inflow {
 ///
 /// Always returns a state in which the residual vanishes, for any sign of either wind, as long as the
 /// section has some drag: then the residual runs from −∞ at φ → 0 to ∞ at φ → 180°. Where momentum theory
-/// has no answer (κ ≤ −1) it takes the sign of its own limit at that border: negative below 90°, positive
-/// above; so a change of sign from negative to positive is always a state of blades and air.
+/// has no solution (κ ≤ −1) it takes the sign of its own limit at that border: negative below 90°, positive
+/// above; so a change of sign from negative to positive is always a solution.
 /// Without drag in the induction a state with reversed flow through the disc may be returned instead.
 pub fn solve(
     annulus: &Annulus,
@@ -134,7 +134,7 @@ pub fn loss_factor(annulus: &Annulus, theory: Theory, sine: f64) -> f64 {
     if theory.hub_loss {
         loss *= prandtl(half_blades * (radius - hub_radius) / (hub_radius * sine));
     }
-    // Exactly at tip or hub no finite load is possible; a whisper keeps the division defined.
+    // Exactly at tip or hub no finite load is possible; a small number keeps the division defined.
     loss.max(1e-9)
 }
 
@@ -181,7 +181,7 @@ impl<'a, Section: Fn(f64) -> SectionCoefficients> Ring<'a, Section> {
             if middle >= 0.0 {
                 bracketed_root(residual, SMALLEST_ANGLE, low, FRAC_PI_2, middle)
             } else {
-                // Blades that drive the air along with them, faster than they turn.
+                // Propeller state: the swirl is faster than the blades.
                 let highest = PI - SMALLEST_ANGLE;
                 bracketed_root(residual, FRAC_PI_2, middle, highest, residual(highest))
             }

@@ -1,9 +1,9 @@
-//! A small dynamic blade-element momentum model: from the wind that each blade feels to the moment at each blade root.
+//! A reduced dynamic blade-element momentum model: from the wind at each blade to the moment at each blade root.
 //!
 //! The measurement function of van Vondelen et al. (2025), Eq. 13, and Coquelet et al. (2024, Wind Energ. Sci. 9): winds,
-//! rotor speed and pitch in, out-of-plane moments out. Blades are stiff, each in a uniform wind of its own; sections answer
-//! at once and induction after the chosen model. [`BladeMoments::moments`] leaves the wake as it is, so that an estimator
-//! may try neighbouring winds before [`BladeMoments::advance`] moves the wake on with the one that it settled on.
+//! rotor speed and pitch in, out-of-plane moments out. Blades are stiff, each in a uniform wind of its own; sections respond
+//! at once and induction follows the chosen model. [`BladeMoments::moments`] does not change the wake, so that an estimator
+//! can evaluate neighbouring winds before [`BladeMoments::advance`] advances the wake with the estimated one.
 
 use super::Induction;
 use super::blade_element::Theory;
@@ -30,16 +30,16 @@ pub struct BladeMoments {
 #[derive(Clone, Debug)]
 struct Part {
     section: Section,
-    /// Cosine of the blade line's lean (–).
+    /// Cosine of the local cone angle (–).
     cosine: f64,
     /// Distance from the blade root along the pitch axis (m).
     lever: f64,
 }
 
-/// What drives a rotor.
+/// Inputs of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
-    /// Wind along the shaft that each blade feels, induction aside (m/s).
+    /// Wind along the shaft at each blade, without induction (m/s).
     pub winds: PerBlade<f64>,
     /// Rotor speed (rad/s).
     pub rotor_speed: f64,
@@ -55,7 +55,7 @@ pub struct Wake {
 }
 
 impl BladeMoments {
-    /// The blades of `definition`, cut into `elements`, in air of `air_density` (kg/m³).
+    /// The blades of `definition`, divided into `elements`, in air of `air_density` (kg/m³).
     pub fn new(
         definition: &Definition,
         elements: &[Element],
@@ -68,7 +68,7 @@ impl BladeMoments {
             .zip(elements)
             .map(|(section, element)| Part {
                 section,
-                cosine: element.cone.cos(),
+                cosine: element.cone_angle.cos(),
                 lever: element.span - definition.rotor.hub_radius,
             })
             .collect();
@@ -82,7 +82,7 @@ impl BladeMoments {
         }
     }
 
-    /// The wake in `conditions` that have always been there.
+    /// The steady wake in `conditions`.
     pub fn settled(&self, conditions: &Conditions) -> Wake {
         let mut wake = Wake {
             induced: Vec::with_capacity(self.n_blades * self.parts.len()),
@@ -101,7 +101,7 @@ impl BladeMoments {
         wake
     }
 
-    /// Moves `wake` on by `interval` (s), to the instant of `conditions`.
+    /// Advances `wake` by `interval` (s), to the instant of `conditions`.
     pub fn advance(&self, interval: f64, conditions: &Conditions, wake: &mut Wake) {
         let mean_wind = conditions.winds.mean();
         for (station, part) in self.parts.iter().enumerate() {
@@ -133,7 +133,7 @@ impl BladeMoments {
         wake.mean_induction = self.mean_induction(wake, conditions);
     }
 
-    /// Out-of-plane moment at each blade root (N m), positive downwind, in `conditions` with the `wake` as it is.
+    /// Out-of-plane moment at each blade root (N m), positive downwind, in `conditions` with the `wake` held.
     pub fn moments(&self, conditions: &Conditions, wake: &Wake) -> PerBlade<f64> {
         PerBlade::from_fn(self.n_blades, |blade| {
             let induced = &wake.induced[blade * self.parts.len()..];
@@ -147,10 +147,10 @@ impl BladeMoments {
         })
     }
 
-    /// The [`BladeMoments::moments`] and how fast each grows with its own blade's wind (N m/(m/s)), the wake held.
+    /// The [`BladeMoments::moments`] and their derivatives by their own blade's wind (N m/(m/s)), the wake held.
     ///
-    /// A blade's moment hangs on no other blade's wind while the wake is held, so this is the whole Jacobian. Slopes are
-    /// those of the polars' straight lines, and step at their rows.
+    /// With the wake held a blade's moment does not depend on the other blades' winds, so this is the whole Jacobian. The
+    /// polars are linear between their rows, so derivatives jump at the rows.
     pub fn moments_with_slopes(
         &self,
         conditions: &Conditions,
@@ -171,11 +171,11 @@ impl BladeMoments {
         (moments, slopes)
     }
 
-    /// Hands the blades the induction of sectors that stand still in the air.
+    /// Induction at the blades from sectors fixed in the non-rotating frame.
     ///
-    /// `still` is a wake whose blade k stands for the air at azimuth 2π k/n, advanced with the winds and pitch found there.
-    /// On return `met` holds what each blade meets when blade 1 stands at `azimuth` (rad): the average, tilt and yaw
-    /// components of the sectors' induced velocities at that blade's place, tilt and yaw times `share` (–).
+    /// `still` is a wake whose blade k represents the sector at azimuth 2π k/n, advanced with the wind and pitch there. On
+    /// return `met` holds the induction at each blade with blade 1 at `azimuth` (rad): the average, tilt and yaw components of
+    /// the sectors' induced velocities at that blade, tilt and yaw times `share` (–).
     pub fn meet(&self, still: &Wake, azimuth: f64, share: f64, met: &mut Wake) {
         let n_blades = self.n_blades;
         let n_parts = self.parts.len();

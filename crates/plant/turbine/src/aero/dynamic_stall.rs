@@ -1,12 +1,13 @@
-//! Lift and drag of a section whose flow changes: the wake's delay in attached flow, and trailing-edge separation that lags.
+//! Dynamic stall: unsteady lift and drag of a section, with the shed wake's delay in attached flow and lagged trailing-edge
+//! separation.
 //!
 //! Source: Hansen, Gaunaa, Madsen, "A Beddoes-Leishman type dynamic stall model in state-space and indicial formulations",
 //! Risø-R-1354, 2004 (four states per section; AeroDyn's `UAMod` 4), with the lift response of a flat plate after Jones,
 //! NACA report 681, 1940. Its parameters follow from the section's polar.
 //!
-//! The component knows a section's own flow only: angle of attack, relative speed, chord, rotation. A rotor in prescribed
-//! wind uses it, and so may one in a flow that resolves its induction. There the flow contains, smeared, part of the wake
-//! that the attached-flow delay stands for; [`Attached::Steady`] leaves that delay out and keeps the separation's.
+//! Inputs are those of one section: angle of attack, relative speed, chord, rotation. A rotor in prescribed wind uses the
+//! model, and so can one in a flow that resolves its induction. That flow contains, smeared, part of the wake that the
+//! attached-flow delay models; [`Attached::Steady`] leaves this delay out and keeps that of separation.
 
 use super::{Polar, SectionCoefficients};
 use basis::angle::wrap_to_half_turn;
@@ -19,31 +20,31 @@ const RATES: [f64; 2] = [0.0455, 0.3];
 /// Delay of the leading edge's pressure, and of the separation point, in half chords travelled (–).
 const PRESSURE_DELAY: f64 = 1.7;
 const SEPARATION_DELAY: f64 = 3.0;
-/// Angles of attack (rad) up to which the model acts, and beyond which the polar alone does; between them it fades.
+/// Angles of attack (rad) up to which the model holds fully, and beyond which the polar alone does; blended in between.
 const FULL: f64 = 45.0 * PI / 180.0;
 const NONE: f64 = 60.0 * PI / 180.0;
-/// Angles from the zero-lift angle (rad) between which the slope of attached flow is looked for.
+/// Range of angles from the zero-lift angle (rad) in which the slope of attached flow is searched.
 const LINEAR: [f64; 2] = [1.5 * PI / 180.0, 8.0 * PI / 180.0];
-/// Where the zero-lift angle is looked for (rad).
+/// Range in which the zero-lift angle is searched, ± (rad).
 const ZERO_LIFT: f64 = 15.0 * PI / 180.0;
-/// Least slope of lift (1/rad) of a section that is an aerofoil and no cylinder.
+/// Least slope of lift (1/rad) of an aerofoil; sections with less are cylinders.
 const LEAST_SLOPE: f64 = 1.0;
 /// Width around the zero-lift angle (rad) in which flow counts as attached: lift over its linear law is 0/0 there.
 const ATTACHED_WIDTH: f64 = PI / 180.0;
 /// Least relative speed (m/s) that delays are computed with.
 const LEAST_SPEED: f64 = 0.01;
 
-/// Whether the delay of lift in attached flow acts.
+/// Whether lift in attached flow has a delay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Attached {
-    /// Lift follows the wake that the section sheds.
+    /// Lift follows the shed wake.
     #[default]
     Delayed,
-    /// Lift follows the angle of attack at once, as where a flow around the blade resolves the wake.
+    /// Lift follows the angle of attack at once, for a flow that resolves the wake.
     Steady,
 }
 
-/// What the model takes from a section's polar.
+/// Parameters of the model, from a section's polar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicStall {
     /// Angle of attack without lift α₀ (rad).
@@ -71,18 +72,18 @@ pub struct Stream {
 
 /// State of the flow about a section.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct State {
-    /// Parts of the downwash at three quarters of the chord that have come through (m/s).
+pub struct StallState {
+    /// Lagged parts of the downwash at three quarters of the chord (m/s).
     downwashes: [f64; 2],
-    /// Lift coefficient that the leading edge's pressure has reached (–).
+    /// Lift coefficient lagged by the leading-edge pressure (–).
     pressure_lift: f64,
     /// Share of the chord over which flow is attached (–).
     attachment: f64,
-    /// What drove the four at the last instant.
+    /// Inputs of the four lags at the last instant.
     driven_by: Drive,
 }
 
-/// What drives the states: speed (m/s), downwash (m/s), lift coefficient of attached flow and attachment (–).
+/// Inputs of the states: speed (m/s), downwash (m/s), lift coefficient of attached flow and attachment (–).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Drive {
     speed: f64,
@@ -91,7 +92,7 @@ struct Drive {
     attachment: f64,
 }
 
-impl State {
+impl StallState {
     /// Share of the chord, from the leading edge, over which flow is attached (–).
     pub fn attachment(&self) -> f64 {
         self.attachment
@@ -99,7 +100,7 @@ impl State {
 }
 
 impl DynamicStall {
-    /// Parameters from `polar`; None for a section that is no aerofoil, such as a cylinder, whose polar then holds at once.
+    /// Parameters from `polar`; None for a section that is no aerofoil, such as a cylinder, whose polar holds at once.
     ///
     /// The zero-lift angle is where lift rises through zero nearest to 0°, within 15°; the slope is the steepest line
     /// from there to the polar between 1.5° and 8° on either side.
@@ -133,8 +134,8 @@ impl DynamicStall {
         })
     }
 
-    /// State of a section, of `polar`, in a `stream` that has always been there.
-    pub fn settled(&self, stream: &Stream, polar: &Polar) -> State {
+    /// Steady state of a section of `polar` in `stream`.
+    pub fn settled(&self, stream: &Stream, polar: &Polar) -> StallState {
         let Stream { speed, chord, rotation, .. } = *stream;
         let speed = speed.max(LEAST_SPEED);
         let angle = within_reach(stream.angle_of_attack) + 0.5 * chord * rotation / speed;
@@ -142,7 +143,7 @@ impl DynamicStall {
         let lift = self.attached_lift(angle) + 0.5 * PI * chord / speed * rotation;
         let attachment =
             self.steady_attachment(lift / self.lift_slope + self.zero_lift_angle, polar);
-        State {
+        StallState {
             downwashes: self.amplitudes.map(|amplitude| amplitude * downwash),
             pressure_lift: lift,
             attachment,
@@ -150,15 +151,15 @@ impl DynamicStall {
         }
     }
 
-    /// Coefficients of a section of `polar` in `stream`; on return `state` has moved on by `interval` (s), which led there.
+    /// Coefficients of a section of `polar` in `stream`; on return `state` has been advanced by `interval` (s) to this instant.
     ///
-    /// Exact for what drives the states held at the mean of the interval's ends, so that any interval is stable.
+    /// Exact for inputs held at the mean of the interval's ends, so that any interval is stable.
     pub fn advance(
         &self,
         interval: f64,
         stream: &Stream,
         polar: &Polar,
-        state: &mut State,
+        state: &mut StallState,
     ) -> SectionCoefficients {
         // Symbols of Hansen et al. 2004: alpha_e and alpha_f effective angles, f and x4 attachment.
         let angle_of_attack = if stream.angle_of_attack.abs() <= PI {
@@ -192,7 +193,7 @@ impl DynamicStall {
                 alpha_e += *part * inverse_speed;
             }
         }
-        // Downwash from faster times over a speed near zero would be any angle.
+        // Downwash from a faster flow, over a speed near zero, would give any angle.
         let alpha_e = within_reach(alpha_e);
         let apparent_mass = PI * half_chord_time * stream.rotation;
         let lift = self.attached_lift(alpha_e) + apparent_mass;
@@ -248,12 +249,12 @@ impl DynamicStall {
     }
 }
 
-/// The angle (rad) that the model's states see; beyond its reach they rest.
+/// The angle (rad) limited to the range of the model.
 fn within_reach(angle: f64) -> f64 {
     angle.clamp(-NONE, NONE)
 }
 
-/// `dynamic` coefficients with a share of `share` (–), the polar's own with the rest.
+/// Blend of `dynamic` coefficients with weight `share` (–) and the polar's with the rest.
 fn fade(
     dynamic: SectionCoefficients,
     steady: SectionCoefficients,

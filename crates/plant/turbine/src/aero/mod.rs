@@ -1,4 +1,4 @@
-//! Aerodynamics of blades: what a section feels, and what a ring of air and its blade sections agree on.
+//! Aerodynamics of blades: section polars, dynamic stall, blade-element momentum theory and dynamic inflow.
 
 pub mod blade_element;
 pub mod blade_moments;

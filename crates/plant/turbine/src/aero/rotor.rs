@@ -1,4 +1,5 @@
-//! Aerodynamics of a flexible rotor in a wind that knows nothing of it: induction with delay, skewed wake, dynamic stall, tower.
+//! Blade-element momentum aerodynamics of a flexible rotor in a prescribed wind: dynamic inflow, skewed wake, dynamic stall,
+//! tower.
 
 use super::blade_element::Theory;
 use super::dynamic_stall::{self, Stream};
@@ -13,49 +14,49 @@ use crate::structure::{ElementLoad, Pitch};
 use basis::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Which parts of the theory act.
+/// Settings of blade-element momentum theory: which parts are active.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
-    /// How the wake makes itself felt.
+pub struct BemSettings {
+    /// Model of the induction.
     pub induction: Induction,
     /// Losses and drag in the induction.
     pub theory: Theory,
-    /// Whether a wake that leaves askew changes the induction across the rotor.
+    /// Whether a skewed wake changes the induction across the rotor.
     pub skewed_wake: bool,
-    /// Whether sections answer with the delay of dynamic stall; otherwise their polars hold at once.
+    /// Whether sections have dynamic stall; otherwise their polars hold at once.
     pub dynamic_stall: bool,
-    /// The tower, where the wind handed in has not met it.
+    /// The tower, if the wind given does not contain its influence.
     pub tower: Option<TowerInfluence>,
 }
 
 /// The blades of a rotor, all alike; parameters only.
 ///
-/// Sections work across the local blade line, coned, prebent and bent; flow along it does nothing. Shaft tilt, yaw and
-/// motion of the tower reach them through the wind's components and the elements' own velocities.
+/// Sections see the flow normal to the local blade line, coned, prebent and bent; flow along it has no effect. Shaft tilt, yaw
+/// and motion of the tower enter through the components of the wind and the velocities of the elements.
 #[derive(Clone, Debug)]
 pub struct RotorAerodynamics {
-    settings: Settings,
+    settings: BemSettings,
     air_density: f64,
     n_blades: usize,
     rotor_radius: f64,
     sections: Vec<Section>,
 }
 
-/// Where the rotor is and how it moves, now.
+/// Rotor kinematics: position and motion of the rotor at one instant.
 #[derive(Clone, Copy, Debug)]
-pub struct Posture<'a> {
+pub struct RotorKinematics<'a> {
     /// Hub and shaft.
     pub frame: &'a Frame,
-    /// The elements in motion, blade after blade, root to tip.
+    /// Motion of the elements, blade after blade, root to tip.
     pub elements: &'a [ElementMotion],
     /// Pitch of each blade.
     pub pitch: &'a [Pitch],
 }
 
-/// Everything that time changes; restoring it continues with the same bits.
+/// State of the aerodynamics; a run restored from it continues with the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct State {
-    /// Whether the flow has met the rotor yet; when it first does, it settles.
+pub struct BemState {
+    /// Whether a step has been made; the first one starts from the steady state.
     started: bool,
     /// Mean axial induction of the last instant (–).
     mean_induction: f64,
@@ -65,15 +66,15 @@ pub struct State {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct ElementState {
     induced: Induced,
-    stall: dynamic_stall::State,
+    stall: dynamic_stall::StallState,
 }
 
-/// What the air does to the rotor, and why.
+/// Aerodynamic loads of the rotor, with the flow at its elements.
 #[derive(Clone, Debug)]
 pub struct Loads {
     /// Force and moment on each element, blade after blade, root to tip.
     pub elements: Vec<ElementLoad>,
-    /// The flow that makes them, in the same order.
+    /// Flow at each element, in the same order.
     pub flows: Vec<ElementFlow>,
     /// Force along the shaft, downwind (N).
     pub thrust: f64,
@@ -117,14 +118,14 @@ impl ElementFlow {
 }
 
 impl RotorAerodynamics {
-    /// The blades of `definition`, cut into `elements` as [`ActuatorLine::elements`](crate::actuator_line::ActuatorLine::elements) gives them.
+    /// The blades of `definition`, divided into `elements` as [`ActuatorLine::elements`](crate::actuator_line::ActuatorLine::elements) gives them.
     ///
     /// The air has a density of `air_density` (kg/m³).
     pub fn new(
         definition: &Definition,
         elements: &[Element],
         air_density: f64,
-        settings: Settings,
+        settings: BemSettings,
     ) -> Self {
         let mut sections = sections(definition, elements);
         if !settings.dynamic_stall {
@@ -139,9 +140,9 @@ impl RotorAerodynamics {
         }
     }
 
-    /// The state before the flow has met the rotor.
-    pub fn start(&self) -> State {
-        State {
+    /// The state before the first step.
+    pub fn start(&self) -> BemState {
+        BemState {
             started: false,
             mean_induction: 0.0,
             elements: vec![ElementState::default(); self.n_blades * self.sections.len()],
@@ -161,19 +162,19 @@ impl RotorAerodynamics {
         }
     }
 
-    /// Moves `state` on by the `interval` (s) that led to now, and fills `loads` with what the air does now.
+    /// Advances `state` by the `interval` (s) before this instant, and fills `loads` with the loads at this instant.
     ///
-    /// `winds` (m/s, farm frame) holds the wind at each element of `posture` now. The first call settles the flow as if wind
-    /// and posture had always been so. With an interval of 0 only what has no delay moves.
+    /// `winds` (m/s, farm frame) holds the wind at each element of `kinematics`. The first call starts from the steady state for
+    /// this wind and these kinematics. With an interval of 0 only parts without lag change.
     pub fn advance(
         &self,
         interval: f64,
         winds: &[Vector3],
-        posture: Posture<'_>,
-        state: &mut State,
+        kinematics: RotorKinematics<'_>,
+        state: &mut BemState,
         loads: &mut Loads,
     ) {
-        let Frame { hub, shaft, .. } = *posture.frame;
+        let Frame { hub, shaft, .. } = *kinematics.frame;
         let mean_wind = self.mean_wind(winds);
         let skew = if self.settings.skewed_wake {
             SkewedWake::new(mean_wind, shaft, state.mean_induction, self.rotor_radius)
@@ -185,10 +186,10 @@ impl RotorAerodynamics {
         let (mut force, mut torque) = (Vector3::ZERO, 0.0);
         let (mut taken, mut offered) = (0.0, 0.0);
         for blade in 0..self.n_blades {
-            let pitch = posture.pitch[blade];
+            let pitch = kinematics.pitch[blade];
             for (station, section) in self.sections.iter().enumerate() {
                 let index = blade * n + station;
-                let motion = &posture.elements[index];
+                let motion = &kinematics.elements[index];
                 let arm = motion.position - hub;
                 let now = Instant {
                     interval: if state.started { Some(interval) } else { None },
@@ -215,14 +216,14 @@ impl RotorAerodynamics {
         loads.torque = torque;
     }
 
-    /// Load of one element now, and the flow that makes it; on return its `state` has moved on.
+    /// Load and flow of one element; on return its `state` has been advanced.
     fn load(
         &self,
         section: &Section,
         now: &Instant<'_>,
         state: &mut ElementState,
     ) -> (ElementLoad, ElementFlow) {
-        let Settings { induction, theory, .. } = &self.settings;
+        let BemSettings { induction, theory, .. } = &self.settings;
         let axes = &now.motion.axes;
         let relative = now.wind - now.motion.velocity;
         let onset =
@@ -287,7 +288,7 @@ impl RotorAerodynamics {
         sum / area
     }
 
-    /// Wind at `position` (m) with the tower in it.
+    /// Wind at `position` (m) with the influence of the tower.
     fn met(&self, position: Vector3, wind: Vector3) -> Vector3 {
         match &self.settings.tower {
             Some(tower) => tower.felt(position, wind),
@@ -305,7 +306,7 @@ impl RotorAerodynamics {
     }
 }
 
-/// What an element meets now.
+/// Inputs of one element at one instant.
 struct Instant<'a> {
     /// Since the last instant (s); None at the first one.
     interval: Option<f64>,

@@ -148,7 +148,7 @@ impl Stiff {
                     ElementMotion {
                         position,
                         velocity: turning.cross(position - self.frame.hub),
-                        axes: self.frame.blade(azimuth, element.cone),
+                        axes: self.frame.blade(azimuth, element.cone_angle),
                         pitch,
                     }
                 })

@@ -1,4 +1,4 @@
-//! Blade elements as a rotor's aerodynamics sees them: ring of air, polar, dynamic stall.
+//! Aerodynamic parameters of blade elements: annulus, polar, dynamic stall.
 
 use super::Polar;
 use super::blade_element::Annulus;
@@ -7,7 +7,7 @@ use super::induction::Ring;
 use crate::actuator_line::Element;
 use crate::definition::Definition;
 
-/// What stays of one blade element, whichever blade it belongs to.
+/// Parameters of one blade element, the same on every blade.
 #[derive(Clone, Debug)]
 pub(super) struct Section {
     pub(super) ring: Ring,
@@ -34,7 +34,7 @@ pub(super) fn sections(definition: &Definition, elements: &[Element]) -> Vec<Sec
                 tip_radius: definition.rotor_radius(),
                 chord: element.chord,
                 section_pitch: element.twist,
-                lean: 0.0,
+                cone_angle: 0.0,
             });
             let stall = DynamicStall::new(&polar, Attached::Delayed);
             let (width, area) = (element.width, element.radius * element.width);

@@ -1,4 +1,4 @@
-//! What a tower does to the wind past it: it parts ahead of the tower, and is slow behind it.
+//! Tower influence on the wind: potential flow ahead of the tower, tower shadow behind it.
 //!
 //! Source: Bak, Madsen, Johansen, "Influence from blade-tower interaction on fatigue loads and dynamics", EWEC 2001
 //! (potential flow about a cylinder, with the drag's part); Powles, "The effects of tower shadow on the dynamics of a
@@ -8,28 +8,28 @@ use crate::definition::{Definition, TowerProfile};
 use basis::Vector3;
 use std::f64::consts::PI;
 
-/// Distance, in tower radii (–), that the potential flow's centre stands upwind of the axis.
+/// Distance of the potential flow's centre upwind of the axis, in tower radii (–).
 const OFFSET: f64 = 0.1;
-/// Distance (tower radii) beyond which the wind is left as it is: a thousandth of it at most changes there.
+/// Distance (tower radii) beyond which the wind is not changed: there the influence is a thousandth of it at most.
 const REACH: f64 = 80.0;
 
-/// Which effects act.
+/// Which effects are active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
     /// Flow about the tower, ahead of it and beside it.
     pub potential: Potential,
-    /// Slow wind behind it.
+    /// Tower shadow: the wake behind it.
     pub shadow: bool,
 }
 
-/// Flow that parts about the tower.
+/// Potential flow about the tower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Potential {
     /// None.
     None,
     /// About a cylinder (AeroDyn's `TwrPotent` 1).
     Cylinder,
-    /// After Bak: about a cylinder a little upwind, and a source that stands for the tower's drag (`TwrPotent` 2).
+    /// After Bak: about a cylinder a little upwind, with a source for the tower's drag (`TwrPotent` 2).
     WithDrag,
 }
 

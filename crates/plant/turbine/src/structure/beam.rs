@@ -1,4 +1,4 @@
-//! A flexible beam, blade or tower: its mass points, stiffness and damping, and what they sum to in motion.
+//! A flexible beam, blade or tower: its mass points, stiffness and damping, and their resultants in motion.
 
 use super::quadrature::mass_points;
 use super::shapes::{Place, PrincipalMode, Section, Shapes, modal_mass, stiffness, weighted};
@@ -18,7 +18,7 @@ pub(super) struct Beam<const N: usize> {
     pub(super) damping: [[f64; N]; N],
 }
 
-/// Mass gathered at a place of a beam.
+/// Mass lumped at a place of a beam.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MassPoint<const N: usize> {
     pub(super) mass: f64,
@@ -51,9 +51,9 @@ impl Wrench {
     }
 }
 
-/// How the frame of a beam's clamped end moves, in components of that frame.
+/// Base motion: how the frame of a beam's clamped end moves, in components of that frame.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Carrier {
+pub(super) struct BaseMotion {
     /// Acceleration of the origin less gravity (m/s²).
     pub(super) acceleration: Vector3,
     /// Angular velocity (rad/s).
@@ -62,8 +62,8 @@ pub(super) struct Carrier {
     pub(super) angular_acceleration: Vector3,
 }
 
-impl Carrier {
-    /// [α]ₓ + [ω]ₓ [ω]ₓ, which gives the acceleration (m/s²) of what lies still in the frame.
+impl BaseMotion {
+    /// [α]ₓ + [ω]ₓ [ω]ₓ, which times a position gives the acceleration (m/s²) of a point fixed in the frame.
     fn gradient(&self) -> Matrix3 {
         let (w, a) = (self.spin, self.angular_acceleration);
         let s = w.length_squared();
@@ -75,7 +75,7 @@ impl Carrier {
     }
 }
 
-/// Mass matrix and inertial demand of a beam about the origin of its frame, six rigid and N modal motions.
+/// Mass matrix and bias forces of a beam about the origin of its frame, for six rigid and N modal motions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inertia<const N: usize> {
     /// ∫ dm (kg).
@@ -90,14 +90,14 @@ pub(super) struct Inertia<const N: usize> {
     pub(super) angular: [Vector3; N],
     /// ∫ ∂p/∂qᵢ · ∂p/∂qⱼ dm (kg).
     pub(super) modal: [[f64; N]; N],
-    /// Force and moment that the accelerations take which are there without second derivatives of coordinates; gravity included.
-    pub(super) demand: Wrench,
-    /// The same for each mode (N).
-    pub(super) modal_demand: [f64; N],
+    /// Bias force and moment: inertial forces that do not depend on second derivatives of the coordinates, gravity included.
+    pub(super) bias: Wrench,
+    /// Bias force of each mode (N).
+    pub(super) modal_bias: [f64; N],
 }
 
 impl<const N: usize> Inertia<N> {
-    /// Nothing yet.
+    /// No mass.
     pub(super) const ZERO: Self = Self {
         mass: 0.0,
         first: Vector3::ZERO,
@@ -105,8 +105,8 @@ impl<const N: usize> Inertia<N> {
         linear: [Vector3::ZERO; N],
         angular: [Vector3::ZERO; N],
         modal: [[0.0; N]; N],
-        demand: Wrench { force: Vector3::ZERO, moment: Vector3::ZERO },
-        modal_demand: [0.0; N],
+        bias: Wrench { force: Vector3::ZERO, moment: Vector3::ZERO },
+        modal_bias: [0.0; N],
     };
 }
 
@@ -114,7 +114,7 @@ impl<const N: usize> Beam<N> {
     /// A beam of `length` (m) that begins `start` (m) along z from the origin, in `n_parts` equal parts of two mass points.
     ///
     /// Damping follows stiffness, C = √βᵢ Kᵢⱼ √βⱼ with βᵢ = 2 ζᵢ / ωᵢ and ωᵢ the frequency of the mode on the bare
-    /// beam at rest, as the damping ratios of the reference turbines are meant.
+    /// beam at rest, which is how the reports of the reference turbines define their damping ratios.
     pub(super) fn new(
         start: f64,
         length: f64,
@@ -142,17 +142,22 @@ impl<const N: usize> Beam<N> {
         (Self { points, borders, stiffness, damping }, shapes)
     }
 
-    /// Inertia at the modal coordinates `q` and rates `v`, carried along by `carrier`.
-    pub(super) fn inertia(&self, q: &[f64; N], v: &[f64; N], carrier: &Carrier) -> Inertia<N> {
-        let gradient = carrier.gradient();
-        let twice_spin = 2.0 * carrier.spin;
+    /// Inertia at the modal coordinates `q` and rates `v` on a base that moves with `base_motion`.
+    pub(super) fn inertia(
+        &self,
+        q: &[f64; N],
+        v: &[f64; N],
+        base_motion: &BaseMotion,
+    ) -> Inertia<N> {
+        let gradient = base_motion.gradient();
+        let twice_spin = 2.0 * base_motion.spin;
         let mut sum = Inertia::ZERO;
         let mut products = Matrix3::ZERO;
         for point in &self.points {
             let (position, partials) = point.place.at(q);
             let rate = weighted(&partials, v);
             let mut acceleration =
-                carrier.acceleration + gradient * position + twice_spin.cross(rate);
+                base_motion.acceleration + gradient * position + twice_spin.cross(rate);
             acceleration.z += point.place.own_acceleration(v);
             let force = acceleration * point.mass;
             let moment_of_mass = position * point.mass;
@@ -161,13 +166,13 @@ impl<const N: usize> Beam<N> {
             products.x_axis += moment_of_mass * position.x;
             products.y_axis += moment_of_mass * position.y;
             products.z_axis += moment_of_mass * position.z;
-            sum.demand.force += force;
-            sum.demand.moment += position.cross(force);
+            sum.bias.force += force;
+            sum.bias.moment += position.cross(force);
             for i in 0..N {
                 let weighted = partials[i] * point.mass;
                 sum.linear[i] += weighted;
                 sum.angular[i] += position.cross(weighted);
-                sum.modal_demand[i] += partials[i].dot(force);
+                sum.modal_bias[i] += partials[i].dot(force);
                 for (j, partial) in partials.iter().enumerate().skip(i) {
                     sum.modal[i][j] += weighted.dot(*partial);
                 }
@@ -198,23 +203,23 @@ impl<const N: usize> Beam<N> {
         -0.5 * forces.iter().zip(q).map(|(force, q)| force * q).sum::<f64>()
     }
 
-    /// Forces of the mass points, gravity less inertia (N), given to `take(index, position, force)` from the free end on.
+    /// Calls `take(index, position, force)` for each mass point, free end first, with gravity less inertia as force (N).
     ///
-    /// `carrier` and `accelerations` are the full ones, those of the coordinates included.
+    /// `base_motion` and `accelerations` are complete: they include the second derivatives of the coordinates.
     pub(super) fn inertial_forces(
         &self,
         q: &[f64; N],
         v: &[f64; N],
         accelerations: &[f64; N],
-        carrier: &Carrier,
+        base_motion: &BaseMotion,
         mut take: impl FnMut(usize, Vector3, Vector3),
     ) {
-        let gradient = carrier.gradient();
+        let gradient = base_motion.gradient();
         for (index, point) in self.points.iter().enumerate().rev() {
             let (position, partials) = point.place.at(q);
-            let mut acceleration = carrier.acceleration
+            let mut acceleration = base_motion.acceleration
                 + gradient * position
-                + 2.0 * carrier.spin.cross(weighted(&partials, v))
+                + 2.0 * base_motion.spin.cross(weighted(&partials, v))
                 + weighted(&partials, accelerations);
             acceleration.z += point.place.own_acceleration(v);
             take(index, position, acceleration * -point.mass);

@@ -22,7 +22,7 @@ const ANGLE: (&str, f64) = ("deg", 180.0 / PI);
 const SPEED: (&str, f64) = ("rpm", 30.0 / PI);
 const ACCELERATION: (&str, f64) = ("m/s^2", 1.0);
 
-/// Names of one turbine, in the order in which [`write`] gives values.
+/// Channels of one turbine, in the order in which [`write`] gives values.
 const TURBINE: [(&str, (&str, f64)); 32] = [
     ("Azimuth", ANGLE),
     ("RotSpeed", SPEED),
@@ -58,7 +58,7 @@ const TURBINE: [(&str, (&str, f64)); 32] = [
     ("NcIMUTAzs", ACCELERATION),
 ];
 
-/// Names of one blade, its number to be put behind them.
+/// Channels of one blade; its number follows the name.
 const BLADE: [(&str, (&str, f64)); 14] = [
     ("BldPitch", ANGLE),
     ("RootFxc", FORCE),
@@ -76,7 +76,7 @@ const BLADE: [(&str, (&str, f64)); 14] = [
     ("TipDzc", LENGTH),
 ];
 
-/// Other names of the same channels; a blade's number follows where one does in the second.
+/// OpenFAST's other names of the same channels; a blade's number follows both, or neither.
 const ALIASES: [(&str, &str); 26] = [
     ("RotSpeed", "LSSTipVxa"),
     ("NacYaw", "YawPzn"),
@@ -108,7 +108,7 @@ const ALIASES: [(&str, &str); 26] = [
 
 /// The table of channels of a turbine with `n_blades` blades.
 ///
-/// `Spn1` to `Spn7` lie at 1/8 to 7/8 of the blade, strain gauges of the shaft at the rotor apex.
+/// `Spn1` to `Spn7` lie at 1/8 to 7/8 of the blade; the shaft's strain gauges lie at the rotor apex.
 pub(super) fn table(n_blades: usize) -> Vec<Channel> {
     let channel = |name: String, (unit, scale): (&'static str, f64)| Channel { name, unit, scale };
     let mut channels: Vec<Channel> =
@@ -124,17 +124,17 @@ pub(super) fn table(n_blades: usize) -> Vec<Channel> {
     channels
 }
 
-/// Place of the channel called `name` in `table`; case does not matter, and OpenFAST's other names are known.
+/// Index of the channel called `name` in `table`; case does not matter, and OpenFAST's other names work too.
 pub(super) fn index(table: &[Channel], name: &str) -> Option<usize> {
     let find = |name: &str| table.iter().position(|c| c.name.eq_ignore_ascii_case(name));
     find(name).or_else(|| find(&canonical(name)?))
 }
 
-/// The name under which the channel called `name` is written: `RootMyb1` for `RootMFlp1`; None where `name` is no other
-/// name of a channel. Case does not matter.
+/// The name under which the channel called `name` is written: `RootMyb1` for `RootMFlp1`; None where `name` is not an
+/// alias of a channel. Case does not matter.
 ///
-/// Names of the shaft's strain gauges (`LSSGagMys`) lead to the moments at the rotor apex, where ours lie; gauges that
-/// OpenFAST's `ShftGagL` puts elsewhere measure another bending moment.
+/// The shaft's strain gauges (`LSSGagMys`) stand for the moments at the rotor apex. Gauges that OpenFAST's `ShftGagL`
+/// puts elsewhere measure another bending moment.
 pub fn canonical(name: &str) -> Option<String> {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let number = &name[stem.len()..];

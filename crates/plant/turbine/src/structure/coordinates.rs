@@ -1,4 +1,4 @@
-//! The degrees of freedom: six that all blades share, three of each blade.
+//! Generalised coordinates: six degrees of freedom that all blades share, three of each blade.
 
 use basis::blades::MAXIMUM_BLADES;
 use serde::{Deserialize, Serialize};
@@ -9,9 +9,9 @@ pub(super) const N_SHARED: usize = 6;
 pub(super) const N_TOWER: usize = 4;
 /// Modes of each blade: two flapwise, one edgewise.
 pub(super) const N_MODES: usize = 3;
-/// Place of the generator's azimuth among the shared coordinates.
+/// Index of the generator's azimuth among the shared coordinates.
 pub(super) const GENERATOR: usize = 4;
-/// Place of the drive train's twist among the shared coordinates.
+/// Index of the drive train's twist among the shared coordinates.
 pub(super) const TORSION: usize = 5;
 
 /// One value for each degree of freedom.
@@ -47,9 +47,9 @@ impl Coordinates {
     }
 }
 
-/// A degree of freedom, or its like on all blades.
+/// A degree of freedom; for blades, the same one on all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Freedom {
+pub enum DegreeOfFreedom {
     /// First fore-aft mode of the tower.
     TowerForeAft1,
     /// Second fore-aft mode of the tower.
@@ -70,7 +70,7 @@ pub enum Freedom {
     Edge1,
 }
 
-impl Freedom {
+impl DegreeOfFreedom {
     /// All of them, in the order of [`Coordinates`].
     pub const ALL: [Self; N_SHARED + N_MODES] = [
         Self::TowerForeAft1,
@@ -84,7 +84,7 @@ impl Freedom {
         Self::Edge1,
     ];
 
-    /// What an engineer calls it.
+    /// Its name in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::TowerForeAft1 => "tower fore-aft 1",
@@ -100,7 +100,7 @@ impl Freedom {
     }
 }
 
-/// Which degrees of freedom are held: no acceleration, so that what moves keeps its speed.
+/// Which degrees of freedom are locked: no acceleration, so that what moves keeps its speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Locks {
     pub(super) shared: [bool; N_SHARED],
@@ -108,11 +108,11 @@ pub(super) struct Locks {
 }
 
 impl Locks {
-    /// Exactly `freedoms` held.
-    pub(super) fn of(freedoms: &[Freedom]) -> Self {
+    /// Exactly `degrees` locked.
+    pub(super) fn of(degrees: &[DegreeOfFreedom]) -> Self {
         let mut locks = Self::default();
-        for (index, freedom) in Freedom::ALL.iter().enumerate() {
-            let held = freedoms.contains(freedom);
+        for (index, degree) in DegreeOfFreedom::ALL.iter().enumerate() {
+            let held = degrees.contains(degree);
             match index.checked_sub(N_SHARED) {
                 None => locks.shared[index] = held,
                 Some(mode) => locks.modes[mode] = held,

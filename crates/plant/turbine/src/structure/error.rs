@@ -36,7 +36,7 @@ pub enum StructureError {
     /// Number of blades outside what one rotor carries.
     #[error("a rotor of {n_blades} blades: from 1 to {maximum} can be modelled")]
     Blades {
-        /// Blades asked for (–).
+        /// Blades given (–).
         n_blades: usize,
         /// Most that a rotor may have (–).
         maximum: usize,

@@ -1,11 +1,11 @@
-//! Bodies that move with the shared coordinates: position, attitude, partial velocities, and the accelerations left over.
+//! Bodies that move with the shared coordinates: position, attitude, partial velocities and remaining accelerations.
 
 use super::coordinates::{Coordinates, N_SHARED};
 use basis::{Matrix3, Vector3};
 
 /// A frame fixed in a body, and how its origin moves.
 ///
-/// Velocity = Σ `linear`ᵢ q̇ᵢ (and what is prescribed), acceleration = Σ `linear`ᵢ q̈ᵢ + `acceleration_rest`; angles likewise.
+/// Velocity = Σ `linear`ᵢ q̇ᵢ plus prescribed motion, acceleration = Σ `linear`ᵢ q̈ᵢ + `acceleration_rest`; angles likewise.
 /// Farm frame throughout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingFrame {
@@ -61,8 +61,8 @@ impl MovingFrame {
         Self { axes: self.axes * *own_from_new, ..*self }
     }
 
-    /// A body on the same origin that turns against this one about `axis` (farm frame) at `rate` (rad/s) and
-    /// `acceleration` (rad/s²), both prescribed or, with `coordinates`, the rate of those shared coordinates.
+    /// A body with the same origin that turns relative to this one about `axis` (farm frame) at `rate` (rad/s) and
+    /// `acceleration` (rad/s²). Both are prescribed, unless `coordinates` names the shared coordinates that make the rate.
     pub(super) fn turning(
         &self,
         axis: Vector3,

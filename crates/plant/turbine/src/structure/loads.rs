@@ -1,15 +1,15 @@
-//! Loads inside the structure: everything outboard of a cut, applied load and gravity less inertia.
+//! Internal loads: applied loads and gravity less inertia, of everything outboard of a cut.
 
-use super::balance::Balance;
-use super::beam::{Carrier, Wrench};
+use super::beam::{BaseMotion, Wrench};
 use super::coordinates::{GENERATOR, N_MODES, TORSION};
+use super::equations_of_motion::EquationsOfMotion;
 use super::machine::{Machine, N_BLADE_PARTS};
-use super::midpoint::Phase;
-use super::stations::Gathered;
+use super::midpoint::PhasePoint;
+use super::stations::LoadResultants;
 use basis::{PerBlade, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Places along a blade where bending moments are told, at equal shares of its length.
+/// Stations along a blade at which bending moments are output, at equal fractions of its length (–).
 pub const N_GAUGES: usize = N_BLADE_PARTS - 1;
 
 /// Loads and deflections of one blade.
@@ -27,7 +27,7 @@ pub struct BladeLoads {
 
 /// Loads and motions of the whole turbine at the middle of a step.
 ///
-/// A load is what the outboard side of a cut does to its inboard side, as OpenFAST has it.
+/// A load is what the outboard side of a cut does to its inboard side, the convention of OpenFAST.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Loads {
     /// Azimuth of blade 1 (rad, not wrapped).
@@ -36,7 +36,7 @@ pub struct Loads {
     pub rotor_speed: f64,
     /// Generator speed, high-speed side (rad/s).
     pub generator_speed: f64,
-    /// Blade by blade.
+    /// Loads of each blade.
     pub blades: PerBlade<BladeLoads>,
     /// Rotor on the shaft at the rotor apex, axes of the shaft, not rotating: x downwind, y left, z up.
     pub shaft: Wrench,
@@ -44,7 +44,7 @@ pub struct Loads {
     pub rotating_shaft: Wrench,
     /// Nacelle and rotor on the yaw bearing, axes of the tower top, not yawing: x downwind, y left, z up.
     pub yaw_bearing: Wrench,
-    /// Everything on the foot of the tower: x downwind, y left, z up.
+    /// The whole turbine on the foot of the tower: x downwind, y left, z up.
     pub tower_base: Wrench,
     /// Displacement of the tower top, downwind, left, up (m).
     pub tower_top: Vector3,
@@ -53,18 +53,23 @@ pub struct Loads {
 }
 
 impl Machine {
-    /// Loads where `phase`, its accelerations included, fulfils `balance` under the loads `applied`.
-    pub(super) fn loads(&self, phase: &Phase, balance: &Balance, applied: &Gathered) -> Loads {
-        let motion = &balance.motion;
+    /// Loads where `phase`, its accelerations included, satisfies `equations` under the loads `applied`.
+    pub(super) fn loads(
+        &self,
+        phase: &PhasePoint,
+        equations: &EquationsOfMotion,
+        applied: &LoadResultants,
+    ) -> Loads {
+        let motion = &equations.motion;
         let azimuth = phase.q.shared[GENERATOR] + phase.q.shared[TORSION];
         let rotor_speed = phase.v.shared[GENERATOR] + phase.v.shared[TORSION];
         let hub_turning = motion.hub.angular_acceleration(&phase.a);
         let mut rotor = Wrench {
             force: (self.gravity - motion.hub.acceleration(&phase.a)) * self.hub_mass,
-            moment: -self.hub_spinner(motion).demand(hub_turning),
+            moment: -self.hub_axial_inertia(motion).required_moment(hub_turning),
         };
         let blades = PerBlade::from_fn(self.n_blades, |blade| {
-            let (loads, at_apex) = self.blade_loads(blade, phase, balance, applied);
+            let (loads, at_apex) = self.blade_loads(blade, phase, equations, applied);
             rotor.add(at_apex.turned(&motion.blades[blade].axes));
             loads
         });
@@ -74,9 +79,9 @@ impl Machine {
         let weight = (self.gravity - motion.nacelle.acceleration(&phase.a)) * self.nacelle_mass;
         let mut top = rotor;
         top.force += applied.nacelle;
-        top.moment -= self.generator_spinner(&generator).demand(generator_turning);
+        top.moment -= self.generator_axial_inertia(&generator).required_moment(generator_turning);
         top = top.about(motion.hub.origin - motion.top.origin);
-        top.moment -= self.nacelle_spinner(motion).demand(nacelle_turning);
+        top.moment -= self.nacelle_axial_inertia(motion).required_moment(nacelle_turning);
         top.add(
             Wrench { force: weight, moment: Vector3::ZERO }
                 .about(motion.nacelle.origin - motion.top.origin),
@@ -86,11 +91,11 @@ impl Machine {
         base.force += (self.gravity - top_acceleration) * self.yaw_bearing_mass;
         base = base.about(motion.top.origin - self.base);
         base.add(applied.tower);
-        base.force -= balance.tower.demand.force;
-        base.moment -= balance.tower.demand.moment;
+        base.force -= equations.tower.bias.force;
+        base.moment -= equations.tower.bias.moment;
         for (mode, acceleration) in phase.a.tower().iter().enumerate() {
-            base.force -= balance.tower.linear[mode] * *acceleration;
-            base.moment -= balance.tower.angular[mode] * *acceleration;
+            base.force -= equations.tower.linear[mode] * *acceleration;
+            base.moment -= equations.tower.angular[mode] * *acceleration;
         }
         let shaft_from_farm = motion.shaft.axes.transpose();
         Loads {
@@ -107,25 +112,25 @@ impl Machine {
         }
     }
 
-    /// Loads of `blade`, and what it does to the hub about the rotor apex in its own axes.
+    /// Loads of `blade`, and its load on the hub about the rotor apex in its own axes.
     fn blade_loads(
         &self,
         blade: usize,
-        phase: &Phase,
-        balance: &Balance,
-        applied: &Gathered,
+        phase: &PhasePoint,
+        equations: &EquationsOfMotion,
+        applied: &LoadResultants,
     ) -> (BladeLoads, Wrench) {
-        let frame = &balance.motion.blades[blade];
+        let frame = &equations.motion.blades[blade];
         let (q, v, a) = (&phase.q.blades[blade], &phase.v.blades[blade], &phase.a.blades[blade]);
         let own_from_farm = frame.axes.transpose();
-        let carrier = Carrier {
+        let base_motion = BaseMotion {
             acceleration: own_from_farm * (frame.acceleration(&phase.a) - self.gravity),
             spin: own_from_farm * frame.spin,
             angular_acceleration: own_from_farm * frame.angular_acceleration(&phase.a),
         };
         let mut outboard = Wrench::default();
         let mut span_moments = [[0.0; 2]; N_GAUGES];
-        self.blade.inertial_forces(q, v, a, &carrier, |index, position, force| {
+        self.blade.inertial_forces(q, v, a, &base_motion, |index, position, force| {
             outboard.force += force;
             outboard.moment += position.cross(force);
             if index % 2 == 1 {
@@ -139,7 +144,7 @@ impl Machine {
         });
         let pitched_root = outboard.about(Vector3::Z * -self.hub_radius);
         let (tip, _) = self.blade_tip.at(q);
-        let farm_from_cone = self.cone_axes(blade, &balance.motion);
+        let farm_from_cone = self.cone_axes(blade, &equations.motion);
         let coned_from_pitched = farm_from_cone.transpose() * frame.axes;
         let loads = BladeLoads {
             root: pitched_root.turned(&coned_from_pitched),

@@ -1,4 +1,4 @@
-//! The turbine as a mechanism: two kinds of beam, three rigid bodies and a shaft; parameters only.
+//! The turbine as a multibody system: two kinds of beam, three rigid bodies and a shaft; parameters only.
 
 use super::beam::Beam;
 use super::coordinates::{Coordinates, GENERATOR, N_MODES, N_TOWER, TORSION};
@@ -11,11 +11,11 @@ use basis::{Matrix3, PerBlade, Vector3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Equal parts of a blade, two mass points in each; their inner borders are where span moments are told.
+/// Equal parts of a blade, two mass points in each; span moments are output at their inner borders (–).
 pub(super) const N_BLADE_PARTS: usize = 8;
 /// Equal parts of the tower, two mass points in each.
 const N_TOWER_PARTS: usize = 6;
-/// Most that the coefficients of a mode may miss one by (–); files round them to six or seven digits.
+/// Largest difference from one of the sum of a mode's coefficients (–); files round them to six or seven digits.
 const SHAPE_TOLERANCE: f64 = 1e-3;
 
 /// How a blade is pitched, prescribed.
@@ -29,7 +29,7 @@ pub struct Pitch {
     pub acceleration: f64,
 }
 
-/// Everything of the structure that time does not change.
+/// Parameters of the structure, constant in time.
 #[derive(Clone, Debug)]
 pub(super) struct Machine {
     pub(super) n_blades: usize,
@@ -63,7 +63,7 @@ pub(super) struct Machine {
     hub_from_cone: PerBlade<Matrix3>,
 }
 
-/// The mode functions that places on beams are read from.
+/// Tabulated mode shapes of tower and blade.
 pub(super) struct ModeTables {
     pub(super) tower: Shapes<N_TOWER>,
     pub(super) blade: Shapes<N_MODES>,
@@ -164,7 +164,7 @@ impl Machine {
         motion.hub.axes * self.hub_from_cone[blade]
     }
 
-    /// The tower top: carried by the tower's modes, turned by their slopes, fore-aft first.
+    /// The tower top: displaced by the tower's modes and turned by their slopes, fore-aft first.
     fn top(&self, q: &[f64; N_TOWER], v: &[f64; N_TOWER]) -> MovingFrame {
         let (place, partials) = self.tower_top.at(q);
         let (turn, rate) = (self.tower_top.turn(q), self.tower_top.turn(v));
@@ -230,7 +230,7 @@ fn tower_beam(definition: &Definition) -> Result<(Beam<N_TOWER>, Shapes<N_TOWER>
     Ok(Beam::new(0.0, length, N_TOWER_PARTS, &sections, &modes))
 }
 
-/// `sections` if they rise from 0 to `length` (m, to a thousandth) and are made of something.
+/// `sections` if they rise from 0 to `length` (m, to a thousandth) with positive mass and stiffness.
 fn checked(
     member: &'static str,
     length: f64,

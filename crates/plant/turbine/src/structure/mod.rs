@@ -11,22 +11,22 @@
 //!
 //! Blades and tower are beams whose modes bend them along two principal axes; the axes twist along the blade, so that each
 //! mode moves out of plane and in plane. A point of a beam moves as p = p₀ + Σ φᵢ qᵢ − ½ Σ qᵢ Aᵢⱼ qⱼ ẑ, the last term the
-//! shortening that bending brings: through it centrifugal force stiffens the blades and weight softens the tower. Positions
-//! are exact functions of the coordinates otherwise. Mass stands in Gaussian points (see `quadrature`), their velocities
-//! have partial derivatives by the rates, and Kane's equations put inertia, gravity and load through these on the
-//! coordinates. Loads inside are what lies outboard of a cut, inertia included.
+//! shortening due to bending: through it centrifugal force stiffens the blades and weight softens the tower. Positions
+//! are otherwise exact functions of the coordinates. Mass is lumped at Gaussian points (see `quadrature`). Kane's equations
+//! project inertia, gravity and applied loads on the coordinates through the partial velocities of these points. Internal
+//! loads are the sum of all forces outboard of a cut, inertia included.
 //!
 //! Sources: Kane and Levinson, Dynamics (1985), ch. 6; Jonkman and Buhl, FAST User's Guide, NREL/EL-500-38230 (2005), for the
 //! degrees of freedom, mode shapes and channels.
 //! Limits: no torsion and no extension of blades, sections' own rotary inertia left out, mass on the pitch axis: prebend
 //! and sweep carry the aerodynamic forces, not the mass. Slopes are small rotations.
 
-mod arrow;
-mod balance;
+mod arrowhead;
 mod beam;
 mod channels;
 mod coordinates;
 mod energy;
+mod equations_of_motion;
 mod error;
 mod frame;
 mod loads;
@@ -42,7 +42,7 @@ mod tests;
 
 pub use beam::Wrench;
 pub use channels::{Channel, canonical};
-pub use coordinates::{Coordinates, Freedom};
+pub use coordinates::{Coordinates, DegreeOfFreedom};
 pub use energy::Energy;
 pub use error::StructureError;
 pub use loads::{BladeLoads, Loads, N_GAUGES};
@@ -54,20 +54,20 @@ pub use stations::{AppliedLoads, ElementLoad};
 use crate::definition::Definition;
 use crate::motion::ElementMotion;
 use crate::rotor::Frame;
-use balance::Balance;
 use basis::{PerBlade, Vector3};
 use coordinates::{GENERATOR, Locks, TORSION};
+use equations_of_motion::EquationsOfMotion;
 use machine::Machine;
-use midpoint::Phase;
+use midpoint::PhasePoint;
 use serde::{Deserialize, Serialize};
-use stations::{Gathered, Stations};
+use stations::{LoadResultants, Stations};
 
 /// Standard acceleration of free fall (m/s²).
 pub const GRAVITY: f64 = 9.806_65;
 
-/// Where a flexible turbine stands and how it begins.
+/// Position and initial condition of a flexible turbine.
 #[derive(Clone, Copy, Debug)]
-pub struct Settings<'a> {
+pub struct StructureSettings<'a> {
     /// Foot of the turbine on the ground or mean sea level, farm frame (m).
     pub position: Vector3,
     /// Turn of the nacelle about the vertical, from facing −x, counter-clockwise from above (rad).
@@ -80,15 +80,15 @@ pub struct Settings<'a> {
     pub azimuth: f64,
     /// Pitch of all blades at the beginning (rad).
     pub pitch: f64,
-    /// Middles of the blade elements that the air acts on, from the rotor apex along the pitch axis (m).
+    /// Middles of the blade elements with aerodynamic loads, from the rotor apex along the pitch axis (m).
     pub spans: &'a [f64],
-    /// Points of the tower that the air acts on, above ground or mean sea level (m).
+    /// Points of the tower with aerodynamic loads, above ground or mean sea level (m).
     pub heights: &'a [f64],
 }
 
-impl Settings<'_> {
+impl StructureSettings<'_> {
     /// At the farm's origin, facing the wind, at rest, without elements.
-    pub const AT_REST: Settings<'static> = Settings {
+    pub const AT_REST: StructureSettings<'static> = StructureSettings {
         position: Vector3::ZERO,
         yaw: 0.0,
         gravity: GRAVITY,
@@ -100,7 +100,7 @@ impl Settings<'_> {
     };
 }
 
-/// A flexible turbine: what it is made of, how it moves now, and the loads of its last step.
+/// A flexible turbine: parameters, state, and the loads of its last step.
 #[derive(Clone, Debug)]
 pub struct Structure {
     machine: Machine,
@@ -108,20 +108,20 @@ pub struct Structure {
     locks: Locks,
     yaw: f64,
     channels: Vec<Channel>,
-    state: State,
-    balance: Balance,
+    state: StructureState,
+    equations: EquationsOfMotion,
 }
 
-/// Everything of a structure that time changes; restoring it continues with the same bits.
+/// State of a structure; a run restored from it continues with the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct State {
-    /// Where the coordinates are.
+pub struct StructureState {
+    /// Generalised coordinates.
     pub coordinates: Coordinates,
-    /// How fast they change.
+    /// Their velocities.
     pub velocities: Coordinates,
-    /// How fast that changes, mean of the last step.
+    /// Their accelerations, mean of the last step.
     pub accelerations: Coordinates,
-    /// The same of the step before.
+    /// Accelerations of the step before.
     pub earlier_accelerations: Coordinates,
     /// Pitch during the last step.
     pub pitch: PerBlade<Pitch>,
@@ -129,9 +129,9 @@ pub struct State {
     pub loads: Loads,
 }
 
-impl State {
-    fn phase(&self) -> Phase {
-        Phase {
+impl StructureState {
+    fn phase(&self) -> PhasePoint {
+        PhasePoint {
             q: self.coordinates,
             v: self.velocities,
             a: self.accelerations,
@@ -144,20 +144,23 @@ impl Structure {
     /// The structure of `definition`, undeflected.
     ///
     /// # Errors
-    /// When sections do not span blade or tower, are not made of anything, or a mode shape is not one at the free end.
-    pub fn new(definition: &Definition, settings: &Settings<'_>) -> Result<Self, StructureError> {
+    /// When sections do not span blade or tower, have no mass or stiffness, or a mode shape is not one at the free end.
+    pub fn new(
+        definition: &Definition,
+        settings: &StructureSettings<'_>,
+    ) -> Result<Self, StructureError> {
         let (machine, tables) =
             Machine::new(definition, settings.position, settings.yaw, settings.gravity)?;
         let stations = Stations::new(definition, &tables, settings.spans, settings.heights);
         let pitch = Pitch { angle: settings.pitch, ..Pitch::default() };
-        let mut phase = Phase::default();
+        let mut phase = PhasePoint::default();
         phase.q.shared[GENERATOR] = basis::angle::wrap_to_turn(settings.azimuth);
         phase.v.shared[GENERATOR] = settings.rotor_speed;
         let pitch = PerBlade::splat(machine.n_blades, pitch);
-        let none = Gathered::default();
-        let balance = machine.balance(&phase.q, &phase.v, &pitch, &none);
-        let loads = machine.loads(&phase, &balance, &none);
-        let state = State {
+        let none = LoadResultants::default();
+        let equations = machine.equations_of_motion(&phase.q, &phase.v, &pitch, &none);
+        let loads = machine.loads(&phase, &equations, &none);
+        let state = StructureState {
             coordinates: phase.q,
             velocities: phase.v,
             accelerations: phase.a,
@@ -167,12 +170,12 @@ impl Structure {
         };
         let channels = channels::table(machine.n_blades);
         let locks = Locks::default();
-        Ok(Self { machine, stations, locks, yaw: settings.yaw, channels, state, balance })
+        Ok(Self { machine, stations, locks, yaw: settings.yaw, channels, state, equations })
     }
 
-    /// Holds exactly `freedoms`: no acceleration from now on. A held mode stops where it is, held rotor freedoms keep their speed.
-    pub fn hold(&mut self, freedoms: &[Freedom]) {
-        self.locks = Locks::of(freedoms);
+    /// Locks exactly `degrees`: no acceleration from now on. A locked mode stops where it is; a locked generator keeps its speed.
+    pub fn hold(&mut self, degrees: &[DegreeOfFreedom]) {
+        self.locks = Locks::of(degrees);
         for (index, held) in self.locks.shared.into_iter().enumerate() {
             if held {
                 self.state.accelerations.shared[index] = 0.0;
@@ -191,14 +194,14 @@ impl Structure {
         }
     }
 
-    /// Sees blade elements as `projection` has them from now on.
+    /// From now on blade elements are projected as `projection` says.
     pub fn project(&mut self, projection: Projection) {
         self.stations.projection = projection;
     }
 
     /// On return `elements` holds the motion of each blade element `ahead` (s) after now, blade after blade.
     ///
-    /// Loads belong to the middle of the step they act in: ask half a step ahead, blades at the `pitch` of then.
+    /// Loads belong to the middle of their step: take `ahead` as half a step, and the `pitch` of that instant.
     ///
     /// # Panics
     /// When `elements` does not hold `n_blades × n_elements` values.
@@ -230,7 +233,7 @@ impl Structure {
         }
     }
 
-    /// Moves `interval` (s) on under `loads`, which are held, blades at `pitch` in the middle of the step.
+    /// Advances by `interval` (s) under constant `loads`, blades at `pitch` in the middle of the step.
     ///
     /// # Panics
     /// When `loads` or `pitch` do not fit the blades, elements and points that the structure was made with.
@@ -244,20 +247,20 @@ impl Structure {
         let phase = self.state.phase();
         let middle = phase.middle(interval);
         let motion = machine.motion(&middle.q, &middle.v, pitch);
-        let applied = self.stations.gather(&motion, &middle.q, loads);
+        let applied = self.stations.resultants(&motion, &middle.q, loads);
         let (mut after, middle) =
-            machine.step(&phase, interval, pitch, &applied, &self.locks, &mut self.balance);
+            machine.step(&phase, interval, pitch, &applied, &self.locks, &mut self.equations);
         after.q.shared[GENERATOR] = basis::angle::wrap_to_turn(after.q.shared[GENERATOR]);
         self.state.coordinates = after.q;
         self.state.velocities = after.v;
         self.state.accelerations = after.a;
         self.state.earlier_accelerations = after.earlier;
         self.state.pitch.copy_from_slice(pitch);
-        self.state.loads = machine.loads(&middle, &self.balance, &applied);
+        self.state.loads = machine.loads(&middle, &self.equations, &applied);
     }
 
-    /// Everything that time changes.
-    pub fn state(&self) -> &State {
+    /// The state, for a checkpoint.
+    pub fn state(&self) -> &StructureState {
         &self.state
     }
 
@@ -265,7 +268,7 @@ impl Structure {
     ///
     /// # Panics
     /// When `state` is that of a turbine with another number of blades.
-    pub fn restore(&mut self, state: State) {
+    pub fn restore(&mut self, state: StructureState) {
         assert_eq!(state.pitch.len(), self.machine.n_blades, "a state of as many blades");
         self.state = state;
     }
@@ -296,24 +299,25 @@ impl Structure {
         &self.channels
     }
 
-    /// Place of the channel called `name`, one of OpenFAST's names, among [`Structure::channels`].
+    /// Index of the channel called `name`, one of OpenFAST's names, in [`Structure::channels`].
     pub fn channel(&self, name: &str) -> Option<usize> {
         channels::index(&self.channels, name)
     }
 
-    /// On return `values` holds the channels of the middle of the last step in SI units; times their scale, in OpenFAST's.
+    /// On return `values` holds the channels in the middle of the last step, in SI units; times their scale they are in
+    /// OpenFAST's units.
     pub fn write_channels(&self, values: &mut [f64]) {
         channels::write(&self.state.loads, self.yaw, &self.state.pitch, values);
     }
 
-    /// Mechanical energy now, from the speeds of the coordinates.
+    /// Mechanical energy now.
     pub fn energy(&self) -> Energy {
         self.machine.energy(&self.state.coordinates, &self.state.velocities, &self.state.pitch)
     }
 
-    /// Undamped modes about where the turbine is now, lowest first; a turning rotor stiffens its blades.
+    /// Undamped natural modes about the present state, lowest first; rotation stiffens the blades.
     ///
-    /// Held freedoms take no part. Gyroscopic forces are left out: exact at standstill.
+    /// Locked degrees of freedom take no part. Gyroscopic forces are left out: exact at standstill.
     pub fn natural_modes(&self) -> Vec<NaturalMode> {
         let state = &self.state;
         self.machine.natural_modes(&state.coordinates, &state.velocities, &state.pitch, &self.locks)

@@ -1,12 +1,12 @@
-//! Natural frequencies: the equations of motion linearised about where the turbine is.
+//! Natural frequencies: the equations of motion linearised about the present state.
 #![expect(
     clippy::needless_range_loop,
     reason = "rows and columns by index, as the equations have them"
 )]
 
-use super::coordinates::{Coordinates, Freedom, Locks, N_MODES, N_SHARED};
+use super::coordinates::{Coordinates, DegreeOfFreedom, Locks, N_MODES, N_SHARED};
 use super::machine::{Machine, Pitch};
-use super::stations::Gathered;
+use super::stations::LoadResultants;
 use basis::blades::MAXIMUM_BLADES;
 use std::f64::consts::TAU;
 
@@ -20,26 +20,26 @@ const MAXIMUM_SWEEPS: usize = 30;
 /// One undamped mode of the whole turbine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NaturalMode {
-    /// Frequency (Hz); 0 for a motion that nothing holds.
+    /// Frequency (Hz); 0 for a rigid-body motion.
     pub frequency: f64,
-    /// Share of each kind of freedom in the kinetic energy (–), in the order of [`Freedom::ALL`]; they sum to one.
+    /// Share of each degree of freedom in the kinetic energy (–), in the order of [`DegreeOfFreedom::ALL`]; they sum to one.
     pub shares: [f64; N_SHARED + N_MODES],
 }
 
 impl NaturalMode {
-    /// The freedom with the largest share.
-    pub fn dominant(&self) -> Freedom {
+    /// The degree of freedom with the largest share.
+    pub fn dominant(&self) -> DegreeOfFreedom {
         let largest = (0..self.shares.len())
             .max_by(|&a, &b| self.shares[a].total_cmp(&self.shares[b]))
             .unwrap_or(0);
-        Freedom::ALL[largest]
+        DegreeOfFreedom::ALL[largest]
     }
 }
 
 impl Machine {
     /// Modes about `q`, moving at `v`, lowest frequency first: M ẍ = ∂f/∂x x without damping and gyroscopic forces.
     ///
-    /// A speed in `v` stiffens the blades as rotation does. What couples velocities is left out; it vanishes at standstill.
+    /// The rotor speed in `v` stiffens the blades. Coupling through velocities is left out; it vanishes at standstill.
     pub(super) fn natural_modes(
         &self,
         q: &Coordinates,
@@ -54,18 +54,20 @@ impl Machine {
             })
             .collect();
         let n = free.len();
-        let none = Gathered::default();
-        // Only the speed of the rotor counts as a steady state; what vibrates now does not.
+        let none = LoadResultants::default();
+        // Only the speed of the rotor is part of the steady state; vibrations are not.
         let mut steady = Coordinates::default();
         steady.shared[super::coordinates::GENERATOR] = v.shared[super::coordinates::GENERATOR];
         let mut stiffness = vec![vec![0.0; n]; n];
         let mut mass = vec![vec![0.0; n]; n];
-        let at = self.balance(q, &steady, pitch, &none);
+        let at = self.equations_of_motion(q, &steady, pitch, &none);
         for (column, &index) in free.iter().enumerate() {
             let mut unit = Coordinates::default();
             *entry(&mut unit, index) = 1.0;
             let mut product = at.mass.times(self.n_blades, &unit);
-            let force = |step: f64| self.balance(&q.plus(step, &unit), &steady, pitch, &none).force;
+            let force = |step: f64| {
+                self.equations_of_motion(&q.plus(step, &unit), &steady, pitch, &none).force
+            };
             let mut change = force(-DIFFERENCE).plus(-1.0, &force(DIFFERENCE));
             for (row, &index) in free.iter().enumerate() {
                 mass[row][column] = *entry(&mut product, index);
@@ -100,9 +102,9 @@ fn entry(coordinates: &mut Coordinates, index: usize) -> &mut f64 {
     }
 }
 
-/// Values and vectors of K x = λ M x; vectors have unit modal mass.
+/// Eigenvalues and eigenvectors of K x = λ M x; vectors have unit modal mass.
 ///
-/// With M = L Lᵀ the symmetric part of L⁻¹ K L⁻ᵀ is turned to its diagonal by Jacobi's rotations.
+/// With M = L Lᵀ, Jacobi's rotations diagonalise the symmetric part of L⁻¹ K L⁻ᵀ.
 fn generalised_eigen(mass: &[Vec<f64>], stiffness: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = mass.len();
     let mut padded = [[0.0; N]; N];
@@ -111,7 +113,7 @@ fn generalised_eigen(mass: &[Vec<f64>], stiffness: &[Vec<f64>]) -> (Vec<f64>, Ve
             padded[i][j] = if i < n && j < n { mass[i][j] } else { f64::from(u8::from(i == j)) };
         }
     }
-    let factor = super::arrow::cholesky(&padded);
+    let factor = super::arrowhead::cholesky(&padded);
     let solve_lower = |column: &mut [f64]| {
         for i in 0..n {
             for j in 0..i {
@@ -152,7 +154,7 @@ fn generalised_eigen(mass: &[Vec<f64>], stiffness: &[Vec<f64>]) -> (Vec<f64>, Ve
     (values, vectors)
 }
 
-/// Turns the symmetric `matrix` to diagonal form; gives the rotation whose columns are its eigenvectors.
+/// Diagonalises the symmetric `matrix`; gives the rotation whose columns are its eigenvectors.
 fn jacobi(matrix: &mut [Vec<f64>]) -> Vec<Vec<f64>> {
     let n = matrix.len();
     let mut turns = vec![vec![0.0; n]; n];

@@ -1,27 +1,26 @@
-//! How the wind at a bent blade is split: across its sections, and against their way.
+//! How the wind at a bent blade is projected: normal to the swept surface, and against the motion of its sections.
 
 use crate::rotor::BladeFrame;
 use basis::{Matrix3, Vector3};
 
-/// In which frame aerodynamics sees the sections of a bent blade.
+/// Frame in which aerodynamics sees the sections of a bent blade.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Projection {
-    /// Across the surface that the blade sweeps, and along its way.
+    /// Normal to the surface that the blade sweeps, and along its motion.
     #[default]
     Swept,
     /// As AeroDyn 5.0's standard formulation (BEM_Mod 1) has it; only to compare with it.
     ///
-    /// It takes the turn of a section apart into angles about the blade's x, y and z axis, one after the other, and splits the
-    /// wind in the frame of the one about y. The angle about z, which goes to the section's pitch, is one that comes after the
-    /// angle about x, which is left out of that frame: sections face the product of the blade's slopes further into the wind
-    /// than they do.
+    /// It resolves the rotation of a section into angles about the blade's x, y and z axis, one after the other, and projects the
+    /// wind on the frame of the one about y. The angle about z, which goes to the section's pitch, follows the angle about x,
+    /// which that frame leaves out: sections face further into the wind by the product of the blade's slopes.
     Annular,
 }
 
 impl Projection {
     /// Axes and turn (rad) of a section that faces `facing` on a line along `span` (unit vectors).
     ///
-    /// The element's way is along `swept` (m) and its blade's unpitched axes are `cone`, all in the farm frame.
+    /// The element moves along `swept` (m) and its blade's unpitched axes are `cone`, all in the farm frame.
     pub(super) fn of(
         self,
         span: Vector3,

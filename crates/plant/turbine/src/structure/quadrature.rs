@@ -1,4 +1,4 @@
-//! Mass along a beam as few points: Gaussian quadrature whose weight is the mass itself.
+//! Mass along a beam lumped at few points: Gaussian quadrature with the mass as its weight.
 
 /// Abscissae and weights of the three-point Gauss-Legendre rule on (−1, 1), exact up to the fifth degree.
 pub(super) const GAUSS: [(f64, f64); 3] =

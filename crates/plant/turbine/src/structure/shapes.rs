@@ -8,7 +8,7 @@ use super::quadrature::GAUSS;
 use crate::definition::Mode;
 use basis::Vector3;
 
-/// Intervals of the table that the integrals are kept in.
+/// Intervals of the table of integrals (–).
 const N_INTERVALS: usize = 1000;
 
 /// A structural section of a beam.
@@ -62,7 +62,7 @@ impl<const N: usize> Place<N> {
         (position, partials)
     }
 
-    /// Acceleration along the beam (m/s²) that the rates `v` bring without any of their own: −Σ vᵢ shorteningᵢⱼ vⱼ.
+    /// Acceleration along the beam (m/s²) due to the rates `v` alone: −Σ vᵢ shorteningᵢⱼ vⱼ.
     #[inline(always)]
     pub(super) fn own_acceleration(&self, v: &[f64; N]) -> f64 {
         let mut sum = 0.0;
@@ -176,7 +176,7 @@ impl<const N: usize> Shapes<N> {
     }
 }
 
-/// Generalised stiffness ∫ EI φᵢ″ φⱼ″ (N/m) of `modes`; modes in different axes do not meet.
+/// Generalised stiffness ∫ EI φᵢ″ φⱼ″ (N/m) of `modes`; modes in different axes do not couple.
 pub(super) fn stiffness<const N: usize>(
     length: f64,
     sections: &[Section],

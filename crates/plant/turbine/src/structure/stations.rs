@@ -1,4 +1,4 @@
-//! Where the air acts: blade elements and points of the tower, what they tell and what they are told.
+//! Aerodynamic stations: blade elements and points of the tower, their motion and the loads on them.
 
 use super::beam::Wrench;
 use super::coordinates::{Coordinates, N_MODES, N_TOWER};
@@ -10,7 +10,7 @@ use crate::motion::ElementMotion;
 use basis::Vector3;
 use basis::blades::MAXIMUM_BLADES;
 
-/// Load of the air on one blade element, farm frame.
+/// Aerodynamic load on one blade element, farm frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElementLoad {
     /// Force on the blade (N).
@@ -19,7 +19,7 @@ pub struct ElementLoad {
     pub moment: Vector3,
 }
 
-/// Everything from outside that acts on the structure, held over a step.
+/// External loads on the structure, constant over a step.
 #[derive(Clone, Copy, Debug)]
 pub struct AppliedLoads<'a> {
     /// On the blade elements, blade after blade; empty for none.
@@ -38,7 +38,7 @@ impl AppliedLoads<'_> {
         AppliedLoads { elements: &[], tower: &[], nacelle: Vector3::ZERO, generator_torque: 0.0 };
 }
 
-/// The places on one blade and on the tower where the air acts.
+/// Aerodynamic stations of one blade and of the tower.
 #[derive(Clone, Debug)]
 pub(super) struct Stations {
     blade: Vec<Station>,
@@ -51,15 +51,15 @@ struct Station {
     place: Place<N_MODES>,
     /// Along the undeformed line of aerodynamic centres, in the pitched blade.
     along: Vector3,
-    /// Where an untwisted section faces there, across that line.
+    /// Direction that an untwisted section faces there, across that line.
     across: Vector3,
-    /// Part of the blade that it lies in.
+    /// Part of the blade that contains it.
     part: usize,
 }
 
-/// Applied loads gathered: on each part of each blade about the rotor apex in the blade's axes, on the tower about its foot.
+/// Resultants of applied loads: on each part of each blade about the rotor apex in the blade's axes, on the tower about its foot.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Gathered {
+pub(super) struct LoadResultants {
     pub(super) parts: [[Wrench; N_BLADE_PARTS]; MAXIMUM_BLADES],
     pub(super) modes: [[f64; N_MODES]; MAXIMUM_BLADES],
     pub(super) tower: Wrench,
@@ -68,8 +68,8 @@ pub(super) struct Gathered {
     pub(super) generator_torque: f64,
 }
 
-impl Gathered {
-    /// Everything on `blade`, about the rotor apex in the blade's axes.
+impl LoadResultants {
+    /// Resultant on `blade`, about the rotor apex in the blade's axes.
     pub(super) fn blade(&self, blade: usize) -> Wrench {
         let mut sum = Wrench::default();
         self.parts[blade].iter().for_each(|part| sum.add(*part));
@@ -165,26 +165,26 @@ impl Stations {
         }
     }
 
-    /// What `loads` amount to at the coordinates `q`.
-    pub(super) fn gather(
+    /// Resultants of `loads` at the coordinates `q`.
+    pub(super) fn resultants(
         &self,
         motion: &Motion,
         q: &Coordinates,
         loads: &AppliedLoads<'_>,
-    ) -> Gathered {
-        let mut gathered = Gathered {
+    ) -> LoadResultants {
+        let mut resultants = LoadResultants {
             nacelle: loads.nacelle,
             generator_torque: loads.generator_torque,
-            ..Gathered::default()
+            ..LoadResultants::default()
         };
         if !self.blade.is_empty() {
             for (blade, loads) in loads.elements.chunks_exact(self.blade.len()).enumerate() {
                 let own_from_farm = motion.blades[blade].axes.transpose();
-                let modes = &mut gathered.modes[blade];
+                let modes = &mut resultants.modes[blade];
                 for (load, station) in loads.iter().zip(&self.blade) {
                     let (position, partials) = station.place.at(&q.blades[blade]);
                     let (force, moment) = (own_from_farm * load.force, own_from_farm * load.moment);
-                    let part = &mut gathered.parts[blade][station.part];
+                    let part = &mut resultants.parts[blade][station.part];
                     part.force += force;
                     part.moment += position.cross(force) + moment;
                     for mode in 0..N_MODES {
@@ -196,13 +196,13 @@ impl Stations {
         }
         for (force, place) in loads.tower.iter().zip(&self.tower) {
             let (position, partials) = place.at(&q.tower());
-            gathered.tower.force += *force;
-            gathered.tower.moment += position.cross(*force);
-            for (mode, partial) in gathered.tower_modes.iter_mut().zip(&partials) {
+            resultants.tower.force += *force;
+            resultants.tower.moment += position.cross(*force);
+            for (mode, partial) in resultants.tower_modes.iter_mut().zip(&partials) {
                 *mode += partial.dot(*force);
             }
         }
-        gathered
+        resultants
     }
 }
 

@@ -1,9 +1,9 @@
-//! What the air does to the blades: by actuator lines where the flow solves the induction, by momentum theory where not.
+//! Aerodynamic loads on the blades: by actuator lines where the flow resolves the induction, by momentum theory where not.
 
 use super::separation::{Flow, Separation};
-use super::{Induction, N_ELEMENTS, Settings};
+use super::{Induction, N_ELEMENTS, TurbineSettings};
 use crate::actuator_line::{ActuatorLine, Load, Onset, QuasiSteady, Scratch, Sections};
-use crate::aero::rotor::{self, Posture, RotorAerodynamics};
+use crate::aero::rotor::{self, RotorAerodynamics, RotorKinematics};
 use crate::definition::Definition;
 use crate::motion::ElementMotion;
 use crate::rotor::Frame;
@@ -11,12 +11,12 @@ use crate::structure::{ElementLoad, Pitch};
 use basis::{PerBlade, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// One of the two ways, with its working memory.
+/// One of the two models, with its working memory.
 #[derive(Clone, Debug)]
 pub(super) enum Aerodynamics {
     /// The flow contains the induction; without [`Separation`] the sections' polars hold at once.
     Line(Box<(LineMemory, Option<Separation>)>),
-    /// Momentum theory makes it.
+    /// Momentum theory gives it.
     Momentum(Box<(RotorAerodynamics, rotor::Loads)>),
 }
 
@@ -24,20 +24,20 @@ pub(super) enum Aerodynamics {
 #[derive(Clone, Debug)]
 pub(super) struct LineMemory {
     onsets: Vec<Onset>,
-    /// Turn of each section beside its twist (rad).
+    /// Rotation of each section beside its twist (rad).
     pitch: Vec<f64>,
     loads: Vec<Load>,
     scratch: Scratch,
 }
 
-/// What time changes.
+/// State of the aerodynamics.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum State {
-    /// Axial and tangential velocity hidden by smearing (m/s), blade after blade.
+pub(super) enum AerodynamicState {
+    /// Smearing correction, axial and tangential (m/s), blade after blade.
     Line(Vec<[f64; 2]>),
     /// Induction and dynamic stall.
-    Momentum(rotor::State),
-    /// As `Line`, and the flow about sections with dynamic stall.
+    Momentum(rotor::BemState),
+    /// As `Line`, with the flow about sections with dynamic stall.
     SeparatingLine(Vec<[f64; 2]>, Flow),
 }
 
@@ -55,7 +55,11 @@ pub(super) struct Instant<'a> {
 }
 
 impl Aerodynamics {
-    pub(super) fn new(definition: &Definition, line: &ActuatorLine, settings: &Settings) -> Self {
+    pub(super) fn new(
+        definition: &Definition,
+        line: &ActuatorLine,
+        settings: &TurbineSettings,
+    ) -> Self {
         match &settings.induction {
             Induction::ByFlow { dynamic_stall, .. } => {
                 let n = definition.n_blades * N_ELEMENTS;
@@ -82,48 +86,53 @@ impl Aerodynamics {
         }
     }
 
-    /// The state before the air has met the rotor.
-    pub(super) fn start(&self) -> State {
+    /// The state before the first step.
+    pub(super) fn start(&self) -> AerodynamicState {
         match self {
             Self::Line(pair) => {
                 let (memory, separation) = &**pair;
-                let missing = vec![[0.0; 2]; memory.loads.len()];
+                let corrections = vec![[0.0; 2]; memory.loads.len()];
                 match separation {
-                    None => State::Line(missing),
-                    Some(separation) => State::SeparatingLine(missing, separation.start()),
+                    None => AerodynamicState::Line(corrections),
+                    Some(separation) => {
+                        AerodynamicState::SeparatingLine(corrections, separation.start())
+                    }
                 }
             }
-            Self::Momentum(pair) => State::Momentum(pair.0.start()),
+            Self::Momentum(pair) => AerodynamicState::Momentum(pair.0.start()),
         }
     }
 
-    /// On return `loads` holds what the air does to each element `now`, and `state` has moved on.
+    /// On return `loads` holds the aerodynamic load on each element `now`, and `state` has been advanced.
     pub(super) fn loads(
         &mut self,
         line: &ActuatorLine,
         now: &Instant<'_>,
-        state: &mut State,
+        state: &mut AerodynamicState,
         loads: &mut [ElementLoad],
     ) {
         match (self, state) {
-            (Self::Line(pair), State::Line(missing)) => {
+            (Self::Line(pair), AerodynamicState::Line(corrections)) => {
                 let (memory, _) = &mut **pair;
-                memory.loads(line, now, &mut QuasiSteady(line), missing);
+                memory.loads(line, now, &mut QuasiSteady(line), corrections);
                 memory.apply(line, now, loads);
             }
-            (Self::Line(pair), State::SeparatingLine(missing, flow)) => {
+            (Self::Line(pair), AerodynamicState::SeparatingLine(corrections, flow)) => {
                 let (memory, Some(separation)) = &mut **pair else { mismatch() };
                 let mut step = separation.step(flow, now.interval, &now.pitch[..]);
-                memory.loads(line, now, &mut step, missing);
-                separation.come_to(flow);
+                memory.loads(line, now, &mut step, corrections);
+                separation.store_in(flow);
                 memory.apply(line, now, loads);
             }
-            (Self::Momentum(pair), State::Momentum(state)) => {
+            (Self::Momentum(pair), AerodynamicState::Momentum(state)) => {
                 let (rotor, result) = &mut **pair;
-                let posture =
-                    Posture { frame: now.frame, elements: now.motions, pitch: &now.pitch[..] };
+                let kinematics = RotorKinematics {
+                    frame: now.frame,
+                    elements: now.motions,
+                    pitch: &now.pitch[..],
+                };
                 let winds = &now.winds[..now.motions.len()];
-                rotor.advance(now.interval, winds, posture, state, result);
+                rotor.advance(now.interval, winds, kinematics, state, result);
                 loads.copy_from_slice(&result.elements);
             }
             _ => mismatch(),
@@ -160,16 +169,16 @@ fn mismatch() -> ! {
 }
 
 impl LineMemory {
-    /// On return its loads are those of `now`, and `missing` has moved on.
+    /// On return its loads are those of `now`, and `corrections` have been relaxed.
     fn loads(
         &mut self,
         line: &ActuatorLine,
         now: &Instant<'_>,
         sections: &mut impl Sections,
-        missing: &mut [[f64; 2]],
+        corrections: &mut [[f64; 2]],
     ) {
-        let told = self.onsets.iter_mut().zip(&mut self.pitch);
-        for (((onset, pitch), motion), wind) in told.zip(now.motions).zip(now.winds) {
+        let inputs = self.onsets.iter_mut().zip(&mut self.pitch);
+        for (((onset, pitch), motion), wind) in inputs.zip(now.motions).zip(now.winds) {
             *pitch = motion.pitch;
             let relative = *wind - motion.velocity;
             *onset = Onset {
@@ -179,10 +188,10 @@ impl LineMemory {
         }
         if now.first {
             let Self { onsets, pitch, loads, scratch } = self;
-            line.loads(onsets, now.rotor_speed, pitch, sections, missing, loads, scratch);
+            line.loads(onsets, now.rotor_speed, pitch, sections, corrections, loads, scratch);
         } else {
-            // The wake has not moved since; what smearing hides is held like the wind.
-            line.loads_under(&self.onsets, &self.pitch, sections, missing, &mut self.loads);
+            // The wind has not been sampled anew, so the smearing correction is held as well.
+            line.loads_under(&self.onsets, &self.pitch, sections, corrections, &mut self.loads);
         }
     }
 

@@ -22,7 +22,7 @@ fn after_an_instant(induction: Induction) -> (Turbine, Turbine, Vec<Vector3>) {
         let BladeFrame { normal, tangent, .. } = motion.axes;
         match &turbine.aerodynamics {
             Aerodynamics::Line(_) => {
-                let [axial, along_rotation] = turbine.state.missing()[index];
+                let [axial, along_rotation] = turbine.state.smearing_corrections()[index];
                 wind - motion.velocity + normal * axial + tangent * along_rotation
             }
             Aerodynamics::Momentum(pair) => {
@@ -72,7 +72,7 @@ fn circulation_and_wind_make_the_lift_along_lines() {
 
 #[test]
 fn circulation_and_wind_make_the_lift_under_momentum_theory() {
-    obeys_kutta_joukowski(Induction::ByMomentum(rotor::Settings {
+    obeys_kutta_joukowski(Induction::ByMomentum(rotor::BemSettings {
         induction: crate::aero::Induction::TwoConstant(TwoConstant::varying()),
         theory: Theory::default(),
         skewed_wake: true,

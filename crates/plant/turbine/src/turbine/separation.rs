@@ -1,11 +1,11 @@
-//! Sections of actuator lines whose flow separates, and attaches again, with delay.
+//! Dynamic stall of the sections of actuator lines: flow separates and reattaches with delay.
 //!
-//! The delay of lift in attached flow is left out ([`Attached::Steady`]): it stands for the wake that a section sheds, and a
-//! flow that resolves the induction carries what of that wake is farther away than the smearing length.
+//! The delay of lift in attached flow is left out ([`Attached::Steady`]): it models the wake that a section sheds, and a flow
+//! that resolves the induction contains the part of that wake farther away than the smearing length.
 
 use crate::actuator_line::{Element, Sections};
 use crate::aero::Polar;
-use crate::aero::dynamic_stall::{Attached, DynamicStall, State, Stream};
+use crate::aero::dynamic_stall::{Attached, DynamicStall, StallState, Stream};
 use crate::definition::Definition;
 use crate::structure::Pitch;
 use serde::{Deserialize, Serialize};
@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Separation {
     /// Of one blade; all are alike.
     sections: Vec<Section>,
-    /// Where the flow about every section of every blade would come to.
-    next: Vec<State>,
+    /// State of every section of every blade at the end of the step.
+    next: Vec<StallState>,
 }
 
 #[derive(Clone, Debug)]
@@ -27,15 +27,15 @@ struct Section {
     stall: Option<DynamicStall>,
 }
 
-/// The flow about all sections: everything of it that time changes.
+/// State of the flow about all sections.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Flow {
-    /// Whether the air has met the sections yet; when it first does, the flow settles.
+    /// Whether a step has been made; the first one starts from the steady state.
     started: bool,
-    sections: Vec<State>,
+    sections: Vec<StallState>,
 }
 
-/// A step that the flow about the sections moves on by.
+/// A time step of the flow about the sections.
 pub(super) struct Step<'a> {
     separation: &'a mut Separation,
     before: &'a Flow,
@@ -51,13 +51,13 @@ impl Separation {
             let stall = DynamicStall::new(&polar, Attached::Steady);
             Section { polar, chord: element.chord, stall }
         };
-        let next = vec![State::default(); definition.n_blades * elements.len()];
+        let next = vec![StallState::default(); definition.n_blades * elements.len()];
         Self { sections: elements.iter().map(section).collect(), next }
     }
 
-    /// The flow before the air has met the sections.
+    /// The flow before the first step.
     pub(super) fn start(&self) -> Flow {
-        Flow { started: false, sections: vec![State::default(); self.next.len()] }
+        Flow { started: false, sections: vec![StallState::default(); self.next.len()] }
     }
 
     /// The step from `before` by `interval` (s) under the `pitch` of each blade.
@@ -70,8 +70,8 @@ impl Separation {
         Step { separation: self, before, interval, pitch }
     }
 
-    /// On return `flow` is where the last step came to.
-    pub(super) fn come_to(&self, flow: &mut Flow) {
+    /// On return `flow` is the state at the end of the last step.
+    pub(super) fn store_in(&self, flow: &mut Flow) {
         flow.started = true;
         flow.sections.copy_from_slice(&self.next);
     }
@@ -114,9 +114,9 @@ mod tests {
         [Pitch { rate, ..Pitch::default() }; 3]
     }
 
-    /// However often the sections are asked, they move on once a step, as the model alone does.
+    /// However often the sections are evaluated, they advance once a step, as the model alone does.
     #[test]
-    fn the_last_answer_counts() {
+    fn the_last_call_counts() {
         let definition = machine();
         let line = ActuatorLine::new(definition.clone(), 8, 1.2, 12.0, 0.0);
         let mut separation = Separation::new(&definition, line.elements());
@@ -124,7 +124,7 @@ mod tests {
         let (index, speed) = (13, 60.0);
         let Section { polar, chord, stall } = separation.sections[index % 8].clone();
         let stall = stall.expect("an aerofoil");
-        let mut alone: Option<State> = None;
+        let mut alone: Option<StallState> = None;
         for step in 0..50 {
             let angle_of_attack = 0.2 + 0.15 * (0.3 * f64::from(step)).sin();
             let rate = 0.02 * (0.3 * f64::from(step)).cos();
@@ -139,7 +139,7 @@ mod tests {
                     }
                 }
             }
-            separation.come_to(&mut flow);
+            separation.store_in(&mut flow);
             let stream = Stream { angle_of_attack, speed, chord, rotation: -rate };
             let interval = if alone.is_some() { INTERVAL } else { 0.0 };
             let state = alone.get_or_insert_with(|| stall.settled(&stream, &polar));
@@ -165,7 +165,7 @@ mod tests {
                 assert!((lift - steady_lift).abs() < 1e-12, "{step} {index}: {lift} {steady_lift}");
                 assert!((drag - steady_drag).abs() < 1e-12, "{step} {index}: {drag} {steady_drag}");
             }
-            separation.come_to(&mut flow);
+            separation.store_in(&mut flow);
         }
     }
 }

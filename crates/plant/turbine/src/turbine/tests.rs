@@ -108,7 +108,7 @@ fn turbine() -> Turbine {
 }
 
 pub(super) fn built(flexible: bool, induction: Induction) -> Turbine {
-    let settings = Settings {
+    let settings = TurbineSettings {
         induction,
         flexible,
         air_density: DENSITY,
@@ -282,14 +282,14 @@ fn the_correction_settles_and_forgets_where_it_began() {
     }
     let last = thrusts[59];
     assert!((thrusts[40] / last - 1.0).abs() < 1e-3, "{thrusts:?}");
-    assert!(turbine.state().missing().iter().all(|velocity| velocity[0].abs() < 4.0));
+    assert!(turbine.state().smearing_corrections().iter().all(|velocity| velocity[0].abs() < 4.0));
 }
 
 #[test]
 fn under_prescribed_wind_the_turbine_finds_what_momentum_theory_says() {
     use crate::aero::blade_element::Theory;
     use crate::aero::induction::TwoConstant;
-    let theory = crate::aero::rotor::Settings {
+    let theory = crate::aero::rotor::BemSettings {
         induction: crate::aero::Induction::TwoConstant(TwoConstant::varying()),
         theory: Theory::default(),
         skewed_wake: false,

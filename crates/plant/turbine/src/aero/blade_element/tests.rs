@@ -16,7 +16,7 @@ fn annulus(radius: f64, chord: f64, section_pitch: f64) -> Annulus {
         tip_radius: 60.0,
         chord,
         section_pitch,
-        lean: 0.0,
+        cone_angle: 0.0,
     }
 }
 
@@ -36,7 +36,7 @@ fn thrust_both_ways(ring: &Annulus, axial: f64, inflow: &Inflow) -> (f64, f64) {
 }
 
 #[test]
-fn blades_and_air_agree_on_thrust_and_torque() {
+fn blade_forces_balance_momentum_in_thrust_and_torque() {
     for (radius, chord, pitch, tangential) in [
         (20.0, 3.0, 0.1, 25.0),
         (50.0, 1.5, 0.0, 70.0),
@@ -127,7 +127,7 @@ fn buhls_parabola_meets_momentum_theory() {
     }
 }
 
-/// A wavy section with stall, asymmetric, with drag: nothing that a convergence proof could lean on.
+/// A wavy section with stall, asymmetric, with drag: nothing that a convergence proof could rely on.
 fn wavy(seed: f64) -> impl Fn(f64) -> SectionCoefficients {
     move |angle: f64| SectionCoefficients {
         lift: 1.3 * (2.0 * angle).sin() + 0.7 * (9.0 * angle + seed).sin(),
@@ -155,16 +155,16 @@ proptest! {
 }
 
 #[test]
-fn a_leaning_blade_slows_the_air_along_the_shaft() {
-    // Momentum along the shaft: force × cos(lean) = mass flow × 2 a U, wind across the blade U cos(lean) (1 − a).
-    let lean = 0.15_f64;
-    let ring = Annulus { lean, ..annulus(30.0, 3.0, 0.03) };
+fn a_coned_blade_slows_the_air_along_the_shaft() {
+    // Momentum along the shaft: force × cos(cone) = mass flow × 2 a U, wind normal to the blade U cos(cone) (1 − a).
+    let cone_angle = 0.15_f64;
+    let ring = Annulus { cone_angle, ..annulus(30.0, 3.0, 0.03) };
     let (wind, rotation) = (9.0, 45.0);
-    let inflow = solve(&ring, wind * lean.cos(), rotation, thin(0.01), NO_LOSS);
+    let inflow = solve(&ring, wind * cone_angle.cos(), rotation, thin(0.01), NO_LOSS);
     let [normal, _] = inflow.forces(1.2, ring.chord);
     let mass_flow =
-        1.2 * wind * lean.cos() * (1.0 - inflow.axial_induction) * 2.0 * PI * ring.radius;
+        1.2 * wind * cone_angle.cos() * (1.0 - inflow.axial_induction) * 2.0 * PI * ring.radius;
     let slowing = 2.0 * inflow.axial_induction * wind;
-    assert!((3.0 * normal * lean.cos() / (mass_flow * slowing) - 1.0).abs() < 1e-9);
+    assert!((3.0 * normal * cone_angle.cos() / (mass_flow * slowing) - 1.0).abs() < 1e-9);
     assert!(inflow.axial_induction < 0.4);
 }

@@ -1,21 +1,21 @@
-//! Blade-element momentum from one step of time to the next: one look at the residual, from the last inflow angle.
+//! Blade-element momentum theory from one time step to the next: one evaluation of the residual, at the last inflow angle.
 
 use super::{Annulus, FRAC_PI_2, Ring, SMALLEST_ANGLE, SectionCoefficients, Theory, Trial};
 use serde::{Deserialize, Serialize};
 
-/// A step of the inflow angle that needs no second look (rad).
+/// Largest step of the inflow angle that needs no second evaluation (rad).
 const SMALL_STEP: f64 = 2e-3;
 /// A step that leads out of the neighbourhood (rad): the bracketed search then takes over.
 const LARGEST_STEP: f64 = 0.1;
-/// Smallest change of the angle from which a slope is drawn (rad).
+/// Smallest change of the angle that gives a slope (rad).
 const LEAST_SECANT: f64 = 1e-9;
-/// Looks before the bracketed search takes over.
+/// Evaluations before the bracketed search takes over (–).
 const MAXIMUM_LOOKS: usize = 6;
-/// Cosine of the angle (–) below which its tangent says nothing about the air's way.
+/// Cosine of the angle (–) below which its tangent does not determine the induction.
 const LEAST_COSINE: f64 = 0.1;
-/// Tangential induction (–) that only odd winds bring; they are searched anew each time, lest one stays when they have gone.
+/// Largest tangential induction of a warm start (–); beyond it, in unusual winds, the search starts anew each time.
 const LARGEST_SWIRL: f64 = 1.0;
-/// Times that a slope serves before it is drawn anew.
+/// Uses of a slope before it is computed anew (–).
 const SLOPE_LIFE: u8 = 16;
 
 /// Where the search begins next time: angle and slope of the residual of the last one; by default, anywhere.
@@ -23,7 +23,7 @@ const SLOPE_LIFE: u8 = 16;
 pub struct WarmStart {
     angle: f64,
     slope: f64,
-    /// Times that the slope has served.
+    /// Uses of the slope so far (–).
     age: u8,
 }
 
@@ -38,11 +38,11 @@ pub struct Factors {
 
 /// Induction of one annulus like [`solve`](super::solve), starting from where it was last time.
 ///
-/// A step of the inflow angle below 2e-3 rad is taken by the slope that the residual had within the last sixteen calls; what
-/// its change leaves over, some percent of the step, the next call takes. So a wind that stays gives the induction of
-/// `solve`, and one that changes from step to step gives it to about 1e-5 rad. Larger steps take further looks. Where the
-/// neighbourhood of the last angle holds no answer, `solve`'s bracketed search finds one: always an answer, whatever
-/// `warm_start` holds. Between two answers, as sections in stall have, it stays with the one that the last angle led to.
+/// A step of the inflow angle below 2e-3 rad uses a slope of the residual from the last sixteen calls; the error of this
+/// slope, some percent of the step, is corrected by the next call. So a constant wind gives the induction of `solve`, and a
+/// wind that changes from step to step gives it to about 1e-5 rad. Larger steps take further evaluations. Without a solution
+/// near the last angle `solve`'s bracketed search finds one: there is always a result, whatever `warm_start` holds. Of two
+/// solutions, as sections in stall have, it keeps the one near the last angle.
 pub fn solve_near(
     annulus: &Annulus,
     axial: f64,
@@ -63,7 +63,7 @@ pub fn solve_near(
     })
 }
 
-/// Induction of `ring` where its residual vanishes near `warm_start`; on return that has moved there. None where it does not.
+/// Induction of `ring` where its residual vanishes near `warm_start`, which on return holds that angle; None where it does not.
 fn nearby<Section: Fn(f64) -> SectionCoefficients>(
     ring: &Ring<'_, Section>,
     warm_start: &mut WarmStart,
@@ -96,7 +96,7 @@ fn nearby<Section: Fn(f64) -> SectionCoefficients>(
     None
 }
 
-/// Induction a small `step` of the angle (rad) from `trial`: the swirl stays, and the air goes where the angle says.
+/// Induction a small `step` of the angle (rad) from `trial`: the swirl is held, and the new angle gives the axial induction.
 fn beside<Section>(ring: &Ring<'_, Section>, trial: &Trial, step: f64) -> Option<Factors> {
     let tangential = trial.tangential_induction;
     if tangential.abs() > LARGEST_SWIRL {
@@ -122,7 +122,15 @@ mod tests {
 
     fn annulus(radius: f64, chord: f64, section_pitch: f64) -> Annulus {
         let (hub_radius, tip_radius) = (2.0, 60.0);
-        Annulus { n_blades: 3, radius, hub_radius, tip_radius, chord, section_pitch, lean: 0.0 }
+        Annulus {
+            n_blades: 3,
+            radius,
+            hub_radius,
+            tip_radius,
+            chord,
+            section_pitch,
+            cone_angle: 0.0,
+        }
     }
 
     fn stalling(angle: f64) -> SectionCoefficients {
@@ -176,7 +184,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
-        /// Whatever the warm start, blades and air come to agree.
+        /// Every warm start leads to the solution.
         #[test]
         fn every_start_leads_to_the_answer(
             share in 0.02..0.99_f64, chord in 0.5..4.0_f64, pitch in -0.3..1.0_f64, wind in 1.0..25.0_f64,

@@ -1,8 +1,8 @@
-//! The small model against the large one, and what an estimator leans on.
+//! The reduced model against the full one, and the properties that an estimator relies on.
 
 use super::*;
 use crate::aero::induction::{SnelSchepers, TwoConstant};
-use crate::aero::rotor::{Posture, RotorAerodynamics, Settings};
+use crate::aero::rotor::{BemSettings, RotorAerodynamics, RotorKinematics};
 use crate::aero::sample::{Stiff, definition};
 use basis::Vector3;
 
@@ -25,14 +25,14 @@ fn model(induction: Induction) -> (Stiff, BladeMoments) {
 }
 
 #[test]
-fn the_small_model_is_the_rotors() {
+fn the_reduced_model_is_the_rotors() {
     let inductions = [
         Induction::SnelSchepers(SnelSchepers::default()),
         Induction::TwoConstant(TwoConstant::varying()),
     ];
     for induction in inductions {
         let (stiff, model) = model(induction);
-        let settings = Settings {
+        let settings = BemSettings {
             induction,
             theory: Theory::default(),
             skewed_wake: false,
@@ -48,8 +48,9 @@ fn the_small_model_is_the_rotors() {
             let elements = stiff.motions(0.3 * f64::from(step), pitch);
             let winds = vec![Vector3::X * 9.0; elements.len()];
             let pitches = stiff.pitch(pitch);
-            let posture = Posture { frame: &stiff.frame, elements: &elements, pitch: &pitches };
-            rotor.advance(0.05, &winds, posture, &mut state, &mut loads);
+            let kinematics =
+                RotorKinematics { frame: &stiff.frame, elements: &elements, pitch: &pitches };
+            rotor.advance(0.05, &winds, kinematics, &mut state, &mut loads);
             let now = conditions([9.0; 3], pitch);
             if step > 0 {
                 model.advance(0.05, &now, &mut wake);

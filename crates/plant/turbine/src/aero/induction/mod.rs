@@ -1,8 +1,8 @@
-//! Induction of a rotor in a wind that knows nothing of it: what momentum theory takes from the wind at each blade element,
-//! at once or with the wake's delay.
+//! Induction of a rotor in a prescribed wind: induced velocity at each blade element by momentum theory, quasi-steady or with
+//! dynamic inflow.
 //!
-//! Every element of every blade has a ring of air of its own, as if all blades did what this one does: a blade that pitches
-//! alone, or flies through a gust alone, meets its own induction. Delays run with the blade, not in the air that it crosses.
+//! Every element of every blade has an annulus of its own, as if all blades did what this one does: a blade that pitches
+//! alone, or meets a gust alone, has its own induction. Lags rotate with the blade; they are not fixed in space.
 
 pub mod skew;
 pub mod snel_schepers;
@@ -16,24 +16,24 @@ pub use skew::SkewedWake;
 pub use snel_schepers::SnelSchepers;
 pub use two_constant::{Decay, Lagged, SlowConstant, TwoConstant};
 
-/// Most that momentum theory may take from the wind, or add to the swirl, over the sum of the wind's components (–); beyond
-/// it, as on blades that drive the air, the theory has no bound.
+/// Largest induced velocity over the sum of the wind's components (–); in the propeller state momentum theory has no bound of
+/// its own.
 const LARGEST_SHARE: f64 = 1.5;
 
-/// How the rotor's wake makes itself felt at its blades.
+/// Model of the wake's induction at the blades.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Induction {
-    /// Not at all: the wind that is handed in already contains it.
+    /// None: the wind given already contains it.
     Resolved,
-    /// At once: blade-element momentum at every instant.
+    /// Quasi-steady: blade-element momentum at every instant.
     QuasiSteady,
-    /// With the delay of Snel and Schepers.
+    /// Dynamic inflow after Snel and Schepers.
     SnelSchepers(SnelSchepers),
-    /// With two time constants, after Øye.
+    /// Dynamic inflow with two time constants, after Øye.
     TwoConstant(TwoConstant),
 }
 
-/// Ring of air that an element stands for.
+/// Annulus of a blade element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
     /// Its geometry when nothing bends, blade unpitched.
@@ -52,9 +52,9 @@ impl Ring {
         Self { annulus, share, inertia }
     }
 
-    /// At the instant: a blade pitched by `pitch` (rad) whose element has come to `radius` (m) from the shaft.
+    /// At the instant: a blade pitched by `pitch` (rad) whose element is `radius` (m) from the shaft.
     ///
-    /// Losses at tip and hub stay those of the straight blade; the blades' share of the ring's circumference follows the radius.
+    /// Tip and hub losses are those of the straight blade; the solidity follows the radius.
     pub fn annulus_now(&self, pitch: f64, radius: f64) -> Annulus {
         let Annulus { chord, radius: straight, section_pitch, .. } = self.annulus;
         Annulus {
@@ -65,7 +65,7 @@ impl Ring {
     }
 }
 
-/// Induced velocity at one element, and what the models remember of it.
+/// Induced velocity at one element, and the states of the models.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Induced {
     /// Against the wind across the plane of rotation, positive where it slows it (m/s).
@@ -76,7 +76,7 @@ pub struct Induced {
 }
 
 impl Induction {
-    /// Induced velocity in a wind that has always been `onset`, at a blade in `annulus` with sections of `polar`.
+    /// Steady induced velocity in the wind `onset`, at a blade in `annulus` with sections of `polar`.
     pub fn settled(
         &self,
         onset: Onset,
@@ -98,8 +98,8 @@ impl Induction {
         induced
     }
 
-    /// Moves `induced` on by `interval` (s), to the instant at which the wind without induction is `onset` at a blade in
-    /// `annulus`, which is `ring`'s at that instant, with sections of `polar`. `decay` is the two-constant model's, unused by others.
+    /// Advances `induced` by `interval` (s), to the instant at which the wind without induction is `onset` at a blade in
+    /// `annulus`, which is `ring`'s at that instant, with sections of `polar`. Only the two-constant model uses `decay`.
     pub fn advance(
         &self,
         interval: f64,

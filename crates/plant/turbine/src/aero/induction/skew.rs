@@ -1,4 +1,4 @@
-//! A wake that leaves the rotor askew: more induction where the wake leans to, less on the other side.
+//! Skewed wake: more induction on the downwind side of the rotor, less on the upwind side.
 //!
 //! Source: Pitt and Peters, "Theoretical prediction of dynamic-inflow derivatives", Vertica 5, 1981; with the wake's
 //! angle χ = (1 + 0.6 a) γ of Burton et al., "Wind energy handbook", 2nd ed., eq. 3.110, and the factor 15π/32, as AeroDyn
@@ -13,7 +13,7 @@ const FACTOR: f64 = 15.0 * PI / 32.0;
 /// Change of induction over the rotor, linear across it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SkewedWake {
-    /// Relative change of the axial induction per metre, in the rotor plane, towards the side that the wake leans to (1/m).
+    /// Relative change of the axial induction per metre, in the rotor plane, towards the downwind side (1/m).
     gradient: Vector3,
 }
 
@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn induction_grows_on_the_side_that_the_wake_leans_to() {
+    fn induction_grows_on_the_downwind_side() {
         // The upwind end of the shaft is raised: the wind drifts up along the rotor plane.
         let tilt: f64 = 0.1;
         let shaft = Vector3::new(tilt.cos(), 0.0, -tilt.sin());

@@ -1,7 +1,7 @@
-//! Dynamic inflow after Snel and Schepers: each ring's induced velocity follows the balance of thrust and momentum.
+//! Dynamic inflow after Snel and Schepers: the induced velocity of each annulus follows the balance of thrust and momentum.
 //!
 //! 4 R f_a u̇ + 4 u (V − u) = thrust of the ring / (½ρ · its area), u the induced velocity, V the wind, R the rotor
-//! radius. The function f_a of radius comes from a wake of vortex rings on a cylinder; it makes tips quicker than roots.
+//! radius. The function f_a of radius comes from a wake of vortex rings on a cylinder; it makes tips faster than roots.
 //!
 //! Source: Snel and Schepers, "Joint investigation of dynamic inflow effects and implementation of an engineering method",
 //! ECN-C--94-107, 1995 (the differential-equation model of ECN); Schepers, "Engineering models in wind energy
@@ -13,9 +13,9 @@ use crate::aero::Polar;
 use crate::aero::blade_element::{Annulus, Theory, loss_factor};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Least flow through the disc over the relative speed (–) that the swirl is computed with; slower air takes up no more.
+/// Least flow through the disc over the relative speed (–) used for the swirl.
 const LEAST_PASSAGE: f64 = 0.02;
-/// Share of the way to its steady value that swirl, which has no delay of its own, goes in one step (–).
+/// Relaxation of the swirl towards its steady value in one step (–); the model gives it no lag.
 const SWIRL_RELAXATION: f64 = 0.5;
 /// Slope of lift in attached flow (1/rad), for the stiffness of the balance only.
 const LIFT_SLOPE: f64 = 2.0 * PI;
@@ -55,11 +55,10 @@ fn complete_elliptic(parameter: f64) -> (f64, f64) {
     (first, first * (1.0 - sum))
 }
 
-/// Moves the induced velocities `axial`, against the wind, and `tangential`, along the swirl (m/s), on by `interval` (s).
+/// Advances the `induced` velocities, axial against the wind and tangential along the swirl (m/s), by `interval` (s).
 ///
 /// `onset` is the wind without induction at a blade of `annulus`, whose section has `polar`; `inertia` is R f_a (m) times
-/// the model's time factor. The interval may be any: the balance is linearised, its decay taken to fourth order and no further
-/// than it reaches.
+/// the model's time factor. Any interval is stable: the balance is linearised and its decay taken to fourth order.
 pub(super) fn advance(
     interval: f64,
     onset: Onset,

@@ -15,7 +15,7 @@ fn ring() -> Ring {
         tip_radius: 60.0,
         chord: 2.0,
         section_pitch: 0.03,
-        lean: 0.0,
+        cone_angle: 0.0,
     })
 }
 

@@ -6,9 +6,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Induction beyond which the slow constant grows no further (–).
+/// Induction up to which the slow constant grows (–).
 const LARGEST_INDUCTION: f64 = 0.5;
-/// Least wind through the rotor that the slow constant is computed with (m/s).
+/// Least wind through the rotor used for the slow constant (m/s).
 const LEAST_WIND: f64 = 0.1;
 
 /// The model: W + (τ₁ + τ₂) Ẇ + τ₁ τ₂ Ẅ = W_qs + k τ₁ Ẇ_qs, W the induced velocity and W_qs that of momentum theory.
@@ -62,12 +62,12 @@ pub fn fast_constant(slow: f64, share: f64) -> f64 {
     (0.39 - 0.26 * share * share) * slow
 }
 
-/// How far the two lags move in one interval.
+/// Decay of the two lags over one interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decay {
     slow: f64,
     fast: f64,
-    /// Share of the first lag's distance that reaches the second.
+    /// Share of the first lag's error that reaches the second.
     passed: f64,
 }
 
@@ -81,7 +81,7 @@ impl Decay {
     }
 }
 
-/// One component of induced velocity on its way to its steady value.
+/// One component of induced velocity, lagged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Lagged {
     /// Induced velocity (m/s).
@@ -98,9 +98,9 @@ impl Lagged {
         Self { velocity: steady, first: (1.0 - coupling) * steady, steady }
     }
 
-    /// Moves on to the instant at which the steady value is `steady` (m/s).
+    /// Advances to the instant at which the steady value is `steady` (m/s).
     ///
-    /// Exact for a steady value held at the mean of its last two; so any interval is stable.
+    /// Exact for a steady value held at the mean of its last two; any interval is stable.
     pub fn advance(&mut self, decay: &Decay, coupling: f64, steady: f64) {
         let held = 0.5 * (self.steady + steady);
         let away = self.first - (1.0 - coupling) * held;

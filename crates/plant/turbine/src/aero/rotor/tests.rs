@@ -12,8 +12,8 @@ const WIND: f64 = 9.0;
 const ROTOR_SPEED: f64 = 1.1;
 const AIR_DENSITY: f64 = 1.225;
 
-fn settings(induction: Induction) -> Settings {
-    Settings {
+fn settings(induction: Induction) -> BemSettings {
+    BemSettings {
         induction,
         theory: Theory::default(),
         skewed_wake: false,
@@ -35,13 +35,13 @@ fn all_models() -> [Induction; 4] {
 struct Flight {
     stiff: Stiff,
     rotor: RotorAerodynamics,
-    state: State,
+    state: BemState,
     loads: Loads,
     azimuth: f64,
 }
 
 impl Flight {
-    fn new(stiff: Stiff, settings: Settings) -> Self {
+    fn new(stiff: Stiff, settings: BemSettings) -> Self {
         let rotor =
             RotorAerodynamics::new(&stiff.definition, stiff.line.elements(), AIR_DENSITY, settings);
         let (state, loads) = (rotor.start(), rotor.loads());
@@ -53,8 +53,9 @@ impl Flight {
         let elements = self.stiff.motions(self.azimuth, pitch);
         let winds = vec![wind; elements.len()];
         let pitch = self.stiff.pitch(pitch);
-        let posture = Posture { frame: &self.stiff.frame, elements: &elements, pitch: &pitch };
-        self.rotor.advance(interval, &winds, posture, &mut self.state, &mut self.loads);
+        let kinematics =
+            RotorKinematics { frame: &self.stiff.frame, elements: &elements, pitch: &pitch };
+        self.rotor.advance(interval, &winds, kinematics, &mut self.state, &mut self.loads);
     }
 }
 

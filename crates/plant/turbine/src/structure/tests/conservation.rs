@@ -1,15 +1,17 @@
-//! What a free motion keeps, and what loads put into it.
+//! Conservation of energy in a free motion, and the work of loads.
 
 use super::samples::*;
 use crate::motion::ElementMotion;
 use crate::rotor::BladeFrame;
-use crate::structure::{AppliedLoads, ElementLoad, Freedom, Pitch, Settings, Structure};
+use crate::structure::{
+    AppliedLoads, DegreeOfFreedom, ElementLoad, Pitch, Structure, StructureSettings,
+};
 use basis::Vector3;
 
 const STEP: f64 = 0.02;
 const PITCH: [Pitch; 3] = [Pitch { angle: 0.02, rate: 0.0, acceleration: 0.0 }; 3];
 
-/// Every freedom of `structure` set moving; velocities of a metre per second at the tips, less at the tower.
+/// Sets every degree of freedom of `structure` moving: a metre per second at the tips, less at the tower.
 fn shake(structure: &mut Structure, rotor_speed: f64) {
     let mut state = structure.state().clone();
     state.velocities.shared = [0.4, -0.1, 0.3, 0.05, rotor_speed, 0.0];
@@ -38,8 +40,8 @@ fn energy_error(structure: &mut Structure, duration: f64) -> f64 {
 #[test]
 fn a_free_vibration_keeps_its_energy_over_a_thousand_periods() {
     // 1000 periods of the tower, 4.3 s each, and far more of everything else.
-    let mut structure = structure(&undamped(published(IEA_15)), &Settings::AT_REST);
-    structure.hold(&[Freedom::Generator]);
+    let mut structure = structure(&undamped(published(IEA_15)), &StructureSettings::AT_REST);
+    structure.hold(&[DegreeOfFreedom::Generator]);
     shake(&mut structure, 0.0);
     let error = energy_error(&mut structure, 4300.0);
     assert!(error < 1e-4, "{error:e}");
@@ -48,7 +50,7 @@ fn a_free_vibration_keeps_its_energy_over_a_thousand_periods() {
 #[test]
 fn a_turning_free_rotor_keeps_its_energy() {
     // 600 s are 75 turns and 1100 periods of edgewise bending against the free shaft.
-    let mut structure = structure(&undamped(published(IEA_15)), &Settings::AT_REST);
+    let mut structure = structure(&undamped(published(IEA_15)), &StructureSettings::AT_REST);
     shake(&mut structure, 0.79);
     let error = energy_error(&mut structure, 600.0);
     assert!(error < 1e-4, "{error:e}");
@@ -58,10 +60,12 @@ fn a_turning_free_rotor_keeps_its_energy() {
 fn a_bare_blade_rings_down_at_its_damping_ratio() {
     // Flapwise alone, no gravity, still hub: q = cos(ω t) exp(−ζ ω t) and the midpoint rule's own period.
     let definition = plain();
-    let settings = Settings { gravity: 0.0, ..Settings::AT_REST };
+    let settings = StructureSettings { gravity: 0.0, ..StructureSettings::AT_REST };
     let mut structure = structure(&definition, &settings);
-    let held: Vec<Freedom> =
-        Freedom::ALL.into_iter().filter(|freedom| *freedom != Freedom::Flap1).collect();
+    let held: Vec<DegreeOfFreedom> = DegreeOfFreedom::ALL
+        .into_iter()
+        .filter(|degree| *degree != DegreeOfFreedom::Flap1)
+        .collect();
     structure.hold(&held);
     let frequency = structure.natural_modes()[0].frequency;
     let mut state = structure.state().clone();
@@ -80,7 +84,8 @@ fn energy_grows_by_the_work_of_the_loads() {
     let definition = undamped(plain());
     let spans = [8.0, 20.0, 33.0, 41.0];
     let heights = [30.0, 70.0];
-    let settings = Settings { spans: &spans, heights: &heights, ..Settings::AT_REST };
+    let settings =
+        StructureSettings { spans: &spans, heights: &heights, ..StructureSettings::AT_REST };
     let mut structure = structure(&definition, &settings);
     shake(&mut structure, 1.2);
     let loads: Vec<ElementLoad> = (0..12)
@@ -136,7 +141,8 @@ fn moments_on_elements_work_through_the_turn_of_the_section() {
     definition.blade[1].prebend = 0.0;
     let run = |loads: [ElementLoad; 3]| {
         let spans = [29.9, 30.0, 30.1];
-        let settings = Settings { spans: &spans, gravity: 0.0, ..Settings::AT_REST };
+        let settings =
+            StructureSettings { spans: &spans, gravity: 0.0, ..StructureSettings::AT_REST };
         let mut structure = structure(&definition, &settings);
         let mut all = vec![ElementLoad::default(); 9];
         all[..3].copy_from_slice(&loads);

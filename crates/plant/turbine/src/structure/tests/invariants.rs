@@ -2,8 +2,11 @@
 
 use super::samples::*;
 use crate::structure::coordinates::{Coordinates, GENERATOR, N_MODES, N_SHARED, TORSION};
-use crate::structure::stations::Gathered;
-use crate::structure::{AppliedLoads, Freedom, Pitch, Settings, State, Structure, StructureError};
+use crate::structure::stations::LoadResultants;
+use crate::structure::{
+    AppliedLoads, DegreeOfFreedom, Pitch, Structure, StructureError, StructureSettings,
+    StructureState,
+};
 use proptest::prelude::*;
 
 const STEP: f64 = 0.02;
@@ -13,7 +16,7 @@ fn run(structure: &mut Structure, pitch: &[Pitch], n_steps: usize) {
     (0..n_steps).for_each(|_| structure.advance(STEP, &applied, pitch));
 }
 
-fn moving(state: &State, sign: f64, order: [usize; 3]) -> State {
+fn moving(state: &StructureState, sign: f64, order: [usize; 3]) -> StructureState {
     let mut state = state.clone();
     state.velocities.shared = [0.4, -0.1, 0.3 * sign, 0.05 * sign, 1.5 * sign, 0.0];
     let blades = [[1.0, -0.2, 0.5 * sign], [-0.4, 0.3, 0.2 * sign], [0.6, 0.1, -0.7 * sign]];
@@ -37,8 +40,12 @@ fn any_blade_may_be_the_first() {
     let definition = plain();
     let pitch = [0.0, 0.1, 0.3].map(|angle| Pitch { angle, ..Pitch::default() });
     let third = std::f64::consts::TAU / 3.0;
-    let mut one = structure(&definition, &Settings { azimuth: 0.2 + third, ..Settings::AT_REST });
-    let mut other = structure(&definition, &Settings { azimuth: 0.2, ..Settings::AT_REST });
+    let mut one = structure(
+        &definition,
+        &StructureSettings { azimuth: 0.2 + third, ..StructureSettings::AT_REST },
+    );
+    let mut other =
+        structure(&definition, &StructureSettings { azimuth: 0.2, ..StructureSettings::AT_REST });
     one.restore(moving(one.state(), 1.0, [0, 1, 2]));
     // What was blade 1, 120° on, is now blade 2.
     other.restore(moving(other.state(), 1.0, [2, 0, 1]));
@@ -57,8 +64,10 @@ fn a_mirrored_turbine_moves_in_the_mirror() {
     // Untwisted, unpitched blades: turning the other way is the mirror image across y, blades 2 and 3 exchanged.
     let definition = plain();
     let pitch = [Pitch::default(); 3];
-    let mut one = structure(&definition, &Settings { azimuth: 0.2, ..Settings::AT_REST });
-    let mut other = structure(&definition, &Settings { azimuth: -0.2, ..Settings::AT_REST });
+    let mut one =
+        structure(&definition, &StructureSettings { azimuth: 0.2, ..StructureSettings::AT_REST });
+    let mut other =
+        structure(&definition, &StructureSettings { azimuth: -0.2, ..StructureSettings::AT_REST });
     one.restore(moving(one.state(), 1.0, [0, 1, 2]));
     other.restore(moving(other.state(), -1.0, [0, 2, 1]));
     for _ in 0..200 {
@@ -80,7 +89,8 @@ fn a_mirrored_turbine_moves_in_the_mirror() {
 #[test]
 fn a_restored_state_continues_with_the_same_bits() {
     let definition = published(NREL_5);
-    let settings = Settings { rotor_speed: 1.2, pitch: 0.05, ..Settings::AT_REST };
+    let settings =
+        StructureSettings { rotor_speed: 1.2, pitch: 0.05, ..StructureSettings::AT_REST };
     let pitch = [Pitch { angle: 0.05, rate: 0.01, acceleration: 0.0 }; 3];
     let mut whole = structure(&definition, &settings);
     run(&mut whole, &pitch, 100);
@@ -92,10 +102,16 @@ fn a_restored_state_continues_with_the_same_bits() {
 }
 
 #[test]
-fn freedoms_that_are_held_stay() {
-    let mut structure =
-        structure(&published(IEA_15), &Settings { rotor_speed: 0.7, ..Settings::AT_REST });
-    structure.hold(&[Freedom::Generator, Freedom::TowerSideToSide1, Freedom::Edge1]);
+fn degrees_of_freedom_that_are_held_stay() {
+    let mut structure = structure(
+        &published(IEA_15),
+        &StructureSettings { rotor_speed: 0.7, ..StructureSettings::AT_REST },
+    );
+    structure.hold(&[
+        DegreeOfFreedom::Generator,
+        DegreeOfFreedom::TowerSideToSide1,
+        DegreeOfFreedom::Edge1,
+    ]);
     run(&mut structure, &[Pitch::default(); 3], 50);
     let state = structure.state();
     assert_eq!(state.velocities.shared[GENERATOR], 0.7);
@@ -108,10 +124,11 @@ fn freedoms_that_are_held_stay() {
 fn a_stiff_shaft_is_no_trouble_at_the_longest_step() {
     // 90 Hz against a step of 0.02 s, hit by a step of torque: bounded, and the mean twist is torque over stiffness.
     let definition = published(IEA_22);
-    let mut structure = structure(&definition, &Settings { gravity: 0.0, ..Settings::AT_REST });
-    let held: Vec<Freedom> = Freedom::ALL
+    let mut structure =
+        structure(&definition, &StructureSettings { gravity: 0.0, ..StructureSettings::AT_REST });
+    let held: Vec<DegreeOfFreedom> = DegreeOfFreedom::ALL
         .into_iter()
-        .filter(|f| *f != Freedom::DriveTrain && *f != Freedom::Generator)
+        .filter(|f| *f != DegreeOfFreedom::DriveTrain && *f != DegreeOfFreedom::Generator)
         .collect();
     structure.hold(&held);
     let applied = AppliedLoads { generator_torque: -1e7, ..AppliedLoads::NONE };
@@ -130,7 +147,7 @@ fn unsound_definitions_are_refused() {
     let refused = |change: &dyn Fn(&mut crate::Definition)| {
         let mut definition = plain();
         change(&mut definition);
-        Structure::new(&definition, &Settings::AT_REST).err()
+        Structure::new(&definition, &StructureSettings::AT_REST).err()
     };
     assert!(matches!(
         refused(&|d| d.n_blades = 9),
@@ -166,7 +183,7 @@ proptest! {
     ) {
         let mut definition = plain();
         definition.n_blades = n_blades;
-        let structure = structure(&definition, &Settings::AT_REST);
+        let structure = structure(&definition, &StructureSettings::AT_REST);
         let mut q = Coordinates::default();
         q.shared[..4].copy_from_slice(&shared);
         q.shared[GENERATOR] = azimuth;
@@ -175,8 +192,8 @@ proptest! {
             q.blades[blade].copy_from_slice(&bends[N_MODES * blade..][..N_MODES]);
         }
         let pitch = vec![Pitch { angle: pitch, ..Pitch::default() }; n_blades];
-        let none = Gathered::default();
-        let mass = structure.machine.balance(&q, &Coordinates::default(), &pitch, &none).mass;
+        let none = LoadResultants::default();
+        let mass = structure.machine.equations_of_motion(&q, &Coordinates::default(), &pitch, &none).mass;
         let n = N_SHARED + N_MODES * n_blades;
         let full = |i: usize, j: usize| {
             let unit = |index: usize| {

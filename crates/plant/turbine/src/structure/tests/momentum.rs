@@ -2,7 +2,9 @@
 
 use super::samples::*;
 use crate::definition::Definition;
-use crate::structure::{AppliedLoads, ElementLoad, Freedom, Pitch, Settings, Structure, Wrench};
+use crate::structure::{
+    AppliedLoads, DegreeOfFreedom, ElementLoad, Pitch, Structure, StructureSettings, Wrench,
+};
 use basis::Vector3;
 
 const STEP: f64 = 2e-3;
@@ -63,17 +65,17 @@ fn loads_are_the_rate_of_momentum_outboard() {
         let definition = of_points(published(text));
         let spans: Vec<f64> =
             [0.3, 0.6, 0.9].iter().map(|share| share * definition.rotor.tip_radius).collect();
-        let settings = Settings {
+        let settings = StructureSettings {
             rotor_speed: definition.rated_rotor_speed,
             yaw: 0.2,
             spans: &spans,
             position: Vector3::new(30.0, -20.0, 0.0),
             azimuth: 0.5,
-            ..Settings::AT_REST
+            ..StructureSettings::AT_REST
         };
         let mut structure = structure(&definition, &settings);
         // With no generator to turn against, the shaft has no torsion.
-        structure.hold(&[Freedom::DriveTrain]);
+        structure.hold(&[DegreeOfFreedom::DriveTrain]);
         let loads: Vec<ElementLoad> = (0..9)
             .map(|k| ElementLoad {
                 force: Vector3::new(4e4, 5e3 * f64::from(k % 4), -2e3 * f64::from(k)),

@@ -3,8 +3,10 @@
 use super::samples::*;
 use crate::definition::Definition;
 use crate::structure::coordinates::GENERATOR;
-use crate::structure::stations::Gathered;
-use crate::structure::{AppliedLoads, Freedom, Pitch, Settings, Structure, midpoint::Phase};
+use crate::structure::stations::LoadResultants;
+use crate::structure::{
+    AppliedLoads, DegreeOfFreedom, Pitch, Structure, StructureSettings, midpoint::PhasePoint,
+};
 use basis::Vector3;
 
 const SPEED: f64 = 1.7;
@@ -12,9 +14,14 @@ const STEP: f64 = 0.02;
 
 /// `definition` with everything held, its rotor turning at [`SPEED`], after `n_steps` steps; and the azimuth of the loads.
 fn spun(definition: &Definition, gravity: f64, n_steps: usize) -> (Structure, f64) {
-    let settings = Settings { gravity, rotor_speed: SPEED, azimuth: 0.3, ..Settings::AT_REST };
+    let settings = StructureSettings {
+        gravity,
+        rotor_speed: SPEED,
+        azimuth: 0.3,
+        ..StructureSettings::AT_REST
+    };
     let mut structure = structure(definition, &settings);
-    structure.hold(&Freedom::ALL);
+    structure.hold(&DegreeOfFreedom::ALL);
     let pitch = vec![Pitch::default(); definition.n_blades];
     (0..n_steps).for_each(|_| structure.advance(STEP, &AppliedLoads::NONE, &pitch));
     let azimuth = 0.3 + SPEED * STEP * (n_steps as f64 - 0.5);
@@ -92,8 +99,8 @@ fn weight_swings_through_the_blade_root() {
 fn everything_weighs_on_the_foot() {
     let definition = plain();
     let g = crate::structure::GRAVITY;
-    let mut still = structure(&definition, &Settings::AT_REST);
-    still.hold(&Freedom::ALL);
+    let mut still = structure(&definition, &StructureSettings::AT_REST);
+    still.hold(&DegreeOfFreedom::ALL);
     still.advance(STEP, &AppliedLoads::NONE, &[Pitch::default(); 3]);
     let (tower, nacelle) = (&definition.tower, &definition.nacelle);
     let tower_mass = 4000.0 * (tower.top_height - tower.base_height);
@@ -117,17 +124,18 @@ fn a_nodding_tower_feels_the_gyroscope() {
     let mut definition = plain();
     definition.rotor.precone = 0.0;
     definition.rotor.shaft_tilt = 0.0;
-    let structure = structure(&definition, &Settings { gravity: 0.0, ..Settings::AT_REST });
-    let mut phase = Phase::default();
+    let structure =
+        structure(&definition, &StructureSettings { gravity: 0.0, ..StructureSettings::AT_REST });
+    let mut phase = PhasePoint::default();
     phase.v.shared[GENERATOR] = SPEED;
     phase.q.shared[GENERATOR] = 0.4;
     phase.v.shared[0] = 0.5;
-    let none = Gathered::default();
+    let none = LoadResultants::default();
     let pitch = [Pitch::default(); 3];
-    let balance = structure.machine.balance(&phase.q, &phase.v, &pitch, &none);
-    let loads = structure.machine.loads(&phase, &balance, &none);
+    let equations = structure.machine.equations_of_motion(&phase.q, &phase.v, &pitch, &none);
+    let loads = structure.machine.loads(&phase, &equations, &none);
     // Nodding at θ̇ about y turns the angular momentum J Ω of the rotor; the rotor answers with J Ω θ̇ about z.
-    let nodding = balance.motion.top.spin.y;
+    let nodding = equations.motion.top.spin.y;
     assert!(nodding > 0.005);
     let expected = definition.rotor_inertia() * SPEED * nodding;
     near(loads.shaft.moment.z, expected, 10.0 * expected, "LSSTipMzs");
@@ -138,9 +146,14 @@ fn a_nodding_tower_feels_the_gyroscope() {
 #[test]
 fn a_rigid_rotor_speeds_up_by_torque_over_inertia() {
     let definition = plain();
-    let mut structure = structure(&definition, &Settings { rotor_speed: 1.0, ..Settings::AT_REST });
-    let held: Vec<Freedom> =
-        Freedom::ALL.into_iter().filter(|freedom| *freedom != Freedom::Generator).collect();
+    let mut structure = structure(
+        &definition,
+        &StructureSettings { rotor_speed: 1.0, ..StructureSettings::AT_REST },
+    );
+    let held: Vec<DegreeOfFreedom> = DegreeOfFreedom::ALL
+        .into_iter()
+        .filter(|degree| *degree != DegreeOfFreedom::Generator)
+        .collect();
     structure.hold(&held);
     let applied = AppliedLoads { generator_torque: -1e6, ..AppliedLoads::NONE };
     (0..500).for_each(|_| structure.advance(STEP, &applied, &[Pitch::default(); 3]));
@@ -157,9 +170,11 @@ fn a_rigid_rotor_speeds_up_by_torque_over_inertia() {
 #[test]
 fn a_pitching_rigid_blade_turns_its_loads_with_it() {
     let definition = plain();
-    let mut structure =
-        structure(&definition, &Settings { rotor_speed: SPEED, ..Settings::AT_REST });
-    structure.hold(&Freedom::ALL);
+    let mut structure = structure(
+        &definition,
+        &StructureSettings { rotor_speed: SPEED, ..StructureSettings::AT_REST },
+    );
+    structure.hold(&DegreeOfFreedom::ALL);
     let pitch = [0.0, 0.4, 1.2].map(|angle| Pitch { angle, ..Pitch::default() });
     structure.advance(STEP, &AppliedLoads::NONE, &pitch);
     for (blade, pitch) in structure.loads().blades.iter().zip(pitch) {
@@ -176,9 +191,9 @@ fn moments_along_the_span_are_those_of_what_lies_beyond() {
     let definition = plain();
     let length = definition.blade_length();
     let spans = [27.0, 37.0];
-    let settings = Settings { spans: &spans, ..Settings::AT_REST };
+    let settings = StructureSettings { spans: &spans, ..StructureSettings::AT_REST };
     let mut structure = structure(&definition, &settings);
-    structure.hold(&Freedom::ALL);
+    structure.hold(&DegreeOfFreedom::ALL);
     let push = |x: f64, y: f64| crate::structure::ElementLoad {
         force: Vector3::new(x, y, 0.0),
         moment: Vector3::ZERO,

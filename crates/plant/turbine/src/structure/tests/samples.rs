@@ -3,7 +3,7 @@
 use crate::Polar;
 use crate::actuators::PitchActuator;
 use crate::definition::*;
-use crate::structure::{Settings, Structure};
+use crate::structure::{Structure, StructureSettings};
 use basis::Vector3;
 use std::f64::consts::PI;
 use toml::{Table, Value};
@@ -191,7 +191,7 @@ pub(super) fn undamped(mut definition: Definition) -> Definition {
     definition
 }
 
-pub(super) fn structure(definition: &Definition, settings: &Settings<'_>) -> Structure {
+pub(super) fn structure(definition: &Definition, settings: &StructureSettings<'_>) -> Structure {
     Structure::new(definition, settings).unwrap()
 }
 

@@ -4,7 +4,7 @@ use super::samples::plain;
 use crate::definition::Definition;
 use crate::motion::ElementMotion;
 use crate::rotor::Frame;
-use crate::structure::{Pitch, Settings, Structure};
+use crate::structure::{Pitch, Structure, StructureSettings};
 use basis::{PerBlade, Vector3};
 
 /// Straight blades that turn in an upright plane.
@@ -19,7 +19,8 @@ fn flat() -> Definition {
 /// Elements of blade 1 of [`flat`], upright, pitched by `pitch` (rad) and bent by `q`: flapwise 1 and 2, edgewise 1 (m). Their
 /// positions count from the hub.
 fn bent(pitch: f64, q: [f64; 3]) -> Vec<ElementMotion> {
-    let settings = Settings { spans: &[8.0, 20.0, 33.0, 41.0], ..Settings::AT_REST };
+    let settings =
+        StructureSettings { spans: &[8.0, 20.0, 33.0, 41.0], ..StructureSettings::AT_REST };
     let mut structure = Structure::new(&flat(), &settings).unwrap();
     structure.state.coordinates.blades[0] = q;
     let still = ElementMotion {

@@ -1,20 +1,20 @@
-//! Whether a whole loop, generator and all, comes closer to a tone that it is nearly locked to.
+//! Stability of the whole loop, generator included, near lock to a tone.
 //!
-//! The loop filter's poles over a lag of the phase leave out that a generator's vector also breathes at twice its rate, which
-//! the centre, following ω̂, feeds back. It costs a third of the natural rate with which the second-order and the mixed
-//! generator are stable, and more than half with the extended one's slow pole. So the loop itself is asked.
+//! The loop filter's poles with a phase lag leave out that a generator's vector also pulsates at twice its rate, which the
+//! centre, following ω̂, feeds back. This reduces the largest stable natural rate by a third with the second-order and the
+//! mixed generator, and by more than half with the extended one's slow pole. So the loop itself is simulated.
 
 use super::generator::Generator;
 use super::oscillator::{LoopSettings, Oscillator};
 use std::f64::consts::TAU;
 
-/// Samples a period, periods that the generator settles over, and those after which errors are compared.
+/// Samples per period, periods in which the generator settles, and periods at which errors are compared (–).
 const N_SAMPLES: i32 = 100;
 const SETTLING: i32 = 30;
 const EARLY: i32 = 10;
 const LATE: i32 = 40;
 
-/// `fresh` after thirty periods of a sine of amplitude one, `n_samples` (–) a period, the last of them at phase zero.
+/// `fresh` after thirty periods of a sine of amplitude one, `n_samples` (–) per period, the last of them at phase zero.
 pub(super) fn settled(fresh: &Generator, n_samples: i32) -> Generator {
     let turned = TAU / f64::from(n_samples);
     let mut generator = *fresh;

@@ -1,4 +1,4 @@
-//! Symmetric matrices of a rotor: blades meet each other only in the shared coordinates, so that solving stays cheap.
+//! Arrowhead matrices of a rotor: symmetric, and blades couple only through the shared coordinates, which keeps solving cheap.
 #![expect(
     clippy::needless_range_loop,
     reason = "rows and columns by index, as the equations have them"
@@ -7,16 +7,16 @@
 use super::coordinates::{Coordinates, Locks, N_MODES, N_SHARED};
 use basis::blades::MAXIMUM_BLADES;
 
-/// A symmetric matrix over all coordinates; blades' blocks touch only themselves and the shared block.
+/// A symmetric arrowhead matrix over all coordinates: a block for each blade, coupled to the shared block only.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Arrow {
+pub(super) struct ArrowheadMatrix {
     pub(super) shared: [[f64; N_SHARED]; N_SHARED],
     /// Rows: modes of the blade, columns: shared coordinates.
     pub(super) coupling: [[[f64; N_SHARED]; N_MODES]; MAXIMUM_BLADES],
     pub(super) blades: [[[f64; N_MODES]; N_MODES]; MAXIMUM_BLADES],
 }
 
-impl Arrow {
+impl ArrowheadMatrix {
     /// The matrix times `x`, for `n_blades` blades.
     pub(super) fn times(&self, n_blades: usize, x: &Coordinates) -> Coordinates {
         let mut product = Coordinates::default();
@@ -36,9 +36,10 @@ impl Arrow {
         product
     }
 
-    /// x of matrix × x = `right`, positive definite over the coordinates that `locks` leaves free; zero where locked.
+    /// Solution x of matrix × x = `right`; the matrix is positive definite over the coordinates that `locks` leaves free.
+    /// x is zero where locked.
     ///
-    /// Blades are eliminated one by one by Cholesky factors, then what they leave of the shared block is solved.
+    /// Blades are eliminated one by one by Cholesky factors; then the Schur complement of the shared block is solved.
     pub(super) fn solve(&self, n_blades: usize, locks: &Locks, right: &Coordinates) -> Coordinates {
         let mut shared = self.shared;
         let mut x = *right;
@@ -150,10 +151,10 @@ fn backward<const N: usize>(factor: &[[f64; N]; N], x: &mut [f64; N]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::structure::Freedom;
+    use crate::structure::DegreeOfFreedom;
 
-    fn sample(n_blades: usize) -> Arrow {
-        let mut matrix = Arrow::default();
+    fn sample(n_blades: usize) -> ArrowheadMatrix {
+        let mut matrix = ArrowheadMatrix::default();
         for i in 0..N_SHARED {
             for j in 0..N_SHARED {
                 matrix.shared[i][j] = if i == j { 9.0 } else { 1.0 / (1.0 + i as f64 + j as f64) };
@@ -190,11 +191,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_stays_and_does_not_load_the_rest() {
+    fn locked_coordinates_stay_and_do_not_load_the_rest() {
         let matrix = sample(3);
         let right =
             Coordinates { shared: [1.0; N_SHARED], blades: [[1.0; N_MODES]; MAXIMUM_BLADES] };
-        let locks = Locks::of(&[Freedom::Generator, Freedom::Edge1]);
+        let locks = Locks::of(&[DegreeOfFreedom::Generator, DegreeOfFreedom::Edge1]);
         let x = matrix.solve(3, &locks, &right);
         assert_eq!(x.shared[4], 0.0);
         assert!(x.blades[..3].iter().all(|blade| blade[2] == 0.0));
