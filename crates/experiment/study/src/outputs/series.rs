@@ -109,7 +109,7 @@ impl Rows {
     /// The row, once `farm` has made the step.
     pub(crate) fn complete(&mut self, farm: &Farm<Air>) -> &[f64] {
         for (index, machine) in farm.machines().iter().enumerate() {
-            self.row.beliefs(index, machine);
+            self.row.signals(index, machine);
         }
         self.row.values()
     }

@@ -6,6 +6,7 @@ use control::phase_sync::PhaseSyncSettings;
 use estimation::helix::{Measurement, Options};
 use farm::pitch_response::OwnPitch;
 use formats::records::{read_probes, write_probes};
+use formats::records::{read_probes, write_probes};
 
 /// A case whose T2 joins the helix of T1 with `keys` beside the needed ones, under `overrides`.
 fn setup(keys: &str, overrides: &[&str]) -> Prepared {
@@ -80,16 +81,19 @@ fn noise_that_is_given_is_another_calibration_and_none_leaves_no_trace() {
 #[test]
 fn what_is_given_is_not_sought_and_a_turbine_that_watches_needs_nothing() {
     let asks = |keys: &str, overrides: &[&str]| {
-        Asked::of(&setup(keys, overrides).case.runs[0].control[1]).is_some()
+        let setup = setup(keys, overrides);
+        let control = &setup.case.runs[0].control[1];
+        control.kind().identification(control).is_some()
     };
     assert!(asks("", &[]) && asks(", azimuth_offset_deg = 10", &[]));
     assert!(asks(", estimator = \"published\"", &[]));
     assert!(!asks(", estimator = \"published\", azimuth_offset_deg = 10", &[]));
     for keys in ["", ", estimator = \"published\""] {
         let watching = setup(keys, &["run.joined.control.T2.amplitude_deg=0"]);
-        assert!(Asked::of(&watching.case.runs[0].control[1]).is_none());
+        let control = &watching.case.runs[0].control[1];
+        assert!(control.kind().identification(control).is_none());
         assert_eq!(sync_of(&watching).azimuth_offset, Some(0.0));
-        assert_eq!(response_of(&watching.case.runs[0].control[1]), None);
+        assert_eq!(control.kind().pitch_response(control), None);
     }
     let [found, none, ten] = ["", ", azimuth_offset_deg = 0", ", azimuth_offset_deg = 10"].map(key);
     assert!(found != none && found != ten && none != ten);
@@ -180,7 +184,7 @@ fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
         let setup = setup(&format!("{keys}, azimuth_offset_deg = 0"), &[]);
         let control = &setup.case.runs[0].control[1];
         let given = PhaseSyncSettings::of(control).expect("phase-sync");
-        given.estimator_options(!setup.case.flow.solver.is_prescribed())
+        given.estimator_options(setup.case.flow.solver.resolves_induction)
     };
     let usual = options("");
     let given = options(", measurement_noise_mnm = 0.5, wandering_amplitude = 3e-3");
