@@ -7,13 +7,42 @@ import sys
 from pathlib import Path
 
 
+WARNINGS = {"setup", "pitch-held-back", "controller", "tip-speed"}
+
+
+def check_control(turbine):
+    control, delivered = turbine["control"], turbine["delivered_pitch"]
+    assert control["description"], f"{turbine['name']} has no description of its control"
+    excitation = control["excitation"]
+    assert (excitation is None) == (control["kind"] == "baseline"), f"{turbine['name']}: {control}"
+    if excitation is not None and delivered is not None:
+        assert excitation["sense"] in ("cw", "ccw", None), excitation["sense"]
+        difference = abs(excitation["amplitude_deg"] - delivered["commanded_amplitude_deg"])
+        assert difference < 1e-9, f"{turbine['name']} was set to and commanded amplitudes {difference}° apart"
+
+
+def check_loads(turbine, is_compared):
+    loads = {(load["channel"], load["kind"]): load for load in turbine["loads"]}
+    assert len(loads) == len(turbine["loads"]), f"{turbine['name']} has a load twice"
+    for channel, slope in [("RootMyb1", 10), ("TwrBsMyt", 4)]:
+        assert loads[channel, "deviation"]["value"] > 0, f"{turbine['name']}: {channel} does not vary"
+        load = loads[channel, "damage-equivalent"]
+        assert load["unit"] == "kN m" and load["slope"] == slope, load
+        assert load["value"] > 0 and load["reference_frequency_hz"] == 1, load
+        assert (load["change"] is not None) == is_compared, load
+
+
 def check_run(folder):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    assert summary["schema_version"] >= 1, "no schema version"
+    assert summary["schema_version"] == 2, f"docs/summary.md is of version 2, not {summary['schema_version']}"
     assert summary["run"] == folder.name, f"the summary of {folder.name} says {summary['run']}"
     for turbine in summary["turbines"]:
         power = turbine["power"]["mean"]
         assert 1e5 < power < 1e8, f"{turbine['name']} makes {power} W"
+        check_control(turbine)
+        check_loads(turbine, is_compared=summary["compare_with"] is not None)
+    for warning in summary["warnings"]:
+        assert warning["kind"] in WARNINGS and warning["message"], f"no warning: {warning}"
     with open(folder / "series.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     names, samples = rows[0], rows[1:]

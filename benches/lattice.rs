@@ -167,11 +167,9 @@ fn rotors(air: &Lattice) -> Vec<PointForce> {
             for station in 0..40 {
                 let radius = 0.125 * n_z * (f64::from(station) + 0.5) / 40.0;
                 let hub = Vector3::new(rotor * n_x, 0.5 * n_y, 0.5 * n_z);
-                forces.push(PointForce {
-                    position: hub + Vector3::new(0.0, -sine, cosine) * radius,
-                    force: Vector3::new(-1.0e4, 0.0, 0.0),
-                    smearing_length: 2.0 * spacing,
-                });
+                let position = hub + Vector3::new(0.0, -sine, cosine) * radius;
+                let force = Vector3::new(-1.0e4, 0.0, 0.0);
+                forces.push(PointForce::of_body(position, force, 2.0 * spacing));
             }
         }
     }

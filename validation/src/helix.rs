@@ -92,7 +92,7 @@ pub fn helix() -> Vec<Row> {
             measured: delivered.map_or(f64::NAN, |pitch| 1e3 * pitch.excitation_frequency_hz),
             expected: find(&summaries, run).map_or(f64::NAN, |summary| {
                 let wind = &summary.conditions;
-                1e3 * 0.25 * wind.wind_speed / wind.rotor_diameter
+                1e3 * 0.25 * wind.target_wind_speed / wind.rotor_diameter
             }),
             tolerance: 0.05,
             unit: "mHz",

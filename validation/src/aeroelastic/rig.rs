@@ -178,7 +178,7 @@ fn machine(asked: &Asked<'_>) -> Machine {
     let definition = Arc::new(file.definition);
     let mut model = Model { definition: Arc::clone(&definition), constants: file.controller };
     if asked.speed == Speed::Tracked {
-        model = model.equipped(Solver::Uniform, AIR_DENSITY).into_owned();
+        model = model.equipped(Solver::UNIFORM, AIR_DENSITY).into_owned();
     }
     let diameter = definition.rotor_diameter();
     let tower = asked.tower.map(|effects| TowerInfluence::new(&definition, Vector3::ZERO, effects));
@@ -222,5 +222,5 @@ fn air(asked: &Asked<'_>) -> Air {
                 .expect("a box in memory has its planes")
         }
     };
-    Air::Prescribed(Box::new(wind))
+    Box::new(wind)
 }

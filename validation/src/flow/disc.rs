@@ -68,11 +68,7 @@ fn disc(thrust_coefficient: f64) -> Vec<Row> {
     let thrust = head * thrust_coefficient * area / points.len() as f64;
     let forces: Vec<PointForce> = points
         .iter()
-        .map(|position| PointForce {
-            position: *position,
-            force: Vector3::new(-thrust, 0.0, 0.0),
-            smearing_length: spacing,
-        })
+        .map(|position| PointForce::of_body(*position, Vector3::new(-thrust, 0.0, 0.0), spacing))
         .collect();
     advance(&mut air, SETTLING * CELLS_PER_DIAMETER / 0.1, &forces);
 

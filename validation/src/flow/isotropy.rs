@@ -153,11 +153,8 @@ fn wake(stencil: Stencil, duration: f64, averaging: f64, heavy: impl Fn(f64) -> 
         forces.clear();
         forces.extend(points.iter().map(|[y, z]| {
             let side = (y * angle.cos() + z * angle.sin()) / RADIUS;
-            PointForce {
-                position: Vector3::new(0.0, *y, *z),
-                force: Vector3::new(-thrust * (1.0 + 0.8 * side), 0.0, 0.0),
-                smearing_length: 2.0 * spacing,
-            }
+            let force = Vector3::new(-thrust * (1.0 + 0.8 * side), 0.0, 0.0);
+            PointForce::of_body(Vector3::new(0.0, *y, *z), force, 2.0 * spacing)
         }));
         advance(&mut air, 1.0, &forces);
         if step >= start && step.is_multiple_of(8) {

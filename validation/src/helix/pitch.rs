@@ -49,8 +49,8 @@ pub fn helix_pitch() -> Vec<Row> {
         [("ccw-3", Sense::CounterClockwise, "1P + f_e"), ("cw-3", Sense::Clockwise, "1P − f_e")]
     {
         let conditions = find(&summaries, run).map(|summary| &summary.conditions);
-        let rate =
-            conditions.map_or(f64::NAN, |at| TAU * STROUHAL * at.wind_speed / at.rotor_diameter);
+        let rate = conditions
+            .map_or(f64::NAN, |at| TAU * STROUHAL * at.target_wind_speed / at.rotor_diameter);
         let series = study.runs.iter().find(|records| records.summary.run == run);
         let channels = |name: &str| CHANNELS.contains(&name);
         let series = series.and_then(|records| records.series.read(channels).ok());

@@ -5,7 +5,7 @@ use super::judge::{beside, percent, print_line, reached};
 use super::rig::MOMENTS;
 use crate::Row;
 use crate::studies::{failure, find, summaries};
-use basis::records::{Statistic, TurbineSummary};
+use basis::records::{Load, LoadKind, Statistic, TurbineSummary};
 use std::path::{Path, absolute};
 
 /// Where the wake is recorded, and the turbine put into it.
@@ -76,16 +76,16 @@ impl Run<'_> {
             .map(|axis| axis.and_then(|axis| axis.factor).unwrap_or(f64::NAN))
     }
 
-    fn change(&self, key: &str) -> Result<Statistic, String> {
-        let change = self.turbine.load_changes.get(key).copied();
-        change.ok_or_else(|| format!("the records hold no change of {key}"))
+    fn change(&self, channel: &str, load: Option<&Load>) -> Result<Statistic, String> {
+        let change = load.and_then(|load| load.change);
+        change.ok_or_else(|| format!("the records hold no change of {channel}"))
     }
 
     /// Changes of the seven deviations and of power, by name.
     fn changes(&self) -> Result<Vec<(&'static str, Statistic)>, String> {
         let mut changes = Vec::new();
         for (name, channel, _) in MOMENTS {
-            changes.push((name, self.change(&deviation(channel))?));
+            changes.push((name, self.change(channel, self.turbine.deviation(channel))?));
         }
         let power = self.turbine.power_gain.ok_or("the records hold no gain of power")?;
         changes.push(("power", power));
@@ -108,10 +108,6 @@ impl Run<'_> {
         }
         Ok(rows)
     }
-}
-
-fn deviation(channel: &str) -> String {
-    format!("{channel}, standard deviation (kN m)")
 }
 
 /// Prints all changes with their intervals, the published ones behind.
@@ -137,18 +133,22 @@ fn print(baseline: &TurbineSummary, runs: &[Run]) -> Result<(), String> {
         };
         let name = match MOMENTS.get(index) {
             Some((name, channel, _)) => {
-                let before = baseline.load_deviations.get(&deviation(channel));
-                format!("{name}, deviation ({:.0} kN m)", before.copied().unwrap_or(f64::NAN))
+                let before = baseline.deviation(channel).map_or(f64::NAN, |load| load.value);
+                format!("{name}, deviation ({before:.0} kN m)")
             }
             None => format!("power ({:.0} kW)", 1e-3 * baseline.power.mean),
         };
         print_line(&name, &runs.iter().zip(&changes).map(of).collect::<Vec<_>>());
     }
     for (name, channel, slope) in MOMENTS {
-        let key = format!("{channel}, m = {slope} (kN m)");
         let mut row = Vec::new();
         for run in runs {
-            row.push(percent(&run.change(&key)?));
+            let found = run.turbine.damage_equivalent(channel);
+            let is_same = |load: &&Load| match load.kind {
+                LoadKind::DamageEquivalent { slope: counted, .. } => counted == slope,
+                LoadKind::Deviation => false,
+            };
+            row.push(percent(&run.change(channel, found.filter(is_same))?));
         }
         print_line(&format!("{name}, equivalent load (m = {slope})"), &row);
     }

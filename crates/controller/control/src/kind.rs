@@ -3,6 +3,7 @@
 use crate::baseline::Constants;
 use crate::excitation::excitation_rate;
 use crate::meandering::MeanderingError;
+use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use crate::phase_sync::PhaseSyncSettings;
 use crate::{Baseline, Controller};
 use basis::Sense;
@@ -70,6 +71,23 @@ pub trait ControllerKind: Named + Sync {
     /// Whatever response in the place of one that is yet to be found, so that a controller can be built for a check.
     fn any_response(&self) -> Option<PitchResponse> {
         None
+    }
+
+    /// Channels of the turbine, of `n_blades` blades, that [`Self::outcome`] reads, named without the turbine, or `time_s`.
+    fn outcome_channels(&self, _control: &Control, _n_blades: usize) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// What it has to tell after a run, from the analysed part of the `record`.
+    ///
+    /// # Errors
+    /// [`MissingChannel`] for a channel that records do not have.
+    fn outcome(
+        &self,
+        _control: &Control,
+        _record: &dyn TurbineRecord,
+    ) -> Result<Outcome, MissingChannel> {
+        Ok(Outcome::default())
     }
 
     /// What a reader of the numbers must know of the values of `control`, each as what follows "run R: T".
@@ -140,6 +158,8 @@ pub struct Pitching {
     pub strouhal: f64,
     /// Which way the helix winds; none of a collective pitch.
     pub sense: Option<Sense>,
+    /// Lead of the pitch over the helix in the wind that it joins (rad); none where it joins none.
+    pub phase_offset: Option<f64>,
     /// Time at which it fades in (s).
     pub start: f64,
     /// Time at which it fades out (s); never when absent.

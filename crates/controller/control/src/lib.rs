@@ -13,6 +13,7 @@ pub mod helix;
 mod keys;
 mod kind;
 pub mod meandering;
+mod outcome;
 pub mod phase_sync;
 pub mod pulse;
 
@@ -26,6 +27,7 @@ pub use kind::{
     Control, ControlError, ControllerKind, Identification, Motion, Pitching, Place, Site,
 };
 pub use meandering::Meandering;
+pub use outcome::{MissingChannel, Outcome, TurbineRecord};
 pub use phase_sync::PhaseSync;
 pub use pulse::Pulse;
 

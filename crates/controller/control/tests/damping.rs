@@ -31,7 +31,7 @@ fn tower_damping_ratio(constants: Constants) -> f64 {
             turns.push(position);
         }
         now.tower_top_acceleration = acceleration;
-        now.pitch = baseline.update(now).pitch;
+        now.pitch = baseline.update(&now.measured()).pitch;
     }
     // From turn to turn, so that where it swings about does not matter; a half period each.
     let (first, n) = (4, 12);

@@ -1,56 +1,98 @@
-//! The air of a farm: solved, or prescribed.
+//! The air of a farm, whatever moves it.
 
-use basis::{PointForce, Vector3};
+use flow::fields::FieldSource;
 use flow::inflow::PrescribedWind;
+use flow::inflow::prescribed::Clock;
 use flow::lattice::Lattice;
-use flow::{FlowError, FlowSolver, WindField};
+use flow::{FlowError, FlowSolver};
+use std::io::{Error, ErrorKind, Read, Result, Write};
 
-/// One of the ways to have wind.
-pub enum Air {
-    /// Solved: it feels the rotors.
-    Lattice(Box<Lattice>),
-    /// Prescribed: it blows as it is told.
-    Prescribed(Box<PrescribedWind>),
-}
+/// A flow in which a farm can stand: it goes on from a checkpoint, and may be looked at.
+pub trait FarmFlow: FlowSolver + Send + Sync {
+    /// Writes everything that time has changed; a flow made alike that [reads](Self::read_state) it goes on with the same bits.
+    ///
+    /// # Errors
+    /// Those of `writer`, and [`ErrorKind::InvalidData`] when the flow is no longer worth keeping.
+    fn write_state(&mut self, writer: &mut dyn Write) -> Result<()>;
 
-impl Air {
-    /// The lattice, where the air is solved: planes and volumes come from it.
-    pub fn lattice(&self) -> Option<&Lattice> {
-        match self {
-            Self::Lattice(lattice) => Some(lattice),
-            Self::Prescribed(_) => None,
-        }
+    /// Goes on from what [`write_state`](Self::write_state) wrote.
+    ///
+    /// # Errors
+    /// Those of `reader`, and [`ErrorKind::InvalidData`] when it is no state of such a flow.
+    fn read_state(&mut self, reader: &mut dyn Read) -> Result<()>;
+
+    /// Looks at all of it.
+    ///
+    /// # Errors
+    /// [`FlowError`] when it cannot go on.
+    fn check(&mut self) -> std::result::Result<(), FlowError> {
+        Ok(())
+    }
+
+    /// The flow as a source of planes and volumes; none where it has none to give.
+    fn fields(&self) -> Option<&dyn FieldSource> {
+        None
+    }
+
+    /// Threads that it runs on (–).
+    fn n_threads(&self) -> usize {
+        1
+    }
+
+    /// Memory of its field (bytes).
+    fn memory(&self) -> u64 {
+        0
     }
 }
 
-impl WindField for Air {
-    fn sample(&self, positions: &[Vector3], velocities: &mut [Vector3]) {
-        match self {
-            Self::Lattice(air) => air.sample(positions, velocities),
-            Self::Prescribed(air) => air.sample(positions, velocities),
-        }
+/// What moves the air of a farm.
+pub type Air = Box<dyn FarmFlow>;
+
+impl FarmFlow for Lattice {
+    fn write_state(&mut self, writer: &mut dyn Write) -> Result<()> {
+        Self::write_state(self, writer)
+    }
+
+    fn read_state(&mut self, reader: &mut dyn Read) -> Result<()> {
+        Self::read_state(self, reader)
+    }
+
+    fn check(&mut self) -> std::result::Result<(), FlowError> {
+        Self::check(self)
+    }
+
+    fn fields(&self) -> Option<&dyn FieldSource> {
+        Some(self)
+    }
+
+    fn n_threads(&self) -> usize {
+        Self::n_threads(self)
+    }
+
+    fn memory(&self) -> u64 {
+        Self::memory(self)
     }
 }
 
-impl FlowSolver for Air {
-    fn advance(&mut self, duration: f64, forces: &[PointForce]) -> Result<(), FlowError> {
-        match self {
-            Self::Lattice(air) => air.advance(duration, forces),
-            Self::Prescribed(air) => air.advance(duration, forces),
-        }
+impl FarmFlow for PrescribedWind {
+    fn write_state(&mut self, writer: &mut dyn Write) -> Result<()> {
+        writer.write_all(&self.state().to_bytes())
     }
 
-    fn resolves_induction(&self) -> bool {
-        match self {
-            Self::Lattice(air) => air.resolves_induction(),
-            Self::Prescribed(air) => air.resolves_induction(),
-        }
+    fn read_state(&mut self, reader: &mut dyn Read) -> Result<()> {
+        let mut bytes = [0; 24];
+        reader.read_exact(&mut bytes)?;
+        self.restore(Clock::from_bytes(bytes))
+            .map_err(|error| Error::new(ErrorKind::InvalidData, error))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use basis::records::PlaneAxes;
+    use basis::{PointForce, Vector3};
+    use flow::WindField;
     use flow::inflow::MeanProfile;
     use flow::lattice::Settings;
     use std::sync::Arc;
@@ -63,12 +105,12 @@ mod tests {
     }
 
     fn prescribed() -> Air {
-        Air::Prescribed(Box::new(PrescribedWind::everywhere(profile())))
+        Box::new(PrescribedWind::everywhere(profile()))
     }
 
-    fn solved() -> Air {
+    fn resolved() -> Air {
         let settings = Settings::new(Vector3::ZERO, 20.0, [16, 12, 12], INTERVAL, SPEED);
-        Air::Lattice(Box::new(Lattice::new(settings, profile()).expect("such air can be")))
+        Box::new(Lattice::new(settings, profile()).expect("such air can be"))
     }
 
     fn points() -> [Vector3; 3] {
@@ -84,7 +126,7 @@ mod tests {
     /// Winds after two seconds in which something pulls at the air upstream of the points.
     fn wind_behind_a_pull(air: &mut Air) -> [Vector3; 3] {
         let position = Vector3::new(140.0, 110.0, 100.0);
-        let force = PointForce { position, force: Vector3::X * -4e5, smearing_length: 40.0 };
+        let force = PointForce::of_body(position, Vector3::X * -4e5, 40.0);
         for _ in 0..10 {
             air.advance(INTERVAL, &[force]).expect("it stays finite");
         }
@@ -92,29 +134,52 @@ mod tests {
     }
 
     #[test]
-    fn prescribed_wind_blows_as_it_is_told() {
+    fn prescribed_wind_blows_whatever_pulls_at_it() {
         let mut air = prescribed();
-        assert!(air.lattice().is_none() && !air.resolves_induction());
+        assert!(air.fields().is_none() && !air.resolves_induction());
         for (wind, point) in wind(&air).iter().zip(points()) {
             let expected = SPEED * (point.z / 100.0).powf(0.2);
             assert!((*wind - Vector3::X * expected).length() < 1e-12, "{wind}");
         }
         let before = wind(&air);
         assert_eq!(wind_behind_a_pull(&mut air), before);
-        let Air::Prescribed(wind) = &air else { panic!("it is prescribed") };
-        assert!((wind.time() - 2.0).abs() < 1e-12);
     }
 
     #[test]
-    fn solved_air_feels_what_pulls_at_it() {
-        let mut air = solved();
-        assert!(air.lattice().is_some() && air.resolves_induction());
+    fn resolved_flow_feels_what_pulls_at_it() {
+        let mut air = resolved();
+        assert!(air.resolves_induction());
         let before = wind(&air);
-        let mut direct = [Vector3::ZERO; 3];
-        air.lattice().expect("it is solved").sample(&points(), &mut direct);
-        assert_eq!(before, direct);
         let after = wind_behind_a_pull(&mut air);
         assert!(after[1].x < before[1].x - 0.1, "{} {}", after[1], before[1]);
-        assert!((air.lattice().expect("it is solved").time() - 2.0).abs() < 1e-12);
+        // Its planes are those of the same instant: the point lies half-way between two rows of cells.
+        let fields = air.fields().expect("it has fields");
+        let mut plane = fields.plane("here", PlaneAxes::Horizontal, 100.0);
+        assert!((plane.time - 2.0).abs() < 1e-12);
+        let at = |plane: &basis::records::Plane| plane.velocity[0][5 * 16 + 7..][..2].to_vec();
+        let mean = 0.5 * (at(&plane)[0] + at(&plane)[1]);
+        assert!((f64::from(mean) - after[1].x).abs() < 1e-5, "{mean} {}", after[1]);
+        let then = plane.clone();
+        plane.velocity[0].fill(0.0);
+        fields.refresh(&mut plane);
+        assert_eq!(plane, then);
+    }
+
+    #[test]
+    fn a_flow_goes_on_from_what_it_wrote() {
+        for make in [prescribed, resolved] {
+            let mut air = make();
+            wind_behind_a_pull(&mut air);
+            let mut bytes = Vec::new();
+            air.write_state(&mut bytes).expect("a sound state");
+            let mut other = make();
+            other.read_state(&mut bytes.as_slice()).expect("what was written");
+            assert_eq!(wind_behind_a_pull(&mut other), wind_behind_a_pull(&mut air));
+            let mut again = [Vec::new(), Vec::new()];
+            air.write_state(&mut again[0]).expect("a sound state");
+            other.write_state(&mut again[1]).expect("a sound state");
+            assert!(again[0] == again[1] && again[0] != bytes);
+            assert!(other.read_state(&mut &bytes[..bytes.len() - 1]).is_err());
+        }
     }
 }

@@ -2,13 +2,14 @@
 
 use crate::air::Air;
 use crate::case::TowerInfluence as AskedInfluence;
-use crate::case::{Case, Control, DynamicInflow, Ground, Placement, Run, Sides, Solver};
+use crate::case::{Case, Control, DynamicInflow, Ground, Placement, Run, Sides};
 use crate::plan::{Footprint, Plan};
+use crate::solvers::Smearing;
 use crate::{Farm, Machine};
 use basis::Vector3;
 use control::baseline::Constants;
 use control::{ControlError, Controller, Site};
-use flow::lattice;
+use flow::{FlowSolver, lattice};
 use sensing::{InstrumentError, Mount, Sensing};
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
@@ -143,7 +144,7 @@ pub fn site<'a>(model: &'a Model, case: &Case, plan: &Plan) -> Site<'a> {
         diameter: plan.diameter,
         air_density: case.wind.air_density,
         interval: plan.interval,
-        flow_resolves_induction: !case.flow.solver.is_prescribed(),
+        flow_resolves_induction: case.flow.solver.resolves_induction,
     }
 }
 
@@ -171,6 +172,9 @@ pub(crate) fn turbine_settings(
 ///
 /// # Errors
 /// [`AssemblyError`].
+///
+/// # Panics
+/// When `air` and the descriptor of the case's flow solver disagree on whether the wind contains the rotors' induction.
 pub fn farm(
     case: &Case,
     run: &Run,
@@ -178,6 +182,14 @@ pub fn farm(
     models: &[Model],
     air: Air,
 ) -> Result<Farm<Air>, AssemblyError> {
+    let solver = case.flow.solver;
+    // Turbines make their induction as the solver's descriptor says: once, and only if the air itself agrees.
+    assert_eq!(
+        air.resolves_induction(),
+        solver.resolves_induction,
+        "flow.solver = \"{}\" and its air disagree on whether the wind contains the rotors' induction",
+        solver.name
+    );
     let mut machines = Vec::with_capacity(models.len());
     for index in run.present() {
         let (model, placement, foot) =
@@ -211,7 +223,7 @@ fn tower_influence(model: &Model, placement: &Placement, foot: Vector3) -> Optio
     Some(TowerInfluence::new(&model.definition, foot, Effects { potential, shadow }))
 }
 
-/// Who solves the induction: the lattice itself, or momentum theory with the wake's delay and its skew.
+/// Who makes the induction: the flow itself, or momentum theory with the wake's delay and its skew.
 fn induction(
     case: &Case,
     plan: &Plan,
@@ -219,21 +231,18 @@ fn induction(
     tower: Option<TowerInfluence>,
 ) -> Induction {
     let dynamic_stall = placement.dynamic_stall;
-    match case.flow.solver {
-        Solver::Lattice => Induction::ByFlow {
-            smearing_length: SMEARING_CELLS * plan.spacing,
-            sample_spacing: plan.spacing,
+    let solver = case.flow.solver;
+    if solver.resolves_induction {
+        let Smearing { length, sample_spacing } = (solver.smearing)(plan);
+        Induction::ByFlow { smearing_length: length, sample_spacing, dynamic_stall }
+    } else {
+        Induction::ByMomentum(rotor::Settings {
+            induction: delay(placement.dynamic_inflow),
+            theory: Theory::default(),
+            skewed_wake: true,
             dynamic_stall,
-        },
-        Solver::Uniform | Solver::Turbulence | Solver::Planes => {
-            Induction::ByMomentum(rotor::Settings {
-                induction: delay(placement.dynamic_inflow),
-                theory: Theory::default(),
-                skewed_wake: true,
-                dynamic_stall,
-                tower,
-            })
-        }
+            tower,
+        })
     }
 }
 

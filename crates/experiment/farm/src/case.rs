@@ -1,5 +1,6 @@
 //! One study as plain data: what the case file says, in SI units.
 
+pub use crate::solvers::Solver;
 pub use control::{Control, Sense};
 pub use sensing::{Instrument, Instruments, Lag, Mounted};
 
@@ -47,11 +48,11 @@ pub struct Wind {
     pub kinematic_viscosity: f64,
     /// Which turbulence is made, where it is made and not read.
     pub turbulence_model: TurbulenceModel,
-    /// File with the planes of wind that [`Solver::Planes`] reads, relative to the case file.
+    /// File with the planes of wind that [`Solver::PLANES`] reads, relative to the case file.
     pub planes: Option<String>,
     /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at hub height.
     pub veer: f64,
-    /// What happens in time, with [`Solver::Uniform`]; nothing when absent.
+    /// What happens in time, with [`Solver::UNIFORM`]; nothing when absent.
     pub event: Option<WindEvent>,
 }
 
@@ -200,26 +201,6 @@ pub struct Flow {
     pub step: Option<f64>,
     /// Threads; all cores when absent. The result does not depend on it.
     pub threads: Option<usize>,
-}
-
-/// What moves the air.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Solver {
-    /// Lattice Boltzmann large-eddy simulation, which feels the turbines.
-    Lattice,
-    /// The steady mean profile, prescribed; turbines make their own induction by momentum theory.
-    Uniform,
-    /// The mean profile with turbulence made for it, prescribed.
-    Turbulence,
-    /// Planes of wind from a file, prescribed.
-    Planes,
-}
-
-impl Solver {
-    /// Whether the wind does not feel the turbines.
-    pub fn is_prescribed(self) -> bool {
-        self != Self::Lattice
-    }
 }
 
 /// The ground.

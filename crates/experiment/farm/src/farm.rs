@@ -128,8 +128,9 @@ impl<Flow: FlowSolver + Sync> Farm<Flow> {
             }),
             None => self.machines.iter_mut().for_each(|machine| machine.advance(interval, flow)),
         }
-        for machine in &self.machines {
-            self.forces.extend_from_slice(machine.turbine.forces());
+        for (index, machine) in self.machines.iter().enumerate() {
+            let forces = machine.turbine.forces().iter();
+            self.forces.extend(forces.map(|force| force.of_turbine(index)));
         }
         self.flow.advance(self.interval, &self.forces)?;
         self.step += 1;

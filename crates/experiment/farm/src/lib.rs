@@ -7,10 +7,11 @@ pub mod farm;
 pub mod pitch_response;
 pub mod plan;
 pub mod self_check;
+pub mod solvers;
 pub mod tracking;
 pub mod wind;
 
-pub use air::Air;
+pub use air::{Air, FarmFlow};
 pub use farm::{Farm, Machine, Recorder, Unrecorded};
 pub use plan::{Plan, plan};
 

@@ -9,12 +9,12 @@ pub use prescribed::{
     INDIVIDUAL_PITCH_STROUHAL, individual_pitch_offset, individual_pitch_offset_cost,
 };
 
-use crate::air::Air;
 use crate::assemble::{self, AssemblyError, Model};
 use crate::case::{Case, Control, Sense};
 use crate::farm::Recorder;
 use crate::plan::Plan;
 use crate::self_check::Tunnel;
+use crate::solvers::{Alone, SolverError};
 use crate::{Farm, Machine, Progress};
 use basis::mbc::to_fixed_frame;
 use basis::{Commands, Truth, Vector3};
@@ -22,8 +22,6 @@ use control::meandering::{Answer, Decoupling};
 use control::{Excitation, Helix, excitation_rate};
 use estimation::EstimationError;
 use flow::FlowError;
-use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::lattice;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use thiserror::Error;
@@ -48,7 +46,7 @@ pub enum CalibrationError {
     Assembly(#[from] AssemblyError),
     /// The air cannot be set up.
     #[error("the air of the calibration cannot be set up")]
-    Settings(#[from] lattice::SettingsError),
+    Solver(#[from] SolverError),
     /// The air did not stay finite.
     #[error("the air of the calibration diverged")]
     Flow(#[from] FlowError),
@@ -103,14 +101,11 @@ impl Course {
 
     /// Of `n_trials` of them.
     fn cost(self, case: &Case, plan: &Plan, model: &Model, n_trials: u64) -> ProbeCost {
-        let n_cells: usize = if case.flow.solver.is_prescribed() {
-            1
-        } else {
-            let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
-            tunnel.n_cells(model.definition.rotor_diameter()).iter().product()
-        };
+        let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
+        let diameter = model.definition.rotor_diameter();
+        let updates = (case.flow.solver.updates_alone)(&tunnel, diameter);
         let n_steps = n_trials * self.n_steps();
-        ProbeCost { n_steps, work: n_cells as f64 * n_steps as f64 }
+        ProbeCost { n_steps, work: updates * n_steps as f64 }
     }
 }
 
@@ -236,12 +231,12 @@ fn pitching(
     let baseline = assemble::controller(&Control::baseline(), model, &alone, plan)?;
     let controller = helix.on_top_of(baseline);
     let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
-    let air = if alone.flow.solver.is_prescribed() {
-        let profile = MeanProfile::Uniform { speed: alone.wind.speed };
-        Air::Prescribed(Box::new(PrescribedWind::everywhere(Arc::new(profile))))
-    } else {
-        Air::Lattice(Box::new(tunnel.air(&alone.wind, diameter, alone.flow.threads)?))
-    };
+    let air = (alone.flow.solver.begin_alone)(&Alone {
+        tunnel,
+        wind: &alone.wind,
+        diameter,
+        threads: alone.flow.threads,
+    })?;
     let mut farm = Farm::new(vec![Machine::new(turbine, controller)], air, plan.interval, 1)
         .map_err(AssemblyError::from)?;
     let course = Course::new(pitch.wind_speed, plan, model, rate, pitch.periods);

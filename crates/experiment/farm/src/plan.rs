@@ -4,7 +4,7 @@ mod error;
 
 pub use error::PlanError;
 
-use crate::case::{Case, Shear};
+use crate::case::{Case, Placement, Shear};
 use basis::Vector3;
 use flow::inflow::GREATEST_ROUGHNESS;
 use std::collections::BTreeMap;
@@ -41,6 +41,27 @@ pub struct Footprint {
     pub tip_speed: f64,
 }
 
+/// Turbines where they stand.
+#[derive(Clone, Debug)]
+pub struct Layout<'a> {
+    /// The turbines of the case, in its order, with what the layout must know of them.
+    pub machines: Vec<(&'a Placement, Footprint)>,
+    /// Foot of each one's tower, farm frame (m).
+    pub positions: Vec<Vector3>,
+}
+
+impl Layout<'_> {
+    /// Diameter that "diameters" in the case file means: the first turbine's (m).
+    fn diameter(&self) -> f64 {
+        self.machines[0].1.diameter
+    }
+
+    /// Hub height of the first turbine (m).
+    fn hub_height(&self) -> f64 {
+        self.machines[0].1.hub_height
+    }
+}
+
 /// The box of air and the steps that a case needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -70,10 +91,8 @@ pub struct Plan {
     pub lattice_speed: f64,
 }
 
-/// Sizes domain and step for `case`; `footprints` holds one entry per [machine](crate::case::Placement::machine) of the case.
-///
-/// The step is the longest one that keeps tips well below the speed of sound on the lattice and the free stream within
-/// [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole number of steps.
+/// Sizes domain and step for `case` as its flow solver wants them; `footprints` holds one entry per
+/// [machine](crate::case::Placement::machine) of the case.
 ///
 /// # Errors
 /// [`PlanError`] names what does not fit and the key that mends it.
@@ -98,13 +117,23 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
         })
         .collect();
     check_distances(&machines, &positions)?;
-    if case.flow.solver.is_prescribed() {
-        return Ok(without_air(case, diameter, machines[0].1.hub_height, positions));
-    }
-    let spacing = diameter / case.flow.cells_per_diameter;
-    check_resolution(&machines, spacing, case.flow.cells_per_diameter)?;
+    (case.flow.solver.plan)(case, &Layout { machines, positions })
+}
 
-    let (origin, n_cells) = domain(case, &positions, diameter, spacing);
+/// The plan of turbines in a box of cells, as the lattice needs it.
+///
+/// The step is the longest one that keeps tips well below the speed of sound on the lattice and the free stream within
+/// [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole number of steps.
+///
+/// # Errors
+/// [`PlanError`] names what does not fit and the key that mends it.
+pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
+    let Layout { machines, positions } = layout;
+    let diameter = layout.diameter();
+    let spacing = diameter / case.flow.cells_per_diameter;
+    check_resolution(machines, spacing, case.flow.cells_per_diameter)?;
+
+    let (origin, n_cells) = domain(case, positions, diameter, spacing);
     let plan_without_step = |interval: f64| {
         let area = n_cells[1] as f64 * n_cells[2] as f64 * spacing * spacing;
         let widest = machines.iter().map(|(_, f)| f.diameter).fold(0.0, f64::max);
@@ -117,14 +146,14 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
             n_spin_up_steps: (case.time.spin_up / interval).round() as u64,
             row_stride: stride(case.output.interval.unwrap_or(0.0), interval),
             diameter,
-            hub_height: machines[0].1.hub_height,
+            hub_height: layout.hub_height(),
             positions: positions.clone(),
             blockage: std::f64::consts::PI / 4.0 * widest * widest / area,
             lattice_speed: case.wind.speed * interval / spacing,
         }
     };
-    let plan = plan_without_step(step(case, &machines, spacing)?);
-    check_extent(&machines, &plan)?;
+    let plan = plan_without_step(step(case, machines, spacing)?);
+    check_extent(machines, &plan)?;
     check_veer(case.wind.veer, &plan)?;
     check_planes(&case.output.crosswind_diameters, &plan)?;
     Ok(plan)
@@ -170,7 +199,16 @@ fn stride(duration: f64, interval: f64) -> u64 {
     (duration / interval).round().max(1.0) as u64
 }
 
-/// The plan of turbines in prescribed wind: no cells.
+/// The plan of turbines in air without cells, such as prescribed wind.
+///
+/// # Errors
+/// None: every layout fits.
+pub fn without_cells(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
+    let positions = layout.positions.clone();
+    Ok(without_air(case, layout.diameter(), layout.hub_height(), positions))
+}
+
+/// The same for a first turbine of `diameter` (m) and `hub_height` (m).
 pub(crate) fn without_air(
     case: &Case,
     diameter: f64,
@@ -197,7 +235,7 @@ pub(crate) fn without_air(
 }
 
 fn check_distances(
-    machines: &[(&crate::case::Placement, Footprint)],
+    machines: &[(&Placement, Footprint)],
     positions: &[Vector3],
 ) -> Result<(), PlanError> {
     for second in 1..machines.len() {
@@ -218,7 +256,7 @@ fn check_distances(
 }
 
 fn check_resolution(
-    machines: &[(&crate::case::Placement, Footprint)],
+    machines: &[(&Placement, Footprint)],
     spacing: f64,
     cells_per_diameter: f64,
 ) -> Result<(), PlanError> {
@@ -254,11 +292,7 @@ fn domain(
     (Vector3::new(low.x - flow.upstream_diameters * diameter, y_low, 0.0), n_cells)
 }
 
-fn step(
-    case: &Case,
-    machines: &[(&crate::case::Placement, Footprint)],
-    spacing: f64,
-) -> Result<f64, PlanError> {
+fn step(case: &Case, machines: &[(&Placement, Footprint)], spacing: f64) -> Result<f64, PlanError> {
     let (fastest, tip_speed) = machines
         .iter()
         .map(|(placement, footprint)| (placement, footprint.tip_speed))
@@ -288,10 +322,7 @@ fn step(
     }
 }
 
-fn check_extent(
-    machines: &[(&crate::case::Placement, Footprint)],
-    plan: &Plan,
-) -> Result<(), PlanError> {
+fn check_extent(machines: &[(&Placement, Footprint)], plan: &Plan) -> Result<(), PlanError> {
     let low = plan.origin;
     let extent = Vector3::new(
         plan.n_cells[0] as f64 * plan.spacing,

@@ -44,12 +44,13 @@ impl Model {
     }
 
     /// The same with what its controller needs in the air of `solver` with `air_density` (kg/m³): torque is controlled as the
-    /// turbine's file asks; otherwise it tracks the tip-speed ratio in prescribed wind, and follows k ω² where the flow is
-    /// solved, whose studies have been made so.
+    /// turbine's file asks; otherwise it tracks the tip-speed ratio in prescribed wind, and follows k ω² in resolved flow,
+    /// whose studies have been made so.
     pub fn equipped(&self, solver: Solver, air_density: f64) -> Cow<'_, Self> {
-        let default = match solver {
-            Solver::Lattice => TorqueControl::KOmegaSquared,
-            Solver::Uniform | Solver::Turbulence | Solver::Planes => TorqueControl::TipSpeedRatio,
+        let default = if solver.resolves_induction {
+            TorqueControl::KOmegaSquared
+        } else {
+            TorqueControl::TipSpeedRatio
         };
         let tracks =
             self.constants.torque_control.unwrap_or(default) == TorqueControl::TipSpeedRatio;

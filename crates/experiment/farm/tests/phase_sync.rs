@@ -6,8 +6,8 @@ mod machine;
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use basis::mbc::to_fixed_frame;
 use basis::{FixedFrame, Measurements, PerBlade, Sense};
-use control::PhaseSync;
 use control::phase_sync::{SyncSettings, TRUST};
+use control::{Excitation, PhaseSync};
 use estimation::HelixEstimator;
 use estimation::helix::Options;
 use machine::{Dice, INTERVAL, PERIOD, ROTOR_SPEED, definition, model, setting};
@@ -150,9 +150,9 @@ fn a_restored_controller_goes_on_with_the_same_bits() {
     one.run(START + PERIOD, 1.0, 1.0);
     let mut other = Loop::new(Sense::CounterClockwise, 0.5);
     other.run(START + PERIOD, 1.0, 1.0);
-    let stored = one.sync.state();
+    let stored = one.sync.save();
     let mut fresh = sync(Sense::CounterClockwise, 0.5);
-    fresh.restore(stored);
+    fresh.restore(&stored).expect("its own state");
     one.sync = fresh;
     for (a, b) in one.run(PERIOD, 1.0, 1.0).iter().zip(other.run(PERIOD, 1.0, 1.0)) {
         assert_eq!(a.tilt.to_bits(), b.tilt.to_bits());

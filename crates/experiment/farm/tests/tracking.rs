@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use turbine::aero::blade_element::Theory;
 use turbine::steady::SteadyRotor;
 
-const SOLVERS: [Solver; 4] = [Solver::Lattice, Solver::Uniform, Solver::Turbulence, Solver::Planes];
+const SOLVERS: [Solver; 4] = [Solver::LATTICE, Solver::UNIFORM, Solver::TURBULENCE, Solver::PLANES];
 const AIR_DENSITY: f64 = 1.1;
 
 fn model(torque_control: Option<TorqueControl>) -> Model {
@@ -102,13 +102,13 @@ fn turbines_track_in_prescribed_wind_and_follow_k_omega_squared_in_solved_air() 
     for solver in SOLVERS {
         let plain = model(None);
         let equipped = plain.equipped(solver, AIR_DENSITY);
-        let expected = if solver == Solver::Lattice {
+        let expected = if solver == Solver::LATTICE {
             TorqueControl::KOmegaSquared
         } else {
             TorqueControl::TipSpeedRatio
         };
         assert_eq!(equipped.constants.torque_control(), expected, "{solver:?}");
-        assert_eq!(equipped.constants.estimator.is_some(), solver.is_prescribed());
+        assert_eq!(equipped.constants.estimator.is_some(), !solver.resolves_induction);
     }
 }
 

@@ -370,7 +370,7 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
 
 /// Choices of `estimator`, calibrated as in the run, with the noise that it was given there.
 fn options(asked: &Asked<'_>, estimator: PhaseEstimator) -> Options {
-    let options = estimator.options(!asked.case.flow.solver.is_prescribed());
+    let options = estimator.options(asked.case.flow.solver.resolves_induction);
     let calibration = asked.calibration.filter(|_| estimator == PhaseEstimator::Robust);
     let options = calibration.map_or(options, |found| found.apply(options));
     // Noise is given to one estimator; another's states may wander otherwise.

@@ -123,7 +123,7 @@ pub(crate) fn words_of(excitation: &Excitation) -> String {
         Kind::CounterClockwise => format!("a counter-clockwise helix of {amplitude}°"),
         Kind::Clockwise => format!("a clockwise helix of {amplitude}°"),
         Kind::Pulse => format!("a pulse of {amplitude}°"),
-        Kind::Other => format!("“{}”", excitation.turbine.control),
+        Kind::Other => format!("“{}”", excitation.turbine.control.description),
     }
 }
 
@@ -132,11 +132,11 @@ pub(crate) fn shared_conditions(study: &Study) -> Vec<String> {
     let summary = &study.runs()[0].summary;
     let conditions = &summary.conditions;
     let mut items = vec![
-        format!("{}{SPACE}m/s", number(conditions.wind_speed, 1)),
+        format!("{}{SPACE}m/s", number(conditions.target_wind_speed, 1)),
         format!(
-            "TI {} asked, {} arrived",
-            percent(conditions.turbulence_intensity),
-            percent(conditions.arriving_turbulence_intensity)
+            "TI {} target, {} realised",
+            percent(conditions.target_turbulence_intensity),
+            percent(conditions.realised_turbulence_intensity)
         ),
     ];
     if let Some(spacing) = spacing(study) {
@@ -150,7 +150,7 @@ pub(crate) fn shared_conditions(study: &Study) -> Vec<String> {
     items
 }
 
-/// Excitations of a run: "ccw helix on T1, 4.0° asked, 3.9° delivered, St 0.25".
+/// Excitations of a run: "ccw helix on T1, 4.0° target, 3.9° delivered, St 0.25".
 pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<String> {
     study
         .excitations(run)
@@ -160,11 +160,11 @@ pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<Stri
                 Kind::CounterClockwise => "ccw helix",
                 Kind::Clockwise => "cw helix",
                 Kind::Pulse => "pulse",
-                Kind::Other => excitation.turbine.control.as_str(),
+                Kind::Other => excitation.turbine.control.description.as_str(),
             };
             let in_step = excitation.in_step_at().map(|offset| format!(" in step at {offset}"));
             format!(
-                "{kind}{} on {}, {}° asked, {}° delivered, St{SPACE}{}",
+                "{kind}{} on {}, {}° target, {}° delivered, St{SPACE}{}",
                 in_step.unwrap_or_default(),
                 excitation.turbine.name,
                 number(excitation.pitch.commanded_amplitude_deg, 1),

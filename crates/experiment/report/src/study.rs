@@ -1,8 +1,8 @@
 //! A study seen as its reader sees it: which run is the measure, what was done, where things stand.
 
 use crate::{ReportError, RunRecords, StudyRecords};
+use basis::Sense;
 use basis::records::{DeliveredPitch, Plane, PlaneAxes, TurbineSummary};
-use std::f64::consts::TAU;
 
 /// How a turbine was excited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub(crate) enum Kind {
     CounterClockwise,
     /// Collective pitch.
     Pulse,
-    /// Known only by the words of the summary.
+    /// Known only by the controller's own description.
     Other,
 }
 
@@ -24,17 +24,17 @@ pub(crate) struct Excitation<'a> {
     pub(crate) turbine: &'a TurbineSummary,
     /// How it was excited.
     pub(crate) kind: Kind,
-    /// What arrived at the blades.
+    /// What the actuators delivered.
     pub(crate) pitch: DeliveredPitch,
-    /// f D / U with the speed asked for and the first turbine's diameter (–).
+    /// f D / U with the target wind speed and the first turbine's diameter (–).
     pub(crate) strouhal: f64,
 }
 
-impl<'a> Excitation<'a> {
+impl Excitation<'_> {
     /// The phase offset in words, "90°", where it is in step with a helix that comes in.
-    pub(crate) fn in_step_at(&self) -> Option<&'a str> {
-        let control = self.turbine.control.as_str();
-        control.strip_prefix("synchronised")?.split_once(" at ").map(|(_, offset)| offset)
+    pub(crate) fn in_step_at(&self) -> Option<String> {
+        let offset = self.turbine.control.excitation?.phase_offset_deg?;
+        Some(format!("{offset:.0}°"))
     }
 }
 
@@ -115,9 +115,9 @@ impl<'a> Study<'a> {
         if diameter > 0.0 { diameter } else { 1.0 }
     }
 
-    /// Speed that velocities are shown relative to: the one asked for at hub height (m/s).
+    /// Speed that velocities are shown relative to: the target at hub height (m/s).
     pub(crate) fn free_stream(&self) -> f64 {
-        let speed = self.runs()[0].summary.conditions.wind_speed;
+        let speed = self.runs()[0].summary.conditions.target_wind_speed;
         if speed > 0.0 { speed } else { 1.0 }
     }
 
@@ -148,8 +148,8 @@ impl<'a> Study<'a> {
             .filter_map(|turbine| {
                 let pitch = turbine.delivered_pitch?;
                 let strouhal = pitch.excitation_frequency_hz.abs() * conditions.rotor_diameter
-                    / conditions.wind_speed;
-                Some(Excitation { turbine, kind: kind_of(turbine, &pitch), pitch, strouhal })
+                    / conditions.target_wind_speed;
+                Some(Excitation { turbine, kind: kind_of(turbine), pitch, strouhal })
             })
             .filter(|excitation| excitation.pitch.commanded_amplitude_deg > 0.0)
             .collect()
@@ -163,7 +163,7 @@ impl<'a> Study<'a> {
             before.is_some_and(|before| {
                 before.summary.turbines.iter().any(|turbine| {
                     turbine.name == excitation.turbine.name
-                        && turbine.control == excitation.turbine.control
+                        && turbine.control.is_set_as(&excitation.turbine.control)
                 })
             })
         };
@@ -230,23 +230,13 @@ pub(crate) fn gain_of(run: &RunRecords) -> Option<f64> {
     run.summary.array_power_gain.map(|gain| gain.mean).filter(|gain| gain.is_finite())
 }
 
-/// What the words of the summary, or else the frequency of the pitch, say of the excitation.
-fn kind_of(turbine: &TurbineSummary, pitch: &DeliveredPitch) -> Kind {
-    let control = turbine.control.to_lowercase();
-    let says = |words: &[&str]| words.iter().any(|word| control.contains(word));
-    let rotor_frequency = turbine.rotor_speed.mean / TAU;
-    if says(&["pulse", "collective"]) {
-        Kind::Pulse
-    } else if says(&["ccw", "counter"]) {
-        Kind::CounterClockwise
-    } else if says(&["cw", "clockwise"]) {
-        Kind::Clockwise
-    } else if !says(&["helix"]) {
-        Kind::Other
-    } else if pitch.frequency_hz > rotor_frequency {
-        Kind::CounterClockwise
-    } else {
-        Kind::Clockwise
+/// How `turbine` was set to be excited.
+fn kind_of(turbine: &TurbineSummary) -> Kind {
+    match turbine.control.excitation.map(|set| set.sense) {
+        Some(Some(Sense::CounterClockwise)) => Kind::CounterClockwise,
+        Some(Some(Sense::Clockwise)) => Kind::Clockwise,
+        Some(None) => Kind::Pulse,
+        None => Kind::Other,
     }
 }
 

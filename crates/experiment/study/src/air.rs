@@ -1,203 +1,30 @@
 //! The air that a run starts with.
 
 use crate::StudyError;
-use crate::prepared::Prepared;
 use crate::ready::Ready;
-use basis::Vector3;
-use farm::assemble::{Model, lattice_settings};
-use farm::case::{Case, Solver, TurbulenceModel};
-use farm::{Air, Plan};
-use flow::inflow::kaimal::{self, Scaling};
-use flow::inflow::planes::BoxPlanes;
-use flow::inflow::prescribed::Placement;
-use flow::inflow::{Planes, PrescribedWind, TurbulenceBox, mann};
-use flow::lattice::Lattice;
+use farm::Air;
+use farm::solvers::{SolverError, Start, WindSource};
 use std::sync::Arc;
-
-/// Air around the outermost tips that a grid of made turbulence covers (diameters of the largest rotor).
-const MARGIN: f64 = 0.1;
-/// Points of made turbulence across the largest rotor (–).
-const POINTS_ACROSS: f64 = 24.0;
-/// Time between planes of made turbulence (s).
-const PLANE_INTERVAL: f64 = 0.1;
-/// Most memory that making turbulence may take (bytes), however long the run is. A run of one turbine shall stay below 200 MB
-/// (docs/validation/memory.md), the columns of its series included that summary and report hold.
-const MEMORY_LIMIT: u64 = 128 << 20;
-/// Places upstream and downstream of the outermost towers at which turbines may ask for the wind (m).
-const REACH: f64 = 50.0;
 
 /// The air of the study that is `ready` at time zero.
 ///
 /// # Errors
-/// [`StudyError`] when a lattice cannot be set up, turbulence cannot be made, or a file of wind cannot be read or does not
+/// [`StudyError`] when its solver cannot be set up, turbulence cannot be made, or a file of wind cannot be read or does not
 /// cover the rotors.
 pub(crate) fn begin(ready: &Ready) -> Result<Air, StudyError> {
     let setup = &ready.prepared;
-    let (case, plan) = (&setup.case, &setup.plan);
-    let wind = match case.flow.solver {
-        Solver::Lattice => {
-            let lattice = Lattice::new(lattice_settings(case, plan), ready.inflow.clone())?;
-            return Ok(Air::Lattice(Box::new(lattice)));
-        }
-        Solver::Uniform => PrescribedWind::everywhere(ready.inflow.clone()),
-        Solver::Turbulence => match made_grid(case, plan, &setup.models) {
-            None => PrescribedWind::everywhere(ready.inflow.clone()),
-            Some(grid) => {
-                let turbulence = Arc::new(made(setup, &grid)?);
-                let planes = BoxPlanes::new(turbulence, &setup.profile(), grid.lowest)?
-                    .veering(case.wind.veer, plan.hub_height);
-                prescribed(setup, Box::new(planes))?
-            }
-        },
-        Solver::Planes => {
-            let name = case.wind.planes.as_deref().unwrap_or_default();
-            let planes = formats::turbulence_box::open(&setup.folder().join(name))?;
-            prescribed(setup, planes)?
-        }
+    let solver = setup.case.flow.solver;
+    let planes = if solver.wind == WindSource::Planes {
+        let name = setup.case.wind.planes.as_deref().unwrap_or_default();
+        Some(formats::turbulence_box::open(&setup.folder().join(name))?)
+    } else {
+        None
     };
-    Ok(Air::Prescribed(Box::new(wind)))
-}
-
-/// Grid of the turbulence that is made around all rotors.
-pub(crate) struct MadeGrid {
-    n_points: [usize; 3],
-    /// Distance of neighbouring points (m).
-    spacing: [f64; 3],
-    /// Height of the lowest row (m).
-    lowest: f64,
-    /// Most memory that making it takes (bytes).
-    pub(crate) memory: u64,
-    /// Time after which the same wind comes again (s), where that is before the run's end.
-    pub(crate) repeats_after: Option<f64>,
-}
-
-/// The grid of the turbulence that is made for prescribed wind in `case`; none where none is made.
-pub(crate) fn made_grid(case: &Case, plan: &Plan, models: &[Model]) -> Option<MadeGrid> {
-    let wind = &case.wind;
-    if case.flow.solver != Solver::Turbulence || wind.turbulence_intensity == 0.0 {
-        return None;
-    }
-    let [low, high] = around_rotors(plan, models);
-    let diameter = models.iter().map(|m| m.definition.rotor_diameter()).fold(0.0, f64::max);
-    let across = diameter / POINTS_ACROSS;
-    // The middle of the width stands at y = 0.
-    let half_width = low.y.abs().max(high.y.abs()) + MARGIN * diameter;
-    let lowest = (low.z - MARGIN * diameter).max(0.5 * across);
-    let height = high.z + MARGIN * diameter - lowest;
-    let points = |length: f64| (length / across).ceil() as usize + 1;
-    let along = wind.speed * PLANE_INTERVAL;
-    let [n_y, n_z] = [points(2.0 * half_width), points(height)];
-    let length = (high.x - low.x) + 2.0 * REACH;
-    // Whole records only: 2, 3 and 5 are the only factors, which transforms like best.
-    let whole = smooth((case.time.duration / PLANE_INTERVAL + length / along).ceil() as usize);
-    let (along, whole, n_across) = match wind.turbulence_model {
-        TurbulenceModel::Kaimal => (along, whole, [n_y, n_z]),
-        TurbulenceModel::Mann => {
-            // Cells of one shape along and across, and twice the width, whose periodic image would be felt otherwise.
-            let stride = (across / along).floor().max(1.0) as usize;
-            let n_across = [smooth(2 * n_y), smooth(2 * n_z)];
-            (along * stride as f64, smooth(whole.div_ceil(stride)), n_across)
-        }
-    };
-    let memory = |n_planes: usize| {
-        let n_points = [n_planes, n_across[0], n_across[1]];
-        match wind.turbulence_model {
-            TurbulenceModel::Kaimal => kaimal::peak_memory(n_points),
-            TurbulenceModel::Mann => mann::peak_memory(n_points),
-        }
-    };
-    let mut n_planes = whole;
-    while memory(n_planes) > MEMORY_LIMIT {
-        let fewer = smooth(n_planes * 4 / 5);
-        if fewer >= n_planes {
-            break;
-        }
-        n_planes = fewer;
-    }
-    Some(MadeGrid {
-        n_points: [n_planes, n_across[0], n_across[1]],
-        spacing: [along, across, across],
-        lowest,
-        memory: memory(n_planes),
-        repeats_after: (n_planes < whole).then(|| n_planes as f64 * along / wind.speed),
+    let start = Start { site: setup.site(), inflow: Arc::clone(&ready.inflow), planes };
+    (solver.begin)(start).map_err(|error| match error {
+        SolverError::Lattice(error) => error.into(),
+        SolverError::Inflow(error) => error.into(),
+        SolverError::Other(error) => StudyError::Solver(error),
+        error @ SolverError::NoPlanes { .. } => StudyError::Solver(Box::new(error)),
     })
-}
-
-/// The turbulence on `grid`.
-fn made(setup: &Prepared, grid: &MadeGrid) -> Result<TurbulenceBox, StudyError> {
-    let (case, wind) = (&setup.case, &setup.case.wind);
-    let MadeGrid { n_points, spacing, lowest, .. } = *grid;
-    let standard_deviation = wind.turbulence_intensity * wind.speed;
-    let (seed, threads) = (wind.seed, case.flow.threads);
-    Ok(match wind.turbulence_model {
-        TurbulenceModel::Kaimal => kaimal::generate(
-            &kaimal::Settings {
-                n_points,
-                spacing,
-                hub_speed: wind.speed,
-                hub_height: setup.plan.hub_height,
-                lowest_height: lowest,
-                standard_deviation,
-                scaling: Scaling::None,
-                seed,
-                threads,
-            },
-            |_| (),
-        )?,
-        TurbulenceModel::Mann => mann::generate(
-            &mann::Settings {
-                n_points,
-                spacing,
-                length_scale: wind.length_scale,
-                anisotropy: wind.anisotropy,
-                standard_deviation,
-                seed,
-                threads,
-            },
-            |_| (),
-        )?,
-    })
-}
-
-/// The wind of `planes`, checked to cover all rotors for the whole run.
-fn prescribed(setup: &Prepared, planes: Box<dyn Planes>) -> Result<PrescribedWind, StudyError> {
-    let [low, high] = around_rotors(&setup.plan, &setup.models);
-    let grid = planes.grid();
-    // As OpenFAST has it: a record that does not repeat starts half its width upwind of the first turbine.
-    let [left, right] = grid.across();
-    let origin_x = if grid.repeats { 0.0 } else { 0.5 * (right - left) };
-    let extent = [low.x - REACH, high.x + REACH];
-    let placement = Placement { origin_x, shift_y: 0.0, extent };
-    let wind = PrescribedWind::over_planes(planes, placement)?;
-    wind.covers(low, high, setup.case.time.duration)?;
-    Ok(wind)
-}
-
-/// Corners of the box around all rotors (m).
-fn around_rotors(plan: &Plan, models: &[Model]) -> [Vector3; 2] {
-    let reach = |sign: f64| {
-        move |(model, foot): (&Model, &Vector3)| {
-            let definition = &model.definition;
-            let radius = definition.rotor_radius();
-            let hub = *foot + Vector3::Z * definition.rotor.hub_height;
-            hub + Vector3::new(0.0, radius, radius) * sign
-        }
-    };
-    let rotors = || models.iter().zip(&plan.positions);
-    let low = rotors().map(reach(-1.0)).reduce(Vector3::min).unwrap_or_default();
-    let high = rotors().map(reach(1.0)).reduce(Vector3::max).unwrap_or_default();
-    [low, high]
-}
-
-/// The least even product of 2, 3 and 5 that is not below `n`.
-fn smooth(n: usize) -> usize {
-    let only_small_factors = |mut n: usize| {
-        for factor in [2, 3, 5] {
-            while n.is_multiple_of(factor) {
-                n /= factor;
-            }
-        }
-        n == 1
-    };
-    (n.max(2)..).find(|&n| n.is_multiple_of(2) && only_small_factors(n)).unwrap_or(n)
 }

@@ -4,19 +4,16 @@ use crate::StudyError;
 use crate::outputs::Outputs;
 use crate::prepared::Prepared;
 use crate::probes::Probes;
-use crate::turbulence;
 use crate::warnings::wall_gain;
 use crate::watcher::Estimate;
-
-/// Bytes of a cell in the flow field, boundaries included.
-const CELL_BYTES: u64 = 80;
 
 impl Prepared {
     /// The cost of `n_runs` runs with their `outputs`, and of `probes` before them; the machine's speed is not known yet.
     pub(crate) fn estimate(&self, n_runs: usize, probes: &Probes, outputs: &Outputs) -> Estimate {
         let plan = &self.plan;
         let costs = probes.costs();
-        let field = plan.cells() as u64 * CELL_BYTES;
+        let field = (self.case.flow.solver.memory)(plan);
+        let turbulence = farm::wind::turbulence(&self.site());
         Estimate {
             n_runs,
             n_probes: costs.len(),
@@ -26,7 +23,7 @@ impl Prepared {
             spacing: plan.spacing,
             interval: plan.interval,
             n_steps: plan.n_steps,
-            memory: field + turbulence::memory(&self.case, plan, &self.models),
+            memory: field + turbulence.map_or(0, |turbulence| turbulence.memory),
             // A new checkpoint stands beside the old one until it is complete.
             disk: 2 * field + outputs.disk(self),
             updates_per_second: None,

@@ -36,6 +36,9 @@ pub enum StudyError {
     /// The air cannot be set up.
     #[error("the air cannot be set up")]
     Settings(#[from] SettingsError),
+    /// The air of a flow solver that is not the program's own cannot be set up.
+    #[error("the air cannot be set up")]
+    Solver(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// The turbulence cannot be made.
     #[error("the turbulence cannot be made")]
     Inflow(#[from] InflowError),

@@ -9,7 +9,6 @@ use analysis::statistics::{BLOCK_LENGTH, gain};
 use basis::records::{Summary, TurbineSummary};
 use farm::case::Run;
 use formats::records::{self, RunFolder};
-use std::collections::BTreeMap;
 
 /// What a run can be compared with.
 pub(crate) enum Comparison<'a> {
@@ -78,12 +77,10 @@ pub(crate) fn add(
             add_to(&mut own_array, own_power);
             add_to(&mut array, power);
         }
-        let mut changes = BTreeMap::new();
         for moment in loads::moments(own.names(), &turbine.name) {
             let part = moment.part();
-            changes.extend(loads::changes(&moment, &own.of(&part)?, &there.of(&part)?)?);
+            loads::compare(&mut turbine.loads, &moment, &own.of(&part)?, &there.of(&part)?)?;
         }
-        turbine.load_changes = changes;
     }
     if is_alike {
         let interval = own.of(&[])?.interval;

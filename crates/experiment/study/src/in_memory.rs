@@ -11,7 +11,7 @@ use crate::{Prepared, StudyError};
 use basis::records::{Plane, Series, Summary};
 use farm::case::Run;
 use farm::{Air, Farm, Unrecorded};
-use flow::lattice::PlaneAverage;
+use flow::fields::PlaneAverage;
 use std::time::Instant;
 
 /// What one run left.
@@ -80,10 +80,8 @@ impl Ready {
         let cost = cost(&prepared.plan, &farm, started.elapsed().as_secs_f64(), peak_memory);
         let mut columns = Columns::of_series(series, prepared);
         let summary = summarise(prepared, run, &mut columns, &clipped_shares(&farm), cost)?;
-        let last_planes = match farm.flow().lattice() {
-            Some(lattice) => {
-                slices::of(prepared).iter().map(|slice| slice.plane(lattice)).collect()
-            }
+        let last_planes = match farm.flow().fields() {
+            Some(fields) => slices::of(prepared).iter().map(|slice| slice.plane(fields)).collect(),
             None => Vec::new(),
         };
         Ok(RunResult { series: columns.into_series(), summary, mean_planes, last_planes })
@@ -104,8 +102,8 @@ impl<'a> Kept<'a> {
         let n_rows = (prepared.plan.n_steps / prepared.plan.row_stride) as usize;
         let names = rows.names().to_vec();
         let columns = vec![Vec::with_capacity(n_rows); names.len()];
-        let lattice = farm.flow().lattice();
-        let averages = lattice.map_or(Vec::new(), |air| mean_planes::averages(prepared, air));
+        let fields = farm.flow().fields();
+        let averages = fields.map_or(Vec::new(), |fields| mean_planes::averages(prepared, fields));
         Self { prepared, rows, series: Series { names, columns }, averages }
     }
 
@@ -122,10 +120,10 @@ impl<'a> Kept<'a> {
         } else {
             farm.advance(&mut Unrecorded)?;
         }
-        if let Some(lattice) = farm.flow().lattice()
+        if let Some(fields) = farm.flow().fields()
             && mean_planes::schedule(self.prepared).is_due(step)
         {
-            self.averages.iter_mut().for_each(|average| average.add(lattice));
+            self.averages.iter_mut().for_each(|average| average.add(fields));
         }
         Ok(())
     }

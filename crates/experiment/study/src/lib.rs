@@ -21,7 +21,6 @@ mod error;
 mod gains;
 mod in_memory;
 mod loads;
-mod meandering;
 mod models;
 pub mod outputs;
 mod prepared;
@@ -32,7 +31,6 @@ mod simulate;
 mod study;
 mod summarise;
 mod tips;
-mod turbulence;
 mod warnings;
 mod watcher;
 

@@ -6,11 +6,10 @@ use crate::columns::Analysed;
 use analysis::AnalysisError;
 use analysis::fatigue::{
     BEARING_SLOPE, N_BEARING_POSITIONS, PitchBearing, PitchTravel, REFERENCE_FREQUENCY,
-    damage_equivalent_load, duty_convention,
+    damage_equivalent_load,
 };
 use analysis::statistics::{BLOCK_LENGTH, change, standard_deviation};
-use basis::records::{PitchDuty, Statistic};
-use std::collections::BTreeMap;
+use basis::records::{Load, LoadKind, PitchDuty};
 
 /// Wöhler's exponent of composite blades (–).
 const BLADE_SLOPE: f64 = 10.0;
@@ -43,80 +42,71 @@ pub(crate) fn moments(names: &[String], turbine: &str) -> Vec<Moment> {
     names.iter().filter_map(moment).collect()
 }
 
-/// 1-Hz damage-equivalent load (range, peak to peak) of `moment`, with its key in a summary: channel, slope and unit.
+/// Damage-equivalent load and standard deviation of `moment` (kN m), compared with nothing; the former of two samples or more.
 ///
 /// Slopes as van der Hoek et al., section 2.4: 10 for the blade's composite, 4 for steel.
-pub(crate) fn damage_equivalent(
-    moment: &Moment,
-    analysed: &Analysed<'_>,
-) -> Result<Option<(String, f64)>, StudyError> {
+pub(crate) fn loads(moment: &Moment, analysed: &Analysed<'_>) -> Result<Vec<Load>, StudyError> {
+    let load = |kind, value| Load {
+        channel: moment.channel.to_owned(),
+        unit: "kN m".to_owned(),
+        kind,
+        value,
+        change: None,
+    };
+    let mut loads = Vec::new();
     let samples = analysed.column(&moment.name)?;
-    if samples.len() < 2 {
-        return Ok(None);
+    if samples.len() >= 2 {
+        let kind = damage_equivalent(moment.channel);
+        loads.push(load(kind, figure(kind, samples, analysed.interval)?));
     }
-    let (key, of) = equivalent_load(moment.channel, analysed.interval);
-    Ok(Some((key, of(samples)?)))
-}
-
-/// Standard deviation of `moment` (kN m), with its key in a summary.
-pub(crate) fn deviation(
-    moment: &Moment,
-    analysed: &Analysed<'_>,
-) -> Result<(String, f64), StudyError> {
     let deviation = analysed.statistic(&moment.name)?.standard_deviation;
-    Ok((deviation_key(moment.channel), deviation))
+    loads.push(load(LoadKind::Deviation, deviation));
+    Ok(loads)
 }
 
-/// Changes of both from `compared` to `analysed` by the same keys; none where the compared run does not keep `moment`.
-pub(crate) fn changes(
+/// On return the `loads` of `moment` hold their change from `compared` to `analysed`; none where the compared run does not
+/// keep that moment.
+pub(crate) fn compare(
+    loads: &mut [Load],
     moment: &Moment,
     analysed: &Analysed<'_>,
     compared: &Analysed<'_>,
-) -> Result<BTreeMap<String, Statistic>, StudyError> {
-    let mut changes = BTreeMap::new();
+) -> Result<(), StudyError> {
     let Moment { name, channel } = moment;
     if !compared.has(name) {
-        return Ok(changes);
+        return Ok(());
     }
     let (now, before) = (analysed.column(name)?, compared.column(name)?);
     if now.len() < 2 {
-        return Ok(changes);
+        return Ok(());
     }
     let interval = analysed.interval;
-    let (key, load) = equivalent_load(channel, interval);
-    let deviation = |samples: &[f64]| Ok(standard_deviation(samples));
-    let found = [
-        (key, change(now, before, interval, BLOCK_LENGTH, load)),
-        (deviation_key(channel), change(now, before, interval, BLOCK_LENGTH, deviation)),
-    ];
-    for (key, change) in found {
-        match change {
-            Ok(change) => {
-                changes.insert(key, change);
-            }
+    for load in loads.iter_mut().filter(|load| load.channel == *channel) {
+        let of = |samples: &[f64]| figure(load.kind, samples, interval);
+        load.change = match change(now, before, interval, BLOCK_LENGTH, of) {
+            Ok(change) => Some(change),
             // A moment that rested has no ratio to it.
-            Err(AnalysisError::NoReference) => {}
+            Err(AnalysisError::NoReference) => None,
             Err(error) => return Err(error.into()),
+        };
+    }
+    Ok(())
+}
+
+/// The damage-equivalent load that is told of `channel`.
+fn damage_equivalent(channel: &str) -> LoadKind {
+    let slope = if channel.starts_with("Root") { BLADE_SLOPE } else { STEEL_SLOPE };
+    LoadKind::DamageEquivalent { slope, reference_frequency_hz: REFERENCE_FREQUENCY }
+}
+
+/// The figure `kind` of `samples` that lie `interval` (s) apart.
+fn figure(kind: LoadKind, samples: &[f64], interval: f64) -> Result<f64, AnalysisError> {
+    match kind {
+        LoadKind::Deviation => Ok(standard_deviation(samples)),
+        LoadKind::DamageEquivalent { slope, reference_frequency_hz } => {
+            damage_equivalent_load(samples, interval, slope, reference_frequency_hz)
         }
     }
-    Ok(changes)
-}
-
-/// Key in a summary of the standard deviation of `channel`.
-fn deviation_key(channel: &str) -> String {
-    format!("{channel}, standard deviation (kN m)")
-}
-
-/// Key in a summary of the equivalent load of `channel`, and what makes it of samples `interval` (s) apart.
-fn equivalent_load(
-    channel: &str,
-    interval: f64,
-) -> (String, impl Fn(&[f64]) -> Result<f64, AnalysisError>) {
-    let slope = if channel.starts_with("Root") { BLADE_SLOPE } else { STEEL_SLOPE };
-    let key = format!("{channel}, m = {slope} (kN m)");
-    (key, move |samples: &[f64]| {
-        damage_equivalent_load(samples, interval, slope, REFERENCE_FREQUENCY)
-    })
 }
 
 /// What [`pitch_duty`] of `turbine` is made of: pitch of blade 1, flapwise and edgewise moment at its root.
@@ -157,7 +147,7 @@ pub(crate) fn pitch_duty(
         n_reversals: travel.n_reversals,
         bearing_slope: BEARING_SLOPE,
         bearing_loads_kn_m: loads.iter().map(|position| position.load).collect(),
-        convention: duty_convention(BEARING_SLOPE, N_BEARING_POSITIONS, interval),
+        sample_interval: interval,
     }))
 }
 
@@ -195,8 +185,7 @@ mod tests {
         // atan(4/3) is 53°.
         let (load, position) = duty.worst_bearing_load().expect("positions");
         assert!((position.to_degrees() - 50.0).abs() < 1e-9 && (load / 5e4 - 1.0).abs() < 0.01);
-        assert!(duty.convention.contains("m = 3, at 36 positions"), "{}", duty.convention);
-        assert!(duty.convention.ends_with("samples every 0.01 s"), "{}", duty.convention);
+        assert_eq!((duty.bearing_slope, duty.sample_interval), (3.0, 0.01));
     }
 
     /// Swings that grow by 20 % and 30 % in two blocks, about another mean; a moment at rest beside them has no change.
@@ -216,18 +205,28 @@ mod tests {
             Analysed::whole(series, 1.0)
         }
         let moments = moments(&series.names, "T1");
-        let changes = |other: &Series| {
-            let mut found = BTreeMap::new();
+        let compared = |other: &Series| {
+            let mut found = Vec::new();
             for moment in &moments {
-                let change = changes(moment, &whole(&series), &whole(other));
-                found.extend(change.expect("numbers"));
+                let mut own = loads(moment, &whole(&series)).expect("numbers");
+                compare(&mut own, moment, &whole(&series), &whole(other)).expect("numbers");
+                found.extend(own);
             }
             found
         };
-        let found = changes(&other);
-        let keys: Vec<&str> = found.keys().map(String::as_str).collect();
-        assert_eq!(keys, ["RootMyb1, m = 10 (kN m)", "RootMyb1, standard deviation (kN m)"]);
-        for (change, expected) in found.values().zip([
+        let found = compared(&other);
+        let told = |load: &Load| (load.channel.clone(), load.kind, load.change.is_some());
+        let equivalent = |slope| LoadKind::DamageEquivalent { slope, reference_frequency_hz: 1.0 };
+        assert_eq!(
+            found.iter().map(told).collect::<Vec<_>>(),
+            [
+                ("RootMyb1".to_owned(), equivalent(10.0), true),
+                ("RootMyb1".to_owned(), LoadKind::Deviation, true),
+                ("TwrBsMyt".to_owned(), equivalent(4.0), false),
+                ("TwrBsMyt".to_owned(), LoadKind::Deviation, false),
+            ]
+        );
+        for (change, expected) in found.iter().filter_map(|load| load.change).zip([
             // Half of the cycles of one size, half of the other, on a slope of ten.
             (0.5 * (1.2f64.powi(10) + 1.3f64.powi(10))).powf(0.1) - 1.0,
             (0.5 * (1.2f64.powi(2) + 1.3f64.powi(2))).sqrt() - 1.0,
@@ -237,15 +236,9 @@ mod tests {
             let half_width = change.half_width_95.expect("two blocks");
             assert!((half_width - 12.706_205 * 0.05).abs() < 1e-6, "{change:?}");
         }
-        let own: Vec<String> = moments
-            .iter()
-            .filter_map(|moment| damage_equivalent(moment, &whole(&series)).expect("numbers"))
-            .map(|(key, _)| key)
-            .collect();
-        assert!(found.keys().all(|key| own.contains(key) || key.contains("deviation")));
         // A run that keeps no moments is nothing to compare with.
         let none = Series { names: vec!["time_s".into()], columns: other.columns[..1].to_vec() };
-        assert!(changes(&none).is_empty());
+        assert!(compared(&none).iter().all(|load| load.change.is_none()));
     }
 
     #[test]

@@ -2,13 +2,12 @@
 
 use crate::StudyError;
 use crate::models::{self, Machines};
-use crate::{turbulence, warnings};
+use crate::warnings;
 use farm::assemble::{Model, controller};
 use farm::case::Case;
+use farm::wind::{self, Site};
 use farm::{Plan, plan};
 use flow::Inflow;
-use flow::inflow::MeanProfile;
-use flow::inflow::deterministic::Event;
 use formats::case::{CaseFile, objection};
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -76,9 +75,10 @@ impl Prepared {
         let plan = plan(&case, &machines.footprints(case.wind.speed))?;
         let models = machines.equipped(&case);
         check_control(&case, &plan, &models)?;
-        let mean_inflow = mean_inflow(&case, &plan)?;
+        let mean_inflow = wind::without_turbulence(&case, &plan)?;
         let mut warnings = warnings::of(&case, &plan);
-        warnings.extend(turbulence::returns(&case, &plan, &models));
+        let site = Site { case: &case, plan: &plan, models: &models };
+        warnings.extend(wind::turbulence(&site).and_then(|turbulence| turbulence.warning));
         warnings.extend(machines.warnings);
         Ok(Self {
             case_text: formats::case::write(&case),
@@ -97,21 +97,10 @@ impl Prepared {
         &self.folder
     }
 
-    /// The mean profile that blows in.
-    pub(crate) fn profile(&self) -> MeanProfile {
-        farm::wind::profile(&self.case, &self.plan)
+    /// What the wind is made for.
+    pub(crate) fn site(&self) -> Site<'_> {
+        Site { case: &self.case, plan: &self.plan, models: &self.models }
     }
-}
-
-/// The mean profile, with veer and event where the case has them.
-fn mean_inflow(case: &Case, plan: &Plan) -> Result<Arc<dyn Inflow>, StudyError> {
-    let wind = farm::wind::deterministic(case, plan);
-    if wind.veer == 0.0 && wind.event == Event::Steady {
-        // The same wind, found faster.
-        return Ok(Arc::new(wind.profile));
-    }
-    wind.check()?;
-    Ok(Arc::new(wind))
 }
 
 /// `error`, with an arrow at the key in `file` where only the turbines tell that it does not fit.

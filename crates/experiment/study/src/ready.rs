@@ -5,14 +5,14 @@ use crate::air;
 use crate::prepared::Prepared;
 use crate::probes::Probes;
 use crate::self_check::SelfChecked;
-use crate::turbulence;
 use crate::watcher::{Silent, Watcher};
 use farm::case::Run;
 use farm::pitch_response::CalibrationError;
 use farm::self_check::SelfCheckError;
-use farm::{Air, Farm, assemble};
+use farm::{Air, Farm, assemble, wind};
 use flow::Inflow;
 use formats::records::ProbeRecord;
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -66,7 +66,12 @@ impl Ready {
         if prepared.calibrate(probes, keep, stop, watcher)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
-        let inflow = turbulence::inflow(&prepared, watcher)?;
+        let inflow = {
+            let watcher = RefCell::new(&mut *watcher);
+            let told = |share| watcher.borrow_mut().preparing("turbulence", share);
+            wind::entering(&prepared.site(), told)?
+        };
+        let inflow = inflow.unwrap_or_else(|| Arc::clone(&prepared.mean_inflow));
         prepared.warnings.extend(checked.warnings);
         Ok(ControlFlow::Continue(Self { prepared, inflow }))
     }

@@ -28,7 +28,7 @@ impl Prepared {
         watcher: &mut dyn Watcher,
     ) -> Result<ControlFlow<(), SelfChecked>, StudyError> {
         let mut found = SelfChecked::default();
-        if self.case.flow.solver.is_prescribed() {
+        if !self.case.flow.solver.needs_self_check {
             return Ok(ControlFlow::Continue(found));
         }
         let mut checked: Vec<(&str, Option<&str>)> = Vec::new();

@@ -128,9 +128,7 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// [`StudyError::Diverged`] for air that no longer is worth keeping, [`StudyError::File`].
     fn checkpoint(&mut self) -> Result<(), StudyError> {
-        if let Air::Lattice(lattice) = self.farm.flow_mut()
-            && let Err(error) = lattice.check()
-        {
+        if let Err(error) = self.farm.flow_mut().check() {
             return Err(self.diverged(error));
         }
         let (path, made) = (self.job.folder.checkpoint_path(), self.made());
@@ -194,14 +192,13 @@ pub(crate) fn cost(
     wall_time: f64,
     peak_memory: Option<u64>,
 ) -> Cost {
-    let lattice = farm.flow().lattice();
     Cost {
         wall_time,
         n_cells: plan.cells() as u64,
         n_steps: plan.n_steps,
         updates_per_second: plan.updates() / wall_time,
-        n_threads: lattice.map_or(1, |lattice| lattice.n_threads()),
-        memory: lattice.map_or(0, |lattice| lattice.memory()),
+        n_threads: farm.flow().n_threads(),
+        memory: farm.flow().memory(),
         peak_memory,
     }
 }

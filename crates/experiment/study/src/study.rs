@@ -221,7 +221,7 @@ impl<'a> Study<'a> {
             Ending::Complete { cost, clipped_shares } => {
                 let summary = self.summary(ready, index, &clipped_shares, cost)?;
                 for warning in &summary.warnings[ready.prepared.warnings.len()..] {
-                    watcher.warned(warning);
+                    watcher.warned(&warning.message);
                 }
                 records::write_manifest(folder, &manifest.finish())?;
                 // The summary comes last: with it the run is complete.

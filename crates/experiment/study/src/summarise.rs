@@ -1,33 +1,25 @@
 //! From the series of a run to its summary.
 
+mod warnings;
+
 use crate::StudyError;
 use crate::columns::{Analysed, Columns, add_to, names_of};
 use crate::loads;
-use crate::meandering;
 use crate::prepared::Prepared;
 use crate::tips::Outrun;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
 use analysis::statistics::{BLOCK_LENGTH, statistic};
 use basis::records::{
-    Conditions, Cost, DeliveredPitch, MeanderingSummary, SCHEMA_VERSION, Statistic, Summary,
-    TurbineSummary,
+    Conditions, ControlSummary, Cost, DeliveredPitch, Finding, Load, PitchExcitation,
+    SCHEMA_VERSION, Statistic, Summary, TurbineSummary, Warning, WarningKind,
 };
-use control::Pitching;
-use control::meandering::{MEANDERING, MeanderingSettings};
-use control::phase_sync::{PHASE_SYNC, PhaseSyncSettings};
+use control::{MissingChannel, Pitching, TurbineRecord};
 use farm::assemble::controller;
 use farm::case::{Control, Run, Shear};
-use std::collections::BTreeMap;
 
-/// Channel of the wind that arrives.
+/// Channel of the wind that meets the first turbine.
 const WIND: &str = "wind.u_m_s";
-/// Share of clipped control instants beyond which a reader must know (–).
-const CLIPPED_SHARE: f64 = 0.01;
-/// Share of the time without a trusted phase beyond which a reader must know (–).
-const FADED_SHARE: f64 = 0.02;
-/// Share of the asked amplitude that must arrive at the blades (–).
-const DELIVERED_SHARE: f64 = 0.95;
 
 /// The run `run` in numbers, its gains left out, from its `columns`.
 ///
@@ -42,63 +34,17 @@ pub(crate) fn summarise(
 ) -> Result<Summary, StudyError> {
     let expected = parts(setup, run, columns.names());
     columns.expect(expected);
-    let mut warnings = setup.warnings.clone();
+    let before = |message: &String| Warning {
+        kind: WarningKind::Setup,
+        turbine: None,
+        message: message.clone(),
+    };
+    let mut warnings: Vec<Warning> = setup.warnings.iter().map(before).collect();
     let mut turbines = Vec::new();
     let mut array = Vec::new();
-    for (machine, index) in run.present().enumerate() {
-        let placement = &setup.case.turbines[index];
-        let name = &placement.name;
-        let control = &run.control[index];
-        let runs = controller(control, &setup.models[index], &setup.case, &setup.plan)?;
-        let n_blades = setup.models[index].definition.n_blades;
-        let share = clipped_shares[machine];
-
-        let analysed = columns.of(&operation(name))?;
-        let power_channel = format!("{name}.power_w");
-        let power = analysed.statistic(&power_channel)?;
-        let thrust = analysed.statistic(&format!("{name}.thrust_n"))?;
-        let rotor_speed = analysed.statistic(&format!("{name}.rotor_speed_rad_s"))?;
-        let outrun = outrun(&analysed, index, setup)?;
-        add_to(&mut array, analysed.column(&power_channel)?);
-
-        let analysed = columns.of(&pitching(name, n_blades))?;
-        let pitch = collective_pitch(&analysed, name, n_blades)?;
-        let delivered_pitch = delivered_pitch(&analysed, name, n_blades, control, setup, share)?;
-        // A phase that follows the wind spreads the line: what is missing of it was not held back.
-        let steady = control.kind().pitching(control).is_none_or(|own| own.is_steady);
-        warn_of_clipping(name, &run.name, delivered_pitch, share, steady, &mut warnings);
-
-        let analysed = columns.of(&beliefs(name, n_blades, control))?;
-        warn_of_fading(&analysed, name, control, &run.name, &mut warnings)?;
-        let meandering = meandering::followed(&analysed, name, n_blades, control)?;
-        warn_of_no_lock(name, control, meandering, &run.name, &mut warnings);
-        warnings.extend(outrun.map(|outrun| outrun.warning(&run.name, name)));
-
-        let (mut load_deviations, mut damage_equivalent_loads) = (BTreeMap::new(), BTreeMap::new());
-        for moment in loads::moments(columns.names(), name) {
-            let analysed = columns.of(&moment.part())?;
-            load_deviations.extend([loads::deviation(&moment, &analysed)?]);
-            damage_equivalent_loads.extend(loads::damage_equivalent(&moment, &analysed)?);
-        }
-        let pitch_duty = loads::pitch_duty(name, &columns.of(&loads::duty_channels(name))?)?;
-        turbines.push(TurbineSummary {
-            name: name.clone(),
-            model: placement.model.clone(),
-            control: runs.describe(),
-            power,
-            thrust,
-            rotor_speed,
-            pitch,
-            delivered_pitch,
-            power_gain: None,
-            pitch_response: control.kind().pitch_response(control),
-            individual_pitch_offset: setup.models[index].individual_pitch_offset(),
-            meandering,
-            load_deviations,
-            damage_equivalent_loads,
-            load_changes: BTreeMap::new(),
-            pitch_duty,
-        });
+    for (index, &clipped_share) in run.present().zip(clipped_shares) {
+        let turbine = Turbine::new(setup, run, index, clipped_share);
+        turbines.push(turbine.summarise(columns, &mut array, &mut warnings)?);
     }
     let analysed = columns.of(&[WIND.to_owned()])?;
     Ok(Summary {
@@ -115,6 +61,178 @@ pub(crate) fn summarise(
     })
 }
 
+/// A turbine in a run.
+struct Turbine<'a> {
+    setup: &'a Prepared,
+    run: &'a Run,
+    /// Its place in the case.
+    index: usize,
+    name: &'a str,
+    n_blades: usize,
+    control: &'a Control,
+    /// Share of control instants at which a pitch limit held a command back (–).
+    clipped_share: f64,
+}
+
+impl<'a> Turbine<'a> {
+    fn new(setup: &'a Prepared, run: &'a Run, index: usize, clipped_share: f64) -> Self {
+        Self {
+            setup,
+            run,
+            index,
+            name: &setup.case.turbines[index].name,
+            n_blades: setup.models[index].definition.n_blades,
+            control: &run.control[index],
+            clipped_share,
+        }
+    }
+
+    /// Its numbers; on return `array` holds its power too (W), and `warnings` what a reader of its numbers must know.
+    fn summarise(
+        &self,
+        columns: &mut Columns,
+        array: &mut Vec<f64>,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<TurbineSummary, StudyError> {
+        let Self { setup, index, name, n_blades, control, .. } = *self;
+
+        let analysed = columns.of(&operation(name))?;
+        let power_channel = format!("{name}.power_w");
+        let power = analysed.statistic(&power_channel)?;
+        let thrust = analysed.statistic(&format!("{name}.thrust_n"))?;
+        let rotor_speed = analysed.statistic(&format!("{name}.rotor_speed_rad_s"))?;
+        let outrun = outrun(&analysed, index, setup)?;
+        add_to(array, analysed.column(&power_channel)?);
+
+        let analysed = columns.of(&pitching(name, n_blades))?;
+        let pitch = collective_pitch(&analysed, name, n_blades)?;
+        let delivered_pitch = self.delivered_pitch(&analysed)?;
+        warnings.extend(self.warning_of_clipping(delivered_pitch));
+
+        let analysed = columns.of(&outcome_channels(name, n_blades, control))?;
+        let record = OfTurbine { analysed: &analysed, name, n_blades };
+        let outcome = control.kind().outcome(control, &record);
+        let outcome = outcome.map_err(|MissingChannel(channel)| StudyError::MissingChannel {
+            channel: record.full_name(&channel),
+        })?;
+        let message = |words: &String| format!("{}: {name}{words}", self.run.name);
+        let of_controller = |words| self.warning(WarningKind::Controller, message(words));
+        warnings.extend(outcome.warnings.iter().map(of_controller));
+        let outran = |outrun: Outrun| outrun.warning(&self.run.name, name);
+        warnings.extend(outrun.map(|found| self.warning(WarningKind::TipSpeed, outran(found))));
+
+        Ok(TurbineSummary {
+            name: name.to_owned(),
+            model: setup.case.turbines[index].model.clone(),
+            control: self.control_summary(outcome.findings)?,
+            power,
+            thrust,
+            rotor_speed,
+            pitch,
+            delivered_pitch,
+            power_gain: None,
+            pitch_response: control.kind().pitch_response(control),
+            individual_pitch_offset: setup.models[index].individual_pitch_offset(),
+            meandering: outcome.meandering,
+            loads: moments(name, columns)?,
+            pitch_duty: loads::pitch_duty(name, &columns.of(&loads::duty_channels(name))?)?,
+        })
+    }
+
+    /// What ran on it.
+    fn control_summary(&self, findings: Vec<Finding>) -> Result<ControlSummary, StudyError> {
+        let Self { setup, index, .. } = *self;
+        let runs = controller(self.control, &setup.models[index], &setup.case, &setup.plan)?;
+        let excitation = excited(self.control).map(|set| PitchExcitation {
+            sense: set.sense,
+            amplitude_deg: set.amplitude.to_degrees(),
+            strouhal: set.strouhal,
+            phase_offset_deg: set.phase_offset.map(f64::to_degrees),
+            start: set.start,
+            stop: set.stop,
+        });
+        let plain = ControlSummary::plain(self.control.kind().name(), &runs.describe());
+        Ok(ControlSummary { excitation, findings, ..plain })
+    }
+
+    /// Its excitation as its blades delivered it; none without one, or in too short a record.
+    fn delivered_pitch(&self, analysed: &Analysed) -> Result<Option<DeliveredPitch>, StudyError> {
+        let Some(set) = excited(self.control) else { return Ok(None) };
+        // The excitation fades in over one period, and out from its stop on; only what lies between is measured.
+        let period = self.setup.plan.diameter / (set.strouhal * self.setup.case.wind.speed);
+        let row = |time: f64| (time / analysed.interval).ceil() as usize;
+        let skip = row(set.start + period).saturating_sub(analysed.first);
+        let end = set.stop.map_or(usize::MAX, |stop| row(stop).saturating_sub(analysed.first));
+        let cut = |channel: &str| -> Result<_, StudyError> {
+            let column = analysed.column(&format!("{}.{channel}", self.name))?;
+            Ok(column.get(skip..end.min(column.len())).unwrap_or_default())
+        };
+        let azimuth = cut("azimuth_rad")?;
+        let mut pitch = Vec::with_capacity(self.n_blades);
+        for blade in 1..=self.n_blades {
+            pitch.push(cut(&format!("pitch_{blade}_rad"))?);
+        }
+        let motion = match set.motion {
+            control::Motion::Cyclic => Motion::Cyclic,
+            control::Motion::Collective => Motion::Collective,
+        };
+        let (interval, amplitude) = (analysed.interval, set.amplitude);
+        match delivered(motion, azimuth, &pitch, interval, amplitude, self.clipped_share) {
+            Ok(delivered) => Ok(Some(delivered)),
+            Err(AnalysisError::TooShort { .. }) => Ok(None),
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+/// Periodic pitch of constant amplitude that `control` adds; none of amplitude zero.
+fn excited(control: &Control) -> Option<Pitching> {
+    control.kind().pitching(control).filter(|set| set.amplitude != 0.0)
+}
+
+/// Columns of one turbine, for its controller.
+struct OfTurbine<'a> {
+    analysed: &'a Analysed<'a>,
+    name: &'a str,
+    n_blades: usize,
+}
+
+impl OfTurbine<'_> {
+    fn full_name(&self, channel: &str) -> String {
+        full_name(self.name, channel)
+    }
+}
+
+impl TurbineRecord for OfTurbine<'_> {
+    fn column(&self, channel: &str) -> Result<&[f64], MissingChannel> {
+        let column = self.analysed.column(&self.full_name(channel));
+        column.map_err(|_| MissingChannel(channel.to_owned()))
+    }
+
+    fn interval(&self) -> f64 {
+        self.analysed.interval
+    }
+
+    fn n_blades(&self) -> usize {
+        self.n_blades
+    }
+}
+
+/// Name in the series of the `channel` of `turbine`; time is everybody's.
+fn full_name(turbine: &str, channel: &str) -> String {
+    if channel == "time_s" { channel.to_owned() } else { format!("{turbine}.{channel}") }
+}
+
+/// Loads of the moments that are kept of `turbine`, by channel.
+fn moments(turbine: &str, columns: &mut Columns) -> Result<Vec<Load>, StudyError> {
+    let mut found = Vec::new();
+    for moment in loads::moments(columns.names(), turbine) {
+        found.extend(loads::loads(&moment, &columns.of(&moment.part())?)?);
+    }
+    found.sort_by(|a, b| a.channel.cmp(&b.channel));
+    Ok(found)
+}
+
 /// Channels that [`summarise`] asks for together, in its order; the columns of the run are called `names`.
 fn parts(setup: &Prepared, run: &Run, names: &[String]) -> Vec<Vec<String>> {
     let mut parts = Vec::new();
@@ -123,7 +241,7 @@ fn parts(setup: &Prepared, run: &Run, names: &[String]) -> Vec<Vec<String>> {
         let n_blades = setup.models[index].definition.n_blades;
         parts.push(operation(name));
         parts.push(pitching(name, n_blades));
-        parts.push(beliefs(name, n_blades, &run.control[index]));
+        parts.push(outcome_channels(name, n_blades, &run.control[index]));
         parts.extend(loads::moments(names, name).iter().map(loads::Moment::part));
         parts.push(loads::duty_channels(name).to_vec());
     }
@@ -145,15 +263,10 @@ fn pitching(turbine: &str, n_blades: usize) -> Vec<String> {
     channels
 }
 
-/// What tells what `turbine`, of `n_blades` blades, believed under `control`; nothing where it seeks nothing.
-fn beliefs(turbine: &str, n_blades: usize, control: &Control) -> Vec<String> {
-    if control.is(&PHASE_SYNC) {
-        names_of(turbine, &["sync_share"])
-    } else if control.is(&MEANDERING) {
-        meandering::channels(turbine, n_blades)
-    } else {
-        Vec::new()
-    }
+/// What the controller of `turbine`, of `n_blades` blades, reads to say what became of it.
+fn outcome_channels(turbine: &str, n_blades: usize, control: &Control) -> Vec<String> {
+    let channels = control.kind().outcome_channels(control, n_blades);
+    channels.iter().map(|channel| full_name(turbine, channel)).collect()
 }
 
 fn collective_pitch(
@@ -172,110 +285,6 @@ fn collective_pitch(
     Ok(statistic(&mean, analysed.interval, BLOCK_LENGTH)?)
 }
 
-fn delivered_pitch(
-    analysed: &Analysed,
-    name: &str,
-    n_blades: usize,
-    control: &Control,
-    setup: &Prepared,
-    clipped_share: f64,
-) -> Result<Option<DeliveredPitch>, StudyError> {
-    let Some(own) = control.kind().pitching(control) else { return Ok(None) };
-    let Pitching { amplitude, strouhal, start, stop, .. } = own;
-    let motion = match own.motion {
-        control::Motion::Cyclic => Motion::Cyclic,
-        control::Motion::Collective => Motion::Collective,
-    };
-    if amplitude == 0.0 {
-        return Ok(None);
-    }
-    // The excitation fades in over one period, and out from its stop on; only what lies between is measured.
-    let period = setup.plan.diameter / (strouhal * setup.case.wind.speed);
-    let row = |time: f64| (time / analysed.interval).ceil() as usize;
-    let skip = row(start + period).saturating_sub(analysed.first);
-    let end = stop.map_or(usize::MAX, |stop| row(stop).saturating_sub(analysed.first));
-    let cut = |channel: &str| -> Result<_, StudyError> {
-        let column = analysed.column(&format!("{name}.{channel}"))?;
-        Ok(column.get(skip..end.min(column.len())).unwrap_or_default())
-    };
-    let azimuth = cut("azimuth_rad")?;
-    let mut pitch = Vec::with_capacity(n_blades);
-    for blade in 1..=n_blades {
-        pitch.push(cut(&format!("pitch_{blade}_rad"))?);
-    }
-    match delivered(motion, azimuth, &pitch, analysed.interval, amplitude, clipped_share) {
-        Ok(delivered) => Ok(Some(delivered)),
-        Err(AnalysisError::TooShort { .. }) => Ok(None),
-        Err(error) => Err(error.into()),
-    }
-}
-
-fn warn_of_clipping(
-    name: &str,
-    run: &str,
-    pitch: Option<DeliveredPitch>,
-    clipped_share: f64,
-    steady: bool,
-    warnings: &mut Vec<String>,
-) {
-    let held = 100.0 * clipped_share;
-    let Some(pitch) = pitch else {
-        if clipped_share > CLIPPED_SHARE {
-            warnings.push(format!("{run}: a pitch limit held {name} back {held:.0} % of the time"));
-        }
-        return;
-    };
-    let asked = pitch.commanded_amplitude_deg;
-    let arrived = pitch.delivered_amplitude_deg;
-    let missing = steady && arrived < DELIVERED_SHARE * asked;
-    if missing || clipped_share > CLIPPED_SHARE {
-        warnings.push(format!(
-            "{run}: {name} was asked for {asked:.2}° and delivered {arrived:.2}°; a pitch limit held it back {held:.0} % of the time"
-        ));
-    }
-}
-
-/// Notes where a turbine that shall join a helix could not trust its estimate.
-fn warn_of_fading(
-    analysed: &Analysed,
-    name: &str,
-    control: &Control,
-    run: &str,
-    warnings: &mut Vec<String>,
-) -> Result<(), StudyError> {
-    let Some(sync) = PhaseSyncSettings::of(control) else { return Ok(()) };
-    if sync.amplitude == 0.0 {
-        return Ok(());
-    }
-    let share = analysed.column(&format!("{name}.sync_share"))?;
-    let faded =
-        share.iter().filter(|share| **share < 0.5).count() as f64 / share.len().max(1) as f64;
-    if faded > FADED_SHARE {
-        warnings.push(format!(
-            "{run}: {name} could not trust the phase that it found {:.0} % of the time, and ran baseline meanwhile",
-            100.0 * faded
-        ));
-    }
-    Ok(())
-}
-
-/// Notes where a turbine that shall act on meandering `found` nothing to lock to.
-fn warn_of_no_lock(
-    name: &str,
-    control: &Control,
-    found: Option<MeanderingSummary>,
-    run: &str,
-    warnings: &mut Vec<String>,
-) {
-    let Some(found) = found.filter(|found| found.locked_share < 1.0 - FADED_SHARE) else { return };
-    if MeanderingSettings::of(control).is_some_and(|own| own.amplitude != 0.0 && own.fallback) {
-        warnings.push(format!(
-            "{run}: {name} was locked to the wake's motion {:.0} % of the time, and pitched nothing of its own meanwhile",
-            100.0 * found.locked_share
-        ));
-    }
-}
-
 /// How the tip of the turbine at `index` outran the sound on the lattice in the analysed time; none where it did not, and
 /// where there is no lattice.
 fn outrun(
@@ -283,7 +292,7 @@ fn outrun(
     index: usize,
     setup: &Prepared,
 ) -> Result<Option<Outrun>, StudyError> {
-    if setup.case.flow.solver.is_prescribed() {
+    if setup.plan.cells() == 0 {
         return Ok(None);
     }
     let name = &setup.case.turbines[index].name;
@@ -295,23 +304,22 @@ fn outrun(
 }
 
 fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, StudyError> {
-    let arrived = analysed.statistic(WIND)?;
+    let realised = analysed.statistic(WIND)?;
     let case = &setup.case;
     let (shear_exponent, roughness_length) = match case.wind.shear {
         Shear::PowerLaw { exponent } => (Some(exponent), None),
         Shear::LogLaw { roughness_length } => (None, Some(roughness_length)),
     };
     Ok(Conditions {
-        wind_speed: case.wind.speed,
-        turbulence_intensity: case.wind.turbulence_intensity,
-        arriving_wind_speed: arrived.mean,
-        arriving_turbulence_intensity: arrived.standard_deviation / arrived.mean,
+        target_wind_speed: case.wind.speed,
+        target_turbulence_intensity: case.wind.turbulence_intensity,
+        realised_wind_speed: realised.mean,
+        realised_turbulence_intensity: realised.standard_deviation / realised.mean,
         shear_exponent,
         roughness_length,
         seed: case.wind.seed,
         rotor_diameter: setup.plan.diameter,
-        cells_per_diameter: (!case.flow.solver.is_prescribed())
-            .then_some(case.flow.cells_per_diameter),
+        cells_per_diameter: (setup.plan.cells() > 0).then_some(case.flow.cells_per_diameter),
         interval: setup.plan.interval,
         spin_up: case.time.spin_up,
         duration: case.time.duration,

@@ -47,7 +47,7 @@ fn of_domain(case: &Case, plan: &Plan) -> Vec<String> {
             100.0 * gain
         ));
     }
-    let lattice = case.flow.solver == Solver::Lattice;
+    let lattice = case.flow.solver == Solver::LATTICE;
     if lattice && case.flow.cells_per_diameter < CELLS_TO_WARN {
         warnings.push(format!(
             "{:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results",

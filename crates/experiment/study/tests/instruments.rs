@@ -4,7 +4,6 @@
 mod small;
 
 use basis::{Commands, Truth, Vector3};
-use control::Controller;
 use farm::assemble::{self, Model};
 use farm::case::Case;
 use farm::{Air, Farm, Plan, Recorder};
@@ -61,12 +60,12 @@ fn case(overrides: &[String]) -> (Case, Plan, Vec<Model>) {
 }
 
 fn farm_of((case, plan, models): &(Case, Plan, Vec<Model>)) -> Farm<Air> {
-    let air = if case.flow.solver.is_prescribed() {
+    let air = if !case.flow.solver.resolves_induction {
         uniform_air(case)
     } else {
         let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
         let settings = assemble::lattice_settings(case, plan);
-        Air::Lattice(Box::new(Lattice::new(settings, profile).expect("such air can be")))
+        Box::new(Lattice::new(settings, profile).expect("such air can be"))
     };
     assemble::farm(case, &case.runs[0], plan, models, air).expect("such a farm can be")
 }
@@ -103,7 +102,7 @@ fn perfect_instruments_change_no_bit() {
         let recorded = records(&mut farm_of(&parts), 40);
         // The same turbines and controllers moved on by hand, with nothing between them; the air of the lattice feels
         // the turbines only through the farm, so that by hand it is asked for one step.
-        let n_steps = if parts.0.flow.solver.is_prescribed() { 40 } else { 1 };
+        let n_steps = if parts.0.flow.solver.resolves_induction { 1 } else { 40 };
         let mut by_hand = farm_of(&parts);
         for step in 0..n_steps {
             let interval = parts.1.interval;
@@ -133,7 +132,7 @@ fn controllers_see_the_noise_and_records_hold_the_truth() {
         for step in 0..800 {
             let machine = &farm.machines()[0];
             let truth = machine.turbine.truth(farm.time(), parts.1.interval);
-            let shown = machine.sensing.clone().read(&truth);
+            let shown = twin.machines_mut()[0].sensing.gauge(&truth);
             squares += (shown.generator_speed - truth.generator_speed).powi(2);
             n += 1.0;
             let expected = twin.machines_mut()[0].controller.update(&shown);
@@ -181,11 +180,11 @@ fn noise_belongs_to_the_winds_seed_and_the_turbine() {
     });
     let shown = |seed: &str| {
         let parts = case(&[all[0].clone(), all[1].clone(), seed.to_owned()]);
-        let farm = farm_of(&parts);
+        let mut farm = farm_of(&parts);
         [0, 1].map(|index| {
-            let machine = &farm.machines()[index];
+            let machine = &mut farm.machines_mut()[index];
             let truth = machine.turbine.truth(0.0, 0.02);
-            machine.sensing.clone().read(&truth).rotor_speed - truth.rotor_speed
+            machine.sensing.gauge(&truth).rotor_speed - truth.rotor_speed
         })
     };
     let [first, second] = shown("wind.seed=3");

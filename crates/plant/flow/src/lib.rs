@@ -2,6 +2,7 @@
 //!
 //! The air feels point forces, not rotors: nothing here knows what a turbine is.
 
+pub mod fields;
 pub mod inflow;
 pub mod lattice;
 
@@ -24,6 +25,22 @@ pub trait FlowSolver: WindField {
 
     /// Whether sampled velocities already contain the rotors' induction.
     fn resolves_induction(&self) -> bool;
+}
+
+impl<Field: WindField + ?Sized> WindField for Box<Field> {
+    fn sample(&self, positions: &[Vector3], velocities: &mut [Vector3]) {
+        (**self).sample(positions, velocities);
+    }
+}
+
+impl<Flow: FlowSolver + ?Sized> FlowSolver for Box<Flow> {
+    fn advance(&mut self, duration: f64, forces: &[PointForce]) -> Result<(), FlowError> {
+        (**self).advance(duration, forces)
+    }
+
+    fn resolves_induction(&self) -> bool {
+        (**self).resolves_induction()
+    }
 }
 
 /// Wind prescribed everywhere and for all time: what enters a solver's inlet, or blows where no air is solved.

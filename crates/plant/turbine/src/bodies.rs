@@ -103,11 +103,8 @@ impl Body {
         let across = wind - self.axis * wind.dot(self.axis);
         // A body wider than its smearing would hide its own wind altogether; half of it is the most that is given back.
         let free = across / (1.0 - self.self_induction.min(0.5));
-        PointForce {
-            position: self.position,
-            force: free * (-0.5 * air_density * self.drag_area * free.length()),
-            smearing_length,
-        }
+        let force = free * (-0.5 * air_density * self.drag_area * free.length());
+        PointForce::of_body(self.position, force, smearing_length)
     }
 }
 

@@ -15,7 +15,7 @@ use crate::structure::{
     StructureError,
 };
 use aerodynamics::Aerodynamics;
-use basis::{Commands, PerBlade, PointForce, Truth, Vector3};
+use basis::{BoundVortex, Commands, PerBlade, PointForce, Truth, Vector3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -115,6 +115,8 @@ struct Workspace {
     loads: Vec<ElementLoad>,
     /// Sums over the steps of an interval: force on each element along normal and tangent (N).
     sums: Vec<[f64; 2]>,
+    /// Mean circulation of each element over the steps of an interval (m²/s).
+    circulations: Vec<f64>,
     /// Forces on the tower's points (N).
     tower: Vec<Vector3>,
     forces: Vec<PointForce>,
@@ -194,6 +196,7 @@ impl Turbine {
             motions: vec![still; n],
             loads: vec![ElementLoad::default(); n],
             sums: vec![[0.0; 2]; n],
+            circulations: vec![0.0; n],
             tower: vec![Vector3::ZERO; heights.len()],
             forces: Vec::with_capacity(n + bodies.len()),
         };
@@ -261,6 +264,7 @@ impl Turbine {
         let (element_winds, body_winds) = winds.split_at(self.workspace.motions.len());
         let nacelle = self.hold_back(body_winds);
         self.workspace.sums.fill([0.0; 2]);
+        self.workspace.circulations.fill(0.0);
         let mut readings = Readings {
             generator_torque,
             rotor_wind_speed: self.line.mean_axial(element_winds, self.frame.shaft),
@@ -269,7 +273,7 @@ impl Turbine {
         let mut limited = false;
         for index in 0..n_steps {
             let pitch = self.pitch_blades(step, commands, &mut limited);
-            let Workspace { motions, loads, sums, tower, .. } = &mut self.workspace;
+            let Workspace { motions, loads, sums, circulations, tower, .. } = &mut self.workspace;
             self.structure.observe(0.5 * step, &pitch, motions);
             let frame = self.structure.frame(0.5 * step);
             let now = aerodynamics::Instant {
@@ -282,6 +286,7 @@ impl Turbine {
                 rotor_speed: self.structure.rotor_speed(),
             };
             self.aerodynamics.loads(&self.line, &now, &mut self.state.aerodynamics, loads);
+            self.aerodynamics.add_circulations(&self.line, 1.0 / n_steps as f64, circulations);
             for ((load, motion), sum) in loads.iter().zip(&*motions).zip(sums) {
                 let share = 1.0 / n_steps as f64;
                 sum[0] += share * load.force.dot(motion.axes.normal);
@@ -301,7 +306,8 @@ impl Turbine {
         self.place_stations();
     }
 
-    /// Forces on the air over the last interval: blade elements, then bodies.
+    /// Forces on the air over the last interval: blade elements with their bound vortices, blade after blade from root to tip,
+    /// then bodies.
     pub fn forces(&self) -> &[PointForce] {
         &self.workspace.forces
     }
@@ -421,14 +427,24 @@ impl Turbine {
     /// On return the workspace holds the forces on the air, where the winds were sampled: half the force of a step acts
     /// before the instant and half after it, so that a blade's bound vortex does not induce a velocity on itself.
     fn push(&mut self) {
-        let Workspace { forces, stations, axes, sums, .. } = &mut self.workspace;
+        let Workspace { forces, stations, axes, sums, circulations, .. } = &mut self.workspace;
         let n_bodies = forces.len();
-        for ((axes, sum), position) in axes.iter().zip(&*sums).zip(&*stations) {
+        let elements = self.line.elements();
+        for (index, ((axes, sum), position)) in axes.iter().zip(&*sums).zip(&*stations).enumerate()
+        {
+            let (blade, station) = (index / elements.len(), index % elements.len());
             let force = axes.normal * sum[0] + axes.tangent * sum[1];
             forces.push(PointForce {
                 position: *position,
                 force: -force,
                 smearing_length: self.smearing_length,
+                turbine: 0,
+                bound: Some(BoundVortex {
+                    blade,
+                    station,
+                    circulation: circulations[index],
+                    along: axes.span * elements[station].width,
+                }),
             });
         }
         forces.rotate_left(n_bodies);
@@ -452,5 +468,7 @@ impl Turbine {
     }
 }
 
+#[cfg(test)]
+mod circulation_tests;
 #[cfg(test)]
 mod tests;

@@ -11,4 +11,37 @@ pub struct PointForce {
     pub force: Vector3,
     /// Gaussian width ε (m): the force density is f exp(−r²/ε²) / (ε³ π^{3/2}).
     pub smearing_length: f64,
+    /// Turbine that it comes from: its place among the farm's machines, 0 for a turbine on its own (–).
+    pub turbine: usize,
+    /// The bound vortex behind it; none for a body without circulation, such as a tower or a nacelle.
+    pub bound: Option<BoundVortex>,
+}
+
+/// Element of a lifting line: what a solver that sheds vorticity needs beside the force.
+///
+/// Kutta-Joukowski, with V the wind relative to the element (m/s) and Γ⃗ = Γ · `along`: the lift of the element on the air is
+/// −ρ V × Γ⃗, what is left of [`PointForce::force`] is drag, along V. Γ is counted right-handed about the direction from root
+/// to tip, so that it is positive where lift drives a rotor that turns clockwise seen from upwind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundVortex {
+    /// Blade, from 0 (–).
+    pub blade: usize,
+    /// Place along the blade, from 0 at the root (–).
+    pub station: usize,
+    /// Circulation Γ, the mean over the interval in which the force acts (m²/s).
+    pub circulation: f64,
+    /// From the element's inner to its outer end, its middle at the force's position, farm frame (m).
+    pub along: Vector3,
+}
+
+impl PointForce {
+    /// The force (N) of a body without circulation at `position` (m), spread over `smearing_length` (m).
+    pub fn of_body(position: Vector3, force: Vector3, smearing_length: f64) -> Self {
+        Self { position, force, smearing_length, turbine: 0, bound: None }
+    }
+
+    /// The same force, from machine number `turbine` of the farm.
+    pub fn of_turbine(self, turbine: usize) -> Self {
+        Self { turbine, ..self }
+    }
 }

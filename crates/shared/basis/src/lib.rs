@@ -25,7 +25,7 @@ mod sense;
 pub mod signals;
 
 pub use blades::PerBlade;
-pub use force::PointForce;
+pub use force::{BoundVortex, PointForce};
 pub use glam::{DMat3 as Matrix3, DVec3 as Vector3};
 pub use mbc::FixedFrame;
 pub use sense::Sense;

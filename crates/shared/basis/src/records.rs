@@ -1,10 +1,19 @@
 //! What a run leaves behind, as plain data that every desk can read.
 
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+mod control;
+pub mod examples;
+mod load;
+mod warning;
 
-/// Version of the layout of [`Summary`]; raised when a field changes its meaning.
-pub const SCHEMA_VERSION: u32 = 1;
+pub use control::{ControlSummary, Finding, PitchExcitation};
+pub use load::{Load, LoadKind};
+use serde::{Deserialize, Serialize};
+pub use warning::{Warning, WarningKind};
+
+/// Version of the layout of [`Summary`]; raised when a field changes its name, its place or its meaning.
+///
+/// 2: loads, control and warnings are typed, where they were sentences; the wind is told as target and realised.
+pub const SCHEMA_VERSION: u32 = 2;
 
 /// Mean of a quantity over the analysed time, with what is known of its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,8 +61,8 @@ pub struct PitchDuty {
     /// Equivalent moment of the pitch bearing at equally spaced positions all round its ring (kN m), the first in the direction
     /// of the flapwise moment, the others towards the edgewise one.
     pub bearing_loads_kn_m: Vec<f64>,
-    /// In words, what these figures are.
-    pub convention: String,
+    /// Time between the samples of pitch and moments that these figures are made of (s).
+    pub sample_interval: f64,
 }
 
 impl PitchDuty {
@@ -138,8 +147,8 @@ pub struct TurbineSummary {
     pub name: String,
     /// Turbine model.
     pub model: String,
-    /// What ran on it, in words ("helix ccw 4.0° St 0.25").
-    pub control: String,
+    /// What controlled it.
+    pub control: ControlSummary,
     /// Electrical power (W).
     pub power: Statistic,
     /// Thrust (N).
@@ -153,26 +162,27 @@ pub struct TurbineSummary {
     /// Power relative to the same turbine in the compared run, minus one (–).
     pub power_gain: Option<Statistic>,
     /// How its own pitch acts; absent where its controller need not know.
-    #[serde(default)]
     pub pitch_response: Option<PitchResponse>,
-    /// Azimuth offset with which its individual pitch control works (rad); absent where there is no such control, and in
-    /// records that do not tell.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Azimuth offset with which its individual pitch control works (rad); absent where there is no such control.
     pub individual_pitch_offset: Option<f64>,
     /// What it found of meandering and made of it; absent on a turbine that does not follow any.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub meandering: Option<MeanderingSummary>,
-    /// Standard deviations of the moments by channel and unit, such as `RootMyc1, standard deviation (kN m)`.
-    #[serde(default)]
-    pub load_deviations: BTreeMap<String, f64>,
-    /// 1-Hz damage-equivalent loads by channel, slope and unit, such as `RootMyc1, m = 10 (kN m)`.
-    pub damage_equivalent_loads: BTreeMap<String, f64>,
-    /// Both relative to the same turbine in the compared run, minus one (–), by the same keys; absent where nothing is
-    /// compared, and of a load that is zero there.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub load_changes: BTreeMap<String, Statistic>,
-    /// What pitching did to blade 1; absent in records that do not tell.
+    /// Standard deviations and damage-equivalent loads of its moments, by channel.
+    pub loads: Vec<Load>,
+    /// What pitching did to blade 1; absent where the series does not hold its root moments.
     pub pitch_duty: Option<PitchDuty>,
+}
+
+impl TurbineSummary {
+    /// The standard deviation of `channel`.
+    pub fn deviation(&self, channel: &str) -> Option<&Load> {
+        self.loads.iter().find(|load| load.channel == channel && load.kind == LoadKind::Deviation)
+    }
+
+    /// The damage-equivalent load of `channel`.
+    pub fn damage_equivalent(&self, channel: &str) -> Option<&Load> {
+        self.loads.iter().find(|load| load.channel == channel && load.kind.is_damage_equivalent())
+    }
 }
 
 /// What a run cost.
@@ -191,22 +201,21 @@ pub struct Cost {
     /// Memory of the flow field (bytes).
     pub memory: u64,
     /// Most that the program's process held at once until the run's numbers were made, runs before it in the same process
-    /// included (bytes); of a run that was resumed the most of any of its processes. Absent where the system does not tell, and
-    /// in older records.
+    /// included (bytes); of a run that was resumed the most of any of its processes. Absent where the system does not tell.
     pub peak_memory: Option<u64>,
 }
 
-/// The wind as asked for and as it arrived.
+/// The wind, as the case sets it and as the flow realised it, and how it was simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
-    /// Asked free-stream speed at hub height of the first turbine (m/s).
-    pub wind_speed: f64,
-    /// Asked turbulence intensity (–).
-    pub turbulence_intensity: f64,
-    /// Mean speed measured at hub height upstream of the first turbine (m/s).
-    pub arriving_wind_speed: f64,
-    /// Turbulence intensity measured there (–).
-    pub arriving_turbulence_intensity: f64,
+    /// Free-stream speed at hub height of the first turbine that the case sets (m/s).
+    pub target_wind_speed: f64,
+    /// Turbulence intensity that the case sets (–).
+    pub target_turbulence_intensity: f64,
+    /// Mean speed at hub height upstream of the first turbine (m/s).
+    pub realised_wind_speed: f64,
+    /// Turbulence intensity there (–).
+    pub realised_turbulence_intensity: f64,
     /// Power-law exponent of the mean profile (–); absent where that is logarithmic.
     pub shear_exponent: Option<f64>,
     /// Roughness length of the logarithmic mean profile (m); absent where that is a power law.
@@ -247,7 +256,7 @@ pub struct Summary {
     /// What it cost.
     pub cost: Cost,
     /// Warnings that a reader of the numbers must see.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Equally spaced samples of many channels, as `series.csv` holds them.

@@ -8,8 +8,10 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sense {
     /// Clockwise: blades pitch at rotor minus excitation frequency.
+    #[serde(rename = "cw")]
     Clockwise,
     /// Counter-clockwise: blades pitch at rotor plus excitation frequency.
+    #[serde(rename = "ccw")]
     CounterClockwise,
 }
 

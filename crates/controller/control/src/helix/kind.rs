@@ -80,6 +80,7 @@ impl ControllerKind for HelixKind {
             amplitude: values.angle("amplitude_deg"),
             strouhal: values.number("strouhal"),
             sense: Some(sense(values)),
+            phase_offset: None,
             start: values.number("start"),
             stop: values.optional_number("stop"),
             is_steady: true,

@@ -1,11 +1,13 @@
 //! `kind = "meandering"`: its checks, and how it is built.
 
+use super::outcome;
 use super::settings::{MeanderingSettings, TABLE};
 use super::{Decoupling, Meandering, Settings, TwoAxisSettings};
 use crate::Controller;
 use crate::excitation::Excitation;
 use crate::keys::starts_too_late;
 use crate::kind::{Control, ControlError, ControllerKind, Identification, Place, Site};
+use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::keys::{Objection, Table, Values};
 use basis::records::PitchResponse;
 use basis::registry::Named;
@@ -123,6 +125,18 @@ impl ControllerKind for MeanderingKind {
         let given = MeanderingSettings::of(control)?;
         let needs = given.decoupling.is_none() && given.amplitude != 0.0;
         needs.then_some(Identification::Loads { strouhal: given.strouhal })
+    }
+
+    fn outcome_channels(&self, _: &Control, n_blades: usize) -> Vec<String> {
+        outcome::channels(n_blades)
+    }
+
+    fn outcome(
+        &self,
+        control: &Control,
+        record: &dyn TurbineRecord,
+    ) -> Result<Outcome, MissingChannel> {
+        outcome::outcome(control, record)
     }
 
     fn pitch_response(&self, control: &Control) -> Option<PitchResponse> {

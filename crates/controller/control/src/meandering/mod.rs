@@ -18,6 +18,7 @@
 mod axis;
 mod decoupling;
 mod kind;
+mod outcome;
 mod reference;
 mod settings;
 

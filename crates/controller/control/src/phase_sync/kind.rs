@@ -8,13 +8,19 @@ use crate::keys::{sense, starts_too_late};
 use crate::kind::{
     Control, ControlError, ControllerKind, Identification, Motion, Pitching, Place, Site,
 };
+use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::Sense;
 use basis::angle::wrap_to_turn;
 use basis::keys::{Objection, Table, Values};
-use basis::records::PitchResponse;
+use basis::records::{Finding, PitchResponse};
 use basis::registry::Named;
 use estimation::HelixEstimator;
 use std::f64::consts::TAU;
+
+/// Signal with the share of the amplitude that trust allows.
+const SHARE: &str = "sync_share";
+/// Share of the time without a trusted phase beyond which a reader must know (–).
+const FADED_SHARE: f64 = 0.02;
 
 /// The helix in step with the one that comes from upstream.
 pub struct PhaseSyncKind;
@@ -104,6 +110,7 @@ impl ControllerKind for PhaseSyncKind {
             amplitude: given.amplitude,
             strouhal: given.strouhal,
             sense: Some(given.sense),
+            phase_offset: Some(given.offset),
             start: given.start,
             stop: None,
             is_steady: false,
@@ -124,6 +131,38 @@ impl ControllerKind for PhaseSyncKind {
 
     fn any_response(&self) -> Option<PitchResponse> {
         Some(PitchResponse::Transformation { azimuth_offset: 0.0 })
+    }
+
+    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<String> {
+        vec![SHARE.to_owned()]
+    }
+
+    fn outcome(
+        &self,
+        control: &Control,
+        record: &dyn TurbineRecord,
+    ) -> Result<Outcome, MissingChannel> {
+        if control.values().number("amplitude_deg") == 0.0 {
+            return Ok(Outcome::default());
+        }
+        let share = record.column(SHARE)?;
+        let n_faded = share.iter().filter(|share| **share < 0.5).count();
+        let faded = n_faded as f64 / share.len().max(1) as f64;
+        let finding = Finding {
+            name: "faded-share".to_owned(),
+            value: Some(faded),
+            unit: "–".to_owned(),
+            about: "share of the time in which the phase was not trusted and baseline ran"
+                .to_owned(),
+        };
+        let warning = || {
+            format!(
+                " could not trust the phase that it found {:.0} % of the time, and ran baseline meanwhile",
+                100.0 * faded
+            )
+        };
+        let warnings = Vec::from_iter((faded > FADED_SHARE).then(warning));
+        Ok(Outcome { findings: vec![finding], warnings, ..Outcome::default() })
     }
 
     fn warnings(&self, control: &Control) -> Vec<String> {

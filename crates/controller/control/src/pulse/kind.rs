@@ -63,6 +63,7 @@ impl ControllerKind for PulseKind {
             amplitude: values.angle("amplitude_deg"),
             strouhal: values.number("strouhal"),
             sense: None,
+            phase_offset: None,
             start: values.number("start"),
             stop: values.optional_number("stop"),
             is_steady: true,

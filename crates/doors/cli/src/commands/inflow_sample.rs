@@ -42,7 +42,7 @@ pub(crate) struct SampleArguments {
 pub(crate) fn run(arguments: &SampleArguments) -> miette::Result<()> {
     turbulence_box::check_name(&arguments.output)?;
     let setup = Prepared::read(&arguments.case, &arguments.overrides)?;
-    if setup.case.flow.solver != Solver::Uniform {
+    if setup.case.flow.solver != Solver::UNIFORM {
         return Err(miette!(
             help =
                 "take --set flow.solver=uniform; turbulence is made by `wakemix inflow generate`",

@@ -76,17 +76,17 @@ pub(super) fn offset_cost(
     let (prescribed, steps) = in_prescribed_wind(case, plan);
     let course = Course::new(wind_speed, &steps, model, rate, COUNTED);
     let cost = course.cost(&prescribed, &steps, model, 2);
-    let of_a_step = if case.flow.solver.is_prescribed() { 1.0 } else { UPDATES_OF_A_STEP };
+    let of_a_step = if case.flow.solver.resolves_induction { UPDATES_OF_A_STEP } else { 1.0 };
     ProbeCost { work: of_a_step * cost.work, ..cost }
 }
 
 /// `case` and its plan in prescribed wind, the turbines as they are.
 fn in_prescribed_wind(case: &Case, plan: &Plan) -> (Case, Plan) {
     let mut case = case.clone();
-    if case.flow.solver.is_prescribed() {
+    if !case.flow.solver.resolves_induction {
         return (case, plan.clone());
     }
-    case.flow.solver = Solver::Uniform;
+    case.flow.solver = Solver::UNIFORM;
     // That of the case is the lattice's.
     case.flow.step = None;
     let plan = without_air(&case, plan.diameter, plan.hub_height, plan.positions.clone());

@@ -37,7 +37,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             event: None,
         },
         flow: Flow {
-            solver: Solver::Lattice,
+            solver: Solver::LATTICE,
             cells_per_diameter: 16.0,
             upstream_diameters: 3.0,
             downstream_diameters: 4.0,
@@ -128,7 +128,7 @@ fn what_does_not_fit_is_named_with_its_fix() {
     let mut rough = case(&[[0.0, 0.0]]);
     rough.wind.shear = Shear::LogLaw { roughness_length: 16.0 };
     assert!(error(&rough).contains("wind.roughness_length = 16 m is too much for a hub at 150 m"));
-    rough.flow.solver = Solver::Uniform;
+    rough.flow.solver = Solver::UNIFORM;
     assert!(error(&rough).contains("15.0 m, a tenth of it, is the most"), "{}", error(&rough));
     rough.wind.shear = Shear::LogLaw { roughness_length: 15.0 };
     assert!(plan(&rough, &footprints()).is_ok());
@@ -150,7 +150,7 @@ fn what_does_not_fit_is_named_with_its_fix() {
 #[test]
 fn prescribed_wind_needs_no_cells_and_thins_its_rows() {
     let mut case = case(&[[0.0, 0.0]]);
-    case.flow.solver = Solver::Turbulence;
+    case.flow.solver = Solver::TURBULENCE;
     let plan = plan(&case, &footprints()).unwrap();
     assert_eq!((plan.cells(), plan.n_steps, plan.row_stride), (0, 75_000, 5));
     assert!((plan.row_interval() - PRESCRIBED_ROW).abs() < 1e-12);

@@ -15,6 +15,7 @@ use farm::case::{
     Case, Control, Flow, Ground, Mounted, Output, Placement, Run, Sides, Solver, Time,
     helix_upstream,
 };
+use farm::solvers::GROUND;
 use sensing::{SENSORS, SensorKind};
 
 /// The case that `entries` describe.
@@ -62,12 +63,7 @@ impl<'a> Section<'a> {
 }
 
 fn flow_of(section: &Section) -> Flow {
-    let solver = match section.choice("solver") {
-        "uniform" => Solver::Uniform,
-        "turbulence" => Solver::Turbulence,
-        "planes" => Solver::Planes,
-        _ => Solver::Lattice,
-    };
+    let solver = Solver::named(section.choice("solver")).unwrap_or_default();
     Flow {
         solver,
         cells_per_diameter: section.number("cells_per_diameter"),
@@ -87,7 +83,7 @@ fn ground_of(section: &Section) -> Ground {
         None => Ground::Slip,
         Some(Node { value: Value::Text(text), .. }) if text == "slip" => Ground::Slip,
         Some(Node { value: Value::Table(_), .. }) => {
-            let rough = section.section("ground", &keys::GROUND);
+            let rough = section.section("ground", &GROUND);
             Ground::Rough { roughness_length: rough.number("roughness_length") }
         }
         Some(node) => {
@@ -121,7 +117,7 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
             dynamic_stall: if section.has("stall") {
                 section.choice("stall") == "dynamic"
             } else {
-                solver.is_prescribed()
+                !solver.resolves_induction
             },
             dynamic_inflow: dynamic_inflow_of(section, solver),
             tower_influence: tower_influence_of(section, solver),

@@ -145,9 +145,14 @@ pub enum ProblemKind {
         /// Where it stands, dotted.
         key: String,
     },
-    /// Turbulence that a solver of air cannot take in.
-    #[error("Kaimal's turbulence has divergence, which the lattice would turn into sound")]
-    KaimalInLattice,
+    /// A value that the case's flow solver cannot take.
+    #[error("{why}")]
+    NotWithSolver {
+        /// The flow solver.
+        solver: &'static str,
+        /// Why not.
+        why: String,
+    },
     /// A key that must be there is not.
     #[error("`{key}` is missing")]
     Missing {
@@ -322,7 +327,9 @@ impl ProblemKind {
             Self::Syntax { .. } => "here",
             Self::UnknownKey { .. } => "no such key",
             Self::Missing { .. } => "should stand in here",
-            Self::KaimalInLattice => "not with flow.solver = \"lattice\"",
+            Self::NotWithSolver { solver, .. } => {
+                return format!("not with flow.solver = \"{solver}\"");
+            }
             Self::WrongType { expected, .. } => return format!("must be {expected}"),
             Self::OutOfRange { range, .. } => range,
             Self::UnknownChoice { .. } => "no such choice",

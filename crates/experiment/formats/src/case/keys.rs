@@ -9,7 +9,8 @@ pub(super) use instruments::{
 };
 
 use basis::keys::LeftOut::{Otherwise, Required, Value};
-use basis::keys::{Holds, Range, Slip, Table, above, from, key};
+use basis::keys::{Holds, Key, Range, Slip, Table, above, from, key};
+use farm::solvers;
 
 /// The whole file.
 pub(super) static ROOT: Table = Table {
@@ -74,91 +75,69 @@ pub(super) static WIND: Table = Table {
 /// Greatest seed: TOML's integers are signed.
 const SEED_MOST: u64 = i64::MAX as u64;
 
-/// `[flow]`.
+/// `[flow]`: what moves the air, what the kinds of flow solver need, what all need.
 pub(super) static FLOW: Table = Table {
     heading: "[flow]",
     about: "How the air is solved. The domain is sized from the layout; lengths are in diameters of the first turbine.",
-    keys: &[
-        key(
-            "solver",
-            Holds::Choice(&["lattice", "uniform", "turbulence", "planes"]),
-            "",
-            Value("\"lattice\""),
-            "`lattice`: lattice Boltzmann large-eddy simulation with actuator lines; turbines feel each other's wakes. The others prescribe the wind, and each turbine makes its own induction by blade-element momentum, without wakes: `uniform` the mean profile with `wind.veer_deg_per_m` and `wind.event`, without turbulence, `turbulence` with turbulence on it, `planes` from `wind.planes`. Only `lattice` uses the keys from here to `sides`.",
-        ),
-        key(
-            "cells_per_diameter",
-            from(8.0, 200.0),
-            "–",
-            Value("16"),
-            "Cells across the first rotor: the one figure that trades time for detail. Time grows with its fourth power.",
-        ),
-        key(
-            "upstream_diameters",
-            from(1.0, 50.0),
-            "D",
-            Value("3"),
-            "Air upstream of the foremost turbine.",
-        ),
-        key(
-            "downstream_diameters",
-            from(1.0, 100.0),
-            "D",
-            Value("4"),
-            "Air downstream of the last turbine.",
-        ),
-        key(
-            "width_diameters",
-            from(2.0, 100.0),
-            "D",
-            Value("6"),
-            "Width of the domain, on top of the lateral spread of the layout. Narrow domains block the flow.",
-        ),
-        key("height_diameters", from(1.0, 50.0), "D", Value("4"), "Height of the domain."),
-        key(
-            "ground",
-            Holds::Ground(&GROUND),
-            "",
-            Value("\"slip\""),
-            "`\"slip\"`: the air slips along the ground. `{ roughness_length = 0.001 }`: wall stress after the logarithmic law.",
-        ),
-        key(
-            "sides",
-            Holds::Choice(&["periodic", "slip"]),
-            "",
-            Value("\"periodic\""),
-            "`periodic`: what leaves on one side enters on the other. `slip`: the air slips along them.",
-        ),
-        key(
-            "step",
-            above(0.0, 10.0),
-            "s",
-            Otherwise("chosen from tip speed and wind speed; 0.02 s in prescribed wind"),
-            "Step of the air, which is the control interval too.",
-        )
-        .mistaken(&[Slip { unit: "ms", factor: 0.001 }]),
-        key(
-            "threads",
-            Holds::Whole { least: 1, most: 1024 },
-            "–",
-            Otherwise("all cores"),
-            "Threads. The result does not depend on it.",
-        ),
-    ],
+    keys: &FLOW_KEYS,
 };
 
-/// `flow.ground` of a rough ground.
-pub(super) static GROUND: Table = Table {
-    heading: "flow.ground = { … }",
-    about: "A rough ground.",
-    keys: &[key(
-        "roughness_length",
-        above(0.0, 5.0),
-        "m",
-        Required,
-        "Roughness length z₀: about 0.0002 on calm sea, 0.001 on open sea, 0.03 on farmland.",
+const SOLVER_KEY: Key = key(
+    "solver",
+    Holds::Choice(&solvers::NAMES),
+    "",
+    Value("\"lattice\""),
+    "`lattice`: lattice Boltzmann large-eddy simulation with actuator lines; turbines feel each other's wakes. The others prescribe the wind, and each turbine makes its own induction by blade-element momentum, without wakes: `uniform` the mean profile with `wind.veer_deg_per_m` and `wind.event`, without turbulence, `turbulence` with turbulence on it, `planes` from `wind.planes`. Only `lattice` uses the keys from here to `sides`.",
+);
+
+const COMMON_KEYS: [Key; 2] = [
+    key(
+        "step",
+        above(0.0, 10.0),
+        "s",
+        Otherwise("chosen from tip speed and wind speed; 0.02 s in prescribed wind"),
+        "Step of the air, which is the control interval too.",
     )
-    .mistaken(&[Slip { unit: "mm", factor: 0.001 }])],
+    .mistaken(&[Slip { unit: "ms", factor: 0.001 }]),
+    key(
+        "threads",
+        Holds::Whole { least: 1, most: 1024 },
+        "–",
+        Otherwise("all cores"),
+        "Threads. The result does not depend on it.",
+    ),
+];
+
+/// Keys of `[flow]` (–).
+const N_FLOW_KEYS: usize = {
+    let mut n = 1 + COMMON_KEYS.len();
+    let mut kind = 0;
+    while kind < solvers::ALL.len() {
+        n += solvers::ALL[kind].keys.len();
+        kind += 1;
+    }
+    n
+};
+
+static FLOW_KEYS: [Key; N_FLOW_KEYS] = {
+    let mut keys = [SOLVER_KEY; N_FLOW_KEYS];
+    let mut n = 1;
+    let mut kind = 0;
+    while kind < solvers::ALL.len() {
+        let own = solvers::ALL[kind].keys;
+        let mut index = 0;
+        while index < own.len() {
+            keys[n] = own[index];
+            (n, index) = (n + 1, index + 1);
+        }
+        kind += 1;
+    }
+    let mut index = 0;
+    while index < COMMON_KEYS.len() {
+        keys[n] = COMMON_KEYS[index];
+        (n, index) = (n + 1, index + 1);
+    }
+    keys
 };
 
 /// `[time]`.

@@ -3,6 +3,7 @@
 use super::error::ProblemKind;
 use super::section::Section;
 use farm::case::{DynamicInflow, Placement, Solver, TowerInfluence};
+use farm::solvers::without_induction;
 
 /// Words for what a tower does to the wind.
 const TOWER_INFLUENCES: [(&str, TowerInfluence); 4] = [
@@ -14,15 +15,16 @@ const TOWER_INFLUENCES: [(&str, TowerInfluence); 4] = [
 
 /// How the induction of `turbine` follows its loads; notes where the air of `solver`, or what else is asked, has no use for it.
 pub(super) fn dynamic_inflow_of(turbine: &Section, solver: Solver) -> DynamicInflow {
-    if !solver.is_prescribed() {
-        let why = "the air of flow.solver = \"lattice\" has the rotor's wake in it";
+    if solver.resolves_induction {
+        let why =
+            format!("the air of flow.solver = \"{}\" has the rotor's wake in it", solver.name);
         for key in ["dynamic_inflow", "slow_constant"].into_iter().filter(|key| turbine.has(key)) {
-            note_no_use(turbine, key, why, WITHOUT_LATTICE);
+            note_no_use(turbine, key, &why, &other_solver());
         }
     }
     let word = turbine.choice("dynamic_inflow");
     let slow_constant = turbine.optional_number("slow_constant");
-    if solver.is_prescribed() && word != "two-constant" && slow_constant.is_some() {
+    if !solver.resolves_induction && word != "two-constant" && slow_constant.is_some() {
         let why = format!("it goes with dynamic_inflow = \"two-constant\", not \"{word}\"");
         note_no_use(turbine, "slow_constant", &why, "leave it out");
     }
@@ -38,16 +40,18 @@ pub(super) fn tower_influence_of(turbine: &Section, solver: Solver) -> TowerInfl
     let word = turbine.choice("tower_influence");
     let known = TOWER_INFLUENCES.iter().find(|(name, _)| *name == word);
     let influence = known.map_or(TowerInfluence::None, |(_, influence)| *influence);
-    if influence != TowerInfluence::None && !solver.is_prescribed() {
-        let why = "in flow.solver = \"lattice\" the tower's drag acts on the air itself";
-        note_no_use(turbine, "tower_influence", why, WITHOUT_LATTICE);
+    if influence != TowerInfluence::None && solver.resolves_induction {
+        let name = solver.name;
+        let why = format!("in flow.solver = \"{name}\" the tower's drag acts on the air itself");
+        note_no_use(turbine, "tower_influence", &why, &other_solver());
     }
     influence
 }
 
 /// What mends a key that goes with prescribed wind.
-const WITHOUT_LATTICE: &str =
-    "leave it out, or take flow.solver = \"uniform\", \"turbulence\" or \"planes\"";
+fn other_solver() -> String {
+    format!("leave it out, or take flow.solver = {}", without_induction())
+}
 
 fn note_no_use(turbine: &Section, key: &str, why: &str, fix: &str) {
     let kind = ProblemKind::NoUse { key: turbine.key_path(key), why: why.to_owned() };

@@ -1,10 +1,11 @@
 //! The table of keys as a page for people and as a schema for editors.
 
 use super::keys::{
-    EVENTS, FLOW, GROUND, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND,
+    EVENTS, FLOW, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND,
 };
 use basis::keys::{Holds, Key, LeftOut, Table};
 use control::CONTROLLERS;
+use farm::solvers::GROUND;
 use sensing::SENSORS;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;

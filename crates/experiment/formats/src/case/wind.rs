@@ -5,9 +5,8 @@ use super::error::ProblemKind;
 use super::keys::{self, EVENTS};
 use super::section::Section;
 use super::write::{degrees, quoted};
-use farm::case::{
-    CirclingDisk, Flow, Sense, Shear, Sides, Solver, TurbulenceModel, Wind, WindEvent,
-};
+use farm::case::{CirclingDisk, Flow, Sense, Shear, TurbulenceModel, Wind, WindEvent};
+use farm::solvers::{Fault, Objection};
 use std::fmt::Write;
 
 /// The wind that `section` describes; not a number where it is missing.
@@ -57,62 +56,19 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
     let note = |key: &str, kind, fix: &str| {
         section.findings().note(section.span_of(key), kind, Some(fix.into()));
     };
-    let no_use = |key: &str, why: &str| ProblemKind::NoUse {
-        key: section.key_path(key),
-        why: why.to_owned(),
-    };
-    if flow.solver == Solver::Planes && wind.planes.is_none() {
-        let kind = ProblemKind::Missing { key: "wind.planes".to_owned() };
-        let fix = "flow.solver = \"planes\" reads the wind from a file: planes = \"field.bts\"";
-        note("speed", kind, fix);
-    }
-    if wind.planes.is_some() {
-        let why = match flow.solver {
-            Solver::Lattice => Some("flow.solver = \"lattice\" reads no wind from a file"),
-            Solver::Uniform => Some("flow.solver = \"uniform\" reads no wind from a file"),
-            Solver::Turbulence => Some("flow.solver = \"turbulence\" makes its own"),
-            Solver::Planes => None,
+    for Objection { key, fault, fix } in (flow.solver.objections)(wind, flow) {
+        let kind = match fault {
+            Fault::NoUse(why) => {
+                ProblemKind::NoUse { key: section.key_path(key), why: why.to_owned() }
+            }
+            Fault::Refused(why) => {
+                ProblemKind::NotWithSolver { solver: flow.solver.name, why: why.to_owned() }
+            }
+            Fault::Missing(missing) => ProblemKind::Missing { key: missing.to_owned() },
         };
-        if let Some(why) = why {
-            note("planes", no_use("planes", why), "leave it out, or take flow.solver = \"planes\"");
-        }
-    }
-    if flow.solver == Solver::Planes && section.has("roughness_length") {
-        let why = "flow.solver = \"planes\" takes the wind as the file has it";
-        note("roughness_length", no_use("roughness_length", why), "leave it out");
-    }
-    if flow.solver == Solver::Lattice && wind.turbulence_model == TurbulenceModel::Kaimal {
-        let fix = "take turbulence_model = \"mann\", or flow.solver = \"turbulence\"";
-        note("turbulence_model", ProblemKind::KaimalInLattice, fix);
-    }
-    if wind.veer != 0.0 {
-        let objection = match flow.solver {
-            Solver::Lattice if flow.sides == Sides::Slip => Some((
-                "a wind that veers blows through sides along which the air is to slip",
-                "leave it out, or take flow.sides = \"periodic\"",
-            )),
-            Solver::Planes => Some((
-                "flow.solver = \"planes\" takes the wind as the file has it",
-                "leave it out, or take another flow.solver",
-            )),
-            Solver::Lattice | Solver::Uniform | Solver::Turbulence => None,
-        };
-        if let Some((why, fix)) = objection {
-            note("veer_deg_per_m", no_use("veer_deg_per_m", why), fix);
-        }
+        note(key, kind, fix);
     }
     if let Some(event) = &wind.event {
-        let why = match flow.solver {
-            Solver::Lattice => {
-                Some("the air of flow.solver = \"lattice\" would answer it with sound")
-            }
-            Solver::Turbulence => Some("flow.solver = \"turbulence\" has chance in it"),
-            Solver::Planes => Some("flow.solver = \"planes\" takes the wind as the file has it"),
-            Solver::Uniform => None,
-        };
-        if let Some(why) = why {
-            note("event", no_use("event", why), "leave it out, or take flow.solver = \"uniform\"");
-        }
         let start = start_of(event);
         if start >= duration {
             let key = section.key_path("event.start");

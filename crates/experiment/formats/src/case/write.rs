@@ -4,7 +4,7 @@ use super::instruments::instruments_text;
 use super::kinds;
 use super::momentum::momentum_text;
 use super::wind::write_wind;
-use farm::case::{Case, Ground, Sides, Solver};
+use farm::case::{Case, Ground, Sides};
 use std::fmt::Write;
 
 /// The case file that reads back as `case`, with every default written out.
@@ -23,13 +23,7 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
     write_wind(text, &case.wind)?;
 
     let flow = &case.flow;
-    let solver = match flow.solver {
-        Solver::Lattice => "lattice",
-        Solver::Uniform => "uniform",
-        Solver::Turbulence => "turbulence",
-        Solver::Planes => "planes",
-    };
-    writeln!(text, "\n[flow]\nsolver = \"{solver}\"")?;
+    writeln!(text, "\n[flow]\nsolver = \"{}\"", flow.solver.name)?;
     writeln!(text, "cells_per_diameter = {:?}", flow.cells_per_diameter)?;
     writeln!(text, "upstream_diameters = {:?}", flow.upstream_diameters)?;
     writeln!(text, "downstream_diameters = {:?}", flow.downstream_diameters)?;

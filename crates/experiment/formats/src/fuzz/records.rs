@@ -4,42 +4,12 @@ use super::{Refusal, survives};
 use crate::case;
 use crate::checkpoint::{CheckpointReader, CheckpointWriter};
 use crate::records::{self, Manifest, RunFolder, SeriesWriter, read_study};
-use basis::records::{Conditions, Cost, Plane, PlaneAxes, SCHEMA_VERSION, Statistic, Summary};
+use basis::records::{Plane, PlaneAxes, examples};
 use farm::case::{Case, Flow, Output, Time, Wind};
 use std::fs;
 use std::path::Path;
 
 const CASE: &str = include_str!("../../../../../cases/quickstart.toml");
-
-fn summary() -> Summary {
-    let statistic =
-        Statistic { mean: 3e6, standard_deviation: 0.3, half_width_95: None, n_blocks: 2 };
-    Summary {
-        schema_version: SCHEMA_VERSION,
-        case: "quickstart".into(),
-        run: "greedy".into(),
-        compare_with: None,
-        conditions: Conditions {
-            wind_speed: 9.0,
-            turbulence_intensity: 0.05,
-            arriving_wind_speed: 8.9,
-            arriving_turbulence_intensity: 0.04,
-            shear_exponent: Some(0.1),
-            roughness_length: None,
-            seed: 1,
-            rotor_diameter: 240.0,
-            cells_per_diameter: Some(16.0),
-            interval: 0.1,
-            spin_up: 300.0,
-            duration: 1500.0,
-        },
-        turbines: Vec::new(),
-        array_power: statistic,
-        array_power_gain: None,
-        cost: Cost::default(),
-        warnings: vec!["a warning".into()],
-    }
-}
 
 fn plane() -> Plane {
     Plane {
@@ -57,7 +27,7 @@ fn plane() -> Plane {
 /// The files of a study of one run.
 fn study() -> Vec<(&'static str, Vec<u8>)> {
     let study = tempfile::tempdir().unwrap();
-    let case = parts();
+    let case = case::parse("quickstart.toml", CASE, &[]).unwrap();
     let folder = RunFolder::new(study.path(), "run");
     folder.create().unwrap();
     let manifest = Manifest::start("0.1.0", &case, CASE, 0, [("iea-15mw", "a turbine")]);
@@ -69,7 +39,7 @@ fn study() -> Vec<(&'static str, Vec<u8>)> {
     records::write_phase_plane(&folder, 0.5, &plane()).unwrap();
     // A run without volumes has an empty folder of them, which a file of another kind keeps here.
     fs::write(folder.volumes_path().join("kept"), []).unwrap();
-    records::write_summary(&folder, &summary()).unwrap();
+    records::write_summary(&folder, &examples::full()).unwrap();
     let files = [
         "run/manifest.json",
         "run/summary.json",

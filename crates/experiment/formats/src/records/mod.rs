@@ -8,6 +8,8 @@ mod probes;
 mod series;
 mod series_file;
 mod study;
+#[cfg(test)]
+mod summary_page;
 
 pub use manifest::{Machine, Manifest, read_manifest, sha256, write_manifest};
 pub use probes::{ProbeRecord, read_probes, write_probes};
@@ -18,8 +20,9 @@ pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
 use crate::{FileError, atomic, netcdf, vtk};
 use basis::records::{Plane, SCHEMA_VERSION, Summary};
 use flow::lattice::Volume;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -218,17 +221,30 @@ pub fn write_summary(folder: &RunFolder, summary: &Summary) -> Result<(), FileEr
 /// Reads the summary of a run.
 ///
 /// # Errors
-/// [`FileError::System`], and [`FileError::Content`] when it is something else or of another version.
+/// [`FileError::System`], and [`FileError::Content`] when it is something else or of another version of the layout.
 pub fn read_summary(folder: &RunFolder) -> Result<Summary, FileError> {
-    let path = folder.summary_path();
-    let summary: Summary = read_json(&path, SUMMARY)?;
-    if summary.schema_version != SCHEMA_VERSION {
-        let version = summary.schema_version;
-        let problem = format!("schema_version is {version}, this program knows {SCHEMA_VERSION}");
-        let fix = "use the version of the program that wrote it, or make the run again";
-        return Err(FileError::content(SUMMARY, &path, problem, fix));
+    #[derive(Deserialize)]
+    struct Layout {
+        schema_version: u32,
     }
-    Ok(summary)
+    let path = folder.summary_path();
+    let text = atomic::read_text(&path, SUMMARY)?;
+    // Another version holds other fields: what it is comes before what it lacks.
+    let Layout { schema_version } = parse_json(&text, &path, SUMMARY)?;
+    let (writer, fix) = match schema_version.cmp(&SCHEMA_VERSION) {
+        Ordering::Equal => return parse_json(&text, &path, SUMMARY),
+        Ordering::Less => (
+            "an earlier",
+            "make the run again with `wakemix run CASE --overwrite`, or read it with the wakemix that manifest.json names",
+        ),
+        Ordering::Greater => {
+            ("a later", "use the wakemix that manifest.json names, or a later one")
+        }
+    };
+    let problem = format!(
+        "its schema_version is {schema_version}, that of {writer} wakemix; this one reads {SCHEMA_VERSION}"
+    );
+    Err(FileError::content(SUMMARY, &path, problem, fix))
 }
 
 fn write_json(path: &Path, what: &'static str, value: &impl Serialize) -> Result<(), FileError> {
@@ -238,8 +254,15 @@ fn write_json(path: &Path, what: &'static str, value: &impl Serialize) -> Result
 }
 
 fn read_json<T: DeserializeOwned>(path: &Path, what: &'static str) -> Result<T, FileError> {
-    let text = atomic::read_text(path, what)?;
-    serde_json::from_str(&text).map_err(|error| {
+    parse_json(&atomic::read_text(path, what)?, path, what)
+}
+
+fn parse_json<T: DeserializeOwned>(
+    text: &str,
+    path: &Path,
+    what: &'static str,
+) -> Result<T, FileError> {
+    serde_json::from_str(text).map_err(|error| {
         // The library's message ends with line and column.
         let fix = "restore the file, or make the run again";
         FileError::content(what, path, error.to_string(), fix)

@@ -2,7 +2,7 @@
 
 use super::{Manifest, RunFolder, SeriesFile, read_manifest, read_summary};
 use crate::{FileError, netcdf};
-use basis::records::{Plane, Summary};
+use basis::records::{Plane, Summary, Warning, WarningKind};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub struct StudyRecords {
     /// Version of the program that made the run that started last.
     pub version: String,
     /// What a reader of the numbers must know: runs of unlike versions of the case.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// What one run left.
@@ -129,17 +129,18 @@ fn place(run: &Manifest) -> (usize, &str) {
     (run.run_index, &run.run)
 }
 
-fn warnings(runs: &[RunRecords], latest: &Manifest) -> Vec<String> {
+fn warnings(runs: &[RunRecords], latest: &Manifest) -> Vec<Warning> {
     let differs = |run: &&RunRecords| {
         let run = &run.manifest;
         run.case_sha256 != latest.case_sha256 || run.turbines_sha256 != latest.turbines_sha256
     };
-    let warn = |run: &RunRecords| {
-        let run = &run.manifest.run;
-        format!(
-            "run {run} was made with another version of the case or of a turbine than run {}",
-            latest.run
-        )
+    let warn = |run: &RunRecords| Warning {
+        kind: WarningKind::MixedRuns,
+        turbine: None,
+        message: format!(
+            "run {} was made with another version of the case or of a turbine than run {}",
+            run.manifest.run, latest.run
+        ),
     };
     runs.iter().filter(differs).map(warn).collect()
 }
@@ -198,42 +199,14 @@ mod tests {
     use super::super::*;
     use super::*;
     use basis::Vector3;
-    use basis::records::{Conditions, Cost, PlaneAxes, Statistic};
+    use basis::records::{PlaneAxes, examples};
 
     const CASE: &str = include_str!("../../../../../cases/quickstart.toml");
 
     fn summary(run: &str) -> Summary {
-        let statistic = |mean| Statistic {
-            mean,
-            standard_deviation: 0.1 + 0.2,
-            half_width_95: None,
-            n_blocks: 2,
-        };
-        Summary {
-            schema_version: SCHEMA_VERSION,
-            case: "quickstart".into(),
-            run: run.into(),
-            compare_with: None,
-            conditions: Conditions {
-                wind_speed: 9.0,
-                turbulence_intensity: 0.05,
-                arriving_wind_speed: 8.9,
-                arriving_turbulence_intensity: 0.04,
-                shear_exponent: Some(0.1),
-                roughness_length: None,
-                seed: 1,
-                rotor_diameter: 240.0,
-                cells_per_diameter: Some(16.0),
-                interval: 60.0 / 419.0,
-                spin_up: 300.0,
-                duration: 1500.0,
-            },
-            turbines: Vec::new(),
-            array_power: statistic(1.1e7 / 3.0),
-            array_power_gain: None,
-            cost: Cost::default(),
-            warnings: vec!["a warning".into()],
-        }
+        // Numbers whose digits do not end.
+        let turbine = examples::turbine("T1", 1.1e7 / 3.0);
+        Summary { run: run.to_owned(), ..examples::summary(run, vec![turbine]) }
     }
 
     fn plane(name: &str, averaged: f64) -> Plane {
@@ -302,19 +275,34 @@ mod tests {
     }
 
     #[test]
-    fn an_older_summary_does_not_tell_the_peak_of_memory() {
+    fn a_summary_with_every_field_comes_back_to_the_bit() {
         let study = tempfile::tempdir().unwrap();
         let folder = leave(study.path(), 0, CASE);
-        let mut told = summary("baseline");
-        told.cost.peak_memory = Some(123_456_789);
-        write_summary(&folder, &told).unwrap();
-        assert_eq!(read_summary(&folder).unwrap(), told);
-        let text = fs::read_to_string(folder.summary_path()).unwrap();
-        // The last of its table: the comma before it goes with it.
-        let older = text.replace(",\n    \"peak_memory\": 123456789", "");
-        assert_ne!(older, text);
-        fs::write(folder.summary_path(), older).unwrap();
-        assert_eq!(read_summary(&folder).unwrap(), summary("baseline"));
+        let mut full = examples::full();
+        full.array_power.mean = 1.1e7 / 3.0;
+        full.turbines[0].loads[1].value = 0.1 + 0.2;
+        write_summary(&folder, &full).unwrap();
+        assert_eq!(read_summary(&folder).unwrap(), full);
+    }
+
+    #[test]
+    fn a_summary_of_another_layout_says_who_wrote_it_and_what_to_do() {
+        let study = tempfile::tempdir().unwrap();
+        let folder = leave(study.path(), 0, CASE);
+        let other = |version: u32| {
+            let text = format!("{{\"schema_version\": {version}, \"case\": \"quickstart\"}}");
+            fs::write(folder.summary_path(), text).unwrap();
+            let error = read_summary(&folder).unwrap_err();
+            let help = miette::Diagnostic::help(&error).unwrap().to_string();
+            (error.to_string(), help)
+        };
+        let (problem, help) = other(1);
+        let told = "its schema_version is 1, that of an earlier wakemix; this one reads 2";
+        assert!(problem.contains(told), "{problem}");
+        assert!(help.contains("--overwrite") && help.contains("manifest.json"), "{help}");
+        let (problem, help) = other(3);
+        assert!(problem.contains("schema_version is 3, that of a later wakemix"), "{problem}");
+        assert!(help.contains("a later one"), "{help}");
     }
 
     #[test]

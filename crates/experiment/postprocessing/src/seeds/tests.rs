@@ -1,7 +1,7 @@
 //! Synthetic studies of a row of three in several winds.
 
 use super::*;
-use basis::records::{Conditions, Cost, SCHEMA_VERSION, TurbineSummary};
+use basis::records::{Conditions, examples};
 use formats::records::RunFolder;
 use tempfile::TempDir;
 
@@ -39,61 +39,18 @@ control.T3 = { kind = "absent" }
 /// Power at baseline (W) of T3, T1 and T2.
 const BASELINE: [f64; 3] = [5e6, 12e6, 4e6];
 
-fn statistic(mean: f64) -> Statistic {
-    Statistic { mean, standard_deviation: 0.0, half_width_95: None, n_blocks: 1 }
-}
-
-fn turbine(name: &str, power: f64) -> TurbineSummary {
-    TurbineSummary {
-        name: name.into(),
-        model: "iea-15mw".into(),
-        control: "baseline".into(),
-        power: statistic(power),
-        thrust: statistic(1.9e6),
-        rotor_speed: statistic(0.7),
-        pitch: statistic(0.0),
-        delivered_pitch: None,
-        power_gain: None,
-        pitch_response: None,
-        individual_pitch_offset: None,
-        meandering: None,
-        load_deviations: Default::default(),
-        damage_equivalent_loads: Default::default(),
-        load_changes: Default::default(),
-        pitch_duty: None,
-    }
-}
-
 /// A complete run number `index` of the case in `text`, with the powers (W) of its turbines.
 fn leave(folder: &Path, text: &str, index: usize, powers: &[(&str, f64)]) {
     let case = case::parse("row.toml", text, &[]).expect("a sound case");
     let manifest = Manifest::start("0.1.0", &case, text, index, [("iea-15mw", "a turbine")]);
     let run = RunFolder::new(folder, &manifest.run);
     run.create().expect("a folder");
+    let turbines = powers.iter().map(|(name, power)| examples::turbine(name, *power)).collect();
+    let made = examples::summary(&manifest.run, turbines);
     let summary = Summary {
-        schema_version: SCHEMA_VERSION,
-        case: "row".into(),
-        run: manifest.run.clone(),
         compare_with: (index > 0).then(|| "baseline".to_owned()),
-        conditions: Conditions {
-            wind_speed: 9.0,
-            turbulence_intensity: 0.05,
-            arriving_wind_speed: 8.9,
-            arriving_turbulence_intensity: 0.05,
-            shear_exponent: Some(0.1),
-            roughness_length: None,
-            seed: case.wind.seed,
-            rotor_diameter: 240.0,
-            cells_per_diameter: Some(16.0),
-            interval: 0.1,
-            spin_up: 300.0,
-            duration: 900.0,
-        },
-        turbines: powers.iter().map(|(name, power)| turbine(name, *power)).collect(),
-        array_power: statistic(powers.iter().map(|(_, power)| power).sum()),
-        array_power_gain: None,
-        cost: Cost::default(),
-        warnings: Vec::new(),
+        conditions: Conditions { seed: case.wind.seed, ..made.conditions },
+        ..made
     };
     records::write_manifest(&run, &manifest.finish()).expect("a file");
     records::write_summary(&run, &summary).expect("a file");

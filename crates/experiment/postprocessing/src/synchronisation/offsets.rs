@@ -15,7 +15,7 @@ const FEWEST: usize = 6;
 const N_CURVE: usize = 121;
 /// Half width of a 95 % interval over the standard deviation (–).
 const HALF_WIDTH: f64 = 1.96;
-/// Loads that are shown, by the channel that a summary's load begins with, and their titles.
+/// Channels whose damage-equivalent loads are shown, and their titles.
 const LOADS: [(&str, &str); 4] = [
     ("RootMyc1", "blade root flapwise"),
     ("RootMxc1", "blade root edgewise"),
@@ -144,8 +144,7 @@ fn turbine<'a>(study: &'a Synchronised, run: &Joined, name: &str) -> Option<&'a 
 }
 
 fn load(turbine: &TurbineSummary, channel: &str) -> Option<f64> {
-    let mut loads = turbine.damage_equivalent_loads.iter();
-    loads.find(|(name, _)| name.starts_with(channel)).map(|(_, load)| *load)
+    turbine.damage_equivalent(channel).map(|load| load.value)
 }
 
 /// Change of the power of the turbines called `names` together.

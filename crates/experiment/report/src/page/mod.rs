@@ -1,5 +1,7 @@
 //! The page: one HTML file with style, script, figures and case file inside.
 
+mod control;
+mod loads;
 mod tables;
 
 use crate::ReportError;
@@ -44,19 +46,20 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
         warnings => warnings,
         chips => chips(study),
         conditions => tables::conditions(study),
-        excitations => tables::excitations(study),
-        responses => tables::responses(study),
+        excitations => control::excitations(study),
+        responses => control::responses(study),
         rows => tables::results(study),
         has_gains => best.is_some(),
-        load_conventions => tables::load_conventions(study),
-        loads => tables::loads(study),
-        bearings => tables::bearings(study),
-        meanderings => tables::meanderings(study),
+        load_conventions => loads::conventions(study),
+        loads => loads::loads(study),
+        bearings => loads::bearings(study),
+        meanderings => control::meanderings(study),
+        findings => control::findings(study),
         run_names => study.names().into_iter().map(|(_, name)| name.to_owned()).collect::<Vec<_>>(),
         conditions_line => sentence::conditions_line(study, None),
         small_print => small_print(study),
         parts => parts(figures)?,
-        phases => tables::phases(study),
+        phases => control::phases(study),
         costs => tables::costs(study),
         case_text => records.case_text.clone(),
     })?;
@@ -85,7 +88,8 @@ fn chips(study: &Study) -> Vec<Value> {
         .map(|(run, &colour)| {
             let mut controls: Vec<String> = sentence::excitation_conditions(study, run);
             if controls.is_empty() {
-                controls = run.summary.turbines.iter().map(|t| t.control.clone()).collect();
+                let turbines = run.summary.turbines.iter();
+                controls = turbines.map(|turbine| turbine.control.description.clone()).collect();
                 controls.dedup();
             }
             context! {
@@ -103,9 +107,9 @@ fn warnings(study: &Study) -> Vec<Vec<String>> {
     let mut found: Vec<(&str, Vec<String>)> = Vec::new();
     for run in study.runs() {
         for warning in &run.summary.warnings {
-            match found.iter_mut().find(|(known, _)| known == warning) {
+            match found.iter_mut().find(|(known, _)| *known == warning.message) {
                 Some((_, runs)) => runs.push(run.summary.run.clone()),
-                None => found.push((warning, vec![run.summary.run.clone()])),
+                None => found.push((&warning.message, vec![run.summary.run.clone()])),
             }
         }
     }
@@ -170,7 +174,7 @@ fn parts(figures: &Figures) -> Result<Vec<Value>, ReportError> {
         ("Power", "", &["gains", "gain-over-amplitude", "power"]),
         (
             "The wake",
-            "Velocities are relative to the free stream asked for at hub height; lengths to the \
+            "Velocities are relative to the target free stream at hub height; lengths to the \
              first turbine's rotor diameter D.",
             &[
                 "mean-hub-height",

@@ -1,11 +1,11 @@
 //! A study in closed form: Gaussian wakes that a helix makes recover sooner, sinusoidal pitch.
 
+use basis::Sense;
 use basis::records::{
-    Conditions, Cost, DeliveredPitch, PitchResponse, Plane, PlaneAxes, SCHEMA_VERSION, Series,
-    Statistic, Summary, TurbineSummary,
+    Conditions, Cost, DeliveredPitch, PitchResponse, Plane, PlaneAxes, Series, Statistic, Summary,
+    TurbineSummary, Warning, WarningKind, examples,
 };
 use report::{RunRecords, StudyRecords};
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Rotor diameter (m).
@@ -91,14 +91,13 @@ fn run(recipe: &Recipe) -> RunRecords {
         (!is_baseline).then_some(statistic)
     };
     let excitation = STROUHAL * WIND_SPEED / DIAMETER;
-    let sense = if recipe.sense > 0.0 { "ccw" } else { "cw" };
+    let sense = if recipe.sense > 0.0 { Sense::CounterClockwise } else { Sense::Clockwise };
+    let made = |index: usize, name: &str| examples::turbine(name, powers[index]);
     let turbines = ["T1", "T2"].iter().enumerate().map(|(index, name)| TurbineSummary {
-        name: (*name).into(),
-        model: "iea-15mw".into(),
         control: if index == 0 && !is_baseline {
-            format!("helix {sense} {:.1}° St {STROUHAL}", recipe.amplitude_deg)
+            examples::helix(sense, recipe.amplitude_deg)
         } else {
-            "baseline".into()
+            made(index, name).control
         },
         power: statistic(powers[index], 0.02 + 0.02 * index as f64),
         thrust: statistic([1.7e6, 1.1e6][index], 0.01),
@@ -117,34 +116,21 @@ fn run(recipe: &Recipe) -> RunRecords {
             delay: 3.5,
             gain: 1.6e8,
         }),
-        individual_pitch_offset: None,
-        meandering: None,
-        load_deviations: BTreeMap::new(),
-        damage_equivalent_loads: BTreeMap::new(),
-        load_changes: BTreeMap::new(),
-        pitch_duty: None,
+        ..made(index, name)
     });
+    let summary = examples::summary(recipe.name, turbines.collect());
     RunRecords {
         summary: Summary {
-            schema_version: SCHEMA_VERSION,
             case: "quickstart".into(),
-            run: recipe.name.into(),
             compare_with: (!is_baseline).then(|| "baseline".into()),
             conditions: Conditions {
-                wind_speed: WIND_SPEED,
-                turbulence_intensity: 0.05,
-                arriving_wind_speed: 8.94,
-                arriving_turbulence_intensity: 0.046,
-                shear_exponent: Some(0.1),
-                roughness_length: None,
-                seed: 1,
+                target_wind_speed: WIND_SPEED,
+                realised_wind_speed: 8.94,
                 rotor_diameter: DIAMETER,
-                cells_per_diameter: Some(16.0),
-                interval: 0.125,
                 spin_up: SPIN_UP,
                 duration: DURATION,
+                ..summary.conditions
             },
-            turbines: turbines.collect(),
             array_power: statistic(powers[0] + powers[1], 0.025),
             array_power_gain: gain(recipe.gains[2], 0.012),
             cost: Cost {
@@ -159,8 +145,11 @@ fn run(recipe: &Recipe) -> RunRecords {
             warnings: if is_baseline {
                 Vec::new()
             } else {
-                vec!["power of T1 differs from blade-element momentum by 6.1 % (limit 5 %)".into()]
+                let message =
+                    "power of T1 differs from blade-element momentum by 6.1 % (limit 5 %)";
+                vec![Warning { kind: WarningKind::Setup, turbine: None, message: message.into() }]
             },
+            ..summary
         },
         series: series(recipe, powers),
         mean_planes: planes(recipe, None),

@@ -45,9 +45,9 @@ impl Output for InstantPlanes {
     }
 
     fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        if let Some(lattice) = scene.farm.flow().lattice() {
+        if let Some(fields) = scene.farm.flow().fields() {
             for slice in &self.slices {
-                write_instant_plane(scene.folder, self.n_kept, &slice.plane(lattice))?;
+                write_instant_plane(scene.folder, self.n_kept, &slice.plane(fields))?;
             }
             self.n_kept += 1;
         }

@@ -27,9 +27,9 @@ impl Output for LastPlanes {
     }
 
     fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        if let Some(lattice) = scene.farm.flow().lattice() {
+        if let Some(fields) = scene.farm.flow().fields() {
             for slice in slices::of(scene.setup) {
-                write_last_plane(scene.folder, &slice.plane(lattice))?;
+                write_last_plane(scene.folder, &slice.plane(fields))?;
             }
         }
         Ok(())

@@ -6,16 +6,15 @@ use super::section::{Section, Stored};
 use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
-use flow::lattice::{Lattice, PlaneAverage, PlaneAverageState};
+use flow::fields::{FieldSource, PlaneAverage, PlaneAverageState};
 use formats::records::write_mean_plane;
 
 /// Planes are averaged from instants about this far apart (s).
 pub(super) const AVERAGING_INTERVAL: f64 = 2.0;
 
 /// The averages of all planes, of no instant yet.
-pub(crate) fn averages(setup: &Prepared, lattice: &Lattice) -> Vec<PlaneAverage> {
-    let average =
-        |slice: Slice| PlaneAverage::new(lattice, &slice.name, slice.axes, slice.position);
+pub(crate) fn averages(setup: &Prepared, fields: &dyn FieldSource) -> Vec<PlaneAverage> {
+    let average = |slice: Slice| PlaneAverage::new(fields, &slice.name, slice.axes, slice.position);
     slices::of(setup).into_iter().map(average).collect()
 }
 
@@ -38,8 +37,8 @@ struct MeanPlanes {
 }
 
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
-    let Some(lattice) = scene.farm.flow().lattice() else { return Ok(None) };
-    let mut averages = averages(scene.setup, lattice);
+    let Some(fields) = scene.farm.flow().fields() else { return Ok(None) };
+    let mut averages = averages(scene.setup, fields);
     if let Some(stored) = stored {
         let states: Vec<PlaneAverageState> = stored.state()?;
         for (average, state) in averages.iter_mut().zip(states) {
@@ -55,8 +54,8 @@ impl Output for MeanPlanes {
     }
 
     fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        if let Some(lattice) = scene.farm.flow().lattice() {
-            self.averages.iter_mut().for_each(|average| average.add(lattice));
+        if let Some(fields) = scene.farm.flow().fields() {
+            self.averages.iter_mut().for_each(|average| average.add(fields));
         }
         Ok(())
     }

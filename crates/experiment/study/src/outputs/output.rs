@@ -45,8 +45,8 @@ impl FedBy {
     pub fn admits(self, case: &Case) -> bool {
         match self {
             Self::AnyFlow => true,
-            Self::ResolvedFlow => !case.flow.solver.is_prescribed(),
-            Self::PrescribedWind => case.flow.solver.is_prescribed(),
+            Self::ResolvedFlow => case.flow.solver.resolves_induction,
+            Self::PrescribedWind => !case.flow.solver.resolves_induction,
         }
     }
 }

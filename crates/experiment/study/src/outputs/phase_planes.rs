@@ -40,12 +40,12 @@ struct PhasePlanes {
 }
 
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
-    let asked = asked(scene.setup, scene.run).zip(scene.farm.flow().lattice());
-    let Some(((n_phases, rate), lattice)) = asked else { return Ok(None) };
+    let asked = asked(scene.setup, scene.run).zip(scene.farm.flow().fields());
+    let Some(((n_phases, rate), fields)) = asked else { return Ok(None) };
     let slice = slices::hub_height(scene.setup);
     let average = match stored {
         Some(stored) => stored.state()?,
-        None => PhaseAverage::new(&slice.plane(lattice), rate, n_phases),
+        None => PhaseAverage::new(&slice.plane(fields), rate, n_phases),
     };
     let schedule = Schedule::analysed(&scene.setup.plan, AVERAGING_INTERVAL);
     Ok(Some(Box::new(PhasePlanes { schedule, slice, average })))
@@ -57,8 +57,8 @@ impl Output for PhasePlanes {
     }
 
     fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        if let Some(lattice) = scene.farm.flow().lattice() {
-            self.average.add(&self.slice.plane(lattice))?;
+        if let Some(fields) = scene.farm.flow().fields() {
+            self.average.add(&self.slice.plane(fields))?;
         }
         Ok(())
     }

@@ -41,7 +41,7 @@ pub(crate) fn schedule(setup: &Prepared) -> Schedule {
 
 /// Values in the series of the turbines of `run`, about (–).
 pub(super) fn n_values(setup: &Prepared, run: &Run) -> u64 {
-    let is_prescribed = setup.case.flow.solver.is_prescribed();
+    let is_prescribed = !setup.case.flow.solver.resolves_induction;
     let of_turbine = if is_prescribed { N_PRESCRIBED } else { N_RESOLVED };
     let n_channels =
         N_SHARED + of_turbine * run.present().count() as u64 + N_LINES * lines::count(setup, run);
@@ -62,7 +62,7 @@ struct Series {
 fn probe(setup: &Prepared) -> Vector3 {
     let plan = &setup.plan;
     let foot = plan.positions[0];
-    if setup.case.flow.solver.is_prescribed() {
+    if !setup.case.flow.solver.resolves_induction {
         return Vector3::new(foot.x, foot.y, plan.hub_height);
     }
     let distance = (PROBE_DISTANCE * plan.diameter).min(0.5 * (foot.x - plan.origin.x));
@@ -83,7 +83,7 @@ impl Rows {
         let lines = lines::of(setup, run);
         let places: Vec<&str> = lines.iter().map(|lines| lines.name.as_str()).collect();
         let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
-        let all_loads = setup.case.flow.solver.is_prescribed();
+        let all_loads = !setup.case.flow.solver.resolves_induction;
         let row = Row::new(names.zip(farm.machines()), &places, all_loads);
         Self { row, probe: probe(setup), lines }
     }

@@ -2,7 +2,7 @@
 
 use crate::prepared::Prepared;
 use basis::records::{Plane, PlaneAxes};
-use flow::lattice::Lattice;
+use flow::fields::FieldSource;
 
 /// Bytes of a point in a file: three components.
 pub(super) const POINT_BYTES: u64 = 3 * size_of::<f32>() as u64;
@@ -21,8 +21,8 @@ pub(crate) struct Slice {
 
 impl Slice {
     /// The wind on it now.
-    pub(crate) fn plane(&self, lattice: &Lattice) -> Plane {
-        lattice.plane(&self.name, self.axes, self.position)
+    pub(crate) fn plane(&self, fields: &dyn FieldSource) -> Plane {
+        fields.plane(&self.name, self.axes, self.position)
     }
 }
 

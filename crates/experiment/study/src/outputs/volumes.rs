@@ -48,8 +48,8 @@ impl Output for Volumes {
     }
 
     fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        if let Some(lattice) = scene.farm.flow().lattice() {
-            write_volume(scene.folder, self.n_kept, &lattice.volume(STRIDE))?;
+        if let Some(fields) = scene.farm.flow().fields() {
+            write_volume(scene.folder, self.n_kept, &fields.volume(STRIDE))?;
             self.n_kept += 1;
         }
         Ok(())

@@ -3,15 +3,13 @@
 use crate::StudyError;
 use crate::outputs::Writers;
 use farm::{Air, Farm};
-use flow::inflow::prescribed::Clock;
 use formats::checkpoint::{CheckpointReader, CheckpointWriter};
 use serde::{Deserialize, Serialize};
 
 /// Sections, besides those of the outputs.
 const RUN: &str = "run";
 const INSTRUMENTS: &str = "instruments";
-const LATTICE: &str = "air";
-const PRESCRIBED: &str = "wind";
+const AIR: &str = "air";
 /// Checkpoints of earlier programs have none.
 const PEAK_MEMORY: &str = "peak memory";
 
@@ -64,10 +62,7 @@ pub(super) fn write(
             farm.machines().iter().map(|machine| machine.sensing.state()).collect();
         writer.state(INSTRUMENTS, &sensing)?;
     }
-    match farm.flow_mut() {
-        Air::Lattice(lattice) => writer.stream(LATTICE, |bytes| lattice.write_state(bytes))?,
-        Air::Prescribed(wind) => writer.state(PRESCRIBED, &wind.state())?,
-    }
+    writer.stream(AIR, |bytes| farm.flow_mut().write_state(bytes))?;
     Ok(writer.finish()?)
 }
 
@@ -92,10 +87,7 @@ pub(super) fn read(
             machine.sensing.restore(stored)?;
         }
     }
-    match farm.flow_mut() {
-        Air::Lattice(lattice) => reader.stream(LATTICE, |bytes| lattice.read_state(bytes))?,
-        Air::Prescribed(wind) => wind.restore(reader.state::<Clock>(PRESCRIBED)?)?,
-    }
+    reader.stream(AIR, |bytes| farm.flow_mut().read_state(bytes))?;
     let peak_memory = if reader.holds(PEAK_MEMORY) { reader.state(PEAK_MEMORY)? } else { None };
     Ok((farm, Before { step: state.step, wall_time: state.wall_time, peak_memory }))
 }

@@ -56,7 +56,7 @@ fn leave(study: &Path, setup: &Prepared, run: usize, n_rows: u32, without: &str)
         names.extend(pitching(turbine, 3));
         let loads = ["RootMyc1", "RootMxb1", "RootMyb1", "TwrBsMyt", "Spn1FLxb1"];
         names.extend(loads.map(|channel| format!("{turbine}.{channel}_kN-m")));
-        names.extend(beliefs(turbine, 3, &setup.case.runs[run].control[2]));
+        names.extend(outcome_channels(turbine, 3, &setup.case.runs[run].control[2]));
         names.extend(names_of(turbine, &["sync_share", "generator_torque_nm"]));
     }
     names.sort();
@@ -112,9 +112,27 @@ fn groups_of_columns_make_the_same_summary_as_all_at_once() {
     let [first, second, third] = whole.turbines.as_slice() else { panic!("three turbines") };
     assert!(first.delivered_pitch.is_some() && second.delivered_pitch.is_some());
     assert!(third.meandering.is_some_and(|found| found.tilt.is_some()));
+    let kinds = whole.turbines.iter().map(|turbine| turbine.control.kind.as_str());
+    assert_eq!(kinds.collect::<Vec<_>>(), ["helix", "phase-sync", "meandering"]);
+    let [helix, sync] = [first, second].map(|turbine| turbine.control.excitation);
+    let helix = helix.expect("a helix");
+    assert_eq!((helix.sense, helix.strouhal), (Some(basis::Sense::CounterClockwise), 0.25));
+    assert!((helix.amplitude_deg - 4.0).abs() < 1e-12 && helix.phase_offset_deg.is_none());
+    let offset = sync.and_then(|sync| sync.phase_offset_deg).expect("a helix to join");
+    assert!((offset - 90.0).abs() < 1e-12);
+    assert_eq!(third.control.excitation, None);
+    let held: Vec<_> = whole
+        .warnings
+        .iter()
+        .filter(|warning| warning.kind == WarningKind::PitchHeldBack)
+        .map(|warning| warning.turbine.as_deref())
+        .collect();
+    assert!(held.contains(&Some("T2")), "{held:?}");
     for turbine in [first, second, third] {
-        assert_eq!(turbine.damage_equivalent_loads.len(), 4);
-        assert_eq!(turbine.load_changes.len(), 8);
+        assert_eq!(turbine.loads.len(), 8);
+        assert!(turbine.loads.iter().all(|load| load.change.is_some()));
+        let equivalent = turbine.loads.iter().filter(|load| load.kind.is_damage_equivalent());
+        assert_eq!(equivalent.count(), 4);
         assert!(turbine.pitch_duty.is_some() && turbine.power_gain.is_some());
     }
     assert!(whole.array_power_gain.is_some());

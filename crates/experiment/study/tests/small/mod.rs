@@ -121,7 +121,7 @@ pub(crate) fn laid_out(text: &str, overrides: &[String], model: &str) -> (Case, 
 /// The prescribed wind of `case`, the same everywhere.
 pub(crate) fn uniform_air(case: &Case) -> Air {
     let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
-    Air::Prescribed(Box::new(PrescribedWind::everywhere(profile)))
+    Box::new(PrescribedWind::everywhere(profile))
 }
 
 /// What [`HALFWAY`] asks for an end with; one study at a time may listen to it.

@@ -53,6 +53,23 @@ impl Clock {
         self.since + self.n_steps as f64 * self.interval
     }
 
+    /// The same in bytes, little-endian: time of the first step, steps, their duration.
+    pub fn to_bytes(self) -> [u8; 24] {
+        let words = [self.since.to_bits(), self.n_steps, self.interval.to_bits()];
+        let mut bytes = [0; 24];
+        for (place, word) in bytes.chunks_exact_mut(8).zip(words) {
+            place.copy_from_slice(&word.to_le_bytes());
+        }
+        bytes
+    }
+
+    /// The clock that [`to_bytes`](Self::to_bytes) wrote.
+    pub fn from_bytes(bytes: [u8; 24]) -> Self {
+        let (words, _) = bytes.as_chunks::<8>();
+        let [since, n_steps, interval] = [0, 1, 2].map(|index| u64::from_le_bytes(words[index]));
+        Self { since: f64::from_bits(since), n_steps, interval: f64::from_bits(interval) }
+    }
+
     fn advance(&mut self, duration: f64) {
         if duration != self.interval {
             *self = Self { since: self.time(), n_steps: 0, interval: duration };

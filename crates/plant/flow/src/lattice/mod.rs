@@ -5,10 +5,12 @@
 //! [halo](ends) cell at either end of a row, the ground's stress of a [force](wall). The pass is written once, generic
 //! over the [velocity set](stencil) and the [vector](simd), and compiled for each instruction set.
 //!
-//! Reading order: `settings`, `scaling`, `solver`; then `layout`, `stencil`, `collision`, `sweep`.
+//! Reading order: `settings`, `scaling`, `solver`, `engine`; then `cpu`, `layout`, `stencil`, `collision`, `sweep`.
 
 mod collision;
+mod cpu;
 mod ends;
+mod engine;
 mod forces;
 mod inlet;
 mod kernel;
@@ -31,8 +33,10 @@ mod sweep;
 mod tests;
 mod wall;
 
+pub use crate::fields::{PlaneAverage, PlaneAverageState, PlaneSizeError, Volume};
+pub use engine::Engine;
 pub use forces::ForceBlock;
-pub use planes::{PlaneAverage, PlaneAverageState, PlaneSizeError, Volume};
+pub use probe::RowState;
 pub use scaling::Scaling;
 pub use settings::{DEFAULT_SMAGORINSKY, Ends, Ground, Settings, SettingsError, Sides, Stencil};
 pub use simd::Backend;

@@ -1,118 +1,26 @@
-//! Slices and volumes of the wind, at an instant or averaged.
+//! Slices and volumes of the wind at an instant.
 
 use super::probe::RowState;
 use super::sampling::bracket;
 use super::settings::Sides;
 use super::solver::Lattice;
+use crate::fields::{FieldSource, Volume};
 use basis::Vector3;
 use basis::records::{Plane, PlaneAxes};
+use std::sync::{MutexGuard, PoisonError};
 
-/// Wind at every so many cells of the box, at one instant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Volume {
-    /// Position of its first point, farm frame (m).
-    pub origin: Vector3,
-    /// Distance of neighbouring points (m).
-    pub spacing: f64,
-    /// Points along x, y, z (–).
-    pub n_points: [usize; 3],
-    /// Instant (s).
-    pub time: f64,
-    /// Velocity components u, v, w (m/s), x fastest.
-    pub velocity: [Vec<f32>; 3],
-}
-
-/// A plane's mean over instants, without allocation once it is made.
-#[derive(Clone, Debug)]
-pub struct PlaneAverage {
-    latest: Plane,
-    sums: [Vec<f64>; 3],
-    n_instants: u64,
-    start: f64,
-    rows: [RowState; 2],
-}
-
-impl PlaneAverage {
-    /// The mean of `lattice`'s planes as [`Lattice::plane`] gives them; none taken in yet.
-    pub fn new(lattice: &Lattice, name: &str, axes: PlaneAxes, position: f64) -> Self {
-        let latest = lattice.empty_plane(name, axes, position);
-        let sums = std::array::from_fn(|_| vec![0.0; latest.velocity[0].len()]);
-        Self { sums, n_instants: 0, start: lattice.time(), rows: lattice.row_pair(), latest }
+impl FieldSource for Lattice {
+    fn plane(&self, name: &str, axes: PlaneAxes, position: f64) -> Plane {
+        Self::plane(self, name, axes, position)
     }
 
-    /// Takes the present instant in.
-    pub fn add(&mut self, lattice: &Lattice) {
-        lattice.write_plane(&mut self.latest, &mut self.rows);
-        for (sums, values) in self.sums.iter_mut().zip(&self.latest.velocity) {
-            for (sum, value) in sums.iter_mut().zip(values) {
-                *sum += f64::from(*value);
-            }
-        }
-        if self.n_instants == 0 {
-            self.start = self.latest.time;
-        }
-        self.n_instants += 1;
+    fn refresh(&self, plane: &mut Plane) {
+        self.write_plane(plane, &mut self.room());
     }
 
-    /// Instants taken in so far (–).
-    pub fn n_instants(&self) -> u64 {
-        self.n_instants
+    fn volume(&self, stride: usize) -> Volume {
+        Self::volume(self, stride)
     }
-
-    /// The mean so far; air at rest before the first instant.
-    pub fn mean(&self) -> Plane {
-        let share = 1.0 / self.n_instants.max(1) as f64;
-        Plane {
-            averaged: self.latest.time - self.start,
-            velocity: std::array::from_fn(|component| {
-                self.sums[component].iter().map(|sum| (sum * share) as f32).collect()
-            }),
-            ..self.latest.clone()
-        }
-    }
-
-    /// Sums and times, to be carried over a restart.
-    pub fn state(&self) -> PlaneAverageState {
-        PlaneAverageState {
-            sums: self.sums.clone(),
-            n_instants: self.n_instants,
-            start: self.start,
-            time: self.latest.time,
-        }
-    }
-
-    /// Goes on from `state`, which an average of the same plane gave.
-    ///
-    /// # Errors
-    /// [`PlaneSizeError`] when it was a plane of another size; nothing is changed then.
-    pub fn restore(&mut self, state: PlaneAverageState) -> Result<(), PlaneSizeError> {
-        let (expected, found) = (self.sums[0].len(), state.sums[0].len());
-        if state.sums.iter().any(|sums| sums.len() != expected) {
-            return Err(PlaneSizeError { expected, found });
-        }
-        (self.sums, self.n_instants, self.start) = (state.sums, state.n_instants, state.start);
-        self.latest.time = state.time;
-        Ok(())
-    }
-}
-
-/// What a [`PlaneAverage`] has gathered.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct PlaneAverageState {
-    sums: [Vec<f64>; 3],
-    n_instants: u64,
-    start: f64,
-    time: f64,
-}
-
-/// An average was restored from a plane of another size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the stored average has {found} points, the plane {expected}")]
-pub struct PlaneSizeError {
-    /// Points of the plane (–).
-    pub expected: usize,
-    /// Points of the stored sums (–).
-    pub found: usize,
 }
 
 impl Lattice {
@@ -121,22 +29,22 @@ impl Lattice {
     /// A position between two layers of cells is interpolated; beyond the outermost centres it is that layer's wind.
     pub fn plane(&self, name: &str, axes: PlaneAxes, position: f64) -> Plane {
         let mut plane = self.empty_plane(name, axes, position);
-        self.write_plane(&mut plane, &mut self.row_pair());
+        self.refresh(&mut plane);
         plane
     }
 
     /// The wind now at every `stride`-th cell along each axis.
     pub fn volume(&self, stride: usize) -> Volume {
         let stride = stride.max(1);
-        let [n_x, n_y, n_z] = self.layout.n_cells;
-        let n_points = self.layout.n_cells.map(|n| n.div_ceil(stride));
+        let [n_x, n_y, n_z] = self.n_cells();
+        let n_points = self.n_cells().map(|n| n.div_ceil(stride));
         let mut velocity: [Vec<f32>; 3] =
             std::array::from_fn(|_| Vec::with_capacity(n_points.iter().product()));
         let unit = self.scaling().si_velocity_unit() as f32;
-        let [mut row, _] = self.row_pair();
+        let [row, _] = &mut *self.room();
         for z in (0..n_z).step_by(stride) {
             for y in (0..n_y).step_by(stride) {
-                self.read_row(y, z, &mut row);
+                self.read_row(y, z, row);
                 for (target, column) in velocity.iter_mut().zip(&row.velocity) {
                     target.extend(column[..n_x].iter().step_by(stride).map(|value| value * unit));
                 }
@@ -151,8 +59,9 @@ impl Lattice {
         }
     }
 
-    fn row_pair(&self) -> [RowState; 2] {
-        std::array::from_fn(|_| RowState::new(self.layout.n_cells[0]))
+    /// Room for two rows.
+    fn room(&self) -> MutexGuard<'_, [RowState; 2]> {
+        self.room.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn empty_plane(&self, name: &str, axes: PlaneAxes, position: f64) -> Plane {
@@ -161,7 +70,7 @@ impl Lattice {
             PlaneAxes::Streamwise => (1, [0, 2]),
             PlaneAxes::Horizontal => (2, [0, 1]),
         };
-        let n_points = along.map(|axis| self.layout.n_cells[axis]);
+        let n_points = along.map(|axis| self.n_cells()[axis]);
         let mut origin = self.scaling().to_si_position(Vector3::ZERO).to_array();
         origin[normal] = position;
         Plane {
@@ -179,7 +88,7 @@ impl Lattice {
     /// On return `plane` holds the wind of this instant; `rows` is room to work in.
     fn write_plane(&self, plane: &mut Plane, rows: &mut [RowState; 2]) {
         plane.time = self.time();
-        let [_, n_y, n_z] = self.layout.n_cells;
+        let [_, n_y, n_z] = self.n_cells();
         let [x, y, z] = self.scaling().to_lattice_position(plane.origin.into()).to_array();
         match plane.axes {
             PlaneAxes::Horizontal => {
@@ -207,7 +116,7 @@ impl Lattice {
         places: [(usize, usize); 2],
         weight: f64,
     ) {
-        let n = self.layout.n_cells[0];
+        let n = self.n_cells()[0];
         let unit = self.scaling().si_velocity_unit() as f32;
         let weight = weight as f32;
         for (row, (y, z)) in rows.iter_mut().zip(places) {
@@ -223,7 +132,7 @@ impl Lattice {
     }
 
     fn write_crosswind(&self, plane: &mut Plane, x: f64) {
-        let [n_x, n_y, n_z] = self.layout.n_cells;
+        let [n_x, n_y, n_z] = self.n_cells();
         let (low, high, weight) = bracket(x, n_x, false);
         let unit = self.scaling().si_velocity_unit() as f32;
         let weight = weight as f32;
@@ -232,7 +141,8 @@ impl Lattice {
         while first < n {
             // Four points at a time: eight cells, the last point repeated where there are fewer.
             let cells: [[usize; 3]; 8] = std::array::from_fn(|lane| {
-                let [y, z] = self.layout.place((first + lane / 2).min(n - 1));
+                let row = (first + lane / 2).min(n - 1);
+                let [y, z] = [row % n_y, row / n_y];
                 [if lane % 2 == 0 { low } else { high }, y, z]
             });
             let velocities = self.cell_velocities(&cells);

@@ -19,16 +19,16 @@ unsafe impl Sync for View<'_> {}
 
 /// Density less one and velocity, forces aside, of one row of cells; padded to whole vectors.
 #[derive(Clone, Debug)]
-pub(crate) struct RowState {
+pub struct RowState {
     /// Density less one, cell by cell.
-    pub(crate) density_excess: Vec<f32>,
-    /// Velocity, component by component.
-    pub(crate) velocity: [Vec<f32>; 3],
+    pub density_excess: Vec<f32>,
+    /// Velocity, component by component (cells a step).
+    pub velocity: [Vec<f32>; 3],
 }
 
 impl RowState {
     /// Room for a row of `n_cells`.
-    pub(crate) fn new(n_cells: usize) -> Self {
+    pub fn new(n_cells: usize) -> Self {
         let column = || vec![0.0; n_cells.next_multiple_of(MAXIMUM_LANES)];
         Self { density_excess: column(), velocity: [column(), column(), column()] }
     }

@@ -2,10 +2,9 @@
 
 use super::probe::RowState;
 use super::settings::{Ends, Ground, Sides};
-use super::solver::{Lattice, Worker, own};
+use super::solver::Lattice;
 use crate::WindField;
 use basis::Vector3;
-use std::sync::Mutex;
 
 impl WindField for Lattice {
     /// Trilinear between cell centres; outside the box, the nearest cell's wind.
@@ -31,15 +30,12 @@ impl WindField for Lattice {
 impl Lattice {
     /// Mass of the air in the box (kg).
     pub fn mass(&self) -> f64 {
-        let mut row = RowState::new(self.layout.n_cells[0]);
+        let mut row = RowState::new(self.n_cells()[0]);
         let mut excess = 0.0;
-        for index in 0..self.layout.n_rows() {
-            self.kernel.read_row(&self.view(), index, &mut row);
-            excess += row.density_excess[..self.layout.n_cells[0]]
-                .iter()
-                .copied()
-                .map(f64::from)
-                .sum::<f64>();
+        for index in 0..self.n_rows() {
+            self.engine.read_row(index, &mut row);
+            excess +=
+                row.density_excess[..self.n_cells()[0]].iter().copied().map(f64::from).sum::<f64>();
         }
         let settings = self.settings();
         (settings.cells() as f64 + excess) * settings.air_density * settings.spacing.powi(3)
@@ -47,11 +43,11 @@ impl Lattice {
 
     /// Momentum of the air in the box, forces of the last step not counted (kg m/s).
     pub fn momentum(&self) -> Vector3 {
-        let n = self.layout.n_cells[0];
+        let n = self.n_cells()[0];
         let mut row = RowState::new(n);
         let mut total = Vector3::ZERO;
-        for index in 0..self.layout.n_rows() {
-            self.kernel.read_row(&self.view(), index, &mut row);
+        for index in 0..self.n_rows() {
+            self.engine.read_row(index, &mut row);
             for x in 0..n {
                 let velocity =
                     Vector3::from_array(std::array::from_fn(|c| f64::from(row.velocity[c][x])));
@@ -65,15 +61,15 @@ impl Lattice {
     /// Pressure above that of undisturbed air (Pa) at `position` (m), trilinear between cell centres.
     pub fn pressure(&self, position: Vector3) -> f64 {
         let (low, high, weight) = self.cell_cube(position);
-        let [excess, ..] = self.kernel.read_cells(&self.view(), &corners(low, high));
+        let [excess, ..] = self.engine.read_cells(&corners(low, high));
         self.scaling().to_si_pressure(interpolate(&excess, weight))
     }
 
     /// On return `state` holds the row at (`y`, `z`) in lattice units; velocities are the physical ones, half-way
     /// through the forces.
     pub(super) fn read_row(&self, y: usize, z: usize, state: &mut RowState) {
-        self.kernel.read_row(&self.view(), z * self.layout.n_cells[1] + y, state);
-        let n = self.layout.n_cells[0];
+        self.engine.read_row(self.row_at(y, z), state);
+        let n = self.n_cells()[0];
         let RowState { density_excess, velocity } = state;
         for (column, acceleration) in velocity.iter_mut().zip(self.acceleration) {
             if acceleration != 0.0 {
@@ -82,9 +78,9 @@ impl Lattice {
                 }
             }
         }
-        let worker = own(self.worker_of(y, z));
-        for block in worker.spreader.blocks() {
-            if let Some(cells) = block.row(y, z) {
+        self.engine.see_forces(self.row_at(y, z), &mut |blocks| {
+            for block in blocks {
+                let Some(cells) = block.row(y, z) else { continue };
                 let x = block.origin[0]..block.origin[0] + block.size[0];
                 for (column, force) in velocity.iter_mut().zip(&block.force) {
                     let values = column[x.clone()].iter_mut().zip(&density_excess[x.clone()]);
@@ -93,7 +89,12 @@ impl Lattice {
                     }
                 }
             }
-        }
+        });
+    }
+
+    /// Number of the row at (`y`, `z`).
+    fn row_at(&self, y: usize, z: usize) -> usize {
+        z * self.n_cells()[1] + y
     }
 
     /// The cells around `position`: the lower ones, the upper ones, and how far it lies from the former to the latter (–).
@@ -106,7 +107,7 @@ impl Lattice {
         let coordinates = self.scaling().to_lattice_position(position).to_array();
         let (mut low, mut high, mut weight) = ([0; 3], [0; 3], [0.0; 3]);
         for axis in 0..3 {
-            let n = self.layout.n_cells[axis];
+            let n = self.n_cells()[axis];
             (low[axis], high[axis], weight[axis]) = bracket(coordinates[axis], n, periodic[axis]);
         }
         (low, high, weight)
@@ -116,27 +117,19 @@ impl Lattice {
         self.cell_velocities(&corners(low, high))
     }
 
-    /// The worker that the row at (`y`, `z`) belongs to.
-    fn worker_of(&self, y: usize, z: usize) -> &Mutex<Worker> {
-        let row = z * self.layout.n_cells[1] + y;
-        // Workers' rows start at worker · n_rows / n_workers, rounded down.
-        let n_workers = self.workers.len();
-        &self.workers[((row + 1) * n_workers - 1) / self.layout.n_rows()]
-    }
-
     /// Physical velocities of eight cells, component by component, in lattice units.
     pub(super) fn cell_velocities(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 3] {
-        let [excess, mut u, mut v, mut w] = self.kernel.read_cells(&self.view(), cells);
+        let [excess, mut u, mut v, mut w] = self.engine.read_cells(cells);
         for (corner, [x, y, z]) in cells.iter().copied().enumerate() {
             let half = 0.5 / (1.0 + excess[corner]);
             let mut force = self.acceleration;
-            let worker = own(self.worker_of(y, z));
-            let block = worker.spreader.blocks().iter().find_map(|block| block.at(x, y, z));
-            if let Some(block) = block {
-                for (total, value) in force.iter_mut().zip(block) {
-                    *total += value;
+            self.engine.see_forces(self.row_at(y, z), &mut |blocks| {
+                if let Some(block) = blocks.iter().find_map(|block| block.at(x, y, z)) {
+                    for (total, value) in force.iter_mut().zip(block) {
+                        *total += value;
+                    }
                 }
-            }
+            });
             u[corner] += half * force[0];
             v[corner] += half * force[1];
             w[corner] += half * force[2];

@@ -200,6 +200,16 @@ pub enum Stencil {
     D3Q27,
 }
 
+impl Stencil {
+    /// Populations of a cell (–).
+    pub fn n_directions(self) -> u64 {
+        match self {
+            Self::D3Q19 => 19,
+            Self::D3Q27 => 27,
+        }
+    }
+}
+
 /// Why a lattice cannot be built as asked.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SettingsError {

@@ -260,7 +260,7 @@ mod tests {
     }
 
     fn point(x: f64, y: f64, z: f64, smearing_length: f64, force: Vector3) -> PointForce {
-        PointForce { position: Vector3::new(x, y, z), force, smearing_length }
+        PointForce::of_body(Vector3::new(x, y, z), force, smearing_length)
     }
 
     prop_compose! {

@@ -1,11 +1,11 @@
 //! The state written out and read back, bit for bit.
 //!
 //! Little-endian: magic, version, cells along x, y, z, populations a cell, steps made; forces of the last step
-//! (position, force, smearing length each); outlet halo row by row; filtered wind at the ground; all populations.
+//! (position, force, smearing length each); then what the engine writes, which on the processor is the outlet halo row by row, the
+//! filtered wind at the ground, all populations.
 //! Everything else follows from settings and inflow.
 
-use super::ends::RowEnds;
-use super::solver::{Lattice, own};
+use super::solver::Lattice;
 use basis::{PointForce, Vector3};
 use std::io::{Error, ErrorKind, Read, Result, Write};
 
@@ -27,7 +27,7 @@ impl Lattice {
         for value in self.header() {
             writer.write_all(&value.to_le_bytes())?;
         }
-        writer.write_all(&self.n_steps.to_le_bytes())?;
+        writer.write_all(&self.n_steps().to_le_bytes())?;
         writer.write_all(&(self.forces.len() as u64).to_le_bytes())?;
         for force in &self.forces {
             let [x, y, z] = force.position.to_array();
@@ -36,21 +36,7 @@ impl Lattice {
                 writer.write_all(&value.to_le_bytes())?;
             }
         }
-        let mut bytes = Vec::with_capacity(CHUNK * size_of::<f32>());
-        for worker in &self.workers {
-            let worker = own(worker);
-            if let RowEnds::Open { outlet, .. } = &worker.share.ends {
-                for row in 0..worker.share.rows.len() {
-                    write_values(writer, &mut bytes, &outlet.each_ref().map(|column| column[row]))?;
-                }
-            }
-        }
-        for component in 0..2 {
-            for worker in &self.workers {
-                write_values(writer, &mut bytes, &own(worker).wall.filtered[component])?;
-            }
-        }
-        write_values(writer, &mut bytes, self.memory.values())
+        self.engine.write_state(writer)
     }
 
     /// Reads a state that [`write_state`](Self::write_state) wrote from a lattice of the same settings.
@@ -89,36 +75,16 @@ impl Lattice {
             }
             let [x, y, z, fx, fy, fz, smearing_length] = values;
             let (position, force) = (Vector3::new(x, y, z), Vector3::new(fx, fy, fz));
-            self.forces.push(PointForce { position, force, smearing_length });
+            // The lattice feels nothing but these.
+            self.forces.push(PointForce::of_body(position, force, smearing_length));
         }
-        self.spread();
-        let mut bytes = Vec::with_capacity(CHUNK * size_of::<f32>());
-        for worker in &self.workers {
-            let mut worker = own(worker);
-            let n_rows = worker.share.rows.len();
-            if let RowEnds::Open { outlet, .. } = &mut worker.share.ends {
-                for row in 0..n_rows {
-                    let mut values = [0.0; 4];
-                    read_values(reader, &mut bytes, &mut values)?;
-                    for (column, value) in outlet.iter_mut().zip(values) {
-                        column[row] = value;
-                    }
-                }
-            }
-        }
-        for component in 0..2 {
-            for worker in &self.workers {
-                read_values(reader, &mut bytes, &mut own(worker).wall.filtered[component])?;
-            }
-        }
-        read_values(reader, &mut bytes, self.memory.values_mut())?;
-        self.n_steps = n_steps;
-        Ok(())
+        self.engine.set_forces(&self.forces);
+        self.engine.read_state(n_steps, reader)
     }
 
     fn header(&self) -> [u64; 5] {
-        let [x, y, z] = self.layout.n_cells.map(|n| n as u64);
-        [VERSION, x, y, z, self.kernel.directions.len() as u64]
+        let [x, y, z] = self.n_cells().map(|n| n as u64);
+        [VERSION, x, y, z, self.settings().stencil.n_directions()]
     }
 }
 
@@ -132,7 +98,12 @@ fn read_u64(reader: &mut dyn Read) -> Result<u64> {
     Ok(u64::from_le_bytes(bytes))
 }
 
-fn write_values(writer: &mut dyn Write, bytes: &mut Vec<u8>, values: &[f32]) -> Result<()> {
+/// Writes `values`, converted in `bytes` bit by bit.
+pub(super) fn write_values(
+    writer: &mut dyn Write,
+    bytes: &mut Vec<u8>,
+    values: &[f32],
+) -> Result<()> {
     for chunk in values.chunks(CHUNK) {
         bytes.clear();
         for value in chunk {
@@ -143,7 +114,12 @@ fn write_values(writer: &mut dyn Write, bytes: &mut Vec<u8>, values: &[f32]) -> 
     Ok(())
 }
 
-fn read_values(reader: &mut dyn Read, bytes: &mut Vec<u8>, values: &mut [f32]) -> Result<()> {
+/// Reads as many values as `values` has room for, through `bytes`.
+pub(super) fn read_values(
+    reader: &mut dyn Read,
+    bytes: &mut Vec<u8>,
+    values: &mut [f32],
+) -> Result<()> {
     for chunk in values.chunks_mut(CHUNK) {
         bytes.resize(size_of_val(chunk), 0);
         reader.read_exact(bytes)?;

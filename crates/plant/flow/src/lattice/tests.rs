@@ -2,6 +2,7 @@
 
 mod boundaries;
 mod closed_forms;
+mod engines;
 mod ground;
 mod invariants;
 mod stencils;

@@ -6,9 +6,9 @@
 //! Park, Moin 2017, Phys. Rev. Fluids 2, 104601). The stress acts as a force on the lowest cells, above a ground that
 //! air slips along; what the ground takes is what the air loses, to rounding.
 
-use super::kernel::Kernel;
+use super::engine::Rows;
 use super::layout::Layout;
-use super::probe::{RowState, View};
+use super::probe::RowState;
 use super::scaling::Scaling;
 use super::settings::{Ground, Settings};
 use super::sweep::Share;
@@ -65,20 +65,20 @@ impl Wall {
     /// Takes the velocities above the ground in; on return `share` holds the force of the wall on its rows at the ground.
     pub(crate) fn update(
         &self,
-        kernel: &Kernel,
-        view: &View<'_>,
+        rows: &impl Rows,
+        layout: &Layout,
         memory: &mut WallMemory,
         share: &mut Share,
     ) {
-        let n_y = view.layout.n_cells[1];
-        let n = view.layout.n_cells[0];
-        let rows = share.rows.start.min(n_y)..share.rows.end.min(n_y);
+        let n_y = layout.n_cells[1];
+        let n = layout.n_cells[0];
+        let at_ground = share.rows.start.min(n_y)..share.rows.end.min(n_y);
         let [filtered_x, filtered_y] = &mut memory.filtered;
         let [wall_x, wall_y] = &mut share.wall;
-        for (index, row) in rows.enumerate() {
-            kernel.read_row(view, row + self.level * n_y, &mut memory.state);
+        for (index, row) in at_ground.enumerate() {
+            rows.read_row(row + self.level * n_y, &mut memory.state);
             let [u, v, _] = &memory.state.velocity;
-            let start = index * view.layout.row_stride;
+            let start = index * layout.row_stride;
             for x in 0..n {
                 let (fx, fy) = (&mut filtered_x[start + x], &mut filtered_y[start + x]);
                 if fx.is_nan() {

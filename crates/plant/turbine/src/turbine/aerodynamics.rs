@@ -129,6 +129,30 @@ impl Aerodynamics {
             _ => mismatch(),
         }
     }
+
+    /// Adds `share` (–) of the circulation (m²/s) that the last loads go with to each element's of `circulations`.
+    pub(super) fn add_circulations(
+        &self,
+        line: &ActuatorLine,
+        share: f64,
+        circulations: &mut [f64],
+    ) {
+        match self {
+            Self::Line(pair) => {
+                for (sum, load) in circulations.iter_mut().zip(&pair.0.loads) {
+                    *sum += share * load.circulation;
+                }
+            }
+            Self::Momentum(pair) => {
+                let elements = line.elements().iter().cycle();
+                for ((sum, flow), element) in
+                    circulations.iter_mut().zip(&pair.1.flows).zip(elements)
+                {
+                    *sum += share * 0.5 * flow.relative_speed * element.chord * flow.lift;
+                }
+            }
+        }
+    }
 }
 
 fn mismatch() -> ! {

@@ -9,7 +9,7 @@ use crate::definition::{
 };
 use std::f64::consts::PI;
 
-const DENSITY: f64 = 1.2;
+pub(super) const DENSITY: f64 = 1.2;
 const INTERVAL: f64 = 0.1;
 
 /// A tilted, coned and prebent rotor of thin aerofoils, 100 m across.
@@ -99,7 +99,7 @@ pub(super) fn machine() -> Arc<Definition> {
     })
 }
 
-fn by_flow(dynamic_stall: bool) -> Induction {
+pub(super) fn by_flow(dynamic_stall: bool) -> Induction {
     Induction::ByFlow { smearing_length: 12.0, sample_spacing: 6.0, dynamic_stall }
 }
 
@@ -107,7 +107,7 @@ fn turbine() -> Turbine {
     built(false, by_flow(false))
 }
 
-fn built(flexible: bool, induction: Induction) -> Turbine {
+pub(super) fn built(flexible: bool, induction: Induction) -> Turbine {
     let settings = Settings {
         induction,
         flexible,
@@ -119,7 +119,7 @@ fn built(flexible: bool, induction: Induction) -> Turbine {
     Turbine::new(machine(), Vector3::new(100.0, -20.0, 0.0), settings).expect("a sound machine")
 }
 
-fn commands(pitch: f64) -> Commands {
+pub(super) fn commands(pitch: f64) -> Commands {
     Commands { pitch: PerBlade::splat(3, pitch), generator_torque: 1e6 }
 }
 

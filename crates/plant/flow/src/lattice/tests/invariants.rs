@@ -23,11 +23,8 @@ fn gusty_on(stencil: Stencil, threads: usize, backend: Backend) -> (Lattice, [Po
             0.3 * (phase + 0.2 * x.y).sin(),
         )
     });
-    let force = |y| PointForce {
-        position: Vector3::new(60.0, y, 45.0),
-        force: Vector3::new(-3e4, 2e3, 1e3),
-        smearing_length: 20.0,
-    };
+    let force =
+        |y| PointForce::of_body(Vector3::new(60.0, y, 45.0), Vector3::new(-3e4, 2e3, 1e3), 20.0);
     (air, [force(-20.0), force(20.0)])
 }
 
@@ -126,11 +123,8 @@ fn mass_stays() {
 fn forces_become_momentum() {
     let mut air = lattice(periodic_box([24, 20, 18], 1e-3), |_, _| Vector3::new(0.05, 0.0, 0.0));
     let before = air.momentum();
-    let force = PointForce {
-        position: Vector3::new(10.3, 9.7, 8.1),
-        force: Vector3::new(-0.02, 0.01, 0.005),
-        smearing_length: 2.0,
-    };
+    let position = Vector3::new(10.3, 9.7, 8.1);
+    let force = PointForce::of_body(position, Vector3::new(-0.02, 0.01, 0.005), 2.0);
     air.advance(200.0, &[force]).expect("no divergence");
     let gained = air.momentum() - before;
     let applied = force.force * 200.0;

@@ -1,9 +1,58 @@
-//! The wind of a case without turbulence: profile, veer and event in closed form.
+//! The one place that makes the wind of a case: profile, veer, event and turbulence, for whatever moves the air.
 
+mod around_rotors;
+mod at_inlet;
+
+pub use around_rotors::prescribed;
+pub use at_inlet::entering;
+
+use crate::assemble::Model;
 use crate::case::{Case, Ground, Shear, WindEvent};
 use crate::plan::Plan;
+use crate::solvers::WindSource;
+use flow::Inflow;
 use flow::inflow::deterministic::{Event, RotatingDisk};
-use flow::inflow::{DeterministicWind, MeanProfile};
+use flow::inflow::{DeterministicWind, InflowError, MeanProfile};
+use std::sync::Arc;
+
+/// What the wind is made for.
+#[derive(Clone, Copy)]
+pub struct Site<'a> {
+    /// The study.
+    pub case: &'a Case,
+    /// Its domain and steps.
+    pub plan: &'a Plan,
+    /// One for each turbine of the case, in its order.
+    pub models: &'a [Model],
+}
+
+/// Turbulence that a case will have made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turbulence {
+    /// Most memory that making it takes (bytes).
+    pub memory: u64,
+    /// What a reader of the numbers must know of it.
+    pub warning: Option<String>,
+}
+
+/// The turbulence that `site` will have made; none where none is made.
+pub fn turbulence(site: &Site) -> Option<Turbulence> {
+    at_inlet::turbulence(site).or_else(|| around_rotors::turbulence(site))
+}
+
+/// The wind of `case` without turbulence.
+///
+/// # Errors
+/// [`InflowError::Setting`] for an event that cannot be.
+pub fn without_turbulence(case: &Case, plan: &Plan) -> Result<Arc<dyn Inflow>, InflowError> {
+    let wind = deterministic(case, plan);
+    if wind.veer == 0.0 && wind.event == Event::Steady {
+        // The same wind, found faster.
+        return Ok(Arc::new(wind.profile));
+    }
+    wind.check()?;
+    Ok(Arc::new(wind))
+}
 
 /// The mean profile of `case`, with the hub height that `plan` found for its first turbine.
 pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
@@ -20,7 +69,7 @@ pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
 /// where no air meets a rough ground.
 pub fn off_balance(case: &Case) -> Option<String> {
     let Ground::Rough { roughness_length: ground } = case.flow.ground else { return None };
-    if case.flow.solver.is_prescribed() {
+    if case.flow.solver.wind != WindSource::AtInlet {
         return None;
     }
     let blows_in = match case.wind.shear {

@@ -1,20 +1,22 @@
-//! What a turbine that follows meandering found in its loads, and what became of them.
+//! What a turbine found of meandering, and what became of it: from its records.
 
-use crate::StudyError;
-use crate::columns::{Analysed, names_of};
+use super::MeanderingSettings;
+use crate::kind::Control;
+use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::mbc::to_fixed_frame;
 use basis::records::{MeanderingAxis, MeanderingSummary};
 use basis::{FixedFrame, PerBlade};
-use control::meandering::MeanderingSettings;
-use farm::case::Control;
 use std::f64::consts::TAU;
 
+/// Share of the time without a lock beyond which a reader must know (–).
+const UNLOCKED_SHARE: f64 = 0.02;
 /// Periods of the oscillation that tell an amplitude (–).
 const FEWEST_PERIODS: f64 = 2.0;
 
-/// What [`followed`] is made of, of `turbine` with `n_blades` blades.
-pub(crate) fn channels(turbine: &str, n_blades: usize) -> Vec<String> {
+/// Channels that [`outcome`] reads of a turbine of `n_blades` blades.
+pub(super) fn channels(n_blades: usize) -> Vec<String> {
     let own = [
+        "time_s",
         "azimuth_rad",
         "meandering_lock",
         "meandering_rate_rad_s",
@@ -23,63 +25,71 @@ pub(crate) fn channels(turbine: &str, n_blades: usize) -> Vec<String> {
         "meandering_tilt_reference_nm",
         "meandering_yaw_reference_nm",
     ];
-    let mut channels = names_of(turbine, &own);
-    channels.push("time_s".to_owned());
-    channels.extend((1..=n_blades).map(|blade| format!("{turbine}.flap_moment_{blade}_nm")));
-    channels
+    let flap = (1..=n_blades).map(|blade| format!("flap_moment_{blade}_nm"));
+    own.into_iter().map(str::to_owned).chain(flap).collect()
 }
 
-/// What `turbine`, of `n_blades` blades under `control`, found of meandering; None where it follows none.
+/// What the turbine of `record` found of meandering under `control`.
+///
+/// # Errors
+/// [`MissingChannel`].
+pub(super) fn outcome(
+    control: &Control,
+    record: &dyn TurbineRecord,
+) -> Result<Outcome, MissingChannel> {
+    let Some(given) = MeanderingSettings::of(control) else { return Ok(Outcome::default()) };
+    let found = followed(record, given.start)?;
+    let acts = given.amplitude != 0.0 && given.fallback;
+    let warning = || {
+        format!(
+            " was locked to the wake's motion {:.0} % of the time, and pitched nothing of its own meanwhile",
+            100.0 * found.locked_share
+        )
+    };
+    let is_lost = found.locked_share < 1.0 - UNLOCKED_SHARE;
+    let warnings = Vec::from_iter((acts && is_lost).then(warning));
+    Ok(Outcome { meandering: Some(found), warnings, ..Outcome::default() })
+}
+
+/// What the turbine of `record` followed, under control from `start` (s) on.
 ///
 /// Amplitudes are those of the moments themselves, correlated with the phase that the turbine believed: what wanders away
 /// from that phase does not count, so that they lie somewhat below what the loop believes where it follows slowly.
 ///
 /// # Errors
-/// [`StudyError::MissingChannel`].
-pub(crate) fn followed(
-    analysed: &Analysed<'_>,
-    turbine: &str,
-    n_blades: usize,
-    control: &Control,
-) -> Result<Option<MeanderingSummary>, StudyError> {
-    let Some(asked) = MeanderingSettings::of(control) else { return Ok(None) };
-    let channel = |what: &str| analysed.column(&format!("{turbine}.{what}"));
-    let (lock, rate) = (channel("meandering_lock")?, channel("meandering_rate_rad_s")?);
-    let times = analysed.column("time_s")?;
+/// [`MissingChannel`].
+fn followed(record: &dyn TurbineRecord, start: f64) -> Result<MeanderingSummary, MissingChannel> {
+    let (lock, rate) = (record.column("meandering_lock")?, record.column("meandering_rate_rad_s")?);
+    let times = record.column("time_s")?;
     let locked: Vec<usize> = (0..lock.len()).filter(|&row| lock[row] > 0.5).collect();
-    let counted: Vec<usize> =
-        locked.iter().copied().filter(|&row| times[row] >= asked.start).collect();
-    let turned = analysed.interval * counted.iter().map(|&row| rate[row]).sum::<f64>();
-    let is_told = turned >= TAU * FEWEST_PERIODS;
-    let moments = moments(analysed, turbine, n_blades, &counted)?;
+    let counted: Vec<usize> = locked.iter().copied().filter(|&row| times[row] >= start).collect();
+    let turned = record.interval() * counted.iter().map(|&row| rate[row]).sum::<f64>();
+    let is_known = turned >= TAU * FEWEST_PERIODS;
+    let moments = moments(record, &counted)?;
     let axis = |name: &str, of: fn(&FixedFrame) -> f64| {
-        let phase = channel(&format!("meandering_{name}_phase_rad"))?;
-        let reference = channel(&format!("meandering_{name}_reference_nm"))?;
+        let phase = record.column(&format!("meandering_{name}_phase_rad"))?;
+        let reference = record.column(&format!("meandering_{name}_reference_nm"))?;
         let pick = |column: &[f64]| counted.iter().map(|&row| column[row]).collect::<Vec<_>>();
         let moment: Vec<f64> = moments.iter().map(of).collect();
         let found = || axis_of(&moment, &pick(phase), &pick(reference));
-        Ok::<_, StudyError>(is_told.then(found))
+        Ok::<_, MissingChannel>(is_known.then(found))
     };
-    let believed: Vec<f64> = locked.iter().map(|&row| rate[row] / TAU).collect();
-    Ok(Some(MeanderingSummary {
+    let rates: Vec<f64> = locked.iter().map(|&row| rate[row] / TAU).collect();
+    Ok(MeanderingSummary {
         locked_share: locked.len() as f64 / lock.len().max(1) as f64,
-        frequency_hz: mean(&believed),
+        frequency_hz: mean(&rates),
         tilt: axis("tilt", |moments| moments.tilt)?,
         yaw: axis("yaw", |moments| moments.yaw)?,
-    }))
+    })
 }
 
-/// Moments of the blades of `turbine` in the fixed frame (N m) at the `rows` of the analysed time.
-fn moments(
-    analysed: &Analysed<'_>,
-    turbine: &str,
-    n_blades: usize,
-    rows: &[usize],
-) -> Result<Vec<FixedFrame>, StudyError> {
-    let azimuth = analysed.column(&format!("{turbine}.azimuth_rad"))?;
+/// Moments of the blades of `record` in the fixed frame (N m) at the `rows` of the analysed time.
+fn moments(record: &dyn TurbineRecord, rows: &[usize]) -> Result<Vec<FixedFrame>, MissingChannel> {
+    let azimuth = record.column("azimuth_rad")?;
+    let n_blades = record.n_blades();
     let flap = (1..=n_blades)
-        .map(|blade| analysed.column(&format!("{turbine}.flap_moment_{blade}_nm")))
-        .collect::<Result<Vec<&[f64]>, StudyError>>()?;
+        .map(|blade| record.column(&format!("flap_moment_{blade}_nm")))
+        .collect::<Result<Vec<&[f64]>, MissingChannel>>()?;
     let at = |&row: &usize| {
         to_fixed_frame(azimuth[row], &PerBlade::from_fn(n_blades, |blade| flap[blade][row]))
     };
@@ -110,9 +120,9 @@ fn mean(values: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::meandering::MEANDERING;
     use basis::mbc::to_blades;
     use basis::records::Series;
-    use control::meandering::MEANDERING;
 
     /// Time between rows (s).
     const INTERVAL: f64 = 0.5;
@@ -141,16 +151,16 @@ mod tests {
         let is_locked = |time: f64| time >= locked_from;
         let columns: [(&str, &dyn Fn(f64) -> f64); 11] = [
             ("time_s", &|time| time),
-            ("T1.azimuth_rad", &azimuth),
-            ("T1.flap_moment_1_nm", &|time| blade(time, 0)),
-            ("T1.flap_moment_2_nm", &|time| blade(time, 1)),
-            ("T1.flap_moment_3_nm", &|time| blade(time, 2)),
-            ("T1.meandering_lock", &|time| f64::from(u8::from(is_locked(time)))),
-            ("T1.meandering_rate_rad_s", &|time| if is_locked(time) { RATE } else { 0.0 }),
-            ("T1.meandering_tilt_phase_rad", &|time| (RATE * time).rem_euclid(TAU)),
-            ("T1.meandering_yaw_phase_rad", &|time| (RATE * time + 0.7).rem_euclid(TAU)),
-            ("T1.meandering_tilt_reference_nm", &|time| if time < 1200.0 { 0.0 } else { 2e6 }),
-            ("T1.meandering_yaw_reference_nm", &|_| 0.0),
+            ("azimuth_rad", &azimuth),
+            ("flap_moment_1_nm", &|time| blade(time, 0)),
+            ("flap_moment_2_nm", &|time| blade(time, 1)),
+            ("flap_moment_3_nm", &|time| blade(time, 2)),
+            ("meandering_lock", &|time| f64::from(u8::from(is_locked(time)))),
+            ("meandering_rate_rad_s", &|time| if is_locked(time) { RATE } else { 0.0 }),
+            ("meandering_tilt_phase_rad", &|time| (RATE * time).rem_euclid(TAU)),
+            ("meandering_yaw_phase_rad", &|time| (RATE * time + 0.7).rem_euclid(TAU)),
+            ("meandering_tilt_reference_nm", &|time| if time < 1200.0 { 0.0 } else { 2e6 }),
+            ("meandering_yaw_reference_nm", &|_| 0.0),
         ];
         Series {
             names: columns.iter().map(|(name, _)| (*name).to_owned()).collect(),
@@ -161,14 +171,30 @@ mod tests {
         }
     }
 
-    fn found(series: &Series) -> MeanderingSummary {
-        let analysed = Analysed::whole(series, INTERVAL);
-        followed(&analysed, "T1", 3, &control()).expect("all channels").expect("meandering")
+    struct Record(Series);
+
+    impl TurbineRecord for Record {
+        fn column(&self, channel: &str) -> Result<&[f64], MissingChannel> {
+            self.0.column(channel).ok_or_else(|| MissingChannel(channel.to_owned()))
+        }
+
+        fn interval(&self) -> f64 {
+            INTERVAL
+        }
+
+        fn n_blades(&self) -> usize {
+            3
+        }
+    }
+
+    fn found(series: Series) -> MeanderingSummary {
+        let outcome = outcome(&control(), &Record(series)).expect("all channels");
+        outcome.meandering.expect("meandering")
     }
 
     #[test]
     fn amplitudes_are_those_of_the_moments_while_it_acts() {
-        let found = found(&series(500.0));
+        let found = found(series(500.0));
         assert_eq!(found.locked_share, 0.75);
         assert!((found.frequency_hz.expect("it locked") - 0.01).abs() < 1e-12);
         let (tilt, yaw) = (found.tilt.expect("ten periods"), found.yaw.expect("ten periods"));
@@ -181,26 +207,25 @@ mod tests {
 
     #[test]
     fn what_was_hardly_followed_has_no_amplitude() {
-        let never = found(&series(f64::INFINITY));
+        let never = found(series(f64::INFINITY));
         assert_eq!((never.locked_share, never.frequency_hz), (0.0, None));
         assert_eq!((never.tilt, never.yaw), (None, None));
         // Locked for a period and a half.
-        let late = found(&series(1850.0));
+        let late = found(series(1850.0));
         assert!(late.frequency_hz.is_some() && late.tilt.is_none() && late.yaw.is_none());
     }
 
     #[test]
     fn what_it_is_made_of_is_all_that_it_needs() {
-        let (mut names, mut wanted) = (series(500.0).names, channels("T1", 3));
+        let (mut names, mut wanted) = (series(500.0).names, channels(3));
         names.sort();
         wanted.sort();
         assert_eq!(names, wanted);
     }
 
     #[test]
-    fn a_turbine_that_follows_nothing_has_none() {
-        let series = series(0.0);
-        let analysed = Analysed::whole(&series, INTERVAL);
-        assert_eq!(followed(&analysed, "T1", 3, &Control::baseline()).expect("nothing"), None);
+    fn a_turbine_under_other_control_tells_nothing() {
+        let told = outcome(&Control::baseline(), &Record(series(0.0)));
+        assert_eq!(told, Ok(Outcome::default()));
     }
 }

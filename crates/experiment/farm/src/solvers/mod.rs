@@ -1,0 +1,254 @@
+//! What may move the air of a farm: a descriptor for each kind of flow solver, and the one list of them.
+//!
+//! A new kind is a file beside this one with its [`SolverKind`], and a line in [`ALL`]. Everyone else asks the descriptor.
+
+mod lattice;
+mod prescribed;
+
+pub use lattice::{GROUND, LATTICE};
+pub use prescribed::{PLANES, PRESCRIBED, TURBULENCE, UNIFORM};
+
+use crate::air::Air;
+use crate::case::{Case, Flow, Wind};
+use crate::plan::{Layout, Plan, PlanError};
+use crate::self_check::Tunnel;
+use crate::wind::Site;
+use basis::keys::Key;
+use flow::Inflow;
+use flow::inflow::{InflowError, Planes};
+use flow::lattice::SettingsError;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::fmt;
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// All kinds, the one that holds without a choice first.
+pub const ALL: &[&SolverKind] = &[&LATTICE, &UNIFORM, &TURBULENCE, &PLANES];
+
+/// Their names, in the order of [`ALL`]: words of `flow.solver`.
+pub static NAMES: [&str; ALL.len()] = {
+    let mut names = [""; ALL.len()];
+    let mut index = 0;
+    while index < ALL.len() {
+        names[index] = ALL[index].name;
+        index += 1;
+    }
+    names
+};
+
+/// Everything that belongs to one kind of flow solver.
+///
+/// Kinds in which the wind is prescribed start from [`PRESCRIBED`] and say what differs.
+pub struct SolverKind {
+    /// Its name, the word of `flow.solver`.
+    pub name: &'static str,
+    /// What it does, in a sentence without a full stop.
+    pub about: &'static str,
+    /// Keys of `[flow]` that it alone uses.
+    pub keys: &'static [Key],
+    /// Which wind it takes in.
+    pub wind: WindSource,
+    /// Whether the wind that it gives contains the rotors' induction; otherwise turbines make their own by momentum theory.
+    pub resolves_induction: bool,
+    /// How it wants forces spread, and interpolates the wind, where it resolves induction.
+    pub smearing: fn(&Plan) -> Smearing,
+    /// Whether rotors are checked in it, each alone, before a study.
+    pub needs_self_check: bool,
+    /// What of the case's wind and domain it cannot take.
+    pub objections: fn(&Wind, &Flow) -> Vec<Objection>,
+    /// Domain and step for a layout.
+    pub plan: fn(&Case, &Layout) -> Result<Plan, PlanError>,
+    /// Memory that its field takes (bytes).
+    pub memory: fn(&Plan) -> u64,
+    /// The air at time zero.
+    pub begin: fn(Start) -> Result<Air, SolverError>,
+    /// The air about one rotor alone, in a steady wind, at time zero.
+    pub begin_alone: fn(&Alone) -> Result<Air, SolverError>,
+    /// What a step of that air costs (cell updates; 1 where there are no cells) about a rotor of a diameter (m).
+    pub updates_alone: fn(&Tunnel, f64) -> f64,
+}
+
+/// Which wind a kind of solver takes in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WindSource {
+    /// The mean profile with veer and event, without turbulence.
+    Deterministic,
+    /// The mean profile, and turbulence in a box that is carried into its domain.
+    AtInlet,
+    /// The mean profile, and turbulence on a grid around the rotors.
+    AroundRotors,
+    /// Planes from a file.
+    Planes,
+}
+
+/// Lengths over which a flow that resolves induction smears.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Smearing {
+    /// Gaussian width ε of the forces (m).
+    pub length: f64,
+    /// Distance of the points between which the wind is interpolated (m); 0 where it is not.
+    pub sample_spacing: f64,
+}
+
+/// What a solver begins a run from.
+pub struct Start<'a> {
+    /// Case, plan and turbines.
+    pub site: Site<'a>,
+    /// The wind that enters: profile, veer and event, with turbulence for [`WindSource::AtInlet`].
+    pub inflow: Arc<dyn Inflow>,
+    /// The file of planes, opened, for [`WindSource::Planes`].
+    pub planes: Option<Box<dyn Planes>>,
+}
+
+/// One rotor alone, at the origin, in a steady wind.
+pub struct Alone<'a> {
+    /// Room around it, and step.
+    pub tunnel: Tunnel,
+    /// Speed and air.
+    pub wind: &'a Wind,
+    /// Its diameter (m).
+    pub diameter: f64,
+    /// Threads; all cores when absent.
+    pub threads: Option<usize>,
+}
+
+/// A key of `[wind]` that a solver cannot take as it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Objection {
+    /// The key, or the one beside which a missing key should stand.
+    pub key: &'static str,
+    /// What is wrong.
+    pub fault: Fault,
+    /// How to mend it.
+    pub fix: &'static str,
+}
+
+/// What is wrong with a key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// It is given and of no use, with the reason.
+    NoUse(&'static str),
+    /// Its value is not for this solver, with the reason.
+    Refused(&'static str),
+    /// This key is missing (dotted).
+    Missing(&'static str),
+}
+
+/// Why no air could be set up.
+#[derive(Debug, thiserror::Error)]
+pub enum SolverError {
+    /// A lattice cannot be set up.
+    #[error(transparent)]
+    Lattice(#[from] SettingsError),
+    /// Its wind cannot be had.
+    #[error(transparent)]
+    Inflow(#[from] InflowError),
+    /// [`WindSource::Planes`] without planes in [`Start::planes`].
+    #[error("flow.solver = \"{solver}\" takes planes of wind, and none were handed to it")]
+    NoPlanes {
+        /// The flow solver.
+        solver: &'static str,
+    },
+    /// Another reason, of a kind of its own.
+    #[error(transparent)]
+    Other(Box<dyn std::error::Error + Send + Sync>),
+}
+
+/// A kind of flow solver as a case names it; alike where the names are.
+#[derive(Clone, Copy)]
+pub struct Solver(pub &'static SolverKind);
+
+impl Solver {
+    /// [`LATTICE`].
+    pub const LATTICE: Self = Self(&LATTICE);
+    /// [`UNIFORM`].
+    pub const UNIFORM: Self = Self(&UNIFORM);
+    /// [`TURBULENCE`].
+    pub const TURBULENCE: Self = Self(&TURBULENCE);
+    /// [`PLANES`].
+    pub const PLANES: Self = Self(&PLANES);
+
+    /// The kind called `name` in [`ALL`].
+    pub fn named(name: &str) -> Option<Self> {
+        ALL.iter().copied().find(|kind| kind.name == name).map(Self)
+    }
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self(ALL[0])
+    }
+}
+
+impl Deref for Solver {
+    type Target = SolverKind;
+
+    fn deref(&self) -> &SolverKind {
+        self.0
+    }
+}
+
+impl PartialEq for Solver {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Solver {}
+
+impl fmt::Debug for Solver {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "Solver({})", self.name)
+    }
+}
+
+impl Serialize for Solver {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name)
+    }
+}
+
+impl<'de> Deserialize<'de> for Solver {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let unknown = || serde::de::Error::custom(format!("there is no flow solver `{name}`"));
+        Self::named(&name).ok_or_else(unknown)
+    }
+}
+
+/// Names of the kinds that leave induction to the turbines, for a sentence: `flow.solver = "a", "b" or "c"`.
+pub fn without_induction() -> String {
+    let names: Vec<String> = ALL
+        .iter()
+        .filter(|kind| !kind.resolves_induction)
+        .map(|kind| format!("\"{}\"", kind.name))
+        .collect();
+    match names.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => names.concat(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn kinds_and_their_keys_have_names_of_their_own() {
+        let names: BTreeSet<&str> = NAMES.into_iter().collect();
+        assert_eq!(names.len(), ALL.len());
+        let keys = || ALL.iter().copied().flat_map(|kind| kind.keys).map(|key| key.name);
+        assert_eq!(keys().collect::<BTreeSet<_>>().len(), keys().count());
+        for &kind in ALL {
+            assert_eq!(Solver::named(kind.name), Some(Solver(kind)));
+            assert!(!kind.about.is_empty() && !kind.about.ends_with('.'), "{}", kind.name);
+        }
+        assert_eq!(Solver::named("vortex"), None);
+    }
+
+    #[test]
+    fn a_sentence_names_those_that_leave_induction_to_the_turbines() {
+        assert_eq!(without_induction(), "\"uniform\", \"turbulence\" or \"planes\"");
+    }
+}

@@ -1,0 +1,201 @@
+//! Wind that is prescribed where the rotors stand: even, made turbulent, or read plane by plane.
+
+use super::{Site, Turbulence, profile};
+use crate::assemble::Model;
+use crate::case::TurbulenceModel;
+use crate::solvers::WindSource;
+use basis::Vector3;
+use flow::Inflow;
+use flow::inflow::kaimal::{self, Scaling};
+use flow::inflow::planes::BoxPlanes;
+use flow::inflow::prescribed::Placement;
+use flow::inflow::{InflowError, Planes, PrescribedWind, TurbulenceBox, mann};
+use std::sync::Arc;
+
+/// Air around the outermost tips that a grid of made turbulence covers (diameters of the largest rotor).
+const MARGIN: f64 = 0.1;
+/// Points of made turbulence across the largest rotor (–).
+const POINTS_ACROSS: f64 = 24.0;
+/// Time between planes of made turbulence (s).
+const PLANE_INTERVAL: f64 = 0.1;
+/// Most memory that making turbulence may take (bytes), however long the run is. A run of one turbine shall stay below 200 MB
+/// (docs/validation/memory.md), the columns of its series included that summary and report hold.
+const MEMORY_LIMIT: u64 = 128 << 20;
+/// Places upstream and downstream of the outermost towers at which turbines may ask for the wind (m).
+const REACH: f64 = 50.0;
+
+/// The wind of `site`, prescribed: `planes` where there are any, else `inflow`, with turbulence on it where the case has it made
+/// around the rotors.
+///
+/// # Errors
+/// [`InflowError`] when turbulence cannot be made, or planes do not cover the rotors for the whole run.
+pub fn prescribed(
+    site: &Site,
+    inflow: Arc<dyn Inflow>,
+    planes: Option<Box<dyn Planes>>,
+) -> Result<PrescribedWind, InflowError> {
+    if let Some(planes) = planes {
+        return over_rotors(site, planes);
+    }
+    let Some(grid) = made_grid(site) else { return Ok(PrescribedWind::everywhere(inflow)) };
+    let turbulence = Arc::new(made(site, &grid)?);
+    let planes = BoxPlanes::new(turbulence, &profile(site.case, site.plan), grid.lowest)?
+        .veering(site.case.wind.veer, site.plan.hub_height);
+    over_rotors(site, Box::new(planes))
+}
+
+/// The turbulence that is made around the rotors of `site`; none where none is.
+pub(super) fn turbulence(site: &Site) -> Option<Turbulence> {
+    let grid = made_grid(site)?;
+    let warning = grid.repeats_after.map(|time| {
+        format!(
+            "the turbulence returns after {time:.0} s: more would not fit in the memory that one turbine may take; for a longer one \
+             write a file with `wakemix inflow generate` and read it with flow.solver = \"planes\""
+        )
+    });
+    Some(Turbulence { memory: grid.memory, warning })
+}
+
+/// Grid of the turbulence that is made around all rotors.
+struct MadeGrid {
+    n_points: [usize; 3],
+    /// Distance of neighbouring points (m).
+    spacing: [f64; 3],
+    /// Height of the lowest row (m).
+    lowest: f64,
+    /// Most memory that making it takes (bytes).
+    memory: u64,
+    /// Time after which the same wind comes again (s), where that is before the run's end.
+    repeats_after: Option<f64>,
+}
+
+/// The grid of the turbulence that `site` has made around its rotors; none where it has none.
+fn made_grid(site: &Site) -> Option<MadeGrid> {
+    let (case, wind) = (site.case, &site.case.wind);
+    if case.flow.solver.wind != WindSource::AroundRotors || wind.turbulence_intensity == 0.0 {
+        return None;
+    }
+    let [low, high] = around_rotors(site);
+    let diameter = site.models.iter().map(|m| m.definition.rotor_diameter()).fold(0.0, f64::max);
+    let across = diameter / POINTS_ACROSS;
+    // The middle of the width stands at y = 0.
+    let half_width = low.y.abs().max(high.y.abs()) + MARGIN * diameter;
+    let lowest = (low.z - MARGIN * diameter).max(0.5 * across);
+    let height = high.z + MARGIN * diameter - lowest;
+    let points = |length: f64| (length / across).ceil() as usize + 1;
+    let along = wind.speed * PLANE_INTERVAL;
+    let [n_y, n_z] = [points(2.0 * half_width), points(height)];
+    let length = (high.x - low.x) + 2.0 * REACH;
+    // Whole records only: 2, 3 and 5 are the only factors, which transforms like best.
+    let whole = smooth((case.time.duration / PLANE_INTERVAL + length / along).ceil() as usize);
+    let (along, whole, n_across) = match wind.turbulence_model {
+        TurbulenceModel::Kaimal => (along, whole, [n_y, n_z]),
+        TurbulenceModel::Mann => {
+            // Cells of one shape along and across, and twice the width, whose periodic image would be felt otherwise.
+            let stride = (across / along).floor().max(1.0) as usize;
+            let n_across = [smooth(2 * n_y), smooth(2 * n_z)];
+            (along * stride as f64, smooth(whole.div_ceil(stride)), n_across)
+        }
+    };
+    let memory = |n_planes: usize| {
+        let n_points = [n_planes, n_across[0], n_across[1]];
+        match wind.turbulence_model {
+            TurbulenceModel::Kaimal => kaimal::peak_memory(n_points),
+            TurbulenceModel::Mann => mann::peak_memory(n_points),
+        }
+    };
+    let mut n_planes = whole;
+    while memory(n_planes) > MEMORY_LIMIT {
+        let fewer = smooth(n_planes * 4 / 5);
+        if fewer >= n_planes {
+            break;
+        }
+        n_planes = fewer;
+    }
+    Some(MadeGrid {
+        n_points: [n_planes, n_across[0], n_across[1]],
+        spacing: [along, across, across],
+        lowest,
+        memory: memory(n_planes),
+        repeats_after: (n_planes < whole).then(|| n_planes as f64 * along / wind.speed),
+    })
+}
+
+/// The turbulence on `grid`.
+fn made(site: &Site, grid: &MadeGrid) -> Result<TurbulenceBox, InflowError> {
+    let (case, wind) = (site.case, &site.case.wind);
+    let MadeGrid { n_points, spacing, lowest, .. } = *grid;
+    let standard_deviation = wind.turbulence_intensity * wind.speed;
+    let (seed, threads) = (wind.seed, case.flow.threads);
+    match wind.turbulence_model {
+        TurbulenceModel::Kaimal => kaimal::generate(
+            &kaimal::Settings {
+                n_points,
+                spacing,
+                hub_speed: wind.speed,
+                hub_height: site.plan.hub_height,
+                lowest_height: lowest,
+                standard_deviation,
+                scaling: Scaling::None,
+                seed,
+                threads,
+            },
+            |_| (),
+        ),
+        TurbulenceModel::Mann => mann::generate(
+            &mann::Settings {
+                n_points,
+                spacing,
+                length_scale: wind.length_scale,
+                anisotropy: wind.anisotropy,
+                standard_deviation,
+                seed,
+                threads,
+            },
+            |_| (),
+        ),
+    }
+}
+
+/// The wind of `planes`, checked to cover all rotors for the whole run.
+fn over_rotors(site: &Site, planes: Box<dyn Planes>) -> Result<PrescribedWind, InflowError> {
+    let [low, high] = around_rotors(site);
+    let grid = planes.grid();
+    // As OpenFAST has it: a record that does not repeat starts half its width upwind of the first turbine.
+    let [left, right] = grid.across();
+    let origin_x = if grid.repeats { 0.0 } else { 0.5 * (right - left) };
+    let extent = [low.x - REACH, high.x + REACH];
+    let placement = Placement { origin_x, shift_y: 0.0, extent };
+    let wind = PrescribedWind::over_planes(planes, placement)?;
+    wind.covers(low, high, site.case.time.duration)?;
+    Ok(wind)
+}
+
+/// Corners of the box around all rotors (m).
+fn around_rotors(site: &Site) -> [Vector3; 2] {
+    let reach = |sign: f64| {
+        move |(model, foot): (&Model, &Vector3)| {
+            let definition = &model.definition;
+            let radius = definition.rotor_radius();
+            let hub = *foot + Vector3::Z * definition.rotor.hub_height;
+            hub + Vector3::new(0.0, radius, radius) * sign
+        }
+    };
+    let rotors = || site.models.iter().zip(&site.plan.positions);
+    let low = rotors().map(reach(-1.0)).reduce(Vector3::min).unwrap_or_default();
+    let high = rotors().map(reach(1.0)).reduce(Vector3::max).unwrap_or_default();
+    [low, high]
+}
+
+/// The least even product of 2, 3 and 5 that is not below `n`.
+fn smooth(n: usize) -> usize {
+    let only_small_factors = |mut n: usize| {
+        for factor in [2, 3, 5] {
+            while n.is_multiple_of(factor) {
+                n /= factor;
+            }
+        }
+        n == 1
+    };
+    (n.max(2)..).find(|&n| n.is_multiple_of(2) && only_small_factors(n)).unwrap_or(n)
+}

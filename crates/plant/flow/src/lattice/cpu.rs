@@ -1,0 +1,367 @@
+//! The engine that runs on the processor: populations in one array, updated in place by threads that share the rows.
+
+use super::collision::SUBGRID_FACTOR;
+use super::ends::RowEnds;
+use super::engine::{Engine, Rows};
+use super::forces::ForceBlock;
+use super::inlet::Inlet;
+use super::kernel::Kernel;
+use super::layout::{Edge, Layout, Parity};
+use super::memory::Memory;
+use super::pool::Pool;
+use super::probe::{RowState, View};
+use super::scaling::Scaling;
+use super::settings::{Ends, Ground, Settings, SettingsError, Sides};
+use super::simd::{Backend, MAXIMUM_LANES};
+use super::spreading::Spreader;
+use super::state::{read_values, write_values};
+use super::sweep::{Share, Step};
+use super::wall::{Wall, WallMemory};
+use crate::Inflow;
+use basis::{PointForce, Vector3};
+use std::io::{Read, Result, Write};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Fastest speed that the lattice carries, in cells per step: at Mach 0.7 the expansion in Mach has broken down.
+const FASTEST: f32 = 0.4;
+/// Largest departure of the density from one that it carries.
+const DENSEST: f32 = 0.5;
+/// Longest zone of raised viscosity before the outlet, in cells.
+const LONGEST_SPONGE: usize = 24;
+/// Share of the box's length that it may take, as a divisor.
+const SPONGE_DIVISOR: usize = 10;
+/// Viscosity at the outlet, in cells² per step.
+const SPONGE_VISCOSITY: f64 = 0.05;
+/// Pull of the outlet's pressure to the undisturbed one: 0.25 is what Poinsot and Lele (1992) found to work.
+const OUTLET_PULL: f64 = 0.25;
+
+/// Populations in the machine's own memory, moved by its vector instructions.
+///
+/// The same bits come out on any number of threads.
+pub(crate) struct Cpu {
+    scaling: Scaling,
+    kernel: Kernel,
+    layout: Layout,
+    memory: Memory,
+    workers: Vec<Mutex<Worker>>,
+    pool: Pool,
+    wall: Option<Wall>,
+    relaxation_times: Vec<f32>,
+    subgrid: Vec<f32>,
+    acceleration: [f32; 3],
+    outlet_stiffness: f32,
+    n_steps: u64,
+}
+
+/// What one thread owns.
+struct Worker {
+    share: Share,
+    inlet: Inlet,
+    wall: WallMemory,
+    /// Forces on the levels that the worker's rows are part of.
+    spreader: Spreader,
+    /// Room for a row.
+    row: RowState,
+    /// First bad cell of the last look and its speed.
+    found: Option<([usize; 3], f32)>,
+}
+
+/// The field between two steps, through the loops that know its layout.
+struct Reader<'a> {
+    kernel: &'a Kernel,
+    view: View<'a>,
+}
+
+impl Rows for Reader<'_> {
+    fn read_row(&self, row: usize, state: &mut RowState) {
+        self.kernel.read_row(&self.view, row, state);
+    }
+}
+
+/// The field after `n_steps` steps.
+fn view<'a>(memory: &Memory, layout: &'a Layout, n_steps: u64) -> View<'a> {
+    View { air: memory.start(), layout, parity: Parity::of(n_steps) }
+}
+
+impl Cpu {
+    /// An engine for `settings`, which were checked; its air is at rest until it is started.
+    ///
+    /// # Errors
+    /// [`SettingsError::Memory`] when the system refuses that much.
+    pub(crate) fn new(settings: &Settings) -> std::result::Result<Self, SettingsError> {
+        let scaling = settings.scaling();
+        let backend = settings.backend.unwrap_or_else(Backend::detect);
+        let kernel = Kernel::new(settings.stencil, backend);
+        let sides = match settings.sides {
+            Sides::Periodic => Edge::Periodic,
+            Sides::Slip => Edge::Slip,
+        };
+        let levels = match settings.ground {
+            Ground::Periodic => Edge::Periodic,
+            Ground::Slip | Ground::WallStress { .. } => Edge::Slip,
+        };
+        let layout = Layout::new(settings.n_cells, kernel.directions, sides, levels);
+        let refused =
+            SettingsError::Memory { n_cells: settings.cells(), bytes: 4 * layout.n_values() };
+        let memory = Memory::zeroed(layout.n_values()).ok_or(refused)?;
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        let n_threads = settings.threads.unwrap_or_else(cores).min(layout.n_rows());
+        let wall = Wall::new(settings, &scaling);
+        let workers = (0..n_threads)
+            .map(|thread| {
+                Mutex::new(Worker::new(thread, n_threads, settings, &layout, wall.is_some()))
+            })
+            .collect();
+        let acceleration =
+            scaling.to_lattice_acceleration(settings.acceleration).as_vec3().to_array();
+        let subgrid = (SUBGRID_FACTOR * settings.smagorinsky.powi(2)) as f32;
+        Ok(Self {
+            kernel,
+            memory,
+            workers,
+            pool: Pool::new(n_threads),
+            wall,
+            relaxation_times: relaxation_times(settings, &scaling),
+            subgrid: vec![subgrid; settings.n_cells[2]],
+            acceleration,
+            outlet_stiffness: (2.0 * OUTLET_PULL / (3.0_f64.sqrt() * settings.n_cells[0] as f64))
+                as f32,
+            n_steps: 0,
+            layout,
+            scaling,
+        })
+    }
+
+    /// The worker that row number `row` belongs to.
+    fn worker_of(&self, row: usize) -> &Mutex<Worker> {
+        // Workers' rows start at worker · n_rows / n_workers, rounded down.
+        let n_workers = self.workers.len();
+        &self.workers[((row + 1) * n_workers - 1) / self.layout.n_rows()]
+    }
+}
+
+impl Engine for Cpu {
+    fn start(&mut self, inflow: &dyn Inflow) {
+        self.n_steps = 0;
+        let view = view(&self.memory, &self.layout, self.n_steps);
+        let (workers, kernel, scaling) = (&self.workers, &self.kernel, &self.scaling);
+        self.pool.run(&|thread| own(&workers[thread]).fill(kernel, &view, scaling, inflow));
+    }
+
+    fn set_forces(&mut self, forces: &[PointForce]) {
+        let workers = &self.workers;
+        self.pool.run(&|thread| {
+            own(&workers[thread]).spreader.spread(forces);
+        });
+    }
+
+    fn step(&mut self, inflow: &dyn Inflow) {
+        let view = view(&self.memory, &self.layout, self.n_steps);
+        let (workers, kernel, scaling) = (&self.workers, &self.kernel, &self.scaling);
+        if let Some(wall) = &self.wall {
+            let rows = Reader { kernel, view };
+            self.pool.run(&|thread| {
+                let Worker { share, wall: memory, .. } = &mut *own(&workers[thread]);
+                wall.update(&rows, &self.layout, memory, share);
+            });
+        }
+        let step = Step {
+            air: self.memory.start(),
+            layout: &self.layout,
+            parity: view.parity,
+            relaxation_times: &self.relaxation_times,
+            subgrid: &self.subgrid,
+            acceleration: self.acceleration,
+            outlet_stiffness: self.outlet_stiffness,
+        };
+        let n_steps = self.n_steps;
+        self.pool.run(&|thread| {
+            let Worker { share, inlet, spreader, .. } = &mut *own(&workers[thread]);
+            inlet.update(n_steps, inflow, scaling, &mut share.ends);
+            kernel.sweep(&step, spreader.blocks(), share);
+        });
+        self.n_steps += 1;
+    }
+
+    fn n_steps(&self) -> u64 {
+        self.n_steps
+    }
+
+    fn read_row(&self, row: usize, state: &mut RowState) {
+        self.kernel.read_row(&view(&self.memory, &self.layout, self.n_steps), row, state);
+    }
+
+    fn read_cells(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4] {
+        self.kernel.read_cells(&view(&self.memory, &self.layout, self.n_steps), cells)
+    }
+
+    fn see_forces(&self, row: usize, see: &mut dyn FnMut(&[ForceBlock])) {
+        see(own(self.worker_of(row)).spreader.blocks());
+    }
+
+    fn look(&mut self, first: usize, stride: usize) -> Option<([usize; 3], f32)> {
+        let view = view(&self.memory, &self.layout, self.n_steps);
+        let (workers, kernel) = (&self.workers, &self.kernel);
+        self.pool.run(&|thread| own(&workers[thread]).look(kernel, &view, first, stride));
+        self.workers.iter().find_map(|worker| own(worker).found)
+    }
+
+    fn write_state(&self, writer: &mut dyn Write) -> Result<()> {
+        let mut bytes = Vec::new();
+        for worker in &self.workers {
+            let worker = own(worker);
+            if let RowEnds::Open { outlet, .. } = &worker.share.ends {
+                for row in 0..worker.share.rows.len() {
+                    write_values(writer, &mut bytes, &outlet.each_ref().map(|column| column[row]))?;
+                }
+            }
+        }
+        for component in 0..2 {
+            for worker in &self.workers {
+                write_values(writer, &mut bytes, &own(worker).wall.filtered[component])?;
+            }
+        }
+        write_values(writer, &mut bytes, self.memory.values())
+    }
+
+    fn read_state(&mut self, n_steps: u64, reader: &mut dyn Read) -> Result<()> {
+        let mut bytes = Vec::new();
+        for worker in &self.workers {
+            let mut worker = own(worker);
+            let n_rows = worker.share.rows.len();
+            if let RowEnds::Open { outlet, .. } = &mut worker.share.ends {
+                for row in 0..n_rows {
+                    let mut values = [0.0; 4];
+                    read_values(reader, &mut bytes, &mut values)?;
+                    for (column, value) in outlet.iter_mut().zip(values) {
+                        column[row] = value;
+                    }
+                }
+            }
+        }
+        for component in 0..2 {
+            for worker in &self.workers {
+                read_values(reader, &mut bytes, &mut own(worker).wall.filtered[component])?;
+            }
+        }
+        read_values(reader, &mut bytes, self.memory.values_mut())?;
+        self.n_steps = n_steps;
+        Ok(())
+    }
+
+    fn n_threads(&self) -> usize {
+        self.pool.n_threads()
+    }
+
+    fn memory(&self) -> u64 {
+        let wall: usize = match self.wall {
+            Some(_) => 4 * self.layout.row_stride * self.layout.n_cells[1] * size_of::<f32>(),
+            None => 0,
+        };
+        // Each row has its place at the inlet: two vectors in double and ten single values.
+        let ends = self.layout.n_rows() * (2 * size_of::<Vector3>() + 13 * size_of::<f32>());
+        (self.memory.bytes() + wall + ends) as u64
+    }
+}
+
+impl Worker {
+    fn new(
+        thread: usize,
+        n_threads: usize,
+        settings: &Settings,
+        layout: &Layout,
+        has_wall: bool,
+    ) -> Self {
+        let n_rows = layout.n_rows();
+        let rows = thread * n_rows / n_threads..(thread + 1) * n_rows / n_threads;
+        let levels = rows.start / layout.n_cells[1]..rows.end.div_ceil(layout.n_cells[1]);
+        let n_wall_rows = match has_wall {
+            true => rows.end.min(layout.n_cells[1]) - rows.start.min(layout.n_cells[1]),
+            false => 0,
+        };
+        let padded = layout.n_cells[0].next_multiple_of(MAXIMUM_LANES);
+        let wall = || vec![0.0; n_wall_rows * layout.row_stride];
+        Self {
+            inlet: Inlet::new(layout, &settings.scaling(), rows.clone()),
+            wall: WallMemory::new(layout, n_wall_rows),
+            spreader: Spreader::new(settings.scaling(), settings.n_cells).on_levels(levels),
+            row: RowState::new(layout.n_cells[0]),
+            found: None,
+            share: Share {
+                ends: RowEnds::new(settings.ends, rows.len()),
+                wall: [wall(), wall()],
+                force: std::array::from_fn(|_| vec![0.0; padded]),
+                rows,
+            },
+        }
+    }
+
+    /// On return the worker's rows move as `inflow` does at time zero.
+    fn fill(&mut self, kernel: &Kernel, view: &View<'_>, scaling: &Scaling, inflow: &dyn Inflow) {
+        let n = view.layout.n_cells[0];
+        let mut positions = vec![Vector3::ZERO; n + 1];
+        let mut velocities = vec![Vector3::ZERO; n + 1];
+        for row in self.share.rows.clone() {
+            let [y, z] = view.layout.place(row);
+            for (x, position) in positions.iter_mut().enumerate() {
+                *position = scaling.to_si_position(Vector3::new(x as f64, y as f64, z as f64));
+            }
+            inflow.sample(0.0, &positions, &mut velocities);
+            for (x, velocity) in velocities.iter().enumerate() {
+                let velocity = scaling.to_lattice_velocity(*velocity).as_vec3().to_array();
+                if x < n {
+                    for (column, value) in self.row.velocity.iter_mut().zip(velocity) {
+                        column[x] = value;
+                    }
+                } else if let RowEnds::Open { outlet: [_, columns @ ..], .. } = &mut self.share.ends
+                {
+                    for (column, value) in columns.iter_mut().zip(velocity) {
+                        column[row - self.share.rows.start] = value;
+                    }
+                }
+            }
+            kernel.write_row(view, row, &self.row);
+        }
+    }
+
+    fn look(&mut self, kernel: &Kernel, view: &View<'_>, first: usize, stride: usize) {
+        self.found = None;
+        for row in self.share.rows.clone().filter(|row| row % stride == first) {
+            kernel.read_row(view, row, &mut self.row);
+            let [u, v, w] = &self.row.velocity;
+            for x in 0..view.layout.n_cells[0] {
+                let squared = u[x] * u[x] + v[x] * v[x] + w[x] * w[x];
+                // Written so that a value that is not a number is found, too.
+                let good =
+                    squared <= FASTEST * FASTEST && self.row.density_excess[x].abs() <= DENSEST;
+                if !good {
+                    let [y, z] = view.layout.place(row);
+                    self.found = Some(([x, y, z], squared.sqrt()));
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// A worker is locked by its own thread during a job, and by the caller between jobs.
+fn own(worker: &Mutex<Worker>) -> MutexGuard<'_, Worker> {
+    worker.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// 1/2 + 3 ν along x, with the sponge before the outlet; padded to whole vectors.
+fn relaxation_times(settings: &Settings, scaling: &Scaling) -> Vec<f32> {
+    let n = settings.n_cells[0];
+    let viscosity = scaling.to_lattice_viscosity(settings.kinematic_viscosity);
+    let length = match settings.ends {
+        Ends::InletOutlet => (n / SPONGE_DIVISOR).min(LONGEST_SPONGE),
+        Ends::Periodic => 0,
+    };
+    (0..n.next_multiple_of(MAXIMUM_LANES))
+        .map(|x| {
+            let depth = (x + length + 1).saturating_sub(n).min(length);
+            let share = if length > 0 { depth as f64 / length as f64 } else { 0.0 };
+            (0.5 + 3.0 * (viscosity + SPONGE_VISCOSITY * share * share)) as f32
+        })
+        .collect()
+}

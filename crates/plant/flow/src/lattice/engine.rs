@@ -1,0 +1,61 @@
+//! What holds the populations and moves them: the seam under [`Lattice`](super::Lattice).
+//!
+//! A lattice knows units, wind and what others ask of the air; an engine knows memory and the machine that it runs on. Today's
+//! is [`Cpu`](super::cpu::Cpu). One with memory of its own, on another device, implements the same few methods.
+
+use super::forces::ForceBlock;
+use super::probe::RowState;
+use crate::Inflow;
+use basis::PointForce;
+use std::io::{Read, Result, Write};
+
+/// Moves the air of a lattice, in lattice units; rows run along x and are numbered with y fastest.
+pub trait Engine: Send + Sync {
+    /// On return the air moves as `inflow` does at time zero, and no step is made.
+    fn start(&mut self, inflow: &dyn Inflow);
+
+    /// Holds `forces` from now on, until others are set.
+    fn set_forces(&mut self, forces: &[PointForce]);
+
+    /// Makes a step, with the wind of `inflow` at the inlet.
+    fn step(&mut self, inflow: &dyn Inflow);
+
+    /// Steps made (–).
+    fn n_steps(&self) -> u64;
+
+    /// On return `state` holds density and velocity of row number `row`, forces of this step aside.
+    fn read_row(&self, row: usize, state: &mut RowState);
+
+    /// Density less one, and the velocity components forces aside, of eight cells (x, y, z).
+    fn read_cells(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4];
+
+    /// Hands `see` the force density on row number `row`, and perhaps on others, without what acts on every cell alike.
+    fn see_forces(&self, row: usize, see: &mut dyn FnMut(&[ForceBlock]));
+
+    /// Looks at every `stride`-th row from `first` for a cell that the lattice cannot carry on from; gives the cell and its speed.
+    fn look(&mut self, first: usize, stride: usize) -> Option<([usize; 3], f32)>;
+
+    /// Writes all that time has changed but the steps made and the forces.
+    ///
+    /// # Errors
+    /// Those of `writer`.
+    fn write_state(&self, writer: &mut dyn Write) -> Result<()>;
+
+    /// Goes on after `n_steps` steps from what [`write_state`](Self::write_state) wrote.
+    ///
+    /// # Errors
+    /// Those of `reader`; the field is undefined then.
+    fn read_state(&mut self, n_steps: u64, reader: &mut dyn Read) -> Result<()>;
+
+    /// Threads that it runs on (–).
+    fn n_threads(&self) -> usize;
+
+    /// Memory that it holds (bytes).
+    fn memory(&self) -> u64;
+}
+
+/// A field whose rows can be read between two steps.
+pub(crate) trait Rows {
+    /// On return `state` holds density and velocity of row number `row`, forces of this step aside.
+    fn read_row(&self, row: usize, state: &mut RowState);
+}

@@ -1,0 +1,108 @@
+//! Bound vortices that go with the forces on the air: Kutta-Joukowski, order, bodies.
+
+use super::aerodynamics::Aerodynamics;
+use super::tests::{DENSITY, built, by_flow, commands};
+use super::*;
+use crate::aero::blade_element::Theory;
+use crate::aero::induction::TwoConstant;
+
+/// Short, so that blades stand where they stood when their wind was sampled.
+const INSTANT: f64 = 1e-3;
+/// The rotor turns by 1.3e-3 rad in an instant, and loads are those of its middle (–).
+const TOLERANCE: f64 = 2e-3;
+
+/// A rotor after an instant in an even wind, as it stood before, and the wind relative to each element as its section felt
+/// it (m/s).
+fn after_an_instant(induction: Induction) -> (Turbine, Turbine, Vec<Vector3>) {
+    let mut turbine = built(false, induction);
+    let before = turbine.clone();
+    let wind = Vector3::new(9.0, 0.5, 0.0);
+    turbine.advance(INSTANT, &vec![wind; before.stations().len()], &commands(0.02));
+    let felt = before.workspace.motions.iter().enumerate().map(|(index, motion)| {
+        let BladeFrame { normal, tangent, .. } = motion.axes;
+        match &turbine.aerodynamics {
+            Aerodynamics::Line(_) => {
+                let [axial, along_rotation] = turbine.state.missing()[index];
+                wind - motion.velocity + normal * axial + tangent * along_rotation
+            }
+            Aerodynamics::Momentum(pair) => {
+                let flow = &pair.1.flows[index];
+                normal * (flow.onset.normal - flow.induced_normal)
+                    - tangent * (flow.onset.tangential + flow.induced_tangential)
+            }
+        }
+    });
+    let felt = felt.collect();
+    (turbine, before, felt)
+}
+
+fn obeys_kutta_joukowski(induction: Induction) {
+    let (turbine, before, felt) = after_an_instant(induction);
+    let mut greatest = 0.0_f64;
+    for (index, wind) in felt.iter().enumerate() {
+        let force = turbine.forces()[index];
+        let bound = force.bound.expect("an element has a bound vortex");
+        assert_eq!((bound.blade, bound.station), (index / N_ELEMENTS, index % N_ELEMENTS));
+        assert_eq!(force.position, before.stations()[index]);
+        let span = before.workspace.axes[index].span;
+        let width = turbine.line.elements()[bound.station].width;
+        assert!((bound.along - span * width).length() < 1e-12 * width);
+        // Across the wind and the span all of the force is lift; sign included.
+        let wind = *wind - span * wind.dot(span);
+        let across = wind.cross(span).normalize();
+        let lift = -DENSITY * bound.circulation * wind.cross(bound.along);
+        let found = force.force.dot(across);
+        let scale = force.force.length();
+        assert!((found - lift.dot(across)).abs() < TOLERANCE * scale, "{index} {found} {lift}");
+        // What is left is drag: with the wind it pulls the blade along, and holds the air back.
+        let drag = force.force - lift;
+        assert!(
+            drag.dot(wind) < 0.0 && drag.cross(wind).length() < TOLERANCE * scale * wind.length()
+        );
+        greatest = greatest.max(bound.circulation);
+    }
+    // Chords of some metres at tens of metres a second.
+    assert!((10.0..100.0).contains(&greatest), "{greatest}");
+}
+
+#[test]
+fn circulation_and_wind_make_the_lift_along_lines() {
+    obeys_kutta_joukowski(by_flow(false));
+}
+
+#[test]
+fn circulation_and_wind_make_the_lift_under_momentum_theory() {
+    obeys_kutta_joukowski(Induction::ByMomentum(rotor::Settings {
+        induction: crate::aero::Induction::TwoConstant(TwoConstant::varying()),
+        theory: Theory::default(),
+        skewed_wake: true,
+        dynamic_stall: true,
+        tower: None,
+    }));
+}
+
+#[test]
+fn bodies_have_no_circulation_and_come_last() {
+    let (turbine, ..) = after_an_instant(by_flow(false));
+    let (elements, bodies) = turbine.forces().split_at(3 * N_ELEMENTS);
+    assert!(elements.iter().all(|force| force.bound.is_some()));
+    assert!(bodies.len() > 1 && bodies.iter().all(|force| force.bound.is_none()));
+}
+
+#[test]
+fn circulation_is_the_mean_over_the_steps_of_an_interval() {
+    let mut long = built(false, by_flow(false));
+    let mut short = long.clone();
+    let winds = vec![Vector3::X * 9.0; long.stations().len()];
+    // Four structural steps, the wind held.
+    long.advance(4.0 * LONGEST_STRUCTURAL_STEP, &winds, &commands(0.0));
+    let circulation = |turbine: &Turbine| {
+        let bound = |force: &PointForce| force.bound.map(|bound| bound.circulation);
+        turbine.forces().iter().filter_map(bound).collect::<Vec<f64>>()
+    };
+    short.advance(LONGEST_STRUCTURAL_STEP, &winds, &commands(0.0));
+    for (mean, first) in circulation(&long).iter().zip(circulation(&short)) {
+        // A rotor that turns by a tenth of a radian in the same wind.
+        assert!((mean / first - 1.0).abs() < 0.1, "{mean} {first}");
+    }
+}

@@ -1,0 +1,30 @@
+//! What a reader of a summary must know before he believes its numbers.
+
+use serde::{Deserialize, Serialize};
+
+/// A warning.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Warning {
+    /// What it is about.
+    pub kind: WarningKind,
+    /// Turbine that it is about; absent where it is about the whole run.
+    pub turbine: Option<String>,
+    /// What happened, in words, and how to mend it.
+    pub message: String,
+}
+
+/// What a warning is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WarningKind {
+    /// The case or its turbines, as seen before the run: a coarse grid, too few blocks, a controller's file of another rotor.
+    Setup,
+    /// A turbine did not pitch as far as it was set to, or a pitch limit held it back.
+    PitchHeldBack,
+    /// A controller could not do what it was set to do for part of the time.
+    Controller,
+    /// A blade's tip outran the sound on the lattice.
+    TipSpeed,
+    /// Runs of one study were made with unlike versions of the case or of a turbine.
+    MixedRuns,
+}
