@@ -6,7 +6,6 @@ use control::phase_sync::PhaseSyncSettings;
 use estimation::helix::{Measurement, Options};
 use farm::pitch_response::OwnPitch;
 use formats::records::{read_probes, write_probes};
-use formats::records::{read_probes, write_probes};
 
 /// A case whose T2 joins the helix of T1 with `keys` beside the needed ones, under `overrides`.
 fn setup(keys: &str, overrides: &[&str]) -> Prepared {
