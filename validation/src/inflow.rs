@@ -4,6 +4,7 @@ pub mod kaimal;
 mod theory;
 
 use crate::Row;
+use crate::row::Tolerance::Within;
 use basis::Vector3;
 use flow::Inflow;
 use flow::inflow::spectra::{self, OnePointSpectra};
@@ -11,6 +12,10 @@ use flow::inflow::statistics::integral_scale;
 use flow::inflow::{MeanProfile, TurbulenceBox, TurbulentInflow, mann};
 use std::sync::Arc;
 use theory::Theory;
+
+/// Where the expected values come from.
+const SOURCE: &str =
+    "Mann's tensor (1994, 1998), integrated; von Karman's closed forms; IEC 61400-1, annex B";
 
 /// Seeds over which figures are averaged.
 const SEEDS: u64 = 10;
@@ -76,8 +81,9 @@ fn closed_forms() -> Vec<Row> {
                 ),
                 measured: measured / expected,
                 expected: 1.0,
-                tolerance: 0.005,
+                tolerance: Within(0.005),
                 unit: "-",
+                source: SOURCE,
             });
         }
     }
@@ -88,8 +94,9 @@ fn closed_forms() -> Vec<Row> {
                 .into(),
         measured: (variance(0.0) / variance(ANISOTROPY)).sqrt(),
         expected: 0.55,
-        tolerance: 0.01,
+        tolerance: Within(0.01),
         unit: "-",
+        source: SOURCE,
     });
     rows
 }
@@ -119,8 +126,9 @@ fn boxes(name: &str, anisotropy: f64) -> Vec<Row> {
                 what: format!("{name} box, {}", figure.what),
                 measured: mean,
                 expected: figure.expected,
-                tolerance: STANDARD_ERRORS * standard_error + figure.allowance,
+                tolerance: Within(STANDARD_ERRORS * standard_error + figure.allowance),
                 unit: figure.unit,
+                source: SOURCE,
             }
         })
         .collect()

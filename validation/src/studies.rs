@@ -2,11 +2,15 @@
 //! call stopped.
 
 use crate::Row;
+use crate::row::Tolerance::Within;
 use basis::records::Summary;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::AtomicBool;
 use study::{Options, Outcome, Watcher};
+
+/// Where the expected values come from.
+const SOURCE: &str = "–";
 
 /// Prints progress as plain lines.
 struct Lines {
@@ -62,7 +66,14 @@ pub(crate) fn command(path: &Path, output: &Path) -> Command {
 
 /// The one row of a validation that could not be made.
 pub(crate) fn failure(problem: String) -> Vec<Row> {
-    vec![Row { what: problem, measured: f64::NAN, expected: 0.0, tolerance: 0.0, unit: "-" }]
+    vec![Row {
+        what: problem,
+        measured: f64::NAN,
+        expected: 0.0,
+        tolerance: Within(0.0),
+        unit: "-",
+        source: SOURCE,
+    }]
 }
 
 /// The summary of the run of this name.

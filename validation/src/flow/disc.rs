@@ -2,11 +2,15 @@
 
 use super::{advance, lattice};
 use crate::Row;
+use crate::row::Tolerance::Within;
 use basis::{PointForce, Vector3};
 use flow::WindField;
 use flow::lattice::spreading::Spreader;
 use flow::lattice::{Ground, Lattice, Settings};
 use std::f64::consts::PI;
+
+/// Where the expected values come from.
+const SOURCE: &str = "momentum theory of a disc in a duct (Garrett, Cummins 2007)";
 
 const DIAMETER: f64 = 100.0;
 const SPEED: f64 = 10.0;
@@ -90,8 +94,9 @@ fn disc(thrust_coefficient: f64) -> Vec<Row> {
             ),
             measured: wind / SPEED,
             expected,
-            tolerance: 0.01 * expected,
+            tolerance: Within(0.01 * expected),
             unit: "-",
+            source: SOURCE,
         },
         Row {
             what: format!(
@@ -99,8 +104,9 @@ fn disc(thrust_coefficient: f64) -> Vec<Row> {
             ),
             measured: total(-0.5) - total(0.5),
             expected: centre,
-            tolerance: 0.01 * centre,
+            tolerance: Within(0.01 * centre),
             unit: "-",
+            source: SOURCE,
         },
     ]
 }

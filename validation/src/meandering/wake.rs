@@ -4,9 +4,13 @@
 use super::judge::{beside, percent, print_line, reached};
 use super::rig::MOMENTS;
 use crate::Row;
+use crate::row::Tolerance::Within;
 use crate::studies::{failure, find, summaries};
 use basis::records::{Load, LoadKind, Statistic, TurbineSummary};
 use std::path::{Path, absolute};
+
+/// Where the expected values come from.
+const SOURCE: &str = "van Veldhoven (2024), section 4-2-2";
 
 /// Where the wake is recorded, and the turbine put into it.
 const WAKE: &str = "cases/wake-inflow.toml";
@@ -51,8 +55,9 @@ fn made() -> Result<Vec<Row>, String> {
         what: "wake of a helix: share of the time in lock".to_owned(),
         measured: locked,
         expected: 1.0,
-        tolerance: 0.1,
+        tolerance: Within(0.1),
         unit: "–",
+        source: SOURCE,
     }];
     for run in &runs {
         rows.extend(run.rows()?);

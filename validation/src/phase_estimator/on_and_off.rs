@@ -3,8 +3,9 @@
 
 use super::rig::{self, Errors, Instruments};
 use super::wind::HelixWind;
-use super::{AIM, Machine, OWN, PERIOD, asked, row};
+use super::{AIM, Machine, OWN, PERIOD, SOURCE, asked, row};
 use crate::Row;
+use crate::row::Tolerance::Within;
 use basis::Sense;
 use control::PhaseSync;
 use control::phase_sync::{SyncSettings, TRUST};
@@ -81,8 +82,9 @@ pub(super) fn on_and_off(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), E
         what: format!("{name}: share of the pitch {what}"),
         measured,
         expected: 1.0,
-        tolerance: 0.1,
+        tolerance: Within(0.1),
         unit: "–",
+        source: SOURCE,
     };
     let [before, without, again] = seen.shares;
     rows.push(whole("before it goes", before));

@@ -71,10 +71,10 @@ pub fn estimators() -> Vec<Row> {
 }
 
 fn side_by_side(machine: &Machine) -> Result<Vec<Row>, EstimationError> {
-    println!(
+    eprintln!(
         "| record | estimator | within {SETTLED:.0}° after, s | worse axis, rms deg | mean, deg | rate, % | trust | held, % |"
     );
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    eprintln!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     let (mut rows, mut costs) = (Vec::new(), [0.0_f64; 4]);
     for (index, known) in records(machine)?.iter().enumerate() {
         // On the turbine in prescribed wind the wake stays with the blades, on its own model it is the model's.
@@ -89,7 +89,7 @@ fn side_by_side(machine: &Machine) -> Result<Vec<Row>, EstimationError> {
             outcomes.push((name, judge(known, &mut loops(kind))));
         }
         for (place, (name, outcome)) in outcomes.iter().enumerate() {
-            println!("| {} | {name} | {} |", known.name, outcome.line());
+            eprintln!("| {} | {name} | {} |", known.name, outcome.line());
             // The first record meets cold caches.
             costs[place] = if index == 0 { f64::INFINITY } else { costs[place].min(outcome.cost) };
             let off_nominal = known.rate != TAU / PERIOD && *name == "filter";

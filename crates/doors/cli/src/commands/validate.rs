@@ -1,11 +1,15 @@
-//! `wakemix validate`: recorded validations, repeated.
+//! `wakemix validate`: recorded validations, repeated and set beside their records.
+
+mod print;
+mod record;
 
 use super::BAD_INPUT;
 use clap::Args;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use validation::{Pictures, VALIDATIONS, Validation};
+use validation::gate::{Judgement, holds, judge};
+use validation::{Cost, Pictures, VALIDATIONS, Validation, pages};
 
 /// Arguments of `wakemix validate`.
 #[derive(Args)]
@@ -13,50 +17,94 @@ pub(crate) struct ValidateArguments {
     /// Names of validations; a list of them when left out
     #[arg(value_name = "NAME")]
     names: Vec<String>,
+    /// All that take less than a minute
+    #[arg(long, conflicts_with = "names")]
+    quick: bool,
+    /// Print all rows as JSON
+    #[arg(long, conflicts_with = "record")]
+    json: bool,
+    /// Write what comes out as the new record (validation/recorded) and renew the pages; no claim is loosened
+    #[arg(long)]
+    record: bool,
+    /// Renew verdicts and tables of docs/validation from the records, and repeat nothing
+    #[arg(long, conflicts_with_all = ["names", "quick", "json", "record", "pictures"])]
+    pages: bool,
     /// Folder to draw the validations into, where they have pictures: figures/*.svg and *.png
     #[arg(long, value_name = "FOLDER", requires = "names")]
     pictures: Option<PathBuf>,
 }
 
-/// Prints measured against expected, and draws it where asked; exit code 1 when a row falls short, 2 for an unknown name, for
-/// pictures of what has none, and for a folder that cannot be written.
+/// Prints each row beside its record, and draws it where asked; exit code 1 when a row is not as recorded, 2 for an unknown name,
+/// for pictures of what has none, and for what cannot be read or written.
 pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
-    if arguments.names.is_empty() {
-        println!("{:<20} {:>8}  what", "name", "minutes");
-        for validation in VALIDATIONS {
-            println!("{:<20} {:>8}  {}", validation.name, validation.minutes, validation.about);
+    if arguments.pages {
+        return renew_pages();
+    }
+    let wanted = match wanted(arguments) {
+        Ok(wanted) => wanted,
+        Err(problem) => return refused(&problem),
+    };
+    if wanted.is_empty() {
+        return if arguments.json || arguments.record {
+            refused("nothing is named\nhint: name validations, or take --quick")
+        } else {
+            print::list();
+            ExitCode::SUCCESS
+        };
+    }
+    let mut done: Vec<(&Validation, Vec<Judgement>)> = Vec::new();
+    for validation in wanted {
+        if let Err(problem) = repeat(validation, arguments, &mut done) {
+            return refused(&problem);
         }
-        return ExitCode::SUCCESS;
+    }
+    if arguments.record {
+        return renew_pages();
+    }
+    if arguments.json {
+        print::json(&done);
+    }
+    let code = code_of(&done);
+    if code != 0 {
+        eprintln!(
+            "not all is as recorded\nhint: mend what got worse; renew a record with --record where a change is meant"
+        );
+    }
+    ExitCode::from(code)
+}
+
+/// Exit code of what was repeated: 0 when all is as recorded, or 1.
+fn code_of(done: &[(&Validation, Vec<Judgement>)]) -> u8 {
+    u8::from(!done.iter().all(|(_, judgements)| holds(judgements)))
+}
+
+/// Says what is wrong with the call.
+fn refused(problem: &str) -> ExitCode {
+    eprintln!("error: {problem}");
+    ExitCode::from(BAD_INPUT)
+}
+
+/// The validations that are named, or the quick ones; none where neither is asked for.
+fn wanted(arguments: &ValidateArguments) -> Result<Vec<&'static Validation>, String> {
+    if arguments.quick {
+        return Ok(VALIDATIONS.iter().filter(|v| v.cost == Cost::UnderAMinute).collect());
     }
     let mut wanted = Vec::new();
     for name in &arguments.names {
         let found = VALIDATIONS.iter().find(|validation| validation.name == name);
         let Some(validation) = found else {
             let names = listed(|_| true);
-            eprintln!("error: no validation is called `{name}`\nhint: one of {names}");
-            return ExitCode::from(BAD_INPUT);
+            return Err(format!("no validation is called `{name}`\nhint: one of {names}"));
         };
         if arguments.pictures.is_some() && validation.pictures.is_none() {
             let drawn = listed(|validation| validation.pictures.is_some());
-            eprintln!(
-                "error: `{name}` has no pictures\nhint: leave out --pictures; those with pictures: {drawn}"
-            );
-            return ExitCode::from(BAD_INPUT);
+            return Err(format!(
+                "`{name}` has no pictures\nhint: leave out --pictures; those with pictures: {drawn}"
+            ));
         }
         wanted.push(validation);
     }
-    let mut short = 0;
-    for validation in wanted {
-        short += compare(validation);
-        if let (Some(folder), Some(pictures)) = (&arguments.pictures, validation.pictures)
-            && let Err(error) = draw(folder, pictures)
-        {
-            let cause = error.source().map_or(String::new(), |cause| format!(": {cause}"));
-            eprintln!("error: {error}{cause}\nhint: name another folder with --pictures");
-            return ExitCode::from(BAD_INPUT);
-        }
-    }
-    if short == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    Ok(wanted)
 }
 
 /// Names of the validations that `counts`.
@@ -66,33 +114,102 @@ fn listed(counts: impl Fn(&Validation) -> bool) -> String {
     names.join(", ")
 }
 
-/// Makes the comparison and prints it; gives how many rows fall short.
-fn compare(validation: &Validation) -> usize {
+/// Repeats `validation`, and prints or records what came out.
+fn repeat(
+    validation: &'static Validation,
+    arguments: &ValidateArguments,
+    done: &mut Vec<(&'static Validation, Vec<Judgement>)>,
+) -> Result<(), String> {
+    let record = validation.record().map_err(|error| error.to_string())?;
     let rows = (validation.run)();
-    println!(
-        "{:<64} {:>12} {:>12} {:>10} {:<6} within",
-        "what", "measured", "expected", "tolerance", "unit"
-    );
-    for row in &rows {
-        println!(
-            "{:<64} {:>12.6} {:>12.6} {:>10.2e} {:<6} {}",
-            row.what,
-            row.measured,
-            row.expected,
-            row.tolerance,
-            row.unit,
-            if row.passes() { "yes" } else { "NO" }
-        );
+    let judgements = judge(&rows, &record);
+    if !arguments.json {
+        print::table(validation, &judgements);
     }
-    let short = rows.iter().filter(|row| !row.passes()).count();
-    println!("{} rows, {short} fall short", rows.len());
-    short
+    if arguments.record {
+        record::renew(validation.name, &rows)?;
+    }
+    if let (Some(folder), Some(pictures)) = (&arguments.pictures, validation.pictures) {
+        draw(folder, pictures).map_err(|error| {
+            let cause = error.source().map_or(String::new(), |cause| format!(": {cause}"));
+            format!("{error}{cause}\nhint: name another folder with --pictures")
+        })?;
+    }
+    done.push((validation, judgements));
+    Ok(())
 }
 
-/// Draws a validation into `folder` and prints where.
+/// Draws a validation into `folder` and says where.
 fn draw(folder: &Path, pictures: Pictures) -> Result<(), validation::ReportError> {
     for name in pictures(folder)? {
-        println!("{}", folder.join("figures").join(format!("{name}.svg")).display());
+        eprintln!("{}", folder.join("figures").join(format!("{name}.svg")).display());
     }
     Ok(())
+}
+
+/// Writes the records into the pages, and says into which.
+fn renew_pages() -> ExitCode {
+    match pages::write(Path::new("")) {
+        Ok(changed) => {
+            for name in changed {
+                println!("{}/{name}.md", pages::FOLDER);
+            }
+            ExitCode::SUCCESS
+        }
+        Err(problem) => refused(&problem),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use validation::gate::Finding;
+    use validation::{Row, Tolerance};
+
+    /// Met, short, worse than recorded, and a shortfall that is gone.
+    fn wing() -> Vec<Row> {
+        let row = |what: &str, measured: f64| Row {
+            what: what.to_owned(),
+            measured,
+            expected: 1.0,
+            tolerance: Tolerance::Within(0.1),
+            unit: "MN",
+            source: "made up",
+        };
+        vec![row("met", 1.05), row("short", 1.5), row("worse", 1.8), row("gone", 1.0)]
+    }
+
+    const RECORDED: &str = r#"
+date = "2026-11-22"
+conditions = "made up"
+row = [
+    { id = "met", claim = "met", measured = 1.0, expected = 1.0, tolerance = { within = 0.1 }, unit = "MN", source = "", verdict = "met" },
+    { id = "short", claim = "short", measured = 1.5, expected = 1.0, tolerance = { within = 0.1 }, unit = "MN", source = "", verdict = "short" },
+    { id = "worse", claim = "worse", measured = 1.5, expected = 1.0, tolerance = { within = 0.1 }, unit = "MN", source = "", verdict = "short" },
+    { id = "gone", claim = "gone", measured = 1.5, expected = 1.0, tolerance = { within = 0.1 }, unit = "MN", source = "", verdict = "short" },
+]
+"#;
+
+    #[test]
+    fn a_made_up_validation_has_the_right_verdicts_and_exit_code() {
+        let validation = Validation {
+            name: "wing",
+            about: "a made-up wing",
+            cost: Cost::UnderAMinute,
+            run: wing,
+            pictures: None,
+            page: "wing",
+            recorded: RECORDED,
+        };
+        let judgements = judge(&(validation.run)(), &validation.record().unwrap());
+        let findings: Vec<Finding> = judgements.iter().map(|row| row.finding).collect();
+        use Finding::{AsRecorded, ShortfallGone, Worse};
+        assert_eq!(findings, [AsRecorded, AsRecorded, Worse, ShortfallGone]);
+        let code = |kept: &[usize]| {
+            let rows = kept.iter().map(|&place| judgements[place].clone()).collect();
+            code_of(&[(&validation, rows)])
+        };
+        assert_eq!(code(&[0, 1]), 0);
+        assert_eq!([code(&[0, 1, 2]), code(&[0, 1, 3])], [1, 1]);
+    }
 }

@@ -117,7 +117,7 @@ pub fn sha256(bytes: &[u8]) -> String {
 }
 
 /// This moment (UTC, RFC 3339, whole seconds).
-fn now() -> String {
+pub fn now() -> String {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     moment(since.as_secs())
 }

@@ -11,7 +11,7 @@ mod study;
 #[cfg(test)]
 mod summary_page;
 
-pub use manifest::{Machine, Manifest, read_manifest, sha256, write_manifest};
+pub use manifest::{Machine, Manifest, now, read_manifest, sha256, write_manifest};
 pub use probes::{ProbeRecord, read_probes, write_probes};
 pub use series::SeriesWriter;
 pub use series_file::{SeriesFile, read_series};

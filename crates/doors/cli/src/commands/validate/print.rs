@@ -1,0 +1,59 @@
+//! What `wakemix validate` prints: the list, rows as a table, rows as JSON.
+
+use validation::gate::{Finding, Judgement, holds};
+use validation::record::Verdict;
+use validation::{Tolerance, VALIDATIONS, Validation};
+
+/// All validations by name.
+pub(super) fn list() {
+    println!("{:<20} {:>8}  what", "name", "minutes");
+    for validation in VALIDATIONS {
+        println!("{:<20} {:>8}  {}", validation.name, validation.cost, validation.about);
+    }
+}
+
+/// The rows of `validation`, and how many are met, fall short, and are not as recorded.
+pub(super) fn table(validation: &Validation, judgements: &[Judgement]) {
+    println!(
+        "{:<64} {:>12} {:>12} {:>10} {:<6} {:<5} record",
+        "what", "measured", "expected", "tolerance", "unit", "met"
+    );
+    for row in judgements {
+        let tolerance = match row.tolerance {
+            Tolerance::Within(most) => format!("{most:.2e}"),
+            Tolerance::AtMost => "at most".to_owned(),
+            Tolerance::AtLeast => "at least".to_owned(),
+        };
+        let measured = row.measured.unwrap_or(f64::NAN);
+        let met = if row.verdict == Verdict::Met { "yes" } else { "NO" };
+        let mut record = row.finding.words().to_owned();
+        if let (Some(then), Finding::Worse) = (row.recorded, row.finding) {
+            record.push_str(&format!(", then {then}"));
+        }
+        println!(
+            "{:<64} {measured:>12.6} {:>12.6} {tolerance:>10} {:<6} {met:<5} {record}",
+            row.claim, row.expected, row.unit
+        );
+    }
+    let short = judgements.iter().filter(|row| row.verdict == Verdict::Short).count();
+    let other = judgements.iter().filter(|row| row.finding != Finding::AsRecorded).count();
+    let name = validation.name;
+    println!("{name}: {} rows, {short} fall short, {other} not as recorded", judgements.len());
+}
+
+/// All rows of all that was repeated, as one JSON object.
+pub(super) fn json(done: &[(&Validation, Vec<Judgement>)]) {
+    let validations: Vec<_> = done
+        .iter()
+        .map(|(validation, judgements)| {
+            serde_json::json!({
+                "name": validation.name,
+                "about": validation.about,
+                "as_recorded": holds(judgements),
+                "rows": judgements,
+            })
+        })
+        .collect();
+    let all = done.iter().all(|(_, judgements)| holds(judgements));
+    println!("{:#}", serde_json::json!({ "as_recorded": all, "validations": validations }));
+}

@@ -1,0 +1,285 @@
+//! All validations, in the order in which they are listed; and comparisons that are recorded but made by other means.
+
+use crate::{Cost, Elsewhere, Validation};
+use crate::{
+    actuator_line, aeroelastic, blade_element, flow, helix, inflow, meandering, memory,
+    phase_estimator, resume, structure,
+};
+
+/// All that the program repeats.
+pub const VALIDATIONS: &[Validation] = &[
+    Validation {
+        name: "blade-element",
+        about: "power, thrust and blade loads by blade-element momentum, beside published tables and AeroDyn",
+        cost: Cost::UnderAMinute,
+        run: blade_element::blade_element,
+        pictures: None,
+        page: "blade-element",
+        recorded: include_str!("../recorded/blade-element.toml"),
+    },
+    Validation {
+        name: "actuator-line",
+        about: "power and thrust of three rotors on 16, 24 and 32 cells per diameter against blade-element momentum, and against blade elements in axisymmetric flow",
+        cost: Cost::Minutes(28),
+        run: actuator_line::actuator_line,
+        pictures: None,
+        page: "actuator-line",
+        recorded: include_str!("../recorded/actuator-line.toml"),
+    },
+    Validation {
+        name: "actuator-line-coarse",
+        about: "the same on 16 cells per diameter alone",
+        cost: Cost::Minutes(3),
+        run: actuator_line::actuator_line_coarse,
+        pictures: None,
+        page: "actuator-line",
+        recorded: include_str!("../recorded/actuator-line-coarse.toml"),
+    },
+    Validation {
+        name: "actuator-line-fine",
+        about: "the same on 32 cells per diameter alone",
+        cost: Cost::Minutes(18),
+        run: actuator_line::actuator_line_fine,
+        pictures: None,
+        page: "actuator-line",
+        recorded: include_str!("../recorded/actuator-line-fine.toml"),
+    },
+    Validation {
+        name: "actuator-line-flat",
+        about: "the same on 16 and 24 cells per diameter of rotors without tilt, precone and prebend",
+        cost: Cost::Minutes(6),
+        run: actuator_line::actuator_line_flat,
+        pictures: None,
+        page: "actuator-line",
+        recorded: include_str!("../recorded/actuator-line-flat.toml"),
+    },
+    Validation {
+        name: "flow",
+        about: "the lattice against closed forms: Taylor-Green, free stream, mass, outlet, a disc in momentum theory",
+        cost: Cost::Minutes(1),
+        run: flow::flow,
+        pictures: None,
+        page: "flow",
+        recorded: include_str!("../recorded/flow.toml"),
+    },
+    Validation {
+        name: "log-profile",
+        about: "turbulent wind over a rough ground against the logarithmic law",
+        cost: Cost::UnderAMinute,
+        run: flow::log_profile,
+        pictures: None,
+        page: "flow",
+        recorded: include_str!("../recorded/log-profile.toml"),
+    },
+    Validation {
+        name: "isotropy",
+        about: "19 directions against 27 in round, deflected and helical wakes",
+        cost: Cost::Minutes(3),
+        run: flow::isotropy,
+        pictures: None,
+        page: "flow",
+        recorded: include_str!("../recorded/isotropy.toml"),
+    },
+    Validation {
+        name: "helix",
+        about: "power of two turbines against amplitude and sense of the helix, beside published large-eddy figures",
+        cost: Cost::Minutes(38),
+        run: helix::helix,
+        pictures: None,
+        page: "helix",
+        recorded: include_str!("../recorded/helix.toml"),
+    },
+    Validation {
+        name: "helix-pitch",
+        about: "what a helix commands: no bit changed without amplitude, one line at 1P ± f_e with it",
+        cost: Cost::Minutes(1),
+        run: helix::helix_pitch,
+        pictures: None,
+        page: "helix",
+        recorded: include_str!("../recorded/helix-pitch.toml"),
+    },
+    Validation {
+        name: "centre-line",
+        about: "recovery of the wake without and with a helix, beside published large-eddy figures",
+        cost: Cost::Minutes(5),
+        run: helix::centre_line,
+        pictures: None,
+        page: "helix",
+        recorded: include_str!("../recorded/centre-line.toml"),
+    },
+    Validation {
+        name: "structure",
+        about: "natural frequencies beside published ones, energy of free motion, loads of a spinning rotor in closed form",
+        cost: Cost::UnderAMinute,
+        run: structure::structure,
+        pictures: None,
+        page: "structure",
+        recorded: include_str!("../recorded/structure.toml"),
+    },
+    Validation {
+        name: "openfast-steady",
+        about: "the flexible turbine in steady prescribed wind against OpenFAST: power, thrust, mean loads, deflection, tower",
+        cost: Cost::UnderAMinute,
+        run: aeroelastic::openfast_steady,
+        pictures: None,
+        page: "openfast",
+        recorded: include_str!("../recorded/openfast-steady.toml"),
+    },
+    Validation {
+        name: "openfast-helix",
+        about: "changes of power and loads by a helix of 1 to 4° in steady prescribed wind against OpenFAST",
+        cost: Cost::UnderAMinute,
+        run: aeroelastic::openfast_helix,
+        pictures: None,
+        page: "openfast",
+        recorded: include_str!("../recorded/openfast-helix.toml"),
+    },
+    Validation {
+        name: "openfast-turbulence",
+        about: "the flexible turbine in Kaimal turbulence: deviations and equivalent loads beside a record of OpenFAST",
+        cost: Cost::UnderAMinute,
+        run: aeroelastic::openfast_turbulence,
+        pictures: None,
+        page: "openfast",
+        recorded: include_str!("../recorded/openfast-turbulence.toml"),
+    },
+    Validation {
+        name: "meandering-loops",
+        about: "phase-locked loops on tones, ramps and steps, against closed forms and the published claims",
+        cost: Cost::UnderAMinute,
+        run: meandering::loops,
+        pictures: None,
+        page: "meandering",
+        recorded: include_str!("../recorded/meandering-loops.toml"),
+    },
+    Validation {
+        name: "meandering-bench",
+        about: "loops closed around three masses on springs: steps, ramp, offset, noise, attenuation, beside the source",
+        cost: Cost::UnderAMinute,
+        run: meandering::bench,
+        pictures: Some(meandering::pictures),
+        page: "meandering",
+        recorded: include_str!("../recorded/meandering-bench.toml"),
+    },
+    Validation {
+        name: "meandering-disk",
+        about: "the flexible turbine in a rotating disk, in its middle and aside, loads amplified and attenuated, beside published tables",
+        cost: Cost::Minutes(4),
+        run: meandering::disk,
+        pictures: None,
+        page: "meandering",
+        recorded: include_str!("../recorded/meandering-disk.toml"),
+    },
+    Validation {
+        name: "meandering-wake",
+        about: "the flexible turbine in the recorded wake of a helix, loads amplified and attenuated, beside a published table",
+        cost: Cost::Minutes(12),
+        run: meandering::wake,
+        pictures: None,
+        page: "meandering",
+        recorded: include_str!("../recorded/meandering-wake.toml"),
+    },
+    Validation {
+        name: "phase-estimator",
+        about: "the helix's phase from blade moments: on the estimator's own model, and on an aeroelastic turbine in turbulence",
+        cost: Cost::Minutes(3),
+        run: phase_estimator::phase_estimator,
+        pictures: None,
+        page: "phase-estimator",
+        recorded: include_str!("../recorded/phase-estimator.toml"),
+    },
+    Validation {
+        name: "estimators",
+        about: "the Kalman filter and the phase-locked loops on the same blade moments: error, settling, noise, cost",
+        cost: Cost::Minutes(1),
+        run: phase_estimator::estimators,
+        pictures: None,
+        page: "estimators",
+        recorded: include_str!("../recorded/estimators.toml"),
+    },
+    Validation {
+        name: "resume",
+        about: "20 kills at random moments, each followed by --resume: same bits",
+        cost: Cost::Minutes(5),
+        run: resume::resume,
+        pictures: None,
+        page: "resume",
+        recorded: include_str!("../recorded/resume.toml"),
+    },
+    Validation {
+        name: "memory",
+        about: "memory of one flexible turbine in turbulence, ten minutes, an hour and three, each in a process of its own",
+        cost: Cost::Minutes(1),
+        run: memory::memory,
+        pictures: None,
+        page: "memory",
+        recorded: include_str!("../recorded/memory.toml"),
+    },
+    Validation {
+        name: "kaimal",
+        about: "IEC turbulence: spectra, deviations, coherence against the standard's, and beside a record of TurbSim",
+        cost: Cost::UnderAMinute,
+        run: inflow::kaimal::kaimal,
+        pictures: None,
+        page: "inflow",
+        recorded: include_str!("../recorded/kaimal.toml"),
+    },
+    Validation {
+        name: "inflow",
+        about: "Mann's turbulence: spectra, coherence, intensity and length scale against the tensor's integrals",
+        cost: Cost::UnderAMinute,
+        run: inflow::inflow,
+        pictures: None,
+        page: "inflow",
+        recorded: include_str!("../recorded/inflow.toml"),
+    },
+];
+
+/// Comparisons that `cargo test`, a script or a study repeats; their records are kept by hand.
+pub const ELSEWHERE: &[Elsewhere] = &[
+    Elsewhere {
+        name: "fatigue",
+        about: "cycles and 1-Hz damage-equivalent loads against rainflow, fatpack and OpenFAST runs",
+        repeat: "validation/scripts/rainflow_against_fatpack.py",
+        page: "fatigue",
+        recorded: include_str!("../recorded/fatigue.toml"),
+    },
+    Elsewhere {
+        name: "surrogate",
+        about: "Gaussian processes against scikit-learn",
+        repeat: "cargo test -p wakemix-surrogate scikit_learn",
+        page: "surrogate",
+        recorded: include_str!("../recorded/surrogate.toml"),
+    },
+    Elsewhere {
+        name: "synchronised-helix",
+        about: "a helix that the second turbine joins with a phase offset, three turbines, beside published large-eddy figures",
+        repeat: "wakemix run cases/synchronised-helix.toml",
+        page: "synchronised-helix",
+        recorded: include_str!("../recorded/synchronised-helix.toml"),
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{Record, Verdict};
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_record_reads_and_names_its_rows_once() {
+        let own = VALIDATIONS.iter().map(|validation| (validation.name, validation.recorded));
+        let others = ELSEWHERE.iter().map(|elsewhere| (elsewhere.name, elsewhere.recorded));
+        for (name, text) in own.chain(others) {
+            let record = Record::parse(text).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let ids: BTreeSet<&str> = record.rows.iter().map(|row| row.id.as_str()).collect();
+            assert!(!record.rows.is_empty() && ids.len() == record.rows.len(), "{name}");
+            for row in &record.rows {
+                // A figure that was not kept can only have been met.
+                let met = row.measured.is_none_or(|m| row.tolerance.beyond(m, row.expected) == 0.0);
+                let said = row.verdict == Verdict::Met;
+                assert_eq!(met, said, "{name}, {}: figures and verdict differ", row.claim);
+            }
+        }
+    }
+}
