@@ -1,9 +1,18 @@
 //! The rules of the house that a compiler does not know, checked against the files themselves.
 
 mod architecture;
+mod circles;
+mod exceptions;
+mod functions;
 mod links;
+mod room;
+mod source;
 mod text;
+mod unused;
 
+use architecture::Rules;
+use exceptions::Exceptions;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::fs;
 use std::io;
@@ -36,7 +45,9 @@ impl fmt::Display for Finding {
 /// When a file or folder cannot be read.
 pub fn findings(root: &Path) -> io::Result<Vec<Finding>> {
     let mut findings = Vec::new();
-    let rules = architecture::check(root, &mut findings)?;
+    let exceptions = Exceptions::read(root, &mut findings)?;
+    let rules = architecture::check(root, &exceptions, &mut findings)?;
+    check_rooms(root, &rules, &exceptions, &mut findings)?;
     let mut files = Vec::new();
     collect(root, Path::new(""), &mut files)?;
     for file in files {
@@ -47,6 +58,25 @@ pub fn findings(root: &Path) -> io::Result<Vec<Finding>> {
         }
     }
     Ok(findings)
+}
+
+/// Adds circles of files and long functions of the rooms, and exceptions that none needs.
+fn check_rooms(
+    root: &Path,
+    rules: &Rules,
+    exceptions: &Exceptions,
+    findings: &mut Vec<Finding>,
+) -> io::Result<()> {
+    let (mut circular, mut long) = (BTreeSet::new(), BTreeSet::new());
+    for folder in rules.folders.values() {
+        let modules = room::modules(root, folder)?;
+        circular.extend(circles::check(&modules, exceptions, findings));
+        for module in modules.values() {
+            long.extend(functions::check(module, exceptions, findings));
+        }
+    }
+    exceptions.check_needed(&circular, &rules.unused, &long, findings);
+    Ok(())
 }
 
 /// Files below `folder`, without what git ignores and without what is not ours to word.

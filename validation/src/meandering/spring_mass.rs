@@ -1,6 +1,6 @@
 //! Three masses on springs, the first one pushed: a turbine's answer to a slow load in its simplest form.
 
-use std::ops::{Add, Mul};
+use lti::Complex64;
 
 /// Masses (kg), damping constants (N s/m) and stiffnesses (N/m) from the wall outwards. van Veldhoven (2024), §3-1.
 const MASSES: [f64; 3] = [14.0, 16.0, 15.0];
@@ -55,46 +55,13 @@ impl SpringMass {
 /// Gain (m/N) and phase (rad) of the first mass' place behind a force on it at `rate` (rad/s).
 pub(super) fn answer(rate: f64) -> [f64; 2] {
     // Dynamic stiffness, from the free end inwards.
-    let spring = |index: usize| Complex(STIFFNESS[index], rate * DAMPING[index]);
-    let inertia = |index: usize| Complex(-rate * rate * MASSES[index], 0.0);
+    let spring = |index: usize| Complex64::new(STIFFNESS[index], rate * DAMPING[index]);
+    let inertia = |index: usize| Complex64::new(-rate * rate * MASSES[index], 0.0);
     let third = inertia(2) + spring(2);
-    let second =
-        inertia(1) + spring(1) + spring(2) + (-1.0) * (spring(2) * spring(2) * third.inverse());
-    let first =
-        inertia(0) + spring(0) + spring(1) + (-1.0) * (spring(1) * spring(1) * second.inverse());
-    let Complex(re, im) = first.inverse();
-    [re.hypot(im), im.atan2(re)]
-}
-
-#[derive(Clone, Copy)]
-struct Complex(f64, f64);
-
-impl Complex {
-    fn inverse(self) -> Self {
-        let square = self.0 * self.0 + self.1 * self.1;
-        Self(self.0 / square, -self.1 / square)
-    }
-}
-
-impl Add for Complex {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0, self.1 + other.1)
-    }
-}
-
-impl Mul for Complex {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        Self(self.0 * other.0 - self.1 * other.1, self.0 * other.1 + self.1 * other.0)
-    }
-}
-
-impl Mul<Complex> for f64 {
-    type Output = Complex;
-    fn mul(self, other: Complex) -> Complex {
-        Complex(self * other.0, self * other.1)
-    }
+    let second = inertia(1) + spring(1) + spring(2) - spring(2) * spring(2) * third.inv();
+    let first = inertia(0) + spring(0) + spring(1) - spring(1) * spring(1) * second.inv();
+    let answer = first.inv();
+    [answer.norm(), answer.arg()]
 }
 
 #[cfg(test)]

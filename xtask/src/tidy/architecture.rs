@@ -1,6 +1,7 @@
 //! Who may import whom: the tables of ARCHITECTURE.md against the manifests.
 
-use super::Finding;
+use super::exceptions::Exceptions;
+use super::{Finding, room, unused};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
@@ -16,6 +17,8 @@ pub(super) struct Rules {
     pub(super) folders: BTreeMap<String, PathBuf>,
     /// Rooms that may do what the key says, such as `open files`.
     pub(super) permits: BTreeMap<String, BTreeSet<String>>,
+    /// Manifest and name of dependencies that no source uses.
+    pub(super) unused: BTreeSet<(PathBuf, String)>,
 }
 
 impl Rules {
@@ -36,7 +39,11 @@ struct Row {
 }
 
 /// Checks every manifest against the map, and the map against the folders.
-pub(super) fn check(root: &Path, findings: &mut Vec<Finding>) -> io::Result<Rules> {
+pub(super) fn check(
+    root: &Path,
+    exceptions: &Exceptions,
+    findings: &mut Vec<Finding>,
+) -> io::Result<Rules> {
     let map = fs::read_to_string(root.join(MAP))?;
     let (rows, permits) = read_map(&map);
     let rooms: BTreeSet<&str> = rows.iter().map(|row| row.room.as_str()).collect();
@@ -60,15 +67,6 @@ pub(super) fn check(root: &Path, findings: &mut Vec<Finding>) -> io::Result<Rule
             let message = format!("{} may import {unknown}, which is no room", row.room);
             report(Path::new(MAP), Some(row.line), message);
         }
-        let manifest = Path::new(&row.folder).join("Cargo.toml");
-        for import in imports(&read_manifest(&root.join(&manifest))?) {
-            let local = rooms.contains(import.name.as_str()) || import.is_path;
-            if local && !row.imports.contains(&import.name) {
-                let message =
-                    format!("{} imports {}, which {MAP} does not allow", row.room, import.name);
-                report(&manifest, None, message);
-            }
-        }
     }
     for member in &members {
         if !rows.iter().any(|row| row.folder == *member) {
@@ -81,8 +79,54 @@ pub(super) fn check(root: &Path, findings: &mut Vec<Finding>) -> io::Result<Rule
             report(Path::new(MAP), None, message);
         }
     }
+    let mut unused = BTreeSet::new();
+    for row in rows.iter().filter(|row| members.contains(&row.folder)) {
+        unused.extend(check_manifest(root, row, &rooms, exceptions, findings)?);
+    }
     let folders = rows.into_iter().map(|row| (row.room, PathBuf::from(row.folder))).collect();
-    Ok(Rules { folders, permits })
+    Ok(Rules { folders, permits, unused })
+}
+
+/// Checks the manifest of `row` against what it may import and against its sources; gives manifest and name of what no
+/// source uses.
+fn check_manifest(
+    root: &Path,
+    row: &Row,
+    rooms: &BTreeSet<&str>,
+    exceptions: &Exceptions,
+    findings: &mut Vec<Finding>,
+) -> io::Result<BTreeSet<(PathBuf, String)>> {
+    let folder = Path::new(&row.folder);
+    let manifest = read_manifest(&root.join(folder).join("Cargo.toml"))?;
+    let (mut imported, mut refused) = (BTreeSet::new(), BTreeSet::new());
+    for import in imports(&manifest) {
+        let local = rooms.contains(import.name.as_str()) || import.is_path;
+        if local && !row.imports.contains(&import.name) {
+            let message =
+                format!("{} imports {}, which {MAP} does not allow", row.room, import.name);
+            findings.push(Finding { file: folder.join("Cargo.toml"), line: None, message });
+            refused.insert(import.name.clone());
+        }
+        imported.insert(import.name);
+    }
+    for unused in row.imports.iter().filter(|import| rooms.contains(import.as_str())) {
+        if !imported.contains(unused) {
+            let message = format!("{} may import {unused} and does not: take it out", row.room);
+            findings.push(Finding { file: MAP.into(), line: Some(row.line), message });
+        }
+    }
+    let modules = room::modules(root, folder)?;
+    let file = folder.join("Cargo.toml");
+    let mut named = BTreeSet::new();
+    for (kind, name) in unused::unused(root, folder, &manifest, &refused, &modules)? {
+        let key = (file.clone(), name);
+        if !exceptions.dependencies.contains(&key) {
+            let message = format!("`{}` in [{kind}] is used by no source: take it out", key.1);
+            findings.push(Finding { file: file.clone(), line: None, message });
+        }
+        named.insert(key);
+    }
+    Ok(named)
 }
 
 /// Rows of the table `room | folder | may import`, and of the table `only these rooms | are`.

@@ -3,7 +3,6 @@
 mod coefficients;
 mod constants;
 mod estimator;
-mod filter;
 mod individual_pitch;
 mod kind;
 mod pitch;
@@ -19,9 +18,9 @@ pub use constants::{
     SetPointSmoothing, TorqueControl, TorqueGains, TowerDamping, WIND_SPEED_FILTER_CORNER,
     WindSpeedEstimator, greedy_torque_gain,
 };
-use filter::LowPass;
 use individual_pitch::Individual;
 pub use kind::BASELINE;
+use lti::LowPass;
 use pitch::{Pitch, least_pitch};
 use serde::{Deserialize, Serialize};
 use speed::{SpeedFilter, Wind};

@@ -1,5 +1,6 @@
 //! Pitch actuators: second-order lag with limits of rate and position.
 
+use lti::lag::free_response;
 use serde::{Deserialize, Serialize};
 
 /// Longest sub-step as a share of 1/ω (–), so that a rate limit acts soon after it is reached.
@@ -39,7 +40,7 @@ impl PitchActuator {
         let mut limited = target != command;
         let n_substeps = (interval * self.natural_frequency / LONGEST_SUBSTEP).ceil().max(1.0);
         let step = interval / n_substeps;
-        let response = self.free_response(step);
+        let response = free_response(self.natural_frequency, self.damping_ratio, step);
         for _ in 0..n_substeps as usize {
             let error = state.pitch - target;
             let pitch = target + response[0][0] * error + response[0][1] * state.rate;
@@ -56,23 +57,6 @@ impl PitchActuator {
             state.pitch = within;
         }
         limited
-    }
-
-    /// Exponential of the free motion over `step` (s): error and rate after it, per unit of each before.
-    fn free_response(&self, step: f64) -> [[f64; 2]; 2] {
-        // Symbols: w natural frequency, s = sqrt(zeta² − 1) w; c and k are cosh(s t), sinh(s t)/s or their trigonometric twins.
-        let (w, zeta) = (self.natural_frequency, self.damping_ratio);
-        let decay = (-zeta * w * step).exp();
-        let square = (zeta * zeta - 1.0) * w * w;
-        let angle = square.abs().sqrt() * step;
-        let (c, k) = if angle < 1e-6 {
-            (1.0, step)
-        } else if square > 0.0 {
-            (angle.cosh(), angle.sinh() / angle * step)
-        } else {
-            (angle.cos(), angle.sin() / angle * step)
-        };
-        [[decay * (c + zeta * w * k), decay * k], [-decay * w * w * k, decay * (c - zeta * w * k)]]
     }
 }
 

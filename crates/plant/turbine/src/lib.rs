@@ -10,6 +10,7 @@ pub mod lifting_line;
 pub mod loading;
 pub mod motion;
 pub mod rotor;
+pub mod sample;
 pub mod steady;
 pub mod structure;
 mod turbine;

@@ -1,7 +1,7 @@
 //! Rotor-effective wind speed by an extended Kalman filter on rotor speed.
 
 use super::constants::WindSpeedEstimator;
-use super::filter::LowPass;
+use lti::LowPass;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 

@@ -2,8 +2,8 @@
 
 use super::constants::{Constants, MAXIMUM_NOTCHES};
 use super::estimator::Estimator;
-use super::filter::{LowPass, SecondOrder, Smoother};
 use basis::Measurements;
+use lti::{LowPass, SecondOrder, Smoother};
 use serde::{Deserialize, Serialize};
 
 /// Corner of the filter on the power that the wind speed is guessed from without an estimator (rad/s): slower than the

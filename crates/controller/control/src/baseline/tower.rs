@@ -2,7 +2,7 @@
 
 use super::bounded;
 use super::constants::TowerDamping;
-use super::filter::LowPass;
+use lti::LowPass;
 use serde::{Deserialize, Serialize};
 
 /// State of the tower damper.

@@ -12,6 +12,7 @@ use super::estimator::{HelixEstimator, HelixSettings};
 use super::options::Options;
 use crate::{EstimationError, Estimator};
 use basis::{Measurements, Sense};
+use lti::Complex64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -45,9 +46,6 @@ impl Calibration {
     }
 }
 
-/// A complex number: real and imaginary part.
-type Complex = [f64; 2];
-
 /// Calibrates `options` on `record`: measurements at every [`HelixSettings::interval`] of a rotor that pitches a helix with
 /// the rate and sense of `settings` in a steady wind. The filter settles for `settling` (s); whole periods after that count.
 ///
@@ -70,10 +68,10 @@ pub fn calibrate(
         let (found, needed) = (record.len(), n_settling + n_period.ceil() as usize);
         return Err(EstimationError::RecordTooShort { found, needed });
     }
-    let found = |factor: Complex| -> Result<Complex, EstimationError> {
+    let found = |factor: Complex64| -> Result<Complex64, EstimationError> {
         let options = with_factor(options, settings.sense, factor);
         let mut estimator = HelixEstimator::new(definition, settings, options)?;
-        let mut sum = [0.0; 2];
+        let mut sum = Complex64::default();
         for (index, measurements) in record.iter().take(n_settling + n_counted).enumerate() {
             let estimate = estimator.update(measurements);
             if index < n_settling {
@@ -81,24 +79,23 @@ pub fn calibrate(
             }
             for axis in [estimate.tilt, estimate.yaw] {
                 let (sine, cosine) = axis.phase.sin_cos();
-                sum[0] += 0.5 * axis.amplitude * cosine;
-                sum[1] += 0.5 * axis.amplitude * sine;
+                let half = 0.5 * axis.amplitude;
+                sum += Complex64::new(half * cosine, half * sine);
             }
         }
-        Ok(sum.map(|sum| sum / n_counted as f64))
+        Ok(sum / n_counted as f64)
     };
-    let mut factor = [1.0, 0.0];
+    let mut factor = Complex64::new(1.0, 0.0);
     let mut left = found(factor)?;
-    let before = left[0].hypot(left[1]);
+    let before = left.norm();
     for _ in 0..N_ROUNDS {
-        let beside = found([factor[0] + TRIAL, factor[1]])?;
-        let slope = [(beside[0] - left[0]) / TRIAL, (beside[1] - left[1]) / TRIAL];
-        let size = slope[0].hypot(slope[1]);
+        let beside = found(factor + TRIAL)?;
+        let slope = (beside - left) / TRIAL;
+        let size = slope.norm();
         if size.is_nan() || size < f64::EPSILON {
             return Err(EstimationError::NothingToCalibrate);
         }
-        let change = quotient(left, slope);
-        factor = [factor[0] - change[0], factor[1] - change[1]];
+        factor -= left / slope;
         left = found(factor)?;
     }
     let rotor = with_factor(options, settings.sense, factor).rotor;
@@ -106,24 +103,19 @@ pub fn calibrate(
         gain: rotor.pitch_gain,
         azimuth_offset: rotor.pitch_azimuth_offset,
         before,
-        after: left[0].hypot(left[1]),
+        after: left.norm(),
     })
 }
 
 /// `options` with a complex `factor` on the pitch's phasor: turning tilt and yaw by an azimuth takes it from a ccw
 /// helix's phase and adds it to a cw one's.
-fn with_factor(options: Options, sense: Sense, factor: Complex) -> Options {
-    let turned = factor[1].atan2(factor[0]);
+fn with_factor(options: Options, sense: Sense, factor: Complex64) -> Options {
+    let turned = factor.arg();
     let mut options = options;
-    options.rotor.pitch_gain = factor[0].hypot(factor[1]);
+    options.rotor.pitch_gain = factor.norm();
     options.rotor.pitch_azimuth_offset = match sense {
         Sense::CounterClockwise => -turned,
         Sense::Clockwise => turned,
     };
     options
-}
-
-fn quotient(a: Complex, b: Complex) -> Complex {
-    let size = b[0] * b[0] + b[1] * b[1];
-    [(a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size]
 }

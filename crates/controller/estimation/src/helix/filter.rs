@@ -8,6 +8,7 @@ use super::wave::Axis;
 use basis::angle::wrap_to_half_turn;
 use basis::mbc::{blade_azimuth, to_fixed_frame};
 use basis::{FixedFrame, PerBlade, Sense};
+use lti::lag::kept;
 use serde::{Deserialize, Serialize};
 
 /// Innovations beyond this many standard deviations have less weight, after Huber (–).
@@ -319,7 +320,7 @@ impl Filter {
         before: &Vector,
         state: &mut FilterState,
     ) {
-        let share = 1.0 - (-interval / adaptation.time_constant).exp();
+        let share = 1.0 - kept(interval, adaptation.time_constant);
         let bound = adaptation.bound * adaptation.bound;
         state.measurement += share * (left - state.measurement);
         state.measurement = state.measurement.clamp(1.0 / bound, bound);

@@ -1,6 +1,7 @@
 //! Confidence in an estimate: variance of its phases, coherence of the estimated wave, consistency of the innovation.
 
 use basis::FixedFrame;
+use lti::lag::kept;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -103,7 +104,7 @@ impl TrustMonitor {
 }
 
 fn share(interval: f64, time_constant: f64) -> f64 {
-    1.0 - (-interval / time_constant).exp()
+    1.0 - kept(interval, time_constant)
 }
 
 fn lean(value: &mut f64, share: f64, target: f64) {

@@ -8,7 +8,8 @@ use super::{HelixEstimate, HelixEstimator, HelixSettings};
 use crate::{EstimationError, Estimator};
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use basis::{Measurements, Sense};
-use std::f64::consts::{PI, TAU};
+use lti::SecondOrder;
+use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 use std::sync::Arc;
 use turbine::Definition;
 
@@ -87,18 +88,10 @@ pub fn high_passed_variance(
         let (n_samples, needed) = (signal.len(), 2 * settle);
         return Err(EstimationError::TooShort { n_samples, needed, purpose: "a high pass" });
     }
-    // Bilinear transform of s²/(s² + √2 s + 1) with the corner kept in place.
-    let k = (0.5 * corner * interval).tan();
-    let scale = 1.0 / (1.0 + 2.0_f64.sqrt() * k + k * k);
-    let feedback = [2.0 * (k * k - 1.0) * scale, (1.0 - 2.0_f64.sqrt() * k + k * k) * scale];
-    let (mut past, mut passed) = ([signal[0]; 2], [0.0; 2]);
+    let mut filter = SecondOrder::high_pass(corner, FRAC_1_SQRT_2, signal[0]);
     let (mut sum, mut n) = (0.0, 0.0);
     for (index, value) in signal.iter().enumerate() {
-        let through = scale * (value - 2.0 * past[0] + past[1])
-            - feedback[0] * passed[0]
-            - feedback[1] * passed[1];
-        past = [*value, past[0]];
-        passed = [through, passed[0]];
+        let through = filter.update(interval, *value);
         if index >= settle {
             sum += through * through;
             n += 1.0;

@@ -15,7 +15,6 @@
 //! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, chapter 2.
 
 mod amplitude;
-mod complex;
 mod generator;
 mod lock;
 mod oscillator;

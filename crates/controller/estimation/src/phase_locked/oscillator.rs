@@ -17,8 +17,8 @@
 //! tan(θ̃/2) would add, leaves half of the error.
 
 use super::PhaseLockedError;
-use super::complex::{Complex, roots};
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
+use lti::{Complex64, roots};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::fmt;
@@ -80,7 +80,7 @@ impl Gains {
             self.integral * lag.powi(2),
             self.double_integral * lag.powi(3),
         ];
-        let rightmost = |roots: &[Complex]| {
+        let rightmost = |roots: &[Complex64]| {
             roots.iter().fold(roots[0], |most, root| if root.re > most.re { *root } else { most })
         };
         // Without double integral action that integrator is left out.

@@ -1,7 +1,7 @@
 //! Frequency responses of the generators, in closed form.
 
-use super::complex::Complex;
 use super::generator::Kind;
+use lti::Complex64;
 
 /// Gain and phase at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,23 +29,22 @@ pub struct Transfer {
 /// mixed generator's offset is v_dc / k, so that a constant passes with gain one.
 pub fn transfer(kind: Kind, damping: f64, ratio: f64) -> Transfer {
     let k = damping;
-    let s = Complex::new(0.0, ratio);
-    let one = Complex::real(1.0);
+    let s = Complex64::new(0.0, ratio);
     let square = s * s;
-    let second = square + k * s + one;
+    let second = square + k * s + 1.0;
     let [in_phase, quadrature, offset] = match kind {
-        Kind::Second => [(k * s) / second, Complex::real(k) / second, Complex::real(0.0)],
+        Kind::Second => [(k * s) / second, k / second, Complex64::default()],
         Kind::Extended { dc_gain } => {
-            let third = square * s + (k + dc_gain) * square + s + Complex::real(dc_gain);
-            let notch = dc_gain * (square + one);
+            let third = square * s + (k + dc_gain) * square + s + dc_gain;
+            let notch = dc_gain * (square + 1.0);
             [(k * square) / third, (k * s) / third, notch / third]
         }
         Kind::Mixed => {
-            let third = (s + one) * second;
-            [(k * s) / second, (k * s * (one - s)) / third, (square + one) / third]
+            let third = (s + 1.0) * second;
+            [(k * s) / second, (k * s * (1.0 - s)) / third, (square + 1.0) / third]
         }
     };
-    let response = |value: Complex| Response { gain: value.norm(), phase: value.argument() };
+    let response = |value: Complex64| Response { gain: value.norm(), phase: value.arg() };
     Transfer {
         in_phase: response(in_phase),
         quadrature: response(quadrature),

@@ -4,13 +4,12 @@
 
 use basis::angle::wrap_to_turn;
 use basis::mbc::to_blades;
-use basis::{FixedFrame, Measurements, Sense, Vector3};
+use basis::{FixedFrame, Measurements, Sense};
 use estimation::helix::{HelixSettings, MeasurementModel, Options};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
-use turbine::actuators::PitchActuator;
 use turbine::definition::*;
-use turbine::{Definition, Polar};
+use turbine::{Definition, sample};
 
 /// Period of the helix (s).
 pub(crate) const PERIOD: f64 = 91.4;
@@ -18,24 +17,6 @@ pub(crate) const PERIOD: f64 = 91.4;
 pub(crate) const INTERVAL: f64 = 0.2;
 /// Rotor speed (rad/s).
 pub(crate) const ROTOR_SPEED: f64 = 0.68;
-
-fn polar(lift: impl Fn(f64) -> f64, drag: impl Fn(f64) -> f64) -> Polar {
-    let angles: Vec<f64> = (-360..=360).map(|k| f64::from(k) * PI / 360.0).collect();
-    let lift: Vec<f64> = angles.iter().map(|angle| lift(*angle)).collect();
-    let drag: Vec<f64> = angles.iter().map(|angle| drag(*angle)).collect();
-    Polar::new("sample", &angles, &lift, &drag, &vec![0.0; angles.len()]).unwrap()
-}
-
-fn aerofoil() -> Polar {
-    let attached = |angle: f64| 1.0 / (1.0 + ((angle.abs() - 0.28) / 0.03).exp());
-    polar(
-        |angle| {
-            let share = attached(angle);
-            share * TAU * (angle + 0.05).sin() + (1.0 - share) * 1.1 * (2.0 * angle).sin()
-        },
-        |angle| 0.008 + 1.3 * angle.sin().powi(2) * (1.0 - attached(angle)),
-    )
-}
 
 /// A rotor of 120 m with soft blades.
 pub(crate) fn definition() -> Arc<Definition> {
@@ -63,9 +44,8 @@ pub(crate) fn definition() -> Arc<Definition> {
             polar: usize::from(k > 5),
         }
     };
+    let base = sample::definition();
     Arc::new(Definition {
-        name: "sample".into(),
-        n_blades: 3,
         rotor: RotorGeometry {
             hub_radius: 3.0,
             tip_radius: 120.0,
@@ -75,28 +55,20 @@ pub(crate) fn definition() -> Arc<Definition> {
             hub_height: 150.0,
         },
         blade: (0..40).map(station).collect(),
-        polars: vec![polar(|_| 0.0, |_| 0.5), aerofoil()],
         blade_structure: BladeStructure {
             sections: (0..=20).map(section).collect(),
             flap_modes: [mode, mode],
             edge_mode: mode,
         },
         tower: Tower {
-            base_height: 0.0,
             top_height: 145.0,
             top_to_shaft: 5.0,
-            profile: vec![],
-            sections: vec![],
             fore_aft_modes: [mode, mode],
             side_to_side_modes: [mode, mode],
+            ..base.tower.clone()
         },
         hub: Hub { mass: 1e5, inertia: 1e6 },
-        nacelle: Nacelle {
-            mass: 5e5,
-            yaw_inertia: 1e7,
-            center_of_mass: Vector3::ZERO,
-            yaw_bearing_mass: 0.0,
-        },
+        nacelle: Nacelle { mass: 5e5, yaw_inertia: 1e7, ..base.nacelle },
         drive_train: DriveTrain {
             gear_ratio: 1.0,
             generator_inertia: 1e6,
@@ -105,15 +77,9 @@ pub(crate) fn definition() -> Arc<Definition> {
             stiffness: 1e10,
             damping: 1e8,
         },
-        pitch_actuator: PitchActuator {
-            natural_frequency: 3.0,
-            damping_ratio: 0.7,
-            maximum_rate: 0.1,
-            minimum_pitch: -0.1,
-            maximum_pitch: 1.5,
-        },
         rated_power: 15e6,
         rated_rotor_speed: 0.8,
+        ..base
     })
 }
 

@@ -80,14 +80,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
     };
     if let Some(discon) = servodyn.optional_deck("DLL_InFile")? {
         document.controller = Some(discon::controller(&discon, gear_ratio, source(&[&discon]))?);
-        document.pitch_actuator = Some(PitchActuator {
-            source: source(&[&discon]),
-            natural_frequency: discon.number("PA_CornerFreq")?,
-            damping_ratio: discon.number("PA_Damping")?,
-            maximum_rate_deg_s: discon.number("PC_MaxRat")?.to_degrees(),
-            minimum_pitch_deg: discon.number("PC_MinPit")?.to_degrees(),
-            maximum_pitch_deg: discon.number("PC_MaxPit")?.to_degrees(),
-        });
+        document.pitch_actuator = Some(pitch_actuator(&discon, source(&[&discon]))?);
         let torque_control = document.controller.as_ref().and_then(|known| known.torque_control);
         if torque_control == Some(TorqueControl::TipSpeedRatio) {
             let origin = format!("{} as imported", path.display());
@@ -95,6 +88,18 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
         }
     }
     Ok(document)
+}
+
+/// The pitch actuator that the controller's deck `discon` knows.
+fn pitch_actuator(discon: &Deck, source: String) -> Result<PitchActuator, TurbineFileError> {
+    Ok(PitchActuator {
+        source,
+        natural_frequency: discon.number("PA_CornerFreq")?,
+        damping_ratio: discon.number("PA_Damping")?,
+        maximum_rate_deg_s: discon.number("PC_MaxRat")?.to_degrees(),
+        minimum_pitch_deg: discon.number("PC_MinPit")?.to_degrees(),
+        maximum_pitch_deg: discon.number("PC_MaxPit")?.to_degrees(),
+    })
 }
 
 /// Air density of the deck (kg/m³); that of the standard atmosphere where the main file leaves it to the modules.

@@ -39,20 +39,16 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
     let controller_group = document.controller.as_ref().ok_or_else(|| missing("controller"))?;
     let airfoils = document.airfoils.as_ref().ok_or_else(|| missing("airfoils"))?;
     if !(1..=MAXIMUM_BLADES).contains(&document.n_blades) {
-        return Err(place.error(
-            &[Key("n_blades")],
-            format!("1 to {MAXIMUM_BLADES} blades"),
-            document.n_blades.to_string(),
-            "count the blades",
-        ));
+        let (expected, found) =
+            (format!("1 to {MAXIMUM_BLADES} blades"), document.n_blades.to_string());
+        return Err(place.error(&[Key("n_blades")], expected, found, "count the blades"));
     }
     let polars = polars_of(airfoils, place)?;
-    let rotor_geometry = rotor_of(rotor, place)?;
     let length = rotor.tip_radius - rotor.hub_radius;
     let definition = Definition {
         name: document.name.clone(),
         n_blades: document.n_blades,
-        rotor: rotor_geometry,
+        rotor: rotor_of(rotor, place)?,
         blade: stations_of(blade, length, airfoils, place)?,
         polars,
         blade_structure: blade_structure_of(structure, length, place)?,
@@ -66,8 +62,6 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
     };
     controller::check(controller_group, place)?;
     let radius = definition.rotor_radius();
-    let controller_constants =
-        controller_of(controller_group, radius, drive_train.generator_efficiency);
     let sources = [
         ("rotor", &rotor.source),
         ("blade", &blade.source),
@@ -80,23 +74,24 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         ("controller", &controller_group.source),
         ("airfoils", &airfoils.source),
     ];
-    for (group, source) in sources {
-        if source.trim().is_empty() {
-            let fix = "name publication or input set, with its commit or edition";
-            return Err(place.error(
-                &[Key(group), Key("source")],
-                "a source",
-                "an empty text",
-                fix,
-            ));
-        }
-    }
+    check_sources(&sources, place)?;
     Ok(TurbineFile {
         title: document.title.clone(),
         definition,
-        controller: controller_constants,
+        controller: controller_of(controller_group, radius, drive_train.generator_efficiency),
         sources: sources.map(|(group, source)| (group.to_owned(), source.clone())).into(),
     })
+}
+
+/// Every group of `sources` names one.
+fn check_sources(sources: &[(&'static str, &String)], place: &Place) -> Checked<()> {
+    match sources.iter().find(|(_, source)| source.trim().is_empty()) {
+        Some((group, _)) => {
+            let fix = "name publication or input set, with its commit or edition";
+            Err(place.error(&[Key(group), Key("source")], "a source", "an empty text", fix))
+        }
+        None => Ok(()),
+    }
 }
 
 fn rotor_of(rotor: &file::Rotor, place: &Place) -> Checked<RotorGeometry> {

@@ -4,6 +4,7 @@ mod check;
 mod controller;
 mod document;
 mod error;
+mod text;
 mod write;
 mod write_controller;
 

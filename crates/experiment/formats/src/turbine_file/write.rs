@@ -1,9 +1,10 @@
 //! A turbine file as text: groups with their sources, tables in aligned columns.
 
 use super::document::{
-    Airfoils, Blade, BladeStructure, Document, DriveTrain, Hub, Mode, Nacelle, PitchActuator,
-    PolarTable, Rotor, Tower, Unsteady,
+    Airfoils, Blade, BladeStructure, Document, DriveTrain, Hub, Nacelle, PitchActuator, PolarTable,
+    Rotor, Tower, Unsteady,
 };
+use super::text::{Text, number, numbers, quoted};
 use super::write_controller::controller;
 
 /// A turbine file as text.
@@ -41,133 +42,8 @@ pub fn write(document: &Document) -> Written {
     out.group("pitch_actuator", &document.pitch_actuator, pitch_actuator);
     out.group("controller", &document.controller, controller);
     out.group("airfoils", &document.airfoils, airfoils);
-    Written { text: out.text, missing: out.missing }
-}
-
-#[derive(Default)]
-pub(super) struct Text {
-    text: String,
-    group: &'static str,
-    missing: Vec<String>,
-}
-
-impl Text {
-    pub(super) fn line(&mut self, line: &str) {
-        self.text.push_str(line.trim_end());
-        self.text.push('\n');
-    }
-
-    pub(super) fn text(&mut self, key: &str, text: &str) {
-        self.line(&format!("{key} = {}", quoted(text)));
-    }
-
-    /// A comment where `key` should stand, with what is known of it.
-    pub(super) fn missing(&mut self, key: &str, known: &str) {
-        self.missing.push(format!("{}.{key}", self.group));
-        self.line(&format!("# {key} = {known}  # not in the source; complete by hand"));
-    }
-
-    pub(super) fn number(&mut self, key: &str, value: f64, comment: &str) {
-        if !value.is_finite() {
-            return self.missing(key, "?");
-        }
-        let comment = if comment.is_empty() { String::new() } else { format!("  # {comment}") };
-        self.line(&format!("{key} = {}{comment}", number(value)));
-    }
-
-    fn group<Group>(
-        &mut self,
-        name: &'static str,
-        group: &Option<Group>,
-        write: fn(&mut Self, &Group),
-    ) {
-        self.line("");
-        self.group = name;
-        match group {
-            Some(group) => {
-                self.line(&format!("[{name}]"));
-                write(self, group);
-            }
-            None => {
-                self.missing.push(name.to_owned());
-                self.line(&format!("# [{name}] is not in the source; complete by hand"));
-            }
-        }
-    }
-
-    pub(super) fn table<Cells: IntoIterator<Item = String>>(
-        &mut self,
-        key: &str,
-        columns: &[&str],
-        rows: impl IntoIterator<Item = Cells>,
-    ) {
-        let rows: Vec<Vec<String>> =
-            rows.into_iter().map(|row| row.into_iter().collect()).collect();
-        if rows.is_empty() && key != "minimum_pitch" {
-            return self.missing(key, "[]");
-        }
-        self.line(&format!("{key} = ["));
-        let mut widths: Vec<usize> = columns.iter().map(|name| name.chars().count()).collect();
-        for row in &rows {
-            for (width, cell) in widths.iter_mut().zip(row) {
-                *width = (*width).max(cell.len());
-            }
-        }
-        let join = |cells: Vec<String>| cells.join("  ");
-        let pad = |cells: &mut dyn Iterator<Item = (&str, &str)>| -> Vec<String> {
-            cells
-                .zip(&widths)
-                .map(|((cell, end), width)| {
-                    let blanks = width.saturating_sub(cell.chars().count());
-                    format!("{}{cell}{end}", " ".repeat(blanks))
-                })
-                .collect()
-        };
-        let head = pad(&mut columns.iter().map(|name| (*name, " ")));
-        self.line(&format!("  # {}", join(head)));
-        for row in &rows {
-            let last = row.len() - 1;
-            let cells = row.iter().enumerate();
-            let cells =
-                pad(&mut cells.map(|(k, cell)| (cell.as_str(), if k == last { "" } else { "," })));
-            self.line(&format!("  [ {} ],", join(cells)));
-        }
-        self.line("]");
-    }
-
-    fn mode(&mut self, key: &str, mode: &Mode) {
-        if !mode.coefficients.iter().chain([&mode.damping_ratio]).all(|value| value.is_finite()) {
-            return self.missing(key, "{ coefficients = [?], damping_ratio = ? }");
-        }
-        let coefficients: Vec<String> = mode.coefficients.iter().map(|c| number(*c)).collect();
-        let damping = number(mode.damping_ratio);
-        let coefficients = coefficients.join(", ");
-        self.line(&format!(
-            "{key} = {{ coefficients = [{coefficients}], damping_ratio = {damping} }}"
-        ));
-    }
-}
-
-/// Seven significant digits, as TOML reads them as a number with a point.
-pub(super) fn number(value: f64) -> String {
-    if value == 0.0 {
-        return "0.0".to_owned();
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if !(-4..9).contains(&magnitude) {
-        let text = format!("{value:.6e}");
-        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-        let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
-        return format!("{mantissa}e{exponent}");
-    }
-    let decimals = usize::try_from(6 - magnitude).unwrap_or(0).max(1);
-    let text = format!("{value:.decimals$}");
-    let trimmed = text.trim_end_matches('0');
-    if trimmed.ends_with('.') { format!("{trimmed}0") } else { trimmed.to_owned() }
-}
-
-pub(super) fn quoted(text: &str) -> String {
-    toml::Value::from(text).to_string()
+    let Text { text, missing, .. } = out;
+    Written { text, missing }
 }
 
 fn rotor(out: &mut Text, rotor: &Rotor) {
@@ -188,10 +64,6 @@ fn blade(out: &mut Text, blade: &Blade) {
         numbers.into_iter().chain([quoted(polar)])
     });
     out.table("stations", &columns, rows);
-}
-
-pub(super) fn numbers<const N: usize>(row: &[f64; N]) -> [String; N] {
-    row.map(number)
 }
 
 fn blade_structure(out: &mut Text, structure: &BladeStructure) {

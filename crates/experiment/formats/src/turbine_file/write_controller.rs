@@ -1,7 +1,7 @@
 //! The group `controller` of a turbine file as text.
 
 use super::document::{Controller, TowerDamping};
-use super::write::{Text, number, numbers, quoted};
+use super::text::{Text, number, numbers, quoted};
 
 pub(super) fn controller(out: &mut Text, controller: &Controller) {
     out.text("source", &controller.source);

@@ -240,107 +240,42 @@ fn scale([least, most]: [f64; 2]) -> (f32, f32) {
     (slope, (f64::from(i16::MIN) - f64::from(slope) * least) as f32)
 }
 
+/// What is wrong with a file, and what mends it.
+type Wrong = (String, &'static str);
+
+const COPY_AGAIN: &str = "copy the file again or run TurbSim again";
+
 fn read_header(path: &Path, file: &mut impl Read, found: u64) -> Result<Header, FileError> {
-    let wrong = |problem: String, fix: &str| Err(FileError::content(WHAT, path, problem, fix));
+    let wrong = |(problem, fix): Wrong| FileError::content(WHAT, path, problem, fix);
     if found < FIXED_HEADER as u64 {
-        return wrong(
-            format!("it ends after {found} bytes, within the header of {FIXED_HEADER}"),
-            "copy the file again or run TurbSim again",
-        );
+        let problem = format!("it ends after {found} bytes, within the header of {FIXED_HEADER}");
+        return Err(wrong((problem, COPY_AGAIN)));
     }
     let mut bytes = [0; FIXED_HEADER];
     file.read_exact(&mut bytes).map_err(|source| FileError::system("read", WHAT, path, source))?;
-    let four = |place: usize| [0, 1, 2, 3].map(|byte| bytes[place + byte]);
-    let count = |index: usize| i32::from_le_bytes(four(2 + 4 * index));
-    let number = |index: usize| f32::from_le_bytes(four(18 + 4 * index));
+    let header = header_of(&bytes).map_err(wrong)?;
+    check_length(&header, found).map_err(wrong)?;
+    Ok(header)
+}
 
-    let identifier = i16::from_le_bytes([bytes[0], bytes[1]]);
-    if [ONCE, PERIODIC].contains(&identifier.swap_bytes()) {
-        return wrong(
-            format!(
-                "byte 0: the identifier is {} with its bytes swapped: the byte order is big-endian",
-                identifier.swap_bytes()
-            ),
-            "write the file in little-endian order",
-        );
-    }
-    if ![ONCE, PERIODIC].contains(&identifier) {
-        return wrong(
-            format!("byte 0: the identifier is {identifier}, not {ONCE} or {PERIODIC}"),
-            "give a .bts file of TurbSim (WrADFF = True)",
-        );
-    }
-    let counts =
-        [count(0), count(1), count(2), count(3), i32::from_le_bytes(four(FIXED_HEADER - 4))];
-    let named = [
-        "points along z",
-        "points along y",
-        "tower points",
-        "time steps",
-        "characters of description",
-    ];
-    for (index, (value, name)) in counts.into_iter().zip(named).enumerate() {
-        let least = if [2, 4].contains(&index) { 0 } else { 1 };
-        if value < least {
-            return wrong(
-                format!("the header counts {value} {name}"),
-                "copy the file again or run TurbSim again",
-            );
-        }
-    }
-    let [n_z, n_y, n_tower, n_steps, description_length] = counts.map(|value| value as usize);
-    for (index, name) in [
-        (0, "spacing along z"),
-        (1, "spacing along y"),
-        (2, "time step"),
-        (3, "hub speed"),
-        (4, "hub height"),
-    ] {
+fn header_of(bytes: &[u8; FIXED_HEADER]) -> Result<Header, Wrong> {
+    let number =
+        |index: usize| f32::from_le_bytes([0, 1, 2, 3].map(|byte| bytes[18 + 4 * index + byte]));
+    let periodic = is_periodic(i16::from_le_bytes([bytes[0], bytes[1]]))?;
+    let [n_z, n_y, n_tower, n_steps, description_length] = counts_of(bytes)?;
+    let names = ["spacing along z", "spacing along y", "time step", "hub speed", "hub height"];
+    for (index, name) in names.into_iter().enumerate() {
         let value = number(index);
         if !(value.is_finite() && value > 0.0) {
-            return wrong(
-                format!("byte {}: the {name} is {value}", 18 + 4 * index),
-                "run TurbSim again",
-            );
+            let problem = format!("byte {}: the {name} is {value}", 18 + 4 * index);
+            return Err((problem, "run TurbSim again"));
         }
     }
     let slopes = [number(6), number(8), number(10)];
     let intercepts = [number(7), number(9), number(11)];
-    for (component, (slope, intercept)) in
-        ["u", "v", "w"].iter().zip(slopes.into_iter().zip(intercepts))
-    {
-        let ends = [i16::MIN, i16::MAX].map(|end| (f32::from(end) - intercept) / slope);
-        if !ends.iter().all(|end| end.abs() <= FASTEST) {
-            return wrong(
-                format!(
-                    "slope {slope} and intercept {intercept} of {component} give winds of {} to {} m/s",
-                    ends[0], ends[1]
-                ),
-                "run TurbSim again",
-            );
-        }
-    }
-    let per_step = 6 * (n_y as u128 * n_z as u128 + n_tower as u128);
-    let start = (FIXED_HEADER + description_length) as u128;
-    let needed = start + per_step * n_steps as u128;
-    if u128::from(found) != needed {
-        let how = if u128::from(found) < needed {
-            format!(
-                "it ends within step {} of {n_steps}",
-                (u128::from(found).saturating_sub(start)) / per_step + 1
-            )
-        } else {
-            "it goes on behind the last step".to_owned()
-        };
-        return wrong(
-            format!(
-                "{found} bytes instead of {needed} for {n_steps} steps of {n_y} × {n_z} points: {how}"
-            ),
-            "copy the file again or run TurbSim again",
-        );
-    }
+    check_scales(slopes, intercepts)?;
     Ok(Header {
-        periodic: identifier == PERIODIC,
+        periodic,
         n_z,
         n_y,
         n_tower,
@@ -355,4 +290,79 @@ fn read_header(path: &Path, file: &mut impl Read, found: u64) -> Result<Header, 
         intercepts,
         description_length,
     })
+}
+
+fn is_periodic(identifier: i16) -> Result<bool, Wrong> {
+    let swapped = identifier.swap_bytes();
+    match identifier {
+        PERIODIC => Ok(true),
+        ONCE => Ok(false),
+        _ if [ONCE, PERIODIC].contains(&swapped) => Err((
+            format!(
+                "byte 0: the identifier is {swapped} with its bytes swapped: the byte order is big-endian"
+            ),
+            "write the file in little-endian order",
+        )),
+        _ => Err((
+            format!("byte 0: the identifier is {identifier}, not {ONCE} or {PERIODIC}"),
+            "give a .bts file of TurbSim (WrADFF = True)",
+        )),
+    }
+}
+
+/// Points along z and y, points of the tower, steps, characters of description.
+fn counts_of(bytes: &[u8; FIXED_HEADER]) -> Result<[usize; 5], Wrong> {
+    let places = [2, 6, 10, 14, FIXED_HEADER - 4];
+    let counts =
+        places.map(|place| i32::from_le_bytes([0, 1, 2, 3].map(|byte| bytes[place + byte])));
+    let named = [
+        ("points along z", 1),
+        ("points along y", 1),
+        ("tower points", 0),
+        ("time steps", 1),
+        ("characters of description", 0),
+    ];
+    for (value, (name, least)) in counts.into_iter().zip(named) {
+        if value < least {
+            return Err((format!("the header counts {value} {name}"), COPY_AGAIN));
+        }
+    }
+    Ok(counts.map(|value| value as usize))
+}
+
+fn check_scales(slopes: [f32; 3], intercepts: [f32; 3]) -> Result<(), Wrong> {
+    for (component, (slope, intercept)) in
+        ["u", "v", "w"].iter().zip(slopes.into_iter().zip(intercepts))
+    {
+        let ends = [i16::MIN, i16::MAX].map(|end| (f32::from(end) - intercept) / slope);
+        if !ends.iter().all(|end| end.abs() <= FASTEST) {
+            let problem = format!(
+                "slope {slope} and intercept {intercept} of {component} give winds of {} to {} m/s",
+                ends[0], ends[1]
+            );
+            return Err((problem, "run TurbSim again"));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a file of `found` bytes holds what `header` counts.
+fn check_length(header: &Header, found: u64) -> Result<(), Wrong> {
+    let Header { n_z, n_y, n_tower, n_steps, description_length, .. } = *header;
+    let per_step = 6 * (n_y as u128 * n_z as u128 + n_tower as u128);
+    let start = (FIXED_HEADER + description_length) as u128;
+    let needed = start + per_step * n_steps as u128;
+    if u128::from(found) == needed {
+        return Ok(());
+    }
+    let how = if u128::from(found) < needed {
+        let step = u128::from(found).saturating_sub(start) / per_step + 1;
+        format!("it ends within step {step} of {n_steps}")
+    } else {
+        "it goes on behind the last step".to_owned()
+    };
+    let problem = format!(
+        "{found} bytes instead of {needed} for {n_steps} steps of {n_y} × {n_z} points: {how}"
+    );
+    Err((problem, COPY_AGAIN))
 }

@@ -1,12 +1,8 @@
 //! Closed forms, balances and limits.
 
 use super::*;
-use crate::actuators::PitchActuator;
-use crate::definition::{
-    BladeSection, BladeStation, BladeStructure, DriveTrain, Hub, Mode, Nacelle, RotorGeometry,
-    Tower,
-};
-use basis::Vector3;
+use crate::definition::{BladeStation, BladeStructure, RotorGeometry};
+use crate::sample;
 use std::f64::consts::PI;
 
 const RADIUS: f64 = 50.0;
@@ -24,17 +20,9 @@ fn rotor(drag: f64, shape: impl Fn(f64) -> (f64, f64)) -> Definition {
         let (chord, twist) = shape(HUB + span);
         BladeStation { span, chord, twist, prebend: 0.0, sweep: 0.0, polar: 0 }
     };
-    let mode = Mode { coefficients: [1.0, 0.0, 0.0, 0.0, 0.0], damping_ratio: 0.01 };
-    let section = |span: f64| BladeSection {
-        span,
-        twist: 0.0,
-        mass: 100.0,
-        flap_stiffness: 1e9,
-        edge_stiffness: 1e9,
-    };
+    let base = sample::definition();
     Definition {
         name: "ideal".into(),
-        n_blades: 3,
         rotor: RotorGeometry {
             hub_radius: HUB,
             tip_radius: RADIUS,
@@ -46,43 +34,10 @@ fn rotor(drag: f64, shape: impl Fn(f64) -> (f64, f64)) -> Definition {
         blade: (0..=200).map(station).collect(),
         polars: vec![polar],
         blade_structure: BladeStructure {
-            sections: vec![section(0.0), section(RADIUS - HUB)],
-            flap_modes: [mode, mode],
-            edge_mode: mode,
+            sections: sample::even_sections(RADIUS - HUB, 100.0),
+            ..base.blade_structure.clone()
         },
-        tower: Tower {
-            base_height: 0.0,
-            top_height: 88.0,
-            top_to_shaft: 2.0,
-            profile: vec![],
-            sections: vec![],
-            fore_aft_modes: [mode, mode],
-            side_to_side_modes: [mode, mode],
-        },
-        hub: Hub { mass: 1e4, inertia: 1e5 },
-        nacelle: Nacelle {
-            mass: 1e5,
-            yaw_inertia: 1e6,
-            center_of_mass: Vector3::ZERO,
-            yaw_bearing_mass: 0.0,
-        },
-        drive_train: DriveTrain {
-            gear_ratio: 10.0,
-            generator_inertia: 100.0,
-            gearbox_efficiency: 1.0,
-            generator_efficiency: 0.9,
-            stiffness: 1e8,
-            damping: 1e6,
-        },
-        pitch_actuator: PitchActuator {
-            natural_frequency: 3.0,
-            damping_ratio: 0.7,
-            maximum_rate: 0.1,
-            minimum_pitch: -0.1,
-            maximum_pitch: 1.5,
-        },
-        rated_power: 2e6,
-        rated_rotor_speed: 1.5,
+        ..base
     }
 }
 

@@ -4,9 +4,10 @@ use super::*;
 use crate::Polar;
 use crate::actuators::PitchActuator;
 use crate::definition::{
-    BladeSection, BladeStation, BladeStructure, DriveTrain, Hub, Mode, Nacelle, RotorGeometry,
-    Tower, TowerProfile, TowerSection,
+    BladeStation, BladeStructure, DriveTrain, Mode, RotorGeometry, Tower, TowerProfile,
+    TowerSection,
 };
+use crate::sample;
 use std::f64::consts::PI;
 
 pub(super) const DENSITY: f64 = 1.2;
@@ -31,13 +32,6 @@ pub(super) fn machine() -> Arc<Definition> {
     };
     let mode = Mode { coefficients: [1.0, 0.0, 0.0, 0.0, 0.0], damping_ratio: 0.01 };
     let second = Mode { coefficients: [-3.0, 4.0, 0.0, 0.0, 0.0], damping_ratio: 0.01 };
-    let section = |span: f64| BladeSection {
-        span,
-        twist: 0.0,
-        mass: 200.0,
-        flap_stiffness: 1e9,
-        edge_stiffness: 1e9,
-    };
     let tower = |height: f64| TowerSection {
         height,
         mass: 4e3,
@@ -45,9 +39,9 @@ pub(super) fn machine() -> Arc<Definition> {
         side_to_side_stiffness: 5e11,
     };
     let profile = |height: f64| TowerProfile { height, diameter: 5.0, drag_coefficient: 0.6 };
+    let base = sample::definition();
     Arc::new(Definition {
         name: "small".into(),
-        n_blades: 3,
         rotor: RotorGeometry {
             hub_radius: 2.0,
             tip_radius: 50.0,
@@ -59,7 +53,7 @@ pub(super) fn machine() -> Arc<Definition> {
         blade: (0..=20).map(station).collect(),
         polars: vec![polar],
         blade_structure: BladeStructure {
-            sections: vec![section(0.0), section(48.0)],
+            sections: sample::even_sections(48.0, 200.0),
             flap_modes: [mode, second],
             edge_mode: mode,
         },
@@ -72,13 +66,6 @@ pub(super) fn machine() -> Arc<Definition> {
             fore_aft_modes: [mode, second],
             side_to_side_modes: [mode, second],
         },
-        hub: Hub { mass: 1e4, inertia: 1e5 },
-        nacelle: Nacelle {
-            mass: 1e5,
-            yaw_inertia: 1e6,
-            center_of_mass: Vector3::ZERO,
-            yaw_bearing_mass: 0.0,
-        },
         drive_train: DriveTrain {
             gear_ratio: 1.0,
             generator_inertia: 1e6,
@@ -87,15 +74,10 @@ pub(super) fn machine() -> Arc<Definition> {
             stiffness: 1e9,
             damping: 1e6,
         },
-        pitch_actuator: PitchActuator {
-            natural_frequency: 3.0,
-            damping_ratio: 0.7,
-            maximum_rate: 0.1,
-            minimum_pitch: -0.05,
-            maximum_pitch: 1.5,
-        },
+        pitch_actuator: PitchActuator { minimum_pitch: -0.05, ..base.pitch_actuator },
         rated_power: 3e6,
         rated_rotor_speed: 1.4,
+        ..base
     })
 }
 

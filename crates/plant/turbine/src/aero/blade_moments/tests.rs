@@ -3,7 +3,8 @@
 use super::*;
 use crate::aero::induction::{SnelSchepers, TwoConstant};
 use crate::aero::rotor::{BemSettings, RotorAerodynamics, RotorKinematics};
-use crate::aero::sample::{Stiff, definition};
+use crate::aero::sample::Stiff;
+use crate::sample::definition;
 use basis::Vector3;
 
 const ROTOR_SPEED: f64 = 1.1;

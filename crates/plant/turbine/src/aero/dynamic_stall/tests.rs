@@ -1,7 +1,7 @@
 //! Theodorsen's function, steady limits, stall, and any flow at all.
 
 use super::*;
-use crate::aero::sample::{ZERO_LIFT as SAMPLE_ZERO_LIFT, aerofoil, polar};
+use crate::sample::{ZERO_LIFT as SAMPLE_ZERO_LIFT, aerofoil, polar};
 use proptest::prelude::*;
 
 const SPEED: f64 = 50.0;

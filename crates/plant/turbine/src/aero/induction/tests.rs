@@ -1,7 +1,7 @@
 //! The models' own laws at one ring of air.
 
 use super::*;
-use crate::aero::sample::polar;
+use crate::sample::polar;
 use std::f64::consts::PI;
 
 const WIND: f64 = 10.0;

@@ -4,6 +4,7 @@
 //! implementation of an engineering method", ECN-C--94-107, 1995, and by Hansen, "Aerodynamics of wind turbines", 2nd ed.,
 //! 2008, eq. 9.21 to 9.25. AeroDyn's dynamic blade-element momentum is the same model (its DBEMT).
 
+use lti::lag::kept;
 use serde::{Deserialize, Serialize};
 
 /// Induction up to which the slow constant grows (–).
@@ -75,7 +76,7 @@ impl Decay {
     /// Over `interval` (s), at `share` (–) of the rotor radius, with a slow time constant of `slow` (s).
     pub fn new(interval: f64, slow: f64, share: f64) -> Self {
         let fast = fast_constant(slow, share);
-        let decay = |constant: f64| (-interval / constant).exp();
+        let decay = |constant: f64| kept(interval, constant);
         let passed = slow / (slow - fast) * (decay(slow) - decay(fast));
         Self { slow: decay(slow), fast: decay(fast), passed }
     }

@@ -3,9 +3,10 @@
 use super::*;
 use crate::aero::blade_element;
 use crate::aero::induction::{SnelSchepers, TwoConstant, two_constant};
-use crate::aero::sample::{Stiff, definition};
+use crate::aero::sample::Stiff;
 use crate::aero::tower_influence::{Effects, Potential};
 use crate::definition::TowerProfile;
+use crate::sample::definition;
 use crate::steady::SteadyRotor;
 
 const WIND: f64 = 9.0;

@@ -1,0 +1,20 @@
+//! Linear time-invariant systems in discrete time: lags and filters of first and second order, roots of polynomials.
+//!
+//! | wanted | use | discretised |
+//! | --- | --- | --- |
+//! | a lag without state of its own | [`lag::first`], [`lag::second`] | exact for an input held over the interval |
+//! | a low-pass of first order | [`LowPass`] | exact for an input held over the interval |
+//! | a low-pass, high-pass or notch of second order | [`SecondOrder`] | bilinear rule, exact at its own frequency |
+//! | poles | [`roots`] | |
+//!
+//! The interval is given with every sample, so that a filter works at any. Filters are plain data that serialise whole.
+
+pub mod lag;
+mod low_pass;
+mod roots;
+mod second_order;
+
+pub use low_pass::{LowPass, Smoother};
+pub use num_complex::Complex64;
+pub use roots::roots;
+pub use second_order::SecondOrder;
