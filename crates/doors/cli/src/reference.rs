@@ -90,10 +90,14 @@ fn choices(argument: &Arg) -> String {
     if words.is_empty() { words } else { format!(". {words}") }
 }
 
-/// Help on one line of a table.
+/// Help on one line of a table, its paragraphs as sentences.
 fn line(help: Option<&StyledStr>) -> String {
     let words = help.map(ToString::to_string).unwrap_or_default();
-    words.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
+    let sentence = |paragraph: &str| {
+        let words: Vec<&str> = paragraph.trim_end_matches('.').split_whitespace().collect();
+        words.join(" ").replace('|', "\\|")
+    };
+    words.split("\n\n").map(sentence).collect::<Vec<_>>().join(". ")
 }
 
 #[test]
