@@ -3,6 +3,7 @@
 mod architecture;
 mod links;
 mod text;
+mod width;
 
 use std::fmt;
 use std::fs;
@@ -44,6 +45,7 @@ pub fn findings(root: &Path) -> io::Result<Vec<Finding>> {
         if let Ok(text) = String::from_utf8(fs::read(root.join(&file))?) {
             text::check(&file, &text, &rules, &mut findings);
             links::check(root, &file, &text, &mut findings);
+            width::check(&file, &text, &mut findings);
         }
     }
     Ok(findings)
