@@ -9,6 +9,7 @@ mod room;
 mod source;
 mod text;
 mod unused;
+mod width;
 
 use architecture::Rules;
 use exceptions::Exceptions;
@@ -55,6 +56,7 @@ pub fn findings(root: &Path) -> io::Result<Vec<Finding>> {
         if let Ok(text) = String::from_utf8(fs::read(root.join(&file))?) {
             text::check(&file, &text, &rules, &mut findings);
             links::check(root, &file, &text, &mut findings);
+            width::check(&file, &text, &mut findings);
         }
     }
     Ok(findings)

@@ -134,6 +134,29 @@ fn sources_that_break_a_rule_are_found() {
 }
 
 #[test]
+fn lines_that_are_too_long_are_found() {
+    let file = "basis/src/lib.rs";
+    let (most, long) = ("x".repeat(105), "x".repeat(106));
+    assert_eq!(messages(file, &format!("//! x\n// é{}\n", &most[..103])), Vec::<String>::new());
+    let expected = "basis/src/lib.rs:2: 111 columns besides text, 110 are the most";
+    assert_found(file, &format!("//! x\nfn {}() {{}}\n", &long[..103]), expected);
+    assert_found(file, &format!("//! x\n    /{long}\n").replace("/x", "//"), expected);
+    // What stands in a literal is text of the program, on as many lines as it has.
+    let allowed = [
+        format!("const A: &str = \"{long}\\\"{long}\";"),
+        format!("const A: &str = \"\\\n{long}{long}\n\";"),
+        format!("const A: &str = r#\"{long}\"{long}\"#;"),
+        format!("const A: (char, &str) = ('\"', \"{long}\");"),
+    ];
+    for code in allowed {
+        assert_eq!(messages(file, &format!("//! x\n{code}\n")), Vec::<String>::new(), "{code}");
+    }
+    assert_found(file, &format!("//! x\nconst A: &str = r#\"\"\"#; // {most}\n"), "columns");
+    // Pages have lines as long as their paragraphs.
+    assert_eq!(messages("docs/page.md", &long.repeat(3)), Vec::<String>::new());
+}
+
+#[test]
 fn links_that_lead_nowhere_are_found() {
     let text =
         "[here](page.md) [up](../ARCHITECTURE.md#map) [web](https://example.org/x) [lost](no.md)\n";

@@ -1,6 +1,8 @@
 //! The command line: words in, words out; the work is done in the rooms behind it.
 
 mod commands;
+#[cfg(test)]
+mod reference;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
