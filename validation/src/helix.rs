@@ -7,7 +7,7 @@ pub use pitch::helix_pitch;
 use crate::Row;
 use crate::row::Tolerance::{AtLeast, Within};
 use crate::studies::{failure, find, summaries};
-use basis::records::{Plane, PlaneAxes};
+use basis::records::{Plane, PlaneAxes, Summary};
 use std::path::Path;
 
 /// Where the expected values come from.
@@ -47,10 +47,18 @@ pub fn helix() -> Vec<Row> {
             Ok(done) => done,
             Err(problem) => return failure(problem),
         };
+    let mut rows = power_ratios(&summaries);
+    rows.extend(array_gains(&summaries));
+    rows.extend(delivered(&summaries));
+    rows
+}
+
+/// What the helix costs the first turbine.
+fn power_ratios(summaries: &[Summary]) -> Vec<Row> {
     let mut rows = Vec::new();
     for (degrees, expected) in POWER_RATIOS {
         let gain =
-            find(&summaries, &format!("ccw-{degrees}")).and_then(|s| s.turbines[0].power_gain);
+            find(summaries, &format!("ccw-{degrees}")).and_then(|s| s.turbines[0].power_gain);
         rows.push(Row {
             what: format!("T1 power over baseline, ccw {degrees}°, St 0.25, 8 m/s"),
             measured: gain.map_or(f64::NAN, |gain| 1.0 + gain.mean),
@@ -60,9 +68,15 @@ pub fn helix() -> Vec<Row> {
             source: RATIOS,
         });
     }
+    rows
+}
+
+/// What it gives the array.
+fn array_gains(summaries: &[Summary]) -> Vec<Row> {
+    let mut rows = Vec::new();
     let mut gains = [f64::NAN; 2];
     for ((run, expected), measured) in ARRAY_GAINS.iter().zip(&mut gains) {
-        let gain = find(&summaries, run).and_then(|summary| summary.array_power_gain);
+        let gain = find(summaries, run).and_then(|summary| summary.array_power_gain);
         *measured = gain.map_or(f64::NAN, |gain| 100.0 * gain.mean);
         let half_width = gain.and_then(|gain| gain.half_width_95).map_or(f64::NAN, |h| 100.0 * h);
         rows.push(Row {
@@ -75,13 +89,19 @@ pub fn helix() -> Vec<Row> {
         });
     }
     for run in ["ccw-1", "ccw-2", "ccw-3", "ccw-5", "cw-1", "cw-2", "cw-3", "cw-5"] {
-        if let Some(gain) = find(&summaries, run).and_then(|summary| summary.array_power_gain) {
+        if let Some(gain) = find(summaries, run).and_then(|summary| summary.array_power_gain) {
             rows.push(positive(format!("array gain, {run}"), 100.0 * gain.mean));
         }
     }
     rows.push(positive("array gain of ccw 4° less that of cw 4°".to_owned(), gains[0] - gains[1]));
+    rows
+}
+
+/// What of the excitation arrived at the blades.
+fn delivered(summaries: &[Summary]) -> Vec<Row> {
+    let mut rows = Vec::new();
     for run in ["ccw-4", "cw-4", "pulse-4"] {
-        let delivered = find(&summaries, run).and_then(|s| s.turbines[0].delivered_pitch);
+        let delivered = find(summaries, run).and_then(|s| s.turbines[0].delivered_pitch);
         rows.push(Row {
             what: format!("delivered amplitude, {run}"),
             measured: delivered.map_or(f64::NAN, |pitch| pitch.delivered_amplitude_deg),
@@ -93,7 +113,7 @@ pub fn helix() -> Vec<Row> {
         rows.push(Row {
             what: format!("delivered excitation frequency, {run}, St 0.25"),
             measured: delivered.map_or(f64::NAN, |pitch| 1e3 * pitch.excitation_frequency_hz),
-            expected: find(&summaries, run).map_or(f64::NAN, |summary| {
+            expected: find(summaries, run).map_or(f64::NAN, |summary| {
                 let wind = &summary.conditions;
                 1e3 * 0.25 * wind.target_wind_speed / wind.rotor_diameter
             }),

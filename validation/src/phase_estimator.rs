@@ -7,6 +7,7 @@
 mod choices;
 mod on_and_off;
 mod rig;
+mod robustness;
 mod side_by_side;
 mod wind;
 
@@ -23,8 +24,8 @@ use flow::Inflow;
 use rig::{AIR_DENSITY, Asked, Errors, INTERVAL, Instruments, Noise, SETTLED};
 use std::f64::consts::TAU;
 use std::sync::Arc;
-use turbine::{Definition, Polar};
-use wind::{HelixWind, Swing, degrees, pitch, turbulent};
+use turbine::Definition;
+use wind::{HelixWind, Swing, pitch, turbulent};
 
 /// Where the expected values come from.
 const SOURCE: &str = "aims of the project, set before the first run; van Vondelen et al., Wind Energ. Sci. 10 (2025) 2411";
@@ -148,7 +149,7 @@ pub fn phase_estimator() -> Vec<Row> {
         .and_then(|()| turbulence(&machine, &mut rows))
         .and_then(|()| choices::options(&machine, &mut rows))
         .and_then(|()| choices::linear(&machine))
-        .and_then(|()| robustness(&machine, &mut rows))
+        .and_then(|()| robustness::robustness(&machine, &mut rows))
         .and_then(|()| on_and_off::on_and_off(&machine, &mut rows));
     if let Err(error) = done {
         eprintln!("the estimator could not be made: {error}");
@@ -317,85 +318,4 @@ fn turbulence(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationEr
         ));
     }
     Ok(())
-}
-
-/// Wrong polars, poor instruments, a wake half beside the rotor, a gust, a helix that goes and comes.
-fn robustness(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
-    let ccw = Sense::CounterClockwise;
-    let poor = Instruments { noise: 0.05, dropouts: 0.1 };
-    let fine = Instruments::default();
-    let gusty = HelixWind { gust: (500.0, 1.5), ..machine.gradient(ccw, 0.06) };
-    let coming = HelixWind { absent: [0.0, 450.0], ..machine.gradient(ccw, 0.06) };
-    let wake = |aside: f64| {
-        let mean = turbulent(SPEED, SHEAR, 0.05, machine.hub(), 2);
-        machine.wind(Swing::Wake { depth: 3.5, width: 70.0, offset: 25.0, aside }, ccw, mean)
-    };
-    let more = scaled(&machine.definition, 1.1);
-    let less = scaled(&machine.definition, 0.9);
-    let right = &machine.definition;
-    let cases = [
-        ("lift and drag 10 % too large", machine.gradient(ccw, 0.06), fine, &more),
-        ("lift and drag 10 % too small", machine.gradient(ccw, 0.06), fine, &less),
-        ("noise 5 %, one reading in ten lost", machine.gradient(ccw, 0.06), poor, right),
-        ("wind 1.5 m/s up at once", gusty, fine, right),
-        ("a wake that circles", wake(0.0), fine, right),
-        ("a wake that circles a quarter diameter aside", wake(60.0), fine, right),
-        ("a wake that circles half a diameter aside", wake(120.0), fine, right),
-    ];
-    for (name, wind, instruments, model) in cases {
-        let mut estimators =
-            [machine.estimator(model, ccw, robust())?, machine.calibrated(model, ccw)?];
-        let errors = machine.run(&asked(wind, OWN, instruments, 1200.0), &mut estimators);
-        for (form, errors) in ["", ", calibrated"].iter().zip(&errors) {
-            for (axis, rms) in ["tilt", "yaw"].iter().zip(errors.rms) {
-                rows.push(row(format!("{name}{form}: {axis}, rms error"), rms, AIM, "deg"));
-            }
-        }
-        // Between 0 and 1 by its making; how low is right hangs on the error beside it.
-        tell(&format!("{name}, calibrated: mean trust"), &format!("{:.2}", errors[1].trust));
-    }
-    // Without a helix nothing is trusted; three periods after it has come the phase is found.
-    let mut estimators = [machine.estimator(right, ccw, robust())?];
-    let truth = coming.truth();
-    let asked = asked(coming, 0.0, fine, 1500.0);
-    let (mut before, mut after) = ((0.0, 0.0), Errors::default());
-    rig::follow(
-        &machine.definition,
-        &machine.constants,
-        &asked,
-        &mut estimators,
-        |time, _, estimate| {
-            if (SETTLED..450.0).contains(&time) {
-                before = (before.0 + estimate.trust.overall(), before.1 + 1.0);
-            } else if time > 450.0 + 3.0 * PERIOD {
-                after.add(estimate, truth);
-            }
-        },
-    );
-    let after = after.finish();
-    let what = "no helix yet, turbulence 6 %: mean trust".to_owned();
-    rows.push(row(what, before.0 / before.1, 0.3, "–"));
-    let what = "three periods after it has come: worse axis, rms error".to_owned();
-    rows.push(row(what, after.worst(), AIM, "deg"));
-    let largest = after.mean.map(|mean| degrees(mean.to_radians()).abs());
-    let what = "three periods after it has come: larger mean error".to_owned();
-    rows.push(row(what, largest[0].max(largest[1]), AIM, "deg"));
-    Ok(())
-}
-
-/// The same turbine with lift and drag times `factor` (–).
-fn scaled(definition: &Definition, factor: f64) -> Arc<Definition> {
-    let mut scaled = definition.clone();
-    for polar in &mut scaled.polars {
-        let column = |of: fn(&turbine::aero::SectionCoefficients) -> f64| -> Vec<f64> {
-            polar.rows().map(|(_, row)| of(&row)).collect()
-        };
-        let angles: Vec<f64> = polar.rows().map(|(angle, _)| angle).collect();
-        let [lift, drag] = [column(|row| row.lift), column(|row| row.drag)]
-            .map(|column| column.iter().map(|value| factor * value).collect::<Vec<_>>());
-        let moment = column(|row| row.moment);
-        *polar = Polar::new(polar.name.clone(), &angles, &lift, &drag, &moment)
-            .expect("a polar stays one when its coefficients are scaled");
-    }
-    Arc::new(scaled)
 }

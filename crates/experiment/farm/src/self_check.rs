@@ -139,27 +139,9 @@ pub fn self_check(
     let diameter = definition.rotor_diameter();
     let interval = tunnel.interval;
     let mut air = tunnel.air(wind, diameter, threads)?;
-
     let pitch = model.constants.fine_pitch;
     let rotor_speed = model.rotor_speed(wind.speed);
-    let mut rotor = Turbine::new(
-        Arc::clone(definition),
-        Vector3::new(0.0, 0.0, -definition.rotor.hub_height),
-        turbine::TurbineSettings {
-            induction: Induction::ByFlow {
-                smearing_length: SMEARING_CELLS * tunnel.spacing,
-                sample_spacing: tunnel.spacing,
-                dynamic_stall: false,
-            },
-            flexible: false,
-            air_density: wind.air_density,
-            rotor_speed,
-            azimuth: 0.0,
-            pitch,
-        },
-    )?
-    .without_bodies()
-    .at_held_speed();
+    let mut rotor = bare_rotor(model, wind, tunnel)?;
     let commands =
         Commands { pitch: PerBlade::splat(definition.n_blades, pitch), generator_torque: 0.0 };
 
@@ -198,6 +180,28 @@ pub fn self_check(
         expected_thrust: expected.1,
         updates_per_second: n_cells.iter().product::<usize>() as f64 * n_steps as f64 / wall_time,
     })
+}
+
+/// The rotor of `model` at the origin of `tunnel`, stiff, with no tower or nacelle in the wind, at held speed.
+fn bare_rotor(model: &Model, wind: &Wind, tunnel: &Tunnel) -> Result<Turbine, StructureError> {
+    let definition = &model.definition;
+    let rotor = Turbine::new(
+        Arc::clone(definition),
+        Vector3::new(0.0, 0.0, -definition.rotor.hub_height),
+        turbine::TurbineSettings {
+            induction: Induction::ByFlow {
+                smearing_length: SMEARING_CELLS * tunnel.spacing,
+                sample_spacing: tunnel.spacing,
+                dynamic_stall: false,
+            },
+            flexible: false,
+            air_density: wind.air_density,
+            rotor_speed: model.rotor_speed(wind.speed),
+            azimuth: 0.0,
+            pitch: model.constants.fine_pitch,
+        },
+    )?;
+    Ok(rotor.without_bodies().at_held_speed())
 }
 
 /// Power (W) and thrust (N) of blade-element momentum in a channel of which the rotor takes `area_ratio` (–).

@@ -1,6 +1,9 @@
 //! How well the phase of a helix is estimated on the turbine that it meets: records in, agreement with the true wind out.
 
 pub(crate) mod asked;
+mod replay;
+
+pub use replay::tune;
 
 use crate::PostprocessingError;
 use analysis::phase::{
@@ -8,15 +11,9 @@ use analysis::phase::{
     fixed_frame_moments, ground_truth, uniform_interval,
 };
 use asked::{Asked, Records};
+use basis::FixedFrame;
 use basis::records::Series;
-use basis::{FixedFrame, Measurements, PerBlade};
-use control::ControlError;
 use control::phase_sync::PhaseEstimator;
-use estimation::EstimationError;
-use estimation::HelixEstimator;
-use estimation::helix::tuning::{self, Tuned};
-use estimation::helix::{HelixSettings, Options};
-use farm::assemble::AssemblyError;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
@@ -146,7 +143,7 @@ pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, PostprocessingEr
 fn answer(question: &PhaseQuestion, asked: &Asked<'_>) -> Result<PhaseAnswer, PostprocessingError> {
     let Asked { run, case, name, reference, series, truth, .. } = asked;
     let estimates = match question.estimator {
-        Some(estimator) => replay(asked, estimator)?,
+        Some(estimator) => replay::replay(asked, estimator)?,
         None => recorded(series, name)?,
     };
     let from = question.from.unwrap_or(case.time.spin_up);
@@ -308,116 +305,4 @@ pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, Postpro
         yaw: wave("yaw")?,
         trust: channel("estimate_trust")?,
     })
-}
-
-/// What `estimator` believes when it is given the records of the turbine row by row, calibrated as it was in the run.
-fn replay(asked: &Asked<'_>, estimator: PhaseEstimator) -> Result<Estimates, PostprocessingError> {
-    let interval = uniform_interval(column(asked.series, "time_s")?)?;
-    let setting = setting(asked, interval);
-    let options = options(asked, estimator);
-    let mut estimator =
-        HelixEstimator::new(&asked.definition, &setting, options).map_err(not_estimated)?;
-    let record = record(asked, interval)?;
-    let replayed = tuning::replay(&mut estimator, &record, interval).map_err(not_estimated)?;
-    let mut estimates = Estimates {
-        wind: Vec::new(),
-        tilt: Wave::default(),
-        yaw: Wave::default(),
-        trust: Vec::new(),
-    };
-    for estimate in replayed {
-        estimates.wind.push(estimate.mean_wind);
-        for (wave, axis) in
-            [(&mut estimates.tilt, estimate.tilt), (&mut estimates.yaw, estimate.yaw)]
-        {
-            wave.amplitude.push(axis.amplitude);
-            wave.phase.push(axis.phase);
-        }
-        estimates.trust.push(estimate.trust.overall());
-    }
-    Ok(estimates)
-}
-
-/// Noise for the estimator that `question` names, tuned on its record against the true wind.
-///
-/// Source: van Vondelen et al. (2025), Algorithm 1.
-///
-/// # Errors
-/// As [`phase`].
-pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
-    let mut records = Records::read(question)?;
-    let first = records.turbines[0];
-    let asked = records.asked(first)?;
-    let truth = &asked.truth.wind;
-    let interval = uniform_interval(column(asked.series, "time_s")?)?;
-    let from = question.from.unwrap_or(asked.case.time.spin_up);
-    let whole = record(&asked, interval)?;
-    let (mut measured, mut tilt, mut yaw) = (Vec::new(), Vec::new(), Vec::new());
-    for measurements in whole {
-        let at = truth.index_at(measurements.time).filter(|at| truth.trusted.contains(at));
-        if let (Some(at), true) = (at, measurements.time >= from) {
-            measured.push(measurements);
-            tilt.push(truth.tilt.wind[at]);
-            yaw.push(truth.yaw.wind[at]);
-        }
-    }
-    let estimator = question.estimator.unwrap_or(PhaseEstimator::Robust);
-    let options = options(&asked, estimator);
-    let setting = setting(&asked, interval);
-    let tuned = tuning::tune(&asked.definition, &setting, options, &measured, [&tilt, &yaw]);
-    Ok(tuned.map_err(not_estimated)?)
-}
-
-/// Choices of `estimator`, calibrated as in the run, with the noise that it was given there.
-fn options(asked: &Asked<'_>, estimator: PhaseEstimator) -> Options {
-    let options = estimator.options(asked.case.flow.solver.resolves_induction);
-    let calibration = asked.calibration.filter(|_| estimator == PhaseEstimator::Robust);
-    let options = calibration.map_or(options, |found| found.apply(options));
-    // Noise is given to one estimator; another's states may wander otherwise.
-    let sync = asked.sync.filter(|sync| sync.estimator == estimator);
-    sync.map_or(options, |sync| sync.noise.apply(options))
-}
-
-fn not_estimated(error: EstimationError) -> AssemblyError {
-    ControlError::from(error).into()
-}
-
-/// What the estimator of the turbine is told.
-fn setting(asked: &Asked<'_>, interval: f64) -> HelixSettings {
-    HelixSettings {
-        sense: asked.reference.sense,
-        rate: asked.reference.rate,
-        interval,
-        air_density: asked.case.wind.air_density,
-        n_elements: HelixSettings::N_ELEMENTS,
-    }
-}
-
-/// What the turbine measured, row by row.
-fn record(
-    asked: &Asked<'_>,
-    interval: f64,
-) -> Result<Vec<Measurements<'static>>, PostprocessingError> {
-    let (name, series, n_blades) = (asked.name, asked.series, asked.definition.n_blades);
-    let channel = |what: &str| column(series, &format!("{name}.{what}"));
-    let per_blade = |what: &str| {
-        (1..=n_blades)
-            .map(|blade| channel(&what.replace('#', &blade.to_string())))
-            .collect::<Result<Vec<_>, _>>()
-    };
-    let times = column(series, "time_s")?;
-    let azimuth = channel("azimuth_rad")?;
-    let rotor_speed = channel("rotor_speed_rad_s")?;
-    let (pitch, flap) = (per_blade("pitch_#_rad")?, per_blade("flap_moment_#_nm")?);
-    let measurements = |row: usize| Measurements {
-        time: times[row],
-        interval,
-        azimuth: azimuth[row],
-        rotor_speed: rotor_speed[row],
-        generator_speed: rotor_speed[row],
-        pitch: PerBlade::from_fn(n_blades, |blade| pitch[blade][row]),
-        flap_moments: PerBlade::from_fn(n_blades, |blade| flap[blade][row]),
-        ..Measurements::at_rest(n_blades)
-    };
-    Ok((0..times.len()).map(measurements).collect())
 }

@@ -1,18 +1,18 @@
 //! The air that a run starts with.
 
 use crate::StudyError;
-use crate::ready::Ready;
+use crate::prepared::Prepared;
 use farm::Air;
 use farm::solvers::{SolverError, Start, WindSource};
+use flow::Inflow;
 use std::sync::Arc;
 
-/// The air of the study that is `ready` at time zero.
+/// The air of the study `setup` at time zero, which `inflow` enters.
 ///
 /// # Errors
 /// [`StudyError`] when its solver cannot be set up, turbulence cannot be made, or a file of wind cannot be read or does not
 /// cover the rotors.
-pub(crate) fn begin(ready: &Ready) -> Result<Air, StudyError> {
-    let setup = &ready.prepared;
+pub(crate) fn begin(setup: &Prepared, inflow: &Arc<dyn Inflow>) -> Result<Air, StudyError> {
     let solver = setup.case.flow.solver;
     let planes = if solver.wind == WindSource::Planes {
         let name = setup.case.wind.planes.as_deref().unwrap_or_default();
@@ -20,7 +20,7 @@ pub(crate) fn begin(ready: &Ready) -> Result<Air, StudyError> {
     } else {
         None
     };
-    let start = Start { site: setup.site(), inflow: Arc::clone(&ready.inflow), planes };
+    let start = Start { site: setup.site(), inflow: Arc::clone(inflow), planes };
     (solver.begin)(start).map_err(|error| match error {
         SolverError::Lattice(error) => error.into(),
         SolverError::Inflow(error) => error.into(),

@@ -3,7 +3,7 @@
 use crate::columns::{Columns, add_to};
 use crate::loads;
 use crate::prepared::Prepared;
-use crate::study::check_same;
+use crate::same_case::check_same;
 use crate::{StudyError, Watcher};
 use analysis::statistics::{BLOCK_LENGTH, gain};
 use basis::records::{Summary, TurbineSummary};

@@ -26,6 +26,7 @@ pub mod outputs;
 mod prepared;
 mod probes;
 mod ready;
+mod same_case;
 mod self_check;
 mod simulate;
 mod study;

@@ -3,7 +3,6 @@
 use crate::StudyError;
 use crate::models::text_names;
 use crate::prepared::Prepared;
-use crate::ready::Keep;
 use crate::watcher::{Probing, Watcher};
 use basis::records::PitchResponse;
 use control::Identification;
@@ -18,6 +17,9 @@ use formats::records::{ProbeRecord, sha256};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+
+/// Takes what pitch-response identification has found so far, each time something is added to it.
+pub(crate) type Keep<'a> = &'a mut dyn FnMut(&[ProbeRecord]) -> Result<(), StudyError>;
 
 /// Wall time between two reports of progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);

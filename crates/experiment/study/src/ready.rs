@@ -3,7 +3,7 @@
 use crate::StudyError;
 use crate::air;
 use crate::prepared::Prepared;
-use crate::probes::Probes;
+use crate::probes::{Keep, Probes};
 use crate::self_check::SelfChecked;
 use crate::watcher::{Silent, Watcher};
 use farm::case::Run;
@@ -11,7 +11,6 @@ use farm::pitch_response::CalibrationError;
 use farm::self_check::SelfCheckError;
 use farm::{Air, Farm, assemble, wind};
 use flow::Inflow;
-use formats::records::ProbeRecord;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -25,9 +24,6 @@ pub struct Ready {
     /// The wind that enters, turbulence included.
     pub inflow: Arc<dyn Inflow>,
 }
-
-/// Takes what pitch-response identification has found so far, each time something is added to it.
-pub(crate) type Keep<'a> = &'a mut dyn FnMut(&[ProbeRecord]) -> Result<(), StudyError>;
 
 impl Prepared {
     /// Does all that the runs of the case need before they begin, in silence: checks the rotors, identifies pitch responses,
@@ -83,6 +79,6 @@ impl Ready {
     /// [`StudyError`] for air that cannot be set up, and for turbines that cannot be put together.
     pub fn farm(&self, run: &Run) -> Result<Farm<Air>, StudyError> {
         let Prepared { case, plan, models, .. } = &self.prepared;
-        Ok(assemble::farm(case, run, plan, models, air::begin(self)?)?)
+        Ok(assemble::farm(case, run, plan, models, air::begin(&self.prepared, &self.inflow)?)?)
     }
 }

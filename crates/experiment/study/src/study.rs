@@ -7,13 +7,13 @@ use crate::outputs::Outputs;
 use crate::prepared::Prepared;
 use crate::probes::Probes;
 use crate::ready::Ready;
+use crate::same_case::check_same;
 use crate::self_check::SelfChecked;
 use crate::simulate::{Ending, Job, simulate};
 use crate::summarise;
 use crate::{StudyError, Watcher};
 use basis::records::{Cost, Summary};
 use farm::case::Run;
-use formats::case;
 use formats::records::{self, Manifest, RunFolder, read_probes, write_probes};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -275,28 +275,6 @@ fn begin_run(
     let manifest = Manifest::start(version, &prepared.case, &prepared.case_text, index, texts);
     records::write_manifest(folder, &manifest)?;
     Ok(manifest)
-}
-
-/// Whether what is in `folder` was made with this very case, these very turbines and controllers.
-pub(crate) fn check_same(
-    prepared: &Prepared,
-    run: &Run,
-    folder: &RunFolder,
-) -> Result<(), StudyError> {
-    if !folder.manifest_path().exists() {
-        return Ok(());
-    }
-    let manifest = records::read_manifest(folder)?;
-    let same_case = case::fingerprint(&manifest.case_text, &run.name)
-        == case::fingerprint(&prepared.case_text, &run.name);
-    let same_turbines = prepared.turbine_texts.iter().all(|(name, text)| {
-        manifest.turbines_sha256.get(name) == Some(&records::sha256(text.as_bytes()))
-    });
-    if same_case && same_turbines {
-        Ok(())
-    } else {
-        Err(StudyError::OtherCase { run: run.name.clone(), directory: folder.path().to_owned() })
-    }
 }
 
 /// Places of the runs called `names`; of all when empty.

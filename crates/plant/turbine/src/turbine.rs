@@ -2,61 +2,32 @@
 
 mod aerodynamics;
 mod separation;
+mod settings;
+mod state;
+mod workspace;
+
+pub use settings::{Induction, TurbineSettings};
+pub use state::TurbineState;
 
 use crate::actuator_line::ActuatorLine;
 use crate::actuators::PitchState;
-use crate::aero::rotor;
 use crate::bodies::{self, Body};
 use crate::definition::Definition;
-use crate::motion::ElementMotion;
-use crate::rotor::{BladeFrame, Frame};
+use crate::rotor::Frame;
 use crate::structure::{
-    AppliedLoads, Channel, DegreeOfFreedom, ElementLoad, GRAVITY, Pitch, Projection, Structure,
-    StructureError,
+    AppliedLoads, Channel, DegreeOfFreedom, GRAVITY, Pitch, Projection, Structure, StructureError,
 };
 use aerodynamics::Aerodynamics;
-use basis::{BoundVortex, Commands, PerBlade, PointForce, Truth, Vector3};
-use serde::{Deserialize, Serialize};
+use basis::{Commands, PerBlade, PointForce, Truth, Vector3};
+use state::Readings;
 use std::sync::Arc;
+use workspace::Workspace;
 
 /// Elements, and so point forces, of each blade.
 pub const N_ELEMENTS: usize = 32;
 /// Longest step of the structure (s): a sixtieth of the period of the fastest mode that carries load, the blades' second
 /// flapwise one. Longer intervals are cut into equal steps, over which the wind at each element is held.
 pub const LONGEST_STRUCTURAL_STEP: f64 = 0.025;
-
-/// Aerodynamic model and initial condition of a turbine.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TurbineSettings {
-    /// Which model gives the rotor's induction.
-    pub induction: Induction,
-    /// Whether blades, tower and drive train bend; otherwise only the rotor turns.
-    pub flexible: bool,
-    /// Air density (kg/m³).
-    pub air_density: f64,
-    /// Rotor speed (rad/s).
-    pub rotor_speed: f64,
-    /// Azimuth of blade 1 (rad).
-    pub azimuth: f64,
-    /// Pitch of all blades (rad).
-    pub pitch: f64,
-}
-
-/// Which model gives the rotor's induction.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Induction {
-    /// The resolved flow: the winds given to the turbine contain it, and the flow receives the turbine's forces.
-    ByFlow {
-        /// Gaussian width of the forces (m).
-        smearing_length: f64,
-        /// Distance of the points between which the flow interpolates the wind (m); 0 where it does not.
-        sample_spacing: f64,
-        /// Whether sections have dynamic stall; otherwise their polars hold at once.
-        dynamic_stall: bool,
-    },
-    /// Blade-element momentum theory in the turbine: the winds given do not contain it.
-    ByMomentum(rotor::BemSettings),
-}
 
 /// A turbine: definition, derived parameters, state, and working memory.
 #[derive(Clone, Debug)]
@@ -74,54 +45,6 @@ pub struct Turbine {
     workspace: Workspace,
 }
 
-/// State of a turbine; a run restored from it continues with the same bits.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TurbineState {
-    structure: crate::structure::StructureState,
-    pitch: PerBlade<PitchState>,
-    aerodynamics: aerodynamics::AerodynamicState,
-    readings: Readings,
-    n_instants: u64,
-    n_limited: u64,
-}
-
-/// Loads and wind over the last interval.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Readings {
-    generator_torque: f64,
-    thrust: f64,
-    aerodynamic_torque: f64,
-    rotor_wind_speed: f64,
-}
-
-impl TurbineState {
-    /// Smearing correction of each blade element, axial and along the rotation (m/s), blade after blade; empty where momentum
-    /// theory gives the induction.
-    pub fn smearing_corrections(&self) -> &[[f64; 2]] {
-        match &self.aerodynamics {
-            aerodynamics::AerodynamicState::Line(corrections)
-            | aerodynamics::AerodynamicState::SeparatingLine(corrections, _) => corrections,
-            aerodynamics::AerodynamicState::Momentum(_) => &[],
-        }
-    }
-}
-
-#[derive(Clone, Debug)]
-struct Workspace {
-    stations: Vec<Vector3>,
-    /// Directions of the blade elements where the winds are sampled.
-    axes: Vec<BladeFrame>,
-    motions: Vec<ElementMotion>,
-    loads: Vec<ElementLoad>,
-    /// Sums over the steps of an interval: force on each element along normal and tangent (N).
-    sums: Vec<[f64; 2]>,
-    /// Mean circulation of each element over the steps of an interval (m²/s).
-    circulations: Vec<f64>,
-    /// Forces on the tower's points (N).
-    tower: Vec<Vector3>,
-    forces: Vec<PointForce>,
-}
-
 impl Turbine {
     /// A turbine of `definition` with the foot of its tower at `position` (m), facing the wind, undeflected.
     ///
@@ -132,13 +55,7 @@ impl Turbine {
         position: Vector3,
         settings: TurbineSettings,
     ) -> Result<Self, StructureError> {
-        let (smearing_length, sample_spacing) = match settings.induction {
-            Induction::ByFlow { smearing_length, sample_spacing, .. } => {
-                (smearing_length, sample_spacing)
-            }
-            // Nothing is smeared; the length only divides the tower into segments.
-            Induction::ByMomentum(_) => (0.1 * definition.rotor_radius(), 0.0),
-        };
+        let (smearing_length, sample_spacing) = lengths(&settings.induction, &definition);
         let line = ActuatorLine::new(
             Arc::clone(&definition),
             N_ELEMENTS,
@@ -146,11 +63,7 @@ impl Turbine {
             smearing_length,
             sample_spacing,
         );
-        let geometry = definition.rotor;
-        let shaft = Frame::new(Vector3::ZERO, geometry.shaft_tilt).shaft;
-        // The overhang runs along the shaft; the hub height is the apex's own.
-        let apex = position + Vector3::new(-geometry.overhang * shaft.x, 0.0, geometry.hub_height);
-        let frame = Frame::new(apex, geometry.shaft_tilt);
+        let frame = frame_at(position, &definition);
         let mut bodies = bodies::of(&definition, position, &frame, smearing_length);
         if matches!(settings.induction, Induction::ByMomentum(_)) {
             bodies.iter_mut().for_each(Body::use_free_wind);
@@ -173,41 +86,18 @@ impl Turbine {
                 heights: &heights,
             },
         )?;
-        let n_blades = definition.n_blades;
-        let n = n_blades * N_ELEMENTS;
         let pitch = PitchState { pitch: settings.pitch, rate: 0.0 };
         let state = TurbineState {
             structure: structure.state().clone(),
-            pitch: PerBlade::splat(n_blades, pitch),
+            pitch: PerBlade::splat(definition.n_blades, pitch),
             aerodynamics: aerodynamics.start(),
             readings: Readings::default(),
             n_instants: 0,
             n_limited: 0,
         };
-        let still = ElementMotion {
-            position: Vector3::ZERO,
-            velocity: Vector3::ZERO,
-            axes: frame.blade(0.0, 0.0),
-            pitch: 0.0,
-        };
-        let workspace = Workspace {
-            stations: Vec::with_capacity(n + bodies.len()),
-            axes: vec![still.axes; n],
-            motions: vec![still; n],
-            loads: vec![ElementLoad::default(); n],
-            sums: vec![[0.0; 2]; n],
-            circulations: vec![0.0; n],
-            tower: vec![Vector3::ZERO; heights.len()],
-            forces: Vec::with_capacity(n + bodies.len()),
-        };
-        let held = if settings.flexible {
-            Vec::new()
-        } else {
-            DegreeOfFreedom::ALL
-                .into_iter()
-                .filter(|degree| *degree != DegreeOfFreedom::Generator)
-                .collect()
-        };
+        let n_points = definition.n_blades * N_ELEMENTS;
+        let workspace = Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0));
+        let held = if settings.flexible { Vec::new() } else { all_but_the_generator() };
         let mut turbine = Self {
             definition,
             line,
@@ -265,7 +155,12 @@ impl Turbine {
         let turning = self.structure.generator_speed() > 0.0;
         let generator_torque = if turning { commands.generator_torque } else { 0.0 };
         let (element_winds, body_winds) = winds.split_at(self.workspace.motions.len());
-        let nacelle = self.drag_of_bodies(body_winds);
+        let nacelle = self.workspace.drag_of_bodies(
+            &self.bodies,
+            body_winds,
+            self.air_density,
+            self.smearing_length,
+        );
         self.workspace.sums.fill([0.0; 2]);
         self.workspace.circulations.fill(0.0);
         let mut readings = Readings {
@@ -305,7 +200,7 @@ impl Turbine {
         self.state.n_limited += u64::from(limited);
         self.state.readings = readings;
         self.state.structure.clone_from(self.structure.state());
-        self.push();
+        self.workspace.push(self.line.elements(), self.smearing_length);
         self.place_stations();
     }
 
@@ -410,49 +305,6 @@ impl Turbine {
         pitch
     }
 
-    /// On return the workspace holds the drag of the tower in `winds` (m/s), and the forces of all bodies on the air are
-    /// the last of its forces; gives the drag of the nacelle (N).
-    fn drag_of_bodies(&mut self, winds: &[Vector3]) -> Vector3 {
-        let Workspace { forces, tower, .. } = &mut self.workspace;
-        forces.clear();
-        let mut nacelle = Vector3::ZERO;
-        for (index, (body, wind)) in self.bodies.iter().zip(winds).enumerate() {
-            let force = body.force(*wind, self.air_density, self.smearing_length);
-            match tower.get_mut(index) {
-                Some(point) => *point = -force.force,
-                None => nacelle = -force.force,
-            }
-            forces.push(force);
-        }
-        nacelle
-    }
-
-    /// On return the workspace holds the forces on the air, where the winds were sampled: half the force of a step acts
-    /// before the instant and half after it, so that a blade's bound vortex does not induce a velocity on itself.
-    fn push(&mut self) {
-        let Workspace { forces, stations, axes, sums, circulations, .. } = &mut self.workspace;
-        let n_bodies = forces.len();
-        let elements = self.line.elements();
-        for (index, ((axes, sum), position)) in axes.iter().zip(&*sums).zip(&*stations).enumerate()
-        {
-            let (blade, station) = (index / elements.len(), index % elements.len());
-            let force = axes.normal * sum[0] + axes.tangent * sum[1];
-            forces.push(PointForce {
-                position: *position,
-                force: -force,
-                smearing_length: self.smearing_length,
-                turbine: 0,
-                bound: Some(BoundVortex {
-                    blade,
-                    station,
-                    circulation: circulations[index],
-                    along: axes.span * elements[station].width,
-                }),
-            });
-        }
-        forces.rotate_left(n_bodies);
-    }
-
     /// On return the workspace's motions, stations and their axes are those of now.
     fn place_stations(&mut self) {
         let pitch = self.state.pitch.map(|blade| Pitch {
@@ -469,6 +321,34 @@ impl Turbine {
         stations.extend(motions.iter().map(|motion| motion.position));
         stations.extend(self.bodies.iter().map(|body| body.position));
     }
+}
+
+/// Smearing length and distance of sample points (m).
+fn lengths(induction: &Induction, definition: &Definition) -> (f64, f64) {
+    match *induction {
+        Induction::ByFlow { smearing_length, sample_spacing, .. } => {
+            (smearing_length, sample_spacing)
+        }
+        // Nothing is smeared; the length only divides the tower into segments.
+        Induction::ByMomentum(_) => (0.1 * definition.rotor_radius(), 0.0),
+    }
+}
+
+/// Centre and attitude of the undeflected rotor whose tower stands at `position` (m).
+fn frame_at(position: Vector3, definition: &Definition) -> Frame {
+    let geometry = definition.rotor;
+    let shaft = Frame::new(Vector3::ZERO, geometry.shaft_tilt).shaft;
+    // The overhang runs along the shaft; the hub height is the apex's own.
+    let apex = position + Vector3::new(-geometry.overhang * shaft.x, 0.0, geometry.hub_height);
+    Frame::new(apex, geometry.shaft_tilt)
+}
+
+/// What does not move where only the rotor turns.
+fn all_but_the_generator() -> Vec<DegreeOfFreedom> {
+    DegreeOfFreedom::ALL
+        .into_iter()
+        .filter(|degree| *degree != DegreeOfFreedom::Generator)
+        .collect()
 }
 
 #[cfg(test)]

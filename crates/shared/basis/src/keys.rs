@@ -71,11 +71,11 @@ pub enum Holds {
 /// Numbers from `low` to `high`, `high` included, `low` only when not `open`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// Lower end.
+    /// Lower end (in the key's unit).
     pub low: f64,
     /// Whether the lower end itself is out.
     pub open: bool,
-    /// Upper end.
+    /// Upper end (in the key's unit).
     pub high: f64,
 }
 
@@ -109,7 +109,7 @@ pub enum LeftOut {
 pub struct Slip {
     /// The mistaken unit.
     pub unit: &'static str,
-    /// Factor to the right one.
+    /// Factor to the right unit (–).
     pub factor: f64,
 }
 

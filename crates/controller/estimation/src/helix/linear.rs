@@ -87,15 +87,8 @@ impl LinearEstimator {
         let n_blades = definition.n_blades;
         let model = Rotor::new(definition, settings, &options);
         let mean_moment = |wind: f64, pitch: f64| {
-            let (mut state, mut memory) = (model.start(), model.memory());
-            let wind = FixedFrame { average: wind, ..FixedFrame::default() };
-            let kinematics = RotorKinematics {
-                azimuth: 0.0,
-                rotor_speed: point.rotor_speed,
-                pitch: PerBlade::splat(n_blades, pitch),
-            };
-            model.rest(wind, &kinematics, &mut state, &mut memory);
-            model.advance(1.0, wind, &kinematics, &mut state, &mut memory).moments.mean()
+            let pitch = PerBlade::splat(n_blades, pitch);
+            moment_at_rest(&model, wind, point.rotor_speed, pitch)
         };
         let between = |step: f64, up: f64, down: f64| (up - down) / step;
         let OperatingPoint { wind, pitch, .. } = point;
@@ -204,4 +197,13 @@ impl LinearEstimator {
     pub fn mean_wind(&self) -> f64 {
         self.state.filter.belief.mean[MEAN_WIND]
     }
+}
+
+/// Mean blade moment (N m) of `model` at rest in an even `wind` (m/s), at `rotor_speed` (rad/s) and `pitch` (rad).
+fn moment_at_rest(model: &Rotor, wind: f64, rotor_speed: f64, pitch: PerBlade<f64>) -> f64 {
+    let (mut state, mut memory) = (model.start(), model.memory());
+    let wind = FixedFrame { average: wind, ..FixedFrame::default() };
+    let kinematics = RotorKinematics { azimuth: 0.0, rotor_speed, pitch };
+    model.rest(wind, &kinematics, &mut state, &mut memory);
+    model.advance(1.0, wind, &kinematics, &mut state, &mut memory).moments.mean()
 }

@@ -203,6 +203,17 @@ impl Options {
     /// # Errors
     /// [`EstimationError`] names what cannot be used.
     pub(super) fn check(&self) -> Result<(), EstimationError> {
+        self.check_process()?;
+        self.check_rotor()?;
+        if let Jacobian::CentralDifferences { step } = self.jacobian {
+            within("step of the differences", step, (1e-9..1.0).contains(&step), "from 1e-9 to 1")?;
+        }
+        let every = self.update_every as f64;
+        within("control instants from update to update (–)", every, every >= 1.0, "1 or more")
+    }
+
+    /// That the noise and the eddies make a filter.
+    fn check_process(&self) -> Result<(), EstimationError> {
         let Noise { measurement, mean_wind, amplitude, phase, initial_amplitude } = self.noise;
         let (Measurement::Moment(noise) | Measurement::Share(noise)) = measurement;
         positive_variance("measurement", "standard deviation of a moment", noise)?;
@@ -235,6 +246,11 @@ impl Options {
             }
             within("roundness (–)", self.roundness, false, "from 0 to below 1")?;
         }
+        Ok(())
+    }
+
+    /// That the wake and the pitch are those of a rotor.
+    fn check_rotor(&self) -> Result<(), EstimationError> {
         if let Wake::WithBlades { time_factor } | Wake::InAir { time_factor, .. } = self.rotor.wake
         {
             positive("factor on the wake's time constant (–)", time_factor)?;
@@ -266,12 +282,7 @@ impl Options {
         )?;
         let offset = self.rotor.pitch_azimuth_offset;
         positive("gain of the pitch (–)", self.rotor.pitch_gain)?;
-        within("azimuth offset of the pitch (rad)", offset, offset.is_finite(), "a finite number")?;
-        if let Jacobian::CentralDifferences { step } = self.jacobian {
-            within("step of the differences", step, (1e-9..1.0).contains(&step), "from 1e-9 to 1")?;
-        }
-        let every = self.update_every as f64;
-        within("control instants from update to update (–)", every, every >= 1.0, "1 or more")
+        within("azimuth offset of the pitch (rad)", offset, offset.is_finite(), "a finite number")
     }
 }
 

@@ -3,6 +3,7 @@
 pub(crate) mod analyse;
 pub(crate) mod fatigue;
 pub(crate) mod inflow;
+mod inflow_info;
 mod inflow_sample;
 pub(crate) mod report;
 pub(crate) mod run;

@@ -5,11 +5,13 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use wakemix::control::baseline::Constants;
 use wakemix::formats::turbine_file::{self, TurbineFile};
 use wakemix::formats::{atomic, library, openfast, windio};
 use wakemix::study::{OffsetAnswer, OffsetQuestion, azimuth_offset};
+use wakemix::turbine::Definition;
 use wakemix::turbine::aero::blade_element::Theory;
-use wakemix::turbine::steady::SteadyRotor;
+use wakemix::turbine::steady::{Coefficients, SteadyRotor};
 
 /// What to do with turbines.
 #[derive(Debug, Subcommand)]
@@ -168,11 +170,27 @@ fn list() -> Result<()> {
 
 fn show(file: &TurbineFile) -> Result<()> {
     let TurbineFile { title, definition, controller, sources } = file;
-    let rpm = |speed: f64| speed * 30.0 / std::f64::consts::PI;
     let ratio = controller.optimal_tip_speed_ratio;
     let best =
         SteadyRotor::new(definition, Theory::default()).coefficients(ratio, controller.fine_pitch);
-    let rows = [
+    let mut text = format!("{}: {title}\n\n", definition.name);
+    for (what, value) in rows(definition, controller, &best) {
+        text += &format!("{what:24} {value}\n");
+    }
+    text += "\nsources\n";
+    for (group, source) in sources {
+        text += &format!("{group:16} {source}\n");
+    }
+    print(&text)
+}
+
+/// What there is to know of a turbine at a glance; `best` are its coefficients at the optimal tip-speed ratio.
+fn rows(
+    definition: &Definition,
+    controller: &Constants,
+    best: &Coefficients,
+) -> [(&'static str, String); 12] {
+    [
         ("blades", definition.n_blades.to_string()),
         (
             "swept diameter",
@@ -207,7 +225,7 @@ fn show(file: &TurbineFile) -> Result<()> {
             format!(
                 "{:.3} MW at {:.3} rpm",
                 1e-6 * definition.rated_power,
-                rpm(definition.rated_rotor_speed)
+                definition.rated_rotor_speed * 30.0 / std::f64::consts::PI
             ),
         ),
         ("blade mass", format!("{:.2} t each", 1e-3 * definition.blade_mass())),
@@ -234,7 +252,8 @@ fn show(file: &TurbineFile) -> Result<()> {
         (
             "best tip-speed ratio",
             format!(
-                "{ratio:.2}: power coefficient {:.4}, thrust coefficient {:.4} (rigid, pitch {:.2}°)",
+                "{:.2}: power coefficient {:.4}, thrust coefficient {:.4} (rigid, pitch {:.2}°)",
+                controller.optimal_tip_speed_ratio,
                 best.power,
                 best.thrust,
                 controller.fine_pitch.to_degrees()
@@ -249,16 +268,7 @@ fn show(file: &TurbineFile) -> Result<()> {
                 definition.blade_structure.sections.len()
             ),
         ),
-    ];
-    let mut text = format!("{}: {title}\n\n", definition.name);
-    for (what, value) in rows {
-        text += &format!("{what:24} {value}\n");
-    }
-    text += "\nsources\n";
-    for (group, source) in sources {
-        text += &format!("{group:16} {source}\n");
-    }
-    print(&text)
+    ]
 }
 
 fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Result<()> {

@@ -98,17 +98,22 @@ fn event_of(wind: &Section, entry: &Entry, speed: f64) -> Option<WindEvent> {
         return None;
     };
     let section = Section::open(table, entries, span.clone(), path, wind.findings());
+    Some(event_of_kind(name, &section, speed))
+}
+
+/// The event of the kind `name`, whose keys stand in `section`, in a wind of `speed` (m/s).
+fn event_of_kind(name: &str, section: &Section, speed: f64) -> WindEvent {
     let number = |key: &str| section.number(key);
     let change = || section.number("change_deg").to_radians();
     // Each kind has its own keys.
-    Some(match *name {
+    match name {
         "step" => WindEvent::Step { start: number("start"), speed: number("speed") },
         "ramp" => WindEvent::Ramp {
             start: number("start"),
             duration: number("duration"),
             speed: number("speed"),
         },
-        "staircase" => staircase_of(&section, speed),
+        "staircase" => staircase_of(section, speed),
         "operating-gust" => WindEvent::OperatingGust {
             start: number("start"),
             duration: number("duration"),
@@ -138,9 +143,9 @@ fn event_of(wind: &Section, entry: &Entry, speed: f64) -> Option<WindEvent> {
             edge_diameters: number("edge_diameters"),
             strouhal: [number("strouhal"), number("strouhal_last")],
             sweep: number("sweep"),
-            sense: sense_of(&section),
+            sense: sense_of(section),
         }),
-    })
+    }
 }
 
 /// Steps from `speed` (m/s); notes when they would lead below calm.

@@ -4,7 +4,7 @@ use super::instruments::instruments_text;
 use super::kinds;
 use super::momentum::momentum_text;
 use super::wind::write_wind;
-use farm::case::{Case, Ground, Sides};
+use farm::case::{Case, Flow, Ground, Output, Placement, Run, Sides};
 use std::fmt::Write;
 
 /// The case file that reads back as `case`, with every default written out.
@@ -21,8 +21,19 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         writeln!(text, "description = {}", quoted(description))?;
     }
     write_wind(text, &case.wind)?;
+    write_flow(text, &case.flow)?;
+    writeln!(text, "\n[time]")?;
+    writeln!(text, "spin_up = {:?}\nduration = {:?}", case.time.spin_up, case.time.duration)?;
+    for turbine in &case.turbines {
+        write_turbine(text, turbine)?;
+    }
+    for run in &case.runs {
+        write_run(text, run, &case.turbines)?;
+    }
+    write_output(text, &case.output, &case.turbines)
+}
 
-    let flow = &case.flow;
+fn write_flow(text: &mut String, flow: &Flow) -> std::fmt::Result {
     writeln!(text, "\n[flow]\nsolver = \"{}\"", flow.solver.name)?;
     writeln!(text, "cells_per_diameter = {:?}", flow.cells_per_diameter)?;
     writeln!(text, "upstream_diameters = {:?}", flow.upstream_diameters)?;
@@ -43,43 +54,47 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
     if let Some(threads) = flow.threads {
         writeln!(text, "threads = {threads}")?;
     }
+    Ok(())
+}
 
-    writeln!(text, "\n[time]")?;
-    writeln!(text, "spin_up = {:?}\nduration = {:?}", case.time.spin_up, case.time.duration)?;
-    for turbine in &case.turbines {
-        let [x, y] = turbine.position_diameters;
-        writeln!(text, "\n[[turbine]]\nname = {}", quoted(&turbine.name))?;
-        writeln!(text, "model = {}\nposition_diameters = [{x:?}, {y:?}]", quoted(&turbine.model))?;
-        // Only where it is used, so that the fingerprint of a case without it stays what it was.
-        if let Some(discon) = &turbine.discon {
-            writeln!(text, "discon = {}", quoted(discon))?;
-        }
-        let structure = if turbine.flexible { "flexible" } else { "rigid" };
-        writeln!(text, "structure = \"{structure}\"")?;
-        let stall = if turbine.dynamic_stall { "dynamic" } else { "steady" };
-        writeln!(text, "stall = \"{stall}\"")?;
-        text.push_str(&momentum_text(turbine));
-        text.push_str(&instruments_text(&turbine.instruments));
-        for sensor in &turbine.sensors {
-            let table = kinds::text(sensor.kind.name(), &sensor.values);
-            writeln!(text, "sensors.{} = {table}", sensor.name)?;
-        }
+fn write_turbine(text: &mut String, turbine: &Placement) -> std::fmt::Result {
+    let [x, y] = turbine.position_diameters;
+    writeln!(text, "\n[[turbine]]\nname = {}", quoted(&turbine.name))?;
+    writeln!(text, "model = {}\nposition_diameters = [{x:?}, {y:?}]", quoted(&turbine.model))?;
+    // Only where it is used, so that the fingerprint of a case without it stays what it was.
+    if let Some(discon) = &turbine.discon {
+        writeln!(text, "discon = {}", quoted(discon))?;
     }
-    for run in &case.runs {
-        writeln!(text, "\n[[run]]\nname = {}", quoted(&run.name))?;
-        if let Some(other) = &run.compare_with {
-            writeln!(text, "compare_with = {}", quoted(other))?;
-        }
-        for (turbine, control) in case.turbines.iter().zip(&run.control) {
-            writeln!(
-                text,
-                "control.{} = {}",
-                turbine.name,
-                kinds::text(control.kind().name(), control.values())
-            )?;
-        }
+    let structure = if turbine.flexible { "flexible" } else { "rigid" };
+    writeln!(text, "structure = \"{structure}\"")?;
+    let stall = if turbine.dynamic_stall { "dynamic" } else { "steady" };
+    writeln!(text, "stall = \"{stall}\"")?;
+    text.push_str(&momentum_text(turbine));
+    text.push_str(&instruments_text(&turbine.instruments));
+    for sensor in &turbine.sensors {
+        let table = kinds::text(sensor.kind.name(), &sensor.values);
+        writeln!(text, "sensors.{} = {table}", sensor.name)?;
     }
-    let output = &case.output;
+    Ok(())
+}
+
+fn write_run(text: &mut String, run: &Run, turbines: &[Placement]) -> std::fmt::Result {
+    writeln!(text, "\n[[run]]\nname = {}", quoted(&run.name))?;
+    if let Some(other) = &run.compare_with {
+        writeln!(text, "compare_with = {}", quoted(other))?;
+    }
+    for (turbine, control) in turbines.iter().zip(&run.control) {
+        writeln!(
+            text,
+            "control.{} = {}",
+            turbine.name,
+            kinds::text(control.kind().name(), control.values())
+        )?;
+    }
+    Ok(())
+}
+
+fn write_output(text: &mut String, output: &Output, turbines: &[Placement]) -> std::fmt::Result {
     writeln!(text, "\n[output]")?;
     if let Some(interval) = output.interval {
         writeln!(text, "interval = {interval:?}")?;
@@ -92,8 +107,7 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         writeln!(text, "helix_phases = {count}")?;
     }
     for (key, places) in [("lines_at", &output.lines_at), ("inflow_at", &output.inflow_at)] {
-        let names: Vec<&str> =
-            places.iter().map(|&index| case.turbines[index].name.as_str()).collect();
+        let names: Vec<&str> = places.iter().map(|&index| turbines[index].name.as_str()).collect();
         writeln!(text, "{key} = {names:?}")?;
     }
     if let Some(interval) = output.volume_interval {

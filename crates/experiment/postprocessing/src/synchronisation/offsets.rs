@@ -42,51 +42,16 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, Postpro
     places.sort_by(|a, b| x(*a).total_cmp(&x(*b)));
     let names: Vec<&str> =
         places.iter().map(|&index| study.case.turbines[index].name.as_str()).collect();
-    let mut power: Vec<OffsetPanel> = Vec::new();
-    for name in &names {
-        let points = joined.iter().filter_map(|run| {
-            let change = turbine(study, run, name)?.power_gain?;
-            Some(OffsetPoint { offset: run.offset()?, change })
-        });
-        power.push(panel((*name).to_owned(), points.collect()));
-    }
-    if names.len() > 1 {
-        let mut points = Vec::new();
-        for run in &joined {
-            let (Some(offset), Some(change)) = (run.offset(), together(study, run, &names)?) else {
-                continue;
-            };
-            points.push(OffsetPoint { offset, change });
-        }
-        power.push(panel(names.join(" + "), points));
-    }
     let joining = &study.case.turbines[study.turbine].name;
     let mut figures = vec![OffsetFigure {
         name: "power-over-offset".into(),
         title: format!("Power over the phase offset of {joining}"),
         label: format!("power against the run {against} (%)"),
-        panels: power,
+        panels: power(study, &joined, &names)?,
     }];
     for (channel, title) in LOADS {
-        let panels: Vec<OffsetPanel> = names
-            .iter()
-            .map(|name| {
-                let points = joined.iter().filter_map(|run| {
-                    let own = load(turbine(study, run, name)?, channel)?;
-                    let other = compared(study, run)?.summary.turbines.iter();
-                    let other = other.clone().find(|turbine| turbine.name == *name)?;
-                    let change = own / load(other, channel)? - 1.0;
-                    let change = Statistic {
-                        mean: change,
-                        standard_deviation: 0.0,
-                        half_width_95: None,
-                        n_blocks: 1,
-                    };
-                    Some(OffsetPoint { offset: run.offset()?, change })
-                });
-                panel((*name).to_owned(), points.collect())
-            })
-            .collect();
+        let panels: Vec<OffsetPanel> =
+            names.iter().map(|name| fatigue(study, &joined, name, channel)).collect();
         if panels.iter().all(|panel| panel.points.is_empty()) {
             continue;
         }
@@ -98,6 +63,46 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, Postpro
         });
     }
     Ok(figures)
+}
+
+/// Power of each of the turbines called `names` in the runs `joined`, then of all of them together.
+fn power(
+    study: &Synchronised,
+    joined: &[&Joined],
+    names: &[&str],
+) -> Result<Vec<OffsetPanel>, PostprocessingError> {
+    let mut panels: Vec<OffsetPanel> = Vec::new();
+    for name in names {
+        let points = joined.iter().filter_map(|run| {
+            let change = turbine(study, run, name)?.power_gain?;
+            Some(OffsetPoint { offset: run.offset()?, change })
+        });
+        panels.push(panel((*name).to_owned(), points.collect()));
+    }
+    if names.len() > 1 {
+        let mut points = Vec::new();
+        for run in joined {
+            let (Some(offset), Some(change)) = (run.offset(), together(study, run, names)?) else {
+                continue;
+            };
+            points.push(OffsetPoint { offset, change });
+        }
+        panels.push(panel(names.join(" + "), points));
+    }
+    Ok(panels)
+}
+
+/// Equivalent load of `channel` of the turbine called `name` in the runs `joined`.
+fn fatigue(study: &Synchronised, joined: &[&Joined], name: &str, channel: &str) -> OffsetPanel {
+    let points = joined.iter().filter_map(|run| {
+        let own = load(turbine(study, run, name)?, channel)?;
+        let mut others = compared(study, run)?.summary.turbines.iter();
+        let other = others.find(|turbine| turbine.name == name)?;
+        let mean = own / load(other, channel)? - 1.0;
+        let change = Statistic { mean, standard_deviation: 0.0, half_width_95: None, n_blocks: 1 };
+        Some(OffsetPoint { offset: run.offset()?, change })
+    });
+    panel(name.to_owned(), points.collect())
 }
 
 /// The points with the curve of most probable changes through them.

@@ -14,6 +14,9 @@ const ROW: f64 = 24.0;
 /// One row of the figure: colour, name of the run, gain.
 type Row<'a> = (usize, &'a str, Statistic);
 
+/// The rows of a turbine, or of all together, under their name.
+type Group<'a> = (String, Vec<Row<'a>>);
+
 /// Gain of each turbine and of all together in each run, with 95 % intervals.
 pub(crate) fn gains(study: &Study) -> Option<Figure> {
     let groups = groups(study);
@@ -36,27 +39,8 @@ pub(crate) fn gains(study: &Study) -> Option<Figure> {
         y: Scale::linear(0.0, 1.0),
     };
     let mut shapes = Vec::new();
-    let mut y = frame.area[1];
-    for (index, (name, rows)) in groups.iter().enumerate() {
-        let group_height = ROW * rows.len() as f64 + 14.0;
-        if index % 2 == 0 {
-            let area = [8.0, y, WIDTH - 16.0, group_height];
-            shapes.push(rectangle(area, Look::fill(Ink::Band)));
-        }
-        let setting = Setting::plain(Ink::Text, MEDIUM).bold();
-        shapes.push(text([20.0, y + 7.0 + 0.5 * ROW + 4.0], name.as_str(), setting));
-        y += group_height;
-    }
-    let (ticks, decimals) = frame.x.ticks(8);
-    for tick in ticks {
-        let [x, _] = frame.point([tick, 0.0]);
-        let bottom = frame.area[1] + height;
-        let ink = if tick == 0.0 { Ink::Axis } else { Ink::Grid };
-        shapes.push(segment([x, frame.area[1]], [x, bottom], Look::line(ink, 1.0)));
-        let setting = Setting::plain(Ink::Muted, SMALL).anchored(0.5);
-        shapes.push(text([x, bottom + 17.0], words::number(tick, decimals), setting));
-    }
-    frame.x_label("power gain over the compared run (%)", &mut shapes);
+    bands(&groups, frame.area[1], &mut shapes);
+    ruler(&frame, &mut shapes);
     let mut y = frame.area[1];
     for (_, rows) in &groups {
         y += 7.0;
@@ -77,10 +61,38 @@ pub(crate) fn gains(study: &Study) -> Option<Figure> {
     })
 }
 
+/// A band with its name for each of `groups`, the first one below `y`.
+fn bands(groups: &[Group], mut y: f64, shapes: &mut Vec<Shape>) {
+    for (index, (name, rows)) in groups.iter().enumerate() {
+        let group_height = ROW * rows.len() as f64 + 14.0;
+        if index % 2 == 0 {
+            let area = [8.0, y, WIDTH - 16.0, group_height];
+            shapes.push(rectangle(area, Look::fill(Ink::Band)));
+        }
+        let setting = Setting::plain(Ink::Text, MEDIUM).bold();
+        shapes.push(text([20.0, y + 7.0 + 0.5 * ROW + 4.0], name.as_str(), setting));
+        y += group_height;
+    }
+}
+
+/// Lines at round gains, with their numbers and what they are below.
+fn ruler(frame: &Frame, shapes: &mut Vec<Shape>) {
+    let (ticks, decimals) = frame.x.ticks(8);
+    for tick in ticks {
+        let [x, _] = frame.point([tick, 0.0]);
+        let bottom = frame.area[1] + frame.area[3];
+        let ink = if tick == 0.0 { Ink::Axis } else { Ink::Grid };
+        shapes.push(segment([x, frame.area[1]], [x, bottom], Look::line(ink, 1.0)));
+        let setting = Setting::plain(Ink::Muted, SMALL).anchored(0.5);
+        shapes.push(text([x, bottom + 17.0], words::number(tick, decimals), setting));
+    }
+    frame.x_label("power gain over the compared run (%)", shapes);
+}
+
 /// Rows of every turbine, then of all together.
-fn groups<'a>(study: &Study<'a>) -> Vec<(String, Vec<Row<'a>>)> {
+fn groups<'a>(study: &Study<'a>) -> Vec<Group<'a>> {
     let runs = || study.runs().iter().zip(&study.colours);
-    let mut groups: Vec<(String, Vec<Row>)> = study
+    let mut groups: Vec<Group> = study
         .turbines()
         .into_iter()
         .map(|turbine| {

@@ -40,28 +40,41 @@ fn distances(study: &Study, plane: &Plane) -> Vec<f64> {
     distances
 }
 
+/// Lines of one panel, each with the colour of its run.
+type Lines = Vec<(usize, Vec<[f64; 2]>)>;
+
+/// Velocity over the free stream against the place across the wake (diameters), `distance` (diameters) along it.
+fn across(study: &Study, planes: &[(usize, &Plane)], distance: f64) -> Lines {
+    let (diameter, free_stream) = (study.diameter(), study.free_stream());
+    let profile = |plane: &Plane| {
+        (-60..=60)
+            .filter_map(|index| {
+                let y = study.side() + f64::from(index) / 40.0;
+                let velocity = sample(plane, distance * diameter, y * diameter)?;
+                Some([velocity / free_stream, y])
+            })
+            .collect()
+    };
+    planes.iter().map(|&(colour, plane)| (colour, profile(plane))).collect()
+}
+
+/// Each line of `lines` as its run is drawn, with `draw` making a shape of its points.
+fn drawn(lines: &Lines, draw: impl Fn(&[[f64; 2]], Look) -> Shape) -> Vec<Shape> {
+    let run = |(colour, line): &(usize, Vec<[f64; 2]>)| {
+        let look = Look::line(Ink::Run(*colour), 2.0).dashed(run_dash(*colour));
+        Shape::Group { role: Role::Run(*colour), clip: None, shapes: vec![draw(line, look)] }
+    };
+    lines.iter().map(run).collect()
+}
+
 /// Mean velocity over the width of the wake at several distances, runs overlaid.
 pub(crate) fn profiles(study: &Study) -> Option<Figure> {
     const HEIGHT: f64 = 250.0;
     let planes = planes(study);
-    let (diameter, free_stream) = (study.diameter(), study.free_stream());
     let distances = distances(study, planes.first()?.1);
     let center = study.side();
-    let lines: Vec<Vec<(usize, Vec<[f64; 2]>)>> = distances
-        .iter()
-        .map(|distance| {
-            let profile = |plane: &Plane| {
-                (-60..=60)
-                    .filter_map(|index| {
-                        let y = center + f64::from(index) / 40.0;
-                        let velocity = sample(plane, distance * diameter, y * diameter)?;
-                        Some([velocity / free_stream, y])
-                    })
-                    .collect()
-            };
-            planes.iter().map(|&(colour, plane)| (colour, profile(plane))).collect()
-        })
-        .collect();
+    let lines: Vec<Lines> =
+        distances.iter().map(|distance| across(study, &planes, *distance)).collect();
     let values = || lines.iter().flatten().flat_map(|line| &line.1);
     values().next()?;
     let mut shapes = Vec::new();
@@ -88,14 +101,7 @@ pub(crate) fn profiles(study: &Study) -> Option<Figure> {
         let text_distance = text_distance.strip_suffix(".0").unwrap_or(&text_distance);
         frame.title(&format!("{text_distance}{SPACE}D"), &mut shapes);
         frame.x_label("u/U∞", &mut shapes);
-        let group = lines
-            .iter()
-            .map(|(colour, line)| {
-                let look = Look::line(Ink::Run(*colour), 2.0).dashed(run_dash(*colour));
-                let shapes = vec![crate::draw::polyline(frame.points(line), look)];
-                Shape::Group { role: Role::Run(*colour), clip: None, shapes }
-            })
-            .collect();
+        let group = drawn(lines, |line, look| crate::draw::polyline(frame.points(line), look));
         shapes.push(Shape::Group { role: Role::Plain, clip: Some(frame.area), shapes: group });
     }
     Some(Figure {
@@ -115,22 +121,7 @@ pub(crate) fn profiles(study: &Study) -> Option<Figure> {
 pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
     const HEIGHT: f64 = 210.0;
     let planes = planes(study);
-    let (diameter, free_stream) = (study.diameter(), study.free_stream());
-    let center = study.side() * diameter;
-    let along = |plane: &Plane, sides: &[f64]| -> Vec<[f64; 2]> {
-        let stride = plane.n_points[0].div_ceil(400);
-        (0..plane.n_points[0])
-            .step_by(stride)
-            .filter_map(|index| {
-                let x = plane.origin[0] + plane.spacing[0] * index as f64;
-                let velocities: Option<Vec<f64>> =
-                    sides.iter().map(|side| sample(plane, x, center + side * diameter)).collect();
-                let velocities = velocities?;
-                let mean = velocities.iter().sum::<f64>() / velocities.len() as f64;
-                Some([x / diameter, mean / free_stream])
-            })
-            .collect()
-    };
+    let diameter = study.diameter();
     let width: Vec<f64> = (0..21).map(|index| (f64::from(index) - 10.0) / 20.0).collect();
     let panels = [("on the axis", vec![0.0]), ("mean over the rotor's width", width)];
     let first = planes.first()?.1;
@@ -140,8 +131,8 @@ pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
     let top =
         22.0 + legend([58.0, 22.0], WIDTH - 90.0, Role::Run, &study.names(), &mut shapes) + 18.0;
     for (index, (title, sides)) in panels.iter().enumerate() {
-        let lines: Vec<(usize, Vec<[f64; 2]>)> =
-            planes.iter().map(|&(colour, plane)| (colour, along(plane, sides))).collect();
+        let lines: Lines =
+            planes.iter().map(|&(colour, plane)| (colour, along(study, plane, sides))).collect();
         let velocities = lines.iter().flat_map(|line| line.1.iter().map(|point| point[1]));
         let frame = Frame {
             area: [58.0 + 476.0 * index as f64, top, 430.0, HEIGHT],
@@ -156,14 +147,7 @@ pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
             frame.y_label("u/U∞", 42.0, &mut shapes);
         }
         rotors(study, &frame, &mut shapes);
-        let group = lines
-            .iter()
-            .map(|(colour, line)| {
-                let look = Look::line(Ink::Run(*colour), 2.0).dashed(run_dash(*colour));
-                let shapes = vec![frame.line(line, look)];
-                Shape::Group { role: Role::Run(*colour), clip: None, shapes }
-            })
-            .collect();
+        let group = drawn(&lines, |line, look| frame.line(line, look));
         shapes.push(frame.panel(group, ["D", "U∞"]));
     }
     Some(Figure {
@@ -175,6 +159,24 @@ pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
         height: top + HEIGHT + 50.0,
         shapes,
     })
+}
+
+/// Velocity over the free stream, mean of the places `sides` (diameters) beside the row, against the place along it.
+fn along(study: &Study, plane: &Plane, sides: &[f64]) -> Vec<[f64; 2]> {
+    let (diameter, free_stream) = (study.diameter(), study.free_stream());
+    let center = study.side() * diameter;
+    let stride = plane.n_points[0].div_ceil(400);
+    (0..plane.n_points[0])
+        .step_by(stride)
+        .filter_map(|index| {
+            let x = plane.origin[0] + plane.spacing[0] * index as f64;
+            let velocities: Option<Vec<f64>> =
+                sides.iter().map(|side| sample(plane, x, center + side * diameter)).collect();
+            let velocities = velocities?;
+            let mean = velocities.iter().sum::<f64>() / velocities.len() as f64;
+            Some([x / diameter, mean / free_stream])
+        })
+        .collect()
 }
 
 /// A dashed line with its name for every turbine.

@@ -31,6 +31,7 @@ mod stencil27;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod values;
 mod wall;
 
 pub use crate::fields::{PlaneAverage, PlaneAverageState, PlaneSizeError, Volume};

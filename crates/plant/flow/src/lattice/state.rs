@@ -11,8 +11,6 @@ use std::io::{Error, ErrorKind, Read, Result, Write};
 
 const MAGIC: [u8; 8] = *b"wmlattic";
 const VERSION: u64 = 1;
-/// Values that are converted at a time.
-const CHUNK: usize = 16 * 1024;
 /// More forces than this are a sign of a damaged file.
 const MOST_FORCES: u64 = 1 << 24;
 
@@ -96,37 +94,4 @@ fn read_u64(reader: &mut dyn Read) -> Result<u64> {
     let mut bytes = [0; 8];
     reader.read_exact(&mut bytes)?;
     Ok(u64::from_le_bytes(bytes))
-}
-
-/// Writes `values`, converted in `bytes` bit by bit.
-pub(super) fn write_values(
-    writer: &mut dyn Write,
-    bytes: &mut Vec<u8>,
-    values: &[f32],
-) -> Result<()> {
-    for chunk in values.chunks(CHUNK) {
-        bytes.clear();
-        for value in chunk {
-            bytes.extend_from_slice(&value.to_le_bytes());
-        }
-        writer.write_all(bytes)?;
-    }
-    Ok(())
-}
-
-/// Reads as many values as `values` has room for, through `bytes`.
-pub(super) fn read_values(
-    reader: &mut dyn Read,
-    bytes: &mut Vec<u8>,
-    values: &mut [f32],
-) -> Result<()> {
-    for chunk in values.chunks_mut(CHUNK) {
-        bytes.resize(size_of_val(chunk), 0);
-        reader.read_exact(bytes)?;
-        let (words, _) = bytes.as_chunks::<4>();
-        for (value, word) in chunk.iter_mut().zip(words) {
-            *value = f32::from_le_bytes(*word);
-        }
-    }
-    Ok(())
 }

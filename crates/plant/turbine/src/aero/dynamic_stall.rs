@@ -206,12 +206,25 @@ impl DynamicStall {
         state.attachment =
             mean_attachment + (state.attachment - mean_attachment) * decay(1.0 / SEPARATION_DELAY);
         state.driven_by = Drive { speed, downwash, lift, attachment };
+        let angles = [angle_of_attack, alpha_e];
+        let dynamic = self.separating(angles, state.attachment, apparent_mass, polar);
+        if share < 1.0 { fade(dynamic, polar.at(angle_of_attack), share) } else { dynamic }
+    }
 
+    /// Coefficients at the geometric and the effective angle of attack (rad) of a section whose flow is attached to the share
+    /// `x4` (–), with `apparent_mass` as a lift coefficient (–).
+    fn separating(
+        &self,
+        [angle_of_attack, alpha_e]: [f64; 2],
+        x4: f64,
+        apparent_mass: f64,
+        polar: &Polar,
+    ) -> SectionCoefficients {
+        // Symbols of Hansen et al. 2004, as above.
         let steady = polar.at(alpha_e);
         let linear = self.attached_lift(alpha_e);
         let root = self.separation_root(steady.lift, linear, alpha_e);
         let f = (2.0 * root - 1.0) * (2.0 * root - 1.0);
-        let x4 = state.attachment;
         // Fully separated lift, from C_st = linear · f + separated · (1 − f) with f of the polar.
         let separated =
             if root > 0.5 { linear * (3.0 * root - 1.0) / (4.0 * root) } else { steady.lift };
@@ -222,8 +235,7 @@ impl DynamicStall {
             + (angle_of_attack - alpha_e) * lift
             + (steady.drag - self.zero_lift_drag) * separation_drag;
         let moment = steady.moment - 0.5 * apparent_mass;
-        let dynamic = SectionCoefficients { lift, drag, moment };
-        if share < 1.0 { fade(dynamic, polar.at(angle_of_attack), share) } else { dynamic }
+        SectionCoefficients { lift, drag, moment }
     }
 
     fn attached_lift(&self, angle: f64) -> f64 {

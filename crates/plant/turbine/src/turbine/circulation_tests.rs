@@ -5,6 +5,8 @@ use super::tests::{DENSITY, built, by_flow, commands};
 use super::*;
 use crate::aero::blade_element::Theory;
 use crate::aero::induction::TwoConstant;
+use crate::aero::rotor;
+use crate::rotor::BladeFrame;
 
 /// Short, so that blades stand where they stood when their wind was sampled.
 const INSTANT: f64 = 1e-3;

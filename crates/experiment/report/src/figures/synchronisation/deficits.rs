@@ -1,10 +1,10 @@
 //! Deficits about the wake's own centre, cases overlaid, a panel for each distance.
 
-use super::DeficitFigure;
 use super::marks::{case_line, free_stream, names};
+use super::{DeficitFigure, DeficitLine};
 use crate::draw::axes::{Frame, Scale, legend};
 use crate::draw::colour::Ink;
-use crate::draw::{Figure, Look, Role, rectangle};
+use crate::draw::{Figure, Look, Role, Shape, polyline, rectangle};
 use crate::figures::WIDTH;
 
 const HEIGHT: f64 = 250.0;
@@ -44,21 +44,8 @@ pub(super) fn deficits(figure: &DeficitFigure) -> Option<Figure> {
         if index == 0 {
             frame.y_label("(y − centre)/D", 40.0, &mut shapes);
         }
-        let inner = panel.lines.iter().map(|line| {
-            let points: Vec<[f64; 2]> = line
-                .deficits
-                .iter()
-                .zip(&line.offsets)
-                .map(|(deficit, offset)| [deficit / figure.free_stream, offset / figure.diameter])
-                .collect();
-            crate::draw::polyline(frame.points(&points), case_line(line.colour, 2.0))
-        });
-        let inner = inner.collect();
-        shapes.push(crate::draw::Shape::Group {
-            role: Role::Plain,
-            clip: Some(frame.area),
-            shapes: inner,
-        });
+        let inner = panel.lines.iter().map(|line| drawn(figure, line, &frame)).collect();
+        shapes.push(Shape::Group { role: Role::Plain, clip: Some(frame.area), shapes: inner });
     }
     Some(Figure {
         name: "recentred-deficits".to_owned(),
@@ -72,4 +59,15 @@ pub(super) fn deficits(figure: &DeficitFigure) -> Option<Figure> {
         height: top + HEIGHT + 50.0,
         shapes,
     })
+}
+
+/// A mean deficit over the free stream across the wake.
+fn drawn(figure: &DeficitFigure, line: &DeficitLine, frame: &Frame) -> Shape {
+    let points: Vec<[f64; 2]> = line
+        .deficits
+        .iter()
+        .zip(&line.offsets)
+        .map(|(deficit, offset)| [deficit / figure.free_stream, offset / figure.diameter])
+        .collect();
+    polyline(frame.points(&points), case_line(line.colour, 2.0))
 }

@@ -46,24 +46,7 @@ pub(super) fn slices(figure: &SliceFigure) -> Option<Figure> {
         let named = figure.centre_lines.iter().map(|line| (line.colour, line.name.as_str()));
         top +=
             4.0 + legend([LEFT, top], WIDTH - 100.0, |_| Role::Plain, &names(named), &mut shapes);
-        let lines: Vec<Vec<[f64; 2]>> = figure
-            .centre_lines
-            .iter()
-            .map(|line| line.points.iter().map(|p| [p[0] / diameter, p[1] / diameter]).collect())
-            .collect();
-        let frame = Frame {
-            area: [LEFT, top, width, LINES],
-            x: scale,
-            y: Scale::around(lines.iter().flatten().map(|point| point[1]), 0.1),
-        };
-        frame.rows(5, true, &mut shapes);
-        frame.columns(12, true, &mut shapes);
-        frame.y_label("y/D of the centre", 46.0, &mut shapes);
-        let mut inner = uprights(figure, &frame);
-        for (line, points) in figure.centre_lines.iter().zip(&lines) {
-            inner.push(frame.line(points, case_line(line.colour, 2.0)));
-        }
-        shapes.push(frame.panel(inner, ["D", "D"]));
+        centres(figure, [LEFT, top, width, LINES], scale, &mut shapes);
         top += LINES + 40.0;
     }
     let setting = Setting::plain(Ink::Muted, MEDIUM).anchored(0.5);
@@ -80,6 +63,26 @@ pub(super) fn slices(figure: &SliceFigure) -> Option<Figure> {
         height: top + 10.0,
         shapes,
     })
+}
+
+/// The wake's centre along `x` in all cases, drawn in `area`.
+fn centres(figure: &SliceFigure, area: [f64; 4], x: Scale, shapes: &mut Vec<Shape>) {
+    let diameter = figure.diameter;
+    let lines: Vec<Vec<[f64; 2]>> = figure
+        .centre_lines
+        .iter()
+        .map(|line| line.points.iter().map(|p| [p[0] / diameter, p[1] / diameter]).collect())
+        .collect();
+    let y = Scale::around(lines.iter().flatten().map(|point| point[1]), 0.1);
+    let frame = Frame { area, x, y };
+    frame.rows(5, true, shapes);
+    frame.columns(12, true, shapes);
+    frame.y_label("y/D of the centre", 46.0, shapes);
+    let mut inner = uprights(figure, &frame);
+    for (line, points) in figure.centre_lines.iter().zip(&lines) {
+        inner.push(frame.line(points, case_line(line.colour, 2.0)));
+    }
+    shapes.push(frame.panel(inner, ["D", "D"]));
 }
 
 /// Lowest and highest x (m) of everything that is drawn.

@@ -1,0 +1,36 @@
+//! What a turbine is built with besides its definition.
+
+use crate::aero::rotor;
+
+/// Aerodynamic model and initial condition of a turbine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TurbineSettings {
+    /// Which model gives the rotor's induction.
+    pub induction: Induction,
+    /// Whether blades, tower and drive train bend; otherwise only the rotor turns.
+    pub flexible: bool,
+    /// Air density (kg/m³).
+    pub air_density: f64,
+    /// Rotor speed (rad/s).
+    pub rotor_speed: f64,
+    /// Azimuth of blade 1 (rad).
+    pub azimuth: f64,
+    /// Pitch of all blades (rad).
+    pub pitch: f64,
+}
+
+/// Which model gives the rotor's induction.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Induction {
+    /// The resolved flow: the winds given to the turbine contain it, and the flow receives the turbine's forces.
+    ByFlow {
+        /// Gaussian width of the forces (m).
+        smearing_length: f64,
+        /// Distance of the points between which the flow interpolates the wind (m); 0 where it does not.
+        sample_spacing: f64,
+        /// Whether sections have dynamic stall; otherwise their polars hold at once.
+        dynamic_stall: bool,
+    },
+    /// Blade-element momentum theory in the turbine: the winds given do not contain it.
+    ByMomentum(rotor::BemSettings),
+}

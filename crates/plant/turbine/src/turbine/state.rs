@@ -1,0 +1,39 @@
+//! What a turbine remembers from one interval to the next, as checkpoints keep it.
+
+use super::aerodynamics::AerodynamicState;
+use crate::actuators::PitchState;
+use crate::structure::StructureState;
+use basis::PerBlade;
+use serde::{Deserialize, Serialize};
+
+/// State of a turbine; a run restored from it continues with the same bits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TurbineState {
+    pub(super) structure: StructureState,
+    pub(super) pitch: PerBlade<PitchState>,
+    pub(super) aerodynamics: AerodynamicState,
+    pub(super) readings: Readings,
+    pub(super) n_instants: u64,
+    pub(super) n_limited: u64,
+}
+
+/// Loads and wind over the last interval.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Readings {
+    pub(super) generator_torque: f64,
+    pub(super) thrust: f64,
+    pub(super) aerodynamic_torque: f64,
+    pub(super) rotor_wind_speed: f64,
+}
+
+impl TurbineState {
+    /// Smearing correction of each blade element, axial and along the rotation (m/s), blade after blade; empty where momentum
+    /// theory gives the induction.
+    pub fn smearing_corrections(&self) -> &[[f64; 2]] {
+        match &self.aerodynamics {
+            AerodynamicState::Line(corrections)
+            | AerodynamicState::SeparatingLine(corrections, _) => corrections,
+            AerodynamicState::Momentum(_) => &[],
+        }
+    }
+}
