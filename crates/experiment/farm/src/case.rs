@@ -2,6 +2,7 @@
 
 pub use crate::solvers::Solver;
 pub use control::{Control, Sense};
+pub use flow::inflow::deterministic::Change;
 pub use sensing::{Instrument, Instruments, Lag, Mounted};
 
 use serde::{Deserialize, Serialize};
@@ -73,67 +74,14 @@ pub enum Shear {
     },
 }
 
-/// What happens in time in a wind without turbulence, at all places at once. Times in s since the run's start.
+/// What happens in time in a wind without turbulence. Times in s since the run's start.
 ///
-/// [`deterministic::Event`](flow::inflow::deterministic::Event) gives the equations.
+/// It is the [`deterministic::Event`](flow::inflow::deterministic::Event) of the same name, with lengths in diameters of the
+/// first turbine and its hub as the place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum WindEvent {
-    /// Another hub speed at once.
-    Step {
-        /// Time of the step (s).
-        start: f64,
-        /// Hub speed afterwards (m/s).
-        speed: f64,
-    },
-    /// Another hub speed, linearly over `duration`.
-    Ramp {
-        /// Beginning (s).
-        start: f64,
-        /// How long it takes (s).
-        duration: f64,
-        /// Hub speed afterwards (m/s).
-        speed: f64,
-    },
-    /// Steps of equal rise, each held for `hold`.
-    Staircase {
-        /// Time of the first step (s).
-        start: f64,
-        /// Time between steps (s).
-        hold: f64,
-        /// Rise of the hub speed per step (m/s), negative falls.
-        rise: f64,
-        /// Number of steps (–).
-        n_steps: u32,
-    },
-    /// Extreme operating gust of IEC 61400-1.
-    OperatingGust {
-        /// Beginning (s).
-        start: f64,
-        /// Duration (s).
-        duration: f64,
-        /// Gust V_gust (m/s).
-        gust: f64,
-    },
-    /// Extreme direction change.
-    DirectionChange {
-        /// Beginning (s).
-        start: f64,
-        /// Duration (s).
-        duration: f64,
-        /// Change (rad), counter-clockwise seen from above.
-        change: f64,
-    },
-    /// Extreme coherent gust with direction change.
-    CoherentGust {
-        /// Beginning (s).
-        start: f64,
-        /// Rise time (s).
-        duration: f64,
-        /// Rise of the speed (m/s).
-        rise: f64,
-        /// Change of direction (rad), counter-clockwise seen from above.
-        change: f64,
-    },
+    /// The wind changes at all places alike.
+    Everywhere(Change),
     /// Extreme wind shear over the first turbine's rotor.
     ExtremeShear {
         /// Beginning (s).

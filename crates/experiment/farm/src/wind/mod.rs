@@ -98,20 +98,7 @@ fn event_of(event: &WindEvent, case: &Case, plan: &Plan) -> Event {
     let diameter = plan.diameter;
     let hub_y = plan.positions.first().map_or(0.0, |foot| foot.y);
     match *event {
-        WindEvent::Step { start, speed } => Event::Step { start, speed },
-        WindEvent::Ramp { start, duration, speed } => Event::Ramp { start, duration, speed },
-        WindEvent::Staircase { start, hold, rise, n_steps } => {
-            Event::Staircase { start, hold, rise, n_steps }
-        }
-        WindEvent::OperatingGust { start, duration, gust } => {
-            Event::OperatingGust { start, duration, gust }
-        }
-        WindEvent::DirectionChange { start, duration, change } => {
-            Event::DirectionChange { start, duration, change }
-        }
-        WindEvent::CoherentGust { start, duration, rise, change } => {
-            Event::CoherentGust { start, duration, rise, change }
-        }
+        WindEvent::Everywhere(change) => Event::Everywhere(change),
         WindEvent::ExtremeShear { start, duration, vertical, horizontal } => {
             Event::ExtremeShear { start, duration, diameter, hub_y, vertical, horizontal }
         }

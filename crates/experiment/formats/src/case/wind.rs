@@ -5,7 +5,7 @@ use super::error::ProblemKind;
 use super::keys::{self, EVENTS};
 use super::section::Section;
 use super::write::{degrees, quoted};
-use farm::case::{CirclingDisk, Flow, Sense, Shear, TurbulenceModel, Wind, WindEvent};
+use farm::case::{Change, CirclingDisk, Flow, Sense, Shear, TurbulenceModel, Wind, WindEvent};
 use farm::solvers::{Fault, Objection};
 use std::fmt::Write;
 
@@ -104,52 +104,61 @@ fn event_of(wind: &Section, entry: &Entry, speed: f64) -> Option<WindEvent> {
 /// The event of the kind `name`, whose keys stand in `section`, in a wind of `speed` (m/s).
 fn event_of_kind(name: &str, section: &Section, speed: f64) -> WindEvent {
     let number = |key: &str| section.number(key);
-    let change = || section.number("change_deg").to_radians();
+    let turn = || section.number("change_deg").to_radians();
     // Each kind has its own keys.
-    match name {
-        "step" => WindEvent::Step { start: number("start"), speed: number("speed") },
-        "ramp" => WindEvent::Ramp {
+    let change = match name {
+        "step" => Change::Step { start: number("start"), speed: number("speed") },
+        "ramp" => Change::Ramp {
             start: number("start"),
             duration: number("duration"),
             speed: number("speed"),
         },
         "staircase" => staircase_of(section, speed),
-        "operating-gust" => WindEvent::OperatingGust {
+        "operating-gust" => Change::OperatingGust {
             start: number("start"),
             duration: number("duration"),
             gust: number("gust"),
         },
-        "direction-change" => WindEvent::DirectionChange {
+        "direction-change" => Change::DirectionChange {
             start: number("start"),
             duration: number("duration"),
-            change: change(),
+            change: turn(),
         },
-        "coherent-gust" => WindEvent::CoherentGust {
+        "coherent-gust" => Change::CoherentGust {
             start: number("start"),
             duration: number("duration"),
             rise: number("rise"),
-            change: change(),
+            change: turn(),
         },
-        "extreme-shear" => WindEvent::ExtremeShear {
-            start: number("start"),
-            duration: number("duration"),
-            vertical: number("vertical"),
-            horizontal: number("horizontal"),
-        },
-        _ => WindEvent::RotatingDisk(CirclingDisk {
-            speed: number("speed"),
-            offsets_diameters: [number("offset_y_diameters"), number("offset_z_diameters")],
-            radius_diameters: number("radius_diameters"),
-            edge_diameters: number("edge_diameters"),
-            strouhal: [number("strouhal"), number("strouhal_last")],
-            sweep: number("sweep"),
-            sense: sense_of(section),
-        }),
+        "extreme-shear" => {
+            return WindEvent::ExtremeShear {
+                start: number("start"),
+                duration: number("duration"),
+                vertical: number("vertical"),
+                horizontal: number("horizontal"),
+            };
+        }
+        _ => return WindEvent::RotatingDisk(disk_of(section)),
+    };
+    WindEvent::Everywhere(change)
+}
+
+/// The disk that circles, as `section` has it.
+fn disk_of(section: &Section) -> CirclingDisk {
+    let number = |key: &str| section.number(key);
+    CirclingDisk {
+        speed: number("speed"),
+        offsets_diameters: [number("offset_y_diameters"), number("offset_z_diameters")],
+        radius_diameters: number("radius_diameters"),
+        edge_diameters: number("edge_diameters"),
+        strouhal: [number("strouhal"), number("strouhal_last")],
+        sweep: number("sweep"),
+        sense: sense_of(section),
     }
 }
 
 /// Steps from `speed` (m/s); notes when they would lead below calm.
-fn staircase_of(section: &Section, speed: f64) -> WindEvent {
+fn staircase_of(section: &Section, speed: f64) -> Change {
     let (rise, n_steps) = (section.number("rise"), section.whole("n_steps"));
     let last = speed + rise * n_steps as f64;
     if last < 0.0 {
@@ -164,7 +173,7 @@ fn staircase_of(section: &Section, speed: f64) -> WindEvent {
         let fix = "take fewer or smaller steps";
         section.findings().note(section.span_of("rise"), kind, Some(fix.into()));
     }
-    WindEvent::Staircase {
+    Change::Staircase {
         start: section.number("start"),
         hold: section.number("hold"),
         rise,
@@ -176,13 +185,8 @@ fn staircase_of(section: &Section, speed: f64) -> WindEvent {
 /// When the event begins (s); the disk circles from time zero.
 fn start_of(event: &WindEvent) -> f64 {
     match *event {
-        WindEvent::Step { start, .. }
-        | WindEvent::Ramp { start, .. }
-        | WindEvent::Staircase { start, .. }
-        | WindEvent::OperatingGust { start, .. }
-        | WindEvent::DirectionChange { start, .. }
-        | WindEvent::CoherentGust { start, .. }
-        | WindEvent::ExtremeShear { start, .. } => start,
+        WindEvent::Everywhere(change) => change.start(),
+        WindEvent::ExtremeShear { start, .. } => start,
         WindEvent::RotatingDisk(_) => 0.0,
     }
 }
@@ -223,27 +227,8 @@ pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
 
 /// The event as a table in a line.
 fn event_text(event: &WindEvent) -> String {
-    match *event {
-        WindEvent::Step { start, speed } => {
-            format!("{{ kind = \"step\", start = {start:?}, speed = {speed:?} }}")
-        }
-        WindEvent::Ramp { start, duration, speed } => format!(
-            "{{ kind = \"ramp\", start = {start:?}, duration = {duration:?}, speed = {speed:?} }}"
-        ),
-        WindEvent::Staircase { start, hold, rise, n_steps } => format!(
-            "{{ kind = \"staircase\", start = {start:?}, hold = {hold:?}, rise = {rise:?}, n_steps = {n_steps} }}"
-        ),
-        WindEvent::OperatingGust { start, duration, gust } => format!(
-            "{{ kind = \"operating-gust\", start = {start:?}, duration = {duration:?}, gust = {gust:?} }}"
-        ),
-        WindEvent::DirectionChange { start, duration, change } => format!(
-            "{{ kind = \"direction-change\", start = {start:?}, duration = {duration:?}, change_deg = {:?} }}",
-            degrees(change)
-        ),
-        WindEvent::CoherentGust { start, duration, rise, change } => format!(
-            "{{ kind = \"coherent-gust\", start = {start:?}, duration = {duration:?}, rise = {rise:?}, change_deg = {:?} }}",
-            degrees(change)
-        ),
+    match event {
+        WindEvent::Everywhere(change) => change_text(change),
         WindEvent::ExtremeShear { start, duration, vertical, horizontal } => format!(
             "{{ kind = \"extreme-shear\", start = {start:?}, duration = {duration:?}, vertical = {vertical:?}, horizontal = {horizontal:?} }}"
         ),
@@ -256,6 +241,32 @@ fn event_text(event: &WindEvent) -> String {
                 disk.speed, disk.radius_diameters, disk.edge_diameters, disk.sweep
             )
         }
+    }
+}
+
+/// A change that is the same at all places as a table in a line.
+fn change_text(change: &Change) -> String {
+    match *change {
+        Change::Step { start, speed } => {
+            format!("{{ kind = \"step\", start = {start:?}, speed = {speed:?} }}")
+        }
+        Change::Ramp { start, duration, speed } => format!(
+            "{{ kind = \"ramp\", start = {start:?}, duration = {duration:?}, speed = {speed:?} }}"
+        ),
+        Change::Staircase { start, hold, rise, n_steps } => format!(
+            "{{ kind = \"staircase\", start = {start:?}, hold = {hold:?}, rise = {rise:?}, n_steps = {n_steps} }}"
+        ),
+        Change::OperatingGust { start, duration, gust } => format!(
+            "{{ kind = \"operating-gust\", start = {start:?}, duration = {duration:?}, gust = {gust:?} }}"
+        ),
+        Change::DirectionChange { start, duration, change } => format!(
+            "{{ kind = \"direction-change\", start = {start:?}, duration = {duration:?}, change_deg = {:?} }}",
+            degrees(change)
+        ),
+        Change::CoherentGust { start, duration, rise, change } => format!(
+            "{{ kind = \"coherent-gust\", start = {start:?}, duration = {duration:?}, rise = {rise:?}, change_deg = {:?} }}",
+            degrees(change)
+        ),
     }
 }
 

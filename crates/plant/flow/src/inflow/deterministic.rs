@@ -1,13 +1,15 @@
 //! Winds in closed form: shear, veer, steps and ramps, the gusts of IEC 61400-1, a disk of slow air that circles.
 
+mod change;
 mod disk;
 
+pub use change::Change;
 pub use disk::RotatingDisk;
 
-use super::{InflowError, MeanProfile, not_negative, positive};
+use super::{InflowError, MeanProfile, positive};
 use crate::Inflow;
 use basis::Vector3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Duration of the extreme operating gust (s).
 pub const OPERATING_GUST_DURATION: f64 = 10.5;
@@ -40,62 +42,8 @@ pub struct DeterministicWind {
 pub enum Event {
     /// Nothing.
     Steady,
-    /// The whole profile is multiplied so that its hub speed becomes `speed` at once.
-    Step {
-        /// Time of the step (s).
-        start: f64,
-        /// Hub speed afterwards (m/s).
-        speed: f64,
-    },
-    /// As [`Step`](Self::Step), linearly over `duration`.
-    Ramp {
-        /// Beginning (s).
-        start: f64,
-        /// How long it takes (s).
-        duration: f64,
-        /// Hub speed afterwards (m/s).
-        speed: f64,
-    },
-    /// Steps of equal rise, each held for `hold`.
-    Staircase {
-        /// Time of the first step (s).
-        start: f64,
-        /// Time between steps (s).
-        hold: f64,
-        /// Rise of the hub speed per step (m/s), negative falls.
-        rise: f64,
-        /// Number of steps (–).
-        n_steps: u32,
-    },
-    /// Extreme operating gust: a dip, a rise, a dip. [IEC61400-1 ed. 3, eq. 18]
-    OperatingGust {
-        /// Beginning (s).
-        start: f64,
-        /// Duration (s), [`OPERATING_GUST_DURATION`].
-        duration: f64,
-        /// Gust V_gust (m/s), [`operating_gust`](super::iec::operating_gust).
-        gust: f64,
-    },
-    /// Extreme direction change. [IEC61400-1 ed. 3, eq. 21]
-    DirectionChange {
-        /// Beginning (s).
-        start: f64,
-        /// Duration (s), [`DIRECTION_CHANGE_DURATION`].
-        duration: f64,
-        /// Change (rad), [`direction_change`](super::iec::direction_change), either sign.
-        change: f64,
-    },
-    /// Extreme coherent gust with direction change. [IEC61400-1 ed. 3, eqs. 22, 24]
-    CoherentGust {
-        /// Beginning (s).
-        start: f64,
-        /// Rise time (s), [`COHERENT_GUST_DURATION`].
-        duration: f64,
-        /// Rise of the speed (m/s), [`COHERENT_GUST`](super::iec::COHERENT_GUST).
-        rise: f64,
-        /// Change of direction (rad), [`coherent_direction_change`](super::iec::coherent_direction_change), either sign.
-        change: f64,
-    },
+    /// The wind changes at all places alike.
+    Everywhere(Change),
     /// Extreme wind shear, vertical or horizontal or both. [IEC61400-1 ed. 3, eqs. 26, 27]
     ExtremeShear {
         /// Beginning (s).
@@ -125,51 +73,12 @@ impl DeterministicWind {
     /// [`InflowError::Setting`] names what cannot be used: a number that is not finite, a duration or length that is
     /// not positive.
     pub fn check(&self) -> Result<(), InflowError> {
-        let finite = |name, value: f64| {
-            let expected = "a finite number";
-            if value.is_finite() {
-                Ok(())
-            } else {
-                Err(InflowError::Setting { name, value, expected })
-            }
-        };
         self.profile.check()?;
         positive("hub height (m)", self.hub_height)?;
         finite("veer (rad/m)", self.veer)?;
         match &self.event {
             Event::Steady => Ok(()),
-            Event::Step { start, speed } => {
-                finite("start of the step (s)", *start)?;
-                not_negative("speed after the step (m/s)", *speed)
-            }
-            Event::Ramp { start, duration, speed } => {
-                finite("start of the ramp (s)", *start)?;
-                positive("duration of the ramp (s)", *duration)?;
-                not_negative("speed after the ramp (m/s)", *speed)
-            }
-            Event::Staircase { start, hold, rise, n_steps } => {
-                finite("start of the staircase (s)", *start)?;
-                positive("time between steps (s)", *hold)?;
-                finite("rise per step (m/s)", *rise)?;
-                let last = self.profile.hub_speed() + rise * f64::from(*n_steps);
-                not_negative("speed after the last step (m/s)", last)
-            }
-            Event::OperatingGust { start, duration, gust } => {
-                finite("start of the gust (s)", *start)?;
-                positive("duration of the gust (s)", *duration)?;
-                finite("gust (m/s)", *gust)
-            }
-            Event::DirectionChange { start, duration, change } => {
-                finite("start of the direction change (s)", *start)?;
-                positive("duration of the direction change (s)", *duration)?;
-                finite("change of direction (rad)", *change)
-            }
-            Event::CoherentGust { start, duration, rise, change } => {
-                finite("start of the gust (s)", *start)?;
-                positive("rise time of the gust (s)", *duration)?;
-                finite("rise of the gust (m/s)", *rise)?;
-                finite("change of direction (rad)", *change)
-            }
+            Event::Everywhere(change) => change.check(self.profile.hub_speed()),
             Event::ExtremeShear { start, duration, diameter, hub_y, vertical, horizontal } => {
                 finite("start of the shear (s)", *start)?;
                 positive("duration of the shear (s)", *duration)?;
@@ -190,38 +99,9 @@ impl DeterministicWind {
     /// What of the event holds everywhere at `time` (s).
     fn now(&self, time: f64) -> Now {
         let mut now = Now::default();
-        let to_speed = |speed: f64, share: f64| {
-            let hub_speed = self.profile.hub_speed();
-            if hub_speed > 0.0 { 1.0 + share * (speed / hub_speed - 1.0) } else { 1.0 }
-        };
         match &self.event {
             Event::Steady => {}
-            Event::Step { start, speed } => {
-                now.factor = to_speed(*speed, f64::from(time >= *start));
-            }
-            Event::Ramp { start, duration, speed } => {
-                now.factor = to_speed(*speed, ((time - start) / duration).clamp(0.0, 1.0));
-            }
-            Event::Staircase { start, hold, rise, n_steps } => {
-                let steps = ((time - start) / hold).floor() + 1.0;
-                let rise = rise * steps.clamp(0.0, f64::from(*n_steps));
-                now.factor = to_speed(self.profile.hub_speed() + rise, 1.0);
-            }
-            Event::OperatingGust { start, duration, gust } => {
-                let turn = (time - start) / duration;
-                if (0.0..=1.0).contains(&turn) {
-                    let shape = (3.0 * PI * turn).sin() * (1.0 - (TAU * turn).cos());
-                    now.added = -0.37 * gust * shape;
-                }
-            }
-            Event::DirectionChange { start, duration, change } => {
-                now.direction = change * rise((time - start) / duration);
-            }
-            Event::CoherentGust { start, duration, rise: gust, change } => {
-                let share = rise((time - start) / duration);
-                now.added = gust * share;
-                now.direction = change * share;
-            }
+            Event::Everywhere(change) => change.apply(self.profile.hub_speed(), time, &mut now),
             Event::ExtremeShear { start, duration, diameter, vertical, horizontal, .. } => {
                 let turn = (time - start) / duration;
                 if (0.0..=1.0).contains(&turn) {
@@ -259,9 +139,12 @@ impl DeterministicWind {
     }
 }
 
-/// (1 − cos π t)/2 from 0 to 1 while `turn` goes from 0 to 1, constant outside.
-fn rise(turn: f64) -> f64 {
-    0.5 * (1.0 - (PI * turn.clamp(0.0, 1.0)).cos())
+fn finite(name: &'static str, value: f64) -> Result<(), InflowError> {
+    if value.is_finite() {
+        Ok(())
+    } else {
+        Err(InflowError::Setting { name, value, expected: "a finite number" })
+    }
 }
 
 /// An event at one time.

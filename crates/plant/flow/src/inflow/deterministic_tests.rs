@@ -3,6 +3,7 @@
 use super::*;
 use crate::inflow::iec;
 use proptest::prelude::*;
+use std::f64::consts::PI;
 
 const HUB: f64 = 90.0;
 
@@ -27,16 +28,17 @@ fn veer_turns_right_with_height_and_keeps_the_speed() {
 
 #[test]
 fn steps_ramps_and_stairs_scale_the_profile() {
-    let step = wind(Event::Step { start: 10.0, speed: 18.0 });
+    let step = wind(Event::Everywhere(Change::Step { start: 10.0, speed: 18.0 }));
     assert_eq!(at_hub(&step, 9.999).x, 12.0);
     assert!((at_hub(&step, 10.0).x - 18.0).abs() < 1e-12);
     let low = Vector3::new(0.0, 0.0, 30.0);
     assert!((step.wind(11.0, low).x / step.wind(0.0, low).x - 1.5).abs() < 1e-12);
-    let ramp = wind(Event::Ramp { start: 10.0, duration: 4.0, speed: 6.0 });
+    let ramp = wind(Event::Everywhere(Change::Ramp { start: 10.0, duration: 4.0, speed: 6.0 }));
     for (time, speed) in [(0.0, 12.0), (11.0, 10.5), (14.0, 6.0), (99.0, 6.0)] {
         assert!((at_hub(&ramp, time).x - speed).abs() < 1e-12);
     }
-    let stairs = wind(Event::Staircase { start: 5.0, hold: 2.0, rise: 1.0, n_steps: 3 });
+    let stairs =
+        wind(Event::Everywhere(Change::Staircase { start: 5.0, hold: 2.0, rise: 1.0, n_steps: 3 }));
     for (time, speed) in [(4.9, 12.0), (5.0, 13.0), (7.5, 14.0), (9.0, 15.0), (50.0, 15.0)] {
         assert!((at_hub(&stairs, time).x - speed).abs() < 1e-12, "{time}");
     }
@@ -47,7 +49,11 @@ fn steps_ramps_and_stairs_scale_the_profile() {
 fn the_operating_gust_peaks_at_mid_time() {
     let gust = iec::operating_gust(1.8, 12.0, HUB, 126.0, 50.0);
     assert!((gust - 3.3 * 1.8 / (1.0 + 0.1 * 126.0 / 42.0)).abs() < 1e-12);
-    let wind = wind(Event::OperatingGust { start: 20.0, duration: OPERATING_GUST_DURATION, gust });
+    let wind = wind(Event::Everywhere(Change::OperatingGust {
+        start: 20.0,
+        duration: OPERATING_GUST_DURATION,
+        gust,
+    }));
     assert_eq!(at_hub(&wind, 19.9).x, 12.0);
     assert!((at_hub(&wind, 25.25).x - 12.0 - 0.74 * gust).abs() < 1e-9);
     assert!(at_hub(&wind, 22.6).x < 12.0 - 0.2 * gust);
@@ -57,7 +63,8 @@ fn the_operating_gust_peaks_at_mid_time() {
 #[test]
 fn directions_change_by_half_at_mid_time_and_stay() {
     let change = -iec::direction_change(1.8, 12.0, HUB, 126.0);
-    let turn = wind(Event::DirectionChange { start: 0.0, duration: 6.0, change });
+    let turn =
+        wind(Event::Everywhere(Change::DirectionChange { start: 0.0, duration: 6.0, change }));
     let angle = |wind: &DeterministicWind, time| {
         let velocity = at_hub(wind, time);
         velocity.y.atan2(velocity.x)
@@ -65,8 +72,12 @@ fn directions_change_by_half_at_mid_time_and_stay() {
     assert!((angle(&turn, 3.0) - 0.5 * change).abs() < 1e-12);
     assert!((angle(&turn, 600.0) - change).abs() < 1e-12);
     let change = iec::coherent_direction_change(12.0);
-    let gust =
-        wind(Event::CoherentGust { start: 0.0, duration: 10.0, rise: iec::COHERENT_GUST, change });
+    let gust = wind(Event::Everywhere(Change::CoherentGust {
+        start: 0.0,
+        duration: 10.0,
+        rise: iec::COHERENT_GUST,
+        change,
+    }));
     assert!((at_hub(&gust, 5.0).length() - 19.5).abs() < 1e-12);
     assert!((at_hub(&gust, 60.0).length() - 27.0).abs() < 1e-12);
     assert!((angle(&gust, 5.0) - 30_f64.to_radians()).abs() < 1e-12);
@@ -133,9 +144,15 @@ fn the_disk_circles_as_its_source_says() {
 #[test]
 fn what_cannot_be_used_is_named() {
     for (event, name) in [
-        (Event::Step { start: f64::NAN, speed: 3.0 }, "start of the step"),
-        (Event::Ramp { start: 0.0, duration: 0.0, speed: 3.0 }, "duration of the ramp"),
-        (Event::Staircase { start: 0.0, hold: 9.0, rise: -5.0, n_steps: 3 }, "last step"),
+        (Event::Everywhere(Change::Step { start: f64::NAN, speed: 3.0 }), "start of the step"),
+        (
+            Event::Everywhere(Change::Ramp { start: 0.0, duration: 0.0, speed: 3.0 }),
+            "duration of the ramp",
+        ),
+        (
+            Event::Everywhere(Change::Staircase { start: 0.0, hold: 9.0, rise: -5.0, n_steps: 3 }),
+            "last step",
+        ),
         (Event::RotatingDisk(RotatingDisk { radius: -1.0, ..disk(true) }), "radius"),
     ] {
         let error = wind(event).check().unwrap_err();
@@ -161,7 +178,7 @@ proptest! {
     fn a_batch_is_its_points(
         places in prop::collection::vec((-200.0..200.0_f64, -200.0..200.0_f64, 0.0..300.0_f64), 1..20), time in -5.0..40.0_f64,
     ) {
-        let event = Event::CoherentGust { start: 3.0, duration: 10.0, rise: 15.0, change: 0.7 };
+        let event = Event::Everywhere(Change::CoherentGust { start: 3.0, duration: 10.0, rise: 15.0, change: 0.7 });
         let wind = DeterministicWind { veer: 1e-3, ..wind(event) };
         let positions: Vec<_> = places.iter().map(|&(x, y, z)| Vector3::new(x, y, z)).collect();
         let mut velocities = vec![Vector3::ZERO; positions.len()];

@@ -1,6 +1,7 @@
 //! Tests of prescribed wind: planes against the record they come from.
 
 use super::*;
+use crate::inflow::deterministic::{Change, Event};
 use crate::inflow::planes::BoxPlanes;
 use crate::inflow::{DeterministicWind, MeanProfile, TurbulenceBox};
 use proptest::prelude::*;
@@ -178,7 +179,7 @@ fn places_outside_the_grid_are_named_beforehand() {
 
 #[test]
 fn a_wind_known_everywhere_moves_on_in_time() {
-    let event = crate::inflow::deterministic::Event::Step { start: 1.0, speed: 12.0 };
+    let event = Event::Everywhere(Change::Step { start: 1.0, speed: 12.0 });
     let step = DeterministicWind { event, ..DeterministicWind::steady(profile(), 40.0) };
     let mut wind = PrescribedWind::everywhere(Arc::new(step));
     let hub = Vector3::new(0.0, 0.0, 40.0);

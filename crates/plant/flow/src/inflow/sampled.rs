@@ -61,7 +61,7 @@ pub fn sampled(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inflow::deterministic::Event;
+    use crate::inflow::deterministic::{Change, Event};
     use crate::inflow::planes::BoxPlanes;
     use crate::inflow::{DeterministicWind, MeanProfile, Planes};
     use std::sync::Arc;
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn planes_bring_the_wind_that_was_sampled() {
         let profile = MeanProfile::PowerLaw { hub_height: 90.0, speed: 10.0, exponent: 0.2 };
-        let event = Event::Ramp { start: 3.0, duration: 5.0, speed: 13.0 };
+        let event = Event::Everywhere(Change::Ramp { start: 3.0, duration: 5.0, speed: 13.0 });
         let wind = DeterministicWind { profile, hub_height: 90.0, veer: 2e-3, event };
         let grid = PlaneGrid {
             n_y: 3,
