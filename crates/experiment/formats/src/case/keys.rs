@@ -87,7 +87,7 @@ const SOLVER_KEY: Key = key(
     Holds::Choice(&solvers::NAMES),
     "",
     Value("\"lattice\""),
-    "`lattice`: lattice Boltzmann large-eddy simulation with actuator lines; turbines feel each other's wakes. The others prescribe the wind, and each turbine makes its own induction by blade-element momentum, without wakes: `uniform` the mean profile with `wind.veer_deg_per_m` and `wind.event`, without turbulence, `turbulence` with turbulence on it, `planes` from `wind.planes`. Only `lattice` uses the keys from here to `sides`.",
+    "What moves the air. The page docs/case-file.md says under `flow.solver` what each does and which keys it alone uses.",
 );
 
 const COMMON_KEYS: [Key; 2] = [
