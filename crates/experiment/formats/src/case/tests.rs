@@ -273,7 +273,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
             "\"meandering\", factor = 1.5, amplitude_deg = 4.0, strouhal_low = 0.3",
-            "`run.helix.control.T1.strouhal_low` = 0.3 is not below `strouhal_high` = 0.3; meandering wanders",
+            "`run.helix.control.T1.strouhal_low` = 0.3 is not below `strouhal_high` = 0.3; wakes meander",
         ),
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
