@@ -7,7 +7,7 @@
 
 use basis::{PointForce, Vector3};
 use benches::in_place_bandwidth;
-use flow::lattice::{Backend, Ends, Ground, Lattice, Settings};
+use flow::lattice::{Backend, Ends, Ground, Lattice, LatticeSettings};
 use flow::{FlowSolver, Inflow};
 use std::sync::Arc;
 use std::time::Instant;
@@ -119,7 +119,7 @@ fn cases() -> Vec<(String, Backend, bool)> {
 }
 
 fn lattice(n_cells: [usize; 3], n_threads: usize, backend: Backend, everything: bool) -> Lattice {
-    let mut settings = Settings::new(Vector3::ZERO, 10.0, n_cells, 0.08, 10.0);
+    let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, n_cells, 0.08, 10.0);
     settings.threads = Some(n_threads);
     settings.backend = Some(backend);
     if everything {

@@ -26,7 +26,7 @@ position_diameters = [0.0, 0.0]
 name = "baseline"
 "#;
 
-/// How the turbine fared in the last step: the truth, whatever its instruments show its controller.
+/// State of the turbine in the last step: the truth, whatever its instruments show its controller.
 #[derive(Default)]
 struct Last {
     power: f64,

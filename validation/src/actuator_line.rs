@@ -116,7 +116,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
     let definition = &model.definition;
     let force = 0.5 * wind.air_density * definition.rotor_area() * wind_speed * wind_speed;
     let (flow_power, flow_thrust) = (together.power * force * wind_speed, together.thrust * force);
-    // The runs take minutes each: what is known is told at once.
+    // The runs take minutes each: what is known is printed at once.
     let percent = |measured: f64, expected: f64| 100.0 * (measured / expected - 1.0);
     eprintln!(
         "{name}{shape}, {cells_per_diameter} cells per diameter, {wind_speed} m/s: power {:+.2} %, thrust {:+.2} % of blade-element momentum; \

@@ -1,7 +1,7 @@
 //! The flexible turbine in prescribed wind against OpenFAST 5.0.0 with ROSCO 2.10.1 on the same definitions.
 //!
 //! Reference: own runs of OpenFAST (commit 2895884): BEM_Mod 1, Pitt/Peters skew, DBEMT_Mod 3 with the time constants below,
-//! UA_Mod 3, tower influence off but where it is told, clamped tower, steps of 0.02 s (IEA 15 MW) and 0.0125 s (NREL 5 MW).
+//! UA_Mod 3, tower influence off except where stated, clamped tower, steps of 0.02 s (IEA 15 MW) and 0.0125 s (NREL 5 MW).
 
 mod rig;
 mod tower;
@@ -9,7 +9,7 @@ mod turbulence;
 
 use crate::Row;
 use crate::row::Tolerance::Within;
-use rig::{Asked, CHANNELS, Run, Speed, run};
+use rig::{Conditions, CHANNELS, Run, Speed, run};
 use turbine::structure::{GRAVITY, Projection};
 pub use turbulence::openfast_turbulence;
 
@@ -97,7 +97,7 @@ const HELIX_FIGURES: [&str; 10] = [
     "equivalent load of YawBrMzp (m = 4)",
     "equivalent load of LSSTipMys (m = 4)",
 ];
-/// Those that are large without a helix, and whose changes are told as shares; gravity loads RootMxc1.
+/// Those that are large without a helix, and whose changes are given as shares; gravity loads RootMxc1.
 const SHARES: usize = 3;
 /// IEA 15 MW at 9 m/s under a ccw helix of 0 to 4° ([`HELIX_FIGURES`]).
 const HELIX: [(f64, [f64; 10]); 5] = [
@@ -151,15 +151,15 @@ pub fn openfast_steady() -> Vec<Row> {
                 source: OPENFAST,
             });
         };
-        let asked = |speed| Asked {
+        let conditions = |speed| Conditions {
             model,
             wind,
             slow_constant,
             rotor_speed,
             speed,
-            ..Asked::in_nine_metres_a_second()
+            ..Conditions::in_nine_metres_a_second()
         };
-        let held = run(&asked(Speed::Held));
+        let held = run(&conditions(Speed::Held));
         let moments = (0..6).map(|channel| held.mean(channel));
         let measured = [held.power, held.thrust].into_iter().chain(moments);
         let names = ["power of the air", "thrust"].into_iter().chain(CHANNELS);
@@ -167,12 +167,12 @@ pub fn openfast_steady() -> Vec<Row> {
         for (((name, unit), measured), expected) in names.zip(units).zip(measured).zip(means) {
             add(format!("{rotor_speed} rpm: mean {name}"), measured, expected, unit);
         }
-        let annular = run(&Asked { projection: Projection::Annular, ..asked(Speed::Held) });
+        let annular = run(&Conditions { projection: Projection::Annular, ..conditions(Speed::Held) });
         for channel in TURNED {
             let what = format!("sections seen as there: mean {}", CHANNELS[channel]);
             add(what, annular.mean(channel), means[2 + channel], "MN m");
         }
-        let tracked = run(&asked(Speed::Tracked));
+        let tracked = run(&conditions(Speed::Tracked));
         add("own control: rotor speed".to_owned(), tracked.rotor_speed, rotor_speed, "rpm");
         let power = tracked.generator_power;
         add("own control: generator power".to_owned(), power, generator_power, "MW");
@@ -203,13 +203,13 @@ fn published_steady_states() -> Vec<Row> {
     let weight = 1e-6 * mass * GRAVITY * definition.rotor.shaft_tilt.sin();
     let mut rows = Vec::new();
     for [wind, power, thrust] in PUBLISHED {
-        let run = run(&Asked {
+        let run = run(&Conditions {
             model: "nrel-5mw",
             wind,
             slow_constant: 12.6,
             rotor_speed: 10.0934 * wind / 9.0,
             speed: Speed::Square,
-            ..Asked::in_nine_metres_a_second()
+            ..Conditions::in_nine_metres_a_second()
         });
         let mut add = |what: &str, measured: f64, expected: f64, unit| {
             rows.push(Row {
@@ -232,7 +232,7 @@ pub fn openfast_helix() -> Vec<Row> {
     let runs = HELIX.map(|(amplitude, _)| {
         let window = if amplitude == 0.0 { [500.0, 600.0] } else { [280.0, 600.0] };
         let speed = Speed::Square;
-        run(&Asked { speed, amplitude, window, ..Asked::in_nine_metres_a_second() })
+        run(&Conditions { speed, amplitude, window, ..Conditions::in_nine_metres_a_second() })
     });
     let numbers = |run: &Run| {
         [
@@ -252,7 +252,7 @@ pub fn openfast_helix() -> Vec<Row> {
     for (run, (amplitude, reference)) in runs.iter().zip(HELIX).skip(1) {
         let (measured, without) = (numbers(run), numbers(&runs[0]));
         for index in 0..HELIX_FIGURES.len() {
-            // Most loads without a helix are next to nothing in a steady wind: their changes are told as such.
+            // Most loads without a helix are next to nothing in a steady wind: their changes are given as such.
             let (measured, expected, unit, least) = if index < SHARES {
                 let change = |now: f64, before: f64| now / before - 1.0;
                 let expected = change(reference[index], HELIX[0].1[index]);

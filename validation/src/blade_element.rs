@@ -17,7 +17,7 @@ const ROTOR_SOURCE: &str = "OpenFAST 5.0.0 with AeroDyn 15";
 const ATTACHED_SOURCE: &str = "OpenFAST 5.0.0, UA_Mod 3";
 const SPANWISE_SOURCE: &str = "AeroDyn 15, driver";
 
-/// Margin asked for where the source's own method is comparable (–).
+/// Margin required where the source's own method is comparable (–).
 const MARGIN: f64 = 0.02;
 /// Air density of the spanwise reference (kg/m³).
 const AIR_DENSITY: f64 = 1.225;

@@ -11,7 +11,7 @@ pub use isotropy::isotropy;
 use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
-use flow::lattice::{Ends, Ground, Lattice, Settings};
+use flow::lattice::{Ends, Ground, Lattice, LatticeSettings};
 use flow::{FlowSolver, Inflow, WindField};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -37,7 +37,7 @@ impl<F: Fn(f64, Vector3) -> Vector3 + Send + Sync> Inflow for Wind<F> {
 
 /// A lattice of settings that this file answers for.
 fn lattice(
-    settings: Settings,
+    settings: LatticeSettings,
     wind: impl Fn(f64, Vector3) -> Vector3 + Send + Sync + 'static,
 ) -> Lattice {
     Lattice::new(settings, Arc::new(Wind(wind))).expect("settings of a validation are sound")
@@ -50,8 +50,8 @@ fn advance(air: &mut Lattice, n_steps: f64, forces: &[basis::PointForce]) {
 }
 
 /// A box on all sides periodic whose SI units are lattice units.
-fn periodic_box(n_cells: [usize; 3], viscosity: f64, smagorinsky: f64) -> Settings {
-    let mut settings = Settings::new(Vector3::splat(-0.5), 1.0, n_cells, 1.0, 0.1);
+fn periodic_box(n_cells: [usize; 3], viscosity: f64, smagorinsky: f64) -> LatticeSettings {
+    let mut settings = LatticeSettings::new(Vector3::splat(-0.5), 1.0, n_cells, 1.0, 0.1);
     settings.air_density = 1.0;
     settings.kinematic_viscosity = viscosity;
     settings.ends = Ends::Periodic;
@@ -68,7 +68,7 @@ pub fn taylor_green() -> Vec<Row> {
     let mut rows = Vec::new();
     for (n, (measured, _)) in sizes.into_iter().zip(results).skip(1) {
         rows.push(Row {
-            what: format!("Taylor-Green: viscosity over that asked for, {n} cells a side"),
+            what: format!("Taylor-Green: viscosity over the target, {n} cells a side"),
             measured: measured / viscosity,
             expected: 1.0,
             tolerance: Within(0.01),
@@ -129,7 +129,7 @@ fn taylor_green_on(n: usize, viscosity: f64) -> (f64, f64) {
 /// Largest departure of a uniform wind from itself in an open box after ten flow-throughs.
 pub fn free_stream() -> Vec<Row> {
     let speed = 10.0;
-    let settings = Settings::new(Vector3::ZERO, 10.0, [96, 32, 32], 0.1, speed);
+    let settings = LatticeSettings::new(Vector3::ZERO, 10.0, [96, 32, 32], 0.1, speed);
     let mut air = lattice(settings, move |_, _| Vector3::new(speed, 0.0, 0.0));
     advance(&mut air, 9600.0, &[]);
     let volume = air.volume(1);
@@ -171,7 +171,7 @@ pub fn mass_drift() -> Vec<Row> {
 /// What comes back from the outlet of a sound pulse, and what stays of a vortex that left.
 pub fn outlet() -> Vec<Row> {
     let speed = 0.1;
-    let open = |n_cells| Settings { ends: Ends::InletOutlet, ..periodic_box(n_cells, 1e-6, 0.12) };
+    let open = |n_cells| LatticeSettings { ends: Ends::InletOutlet, ..periodic_box(n_cells, 1e-6, 0.12) };
     let mut air = lattice(open([320, 1, 1]), move |_, p| {
         let bump = (-((p.x - 160.0) / 8.0).powi(2)).exp();
         Vector3::new(speed + 0.004 * bump, 0.0, 0.0)

@@ -40,7 +40,7 @@ fn positive(what: String, gain: f64) -> Row {
 }
 
 /// `cases/helix-two-turbines.toml`: power ratio of the first turbine and gain of the array against amplitude and sense,
-/// and what of helix and pulse arrived at the blades.
+/// and the delivered pitch of helix and pulse.
 pub fn helix() -> Vec<Row> {
     let (summaries, _) =
         match summaries(Path::new("cases/helix-two-turbines.toml"), "helix", Vec::new()) {

@@ -36,8 +36,8 @@ const BANDS: [[f64; 2]; 5] = [[0.1, 0.2], [0.2, 0.5], [0.5, 1.0], [1.0, 2.0], [2
 /// Points apart along y and z at which coherence is compared.
 const APART: [[usize; 2]; 4] = [[1, 0], [3, 0], [0, 1], [0, 3]];
 
-fn settings(anisotropy: f64, seed: u64) -> mann::Settings {
-    mann::Settings {
+fn settings(anisotropy: f64, seed: u64) -> mann::MannSettings {
+    mann::MannSettings {
         n_points: [512, 64, 64],
         spacing: [12.0; 3],
         length_scale: LENGTH_SCALE,

@@ -45,13 +45,13 @@ fn compare() -> Result<Vec<Row>, String> {
         run.args(["--run", RUN, "--set", &format!("time.duration={duration}")]);
         let seen = most_of(&mut run)?;
         let summary = read_summary(&RunFolder::new(&output, RUN));
-        let told = summary.map_err(|error| error.to_string())?.cost.peak_memory;
-        let (Some(seen), Some(told)) = (seen, told) else {
+        let reported = summary.map_err(|error| error.to_string())?.cost.peak_memory;
+        let (Some(seen), Some(reported)) = (seen, reported) else {
             let problem = "this system does not tell what a process held; repeat it on Linux";
             return Err(problem.to_owned());
         };
         let what = |which: &str| format!("{duration} s of one turbine in turbulence: {which}");
-        rows.push(row(what("most memory, as told"), megabytes(told), MOST));
+        rows.push(row(what("most memory, as reported"), megabytes(reported), MOST));
         rows.push(row(what("report included, as seen"), megabytes(seen), MOST));
         peaks.push(megabytes(seen));
     }

@@ -2,7 +2,7 @@
 //!
 //! The aeroelastic turbine knows nothing of the estimator's shortcuts: its blades, tower and drive train bend, sections
 //! stall dynamically, the wake is skewed, the wind is sheared and turbulent. Its momentum theory keeps the wake's delay with
-//! each blade, so the estimator is told the same of the wake; in a solved flow it keeps its default.
+//! each blade, so the estimator has the same model of the wake; in a resolved flow it keeps its default.
 
 mod choices;
 mod on_and_off;
@@ -21,7 +21,7 @@ use estimation::helix::{
 };
 use estimation::{EstimationError, Estimator};
 use flow::Inflow;
-use rig::{AIR_DENSITY, Asked, Errors, INTERVAL, Instruments, Noise, SETTLED};
+use rig::{AIR_DENSITY, Trial, Errors, INTERVAL, Instruments, Noise, SETTLED};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use turbine::Definition;
@@ -94,19 +94,19 @@ impl Machine {
     ) -> Result<HelixEstimator, EstimationError> {
         let calm =
             self.wind(Swing::Gradient(0.0), sense, turbulent(SPEED, SHEAR, 0.0, self.hub(), 1));
-        let asked = asked(calm, OWN, Instruments::default(), SETTLED + 3.5 * PERIOD);
+        let trial = trial(calm, OWN, Instruments::default(), SETTLED + 3.5 * PERIOD);
         let mut record = Vec::new();
-        rig::drive(&self.definition, &self.constants, &asked, |read| record.push(*read));
+        rig::drive(&self.definition, &self.constants, &trial, |read| record.push(*read));
         let calibration = calibrate(model, &setting(sense), robust(), &record, SETTLED)?;
         self.estimator(model, sense, calibration.apply(robust()))
     }
 
     fn run<E: Estimator<Estimate = HelixEstimate>>(
         &self,
-        asked: &Asked,
+        trial: &Trial,
         estimators: &mut [E],
     ) -> Vec<Errors> {
-        rig::run(&self.definition, &self.constants, asked, estimators)
+        rig::run(&self.definition, &self.constants, trial, estimators)
     }
 }
 
@@ -133,9 +133,9 @@ fn published_on_bending_blades() -> Options {
     Options { rotor: Rotor { flexible: true, ..options.rotor }, ..options }
 }
 
-fn asked(wind: HelixWind, own: f64, instruments: Instruments, duration: f64) -> Asked {
+fn trial(wind: HelixWind, own: f64, instruments: Instruments, duration: f64) -> Trial {
     let (flexible, rotor_speed) = (true, ROTOR_SPEED);
-    Asked { wind, flexible, own: (own, 2.1), instruments, duration, rotor_speed }
+    Trial { wind, flexible, own: (own, 2.1), instruments, duration, rotor_speed }
 }
 
 /// All of it, IEA 15 MW; prints the figures that have no aim as a table.
@@ -285,8 +285,8 @@ fn turbulence(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationEr
         }
         estimators.push(machine.calibrated(&machine.definition, sense)?);
         let calm = Instruments::default();
-        let asked = asked(machine.gradient(sense, intensity), own, calm, 1200.0);
-        let errors = machine.run(&asked, &mut estimators);
+        let trial = trial(machine.gradient(sense, intensity), own, calm, 1200.0);
+        let errors = machine.run(&trial, &mut estimators);
         let name = format!(
             "turbine, {sense}, turbulence {:.0} %, own pitch {:.0}°",
             100.0 * intensity,

@@ -13,7 +13,7 @@ const SOURCE: &str = "the same bits";
 
 const N_KILLS: u32 = 20;
 /// A small row in turbulent wind: every state that a run has, in seconds. The estimator is one that is not calibrated first, and the
-/// azimuth offset is given, or most kills would hit their probe.
+/// azimuth offset is given, or most kills would hit their identification.
 const CASE: &str = r#"
 name = "kills"
 [wind]

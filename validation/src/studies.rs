@@ -7,7 +7,7 @@ use basis::records::Summary;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::AtomicBool;
-use study::{Options, Outcome, Watcher};
+use study::{Options, Outcome, Observer};
 
 /// Where the expected values come from.
 const SOURCE: &str = "–";
@@ -17,7 +17,7 @@ struct Lines {
     last: String,
 }
 
-impl Watcher for Lines {
+impl Observer for Lines {
     fn advanced(&mut self, progress: &study::Progress) {
         let share = 10 * progress.step / progress.n_steps.max(1);
         let line = format!("{} {share}0 %", progress.run);
@@ -47,8 +47,8 @@ pub(crate) fn summaries(
         resume: true,
         ..Options::default()
     };
-    let mut watcher = Lines { last: String::new() };
-    match study::run(&options, &AtomicBool::new(false), &mut watcher) {
+    let mut observer = Lines { last: String::new() };
+    match study::run(&options, &AtomicBool::new(false), &mut observer) {
         Ok(Outcome::Done { summaries, .. }) => Ok((summaries, output)),
         Ok(other) => Err(format!("the study ended early: {other:?}")),
         Err(error) => Err(error.to_string()),

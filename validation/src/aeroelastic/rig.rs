@@ -82,7 +82,7 @@ pub(super) enum Speed {
 }
 
 /// How a turbine is run.
-pub(super) struct Asked<'a> {
+pub(super) struct Conditions<'a> {
     pub(super) model: &'a str,
     /// Wind at hub height (m/s), uniform and steady but for `planes`.
     pub(super) wind: f64,
@@ -105,7 +105,7 @@ pub(super) struct Asked<'a> {
     pub(super) steps_per_sample: u64,
 }
 
-impl Asked<'_> {
+impl Conditions<'_> {
     /// IEA 15 MW in 9 m/s without helix and tower, its speed held at the reference's and every step of the last 100 s read.
     pub(super) fn in_nine_metres_a_second() -> Self {
         Self {
@@ -128,8 +128,8 @@ impl Asked<'_> {
 ///
 /// # Panics
 /// For a model that the library does not have, which is the validation's own mistake.
-pub(super) fn run(asked: &Asked<'_>) -> Run {
-    let mut farm = Farm::new(vec![machine(asked)], air(asked), INTERVAL, 1)
+pub(super) fn run(conditions: &Conditions<'_>) -> Run {
+    let mut farm = Farm::new(vec![machine(conditions)], air(conditions), INTERVAL, 1)
         .expect("one turbine needs no threads");
     let turbine = &farm.machines()[0].turbine;
     let places = CHANNELS.map(|name| turbine.structure().channel(name).expect("a known channel"));
@@ -139,13 +139,13 @@ pub(super) fn run(asked: &Asked<'_>) -> Run {
         thrust: 0.0,
         generator_power: 0.0,
         rotor_speed: 0.0,
-        interval: INTERVAL * asked.steps_per_sample as f64,
+        interval: INTERVAL * conditions.steps_per_sample as f64,
         azimuth: Vec::new(),
         samples: Default::default(),
     };
-    while farm.time() < asked.window[1] {
+    while farm.time() < conditions.window[1] {
         farm.advance(&mut Silent).expect("the wind does not end");
-        if farm.time() > asked.window[0] && farm.step().is_multiple_of(asked.steps_per_sample) {
+        if farm.time() > conditions.window[0] && farm.step().is_multiple_of(conditions.steps_per_sample) {
             let turbine = &farm.machines()[0].turbine;
             let read = turbine.truth(farm.time(), INTERVAL);
             result.power += 1e-6 * read.aerodynamic_torque * read.rotor_speed;
@@ -172,19 +172,19 @@ pub(super) fn run(asked: &Asked<'_>) -> Run {
 }
 
 /// The turbine with its controller.
-fn machine(asked: &Asked<'_>) -> Machine {
+fn machine(conditions: &Conditions<'_>) -> Machine {
     let file =
-        formats::library::load(asked.model).expect("the library's own turbines are readable");
+        formats::library::load(conditions.model).expect("the library's own turbines are readable");
     let definition = Arc::new(file.definition);
     let mut model = Model { definition: Arc::clone(&definition), constants: file.controller };
-    if asked.speed == Speed::Tracked {
+    if conditions.speed == Speed::Tracked {
         model = model.equipped(Solver::UNIFORM, AIR_DENSITY).into_owned();
     }
     let diameter = definition.rotor_diameter();
-    let tower = asked.tower.map(|effects| TowerInfluence::new(&definition, Vector3::ZERO, effects));
+    let tower = conditions.tower.map(|effects| TowerInfluence::new(&definition, Vector3::ZERO, effects));
     let settings = turbine::TurbineSettings {
         induction: Induction::ByMomentum(aero::rotor::BemSettings {
-            induction: aero::Induction::TwoConstant(TwoConstant::fixed(asked.slow_constant)),
+            induction: aero::Induction::TwoConstant(TwoConstant::fixed(conditions.slow_constant)),
             theory: Theory::default(),
             skewed_wake: true,
             dynamic_stall: true,
@@ -192,30 +192,30 @@ fn machine(asked: &Asked<'_>) -> Machine {
         }),
         flexible: true,
         air_density: AIR_DENSITY,
-        rotor_speed: asked.rotor_speed * std::f64::consts::PI / 30.0,
+        rotor_speed: conditions.rotor_speed * std::f64::consts::PI / 30.0,
         azimuth: 0.0,
         pitch: 0.0,
     };
     let mut turbine = Turbine::new(definition, Vector3::ZERO, settings)
         .expect("the library's own turbines have a structure")
         .without_bodies()
-        .projecting(asked.projection);
-    if asked.speed == Speed::Held {
+        .projecting(conditions.projection);
+    if conditions.speed == Speed::Held {
         turbine = turbine.at_held_speed();
     }
     let baseline = Box::new(Baseline::new(model.constants));
-    if asked.amplitude == 0.0 {
+    if conditions.amplitude == 0.0 {
         return Machine::new(turbine, baseline);
     }
-    let (amplitude, sense) = (asked.amplitude.to_radians(), Sense::CounterClockwise);
-    let helix = Helix::new(sense, amplitude, 0.25, asked.wind, diameter);
+    let (amplitude, sense) = (conditions.amplitude.to_radians(), Sense::CounterClockwise);
+    let helix = Helix::new(sense, amplitude, 0.25, conditions.wind, diameter);
     Machine::new(turbine, helix.on_top_of(baseline))
 }
 
 /// What blows.
-fn air(asked: &Asked<'_>) -> Air {
-    let wind = match &asked.planes {
-        None => PrescribedWind::everywhere(Arc::new(MeanProfile::Uniform { speed: asked.wind })),
+fn air(conditions: &Conditions<'_>) -> Air {
+    let wind = match &conditions.planes {
+        None => PrescribedWind::everywhere(Arc::new(MeanProfile::Uniform { speed: conditions.wind })),
         Some(planes) => {
             let placement = Placement { origin_x: 0.0, shift_y: 0.0, extent: EXTENT };
             PrescribedWind::over_planes(Box::new(planes.clone()), placement)

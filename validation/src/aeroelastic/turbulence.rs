@@ -1,6 +1,6 @@
 //! The flexible turbine in Kaimal turbulence: deviations and equivalent loads of our own records beside the reference's one.
 
-use super::rig::{Asked, CHANNELS, Run, Speed, run};
+use super::rig::{Conditions, CHANNELS, Run, Speed, run};
 use crate::Row;
 use crate::inflow::{kaimal, mean_of};
 use crate::row::Tolerance::Within;
@@ -75,12 +75,12 @@ fn in_turbulence(seed: u64) -> Run {
     let turbulence = Arc::new(kaimal::made(&settings));
     let planes = BoxPlanes::new(turbulence, &profile, settings.lowest_height)
         .expect("the speed is positive");
-    run(&Asked {
+    run(&Conditions {
         planes: Some(planes),
         speed: Speed::Tracked,
         window: [60.0, 600.0],
         steps_per_sample: 5,
-        ..Asked::in_nine_metres_a_second()
+        ..Conditions::in_nine_metres_a_second()
     })
 }
 

@@ -58,7 +58,7 @@ pub(crate) fn coefficients(
     let n_blades = definition.n_blades as f64;
     let rotor_speed = tip_speed_ratio / radius;
     let hub_radius = definition.distance_from_shaft(definition.rotor.hub_radius, 0.0);
-    // Nothing is smeared here: the line is asked for nothing but its sections.
+    // Nothing is smeared here: the line serves for its sections only.
     let line = ActuatorLine::new(Arc::clone(&definition), N_ELEMENTS, 1.0, 0.1 * radius, 0.0);
     let elements = line.elements();
 

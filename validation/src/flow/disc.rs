@@ -6,7 +6,7 @@ use crate::row::Tolerance::Within;
 use basis::{PointForce, Vector3};
 use flow::WindField;
 use flow::lattice::spreading::Spreader;
-use flow::lattice::{Ground, Lattice, Settings};
+use flow::lattice::{Ground, Lattice, LatticeSettings};
 use std::f64::consts::PI;
 
 /// Where the expected values come from.
@@ -55,7 +55,7 @@ fn disc(thrust_coefficient: f64) -> Vec<Row> {
     let half_width = 0.5 * WIDTH * DIAMETER;
     let origin = Vector3::new(-3.0 * DIAMETER, -half_width, -half_width);
     let n_cells = [cells(7.0), cells(WIDTH), cells(WIDTH)];
-    let mut settings = Settings::new(origin, spacing, n_cells, 0.1 * spacing / SPEED, SPEED);
+    let mut settings = LatticeSettings::new(origin, spacing, n_cells, 0.1 * spacing / SPEED, SPEED);
     settings.ground = Ground::Periodic;
     let air_density = settings.air_density;
     let mut air = lattice(settings, |_, _| Vector3::new(SPEED, 0.0, 0.0));

@@ -5,7 +5,7 @@ use crate::Row;
 use crate::row::Tolerance::Within;
 use basis::Vector3;
 use farm::assemble::SMAGORINSKY_OVER_GROUND;
-use flow::lattice::{Ends, Ground, Settings, VON_KARMAN};
+use flow::lattice::{Ends, Ground, LatticeSettings, VON_KARMAN};
 use std::f64::consts::{PI, TAU};
 
 /// Where the expected values come from.
@@ -26,7 +26,7 @@ pub fn log_profile() -> Vec<Row> {
     let n = [36, 36, 24];
     let spacing = HEIGHT / n[2] as f64;
     let top = logarithmic(HEIGHT);
-    let mut settings = Settings::new(Vector3::ZERO, spacing, n, LATTICE_SPEED * spacing / top, top);
+    let mut settings = LatticeSettings::new(Vector3::ZERO, spacing, n, LATTICE_SPEED * spacing / top, top);
     settings.ends = Ends::Periodic;
     settings.ground = Ground::WallStress { roughness_length: ROUGHNESS_LENGTH };
     settings.acceleration = Vector3::new(FRICTION_VELOCITY.powi(2) / HEIGHT, 0.0, 0.0);

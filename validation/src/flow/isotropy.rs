@@ -6,7 +6,7 @@ use crate::row::Tolerance::{AtMost, Within};
 use basis::records::PlaneAxes;
 use basis::{PointForce, Vector3};
 use flow::WindField;
-use flow::lattice::{Ends, Ground, Lattice, PlaneAverage, Settings, Stencil};
+use flow::lattice::{Ends, Ground, Lattice, PlaneAverage, LatticeSettings, Stencil};
 use std::f64::consts::{PI, TAU};
 
 /// Where the expected values come from.
@@ -23,13 +23,13 @@ pub fn isotropy() -> Vec<Row> {
     [columns(), deflected_wakes(), helical_wake()].concat()
 }
 
-fn settings(stencil: Stencil, cells_per_diameter: f64, length: f64) -> Settings {
+fn settings(stencil: Stencil, cells_per_diameter: f64, length: f64) -> LatticeSettings {
     let spacing = DIAMETER / cells_per_diameter;
     let cells = |diameters: f64| (diameters * cells_per_diameter).round() as usize;
     let corner = -0.5 * WIDTH * DIAMETER;
     let n_cells = [cells(length), cells(WIDTH), cells(WIDTH)];
     let origin = Vector3::new(-2.0 * DIAMETER, corner, corner);
-    let mut settings = Settings::new(origin, spacing, n_cells, 0.1 * spacing / SPEED, SPEED);
+    let mut settings = LatticeSettings::new(origin, spacing, n_cells, 0.1 * spacing / SPEED, SPEED);
     settings.ground = Ground::Periodic;
     settings.stencil = stencil;
     settings

@@ -4,7 +4,7 @@ use super::mean_of;
 use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
 use flow::inflow::iec::Kaimal;
-use flow::inflow::kaimal::{Scaling, Settings, clipped_share, generate};
+use flow::inflow::kaimal::{Scaling, KaimalSettings, clipped_share, generate};
 use flow::inflow::statistics::line_deviations;
 use flow::inflow::{TurbulenceBox, spectra};
 use std::f64::consts::TAU;
@@ -38,10 +38,10 @@ const TURBSIM_SPECTRUM: [f64; 4] = [9.8600, 2.8725, 0.56149, 0.090499];
 const TURBSIM_DEVIATIONS: [f64; 3] = [0.50223, 0.41972, 0.26207];
 const TURBSIM_AT_HUB: f64 = 0.41633;
 
-/// What TurbSim was asked for, for our own `seed`.
-pub(crate) fn settings(seed: u64) -> Settings {
+/// TurbSim's target, for our own `seed`.
+pub(crate) fn settings(seed: u64) -> KaimalSettings {
     let spacing = 290.0 / 30.0;
-    Settings {
+    KaimalSettings {
         n_points: [6600, 31, 31],
         spacing: [0.9, spacing, spacing],
         hub_speed: 9.0,
@@ -180,10 +180,10 @@ fn turbsim(samples: &[Sample]) -> Vec<Row> {
     rows
 }
 
-/// With scaling, the deviation that was asked for is the one that is there.
+/// With scaling, the realised deviation is the target.
 fn scaled() -> Vec<Row> {
     let at = |scaling, y, z| {
-        let turbulence = made(&Settings { scaling, ..settings(1) });
+        let turbulence = made(&KaimalSettings { scaling, ..settings(1) });
         line_deviations(&turbulence, y, z)[0]
     };
     [
@@ -203,7 +203,7 @@ fn scaled() -> Vec<Row> {
 }
 
 /// The box of `settings`, which only a lack of memory (110 MB) denies.
-pub(crate) fn made(settings: &Settings) -> TurbulenceBox {
+pub(crate) fn made(settings: &KaimalSettings) -> TurbulenceBox {
     match generate(settings, |_| {}) {
         Ok(turbulence) => turbulence,
         Err(error) => panic!("the box of the validation cannot be made: {error}"),

@@ -37,7 +37,7 @@ impl Theory {
     }
 
     /// Over the wave numbers that a box of `settings` can hold.
-    pub(super) fn resolved(settings: &mann::Settings) -> Self {
+    pub(super) fn resolved(settings: &mann::MannSettings) -> Self {
         let largest = settings.spacing.map(|spacing| PI / spacing);
         let uniform = [0, 1, 2].map(|axis| largest[axis] / settings.n_points[axis] as f64);
         Self::new(settings.length_scale, settings.anisotropy, largest, uniform)

@@ -27,7 +27,7 @@ const STEP: Case = Case {
 const ATTENUATION: Case =
     Case { name: "attenuation (3-8)", figure: "3-8", factor: 0.1, strouhals: [0.2, 0.2], ..STEP };
 
-/// The source's figures, and attenuation by the way that the program takes by default. Their steps, jumps, offsets and references are not told in numbers; these are ours, within the
+/// The source's figures, and attenuation by the way that the program takes by default. Their steps, jumps, offsets and references are not given in numbers; these are ours, within the
 /// band of St 0.15 to 0.25.
 pub(super) const CASES: [Case; 7] = [
     STEP,

@@ -7,7 +7,7 @@ use super::rig::{INTERVAL, Reading, Rig};
 use crate::Row;
 use crate::row::Tolerance::AtMost;
 use basis::{FixedFrame, Sense};
-use control::meandering::{Decoupling, Followed, Meandering, Reference, Settings, TwoAxisSettings};
+use control::meandering::{Decoupling, Followed, Meandering, Reference, MeanderingControlSettings, TwoAxisSettings};
 use estimation::Estimator;
 use estimation::phase_locked::{Leader, PhaseLockedSettings as Signal, TwoAxisLoop};
 use flow::inflow::deterministic::Event;
@@ -31,9 +31,9 @@ const JUDGED: f64 = 600.0;
 const END: f64 = 1500.0;
 /// Width of the disk's edge (m), that of the grid which the source's wind stands on.
 const EDGE: f64 = 14.0;
-/// Factors asked for: the source's four, and those above that it tries in its second wind.
+/// Target factors: the source's four, and those above that it tries in its second wind.
 const FACTORS: [f64; 7] = [2.0, 1.75, 1.5, 1.25, 0.75, 0.5, 0.35];
-/// Factors asked for when the wake's own part is followed and its amplitude observed.
+/// Target factors when the wake's own part is followed and its amplitude observed.
 const DEEP_FACTORS: [f64; 5] = [1.25, 0.75, 0.35, 0.2, 0.0];
 
 /// The source's table 4-4: factor, changes (%) of the seven deviations and of power.
@@ -44,7 +44,7 @@ const PUBLISHED: [(f64, [f64; 8]); 4] = [
     (0.35, [-1.0, -27.9, -43.5, -2.8, -60.9, -8.0, -16.0, -4.0]),
 ];
 
-/// Factors asked for where the disk meets a part of the rotor only.
+/// Target factors where the disk meets a part of the rotor only.
 const PARTIAL_FACTORS: [f64; 3] = [1.25, 0.75, 0.35];
 
 /// Everything; prints the tables with intervals, gives what is claimed as rows.
@@ -66,10 +66,10 @@ pub fn disk() -> Vec<Row> {
         (Followed::Wake, "wake followed, its amplitude observed", observed, &DEEP_FACTORS),
     ] {
         let published: &[_] = if reference == given { &PUBLISHED } else { &[] };
-        let asked = Asked { followed, reference, decoupling };
-        rows.extend(full.table(name, factors, asked, published));
+        let choice = LoopChoice { followed, reference, decoupling };
+        rows.extend(full.table(name, factors, choice, published));
     }
-    // Pitch acts as it was found in full overlap: a turbine that is probed alone knows nothing of where the wake will meet it.
+    // Pitch acts as it was found in full overlap: a turbine that is identified alone knows nothing of where the wake will meet it.
     for (aside, place) in [(0.25, "¼ D aside"), (0.5, "½ D aside")] {
         let partial = Bench::new(aside, following());
         rows.extend(partial.rows(place));
@@ -77,11 +77,11 @@ pub fn disk() -> Vec<Row> {
             ("load followed", Followed::Load, partial.given()),
             ("wake followed, observed", Followed::Wake, observed),
         ] {
-            let asked = Asked { followed, reference, decoupling };
-            rows.extend(partial.table(&format!("{place}, {how}"), &PARTIAL_FACTORS, asked, &[]));
+            let choice = LoopChoice { followed, reference, decoupling };
+            rows.extend(partial.table(&format!("{place}, {how}"), &PARTIAL_FACTORS, choice, &[]));
         }
     }
-    // Half a diameter aside the load circles against the disk: does a loop told so, or one of yaw alone, find it?
+    // Half a diameter aside the load circles against the disk: does a loop set so, or one of yaw alone, find it?
     let against = TwoAxisSettings { sense: Sense::CounterClockwise, ..following() };
     let yaw_leads = TwoAxisSettings { leader: Leader::Yaw, ..following() };
     rows.extend(Bench::new(0.5, against).rows("½ D aside, the other sense followed"));
@@ -96,9 +96,9 @@ struct Bench {
     baseline: Record,
     /// Tilt and yaw moments at every step (N m).
     loads: Vec<FixedFrame>,
-    /// Mean amplitudes of tilt and yaw moment that the loop believes in (N m).
+    /// Mean amplitudes of tilt and yaw moment estimated by the loop (N m).
     amplitudes: [f64; 2],
-    /// Largest distance of the believed rate from the disk's (–), and share of the time without lock (–).
+    /// Largest error of the estimated rate from the disk's (–), and share of the time without lock (–).
     off_rate: f64,
     unlocked: f64,
 }
@@ -135,7 +135,7 @@ impl Bench {
         Self { rig, disk, baseline, loads, amplitudes, off_rate, unlocked: unlocked / n }
     }
 
-    /// The believed amplitudes as references.
+    /// The estimated amplitudes as references.
     fn given(&self) -> Reference {
         let [tilt, yaw] = self.amplitudes;
         Reference::Given { tilt, yaw }
@@ -151,7 +151,7 @@ impl Bench {
             100.0 * self.unlocked
         );
         vec![Row {
-            what: format!("{place}, baseline: rate believed in off the disk's, at worst"),
+            what: format!("{place}, baseline: estimated rate off the disk's, at worst"),
             measured: self.off_rate,
             expected: 0.05,
             tolerance: AtMost,
@@ -160,18 +160,18 @@ impl Bench {
         }]
     }
 
-    /// Runs with `asked` at each of `factors` (–), printed; what is claimed, beside `published` changes.
+    /// Runs with `choice` at each of `factors` (–), printed; what is claimed, beside `published` changes.
     fn table(
         &self,
         name: &str,
         factors: &[f64],
-        asked: Asked,
+        choice: LoopChoice,
         published: &[(f64, [f64; 8])],
     ) -> Vec<Row> {
         let mut table = Table::new(name, &self.baseline);
         let mut rows = Vec::new();
         for factor in factors {
-            let record = controlled(&self.rig, asked.settings(*factor), self.disk);
+            let record = controlled(&self.rig, choice.settings(*factor), self.disk);
             rows.extend(table.add(*factor, record));
         }
         table.print();
@@ -180,9 +180,9 @@ impl Bench {
     }
 }
 
-/// A run of `rig` under meandering control with `asked`.
-fn controlled(rig: &Rig, asked: Settings, circling: RotatingDisk) -> Record {
-    let mut control = Meandering::new(asked, INTERVAL).expect("sound settings");
+/// A run of `rig` under meandering control with `settings`.
+fn controlled(rig: &Rig, settings: MeanderingControlSettings, circling: RotatingDisk) -> Record {
+    let mut control = Meandering::new(settings, INTERVAL).expect("sound settings");
     let mut record = Record::new(circling);
     let mut machine = rig.clone();
     for _ in 0..n_steps(END) {
@@ -208,16 +208,16 @@ fn following() -> TwoAxisSettings {
 
 /// What the runs of a table have in common.
 #[derive(Clone, Copy)]
-struct Asked {
+struct LoopChoice {
     followed: Followed,
     reference: Reference,
     decoupling: Decoupling,
 }
 
-impl Asked {
-    fn settings(&self, factor: f64) -> Settings {
+impl LoopChoice {
+    fn settings(&self, factor: f64) -> MeanderingControlSettings {
         let Self { followed, reference, decoupling } = *self;
-        Settings {
+        MeanderingControlSettings {
             follower: following(),
             followed,
             factor,

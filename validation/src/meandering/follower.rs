@@ -17,7 +17,7 @@ pub(super) fn rate_of(strouhal: f64) -> f64 {
     TAU * strouhal * 7.0 / 240.0
 }
 
-/// What pushes the first mass, and what is asked of its swing.
+/// What pushes the first mass, and the target of its swing.
 #[derive(Clone, Copy)]
 pub(super) struct Case {
     /// Name, with the source's figure.
@@ -34,7 +34,7 @@ pub(super) struct Case {
     pub(super) offset: f64,
     /// Deviation of white noise on the force over its first amplitude (–).
     pub(super) noise: f64,
-    /// Amplitude asked for over that at St 0.2 under the first amplitude alone (–).
+    /// Target amplitude over that at St 0.2 under the first amplitude alone (–).
     pub(super) factor: f64,
     /// The place as it is, as the source has it, or less what the added force does to it.
     pub(super) followed: Followed,
@@ -51,11 +51,11 @@ pub(super) struct Instant {
     pub(super) phase: f64,
     /// Place of the first mass (m).
     pub(super) place: f64,
-    /// What the loop believes of what it follows (m).
+    /// The loop's estimate of what it follows (m).
     pub(super) estimate: Estimate,
     /// Amplitude of the place that goes with it (m).
     pub(super) amplitude: f64,
-    /// Amplitude asked for (m).
+    /// Target amplitude (m).
     pub(super) reference: f64,
 }
 

@@ -89,13 +89,13 @@ pub(super) fn beside(what: String, name: &str, change: &Statistic, expected: f64
     }
 }
 
-/// The amplitude on `axis` that was reached over the one asked for, `factor` of the baseline's.
+/// The amplitude on `axis` that was reached over the target, `factor` of the baseline's.
 pub(super) fn reached(name: &str, factor: f64, axis: &str, measured: f64) -> Row {
     Row {
         what: format!("{name}, factor {factor}: amplitude reached in {axis}"),
         measured,
         expected: factor,
-        // Three per cent of the factor, or one of the baseline where nearly nothing is asked for.
+        // Three per cent of the factor, or one of the baseline where the target is near zero.
         tolerance: Within((0.03 * factor).max(0.01)),
         unit: "–",
         source: SOURCE,
@@ -124,7 +124,7 @@ pub(super) struct Table<'a> {
 
 /// A run beside the one without control.
 struct Run {
-    /// Factor asked for, and reached on both axes (–).
+    /// Target factor, and the one reached on both axes (–).
     factor: f64,
     reached: [f64; 2],
     /// Largest pitch on either axis (rad).
@@ -140,7 +140,7 @@ impl<'a> Table<'a> {
         Self { name, baseline, runs: Vec::new() }
     }
 
-    /// Takes in a run that was asked for `factor` times the baseline's amplitude; says what it reached.
+    /// Takes in a run with a target of `factor` times the baseline's amplitude; says what it reached.
     pub(super) fn add(&mut self, factor: f64, record: Record) -> Vec<Row> {
         let before = self.baseline;
         let changes = std::array::from_fn(|index| {
@@ -168,7 +168,7 @@ impl<'a> Table<'a> {
         eprintln!("\n{}:\n", self.name);
         let line = |name: String, cells: Vec<String>| print_line(&name, &cells);
         let cells = |of: &dyn Fn(usize) -> String| (0..self.runs.len()).map(of).collect();
-        line("factor asked for".into(), cells(&|run| format!("{}", self.runs[run].factor)));
+        line("target factor".into(), cells(&|run| format!("{}", self.runs[run].factor)));
         line("---".into(), cells(&|_| "---".into()));
         for (axis, name) in ["tilt", "yaw"].into_iter().enumerate() {
             line(

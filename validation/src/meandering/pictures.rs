@@ -37,7 +37,7 @@ fn figure(case: &Case) -> TrackFigure {
         name: format!("figure-{}", case.figure),
         title: format!("Three masses on springs: {}", case.name),
         caption: "A loop with each generator brings the swing of the first mass to its reference. The phase error is the \
-                  believed phase less that of the swing at which the masses would settle under the force of the moment; \
+                  estimated phase less that of the swing at which the masses would settle under the force of the moment; \
                   after a change they take minutes to do so."
             .to_owned(),
         rows: vec![rate, amplitude, error, place],

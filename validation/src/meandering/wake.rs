@@ -67,7 +67,7 @@ fn made() -> Result<Vec<Row>, String> {
 
 /// A run beside the one without control.
 struct Run<'a> {
-    /// Factor asked for (–).
+    /// Target factor (–).
     factor: f64,
     published: Option<[f64; 8]>,
     turbine: &'a TurbineSummary,
@@ -118,7 +118,7 @@ impl Run<'_> {
 /// Prints all changes with their intervals, the published ones behind.
 fn print(baseline: &TurbineSummary, runs: &[Run]) -> Result<(), String> {
     let cells = |of: &dyn Fn(&Run) -> String| runs.iter().map(of).collect::<Vec<_>>();
-    print_line("factor asked for", &cells(&|run| run.factor.to_string()));
+    print_line("target factor", &cells(&|run| run.factor.to_string()));
     print_line("---", &cells(&|_| "---".into()));
     for (axis, name) in ["tilt", "yaw"].into_iter().enumerate() {
         print_line(

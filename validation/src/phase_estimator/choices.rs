@@ -1,7 +1,7 @@
-//! What each choice of the robust form is worth, and the linear filter of the earlier method, on the aeroelastic turbine.
+//! Effect of each choice of the robust form, and the linear filter of the earlier method, on the aeroelastic turbine.
 
 use super::rig::Instruments;
-use super::{AIM, Machine, OWN, ROTOR_SPEED, SPEED, asked, robust, row, setting, tell};
+use super::{AIM, Machine, OWN, ROTOR_SPEED, SPEED, trial, robust, row, setting, tell};
 use crate::Row;
 use basis::Sense;
 use estimation::EstimationError;
@@ -19,7 +19,7 @@ pub(super) fn options(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), Esti
     let whole = [
         ("as it is", base),
         ("without adaptation", Options { adaptation: None, ..base }),
-        ("learning the wave's wandering too", Options { adaptation: of_the_wave, ..base }),
+        ("adapting the wave's process noise too", Options { adaptation: of_the_wave, ..base }),
         ("tilt and yaw apart", Options { roundness: 0.0, ..base }),
         ("with an excitation rate of its own", Options { rate: Some(1e-9), ..base }),
         ("every fifth instant", Options { update_every: 5, ..base }),
@@ -38,8 +38,8 @@ pub(super) fn options(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), Esti
     for (_, options) in whole.iter().chain(&parted) {
         estimators.push(machine.estimator(&machine.definition, ccw, *options)?);
     }
-    let asked = asked(machine.gradient(ccw, 0.06), OWN, Instruments::default(), 1200.0);
-    let errors = machine.run(&asked, &mut estimators);
+    let trial = trial(machine.gradient(ccw, 0.06), OWN, Instruments::default(), 1200.0);
+    let errors = machine.run(&trial, &mut estimators);
     for (place, ((name, _), errors)) in whole.iter().chain(&parted).zip(errors).enumerate() {
         let what = format!("turbulence 6 %, own pitch, robust form {name}: worse axis, rms error");
         if place < whole.len() {
@@ -61,8 +61,8 @@ pub(super) fn linear(machine: &Machine) -> Result<(), EstimationError> {
     for (name, own) in [("no own pitch", 0.0), ("own pitch", OWN)] {
         let mut filter =
             [LinearEstimator::new(&machine.definition, &setting(ccw), point, robust())?];
-        let asked = asked(machine.gradient(ccw, 0.06), own, Instruments::default(), 1200.0);
-        for errors in machine.run(&asked, &mut filter) {
+        let trial = trial(machine.gradient(ccw, 0.06), own, Instruments::default(), 1200.0);
+        for errors in machine.run(&trial, &mut filter) {
             let what = format!("turbulence 6 %, {name}, linear filter: worse axis, rms error, deg");
             tell(&what, &format!("{:.1}", errors.worst()));
         }

@@ -3,7 +3,7 @@
 
 use super::rig::{self, Errors, Instruments};
 use super::wind::HelixWind;
-use super::{AIM, Machine, OWN, PERIOD, SOURCE, asked, row};
+use super::{AIM, Machine, OWN, PERIOD, SOURCE, trial, row};
 use crate::Row;
 use crate::row::Tolerance::Within;
 use basis::Sense;
@@ -68,9 +68,9 @@ pub(super) fn on_and_off(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), E
     };
     let mut sync = PhaseSync::new(settings, machine.calibrated(&machine.definition, sense)?);
     // The own pitch is the controller's.
-    let asked = asked(wind, 0.0, Instruments::default(), END);
+    let trial = trial(wind, 0.0, Instruments::default(), END);
     let mut seen = Seen::default();
-    rig::fly(&machine.definition, &machine.constants, &asked, |reading| {
+    rig::fly(&machine.definition, &machine.constants, &trial, |reading| {
         let pitch = sync.pitch(reading);
         if let Some(estimate) = sync.estimate() {
             seen.add(reading.time, sync.share(), estimate, truth);

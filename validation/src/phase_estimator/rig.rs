@@ -48,8 +48,8 @@ pub(super) struct Instruments {
     pub(super) dropouts: f64,
 }
 
-/// What is asked of the turbine.
-pub(super) struct Asked {
+/// Conditions of a trial.
+pub(super) struct Trial {
     pub(super) wind: HelixWind,
     pub(super) flexible: bool,
     /// Amplitude (rad) of its own pitch, and how far ahead of the wave it is (rad).
@@ -110,12 +110,12 @@ impl Errors {
 pub(super) fn run<E: Estimator<Estimate = HelixEstimate>>(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
-    asked: &Asked,
+    trial: &Trial,
     estimators: &mut [E],
 ) -> Vec<Errors> {
-    let truth = asked.wind.truth();
+    let truth = trial.wind.truth();
     let mut errors = vec![Errors::default(); estimators.len()];
-    follow(definition, constants, asked, estimators, |time, index, estimate| {
+    follow(definition, constants, trial, estimators, |time, index, estimate| {
         if time > SETTLED {
             errors[index].add(estimate, truth);
         }
@@ -123,44 +123,44 @@ pub(super) fn run<E: Estimator<Estimate = HelixEstimate>>(
     errors.into_iter().map(Errors::finish).collect()
 }
 
-/// Runs the turbine and lets `estimators` listen; `seen` is told time (s), place in `estimators` and estimate.
+/// Runs the turbine and lets `estimators` listen; `seen` receives time (s), place in `estimators` and estimate.
 pub(super) fn follow<E: Estimator<Estimate = HelixEstimate>>(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
-    asked: &Asked,
+    trial: &Trial,
     estimators: &mut [E],
     mut seen: impl FnMut(f64, usize, &HelixEstimate),
 ) {
-    drive(definition, constants, asked, |measurements| {
+    drive(definition, constants, trial, |measurements| {
         for (index, estimator) in estimators.iter_mut().enumerate() {
             seen(measurements.time, index, &estimator.update(measurements));
         }
     });
 }
 
-/// Runs the turbine with the own pitch that is asked for; `heard` is told what its instruments show once it has come to rest
+/// Runs the turbine with the own pitch that is commanded; `take` receives its measurements once it has come to rest
 /// from its start.
 pub(super) fn drive(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
-    asked: &Asked,
-    mut heard: impl FnMut(&Measurements<'static>),
+    trial: &Trial,
+    mut take: impl FnMut(&Measurements<'static>),
 ) {
-    let (amplitude, ahead) = asked.own;
-    fly(definition, constants, asked, |reading| {
-        heard(reading);
+    let (amplitude, ahead) = trial.own;
+    fly(definition, constants, trial, |reading| {
+        take(reading);
         let begun = if reading.time < OWN_START { 0.0 } else { amplitude };
         let n_blades = reading.pitch.len();
-        pitch(&asked.wind, reading.time, reading.azimuth, begun, ahead, n_blades)
+        pitch(&trial.wind, reading.time, reading.azimuth, begun, ahead, n_blades)
     });
 }
 
-/// Runs the turbine; `excite` is told what its instruments show once it has come to rest from its start, and gives what is
+/// Runs the turbine; `excite` receives its measurements once it has come to rest from its start, and gives what is
 /// added to each blade's pitch (rad).
 pub(super) fn fly(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
-    asked: &Asked,
+    trial: &Trial,
     mut excite: impl FnMut(&Measurements<'static>) -> PerBlade<f64>,
 ) {
     let settings = turbine::TurbineSettings {
@@ -171,9 +171,9 @@ pub(super) fn fly(
             dynamic_stall: true,
             tower: None,
         }),
-        flexible: asked.flexible,
+        flexible: trial.flexible,
         air_density: AIR_DENSITY,
-        rotor_speed: asked.rotor_speed,
+        rotor_speed: trial.rotor_speed,
         azimuth: 0.0,
         pitch: constants.fine_pitch,
     };
@@ -183,15 +183,15 @@ pub(super) fn fly(
     let mut winds = vec![Vector3::ZERO; turbine.stations().len()];
     let mut noise = Noise(1);
     let mut shown = PerBlade::splat(definition.n_blades, 0.0);
-    for step in 0..(asked.duration / INTERVAL) as usize {
+    for step in 0..(trial.duration / INTERVAL) as usize {
         let time = step as f64 * INTERVAL;
         let measurements = turbine.truth(time, INTERVAL).measured();
         let mut commands = controller.update(&measurements);
         if time > FIRST_READING {
-            let own = excite(&read(&measurements, asked.instruments, &mut shown, &mut noise));
+            let own = excite(&read(&measurements, trial.instruments, &mut shown, &mut noise));
             commands.pitch.iter_mut().zip(own.iter()).for_each(|(pitch, own)| *pitch += own);
         }
-        asked.wind.sample(time, turbine.stations(), &mut winds);
+        trial.wind.sample(time, turbine.stations(), &mut winds);
         turbine.advance(INTERVAL, &winds, &commands);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::rig::{self, Errors, Instruments, SETTLED};
 use super::wind::{HelixWind, Swing, degrees, turbulent};
-use super::{AIM, Machine, OWN, PERIOD, SHEAR, SPEED, asked, robust, row, tell};
+use super::{AIM, Machine, OWN, PERIOD, SHEAR, SPEED, trial, robust, row, tell};
 use crate::Row;
 use basis::Sense;
 use estimation::EstimationError;
@@ -35,7 +35,7 @@ pub(super) fn robustness(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), E
     for (name, wind, instruments, model) in cases {
         let mut estimators =
             [machine.estimator(model, ccw, robust())?, machine.calibrated(model, ccw)?];
-        let errors = machine.run(&asked(wind, OWN, instruments, 1200.0), &mut estimators);
+        let errors = machine.run(&trial(wind, OWN, instruments, 1200.0), &mut estimators);
         for (form, errors) in ["", ", calibrated"].iter().zip(&errors) {
             for (axis, rms) in ["tilt", "yaw"].iter().zip(errors.rms) {
                 rows.push(row(format!("{name}{form}: {axis}, rms error"), rms, AIM, "deg"));
@@ -47,12 +47,12 @@ pub(super) fn robustness(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), E
     // Without a helix nothing is trusted; three periods after it has come the phase is found.
     let mut estimators = [machine.estimator(right, ccw, robust())?];
     let truth = coming.truth();
-    let asked = asked(coming, 0.0, fine, 1500.0);
+    let trial = trial(coming, 0.0, fine, 1500.0);
     let (mut before, mut after) = ((0.0, 0.0), Errors::default());
     rig::follow(
         &machine.definition,
         &machine.constants,
-        &asked,
+        &trial,
         &mut estimators,
         |time, _, estimate| {
             if (SETTLED..450.0).contains(&time) {

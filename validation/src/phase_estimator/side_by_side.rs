@@ -1,13 +1,13 @@
 //! The Kalman filter and the phase-locked loops behind one seam, on the same blade moments: error, settling, noise, cost.
 //!
-//! The filter knows the rotor and tells the phase of the *wind*, the helix's rate given or sought; the loops know nothing but
+//! The filter knows the rotor and tells the phase of the *wind*, the helix's rate given or estimated; the loops know nothing but
 //! a band of rates and tell the phase of the *load*. Each is judged against its own truth: the load's is read off the same
 //! record without noise and turbulence.
 
 use super::rig::{self, Instruments, Noise};
 use super::wind::degrees;
 use super::{
-    Machine, OWN, PERIOD, PHASE, ROTOR_SPEED, SPEED, asked, pitch, reading, robust, row, setting,
+    Machine, OWN, PERIOD, PHASE, ROTOR_SPEED, SPEED, trial, pitch, reading, robust, row, setting,
 };
 use crate::Row;
 use basis::mbc::to_fixed_frame;
@@ -53,7 +53,7 @@ struct Outcome {
     mean: f64,
     /// Root mean square of the rate's error (–).
     rate: f64,
-    /// Mean trust, and share of instants that told nothing (–).
+    /// Mean trust, and share of instants without usable measurements (–).
     trust: f64,
     held: f64,
     /// Wall time of an update (µs).
@@ -82,7 +82,7 @@ fn side_by_side(machine: &Machine) -> Result<Vec<Row>, EstimationError> {
         let sought = Options { rate: Some(1e-9), ..options };
         let mut outcomes = vec![
             ("filter", judge(known, &mut filter(machine, options)?)),
-            ("filter that seeks the rate", judge(known, &mut filter(machine, sought)?)),
+            ("filter that estimates the rate", judge(known, &mut filter(machine, sought)?)),
         ];
         let extended = Kind::extended(SQRT_2, 1.0).expect("damping √2 has a dc gain");
         for (name, kind) in [("loops, MSTOGI", Kind::Mixed), ("loops, ESOGI", extended)] {
@@ -99,7 +99,7 @@ fn side_by_side(machine: &Machine) -> Result<Vec<Row>, EstimationError> {
             }
         }
     }
-    let names = ["filter", "filter that seeks the rate", "loops, MSTOGI", "loops, ESOGI"];
+    let names = ["filter", "filter that estimates the rate", "loops, MSTOGI", "loops, ESOGI"];
     for (place, (name, cost)) in names.iter().zip(costs).enumerate() {
         let most = COSTS[usize::from(place < 2)];
         rows.push(row(format!("{name}: wall time of an update"), cost, most, "µs"));
@@ -121,12 +121,12 @@ impl Outcome {
     }
 }
 
-/// What the filter was told: the usual rate.
+/// Setting of the filter: the usual rate.
 fn filter(machine: &Machine, options: Options) -> Result<HelixEstimator, EstimationError> {
     machine.estimator(&machine.definition, SENSE, options)
 }
 
-/// What the loops were told: St 0.15 to 0.3, the helix at 0.25.
+/// Settings of the loops: St 0.15 to 0.3, the helix at 0.25.
 fn loops(kind: Kind) -> TwoAxisLoop {
     let rates = [0.6, 1.2].map(|factor| factor * TAU / PERIOD);
     let signal = PhaseLockedSettings { generator: kind, ..PhaseLockedSettings::between(rates) };
@@ -225,9 +225,9 @@ fn own_model(
 fn turbine(machine: &Machine, name: &'static str, intensity: f64, own: f64) -> Known {
     let made = |intensity| {
         let wind = machine.gradient(SENSE, intensity);
-        let asked = asked(wind, own, Instruments::default(), DURATION);
+        let trial = trial(wind, own, Instruments::default(), DURATION);
         let mut record = Vec::new();
-        rig::drive(&machine.definition, &machine.constants, &asked, |read| record.push(*read));
+        rig::drive(&machine.definition, &machine.constants, &trial, |read| record.push(*read));
         record
     };
     let rate = TAU / PERIOD;

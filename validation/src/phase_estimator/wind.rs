@@ -120,7 +120,7 @@ pub(super) fn turbulent(
         return Arc::new(profile);
     }
     let turbulence: TurbulenceBox = kaimal::generate(
-        &kaimal::Settings {
+        &kaimal::KaimalSettings {
             n_points: [4096, 16, 16],
             spacing: [0.35 * speed, 20.0, 20.0],
             hub_speed: speed,

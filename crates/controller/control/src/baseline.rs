@@ -40,12 +40,12 @@ const REFERENCE_DISTANCE: f64 = 0.005;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Baseline {
     constants: Constants,
-    state: Option<State>,
+    state: Option<BaselineState>,
 }
 
 /// What the controller remembers from one instant to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct State {
+struct BaselineState {
     rotor_speed: SpeedFilter,
     wind: Wind,
     /// Relative shift of the two speed references (–).
@@ -67,12 +67,12 @@ impl Baseline {
         &self.constants
     }
 
-    /// Collective pitch last asked for (rad), without damping; fine pitch before the first update.
+    /// Collective pitch last commanded (rad), without damping; fine pitch before the first update.
     pub fn collective_pitch(&self) -> f64 {
         self.state.as_ref().map_or(self.constants.fine_pitch, |state| state.pitch.command())
     }
 
-    /// Free-stream wind speed that the controller believes in (m/s), smoothed; nothing before the first update.
+    /// Free-stream wind speed estimated by the controller (m/s), smoothed; nothing before the first update.
     pub fn wind_speed(&self) -> Option<f64> {
         self.state.as_ref().map(|state| state.wind.speed(&self.constants))
     }
@@ -81,7 +81,8 @@ impl Baseline {
 impl Controller for Baseline {
     fn update(&mut self, measurements: &Measurements) -> Commands {
         let constants = &self.constants;
-        let state = self.state.get_or_insert_with(|| State::settled(constants, measurements));
+        let state =
+            self.state.get_or_insert_with(|| BaselineState::settled(constants, measurements));
         let interval = measurements.interval;
         let rotor_speed = state.rotor_speed.update(interval, measurements.generator_speed);
         let wind_speed =
@@ -113,7 +114,7 @@ impl Controller for Baseline {
     }
 }
 
-impl State {
+impl BaselineState {
     fn settled(constants: &Constants, measurements: &Measurements) -> Self {
         let rotor_speed = measurements.generator_speed;
         let mut torque = Torque::settled(constants, rotor_speed);

@@ -183,7 +183,7 @@ pub enum Identification {
 /// Why a turbine cannot be controlled as the case has it.
 #[derive(Debug, Error)]
 pub enum ControlError {
-    /// The phase of a helix cannot be sought so.
+    /// The phase of a helix cannot be estimated so.
     #[error("the phase of the helix cannot be estimated")]
     Estimation(#[from] EstimationError),
     /// Meandering cannot be followed so.

@@ -115,8 +115,8 @@ fn individual_pitch_keeps_its_amplitude_below_limit_ramp_and_floor() {
             let azimuth = rotor.truth.azimuth;
             rotor.truth.flap_moments =
                 PerBlade::from_fn(3, |blade| 5e7 * blade_azimuth(azimuth, blade, 3).cos());
-            let asked = baseline.update(&rotor.truth.measured()).pitch;
-            let fixed = to_fixed_frame(azimuth, &asked);
+            let commanded = baseline.update(&rotor.truth.measured()).pitch;
+            let fixed = to_fixed_frame(azimuth, &commanded);
             last = (fixed.tilt.hypot(fixed.yaw), fixed.average);
             rotor.run(&mut baseline, 1, |_| wind_speed);
         }

@@ -13,7 +13,7 @@ use rotor::{
     RADIUS, RATED_POWER, RATED_SPEED, Rotor, bits, constants, gusts, spread, tracking_constants,
 };
 
-/// Runs `baseline` for `n_steps`; after each the measurements and the wind speed that it believes in (m/s).
+/// Runs `baseline` for `n_steps`; after each the measurements and the estimated wind speed (m/s).
 fn watch(
     baseline: &mut Baseline,
     rotor: &mut Rotor,
@@ -139,8 +139,8 @@ fn least_pitch_follows_its_table_at_the_estimated_wind() {
 fn the_deck_may_ask_for_the_other_kind_of_torque_control() {
     assert_eq!(constants().torque_control(), TorqueControl::KOmegaSquared);
     assert_eq!(tracking_constants().torque_control(), TorqueControl::TipSpeedRatio);
-    let asked = |torque_control| Constants { torque_control: Some(torque_control), ..constants() };
-    assert_eq!(asked(TorqueControl::TipSpeedRatio).torque_control(), TorqueControl::KOmegaSquared);
+    let given = |torque_control| Constants { torque_control: Some(torque_control), ..constants() };
+    assert_eq!(given(TorqueControl::TipSpeedRatio).torque_control(), TorqueControl::KOmegaSquared);
     let greedy =
         Constants { torque_control: Some(TorqueControl::KOmegaSquared), ..tracking_constants() };
     assert_eq!(greedy.torque_control(), TorqueControl::KOmegaSquared);
@@ -207,7 +207,7 @@ proptest! {
 const OPENFAST: [[f64; 3]; 4] =
     [[7.0, 4485.1, 5.0286], [8.0, 6684.4, 5.7425], [9.0, 9467.2, 6.4487], [10.0, 12862.5, 7.1418]];
 
-/// Its rotor runs at a tip-speed ratio of 9.05 to 9.1 and not at the 9 that is asked for: the table of the input set
+/// Its rotor runs at a tip-speed ratio of 9.05 to 9.1 and not at its target of 9: the table of the input set
 /// gives it a power coefficient of 0.469 where OpenFAST's own rotor has 0.48 to 0.49, so that the estimate of the wind
 /// is high by a third of the difference. With the same table, so is ours.
 #[test]

@@ -1,4 +1,4 @@
-//! `wakemix fatigue` from outside: tables in, loads with their convention out, bad input told.
+//! `wakemix fatigue` from outside: tables in, loads with their convention out, bad input reported.
 
 use std::fs;
 use std::path::Path;
@@ -13,9 +13,9 @@ fn wakemix(arguments: &[&str], folder: &Path) -> Output {
 }
 
 /// What a command that failed said: drawn messages wrap, what matters is the words.
-fn told(output: &Output) -> String {
-    let told = String::from_utf8_lossy(&output.stderr);
-    let words: Vec<&str> = told.split_whitespace().filter(|word| *word != "│").collect();
+fn message(output: &Output) -> String {
+    let message = String::from_utf8_lossy(&output.stderr);
+    let words: Vec<&str> = message.split_whitespace().filter(|word| *word != "│").collect();
     words.join(" ")
 }
 
@@ -94,15 +94,15 @@ fn bad_input_ends_with_code_2_and_a_fix() {
     ];
     for (arguments, expected) in cases {
         let output = wakemix(&[&["fatigue"], arguments.as_slice()].concat(), folder.path());
-        let told = told(&output);
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        assert!(told.contains(expected), "{told}\n{expected}");
+        let message = message(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(expected), "{message}\n{expected}");
         assert!(output.stdout.is_empty());
     }
     let arguments =
         ["fatigue", "waves.csv", "--channel", "RootMyc1", "--slope", "4", "--from", "9"];
-    let told = String::from_utf8(wakemix(&arguments, folder.path()).stderr).unwrap();
-    assert!(told.contains("leaves 0 samples to count: it ends at 2 s"), "{told}");
+    let message = String::from_utf8(wakemix(&arguments, folder.path()).stderr).unwrap();
+    assert!(message.contains("leaves 0 samples to count: it ends at 2 s"), "{message}");
 }
 
 #[test]
@@ -126,10 +126,10 @@ fn the_count_ends_where_it_is_asked_to() {
     assert_eq!(value["to_s"], 20.0);
     for times in [&["--to", "-1"][..], &["--from", "30", "--to", "20"]] {
         let output = run(times);
-        let told = told(&output);
-        assert_eq!(output.status.code(), Some(2), "{told}");
+        let message = message(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
         let expected = "leaves 0 samples to count before --to: it begins at 0 s";
-        assert!(told.contains(expected) && told.contains("after --from"), "{told}");
+        assert!(message.contains(expected) && message.contains("after --from"), "{message}");
     }
     assert_eq!(run(&[]).status.code(), Some(2));
 }
@@ -172,8 +172,8 @@ fn the_bearing_of_a_turbine_in_the_records_of_a_run() {
     let folder = tempfile::tempdir().unwrap();
     let series = pitching("T2.", "T2.pitch_1_rad", 1_f64.to_radians());
     fs::write(folder.path().join("series.csv"), series).unwrap();
-    let asked = ["fatigue", ".", "--bearing", "--turbine", "T2", "--slope", "4", "--json"];
-    let output = wakemix(&[&asked[..], &["--from", "20"]].concat(), folder.path());
+    let requested = ["fatigue", ".", "--bearing", "--turbine", "T2", "--slope", "4", "--json"];
+    let output = wakemix(&[&requested[..], &["--from", "20"]].concat(), folder.path());
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(value["pitch"], "T2.pitch_1_rad");
     assert_eq!(value["unit"], "kN-m");
@@ -209,8 +209,8 @@ fn a_bearing_that_cannot_be_counted_is_told_with_a_fix() {
     ];
     for (arguments, expected) in cases {
         let output = wakemix(&[&["fatigue", "--bearing"][..], arguments].concat(), folder.path());
-        let told = told(&output);
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        assert!(told.contains(expected), "{told}\n{expected}");
+        let message = message(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(expected), "{message}\n{expected}");
     }
 }

@@ -17,14 +17,14 @@ fn a_file_without_all_figures_is_written_and_told_to_be_incomplete() {
             .unwrap()
     };
     let output = wakemix(&["turbine", "import", "small.yaml", "-o", "small.toml"]);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{told}");
-    assert!(told.contains("wrote small.toml"), "{told}");
-    let missing: Vec<&str> = told.lines().filter_map(|line| line.strip_prefix("  ")).collect();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("wrote small.toml"), "{message}");
+    let missing: Vec<&str> = message.lines().filter_map(|line| line.strip_prefix("  ")).collect();
     let written = fs::read_to_string(folder.path().join("small.toml")).unwrap();
     assert!(written.contains("hub_height = 72.0"), "{written}");
     for key in ["blade_structure", "drive_train.generator_inertia", "controller.pitch_gains"] {
-        assert!(missing.contains(&key), "{key} in {told}");
+        assert!(missing.contains(&key), "{key} in {message}");
         let place = key.rsplit('.').next().unwrap_or(key);
         let marked = written.lines().any(|line| line.starts_with('#') && line.contains(place));
         assert!(marked, "{key} in {written}");

@@ -65,8 +65,8 @@ fn turbulence_is_not_sampled() {
     let arguments =
         ["inflow", "sample", "gusty.toml", "--set", "flow.solver=turbulence", "-o", "gusty.bts"];
     let output = wakemix(&arguments, folder.path());
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(!output.status.success() && told.contains("flow.solver=uniform"), "{told}");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && message.contains("flow.solver=uniform"), "{message}");
     assert!(!folder.path().join("gusty.bts").exists());
 }
 
@@ -88,12 +88,12 @@ fn a_box_has_the_profile_that_was_asked_for_beside_it() {
         let expected = 10.0 * (height / 0.03_f64).ln() / (90.0 / 0.03_f64).ln();
         assert!((speed.as_f64().unwrap() - expected).abs() < 1e-9, "{height} m: {speed}");
     }
-    for (refused, told) in [
+    for (refused, message) in [
         (&["--roughness-length", "9.5"][..], "roughness length (m) = 9.5"),
         (&["--roughness-length", "0.03", "--shear-exponent", "0.1"][..], "cannot be used with"),
     ] {
         let output = generate(refused);
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(!output.status.success() && error.contains(told), "{error}");
+        assert!(!output.status.success() && error.contains(message), "{error}");
     }
 }

@@ -46,7 +46,7 @@
 //! | make a case from text | [`formats::case::parse`] |
 //! | run it without files | [`study::Prepared::of`], [`ready`](study::Prepared::ready), [`run_all`](study::Ready::run_all) |
 //! | run a case file in a folder | [`study::run`], then [`postprocessing::report`] |
-//! | watch it, or stop it | [`study::Watcher`], the flag that [`study::run`] takes |
+//! | observe it, or stop it | [`study::Observer`], the flag that [`study::run`] takes |
 //! | step a farm by hand | [`study::Ready::farm`], [`farm::Farm::advance`] |
 //! | take down what you want of each step | [`farm::Recorder`] |
 //! | control turbines yourself | [`control::Controller`] |

@@ -94,7 +94,7 @@ mod tests {
     use basis::{PointForce, Vector3};
     use flow::WindField;
     use flow::inflow::MeanProfile;
-    use flow::lattice::Settings;
+    use flow::lattice::LatticeSettings;
     use std::sync::Arc;
 
     const SPEED: f64 = 8.0;
@@ -109,7 +109,7 @@ mod tests {
     }
 
     fn resolved() -> Air {
-        let settings = Settings::new(Vector3::ZERO, 20.0, [16, 12, 12], INTERVAL, SPEED);
+        let settings = LatticeSettings::new(Vector3::ZERO, 20.0, [16, 12, 12], INTERVAL, SPEED);
         Box::new(Lattice::new(settings, profile()).expect("such air can be"))
     }
 

@@ -92,8 +92,8 @@ pub const SMEARING_CELLS: f64 = 2.0;
 pub const SMAGORINSKY_OVER_GROUND: f64 = 0.16;
 
 /// Settings of the air for `plan`.
-pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::Settings {
-    let mut settings = lattice::Settings::new(
+pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
+    let mut settings = lattice::LatticeSettings::new(
         plan.origin,
         plan.spacing,
         plan.n_cells,
@@ -247,8 +247,8 @@ fn induction(
 }
 
 /// How the wake's delay is modelled.
-fn delay(asked: DynamicInflow) -> aero::Induction {
-    match asked {
+fn delay(given: DynamicInflow) -> aero::Induction {
+    match given {
         DynamicInflow::None => aero::Induction::QuasiSteady,
         DynamicInflow::TwoConstant { slow_constant } => aero::Induction::TwoConstant(
             slow_constant.map_or_else(TwoConstant::varying, TwoConstant::fixed),

@@ -16,7 +16,7 @@ pub struct Case {
     pub description: Option<String>,
     /// The wind that comes in.
     pub wind: Wind,
-    /// How the air is solved.
+    /// The flow solver.
     pub flow: Flow,
     /// Time.
     pub time: Time,
@@ -125,7 +125,7 @@ pub enum TurbulenceModel {
     Kaimal,
 }
 
-/// How the air is solved.
+/// The flow solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flow {
     /// What moves the air.

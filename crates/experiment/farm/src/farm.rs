@@ -8,9 +8,9 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use sensing::{Scene, Sensing};
 use turbine::Turbine;
 
-/// Watches a run: files, statistics, live plots.
+/// Observes a run: files, statistics, live plots.
 pub trait Recorder {
-    /// Takes how turbine number `turbine` fared and what it was told at one control instant: the truth, whatever its
+    /// Takes state and commands of turbine number `turbine` at one control instant: the truth, whatever its
     /// instruments showed of it.
     fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands);
 }

@@ -15,5 +15,5 @@ pub use air::{Air, FarmFlow};
 pub use farm::{Farm, Machine, Recorder, Unrecorded};
 pub use plan::{Plan, plan};
 
-/// Is told the share (–) of something long that is done; a break ends it.
+/// Receives the share (–) of a long task that is done; a break ends it.
 pub type Progress<'a> = &'a mut dyn FnMut(f64) -> std::ops::ControlFlow<()>;

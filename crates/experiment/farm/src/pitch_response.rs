@@ -30,15 +30,15 @@ use turbine::Turbine;
 /// Wind of the record over the case's (–): about what is left in a wake.
 const WAKE_SPEED: f64 = 0.75;
 /// Excitation periods counted where no filter has to settle (–): moments answer as soon as the near wake has settled, some
-/// periods after the pitch began, so that waiting longer would tell nothing more and cost a third of the probe.
+/// periods after the pitch began, so that waiting longer would tell nothing more and cost a third of the identification.
 const COUNTED: f64 = 2.0;
 /// Amplitude of the helices that tell how pitch acts on the loads (rad): a degree.
-pub const PROBE: f64 = std::f64::consts::PI / 180.0;
+pub const IDENTIFICATION_AMPLITUDE: f64 = std::f64::consts::PI / 180.0;
 
 /// Why no calibration could be made.
 #[derive(Debug, Error)]
 pub enum CalibrationError {
-    /// Whoever was told its progress broke it off.
+    /// The receiver of its progress stopped it.
     #[error("the calibration was broken off")]
     BrokenOff,
     /// The turbine cannot be put together.
@@ -55,9 +55,9 @@ pub enum CalibrationError {
     Estimation(#[from] EstimationError),
 }
 
-/// What a probe costs.
+/// What an identification costs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ProbeCost {
+pub struct IdentificationCost {
     /// Steps, those of all its trials together (–).
     pub n_steps: u64,
     /// Cell updates or what takes as long, steps where the case's wind is prescribed (–): what wall time goes with.
@@ -65,7 +65,12 @@ pub struct ProbeCost {
 }
 
 /// Cost of [`decoupling`].
-pub fn decoupling_cost(case: &Case, plan: &Plan, model: &Model, strouhal: [f64; 2]) -> ProbeCost {
+pub fn decoupling_cost(
+    case: &Case,
+    plan: &Plan,
+    model: &Model,
+    strouhal: [f64; 2],
+) -> IdentificationCost {
     let rate = excitation_rate(middle(strouhal), case.wind.speed, plan.diameter);
     let wind_speed = WAKE_SPEED * case.wind.speed;
     Course::new(wind_speed, plan, model, rate, COUNTED).cost(case, plan, model, 2)
@@ -86,7 +91,7 @@ struct Course {
 impl Course {
     /// In a wind of `wind_speed` (m/s), with `n_periods` (–) of a pitch of `rate` (rad/s) after the settling.
     fn new(wind_speed: f64, plan: &Plan, model: &Model, rate: f64, n_periods: f64) -> Self {
-        let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
+        let tunnel = Tunnel::for_identification(plan.spacing, plan.interval);
         let diameter = model.definition.rotor_diameter();
         let settling = (tunnel.settling * diameter / wind_speed).max(TAU / rate);
         Self {
@@ -100,12 +105,12 @@ impl Course {
     }
 
     /// Of `n_trials` of them.
-    fn cost(self, case: &Case, plan: &Plan, model: &Model, n_trials: u64) -> ProbeCost {
-        let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
+    fn cost(self, case: &Case, plan: &Plan, model: &Model, n_trials: u64) -> IdentificationCost {
+        let tunnel = Tunnel::for_identification(plan.spacing, plan.interval);
         let diameter = model.definition.rotor_diameter();
         let updates = (case.flow.solver.updates_alone)(&tunnel, diameter);
         let n_steps = n_trials * self.n_steps();
-        ProbeCost { n_steps, work: updates * n_steps as f64 }
+        IdentificationCost { n_steps, work: updates * n_steps as f64 }
     }
 }
 
@@ -113,8 +118,8 @@ impl Course {
 /// `strouhal` (–).
 ///
 /// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in prescribed wind as
-/// the case has it, with perfect instruments, and pitches a helix of [`PROBE`], first counter-clockwise, then clockwise; what
-/// either takes off the moments is told by [`Decoupling::from_senses`]; `progress` is told the share done.
+/// the case has it, with perfect instruments, and pitches a helix of [`IDENTIFICATION_AMPLITUDE`], first counter-clockwise, then clockwise; what
+/// either takes off the moments is given by [`Decoupling::from_senses`]; `progress` receives the share done.
 ///
 /// # Errors
 /// [`CalibrationError`].
@@ -133,8 +138,8 @@ pub fn decoupling(
     Ok(Decoupling::from_senses(rate, counter_clockwise, clockwise))
 }
 
-/// What a counter-clockwise and a clockwise helix of [`PROBE`] at `rate` (rad/s) take off the moments of turbine number `index`
-/// of `case`, alone in a steady wind of `wind_speed` (m/s); `progress` is told the share done.
+/// What a counter-clockwise and a clockwise helix of [`IDENTIFICATION_AMPLITUDE`] at `rate` (rad/s) take off the moments of turbine number `index`
+/// of `case`, alone in a steady wind of `wind_speed` (m/s); `progress` receives the share done.
 ///
 /// # Errors
 /// [`CalibrationError`].
@@ -152,12 +157,12 @@ pub fn answers(
             wind_speed,
             rate,
             sense,
-            amplitude: PROBE,
+            amplitude: IDENTIFICATION_AMPLITUDE,
             azimuth_offset: 0.0,
             periods: COUNTED,
         };
-        let mut told = |share: f64| progress(done + 0.5 * share);
-        let record = pitching(case, plan, model, index, &pitch, &mut told)?;
+        let mut report = |share: f64| progress(done + 0.5 * share);
+        let record = pitching(case, plan, model, index, &pitch, &mut report)?;
         let n_counted = (COUNTED * TAU / rate / plan.interval).round() as usize;
         let counted = &record[record.len().saturating_sub(n_counted)..];
         Ok::<_, CalibrationError>(answer_to(counted, sense, rate))
@@ -165,7 +170,7 @@ pub fn answers(
     Ok([answer(Sense::CounterClockwise, 0.0)?, answer(Sense::Clockwise, 0.5)?])
 }
 
-/// What a helix of [`PROBE`] at `rate` (rad/s) takes off the moments in `record`, whole periods of it in a steady wind: both
+/// What a helix of [`IDENTIFICATION_AMPLITUDE`] at `rate` (rad/s) takes off the moments in `record`, whole periods of it in a steady wind: both
 /// axes correlated with their command and with the same a quarter period earlier.
 fn answer_to(record: &[Truth], sense: Sense, rate: f64) -> Answer {
     let moments = |of: &Truth| to_fixed_frame(of.azimuth, &of.flap_moments);
@@ -185,7 +190,7 @@ fn answer_to(record: &[Truth], sense: Sense, rate: f64) -> Answer {
             earlier += lost * cosine / n;
         }
     }
-    Answer { gain: with.hypot(earlier) / PROBE, lead: earlier.atan2(with) }
+    Answer { gain: with.hypot(earlier) / IDENTIFICATION_AMPLITUDE, lead: earlier.atan2(with) }
 }
 
 /// What a turbine does while it is recorded.
@@ -230,7 +235,7 @@ fn pitching(
         .without_bodies();
     let baseline = assemble::controller(&Control::baseline(), model, &alone, plan)?;
     let controller = helix.on_top_of(baseline);
-    let tunnel = Tunnel::of_probe(plan.spacing, plan.interval);
+    let tunnel = Tunnel::for_identification(plan.spacing, plan.interval);
     let air = (alone.flow.solver.begin_alone)(&Alone {
         tunnel,
         wind: &alone.wind,
@@ -286,8 +291,9 @@ mod tests {
                 let third = 4e5 * (3.0 * azimuth).sin();
                 let moments = FixedFrame {
                     average: 3e7,
-                    tilt: 2e6 + third - gain * PROBE * angle.sin(),
-                    yaw: -1e6 + third - gain * PROBE * (angle + sense.yaw_lead()).sin(),
+                    tilt: 2e6 + third - gain * IDENTIFICATION_AMPLITUDE * angle.sin(),
+                    yaw: -1e6 + third
+                        - gain * IDENTIFICATION_AMPLITUDE * (angle + sense.yaw_lead()).sin(),
                 };
                 Truth {
                     time,

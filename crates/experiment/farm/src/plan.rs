@@ -95,7 +95,7 @@ pub struct Plan {
 /// [machine](crate::case::Placement::machine) of the case.
 ///
 /// # Errors
-/// [`PlanError`] names what does not fit and the key that mends it.
+/// [`PlanError`] names what does not fit and the key that fixes it.
 pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Plan, PlanError> {
     let mut machines = Vec::with_capacity(case.turbines.len());
     for placement in &case.turbines {
@@ -126,7 +126,7 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
 /// [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole number of steps.
 ///
 /// # Errors
-/// [`PlanError`] names what does not fit and the key that mends it.
+/// [`PlanError`] names what does not fit and the key that fixes it.
 pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
     let Layout { machines, positions } = layout;
     let diameter = layout.diameter();

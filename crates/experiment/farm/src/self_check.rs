@@ -83,9 +83,9 @@ impl Tunnel {
         Self { upstream, downstream, width, settling: 10.0, averaging: 1.0, spacing, interval }
     }
 
-    /// The one in which a turbine's pitch is probed: smaller, since walls change little of what pitch does. What is averaged
+    /// The one in which a turbine's pitch response is identified: smaller, since walls change little of what pitch does. What is averaged
     /// is counted in periods of the pitch instead.
-    pub fn of_probe(spacing: f64, interval: f64) -> Self {
+    pub fn for_identification(spacing: f64, interval: f64) -> Self {
         let [upstream, downstream, width] = [3.0, 3.0, 5.0];
         Self { upstream, downstream, width, settling: 8.0, averaging: 0.0, spacing, interval }
     }
@@ -100,18 +100,18 @@ impl Tunnel {
     /// The steady speed of `wind` in the tunnel, a rotor of `diameter` (m) at its origin.
     ///
     /// # Errors
-    /// [`lattice::SettingsError`] when the air cannot be set up.
+    /// [`lattice::LatticeError`] when the air cannot be set up.
     pub fn air(
         &self,
         wind: &Wind,
         diameter: f64,
         threads: Option<usize>,
-    ) -> Result<Lattice, lattice::SettingsError> {
+    ) -> Result<Lattice, lattice::LatticeError> {
         let n_cells = self.n_cells(diameter);
         let half_width = 0.5 * n_cells[1] as f64 * self.spacing;
         let origin = Vector3::new(-self.upstream * diameter, -half_width, -half_width);
         let mut settings =
-            lattice::Settings::new(origin, self.spacing, n_cells, self.interval, wind.speed);
+            lattice::LatticeSettings::new(origin, self.spacing, n_cells, self.interval, wind.speed);
         settings.air_density = wind.air_density;
         settings.kinematic_viscosity = wind.kinematic_viscosity;
         settings.ground = lattice::Ground::Periodic;
@@ -121,7 +121,7 @@ impl Tunnel {
 }
 
 /// Checks `model` in the steady speed of `wind` in `tunnel`, rotor speed held at its optimum (or rated), pitch at its
-/// least, tower and nacelle left out, polars holding at once; `progress` is told the share done.
+/// least, tower and nacelle left out, polars holding at once; `progress` receives the share done.
 ///
 /// The tunnel is narrow, so the expectation is taken in the wind that an open sky would need for the same rotor state
 /// ([`turbine::blockage`]).
@@ -231,12 +231,12 @@ fn expectation(
 /// Why a self-check could not be made.
 #[derive(Debug, Error)]
 pub enum SelfCheckError {
-    /// Whoever was told its progress broke it off.
+    /// The receiver of its progress stopped it.
     #[error("the self-check was broken off")]
     BrokenOff,
     /// The air cannot be set up.
     #[error("the air of the self-check cannot be set up")]
-    Settings(#[from] lattice::SettingsError),
+    Settings(#[from] lattice::LatticeError),
     /// The turbine has no structure.
     #[error(transparent)]
     Structure(#[from] StructureError),

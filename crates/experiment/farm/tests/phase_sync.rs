@@ -1,4 +1,4 @@
-//! A rotor that joins the helix in its wind, in a closed loop with the model that its estimator believes in.
+//! A rotor that joins the helix in its wind, in a closed loop with its estimator's own model.
 
 #[path = "../../../controller/estimation/tests/machine/mod.rs"]
 mod machine;

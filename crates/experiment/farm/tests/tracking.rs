@@ -1,4 +1,4 @@
-//! What controllers are told of their rotor: coefficients, and who gets them in which air.
+//! What controllers are given about their rotor: coefficients, and who gets them in which air.
 
 #[path = "../../../controller/estimation/tests/machine/mod.rs"]
 mod machine;
@@ -87,14 +87,14 @@ fn the_table_is_blade_element_momentum() {
 #[test]
 fn an_estimator_knows_inertia_air_and_rotor() {
     let plain = model(None);
-    let told = plain.clone().with_estimator(AIR_DENSITY);
-    let estimator = told.constants.estimator.as_ref().expect("it was just told");
+    let equipped = plain.clone().with_estimator(AIR_DENSITY);
+    let estimator = equipped.constants.estimator.as_ref().expect("it was just set");
     assert_eq!(estimator.inertia, plain.definition.drive_train_inertia());
     assert_eq!(estimator.air_density, AIR_DENSITY);
     assert_eq!(estimator.coefficients, coefficient_table(&plain.definition));
-    assert_eq!(told.constants.torque_control(), TorqueControl::TipSpeedRatio);
+    assert_eq!(equipped.constants.torque_control(), TorqueControl::TipSpeedRatio);
     // All else is as it was.
-    assert_eq!(Constants { estimator: None, ..told.constants }, plain.constants);
+    assert_eq!(Constants { estimator: None, ..equipped.constants }, plain.constants);
 }
 
 #[test]
@@ -115,10 +115,10 @@ fn turbines_track_in_prescribed_wind_and_follow_k_omega_squared_in_solved_air() 
 #[test]
 fn the_turbines_file_has_the_last_word() {
     for solver in SOLVERS {
-        for asked in [TorqueControl::KOmegaSquared, TorqueControl::TipSpeedRatio] {
-            let model = model(Some(asked));
+        for given in [TorqueControl::KOmegaSquared, TorqueControl::TipSpeedRatio] {
+            let model = model(Some(given));
             let equipped = model.equipped(solver, AIR_DENSITY);
-            assert_eq!(equipped.constants.torque_control(), asked, "{solver:?}");
+            assert_eq!(equipped.constants.torque_control(), given, "{solver:?}");
         }
     }
 }
@@ -126,11 +126,11 @@ fn the_turbines_file_has_the_last_word() {
 /// A table that came with the turbine, such as ROSCO's, is not replaced by our own.
 #[test]
 fn what_is_known_is_not_computed_again() {
-    let mut told = model(None).with_estimator(AIR_DENSITY);
-    let estimator = told.constants.estimator.as_mut().expect("it was just told");
+    let mut equipped = model(None).with_estimator(AIR_DENSITY);
+    let estimator = equipped.constants.estimator.as_mut().expect("it was just set");
     estimator.inertia = 1.0;
     for solver in SOLVERS {
-        let equipped = told.equipped(solver, 1.3);
+        let equipped = equipped.equipped(solver, 1.3);
         assert!(matches!(equipped, Cow::Borrowed(_)), "{solver:?}");
         let estimator = equipped.constants.estimator.as_ref().expect("as before");
         assert_eq!((estimator.inertia, estimator.air_density), (1.0, AIR_DENSITY));

@@ -23,7 +23,7 @@ pub enum FileError {
         what: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// What mends it.
+        /// How to fix it.
         #[help]
         fix: String,
         /// What the system said.
@@ -39,7 +39,7 @@ pub enum FileError {
         path: PathBuf,
         /// What is wrong, with the place where known.
         problem: String,
-        /// What mends it.
+        /// How to fix it.
         #[help]
         fix: String,
     },
@@ -51,7 +51,7 @@ pub enum FileError {
         path: PathBuf,
         /// What is wrong with it.
         problem: CheckpointProblem,
-        /// What mends it.
+        /// How to fix it.
         #[help]
         fix: &'static str,
     },
@@ -64,7 +64,7 @@ impl FileError {
         Self::System { verb, what, path: path.to_owned(), fix, source }
     }
 
-    /// `path` does not hold `what`, because of `problem`; `fix` mends it.
+    /// `path` does not hold `what`, because of `problem`; `fix` says how to fix it.
     pub fn content(
         what: &'static str,
         path: &Path,
@@ -315,8 +315,8 @@ mod tests {
             path: path.clone(),
             what: "the volume",
         };
-        let told = full.write_all(&[1; 64]).and_then(|()| full.flush()).unwrap_err();
-        assert_eq!(told.kind(), ErrorKind::StorageFull);
+        let message = full.write_all(&[1; 64]).and_then(|()| full.flush()).unwrap_err();
+        assert_eq!(message.kind(), ErrorKind::StorageFull);
         drop(full);
         assert!(names(folder.path()).is_empty());
     }

@@ -43,7 +43,7 @@ pub enum CheckpointProblem {
     OtherRun {
         /// Run found.
         found: String,
-        /// Run asked for.
+        /// Run given.
         expected: String,
     },
     /// Of another case, or of this one before it was changed.

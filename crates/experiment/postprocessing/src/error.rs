@@ -39,14 +39,14 @@ pub enum PostprocessingError {
     /// The report cannot be made.
     #[error("the report cannot be made")]
     Report(#[from] ReportError),
-    /// No turbine of a run, or not the asked one, seeks a helix.
-    #[error("{}", nobody(run, asked))]
+    /// No turbine of a run, or not the requested one, looks for a helix.
+    #[error("{}", nobody(run, requested))]
     #[diagnostic(help("its turbines are {}; name one with --turbine", turbines.join(", ")))]
     NobodySeeks {
         /// Run.
         run: String,
-        /// Asked turbine.
-        asked: Option<String>,
+        /// Turbine requested.
+        requested: Option<String>,
         /// Turbines of the case.
         turbines: Vec<String>,
     },
@@ -80,9 +80,9 @@ pub enum PostprocessingError {
     },
 }
 
-fn nobody(run: &str, asked: &Option<String>) -> String {
-    match asked {
+fn nobody(run: &str, requested: &Option<String>) -> String {
+    match requested {
         Some(name) => format!("run {run} has no turbine called `{name}`"),
-        None => format!("no turbine of run {run} seeks a helix"),
+        None => format!("no turbine of run {run} looks for a helix"),
     }
 }

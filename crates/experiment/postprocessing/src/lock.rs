@@ -1,7 +1,7 @@
-//! What a meandering loop finds in the records of a run, run over them in hindsight: how well it would lock, on any turbine.
+//! What a meandering loop finds in the records of a run, replayed: how well it would lock, on any turbine.
 
 use crate::PostprocessingError;
-use crate::phase::asked::folder_of;
+use crate::phase::query::folder_of;
 use crate::phase::{column, moments, tells};
 use analysis::AnalysisError;
 use analysis::phase::uniform_interval;
@@ -15,11 +15,11 @@ use formats::case;
 use formats::records;
 use std::path::PathBuf;
 
-/// Strouhal numbers (–) and sense of a loop that is told nothing else: the defaults of `kind = "meandering"`.
+/// Strouhal numbers (–) and sense of a loop without other settings: the defaults of `kind = "meandering"`.
 const STROUHAL: [f64; 2] = [0.15, 0.3];
 const SENSE: Sense = Sense::Clockwise;
 
-/// What is asked of the records of a run.
+/// A question to the records of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LockQuestion {
     /// Folder of the run.
@@ -49,7 +49,7 @@ pub struct LockAnswer {
     pub phase_error: f64,
     /// Share of the time locked (–).
     pub locked_share: f64,
-    /// Mean Strouhal number that was believed (–).
+    /// Mean estimated Strouhal number (–).
     pub strouhal: f64,
 }
 
@@ -65,21 +65,21 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingEr
     let control = &case.runs[manifest.run_index].control;
     let is_asked = |&index: &usize| {
         let name = &case.turbines[index].name;
-        let is_named = question.turbine.as_ref().is_none_or(|asked| asked == name);
+        let is_named = question.turbine.as_ref().is_none_or(|requested| requested == name);
         is_named && control[index].is_there()
     };
     let turbines: Vec<usize> = (0..case.turbines.len()).filter(is_asked).collect();
     if turbines.is_empty() {
         return Err(PostprocessingError::NobodySeeks {
             run: manifest.run.clone(),
-            asked: question.turbine.clone(),
+            requested: question.turbine.clone(),
             turbines: case.turbines.iter().map(|turbine| turbine.name.clone()).collect(),
         });
     }
     let summary = records::read_summary(&folder)?;
-    let told =
+    let wanted =
         |channel: &str| turbines.iter().any(|&index| tells(&case.turbines[index].name, channel));
-    let series = records::read_series(&folder.series_path(), told)?;
+    let series = records::read_series(&folder.series_path(), wanted)?;
     let times = column(&series, "time_s")?;
     let rate_of_one = excitation_rate(1.0, case.wind.speed, summary.conditions.rotor_diameter);
     let from = question.from.unwrap_or(case.time.spin_up);
@@ -96,39 +96,39 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingEr
             leader: own.map_or(Leader::Both, |own| own.leader),
         };
         let turbine = case.turbines[index].name.clone();
-        let heard = hear(times, &moments(&series, &turbine)?, &settings, from)?;
+        let tracked = track(times, &moments(&series, &turbine)?, &settings, from)?;
         answers.push(LockAnswer {
             turbine,
             sense,
             strouhal_range: range,
-            times: heard.times,
-            phase_error: heard.phase_error,
-            locked_share: heard.locked_share,
-            strouhal: heard.rate / rate_of_one,
+            times: tracked.times,
+            phase_error: tracked.phase_error,
+            locked_share: tracked.locked_share,
+            strouhal: tracked.rate / rate_of_one,
         });
     }
     Ok(answers)
 }
 
 /// What a loop found in a record.
-struct Heard {
+struct Tracked {
     /// First and last time that count (s).
     times: [f64; 2],
     /// Median root mean square of the phase error (rad).
     phase_error: f64,
     /// Share of the time locked (–).
     locked_share: f64,
-    /// Mean rate that was believed (rad/s).
+    /// Mean estimated rate (rad/s).
     rate: f64,
 }
 
 /// Runs a loop of `settings` over `moments` (N m, fixed frame) at `times` (s); what it finds counts from the time `from` (s) on.
-fn hear(
+fn track(
     times: &[f64],
     moments: &[FixedFrame],
     settings: &TwoAxisSettings,
     from: f64,
-) -> Result<Heard, PostprocessingError> {
+) -> Result<Tracked, PostprocessingError> {
     let interval = uniform_interval(times)?;
     let mut follower = TwoAxisLoop::new(settings, interval)
         .map_err(MeanderingError::from)
@@ -148,7 +148,7 @@ fn hear(
     }
     let n = errors.len();
     errors.sort_by(f64::total_cmp);
-    Ok(Heard {
+    Ok(Tracked {
         times: [times[times.len() - n], times[times.len() - 1]],
         phase_error: 0.5 * (errors[(n - 1) / 2] + errors[n / 2]),
         locked_share: n_locked as f64 / n as f64,
@@ -166,7 +166,7 @@ mod tests {
 
     /// What a loop for 0.6 to 1.4 of [`RATE`] finds in moments that circle with it, and with `disturbance` (–) as much besides at
     /// four fifths of it.
-    fn heard(disturbance: f64) -> Heard {
+    fn tracked(disturbance: f64) -> Tracked {
         let settings = TwoAxisSettings {
             signal: PhaseLockedSettings::between([0.6 * RATE, 1.4 * RATE]),
             sense: SENSE,
@@ -184,18 +184,18 @@ mod tests {
                 FixedFrame { average: 3e7, tilt: sum(0.0), yaw: sum(SENSE.yaw_lead()) }
             })
             .collect();
-        hear(&times, &moments, &settings, 2000.0).expect("a sound record")
+        track(&times, &moments, &settings, 2000.0).expect("a sound record")
     }
 
     #[test]
     fn a_pure_circle_is_locked_to_and_a_second_wave_makes_the_phase_err() {
-        let pure = heard(0.0);
+        let pure = tracked(0.0);
         assert_eq!(pure.times, [2000.0, 3999.5]);
         assert_eq!(pure.locked_share, 1.0);
         assert!((pure.rate / RATE - 1.0).abs() < 1e-4, "{} rad/s", pure.rate);
         assert!(pure.phase_error < 1e-3, "{} rad", pure.phase_error);
         // The phase of the sum swings by 0.3 rad about that of the wave; a loop follows part of it and keeps its lock.
-        let disturbed = heard(0.3);
+        let disturbed = tracked(0.3);
         assert!((0.01..0.7).contains(&disturbed.phase_error), "{} rad", disturbed.phase_error);
     }
 
@@ -206,7 +206,7 @@ mod tests {
             sense: SENSE,
             leader: Leader::Both,
         };
-        let found = hear(&[0.0, 0.5], &[FixedFrame::default(); 2], &settings, 1.0);
+        let found = track(&[0.0, 0.5], &[FixedFrame::default(); 2], &settings, 1.0);
         assert!(matches!(
             found,
             Err(PostprocessingError::Analysis(AnalysisError::TooShort { .. }))

@@ -1,6 +1,6 @@
 //! How well the phase of a helix is estimated on the turbine that it meets: records in, agreement with the true wind out.
 
-pub(crate) mod asked;
+pub(crate) mod query;
 mod replay;
 
 pub use replay::tune;
@@ -10,7 +10,7 @@ use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
     fixed_frame_moments, ground_truth, uniform_interval,
 };
-use asked::{Asked, Records};
+use query::{Query, Records};
 use basis::FixedFrame;
 use basis::records::Series;
 use control::phase_sync::PhaseEstimator;
@@ -19,21 +19,21 @@ use std::path::PathBuf;
 
 /// Excitation periods in a segment of the cross-spectrum (–).
 const SEGMENT_PERIODS: f64 = 4.0;
-/// What the channels of a turbine begin with that tell of a phase: measured, believed, and the true wind where it would stand.
+/// What the channels of a turbine begin with that tell of a phase: measured, estimated, and the true wind where it would stand.
 const CHANNELS: [&str; 6] =
     ["azimuth_", "rotor_speed_", "pitch_", "flap_moment_", "estimate", "lines_"];
 
-/// What is asked of the records of a run.
+/// A question to the records of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PhaseQuestion {
     /// Folder of the run.
     pub run: PathBuf,
-    /// Turbine that a helix meets; the first that seeks one when absent.
+    /// Turbine that a helix meets; the first that looks for one when absent.
     pub turbine: Option<String>,
     /// Folder of a run of the same study without that turbine, whose series holds the true wind at its place; a run
     /// beside this one when absent.
     pub truth: Option<PathBuf>,
-    /// Estimator to run over the records; what the run itself believed when absent.
+    /// Estimator to run over the records; the run's own estimate when absent.
     pub estimator: Option<PhaseEstimator>,
     /// First time that counts (s); the end of the spin-up when absent.
     pub from: Option<f64>,
@@ -77,10 +77,10 @@ pub struct PhaseAnswer {
     pub trust: f64,
     /// Tilt and yaw phase of the turbine's own blade moments through the filter of the truth, which knows the future: what
     /// its loads hold, beside what an estimator made of them in time. Absent where the turbine pitched a helix of its own.
-    pub hindsight: Option<[Agreement; 2]>,
+    pub zero_phase: Option<[Agreement; 2]>,
 }
 
-/// The answers for all turbines of a run that seek a helix.
+/// The answers for all turbines of a run that look for a helix.
 #[derive(Debug)]
 pub struct PhaseAnswers {
     /// Turbine by turbine, in the case's order.
@@ -117,10 +117,10 @@ pub(crate) struct Truth {
 pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, PostprocessingError> {
     let mut records = Records::read(question)?;
     let first = records.turbines[0];
-    answer(question, &records.asked(first)?)
+    answer(question, &records.query(first)?)
 }
 
-/// What [`phase`] answers for the turbine that `question` names, for each that seeks a helix where it names none.
+/// What [`phase`] answers for the turbine that `question` names, for each that looks for a helix where it names none.
 ///
 /// # Errors
 /// As [`phase`]; [`PostprocessingError::NoTruth`] only where no turbine has an answer.
@@ -128,9 +128,9 @@ pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, PostprocessingEr
     let mut records = Records::read(question)?;
     let mut found = PhaseAnswers { answers: Vec::new(), without_truth: Vec::new() };
     for index in records.turbines.clone() {
-        match records.asked(index) {
+        match records.query(index) {
             Err(error @ PostprocessingError::NoTruth { .. }) => found.without_truth.push(error),
-            asked => found.answers.push(answer(question, &asked?)?),
+            query => found.answers.push(answer(question, &query?)?),
         }
     }
     if found.answers.is_empty() && !found.without_truth.is_empty() {
@@ -139,27 +139,27 @@ pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, PostprocessingEr
     Ok(found)
 }
 
-/// What the records that are `asked` tell of one turbine.
-fn answer(question: &PhaseQuestion, asked: &Asked<'_>) -> Result<PhaseAnswer, PostprocessingError> {
-    let Asked { run, case, name, reference, series, truth, .. } = asked;
+/// Answer of the records of `query` for one turbine.
+fn answer(question: &PhaseQuestion, query: &Query<'_>) -> Result<PhaseAnswer, PostprocessingError> {
+    let Query { run, case, name, reference, series, truth, .. } = query;
     let estimates = match question.estimator {
-        Some(estimator) => replay::replay(asked, estimator)?,
+        Some(estimator) => replay::replay(query, estimator)?,
         None => recorded(series, name)?,
     };
     let from = question.from.unwrap_or(case.time.spin_up);
     let compared =
         |estimates: &Estimates| compare(run, name, series, estimates, truth, reference, from);
-    let hindsight = if asked.pitches {
+    let zero_phase = if query.pitches {
         None
     } else {
-        let looked_back = compared(&hindsight(series, name, reference)?)?;
+        let looked_back = compared(&zero_phase(series, name, reference)?)?;
         Some([looked_back.tilt.agreement, looked_back.yaw.agreement])
     };
-    Ok(PhaseAnswer { hindsight, ..compared(&estimates)? })
+    Ok(PhaseAnswer { zero_phase, ..compared(&estimates)? })
 }
 
 /// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m) stand for winds.
-fn hindsight(
+fn zero_phase(
     series: &Series,
     name: &str,
     reference: &Reference,
@@ -167,13 +167,13 @@ fn hindsight(
     let moments = moments(series, name)?;
     let times = column(series, "time_s")?;
     let band = Band::around(reference.frequency(), Band::RATIO);
-    let told = ground_truth(&moments, times[0], uniform_interval(times)?, reference, band)?;
+    let filtered = ground_truth(&moments, times[0], uniform_interval(times)?, reference, band)?;
     let wave = |axis: AxisWind| Wave { amplitude: axis.amplitude, phase: axis.phase };
     Ok(Estimates {
-        trust: vec![1.0; told.average.len()],
-        wind: told.average,
-        tilt: wave(told.tilt),
-        yaw: wave(told.yaw),
+        trust: vec![1.0; filtered.average.len()],
+        wind: filtered.average,
+        tilt: wave(filtered.tilt),
+        yaw: wave(filtered.yaw),
     })
 }
 
@@ -184,7 +184,7 @@ pub(crate) fn moments(series: &Series, name: &str) -> Result<Vec<FixedFrame>, Po
     Ok(fixed_frame_moments(column(series, &format!("{name}.azimuth_rad"))?, &blades)?)
 }
 
-/// What `estimates` over the rows of `series` are worth against `truth`, from the time `from` (s) on.
+/// Comparison of `estimates` over the rows of `series` with `truth`, from the time `from` (s) on.
 ///
 /// # Errors
 /// [`PostprocessingError::Analysis`] for records that are too short or have gaps.
@@ -241,7 +241,7 @@ pub(crate) fn compare(
         mean_winds: [mean(&pick(&estimates.wind)), mean(&pick_true(&truth.average))],
         trust: mean(&pick(&estimates.trust)),
         times: pick(times),
-        hindsight: None,
+        zero_phase: None,
     })
 }
 
@@ -290,7 +290,7 @@ pub(crate) fn truth(
     Ok(Some(Truth { run: run.to_owned(), wind }))
 }
 
-/// What turbine `name` believed during the run.
+/// Estimate of turbine `name` during the run.
 pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, PostprocessingError> {
     let channel = |what: &str| column(series, &format!("{name}.{what}")).map(<[f64]>::to_vec);
     let wave = |axis: &str| {

@@ -13,7 +13,7 @@ use formats::case;
 use formats::records::{self, Manifest};
 use std::path::{Path, PathBuf};
 
-/// What is asked of several studies.
+/// A question to several studies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GainsQuestion {
     /// Folders of the studies, two or more.
@@ -175,10 +175,10 @@ fn check_alike(
     let run = manifest.run.clone();
     let (here, there) = (turbine_names(summary), turbine_names(first_summary));
     if here != there {
-        let told = |names: &[String], folder: &Path| {
+        let reported = |names: &[String], folder: &Path| {
             format!("{} in {}", names.join(", "), folder.display())
         };
-        let turbines = [told(&here, folder), told(&there, first_folder)];
+        let turbines = [reported(&here, folder), reported(&there, first_folder)];
         return Err(SeedsError::Turbines { run, turbines });
     }
     let same_case = manifest.run == first.run && unseeded(manifest) == unseeded(first);
@@ -232,19 +232,19 @@ fn run_gains(pairs: &[Pair<'_>], downstream: &[String]) -> Result<RunGains, Post
     let behind = |all: &[String]| -> Vec<String> {
         all.iter().filter(|name| downstream.contains(name)).cloned().collect()
     };
-    let mut asked: Vec<(String, Vec<String>)> = here
+    let mut requested: Vec<(String, Vec<String>)> = here
         .iter()
         .filter(|name| there.contains(name))
         .map(|name| (name.clone(), vec![name.clone()]))
         .collect();
     if behind(&here) == behind(&there) && behind(&here).len() > 1 {
-        asked.push(("downstream".to_owned(), behind(&here)));
+        requested.push(("downstream".to_owned(), behind(&here)));
     }
     if here == there {
-        asked.push(("all".to_owned(), here.clone()));
+        requested.push(("all".to_owned(), here.clone()));
     }
-    let mut parts = Vec::with_capacity(asked.len());
-    for (name, turbines) in asked {
+    let mut parts = Vec::with_capacity(requested.len());
+    for (name, turbines) in requested {
         let gains = pairs
             .iter()
             .map(|pair| gain(&pair.run.1, &pair.other.1, &turbines))
@@ -258,8 +258,8 @@ fn run_gains(pairs: &[Pair<'_>], downstream: &[String]) -> Result<RunGains, Post
 /// Mean power of `turbines` together in `summary` over that in `other`, minus one (–).
 fn gain(summary: &Summary, other: &Summary, turbines: &[String]) -> Result<f64, AnalysisError> {
     let power = |summary: &Summary| -> f64 {
-        let asked = summary.turbines.iter().filter(|turbine| turbines.contains(&turbine.name));
-        asked.map(|turbine| turbine.power.mean).sum()
+        let requested = summary.turbines.iter().filter(|turbine| turbines.contains(&turbine.name));
+        requested.map(|turbine| turbine.power.mean).sum()
     };
     let compared = power(other);
     if compared == 0.0 {

@@ -8,7 +8,7 @@ mod tracks;
 mod wake;
 
 use crate::PostprocessingError;
-use crate::phase::asked::tells_truth;
+use crate::phase::query::tells_truth;
 use crate::phase::{PhaseAnswer, Truth, compare, recorded, tells, truth};
 use analysis::AnalysisError;
 use analysis::phase::Reference;
@@ -20,7 +20,7 @@ use formats::case;
 use formats::records::{RunRecords, StudyRecords};
 use report::Synchronisation;
 
-/// One run in which a turbine joins a helix, or watches for one.
+/// One run in which a turbine joins a helix, or monitors one.
 struct Joined {
     /// Place among the study's runs.
     run: usize,
@@ -32,7 +32,7 @@ struct Joined {
 }
 
 impl Joined {
-    /// Lead of the pitch over the wind (rad, [0, 2π)); none where the turbine only watches.
+    /// Lead of the pitch over the wind (rad, [0, 2π)); none where the turbine only monitors.
     fn offset(&self) -> Option<f64> {
         (self.sync.amplitude > 0.0).then(|| wrap_to_turn(self.sync.offset))
     }
@@ -49,13 +49,13 @@ struct Synchronised<'a> {
     diameter: f64,
 }
 
-/// A turbine and one helix that it joins, or watches for.
+/// A turbine and one helix that it joins, or monitors.
 struct Pairing {
     /// Place of the turbine in the case.
     turbine: usize,
     sense: Sense,
     strouhal: f64,
-    /// Places of the runs in which it does, and how it was asked to.
+    /// Places of the runs in which it does, and how it was set to.
     runs: Vec<(usize, PhaseSyncSettings)>,
 }
 
@@ -233,13 +233,13 @@ control.T2 = { kind = "phase-sync", offset_deg = 150.0, amplitude_deg = 4.0 }
     fn found(run_indices: &[usize]) -> Vec<(String, Vec<usize>, Vec<f64>)> {
         let case = case::parse("row.toml", ROW, &[]).expect("a sound case");
         let pairings = pairings(&case, run_indices);
-        let told = pairings.iter().map(|pairing| {
+        let reported = pairings.iter().map(|pairing| {
             let runs = pairing.runs.iter();
             let (places, offsets): (Vec<usize>, Vec<f64>) =
                 runs.map(|(place, sync)| (*place, sync.offset.to_degrees().round())).unzip();
             (pairing.name(&case, &pairings), places, offsets)
         });
-        told.collect()
+        reported.collect()
     }
 
     #[test]

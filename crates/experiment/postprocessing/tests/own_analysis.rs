@@ -58,6 +58,6 @@ fn an_analysis_of_ones_own_answers_beside_the_others() {
     assert!(energy > 10.0 && energy < 5e3 * 60.0 / 3600.0, "{energy} kWh");
     assert_eq!(answer.text, format!("T1 made {energy:.1} kWh\n"));
     let other = (own.run)(&Request::of(&run).with("turbine", "T9"));
-    let told = other.expect_err("no such turbine").to_string();
-    assert!(told.contains("T9.power_w"), "{told}");
+    let reported = other.expect_err("no such turbine").to_string();
+    assert!(reported.contains("T9.power_w"), "{reported}");
 }

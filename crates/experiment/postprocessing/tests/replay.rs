@@ -1,4 +1,4 @@
-//! An estimator that is run over the records of a run believes what it believed in the run: same rotor, same calibration.
+//! An estimator replayed on the records of a run gives the estimates of the run: same rotor, same calibration.
 
 #[path = "../../study/tests/small/mod.rs"]
 mod small;

@@ -1,4 +1,4 @@
-//! A row in which each turbine seeks the helix of the one before: all of them are answered for, in analysis and report.
+//! A row in which each turbine looks for the helix of the one before: all of them are answered for, in analysis and report.
 
 #[path = "../../study/tests/small/mod.rs"]
 mod small;
@@ -42,7 +42,7 @@ fn every_turbine_that_seeks_a_helix_is_answered_for() {
         .iter()
         .map(|answer| [answer.turbine.as_str(), answer.truth.as_str()])
         .collect();
-    // T3's wind is told by the run in which T2 does the same.
+    // T3's wind is given by the run in which T2 does the same.
     assert_eq!(named, [["T2", "alone"], ["T3", "without-t3"]]);
     // One wind met both.
     let [near, far] = [0, 1].map(|index: usize| &found.answers[index].yaw.true_phase);

@@ -5,8 +5,8 @@ use crate::study::{Excitation, Kind, Study, gain_of};
 use crate::words::{self, SPACE, number, percent};
 use basis::records::{Statistic, TurbineSummary};
 
-/// Changes of power below this (–) are not told: they print as zero.
-const LEAST_TOLD: f64 = 5e-4;
+/// Changes of power below this (–) are not stated: they print as zero.
+const LEAST_STATED: f64 = 5e-4;
 
 /// The result in one sentence: what was done, what each turbine lost or won, and all together.
 pub(crate) fn headline(study: &Study) -> String {
@@ -54,14 +54,14 @@ pub(crate) fn gain_sentence(study: &Study, run: &RunRecords) -> String {
         .iter()
         .filter_map(|turbine| Some((turbine, turbine.power_gain?.mean)))
         .collect();
-    let told = |gain: &f64| gain.abs() >= LEAST_TOLD;
+    let stated = |gain: &f64| gain.abs() >= LEAST_STATED;
     let says = |(turbine, gain): &(&TurbineSummary, f64)| {
         format!("{} {}", turbine.name, percent(gain.abs()))
     };
     let losses: Vec<String> =
-        gains.iter().filter(|gain| told(&gain.1) && gain.1 < 0.0).map(says).collect();
+        gains.iter().filter(|gain| stated(&gain.1) && gain.1 < 0.0).map(says).collect();
     let wins: Vec<String> =
-        gains.iter().filter(|gain| told(&gain.1) && gain.1 > 0.0).map(says).collect();
+        gains.iter().filter(|gain| stated(&gain.1) && gain.1 > 0.0).map(says).collect();
     let mut clauses = Vec::new();
     if !losses.is_empty() {
         clauses.push(format!("cost {} of its power", words::list(&losses)));

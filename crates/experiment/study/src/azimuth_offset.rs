@@ -13,14 +13,14 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What is asked of a turbine.
+/// A question about a turbine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffsetQuestion {
     /// Name of the library, or path of a turbine file.
     pub model: String,
     /// Steady wind (m/s).
     pub wind_speed: f64,
-    /// Strouhal number of the helices that probe it, with that wind and the turbine's own diameter (–).
+    /// Strouhal number of the helices that identify it, with that wind and the turbine's own diameter (–).
     pub strouhal: f64,
     /// Whether blades and tower bend.
     pub flexible: bool,
@@ -74,7 +74,7 @@ pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyEr
 mod tests {
     use super::*;
 
-    /// A rotor alike in all directions: some offset parts tilt from yaw, and it belongs to the machine, not to the probe.
+    /// A rotor alike in all directions: some offset parts tilt from yaw, and it belongs to the machine, not to the identification.
     #[test]
     fn the_offset_parts_the_axes_and_hardly_depends_on_the_frequency() {
         let question = OffsetQuestion {

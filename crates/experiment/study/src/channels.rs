@@ -9,7 +9,7 @@ use turbine::Turbine;
 /// Channels before the turbines' own.
 const SHARED: [&str; 4] = ["time_s", "wind.u_m_s", "wind.v_m_s", "wind.w_m_s"];
 
-/// Loads and motions that are kept of a turbine in solved air, under OpenFAST's names; in prescribed wind all are.
+/// Loads and motions that are kept of a turbine in resolved flow, under OpenFAST's names; in prescribed wind all are.
 pub(crate) const LOADS: [&str; 18] = [
     "RootMxc1",
     "RootMyc1",
@@ -34,7 +34,7 @@ pub(crate) const LOADS: [&str; 18] = [
 /// Gathers one row of the series from the turbines' signals.
 ///
 /// A row is: time, wind at the hub-height probe upstream of the first turbine, then for each
-/// turbine how it truly fared, whatever its instruments showed, its commands, its loads, the signals of its controller and what its further sensors show; then the wind along
+/// turbine its true state, whatever its instruments showed, its commands, its loads, the signals of its controller and what its further sensors show; then the wind along
 /// radial lines at the places of turbines that are not there.
 pub(crate) struct Row {
     names: Vec<String>,

@@ -121,8 +121,8 @@ fn group<'a>(
     n_most: usize,
 ) -> BTreeSet<&'a str> {
     let mut group: BTreeSet<&str> = channels.iter().map(String::as_str).collect();
-    let asked = expected.iter().position(|part| part.as_slice() == channels);
-    for part in expected.iter().skip(asked.map_or(expected.len(), |place| place + 1)) {
+    let requested = expected.iter().position(|part| part.as_slice() == channels);
+    for part in expected.iter().skip(requested.map_or(expected.len(), |place| place + 1)) {
         let mut larger = group.clone();
         larger.extend(part.iter().map(String::as_str));
         if larger.len() > n_most {
@@ -190,8 +190,8 @@ mod tests {
     fn what_is_expected_next_comes_along_as_far_as_there_is_room() {
         let part = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
         let expected = [part(&["a", "b"]), part(&["b", "c"]), part(&["d", "e"]), part(&["f"])];
-        let found = |asked: &[&str], n_most: usize| {
-            group(&part(asked), &expected, n_most).into_iter().collect::<String>()
+        let found = |requested: &[&str], n_most: usize| {
+            group(&part(requested), &expected, n_most).into_iter().collect::<String>()
         };
         // What is needed together comes, room or not.
         assert_eq!(found(&["a", "b"], 0), "ab");

@@ -3,22 +3,22 @@
 use crate::StudyError;
 use crate::outputs::Outputs;
 use crate::prepared::Prepared;
-use crate::probes::Probes;
+use crate::pitch_identification::PitchIdentifications;
 use crate::warnings::wall_gain;
-use crate::watcher::Estimate;
+use crate::observer::Estimate;
 
 impl Prepared {
-    /// The cost of `n_runs` runs with their `outputs`, and of `probes` before them; the machine's speed is not known yet.
-    pub(crate) fn estimate(&self, n_runs: usize, probes: &Probes, outputs: &Outputs) -> Estimate {
+    /// The cost of `n_runs` runs with their `outputs`, and of `identifications` before them; the machine's speed is not known yet.
+    pub(crate) fn estimate(&self, n_runs: usize, identifications: &PitchIdentifications, outputs: &Outputs) -> Estimate {
         let plan = &self.plan;
-        let costs = probes.costs();
+        let costs = identifications.costs();
         let field = (self.case.flow.solver.memory)(plan);
         let turbulence = farm::wind::turbulence(&self.site());
         Estimate {
             n_runs,
-            n_probes: costs.len(),
-            n_probe_steps: costs.iter().map(|cost| cost.n_steps).sum(),
-            probe_work: costs.iter().map(|cost| cost.work).sum(),
+            n_identifications: costs.len(),
+            n_identification_steps: costs.iter().map(|cost| cost.n_steps).sum(),
+            identification_work: costs.iter().map(|cost| cost.work).sum(),
             n_cells: plan.n_cells,
             spacing: plan.spacing,
             interval: plan.interval,

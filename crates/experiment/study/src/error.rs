@@ -7,7 +7,7 @@ use farm::plan::PlanError;
 use farm::self_check::SelfCheckError;
 use flow::FlowError;
 use flow::inflow::InflowError;
-use flow::lattice::{PlaneSizeError, SettingsError};
+use flow::lattice::{PlaneSizeError, LatticeError};
 use formats::atomic::FileError;
 use formats::case::CaseError;
 use formats::turbine_file::TurbineFileError;
@@ -35,7 +35,7 @@ pub enum StudyError {
     Plan(#[from] PlanError),
     /// The air cannot be set up.
     #[error("the air cannot be set up")]
-    Settings(#[from] SettingsError),
+    Settings(#[from] LatticeError),
     /// The air of a flow solver that is not the program's own cannot be set up.
     #[error("the air cannot be set up")]
     Solver(#[source] Box<dyn std::error::Error + Send + Sync>),
@@ -90,7 +90,7 @@ pub enum StudyError {
     #[error("the case has no run called `{name}`")]
     #[diagnostic(help("its runs are {}", known.join(", ")))]
     UnknownRun {
-        /// Asked name.
+        /// Name given.
         name: String,
         /// Names in the case.
         known: Vec<String>,

@@ -4,7 +4,7 @@ use crate::columns::{Columns, add_to};
 use crate::loads;
 use crate::prepared::Prepared;
 use crate::same_case::check_same;
-use crate::{StudyError, Watcher};
+use crate::{StudyError, Observer};
 use analysis::statistics::{BLOCK_LENGTH, gain};
 use basis::records::{Summary, TurbineSummary};
 use farm::case::Run;
@@ -113,7 +113,7 @@ pub(crate) fn catch_up(
     setup: &Prepared,
     index: usize,
     folders: &[RunFolder],
-    watcher: &mut dyn Watcher,
+    observer: &mut dyn Observer,
 ) -> Result<(), StudyError> {
     let (run, folder) = (&setup.case.runs[index], &folders[index]);
     let mut summary = records::read_summary(folder)?;
@@ -122,11 +122,11 @@ pub(crate) fn catch_up(
     }
     match comparison(setup, index, folders)? {
         Comparison::None => {}
-        Comparison::Missing(Run { name, .. }) => watcher.warned(&format!(
+        Comparison::Missing(Run { name, .. }) => observer.warned(&format!(
             "{} has no gains: the run {name} that it compares with is not made yet; make it with --run {name} --resume",
             run.name
         )),
-        Comparison::Other(Run { name, .. }) => watcher.warned(&format!(
+        Comparison::Other(Run { name, .. }) => observer.warned(&format!(
             "{} has no gains: the run {name} was made with another version of the case or of a turbine",
             run.name
         )),

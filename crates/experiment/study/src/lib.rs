@@ -4,7 +4,7 @@
 //! | --- | --- | --- |
 //! | [`Case`](farm::case::Case) | plain data: what the case file says | |
 //! | [`Prepared`] | checked, turbines loaded, domain laid out; its cost is known | `prepared`, `models`, `warnings`, `cost`, `self_check` |
-//! | [`Ready`] | pitch responses identified, turbulence made | `ready`, `probes`, `turbulence`, `air` |
+//! | [`Ready`] | pitch responses identified, turbulence made | `ready`, `pitch_identification`, `turbulence`, `air` |
 //! | run | from time zero to the last step | `simulate` with its `outputs`, `channels` |
 //! | | the same as values, without files | `in_memory` |
 //! | summary | its numbers, and gains over another run | `summarise` from `columns`, `gains` |
@@ -24,7 +24,7 @@ mod loads;
 mod models;
 pub mod outputs;
 mod prepared;
-mod probes;
+mod pitch_identification;
 mod ready;
 mod same_case;
 mod self_check;
@@ -33,7 +33,7 @@ mod study;
 mod summarise;
 mod tips;
 mod warnings;
-mod watcher;
+mod observer;
 
 pub use azimuth_offset::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 pub use error::StudyError;
@@ -43,4 +43,4 @@ pub use prepared::Prepared;
 pub use ready::Ready;
 pub use self_check::SelfChecked;
 pub use study::{Options, Outcome, run, run_with};
-pub use watcher::{Estimate, Probing, Progress, Silent, Watcher};
+pub use observer::{Estimate, IdentificationProgress, Progress, Silent, Observer};

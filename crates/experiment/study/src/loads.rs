@@ -93,7 +93,7 @@ pub(crate) fn compare(
     Ok(())
 }
 
-/// The damage-equivalent load that is told of `channel`.
+/// The damage-equivalent load that is reported of `channel`.
 fn damage_equivalent(channel: &str) -> LoadKind {
     let slope = if channel.starts_with("Root") { BLADE_SLOPE } else { STEEL_SLOPE };
     LoadKind::DamageEquivalent { slope, reference_frequency_hz: REFERENCE_FREQUENCY }
@@ -215,10 +215,10 @@ mod tests {
             found
         };
         let found = compared(&other);
-        let told = |load: &Load| (load.channel.clone(), load.kind, load.change.is_some());
+        let reported = |load: &Load| (load.channel.clone(), load.kind, load.change.is_some());
         let equivalent = |slope| LoadKind::DamageEquivalent { slope, reference_frequency_hz: 1.0 };
         assert_eq!(
-            found.iter().map(told).collect::<Vec<_>>(),
+            found.iter().map(reported).collect::<Vec<_>>(),
             [
                 ("RootMyb1".to_owned(), equivalent(10.0), true),
                 ("RootMyb1".to_owned(), LoadKind::Deviation, true),

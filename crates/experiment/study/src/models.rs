@@ -124,10 +124,10 @@ fn warnings(
             placement.model
         ));
     }
-    let (told, radius) = (discon.constants.rotor_radius, definition.rotor_radius());
-    if (told / radius - 1.0).abs() > RADIUS_TO_WARN {
+    let (given, radius) = (discon.constants.rotor_radius, definition.rotor_radius());
+    if (given / radius - 1.0).abs() > RADIUS_TO_WARN {
         warnings.push(format!(
-            "{path} is for a rotor of {told:.1} m radius, and controls {} of {radius:.1} m",
+            "{path} is for a rotor of {given:.1} m radius, and controls {} of {radius:.1} m",
             placement.model
         ));
     }

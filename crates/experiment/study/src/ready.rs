@@ -3,9 +3,9 @@
 use crate::StudyError;
 use crate::air;
 use crate::prepared::Prepared;
-use crate::probes::{Keep, Probes};
+use crate::pitch_identification::{Keep, PitchIdentifications};
 use crate::self_check::SelfChecked;
-use crate::watcher::{Silent, Watcher};
+use crate::observer::{Silent, Observer};
 use farm::case::Run;
 use farm::pitch_response::CalibrationError;
 use farm::self_check::SelfCheckError;
@@ -32,13 +32,13 @@ impl Prepared {
     /// # Errors
     /// [`StudyError`] of the self-check, of the identification, or of turbulence that cannot be made.
     pub fn ready(self) -> Result<Ready, StudyError> {
-        let (stop, watcher) = (AtomicBool::new(false), &mut Silent);
+        let (stop, observer) = (AtomicBool::new(false), &mut Silent);
         let runs: Vec<usize> = (0..self.case.runs.len()).collect();
-        let probes = self.probes(&runs, Vec::new());
-        let ControlFlow::Continue(checked) = self.self_check(&stop, watcher)? else {
+        let identifications = self.identifications(&runs, Vec::new());
+        let ControlFlow::Continue(checked) = self.self_check(&stop, observer)? else {
             return Err(SelfCheckError::BrokenOff.into());
         };
-        match Ready::new(self, checked, probes, &mut |_| Ok(()), &stop, watcher)? {
+        match Ready::new(self, checked, identifications, &mut |_| Ok(()), &stop, observer)? {
             ControlFlow::Continue(ready) => Ok(ready),
             ControlFlow::Break(()) => Err(CalibrationError::BrokenOff.into()),
         }
@@ -46,7 +46,7 @@ impl Prepared {
 }
 
 impl Ready {
-    /// `prepared`, whose rotors are `checked`, with what `probes` name found and kept, and the turbulence made. A break when
+    /// `prepared`, whose rotors are `checked`, with what `identifications` name found and kept, and the turbulence made. A break when
     /// `stop` asked for an end before all was found.
     ///
     /// # Errors
@@ -54,18 +54,18 @@ impl Ready {
     pub(crate) fn new(
         mut prepared: Prepared,
         checked: SelfChecked,
-        probes: Probes,
+        identifications: PitchIdentifications,
         keep: Keep,
         stop: &AtomicBool,
-        watcher: &mut dyn Watcher,
+        observer: &mut dyn Observer,
     ) -> Result<ControlFlow<(), Self>, StudyError> {
-        if prepared.calibrate(probes, keep, stop, watcher)?.is_break() {
+        if prepared.calibrate(identifications, keep, stop, observer)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
         let inflow = {
-            let watcher = RefCell::new(&mut *watcher);
-            let told = |share| watcher.borrow_mut().preparing("turbulence", share);
-            wind::entering(&prepared.site(), told)?
+            let observer = RefCell::new(&mut *observer);
+            let reported = |share| observer.borrow_mut().preparing("turbulence", share);
+            wind::entering(&prepared.site(), reported)?
         };
         let inflow = inflow.unwrap_or_else(|| Arc::clone(&prepared.mean_inflow));
         prepared.warnings.extend(checked.warnings);

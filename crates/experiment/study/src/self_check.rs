@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use crate::prepared::Prepared;
-use crate::watcher::Watcher;
+use crate::observer::Observer;
 use farm::assemble::Model;
 use farm::self_check::{SelfCheck, SelfCheckError, Tunnel, self_check};
 use std::ops::ControlFlow;
@@ -25,7 +25,7 @@ impl Prepared {
     pub fn self_check(
         &self,
         stop: &AtomicBool,
-        watcher: &mut dyn Watcher,
+        observer: &mut dyn Observer,
     ) -> Result<ControlFlow<(), SelfChecked>, StudyError> {
         let mut found = SelfChecked::default();
         if !self.case.flow.solver.needs_self_check {
@@ -38,14 +38,14 @@ impl Prepared {
                 continue;
             }
             checked.push(machine);
-            let check = match self.check(model, stop, watcher) {
+            let check = match self.check(model, stop, observer) {
                 Err(SelfCheckError::BrokenOff) => return Ok(ControlFlow::Break(())),
                 check => check?,
             };
-            watcher.checked(&check);
+            observer.checked(&check);
             if !check.passes() {
                 let warning = warning(&model.definition.name, &check);
-                watcher.warned(&warning);
+                observer.warned(&warning);
                 found.warnings.push(warning);
             }
             let speed = check.updates_per_second;
@@ -60,7 +60,7 @@ impl Prepared {
         &self,
         model: &Model,
         stop: &AtomicBool,
-        watcher: &mut dyn Watcher,
+        observer: &mut dyn Observer,
     ) -> Result<SelfCheck, SelfCheckError> {
         let what = format!("checking {}", model.definition.name);
         self_check(
@@ -69,7 +69,7 @@ impl Prepared {
             &Tunnel::of_study(self.plan.spacing, self.plan.interval),
             self.case.flow.threads,
             &mut |share| {
-                watcher.preparing(&what, share);
+                observer.preparing(&what, share);
                 if stop.load(Ordering::Relaxed) {
                     ControlFlow::Break(())
                 } else {

@@ -5,7 +5,7 @@ mod checkpoint;
 use crate::StudyError;
 use crate::outputs::{Outputs, Scene, Writers};
 use crate::ready::Ready;
-use crate::watcher::{Progress, Watcher};
+use crate::observer::{Progress, Observer};
 use basis::records::Cost;
 use checkpoint::Before;
 use farm::case::Run;
@@ -71,7 +71,7 @@ struct Simulation<'a> {
 pub(crate) fn simulate(
     job: &Job,
     stop: &AtomicBool,
-    watcher: &mut dyn Watcher,
+    observer: &mut dyn Observer,
 ) -> Result<Ending, StudyError> {
     let mut simulation = Simulation::begin(job)?;
     let n_steps = job.ready.prepared.plan.n_steps;
@@ -89,7 +89,7 @@ pub(crate) fn simulate(
             last_checkpoint = Instant::now();
         }
         if last_progress.elapsed() >= PROGRESS_INTERVAL {
-            watcher.advanced(&simulation.progress());
+            observer.advanced(&simulation.progress());
             last_progress = Instant::now();
         }
     }

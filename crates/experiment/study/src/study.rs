@@ -5,16 +5,16 @@ use crate::cost::check_memory;
 use crate::gains::{self, Comparison};
 use crate::outputs::Outputs;
 use crate::prepared::Prepared;
-use crate::probes::Probes;
+use crate::pitch_identification::PitchIdentifications;
 use crate::ready::Ready;
 use crate::same_case::check_same;
 use crate::self_check::SelfChecked;
 use crate::simulate::{Ending, Job, simulate};
 use crate::summarise;
-use crate::{StudyError, Watcher};
+use crate::{StudyError, Observer};
 use basis::records::{Cost, Summary};
 use farm::case::Run;
-use formats::records::{self, Manifest, RunFolder, read_probes, write_probes};
+use formats::records::{self, Manifest, RunFolder, read_pitch_responses, write_pitch_responses};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -48,7 +48,7 @@ pub enum Outcome {
         /// Folder of the results.
         directory: PathBuf,
     },
-    /// The cost was told, nothing was run.
+    /// The cost was reported, nothing was run.
     Estimated,
     /// Stopped on request; it can be resumed.
     Interrupted {
@@ -64,9 +64,9 @@ pub enum Outcome {
 pub fn run(
     options: &Options,
     stop: &AtomicBool,
-    watcher: &mut dyn Watcher,
+    observer: &mut dyn Observer,
 ) -> Result<Outcome, StudyError> {
-    run_with(options, &Outputs::standard(), stop, watcher)
+    run_with(options, &Outputs::standard(), stop, observer)
 }
 
 /// The same with other `outputs` than those that every study has, for example with one of your own added.
@@ -77,14 +77,14 @@ pub fn run_with(
     options: &Options,
     outputs: &Outputs,
     stop: &AtomicBool,
-    watcher: &mut dyn Watcher,
+    observer: &mut dyn Observer,
 ) -> Result<Outcome, StudyError> {
     let prepared = Prepared::read(&options.case, &options.overrides)?;
     let study = Study::open(options, outputs, &prepared)?;
-    let known = if options.resume { read_probes(&study.directory)? } else { Vec::new() };
-    let probes = prepared.probes(&study.open, known);
+    let known = if options.resume { read_pitch_responses(&study.directory)? } else { Vec::new() };
+    let identifications = prepared.identifications(&study.open, known);
     let interrupted = || Ok(Outcome::Interrupted { directory: study.directory.clone() });
-    let checked = match study.cost(&prepared, &probes, stop, watcher)? {
+    let checked = match study.cost(&prepared, &identifications, stop, observer)? {
         ControlFlow::Break(()) => return interrupted(),
         ControlFlow::Continue(checked) => checked,
     };
@@ -94,20 +94,20 @@ pub fn run_with(
     let prepared = if study.open.is_empty() {
         prepared
     } else {
-        let keep = &mut |found: &[_]| Ok(write_probes(&study.directory, found)?);
-        let ready = match Ready::new(prepared, checked, probes, keep, stop, watcher)? {
+        let keep = &mut |found: &[_]| Ok(write_pitch_responses(&study.directory, found)?);
+        let ready = match Ready::new(prepared, checked, identifications, keep, stop, observer)? {
             ControlFlow::Break(()) => return interrupted(),
             ControlFlow::Continue(ready) => ready,
         };
         for place in 0..study.open.len() {
-            if study.make(&ready, place, stop, watcher)?.is_break() {
+            if study.make(&ready, place, stop, observer)?.is_break() {
                 return interrupted();
             }
         }
         ready.prepared
     };
     for &index in &study.wanted {
-        gains::catch_up(&prepared, index, &study.folders, watcher)?;
+        gains::catch_up(&prepared, index, &study.folders, observer)?;
     }
     let made = records::read_summaries(&study.directory)?;
     let summaries = made.into_iter().map(|(_, summary)| summary).collect();
@@ -171,7 +171,7 @@ impl<'a> Study<'a> {
         Ok(Self { outputs, directory, folders, wanted, open, resume: options.resume })
     }
 
-    /// Tells `watcher` what the open runs will cost, and checks the rotors where there are such runs; a break when `stop` asked
+    /// Tells `observer` what the open runs will cost, and checks the rotors where there are such runs; a break when `stop` asked
     /// for an end.
     ///
     /// # Errors
@@ -179,23 +179,23 @@ impl<'a> Study<'a> {
     fn cost(
         &self,
         prepared: &Prepared,
-        probes: &Probes,
+        identifications: &PitchIdentifications,
         stop: &AtomicBool,
-        watcher: &mut dyn Watcher,
+        observer: &mut dyn Observer,
     ) -> Result<ControlFlow<(), SelfChecked>, StudyError> {
-        let mut estimate = prepared.estimate(self.open.len(), probes, self.outputs);
-        watcher.estimated(&estimate);
+        let mut estimate = prepared.estimate(self.open.len(), identifications, self.outputs);
+        observer.estimated(&estimate);
         check_memory(&estimate)?;
         for warning in &prepared.warnings {
-            watcher.warned(warning);
+            observer.warned(warning);
         }
         if self.open.is_empty() {
             return Ok(ControlFlow::Continue(SelfChecked::default()));
         }
-        let checked = prepared.self_check(stop, watcher)?;
+        let checked = prepared.self_check(stop, observer)?;
         if let ControlFlow::Continue(checked) = &checked {
             estimate.updates_per_second = checked.updates_per_second;
-            watcher.estimated(&estimate);
+            observer.estimated(&estimate);
         }
         Ok(checked)
     }
@@ -209,25 +209,25 @@ impl<'a> Study<'a> {
         ready: &Ready,
         place: usize,
         stop: &AtomicBool,
-        watcher: &mut dyn Watcher,
+        observer: &mut dyn Observer,
     ) -> Result<ControlFlow<()>, StudyError> {
         let index = self.open[place];
         let (run, folder) = (&ready.prepared.case.runs[index], &self.folders[index]);
         let manifest = begin_run(&ready.prepared, index, folder, self.resume)?;
         let (outputs, resume, place) = (self.outputs, self.resume, (place, self.open.len()));
         let job = Job { ready, run, folder, outputs, resume, place };
-        match simulate(&job, stop, watcher)? {
+        match simulate(&job, stop, observer)? {
             Ending::Interrupted => Ok(ControlFlow::Break(())),
             Ending::Complete { cost, clipped_shares } => {
                 let summary = self.summary(ready, index, &clipped_shares, cost)?;
                 for warning in &summary.warnings[ready.prepared.warnings.len()..] {
-                    watcher.warned(&warning.message);
+                    observer.warned(&warning.message);
                 }
                 records::write_manifest(folder, &manifest.finish())?;
                 // The summary comes last: with it the run is complete.
                 records::write_summary(folder, &summary)?;
                 folder.remove_checkpoint()?;
-                watcher.finished(&summary);
+                observer.finished(&summary);
                 Ok(ControlFlow::Continue(()))
             }
         }

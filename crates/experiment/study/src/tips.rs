@@ -88,9 +88,9 @@ mod tests {
         // With that step the fastest tip moves with the sound.
         let moved = found.fastest * found.longest_step / 15.0;
         assert!((moved - 1.0 / 3.0_f64.sqrt()).abs() < 1e-12, "{moved}");
-        let told = found.warning("helix", "T1");
-        assert!(told.starts_with("helix: the tip of T1 outran"), "{told}");
-        assert!(told.contains("50.0 % of the time, first at 400 s; at 500 s it moved at 90.0 m/s"));
-        assert!(told.ends_with("take flow.step = 0.0962 or less"), "{told}");
+        let message = found.warning("helix", "T1");
+        assert!(message.starts_with("helix: the tip of T1 outran"), "{message}");
+        assert!(message.contains("50.0 % of the time, first at 400 s; at 500 s it moved at 90.0 m/s"));
+        assert!(message.ends_with("take flow.step = 0.0962 or less"), "{message}");
     }
 }

@@ -35,7 +35,7 @@ control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.
 
 /// Steps until all that is made once is made, and the helix, which fades in over a period of 107 s, is whole (–).
 const N_WARM: usize = 2200;
-/// Steps that are watched (–).
+/// Steps that are monitored (–).
 const N_WATCHED: usize = 100;
 
 thread_local! {
@@ -88,7 +88,7 @@ fn farm_of(run: usize) -> Farm<Air> {
     assemble::farm(&case, &case.runs[run], &plan, &[model], air).expect("such a farm can be")
 }
 
-/// Allocations of the watched steps of run number `run` (–), and how far the pitch of blade 1 moved meanwhile (rad).
+/// Allocations of the monitored steps of run number `run` (–), and how far the pitch of blade 1 moved meanwhile (rad).
 fn allocations(run: usize) -> (usize, f64) {
     let mut farm = farm_of(run);
     let mut last = Last(0.0);

@@ -85,14 +85,14 @@ fn a_turbine_runs_under_the_constants_of_its_file_alone() {
     let folder = written(DISCON);
     let setup = setup(folder.path()).expect("a sound case");
     let library = formats::library::load("nrel-5mw").expect("a turbine of the library");
-    let [own, told] = [0, 1].map(|index: usize| &setup.models[index].constants);
+    let [own, given] = [0, 1].map(|index: usize| &setup.models[index].constants);
     assert_eq!(own.rated_rotor_speed, library.controller.rated_rotor_speed);
-    assert!((told.rated_rotor_speed - 116.4 / 97.0).abs() < 1e-12, "{}", told.rated_rotor_speed);
-    assert!((told.rated_torque - 97.0 * 45_000.0).abs() < 1e-6, "{}", told.rated_torque);
-    assert_eq!(told.optimal_tip_speed_ratio, 7.5);
+    assert!((given.rated_rotor_speed - 116.4 / 97.0).abs() < 1e-12, "{}", given.rated_rotor_speed);
+    assert!((given.rated_torque - 97.0 * 45_000.0).abs() < 1e-6, "{}", given.rated_torque);
+    assert_eq!(given.optimal_tip_speed_ratio, 7.5);
     let read = formats::rosco::read(&folder.path().join("control/DISCON.IN")).expect("sound files");
-    assert_eq!(*told, read.constants);
-    let estimator = told.estimator.as_ref().expect("the table is there");
+    assert_eq!(*given, read.constants);
+    let estimator = given.estimator.as_ref().expect("the table is there");
     assert!((estimator.coefficients.power(7.5, 0.0) - 0.455).abs() < 1e-12);
     assert_eq!(setup.models[0].definition.name, setup.models[1].definition.name);
     assert!(!setup.warnings.iter().any(|warning| warning.contains("DISCON.IN")));
@@ -101,9 +101,9 @@ fn a_turbine_runs_under_the_constants_of_its_file_alone() {
 #[test]
 fn what_the_file_lacks_or_does_not_fit_is_told() {
     let folder = written(&DISCON.replace("table.txt", "none.txt").replace("63.0 ", "80.0 "));
-    let told = setup(folder.path()).expect("a sound case").warnings;
+    let given = setup(folder.path()).expect("a sound case").warnings;
     for expected in ["control/none.txt", "a rotor of 80.0 m radius"] {
-        assert!(told.iter().any(|warning| warning.contains(expected)), "{expected}: {told:?}");
+        assert!(given.iter().any(|warning| warning.contains(expected)), "{expected}: {given:?}");
     }
 
     let folder = written(&DISCON.replace("48000.", "40000."));

@@ -6,7 +6,7 @@ use small::{NREL_5MW, written};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use study::{Options, Outcome, StudyError, Watcher};
+use study::{Options, Outcome, StudyError, Observer};
 
 fn case() -> String {
     let runs = r#"[[run]]
@@ -22,7 +22,7 @@ control.T1 = { kind = "pulse", amplitude_deg = 2.0, strouhal = 0.25 }
 #[derive(Default)]
 struct Warned(Vec<String>);
 
-impl Watcher for Warned {
+impl Observer for Warned {
     fn warned(&mut self, warning: &str) {
         self.0.push(warning.to_owned());
     }

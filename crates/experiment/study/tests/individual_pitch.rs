@@ -12,7 +12,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use study::{
-    Estimate, OffsetQuestion, Options, Outcome, Prepared, Probing, Watcher, azimuth_offset,
+    Estimate, OffsetQuestion, Options, Outcome, Prepared, IdentificationProgress, Observer, azimuth_offset,
 };
 use tempfile::TempDir;
 
@@ -39,35 +39,35 @@ name = "both"
     folder
 }
 
-/// What was told.
+/// What was reported.
 #[derive(Default)]
-struct Told {
-    n_probes: usize,
+struct Reports {
+    n_identifications: usize,
     moved: bool,
     found: Vec<(String, PitchResponse, bool)>,
 }
 
-impl Watcher for Told {
+impl Observer for Reports {
     fn estimated(&mut self, estimate: &Estimate) {
-        self.n_probes = estimate.n_probes;
+        self.n_identifications = estimate.n_identifications;
     }
 
-    fn probing(&mut self, _: &Probing) {
+    fn identifying(&mut self, _: &IdentificationProgress) {
         self.moved = true;
     }
 
-    fn probed(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
+    fn identified(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
         self.found.push((turbine.to_owned(), *response, again));
     }
 }
 
-fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Told, Vec<Summary>) {
+fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Reports, Vec<Summary>) {
     let overrides = overrides.iter().map(|&text| text.to_owned()).collect();
     let options = Options { overrides, resume, ..small::options(folder) };
-    let mut told = Told::default();
-    let outcome = study::run(&options, &AtomicBool::new(false), &mut told).expect("a sound case");
+    let mut reports = Reports::default();
+    let outcome = study::run(&options, &AtomicBool::new(false), &mut reports).expect("a sound case");
     let Outcome::Done { summaries, .. } = outcome else { panic!("{outcome:?}") };
-    (told, summaries)
+    (reports, summaries)
 }
 
 /// With which azimuth offset the turbines of `summaries` worked, those of all runs (rad).
@@ -81,7 +81,7 @@ fn what_is_left_out_is_found_once_told_and_taken_again_with_the_same_bits() {
     let folder = folder("");
     let (first, summaries) = run(folder.path(), false, &[]);
     // Once for two turbines alike and both runs.
-    assert_eq!((first.n_probes, first.found.len()), (1, 1));
+    assert_eq!((first.n_identifications, first.found.len()), (1, 1));
     assert!(first.moved);
     let (turbine, response, again) = &first.found[0];
     assert!(turbine == "T1" && !again);
@@ -95,18 +95,18 @@ fn what_is_left_out_is_found_once_told_and_taken_again_with_the_same_bits() {
     let before = fs::read(&series).expect("a series");
     fs::remove_dir_all(folder.path().join("out/both")).expect("a run");
     let (second, summaries) = run(folder.path(), true, &[]);
-    assert_eq!((second.n_probes, second.moved), (0, false));
+    assert_eq!((second.n_identifications, second.moved), (0, false));
     assert_eq!(second.found, [("T1".to_owned(), *response, true)]);
     assert_eq!(offsets(&summaries), [Some(azimuth_offset); 3]);
     let after = fs::read(&series).expect("a series");
-    assert!(before == after, "a study that takes what was probed has other bits");
+    assert!(before == after, "a study that takes what was identified has other bits");
 }
 
 #[test]
 fn what_is_given_is_not_sought() {
     let folder = folder("azimuth_offset_deg = 20.0, ");
-    let (told, summaries) = run(folder.path(), false, &[]);
-    assert_eq!((told.n_probes, told.found.len()), (0, 0));
+    let (reports, summaries) = run(folder.path(), false, &[]);
+    assert_eq!((reports.n_identifications, reports.found.len()), (0, 0));
     assert_eq!(offsets(&summaries), [Some(20f64.to_radians()); 3]);
 }
 
@@ -123,9 +123,9 @@ fn the_command_tells_what_the_study_finds() {
         flexible: false,
     };
     let alone = azimuth_offset(&question).expect("a sound turbine").decoupling.azimuth_offset;
-    let (told, summaries) = run(folder.path(), false, &[&format!("flow.step={STEP}")]);
-    let (_, PitchResponse::IndividualPitch { azimuth_offset: found }, _) = told.found[0] else {
-        panic!("{:?}", told.found)
+    let (reports, summaries) = run(folder.path(), false, &[&format!("flow.step={STEP}")]);
+    let (_, PitchResponse::IndividualPitch { azimuth_offset: found }, _) = reports.found[0] else {
+        panic!("{:?}", reports.found)
     };
     let rotor_speed = summaries[0].turbines[0].rotor_speed.mean;
     let lag = 0.5 * (STEP - PRESCRIBED_STEP) * rotor_speed;
@@ -142,8 +142,8 @@ fn control_without_its_offset_is_not_put_together() {
     assert!(matches!(error, AssemblyError::NoIndividualPitchOffset), "{error:?}");
     assert!(error.to_string().contains("azimuth_offset_deg"), "{error}");
     let control = model.constants.individual_pitch.expect("it was asked for");
-    let told = IndividualPitch { azimuth_offset: Some(0.3), ..control };
-    model.constants.individual_pitch = Some(told);
+    let given = IndividualPitch { azimuth_offset: Some(0.3), ..control };
+    model.constants.individual_pitch = Some(given);
     assert!(built(&model).is_ok());
     assert!(built(&model.without_individual_pitch()).is_ok());
 }

@@ -1,4 +1,4 @@
-//! Instruments in the farm, in solved and in prescribed air: perfect ones change no bit, noise is what was asked for,
+//! Instruments in the farm, in resolved flow and in prescribed wind: perfect ones change no bit, noise has the deviation that was set,
 //! records hold the truth, and a run that was stopped goes on with the same noise.
 
 mod small;
@@ -15,7 +15,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Options, Outcome, Progress, Silent, Watcher};
+use study::{Options, Outcome, Progress, Silent, Observer};
 
 const CASE: &str = r#"
 name = "instruments"
@@ -149,7 +149,7 @@ fn controllers_see_the_noise_and_records_hold_the_truth() {
     }
 }
 
-/// What a turbine believes of the wind follows its strain gauges; what it does and how it fares does not when it only watches.
+/// The estimated wind follows the strain gauges; commands and loads do not while the turbine only monitors.
 #[test]
 fn noise_reaches_the_phase_estimator_and_nothing_else() {
     let gauges = format!("turbine.T2.instruments.flap_moments={{ noise_mnm = {MOMENT_NOISE} }}");
@@ -162,7 +162,7 @@ fn noise_reaches_the_phase_estimator_and_nothing_else() {
         let mut values = vec![f64::NAN; signals.len()];
         controller.write_signals(&mut values);
         let [wind, phase] = ["estimated_wind_m_s", "estimated_tilt_phase_rad"].map(|wanted| {
-            values[signals.iter().position(|signal| *signal == wanted).expect("T2 seeks the helix")]
+            values[signals.iter().position(|signal| *signal == wanted).expect("T2 looks for the helix")]
         });
         (records, wind, phase)
     };
@@ -196,7 +196,7 @@ fn noise_belongs_to_the_winds_seed_and_the_turbine() {
 /// Stops a run at the first sign of life.
 struct Stopper<'a>(&'a AtomicBool);
 
-impl Watcher for Stopper<'_> {
+impl Observer for Stopper<'_> {
     fn advanced(&mut self, _: &Progress) {
         self.0.store(true, Ordering::Relaxed);
     }
@@ -213,7 +213,7 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
         "run.sync.control.T2={ kind = \"meandering\", factor = 1.5, amplitude_deg = 2, azimuth_offset_deg = 0, delay = 0, moment_per_degree_mnm = 4 }",
     ]
     .map(str::to_owned);
-    let series = |name: &str, watcher: &mut dyn FnMut(&AtomicBool, &Options) -> Outcome| {
+    let series = |name: &str, observer: &mut dyn FnMut(&AtomicBool, &Options) -> Outcome| {
         let output = folder.path().join(name);
         let options = Options {
             output: Some(output.clone()),
@@ -221,11 +221,11 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
             resume: true,
             ..options(folder.path())
         };
-        while !matches!(watcher(&AtomicBool::new(false), &options), Outcome::Done { .. }) {}
+        while !matches!(observer(&AtomicBool::new(false), &options), Outcome::Done { .. }) {}
         read(&output)
     };
-    let run = |stop: &AtomicBool, options: &Options, watcher: &mut dyn Watcher| {
-        study::run(options, stop, watcher).expect("the study runs")
+    let run = |stop: &AtomicBool, options: &Options, observer: &mut dyn Observer| {
+        study::run(options, stop, observer).expect("the study runs")
     };
     let whole = series("whole", &mut |stop, options| run(stop, options, &mut Silent));
     let broken = series("broken", &mut |stop, options| run(stop, options, &mut Stopper(stop)));

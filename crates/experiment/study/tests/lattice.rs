@@ -1,4 +1,4 @@
-//! A study in solved air, from case to report, stopped on the way: what it leaves has the same bits.
+//! A study in resolved flow, from case to report, stopped on the way: what it leaves has the same bits.
 
 mod small;
 
@@ -100,7 +100,7 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
 
     // What it takes on the disk was known beforehand, within a factor of two.
     let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
-    let told = Outputs::standard().disk(&setup) as f64;
+    let reported = Outputs::standard().disk(&setup) as f64;
     let taken: usize = whole.iter().map(|(_, bytes)| bytes.len()).sum();
-    assert!((0.5..2.0).contains(&(told / taken as f64)), "{told} bytes told, {taken} taken");
+    assert!((0.5..2.0).contains(&(reported / taken as f64)), "{reported} bytes reported, {taken} taken");
 }

@@ -106,7 +106,7 @@ fn a_tower_takes_load_from_a_blade_once_a_turn() {
 const STEP: f64 = 0.05;
 /// When it rises (s).
 const STEP_AT: f64 = 5.0;
-/// Time that is watched afterwards (s).
+/// Time that is recorded afterwards (s).
 const WATCHED: f64 = 120.0;
 
 /// Thrust (N) of the turbine of the case with `overrides`, instant after instant, at held rotor speed in a wind along its

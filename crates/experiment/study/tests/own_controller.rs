@@ -13,7 +13,7 @@ use control::{
 use small::{case, done, options, written};
 use std::fs;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Outcome, Progress, Silent, Watcher};
+use study::{Outcome, Progress, Silent, Observer};
 
 /// Less torque than greedy control asks for, by a share that grows with the number of instants: it has a state.
 struct Derated {
@@ -134,7 +134,7 @@ fn a_study_runs_it_and_its_signal_stands_in_the_series() {
 /// Asks for an end once half of the steps are made.
 struct Halfway<'a>(&'a AtomicBool);
 
-impl Watcher for Halfway<'_> {
+impl Observer for Halfway<'_> {
     fn advanced(&mut self, progress: &Progress) {
         self.0.store(2 * progress.step >= progress.n_steps, Ordering::Relaxed);
     }

@@ -1,10 +1,10 @@
-//! What shows only once turbines and controllers are there is told before the first step, at its line of the case file.
+//! What shows only once turbines and controllers are there is reported before the first step, at its line of the case file.
 
 mod small;
 
 use small::{options, written};
 use std::sync::atomic::AtomicBool;
-use study::{Estimate, Options, Outcome, StudyError, Watcher};
+use study::{Estimate, Options, Outcome, StudyError, Observer};
 
 const LATTICE: &str = r#"
 name = "lattice"
@@ -52,14 +52,14 @@ control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.
 control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }
 "#;
 
-/// Keeps what was told beforehand.
+/// Keeps what was reported beforehand.
 #[derive(Default)]
-struct Told {
+struct Reports {
     memory: u64,
     warnings: Vec<String>,
 }
 
-impl Watcher for Told {
+impl Observer for Reports {
     fn estimated(&mut self, estimate: &Estimate) {
         self.memory = estimate.memory;
     }
@@ -70,11 +70,11 @@ impl Watcher for Told {
 }
 
 /// What a dry run of `case` comes to, and what it tells.
-fn dry(case: &str) -> (Result<Outcome, StudyError>, Told) {
+fn dry(case: &str) -> (Result<Outcome, StudyError>, Reports) {
     let folder = written(case);
     let options = Options { dry_run: true, ..options(folder.path()) };
-    let mut told = Told::default();
-    (study::run(&options, &AtomicBool::new(false), &mut told), told)
+    let mut reports = Reports::default();
+    (study::run(&options, &AtomicBool::new(false), &mut reports), reports)
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn a_long_record_of_turbulence_returns_rather_than_fill_the_memory() {
     let (outcome, ten_minutes) = dry(PRESCRIBED);
     assert!(matches!(outcome, Ok(Outcome::Estimated)), "{outcome:?}");
     let returns =
-        |told: &Told| told.warnings.iter().any(|warning| warning.contains("returns after"));
+        |reports: &Reports| reports.warnings.iter().any(|warning| warning.contains("returns after"));
     assert!(ten_minutes.memory > 1 << 20 && !returns(&ten_minutes));
     let (outcome, ten_hours) = dry(&PRESCRIBED.replace("660.0", "36000.0"));
     assert!(matches!(outcome, Ok(Outcome::Estimated)), "{outcome:?}");

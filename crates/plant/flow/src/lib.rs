@@ -9,7 +9,7 @@ pub mod lattice;
 use basis::{PointForce, Vector3};
 use thiserror::Error;
 
-/// Somewhere the wind can be asked for.
+/// A wind field that can be sampled.
 pub trait WindField {
     /// Writes the wind (m/s, farm frame) at each of `positions` (m, farm frame) into `velocities`, of the same length.
     fn sample(&self, positions: &[Vector3], velocities: &mut [Vector3]);
@@ -43,7 +43,7 @@ impl<Flow: FlowSolver + ?Sized> FlowSolver for Box<Flow> {
     }
 }
 
-/// Wind prescribed everywhere and for all time: what enters a solver's inlet, or blows where no air is solved.
+/// Wind prescribed everywhere and for all time: what enters a solver's inlet, or is the wind where no flow is resolved.
 pub trait Inflow: Send + Sync {
     /// Writes the wind (m/s) at `time` (s) at each of `positions` (m, farm frame) into `velocities`, of the same length.
     fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]);
@@ -65,10 +65,10 @@ pub enum FlowError {
         /// Speed there (m/s), possibly not a number.
         speed: f64,
     },
-    /// The solver was asked for a duration that is not a whole number of its steps.
-    #[error("asked to advance {duration} s, which is not a whole number of steps of {step} s")]
+    /// A duration that is not a whole number of the solver's steps.
+    #[error("cannot advance by {duration} s, which is not a whole number of steps of {step} s")]
     FractionalStep {
-        /// Asked duration (s).
+        /// Duration given (s).
         duration: f64,
         /// Step (s).
         step: f64,

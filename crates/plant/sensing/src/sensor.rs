@@ -11,7 +11,7 @@ use turbine::Turbine;
 /// What a sensor can see at one control instant.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
-    /// How the turbine truly fares.
+    /// True state of the turbine.
     pub truth: &'a Truth,
     /// The turbine that it is mounted on.
     pub turbine: &'a Turbine,

@@ -76,7 +76,7 @@ fn induction(coefficient: f64) -> f64 {
 /// Speed through a disc over the free stream's (–), given its `load` over the air's density and the square of the speed
 /// through it (–): [`induction`] solved for the free stream, so that both agree however slow the air is.
 fn through(load: f64) -> f64 {
-    // Symbols: b the ratio sought, one less the induction; load b² = C(1 − b)/2.
+    // Symbols: b the unknown ratio, one less the induction; load b² = C(1 − b)/2.
     let b = 1.0 / (1.0 + 0.5 * load);
     if b > 1.0 - GREATEST_INDUCTION {
         return b;

@@ -210,7 +210,7 @@ impl Turbine {
         &self.workspace.forces
     }
 
-    /// How the turbine fares now, at `time` (s), for a command that will hold for `interval` (s).
+    /// State of the turbine now, at `time` (s), for a command that will hold for `interval` (s).
     ///
     /// Azimuth, speed and pitch are those of the instant; loads and power those of the interval before it.
     pub fn truth(&self, time: f64, interval: f64) -> Truth {

@@ -292,6 +292,6 @@ pub struct Objection {
     pub message: String,
     /// A word or two at the very place, such as "too late".
     pub label: &'static str,
-    /// What mends it.
+    /// How to fix it.
     pub fix: String,
 }

@@ -12,7 +12,7 @@ pub use warning::{Warning, WarningKind};
 
 /// Version of the layout of [`Summary`]; raised when a field changes its name, its place or its meaning.
 ///
-/// 2: loads, control and warnings are typed, where they were sentences; the wind is told as target and realised.
+/// 2: loads, control and warnings are typed, where they were sentences; the wind is given as target and realised.
 pub const SCHEMA_VERSION: u32 = 2;
 
 /// Mean of a quantity over the analysed time, with what is known of its uncertainty.
@@ -76,7 +76,7 @@ impl PitchDuty {
     }
 }
 
-/// How a turbine's own pitch acts, as its controller was told before the run: probed, or given in the case file.
+/// How a turbine's own pitch acts, as its controller is given it before the run: identified, or set in the case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PitchResponse {
@@ -116,10 +116,10 @@ pub enum PitchResponse {
     },
 }
 
-/// The slow oscillation of one of a rotor's moments, as far as it goes with the phase that a turbine believed.
+/// The slow oscillation of one of a rotor's moments, correlated with the phase that a turbine estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeanderingAxis {
-    /// Amplitude of the moment's part in step with the believed phase, what pitch added to it included (N m).
+    /// Amplitude of the moment's part in phase with the estimated phase, the effect of pitch included (N m).
     pub amplitude: f64,
     /// Mean amplitude that the turbine took for the baseline's (N m); absent while it knew none.
     pub reference: Option<f64>,
@@ -132,7 +132,7 @@ pub struct MeanderingAxis {
 pub struct MeanderingSummary {
     /// Share of the time in which its phase-locked loop was locked (–).
     pub locked_share: f64,
-    /// Mean frequency that it believed while locked (Hz); absent where it never was.
+    /// Mean estimated frequency while locked (Hz); absent where it never was.
     pub frequency_hz: Option<f64>,
     /// Tilt moment while locked, from the start of control on; absent where that makes less than two periods.
     pub tilt: Option<MeanderingAxis>,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
-/// Which way the helix winds, told by the frequency in the blade's frame.
+/// Which way the helix winds, defined by the frequency in the blade's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sense {
     /// Clockwise: blades pitch at rotor minus excitation frequency.

@@ -3,7 +3,7 @@
 use crate::PerBlade;
 use serde::{Deserialize, Serialize};
 
-/// How a turbine fares at one control instant: the truth, which records keep. Controllers never see it.
+/// True state of a turbine at one control instant, which records keep. Controllers never see it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     /// Time since the start of the run (s).
@@ -37,7 +37,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// How a machine of `n_blades` fares at rest in still air at time zero: zeros, to be overwritten by what a trial is about.
+    /// State of a machine of `n_blades` at rest in still air at time zero: zeros, to be overwritten by what a trial is about.
     pub fn at_rest(n_blades: usize) -> Self {
         let none = PerBlade::splat(n_blades, 0.0);
         Self {

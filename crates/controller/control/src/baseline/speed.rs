@@ -1,4 +1,4 @@
-//! What the controller believes of rotor speed and wind: filtered readings, and the wind estimated from them.
+//! Rotor speed and wind in the controller: filtered measurements, and the wind estimated from them.
 
 use super::constants::{Constants, MAXIMUM_NOTCHES};
 use super::estimator::Estimator;

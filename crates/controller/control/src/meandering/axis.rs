@@ -1,6 +1,6 @@
 //! One axis: amplitude and offset of its load, brought to their references by proportional and integral action.
 
-use super::Settings;
+use super::MeanderingControlSettings;
 use estimation::phase_locked::Axis;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,13 @@ struct Action {
 impl Action {
     /// Takes in `error` (N m) over `interval` (s). The first error moves nothing at once, whatever the proportional gain;
     /// at a bound the integral stays where the sum just reaches it.
-    fn update(&mut self, interval: f64, error: f64, settings: &Settings, most: f64) {
+    fn update(
+        &mut self,
+        interval: f64,
+        error: f64,
+        settings: &MeanderingControlSettings,
+        most: f64,
+    ) {
         let proportional = settings.proportional * error;
         let integral = self.integral.unwrap_or(-proportional);
         let integral = integral + settings.bandwidth * error * interval;
@@ -33,14 +39,14 @@ pub(super) struct AxisLoop {
 }
 
 impl AxisLoop {
-    /// Takes in what is believed of the axis, its amplitude to become `reference` (N m), over `interval` (s).
+    /// Takes in the estimate of the axis, its amplitude to become `reference` (N m), over `interval` (s).
     /// van Veldhoven (2024), Eqs. 2-38, 2-39.
     pub(super) fn update(
         &mut self,
         interval: f64,
         load: &Axis,
         reference: f64,
-        settings: &Settings,
+        settings: &MeanderingControlSettings,
     ) {
         let gain = settings.decoupling.gain;
         let most = gain * settings.maximum_amplitude;

@@ -16,28 +16,28 @@ pub enum Followed {
     Wake,
 }
 
-/// What is asked for.
+/// Settings of the control.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Settings {
+pub struct MeanderingControlSettings {
     /// How the loads are followed, and which way they circle.
     pub follower: TwoAxisSettings,
     /// What is followed.
     pub followed: Followed,
-    /// Amplitude asked for over the baseline's, α (–): above one amplifies, below attenuates.
+    /// Target amplitude over the baseline's, α (–): above one amplifies, below attenuates.
     pub factor: f64,
     /// The baseline's amplitudes.
     pub reference: Reference,
     /// How pitch acts on the loads.
     pub decoupling: Decoupling,
-    /// Integral action: amplitude added per time and amplitude missing (1/s).
+    /// Integral action: amplitude added per time and amplitude error (1/s).
     pub bandwidth: f64,
-    /// Proportional action: amplitude added per amplitude missing (–).
+    /// Proportional action: amplitude added per amplitude error (–).
     pub proportional: f64,
-    /// Largest pitch amplitude on either axis (rad); 0, with no constant pitch either, only watches.
+    /// Largest pitch amplitude on either axis (rad); 0, with no constant pitch either, only monitors.
     pub maximum_amplitude: f64,
     /// Largest constant pitch on either axis to bring offsets to zero (rad); 0 leaves offsets alone.
     pub maximum_offset: f64,
-    /// Whether it fades out while the loop is not locked, and learns nothing then. Without it the believed phase is pitched with
+    /// Whether it fades out while the loop is not locked, and learns nothing then. Without it the estimated phase is pitched with
     /// whatever it follows, as the source does.
     pub needs_lock: bool,
     /// Time from which it acts (s).
@@ -62,9 +62,9 @@ pub enum MeanderingError {
     },
 }
 
-impl Settings {
+impl MeanderingControlSettings {
     /// Whether no pitch is allowed, so that the loads are followed and nothing else.
-    pub fn only_watches(&self) -> bool {
+    pub fn only_monitors(&self) -> bool {
         self.maximum_amplitude == 0.0 && self.maximum_offset == 0.0
     }
 

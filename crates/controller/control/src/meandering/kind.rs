@@ -2,7 +2,7 @@
 
 use super::outcome;
 use super::settings::{MeanderingSettings, TABLE};
-use super::{Decoupling, Meandering, Settings, TwoAxisSettings};
+use super::{Decoupling, Meandering, MeanderingControlSettings, TwoAxisSettings};
 use crate::Controller;
 use crate::excitation::Excitation;
 use crate::keys::starts_too_late;
@@ -101,7 +101,7 @@ impl ControllerKind for MeanderingKind {
             None if only_follows => Decoupling { azimuth_offset: 0.0, delay: 0.0, gain: 1.0 },
             None => return Err(ControlError::NotDecoupled),
         };
-        let settings = Settings {
+        let settings = MeanderingControlSettings {
             follower: TwoAxisSettings { signal, sense: given.sense, leader: given.leader },
             followed: given.followed,
             factor: given.factor,

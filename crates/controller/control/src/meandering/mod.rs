@@ -24,7 +24,7 @@ mod reference;
 mod settings;
 
 pub use decoupling::{Answer, Decoupling, relative_gain};
-pub use design::{Followed, MeanderingError, Settings};
+pub use design::{Followed, MeanderingControlSettings, MeanderingError};
 pub use estimation::phase_locked::{Leader, PhaseLockedError, TwoAxisEstimate, TwoAxisSettings};
 pub use kind::MEANDERING;
 pub use reference::Reference;
@@ -44,7 +44,7 @@ use std::f64::consts::TAU;
 /// Meandering control of one turbine; serialises whole, state included.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Meandering {
-    settings: Settings,
+    settings: MeanderingControlSettings,
     follower: TwoAxisLoop,
     baseline: Baseline,
     tilt: AxisLoop,
@@ -63,7 +63,10 @@ impl Meandering {
     ///
     /// # Errors
     /// [`MeanderingError`] names what cannot be used; gains that would not be stable come with the pole that is not.
-    pub fn new(settings: Settings, interval: f64) -> Result<Self, MeanderingError> {
+    pub fn new(
+        settings: MeanderingControlSettings,
+        interval: f64,
+    ) -> Result<Self, MeanderingError> {
         settings.check()?;
         let follower = TwoAxisLoop::new(&settings.follower, interval)?;
         if settings.maximum_amplitude > 0.0 {
@@ -82,7 +85,7 @@ impl Meandering {
         })
     }
 
-    /// Takes in `measurements` and adds what is asked of each blade to `pitch` (rad).
+    /// Takes in `measurements` and adds the command of each blade to `pitch` (rad).
     ///
     /// Begins without a step, and fades out over a period whenever the loop loses the lock that it [needs](Settings::needs_lock).
     pub fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
@@ -99,11 +102,11 @@ impl Meandering {
         let estimate = self.follower.follow(interval, FixedFrame { average: 0.0, tilt, yaw });
         self.turn(measurements);
         self.learn(measurements, &estimate);
-        let Settings { reference, factor, start, .. } = self.settings;
+        let MeanderingControlSettings { reference, factor, start, .. } = self.settings;
         let amplitudes = self.baseline.amplitudes(estimate.rate, reference);
-        let watches = self.settings.only_watches();
+        let only_monitors = self.settings.only_monitors();
         let acts = self.trusts(&estimate)
-            && !watches
+            && !only_monitors
             && measurements.time >= start
             && amplitudes.is_some();
         let slew = interval * estimate.rate / TAU;
@@ -120,7 +123,7 @@ impl Meandering {
             self.commands = FixedFrame::default();
             return;
         }
-        self.commands = self.asked(&estimate);
+        self.commands = self.target_pitch(&estimate);
         let azimuth = self.azimuth + self.settings.decoupling.azimuth_offset;
         let added = to_blades(azimuth, self.commands, pitch.len());
         for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
@@ -128,7 +131,7 @@ impl Meandering {
         }
     }
 
-    /// Angles (rad) that pitch on tilt and yaw is meant for, `further` (rad) than what is believed: a quarter period apart,
+    /// Angles (rad) that pitch on tilt and yaw is meant for, `further` (rad) than the estimate: a quarter period apart,
     /// or, where the wake's own part is followed, each axis its own.
     fn angles(&self, estimate: &TwoAxisEstimate, further: f64) -> [f64; 2] {
         let angles = match self.settings.followed {
@@ -150,7 +153,7 @@ impl Meandering {
     }
 
     /// Tilt and yaw pitch (rad) that adds it `delay` later. van Veldhoven (2024), Eq. 2-40.
-    fn asked(&self, estimate: &TwoAxisEstimate) -> FixedFrame {
+    fn target_pitch(&self, estimate: &TwoAxisEstimate) -> FixedFrame {
         let Decoupling { delay, gain, .. } = self.settings.decoupling;
         let load = self.own(self.angles(estimate, delay * estimate.rate));
         FixedFrame { average: 0.0, tilt: -load.tilt / gain, yaw: -load.yaw / gain }
@@ -188,7 +191,7 @@ impl Meandering {
 
     /// Keeps the baseline's amplitudes up while the loop is trusted.
     fn learn(&mut self, measurements: &Measurements, estimate: &TwoAxisEstimate) {
-        let Settings { reference, start, .. } = self.settings;
+        let MeanderingControlSettings { reference, start, .. } = self.settings;
         let early = match reference {
             Reference::Learned { duration } => measurements.time < start - duration,
             Reference::Given { .. } | Reference::Observed => false,
@@ -210,7 +213,7 @@ impl Meandering {
         self.baseline.update(interval, estimate.rate, reference, axes, added, ahead);
     }
 
-    /// What is believed of what is [`Followed`].
+    /// Estimate of what is [`Followed`].
     pub fn estimate(&self) -> TwoAxisEstimate {
         self.follower.estimate()
     }
@@ -230,8 +233,8 @@ impl Meandering {
         self.authority
     }
 
-    /// What is asked for.
-    pub fn settings(&self) -> &Settings {
+    /// Settings of the control.
+    pub fn settings(&self) -> &MeanderingControlSettings {
         &self.settings
     }
 }
@@ -260,8 +263,8 @@ impl Excitation for Meandering {
     }
 
     fn describe(&self) -> String {
-        if self.settings.only_watches() {
-            return "baseline, watching for meandering".to_owned();
+        if self.settings.only_monitors() {
+            return "baseline, monitoring meandering".to_owned();
         }
         format!("meandering × {} {}", self.settings.factor, self.settings.follower.sense)
     }

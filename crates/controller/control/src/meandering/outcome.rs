@@ -53,8 +53,8 @@ pub(super) fn outcome(
 
 /// What the turbine of `record` followed, under control from `start` (s) on.
 ///
-/// Amplitudes are those of the moments themselves, correlated with the phase that the turbine believed: what wanders away
-/// from that phase does not count, so that they lie somewhat below what the loop believes where it follows slowly.
+/// Amplitudes are those of the moments themselves, correlated with the phase that the turbine estimated: what drifts away
+/// from that phase does not count, so that they lie somewhat below the loop's own estimate where it follows slowly.
 ///
 /// # Errors
 /// [`MissingChannel`].
@@ -200,7 +200,7 @@ mod tests {
         let (tilt, yaw) = (found.tilt.expect("ten periods"), found.yaw.expect("ten periods"));
         assert!((tilt.amplitude - 3e6).abs() < 1.0, "{tilt:?}");
         assert!((tilt.factor.expect("a reference") - 1.5).abs() < 1e-6, "{tilt:?}");
-        // A believed phase that is off by a constant tells the same amplitude.
+        // An estimated phase that is off by a constant tells the same amplitude.
         assert!((yaw.amplitude - 1e6).abs() < 1.0, "{yaw:?}");
         assert_eq!((yaw.reference, yaw.factor), (None, None));
     }
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_turbine_under_other_control_tells_nothing() {
-        let told = outcome(&Control::baseline(), &Record(series(0.0)));
-        assert_eq!(told, Ok(Outcome::default()));
+        let reported = outcome(&Control::baseline(), &Record(series(0.0)));
+        assert_eq!(reported, Ok(Outcome::default()));
     }
 }

@@ -1,4 +1,4 @@
-//! The amplitude that each axis would have without control, of which a factor is asked for.
+//! The amplitude that each axis would have without control, a factor of which is the target.
 
 use estimation::phase_locked::Axis;
 use serde::{Deserialize, Serialize};
@@ -14,12 +14,12 @@ pub enum Reference {
         /// Amplitude of the yaw moment (N m).
         yaw: f64,
     },
-    /// The mean of what is believed while the loop is locked, for `duration` before control starts; it waits for that.
+    /// The mean estimate while the loop is locked, for `duration` before control starts; it waits for that.
     Learned {
         /// How long to learn (s).
         duration: f64,
     },
-    /// What is believed less what the pitch adds to it, over two periods: follows a baseline that changes.
+    /// The estimate less the effect of the pitch, over two periods: follows a baseline that changes.
     Observed,
 }
 

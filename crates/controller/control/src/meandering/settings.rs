@@ -17,7 +17,7 @@ pub(super) static TABLE: Table = Table {
             from(0.0, 10.0),
             "–",
             Required,
-            "Amplitude of the oscillation asked for over that of the baseline, α: above 1 amplifies and mixes the wake, below 1 attenuates and spares the turbine.",
+            "Target amplitude of the oscillation over that of the baseline, α: above 1 amplifies and mixes the wake, below 1 attenuates and spares the turbine.",
         ),
         key(
             "amplitude_deg",
@@ -101,7 +101,7 @@ pub(super) static TABLE: Table = Table {
             Holds::Choice(&["baseline", "none"]),
             "",
             Value("\"baseline\""),
-            "What it does while the loop is not locked. `baseline`: it fades out, and comes back with the lock. `none`: it pitches with whatever phase it believes in, as published.",
+            "What it does while the loop is not locked. `baseline`: it fades out, and comes back with the lock. `none`: it pitches with the estimated phase even so, as published.",
         ),
         key(
             "constant_pitch_deg",
@@ -143,7 +143,7 @@ const LEARNING_TIME: f64 = 300.0;
 /// Settings of a turbine that amplifies or attenuates the meandering of the wake that meets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeanderingSettings {
-    /// Amplitude of the loads asked for over that of the baseline, α (–).
+    /// Target amplitude of the loads over that of the baseline, α (–).
     pub factor: f64,
     /// Largest pitch amplitude on either axis (rad); 0 is the baseline that only follows, whatever `offset` says.
     pub amplitude: f64,
@@ -159,7 +159,7 @@ pub struct MeanderingSettings {
     pub followed: Followed,
     /// Where the baseline's amplitudes come from.
     pub reference: Reference,
-    /// Integral action: amplitude added per time and amplitude missing (1/s).
+    /// Integral action: amplitude added per time and amplitude error (1/s).
     pub bandwidth: f64,
     /// How pitch acts on the loads; found before the runs when absent.
     pub decoupling: Option<Decoupling>,

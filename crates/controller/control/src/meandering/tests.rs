@@ -1,4 +1,4 @@
-//! Control of loads that answer to pitch at once or late, turned or not, against what was asked for.
+//! Control of loads that answer to pitch at once or late, turned or not, against the target.
 
 use super::*;
 use basis::mbc::to_fixed_frame;
@@ -55,7 +55,7 @@ impl Rotor {
         }
     }
 
-    /// One step under `control`; gives what the blades were told (rad).
+    /// One step under `control`; gives the commands of the blades (rad).
     fn step(&mut self, step: usize, control: &mut Meandering) -> PerBlade<f64> {
         let measurements = self.measurements(step);
         let mut pitch = PerBlade::splat(3, 0.1);
@@ -66,9 +66,9 @@ impl Rotor {
     }
 }
 
-fn settings(sense: Sense, factor: f64) -> Settings {
+fn settings(sense: Sense, factor: f64) -> MeanderingControlSettings {
     let signal = Signal::between([0.05, 0.13]);
-    Settings {
+    MeanderingControlSettings {
         follower: TwoAxisSettings { signal, sense, leader: Leader::Both },
         followed: Followed::Load,
         factor,
@@ -84,7 +84,7 @@ fn settings(sense: Sense, factor: f64) -> Settings {
 }
 
 /// Amplitudes over the baseline's (–) and offsets (N m) that are left after 3000 s.
-fn settled(rotor: &mut Rotor, settings: Settings) -> ([f64; 2], [f64; 2]) {
+fn settled(rotor: &mut Rotor, settings: MeanderingControlSettings) -> ([f64; 2], [f64; 2]) {
     let mut control = Meandering::new(settings, INTERVAL).unwrap();
     for step in 0..15_000 {
         rotor.step(step, &mut control);
@@ -116,10 +116,10 @@ fn amplitudes_that_are_learned_or_observed_do_as_well() {
     for reference in [Reference::Learned { duration: 300.0 }, Reference::Observed] {
         let sense = Sense::Clockwise;
         for factor in [1.25, 0.5] {
-            let mut asked = settings(sense, factor);
-            asked.reference = reference;
-            asked.start = 900.0;
-            let (reached, _) = settled(&mut Rotor::new(sense, 1, 0.0), asked);
+            let mut given = settings(sense, factor);
+            given.reference = reference;
+            given.start = 900.0;
+            let (reached, _) = settled(&mut Rotor::new(sense, 1, 0.0), given);
             for reached in reached {
                 assert!((reached / factor - 1.0).abs() < 0.02, "{reference:?} {factor}: {reached}");
             }
@@ -132,11 +132,11 @@ fn amplitudes_that_are_learned_or_observed_do_as_well() {
 fn a_load_can_be_taken_away_whole_when_the_wake_is_followed() {
     for sense in [Sense::Clockwise, Sense::CounterClockwise] {
         for factor in [0.0, 0.1, 0.35, 2.0] {
-            let mut asked = settings(sense, factor);
-            asked.followed = Followed::Wake;
-            asked.decoupling.gain *= 0.8;
-            asked.reference = Reference::Given { tilt: AMPLITUDES[0], yaw: AMPLITUDES[1] };
-            let (reached, _) = settled(&mut Rotor::new(sense, 1, 0.0), asked);
+            let mut given = settings(sense, factor);
+            given.followed = Followed::Wake;
+            given.decoupling.gain *= 0.8;
+            given.reference = Reference::Given { tilt: AMPLITUDES[0], yaw: AMPLITUDES[1] };
+            let (reached, _) = settled(&mut Rotor::new(sense, 1, 0.0), given);
             for reached in reached {
                 assert!((reached - factor).abs() < 0.02, "{sense} {factor}: {reached}");
             }
@@ -148,16 +148,16 @@ fn a_load_can_be_taken_away_whole_when_the_wake_is_followed() {
 #[test]
 fn without_a_lock_it_waits_or_pitches_as_asked() {
     for needs_lock in [true, false] {
-        let mut asked = settings(Sense::Clockwise, 2.0);
-        asked.needs_lock = needs_lock;
-        asked.follower.signal = Signal::between([0.2, 0.4]);
+        let mut given = settings(Sense::Clockwise, 2.0);
+        given.needs_lock = needs_lock;
+        given.follower.signal = Signal::between([0.2, 0.4]);
         let mut rotor = Rotor::new(Sense::Clockwise, 1, 0.0);
-        let mut control = Meandering::new(asked, INTERVAL).unwrap();
+        let mut control = Meandering::new(given, INTERVAL).unwrap();
         let mut pitched: f64 = 0.0;
         for step in 0..15_000 {
             rotor.step(step, &mut control);
             pitched = pitched.max(control.commands().tilt.abs());
-            assert!(pitched == 0.0 || INTERVAL * step as f64 >= asked.start, "before the start");
+            assert!(pitched == 0.0 || INTERVAL * step as f64 >= given.start, "before the start");
             assert!(!needs_lock || !control.estimate().locked);
         }
         assert_eq!(pitched > 0.0, !needs_lock, "{pitched}");
@@ -167,9 +167,9 @@ fn without_a_lock_it_waits_or_pitches_as_asked() {
 #[test]
 fn offsets_are_taken_away_where_asked() {
     let sense = Sense::CounterClockwise;
-    let mut asked = settings(sense, 0.75);
-    asked.maximum_offset = 0.05;
-    let (reached, offsets) = settled(&mut Rotor::new(sense, 1, 0.0), asked);
+    let mut given = settings(sense, 0.75);
+    given.maximum_offset = 0.05;
+    let (reached, offsets) = settled(&mut Rotor::new(sense, 1, 0.0), given);
     assert!(reached.iter().all(|reached| (reached / 0.75 - 1.0).abs() < 0.005));
     assert!(offsets.iter().all(|offset| offset.abs() < 1e4), "{offsets:?}");
 }
@@ -210,9 +210,9 @@ fn two_helices_tell_azimuth_offset_delay_and_gain() {
     assert!((decoupling.delay - INTERVAL * (n_late + 1) as f64).abs() < 1e-6, "{decoupling:?}");
     assert!((decoupling.gain / GAIN - 1.0).abs() < 1e-9);
     for sense in [Sense::Clockwise, Sense::CounterClockwise] {
-        let mut asked = settings(sense, 0.5);
-        asked.decoupling = decoupling;
-        let (reached, _) = settled(&mut Rotor::new(sense, n_late, turned), asked);
+        let mut given = settings(sense, 0.5);
+        given.decoupling = decoupling;
+        let (reached, _) = settled(&mut Rotor::new(sense, n_late, turned), given);
         assert!(reached.iter().all(|reached| (reached / 0.5 - 1.0).abs() < 0.01), "{reached:?}");
     }
 }
@@ -220,16 +220,16 @@ fn two_helices_tell_azimuth_offset_delay_and_gain() {
 #[test]
 fn control_begins_without_a_step_and_stays_within_its_bounds() {
     let sense = Sense::Clockwise;
-    let mut asked = settings(sense, 3.0);
-    asked.maximum_amplitude = 0.02;
-    asked.proportional = 0.5;
-    let mut control = Meandering::new(asked, INTERVAL).unwrap();
+    let mut given = settings(sense, 3.0);
+    given.maximum_amplitude = 0.02;
+    given.proportional = 0.5;
+    let mut control = Meandering::new(given, INTERVAL).unwrap();
     let mut rotor = Rotor::new(sense, 1, 0.0);
     let mut before = FixedFrame::default();
     for step in 0..10_000 {
         let pitch = rotor.step(step, &mut control);
         let commands = control.commands();
-        if INTERVAL * step as f64 <= asked.start - INTERVAL {
+        if INTERVAL * step as f64 <= given.start - INTERVAL {
             assert!(pitch.iter().all(|pitch| *pitch == 0.1));
         }
         // The steepest that a sine of the largest amplitude can be, and a little for growing.
@@ -239,9 +239,9 @@ fn control_begins_without_a_step_and_stays_within_its_bounds() {
         assert!(commands.tilt.abs() < 0.020_01 && commands.yaw.abs() < 0.020_01);
         before = commands;
     }
-    // The bound is let go of at once when less is asked for: the integral has not wound up.
+    // The bound is let go of at once when the target falls: the integral has not wound up.
     control.settings.factor = 1.0;
-    for step in 10_000..10_000 + (8.0 / asked.bandwidth / INTERVAL) as usize {
+    for step in 10_000..10_000 + (8.0 / given.bandwidth / INTERVAL) as usize {
         rotor.step(step, &mut control);
     }
     let reached = control.estimate().tilt.amplitude / AMPLITUDES[0];
@@ -290,7 +290,7 @@ fn control_survives_being_written_and_read() {
 
 #[test]
 fn what_cannot_be_built_says_why() {
-    let build = |change: fn(&mut Settings)| {
+    let build = |change: fn(&mut MeanderingControlSettings)| {
         let mut settings = settings(Sense::Clockwise, 1.25);
         change(&mut settings);
         Meandering::new(settings, INTERVAL).unwrap_err().to_string()
@@ -311,18 +311,18 @@ fn what_cannot_be_built_says_why() {
 /// Gains that nothing is pitched by are no matter.
 #[test]
 fn a_loop_that_watches_may_have_any_gain() {
-    let mut asked = settings(Sense::Clockwise, 1.25);
-    (asked.bandwidth, asked.decoupling.delay, asked.maximum_amplitude) = (0.5, 4.0, 0.0);
-    assert!(Meandering::new(asked, INTERVAL).is_ok());
+    let mut given = settings(Sense::Clockwise, 1.25);
+    (given.bandwidth, given.decoupling.delay, given.maximum_amplitude) = (0.5, 4.0, 0.0);
+    assert!(Meandering::new(given, INTERVAL).is_ok());
 }
 
 #[test]
 fn watching_leaves_every_bit_of_the_pitch() {
     let sense = Sense::Clockwise;
-    let mut asked = settings(sense, 1.5);
-    asked.maximum_amplitude = 0.0;
-    asked.start = 0.0;
-    let mut control = Meandering::new(asked, INTERVAL).unwrap();
+    let mut given = settings(sense, 1.5);
+    given.maximum_amplitude = 0.0;
+    given.start = 0.0;
+    let mut control = Meandering::new(given, INTERVAL).unwrap();
     let rotor = Rotor::new(sense, 1, 0.0);
     for step in 0..5000 {
         let measurements = rotor.measurements(step);
@@ -332,7 +332,7 @@ fn watching_leaves_every_bit_of_the_pitch() {
     }
     assert!(control.estimate().locked);
     assert_eq!(control.authority(), 0.0);
-    assert_eq!(control.describe(), "baseline, watching for meandering");
+    assert_eq!(control.describe(), "baseline, monitoring meandering");
 }
 
 #[test]

@@ -74,7 +74,7 @@ pub const TRUST: [f64; 2] = [0.05, 0.15];
 /// Excitation periods over which the found phases are steadied before they pitch (–).
 const STEADY: f64 = 1.0 / 16.0;
 
-/// The controller, with what it believes.
+/// The controller, with its estimator.
 #[derive(Clone, Debug)]
 pub struct PhaseSync {
     settings: SyncSettings,
@@ -100,7 +100,7 @@ struct Phasor([f64; 2]);
 
 impl Phasor {
     /// Moves by `share` (–) of the way towards `phase` (rad).
-    fn lean(&mut self, share: f64, phase: f64) {
+    fn smooth(&mut self, share: f64, phase: f64) {
         let (sine, cosine) = phase.sin_cos();
         for (own, target) in self.0.iter_mut().zip([cosine, sine]) {
             *own += share * (target - *own);
@@ -136,7 +136,7 @@ impl PhaseSync {
         &self.estimator
     }
 
-    /// What was believed at the last instant; nothing before the first.
+    /// Estimate at the last instant; none before the first.
     pub fn estimate(&self) -> Option<&HelixEstimate> {
         self.estimate.as_ref()
     }
@@ -154,7 +154,7 @@ impl PhaseSync {
         // Passing blades make the found phases tremble three times a turn; pitch must not.
         let share = 1.0 - (-measurements.interval * self.settings.rate / (TAU * STEADY)).exp();
         for (steady, axis) in self.steady.iter_mut().zip([estimate.tilt, estimate.yaw]) {
-            steady.lean(share, axis.phase);
+            steady.smooth(share, axis.phase);
         }
         let azimuth = measurements.azimuth + self.settings.azimuth_offset;
         let phases = self.steady.map(Phasor::phase);
@@ -203,7 +203,7 @@ impl Excitation for PhaseSync {
     fn describe(&self) -> String {
         let SyncSettings { sense, amplitude, offset, .. } = self.settings;
         if amplitude == 0.0 {
-            return "baseline, watching".to_owned();
+            return "baseline, monitoring".to_owned();
         }
         let (amplitude, offset) = (amplitude.to_degrees(), offset.to_degrees());
         format!("synchronised {sense} {amplitude:.1}° at {offset:.0}°")

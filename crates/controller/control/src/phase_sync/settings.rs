@@ -69,21 +69,21 @@ pub(super) static TABLE: Table = Table {
             above(0.0, 1e4),
             "MN m",
             Otherwise("5 % of the mean moment"),
-            "Standard deviation of the noise in a blade's moment that the estimator believes in. `wakemix analyse tune` finds it, and how the wave wanders, on the records of a run.",
+            "Standard deviation of the noise in a blade's moment that the estimator assumes. `wakemix analyse tune` finds it, and the wave's process noise intensity, on the records of a run.",
         ),
         key(
             "wandering_amplitude",
             above(0.0, 1e6),
             "m²/s³",
             Otherwise("8e-4; 1e-4 with `estimator = \"published\"`"),
-            "Variance per time, (m/s)²/s, with which the helix's amplitude wanders in the estimator's belief; with `robust` each of its sine and cosine components.",
+            "Process noise intensity of the helix's amplitude in the estimator, a variance per time, (m/s)²/s; with `robust` of each of its sine and cosine components.",
         ),
         key(
             "wandering_phase",
             above(0.0, 1e6),
             "rad²/s",
             Otherwise("1e-4; only with `estimator = \"published\"`"),
-            "Variance per time with which each phase wanders in the estimator's belief.",
+            "Process noise intensity of each phase in the estimator, a variance per time.",
         ),
         START,
     ],
@@ -111,7 +111,7 @@ pub struct PhaseSyncSettings {
     pub estimator: PhaseEstimator,
     /// Whether it fades to the baseline where the estimate cannot be trusted.
     pub fallback: bool,
-    /// Noise that the estimator is told to believe in.
+    /// Noise that the estimator assumes.
     pub noise: PhaseNoise,
     /// What the estimator makes of the turbine's own pitch; found before the runs.
     pub calibration: Option<Calibration>,
@@ -178,9 +178,9 @@ impl PhaseSyncSettings {
 pub struct PhaseNoise {
     /// Standard deviation of one blade's moment (N m).
     pub measurement: Option<f64>,
-    /// Wandering of amplitudes, or of sine and cosine components ((m/s)²/s).
+    /// Process noise intensity of amplitudes, or of sine and cosine components ((m/s)²/s).
     pub wandering_amplitude: Option<f64>,
-    /// Wandering of phases (rad²/s).
+    /// Process noise intensity of phases (rad²/s).
     pub wandering_phase: Option<f64>,
 }
 

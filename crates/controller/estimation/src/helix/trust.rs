@@ -52,29 +52,29 @@ impl TrustMonitor {
         let period = TAU / rate;
         let (sine, cosine) = angle.sin_cos();
         let share = share(interval, PICKING * period);
-        lean(&mut self.picked_weight, share, 1.0);
+        smooth(&mut self.picked_weight, share, 1.0);
         for (picked, wind) in self.picked.iter_mut().zip([wind.tilt, wind.yaw]) {
-            lean(&mut picked[0], share, 2.0 * wind * sine);
-            lean(&mut picked[1], share, 2.0 * wind * cosine);
+            smooth(&mut picked[0], share, 2.0 * wind * sine);
+            smooth(&mut picked[1], share, 2.0 * wind * cosine);
         }
         let share = self::share(interval, JUDGING * period);
         let scale = 1.0 / self.picked_weight;
         let mut square = 0.0;
         for (mean, picked) in self.mean.iter_mut().zip(&self.picked) {
             for (mean, picked) in mean.iter_mut().zip(picked) {
-                lean(mean, share, scale * picked);
+                smooth(mean, share, scale * picked);
                 square += (scale * picked).powi(2);
             }
         }
-        lean(&mut self.square, share, square);
-        lean(&mut self.weight, share, 1.0);
+        smooth(&mut self.square, share, square);
+        smooth(&mut self.weight, share, 1.0);
     }
 
     /// Takes in the mean `square` (–) of innovations over their standard deviation.
     pub(super) fn compare(&mut self, interval: f64, rate: f64, square: f64) {
         let share = share(interval, PICKING * TAU / rate);
-        lean(&mut self.innovation, share, square);
-        lean(&mut self.innovation_weight, share, 1.0);
+        smooth(&mut self.innovation, share, square);
+        smooth(&mut self.innovation_weight, share, 1.0);
     }
 
     /// Mean of the normalised innovation squared over an excitation period (–), one where the filter's noise is right.
@@ -107,6 +107,6 @@ fn share(interval: f64, time_constant: f64) -> f64 {
     1.0 - kept(interval, time_constant)
 }
 
-fn lean(value: &mut f64, share: f64, target: f64) {
+fn smooth(value: &mut f64, share: f64, target: f64) {
     *value += share * (target - *value);
 }

@@ -10,7 +10,7 @@ use wakemix::postprocessing::analyses::{ANALYSES, Analysis, Of, Request, Setting
 /// Name of the argument with the folders.
 const FOLDERS: &str = "folders";
 
-/// One analysis, and what is asked of it.
+/// One analysis, and its settings.
 pub(crate) struct AnalyseCommand {
     analysis: Analysis,
     request: Request,
@@ -33,11 +33,11 @@ impl Subcommand for AnalyseCommand {
 
 impl FromArgMatches for AnalyseCommand {
     fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, Error> {
-        asked(ANALYSES, matches)
+        requested(ANALYSES, matches)
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), Error> {
-        *self = asked(ANALYSES, matches)?;
+        *self = requested(ANALYSES, matches)?;
         Ok(())
     }
 }
@@ -78,7 +78,7 @@ fn argument(setting: &Setting) -> Arg {
 }
 
 /// What `matches` ask of one of `analyses`.
-fn asked(
+fn requested(
     analyses: &[Analysis],
     matches: &ArgMatches,
 ) -> std::result::Result<AnalyseCommand, Error> {
@@ -98,7 +98,7 @@ fn asked(
 /// Prints the answer; data goes to stdout.
 ///
 /// # Errors
-/// Records that cannot be read or do not hold what is asked for.
+/// Records that cannot be read or lack what is needed.
 pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
     let answer = (command.analysis.run)(&command.request)?;
     for remark in &answer.remarks {
@@ -132,7 +132,7 @@ mod tests {
     fn parsed(words: &[&str]) -> std::result::Result<AnalyseCommand, Error> {
         let list = [ANALYSES, &[OWN]].concat();
         let command = Command::new("analyse").subcommands(list.iter().map(offered));
-        asked(&list, &command.try_get_matches_from(words)?)
+        requested(&list, &command.try_get_matches_from(words)?)
     }
 
     #[test]

@@ -52,10 +52,10 @@ enum Class {
     C,
 }
 
-/// What meets the asked deviation exactly.
+/// What is scaled to exactly the target deviation.
 #[derive(Clone, Copy, ValueEnum)]
 enum Scale {
-    /// Nothing: chance, and what a record cannot hold
+    /// Nothing: the deviation varies with the seed and the length of the record
     None,
     /// The point nearest the hub
     Hub,
@@ -84,7 +84,7 @@ pub(crate) struct GenerateArguments {
     /// Anisotropy Γ of Mann's tensor; 0 is isotropic [default: 3.9]
     #[arg(long)]
     gamma: Option<f64>,
-    /// What meets the asked deviation exactly, of --model kaimal [default: none]
+    /// What is scaled to exactly the target deviation, of --model kaimal [default: none]
     #[arg(long, value_enum)]
     scale: Option<Scale>,
     /// Seed; the same seed gives the same box
@@ -138,8 +138,8 @@ fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
     turbulence_box::check_name(&arguments.output)?;
     let [n_x, n_y, n_z] = arguments.size;
     let memory = match plan.settings {
-        Settings::Mann(_) => mann::peak_memory(arguments.size),
-        Settings::Kaimal(_) => kaimal::peak_memory(arguments.size),
+        BoxSettings::Mann(_) => mann::peak_memory(arguments.size),
+        BoxSettings::Kaimal(_) => kaimal::peak_memory(arguments.size),
     };
     eprintln!(
         "box: {n_x} × {n_y} × {n_z} points, {:.0} s of wind; memory {}",
@@ -149,8 +149,8 @@ fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
     let bar = ProgressBar::new(1000);
     let progress = |share: f64| bar.set_position((1000.0 * share) as u64);
     let turbulence = match &plan.settings {
-        Settings::Mann(settings) => mann::generate(settings, progress),
-        Settings::Kaimal(settings) => kaimal::generate(settings, progress),
+        BoxSettings::Mann(settings) => mann::generate(settings, progress),
+        BoxSettings::Kaimal(settings) => kaimal::generate(settings, progress),
     };
     bar.finish_and_clear();
     let stored = StoredBox {
@@ -170,16 +170,16 @@ fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
 
 /// Arguments, checked.
 struct Plan {
-    settings: Settings,
+    settings: BoxSettings,
     profile: MeanProfile,
     spacing: [f64; 3],
     lowest_height: f64,
     description: String,
 }
 
-enum Settings {
-    Mann(mann::Settings),
-    Kaimal(kaimal::Settings),
+enum BoxSettings {
+    Mann(mann::MannSettings),
+    Kaimal(kaimal::KaimalSettings),
 }
 
 impl Plan {
@@ -227,13 +227,13 @@ impl Plan {
                 if arguments.scale.is_some() {
                     return Err(miette!(
                         help =
-                            "a box of Mann's turbulence always has the asked deviation as a whole",
+                            "a box of Mann's turbulence always has the target deviation as a whole",
                         "--scale belongs to --model kaimal"
                     ));
                 }
                 let length_scale = arguments.length_scale.unwrap_or(33.6);
                 let anisotropy = arguments.gamma.unwrap_or(3.9);
-                let settings = mann::Settings {
+                let settings = mann::MannSettings {
                     n_points,
                     spacing,
                     length_scale,
@@ -243,7 +243,7 @@ impl Plan {
                     threads: None,
                 };
                 let model = format!("Mann, L {length_scale} m, Gamma {anisotropy}");
-                (Settings::Mann(settings), model)
+                (BoxSettings::Mann(settings), model)
             }
             Model::Kaimal => {
                 if arguments.length_scale.is_some() || arguments.gamma.is_some() {
@@ -252,7 +252,7 @@ impl Plan {
                         "--length-scale and --gamma belong to --model mann"
                     ));
                 }
-                let settings = kaimal::Settings {
+                let settings = kaimal::KaimalSettings {
                     n_points,
                     spacing,
                     hub_speed: speed,
@@ -267,7 +267,7 @@ impl Plan {
                     seed,
                     threads: None,
                 };
-                (Settings::Kaimal(settings), "IEC Kaimal".to_owned())
+                (BoxSettings::Kaimal(settings), "IEC Kaimal".to_owned())
             }
         };
         let description = format!("{model}, TI {intensity:.4}, seed {seed}");

@@ -14,7 +14,9 @@ use wakemix::basis::records::{PitchResponse, Summary};
 use wakemix::farm::pitch_response::CalibrationError;
 use wakemix::farm::self_check::{SelfCheck, SelfCheckError, TOLERANCE};
 use wakemix::postprocessing;
-use wakemix::study::{self, Estimate, Options, Outcome, Probing, Progress, StudyError, Watcher};
+use wakemix::study::{
+    self, Estimate, IdentificationProgress, Observer, Options, Outcome, Progress, StudyError,
+};
 
 /// Longest time left that is shown (s): a year.
 const LONGEST: f64 = 3.2e7;
@@ -136,15 +138,15 @@ fn shell_word(text: &str) -> String {
     }
 }
 
-/// What goes before the runs, in words: " and 1 probe of pitch before them (19 % of a run)".
-fn probes(estimate: &Estimate) -> String {
-    match estimate.n_probes {
+/// What goes before the runs, in words: " and 1 pitch-response identification before them (19 % of a run)".
+fn identifications(estimate: &Estimate) -> String {
+    match estimate.n_identifications {
         0 => String::new(),
         n => format!(
-            " and {n} probe{} of pitch before them ({} steps, {:.0} % of a run)",
+            " and {n} pitch-response identification{} before them ({} steps, {:.0} % of a run)",
             if n == 1 { "" } else { "s" },
-            estimate.n_probe_steps,
-            100.0 * estimate.probe_share()
+            estimate.n_identification_steps,
+            100.0 * estimate.identification_share()
         ),
     }
 }
@@ -176,7 +178,7 @@ fn words_of(turbine: &str, response: &PitchResponse) -> String {
     }
 }
 
-/// Tenths of a run at which progress is told where no bar can be drawn (–).
+/// Tenths of a run at which progress is printed where no bar can be drawn (–).
 const TENTHS: u64 = 10;
 
 /// Progress and remarks on stderr.
@@ -185,8 +187,8 @@ struct Screen {
     last: Option<String>,
     /// Whether somebody sees the bar; a file gets a line now and then instead.
     drawn: bool,
-    /// What was told last where it is not drawn: of what, and which tenth of it.
-    told: Option<(String, u64)>,
+    /// What was printed last where it is not drawn: of what, and which tenth of it.
+    printed: Option<(String, u64)>,
 }
 
 impl Screen {
@@ -197,7 +199,7 @@ impl Screen {
         {
             bar.set_style(style.progress_chars("=> "));
         }
-        Self { bar, last: None, drawn: std::io::stderr().is_terminal(), told: None }
+        Self { bar, last: None, drawn: std::io::stderr().is_terminal(), printed: None }
     }
 
     /// Where the bar cannot be drawn, a line at every tenth of `what`, of which `done` of `all` are done.
@@ -206,8 +208,8 @@ impl Screen {
             return;
         }
         let tenth = TENTHS * done / all;
-        if self.told.as_ref().is_none_or(|(last, told)| last != what || *told != tenth) {
-            self.told = Some((what.to_owned(), tenth));
+        if self.printed.as_ref().is_none_or(|(last, printed)| last != what || *printed != tenth) {
+            self.printed = Some((what.to_owned(), tenth));
             if tenth > 0 {
                 eprintln!("{what}: {} %, {left}", 100 / TENTHS * tenth);
             }
@@ -219,7 +221,7 @@ impl Screen {
     }
 }
 
-impl Watcher for Screen {
+impl Observer for Screen {
     fn estimated(&mut self, estimate: &Estimate) {
         let [n_x, n_y, n_z] = estimate.n_cells;
         match (estimate.updates_per_second, estimate.wall_time()) {
@@ -228,7 +230,7 @@ impl Watcher for Screen {
                 HumanDuration(Duration::from_secs_f64(wall_time.max(1.0))),
                 estimate.n_runs,
                 if estimate.n_runs == 1 { "" } else { "s" },
-                probes(estimate),
+                identifications(estimate),
                 speed / 1e6
             )),
             _ if n_x == 0 => self.say(&format!(
@@ -236,7 +238,7 @@ impl Watcher for Screen {
                 estimate.n_steps,
                 estimate.interval,
                 HumanBytes(estimate.disk),
-                probes(estimate),
+                identifications(estimate),
             )),
             _ => self.say(&format!(
                 "grid: {n_x} × {n_y} × {n_z} = {:.2} million cells of {:.1} m, {} steps of {:.4} s a run; \
@@ -275,10 +277,12 @@ impl Watcher for Screen {
         ));
     }
 
-    fn probing(&mut self, probing: &Probing) {
+    fn identifying(&mut self, progress: &IdentificationProgress) {
         self.last = None;
-        let Probing { turbine, index, n_probes, share, time_left } = *probing;
-        let what = format!("probing {turbine} ({}/{n_probes})", index + 1);
+        let IdentificationProgress { turbine, index, n_identifications, share, time_left } =
+            *progress;
+        let what =
+            format!("identifying pitch response of {turbine} ({}/{n_identifications})", index + 1);
         self.bar.set_prefix(what.clone());
         self.bar.set_length(1000);
         self.bar.set_position((1000.0 * share) as u64);
@@ -288,8 +292,8 @@ impl Watcher for Screen {
         self.bar.set_message(message);
     }
 
-    fn probed(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
-        let found = if again { "probed before" } else { "probed" };
+    fn identified(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
+        let found = if again { "pitch response known" } else { "pitch response identified" };
         self.say(&format!("{found}: {}", words_of(turbine, response)));
     }
 

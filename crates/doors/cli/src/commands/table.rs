@@ -4,7 +4,7 @@ use std::fmt::Write;
 use wakemix::basis::records::{Conditions, Load, LoadKind, Statistic, Summary, TurbineSummary};
 use wakemix::postprocessing::analyses::with_interval;
 
-/// Loads of which the 1-Hz damage-equivalent is told: heading, channel, what it is.
+/// Loads of which the 1-Hz damage-equivalent is printed: heading, channel, what it is.
 const LOADS: [(&str, &str, &str); 2] = [
     ("flapwise MN m", "RootMyb1", "flapwise at the root of blade 1"),
     ("tower MN m", "TwrBsMyt", "fore-aft at the tower base"),
@@ -49,11 +49,11 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
     }
     text += "± 95 % from blocks of the analysed time; gains and changes compare the same blocks of the same wind\n";
     if !loads.is_empty() {
-        let told: Vec<String> = loads.iter().map(Column::told).collect();
+        let printed: Vec<String> = loads.iter().map(Column::printed).collect();
         let _ = writeln!(
             text,
             "1-Hz damage-equivalent loads, rainflow, no mean correction: {}",
-            told.join("; ")
+            printed.join("; ")
         );
     }
     text
@@ -133,7 +133,7 @@ impl<'a> Column<'a> {
     }
 
     /// What the column is, with its channel and slope.
-    fn told(&self) -> String {
+    fn printed(&self) -> String {
         format!("{} ({}, m = {})", self.what, self.channel, self.slope)
     }
 }

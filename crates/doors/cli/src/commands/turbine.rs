@@ -64,7 +64,7 @@ pub(crate) enum TurbineCommand {
         /// Steady wind speeds (m/s), FROM:TO:COUNT or one value
         #[arg(long, value_name = "A:B:N", default_value = "9")]
         wind: Range,
-        /// Strouhal number of the probing helices, with the wind and the rotor's diameter
+        /// Strouhal number of the identification helices, with the wind and the rotor's diameter
         #[arg(long, value_name = "ST", default_value_t = 0.25)]
         strouhal: f64,
         /// Blades and tower that do not bend

@@ -34,7 +34,7 @@ pub(crate) struct ValidateArguments {
     pictures: Option<PathBuf>,
 }
 
-/// Prints each row beside its record, and draws it where asked; exit code 1 when a row is not as recorded, 2 for an unknown name,
+/// Prints each row beside its record, and draws it on request; exit code 1 when a row is not as recorded, 2 for an unknown name,
 /// for pictures of what has none, and for what cannot be read or written.
 pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
     if arguments.pages {
@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
     let code = code_of(&done);
     if code != 0 {
         eprintln!(
-            "not all is as recorded\nhint: mend what got worse; renew a record with --record where a change is meant"
+            "not all is as recorded\nhint: fix what got worse; renew a record with --record where a change is meant"
         );
     }
     ExitCode::from(code)
@@ -84,7 +84,7 @@ fn refused(problem: &str) -> ExitCode {
     ExitCode::from(BAD_INPUT)
 }
 
-/// The validations that are named, or the quick ones; none where neither is asked for.
+/// The validations that are named, or the quick ones; none where neither is given.
 fn wanted(arguments: &ValidateArguments) -> Result<Vec<&'static Validation>, String> {
     if arguments.quick {
         return Ok(VALIDATIONS.iter().filter(|v| v.cost == Cost::UnderAMinute).collect());

@@ -1,7 +1,7 @@
-//! What a turbine that joins a helix is told of its own pitch: its azimuth offset, and what its phase estimator makes of it.
+//! Pitch response given to a turbine that joins a helix: its azimuth offset, and the calibration of its phase estimator.
 
 use super::prescribed::{found_offset, offset_cost};
-use super::{CalibrationError, Course, Pitching, ProbeCost, WAKE_SPEED, pitching};
+use super::{CalibrationError, Course, IdentificationCost, Pitching, WAKE_SPEED, pitching};
 use crate::Progress;
 use crate::assemble::{self, Model};
 use crate::case::Case;
@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 /// Excitation periods for the filter to settle once the near wake has, and counted after them (–).
 const PERIODS: [f64; 2] = [2.0, 2.0];
 
-/// What a turbine that joins a helix is told of its own pitch.
+/// Pitch response given to a turbine that joins a helix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnPitch {
     /// Azimuth offset of the inverse multi-blade transformation with which it pitches (rad).
@@ -30,24 +30,29 @@ pub fn own_pitch_cost(
     plan: &Plan,
     model: &Model,
     sync: &PhaseSyncSettings,
-) -> ProbeCost {
+) -> IdentificationCost {
     let [offset, calibration] = costs(case, plan, model, sync);
-    ProbeCost {
+    IdentificationCost {
         n_steps: offset.n_steps + calibration.n_steps,
         work: offset.work + calibration.work,
     }
 }
 
-/// Wind (m/s) in which the turbine is probed, and rate of the helix that it joins (rad/s).
+/// Wind (m/s) in which the turbine is identified, and rate of the helix that it joins (rad/s).
 fn conditions(case: &Case, plan: &Plan, sync: &PhaseSyncSettings) -> (f64, f64) {
     let rate = excitation_rate(sync.strouhal, case.wind.speed, plan.diameter);
     (WAKE_SPEED * case.wind.speed, rate)
 }
 
-/// Costs of the azimuth offset and of the calibration, nothing for what is not sought.
-fn costs(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSyncSettings) -> [ProbeCost; 2] {
+/// Costs of the azimuth offset and of the calibration, zero for what is not needed.
+fn costs(
+    case: &Case,
+    plan: &Plan,
+    model: &Model,
+    sync: &PhaseSyncSettings,
+) -> [IdentificationCost; 2] {
     let (wind_speed, rate) = conditions(case, plan, sync);
-    let mut costs = [ProbeCost::default(); 2];
+    let mut costs = [IdentificationCost::default(); 2];
     if sync.azimuth_offset.is_none() {
         costs[0] = offset_cost(case, plan, model, wind_speed, rate);
     }
@@ -58,8 +63,8 @@ fn costs(case: &Case, plan: &Plan, model: &Model, sync: &PhaseSyncSettings) -> [
     costs
 }
 
-/// What `sync` on turbine number `index` of `case` is told of its own pitch: the azimuth offset that is given, or else found,
-/// and with it the calibration of a robust estimator; `progress` is told the share done.
+/// Pitch response for `sync` on turbine number `index` of `case`: the azimuth offset, given or else identified,
+/// and with it the calibration of a robust estimator; `progress` receives the share done.
 ///
 /// # Errors
 /// [`CalibrationError`].
@@ -77,15 +82,15 @@ pub fn own_pitch(
         Some(given) => given,
         None => {
             let (wind_speed, rate) = conditions(case, plan, sync);
-            let mut told = |share: f64| progress(share_of_first * share);
-            found_offset(case, plan, model, index, wind_speed, rate, &mut told)?
+            let mut report = |share: f64| progress(share_of_first * share);
+            found_offset(case, plan, model, index, wind_speed, rate, &mut report)?
         }
     };
     let calibration = match sync.estimator {
         PhaseEstimator::Published => None,
         PhaseEstimator::Robust => {
-            let mut told = |share: f64| progress(share_of_first + (1.0 - share_of_first) * share);
-            let found = calibration(case, plan, model, index, sync, azimuth_offset, &mut told);
+            let mut report = |share: f64| progress(share_of_first + (1.0 - share_of_first) * share);
+            let found = calibration(case, plan, model, index, sync, azimuth_offset, &mut report);
             Some(found?)
         }
     };
@@ -96,7 +101,7 @@ pub fn own_pitch(
 ///
 /// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in prescribed wind
 /// as the case has it, with perfect instruments, and pitches the helix that it shall pitch, with the `azimuth_offset` (rad)
-/// with which it shall; `progress` is told the share done.
+/// with which it shall; `progress` receives the share done.
 fn calibration(
     case: &Case,
     plan: &Plan,

@@ -1,7 +1,7 @@
 //! The azimuth offset alone, found in prescribed wind: it belongs to blade, rotor speed and pitch actuator, which momentum
 //! theory tells in seconds.
 
-use super::{COUNTED, CalibrationError, Course, ProbeCost, answers};
+use super::{COUNTED, CalibrationError, Course, IdentificationCost, answers};
 use crate::Progress;
 use crate::assemble::Model;
 use crate::case::{Case, Solver};
@@ -19,13 +19,13 @@ pub const INDIVIDUAL_PITCH_STROUHAL: f64 = 0.1;
 const UPDATES_OF_A_STEP: f64 = 1e4;
 
 /// Cost of [`individual_pitch_offset`].
-pub fn individual_pitch_offset_cost(case: &Case, plan: &Plan, model: &Model) -> ProbeCost {
+pub fn individual_pitch_offset_cost(case: &Case, plan: &Plan, model: &Model) -> IdentificationCost {
     offset_cost(case, plan, model, case.wind.speed, individual_pitch_rate(case, model))
 }
 
 /// The azimuth offset (rad) of the individual pitch control of turbine number `index` of `case`, with which tilt pitch answers
 /// in the tilt moment alone: in a steady wind of the case's speed, with that control switched off, at
-/// [`INDIVIDUAL_PITCH_STROUHAL`]; `progress` is told the share done.
+/// [`INDIVIDUAL_PITCH_STROUHAL`]; `progress` receives the share done.
 ///
 /// # Errors
 /// [`CalibrationError`].
@@ -42,7 +42,7 @@ pub fn individual_pitch_offset(
     found_offset(case, plan, &model, index, case.wind.speed, rate, progress)
 }
 
-/// Rate of the helices that probe a turbine of `model` for its individual pitch control (rad/s).
+/// Rate of the helices that identify a turbine of `model` for its individual pitch control (rad/s).
 fn individual_pitch_rate(case: &Case, model: &Model) -> f64 {
     let diameter = model.definition.rotor_diameter();
     excitation_rate(INDIVIDUAL_PITCH_STROUHAL, case.wind.speed, diameter)
@@ -72,12 +72,12 @@ pub(super) fn offset_cost(
     model: &Model,
     wind_speed: f64,
     rate: f64,
-) -> ProbeCost {
+) -> IdentificationCost {
     let (prescribed, steps) = in_prescribed_wind(case, plan);
     let course = Course::new(wind_speed, &steps, model, rate, COUNTED);
     let cost = course.cost(&prescribed, &steps, model, 2);
     let of_a_step = if case.flow.solver.resolves_induction { UPDATES_OF_A_STEP } else { 1.0 };
-    ProbeCost { work: of_a_step * cost.work, ..cost }
+    IdentificationCost { work: of_a_step * cost.work, ..cost }
 }
 
 /// `case` and its plan in prescribed wind, the turbines as they are.

@@ -59,7 +59,7 @@ pub enum PlanError {
     TipOutruns {
         /// Turbine.
         name: String,
-        /// Asked step (s).
+        /// Step given (s).
         step: f64,
         /// Cells a step (–).
         cells: f64,
@@ -73,7 +73,7 @@ pub enum PlanError {
         "flow.step = {step} s is too long: the wind moves {cells:.2} cells a step, {MAXIMUM_LATTICE_SPEED} are the most; at most {longest:.4} s, or leave the key out"
     )]
     TooFast {
-        /// Asked step (s).
+        /// Step given (s).
         step: f64,
         /// Cells a step (–).
         cells: f64,
@@ -85,7 +85,7 @@ pub enum PlanError {
         "wind.roughness_length = {roughness_length} m is too much for a hub at {hub_height:.0} m: {highest:.1} m, a tenth of it, is the most; 0.0002 is calm sea, 0.03 farmland, 1 a town"
     )]
     TooRough {
-        /// Asked roughness length (m).
+        /// Roughness length given (m).
         roughness_length: f64,
         /// Hub height of the first turbine (m).
         hub_height: f64,

@@ -16,7 +16,7 @@ use crate::wind::Site;
 use basis::keys::Key;
 use flow::Inflow;
 use flow::inflow::{InflowError, Planes};
-use flow::lattice::SettingsError;
+use flow::lattice::LatticeError;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::ops::Deref;
@@ -119,7 +119,7 @@ pub struct Objection {
     pub key: &'static str,
     /// What is wrong.
     pub fault: Fault,
-    /// How to mend it.
+    /// How to fix it.
     pub fix: &'static str,
 }
 
@@ -139,7 +139,7 @@ pub enum Fault {
 pub enum SolverError {
     /// A lattice cannot be set up.
     #[error(transparent)]
-    Lattice(#[from] SettingsError),
+    Lattice(#[from] LatticeError),
     /// Its wind cannot be had.
     #[error(transparent)]
     Inflow(#[from] InflowError),

@@ -71,7 +71,7 @@ fn uniform_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
 fn turbulence_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
     let file = wind.planes.is_some().then(|| no_file("flow.solver = \"turbulence\" makes its own"));
     let event =
-        wind.event.is_some().then(|| no_event("flow.solver = \"turbulence\" has chance in it"));
+        wind.event.is_some().then(|| no_event("flow.solver = \"turbulence\" is not deterministic"));
     file.into_iter().chain(event).collect()
 }
 

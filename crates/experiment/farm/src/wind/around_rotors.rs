@@ -21,7 +21,7 @@ const PLANE_INTERVAL: f64 = 0.1;
 /// Most memory that making turbulence may take (bytes), however long the run is. A run of one turbine shall stay below 200 MB
 /// (docs/validation/memory.md), the columns of its series included that summary and report hold.
 const MEMORY_LIMIT: u64 = 128 << 20;
-/// Places upstream and downstream of the outermost towers at which turbines may ask for the wind (m).
+/// Places upstream and downstream of the outermost towers at which turbines may sample the wind (m).
 const REACH: f64 = 50.0;
 
 /// The wind of `site`, prescribed: `planes` where there are any, else `inflow`, with turbulence on it where the case has it made
@@ -129,7 +129,7 @@ fn made(site: &Site, grid: &MadeGrid) -> Result<TurbulenceBox, InflowError> {
     let (seed, threads) = (wind.seed, case.flow.threads);
     match wind.turbulence_model {
         TurbulenceModel::Kaimal => kaimal::generate(
-            &kaimal::Settings {
+            &kaimal::KaimalSettings {
                 n_points,
                 spacing,
                 hub_speed: wind.speed,
@@ -143,7 +143,7 @@ fn made(site: &Site, grid: &MadeGrid) -> Result<TurbulenceBox, InflowError> {
             |_| (),
         ),
         TurbulenceModel::Mann => mann::generate(
-            &mann::Settings {
+            &mann::MannSettings {
                 n_points,
                 spacing,
                 length_scale: wind.length_scale,

@@ -24,7 +24,7 @@ pub(super) fn turbulence(site: &Site) -> Option<Turbulence> {
     Some(Turbulence { memory: size.peak_memory, warning })
 }
 
-/// The wind with turbulence that enters the domain of `site`, made now; none where no turbulence enters so. `progress` is told
+/// The wind with turbulence that enters the domain of `site`, made now; none where no turbulence enters so. `progress` receives
 /// the share done.
 ///
 /// # Errors
@@ -35,7 +35,7 @@ pub fn entering(
 ) -> Result<Option<Arc<dyn Inflow>>, InflowError> {
     let Some(size) = size(site) else { return Ok(None) };
     let (case, plan, wind) = (site.case, site.plan, &site.case.wind);
-    let settings = mann::Settings {
+    let settings = mann::MannSettings {
         n_points: size.n_points,
         spacing: size.spacing,
         length_scale: wind.length_scale,

@@ -29,7 +29,7 @@ pub(super) fn check(
 ) -> Result<Case, Vec<Problem>> {
     let findings = Findings::new(sources);
     let case = {
-        // What is missing at the top is told at the end of the file, where it can be added.
+        // What is missing at the top is reported at the end of the file, where it can be added.
         let end = length.saturating_sub(1)..length;
         case_of(&Section::open(&keys::ROOT, entries, end, String::new(), &findings))
     };

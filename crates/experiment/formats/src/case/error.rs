@@ -302,7 +302,7 @@ pub enum ProblemKind {
 }
 
 impl ProblemKind {
-    /// What mends it where nothing better is known.
+    /// How to fix it where nothing better is known.
     fn usual_fix(&self) -> Option<String> {
         Some(match self {
             Self::Syntax { .. } => {

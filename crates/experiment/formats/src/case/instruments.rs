@@ -8,7 +8,7 @@ use basis::keys::Table;
 use farm::case::{Instrument, Instruments, Lag};
 use std::f64::consts::{PI, TAU};
 
-/// Damping ratio of a lag of second order when none is told (–).
+/// Damping ratio of a lag of second order when none is given (–).
 const DAMPING_RATIO: f64 = 0.7;
 
 /// One instrument's place in the file and in memory.
@@ -228,8 +228,8 @@ name = "baseline"
             ),
         ];
         for (figures, expected) in cases {
-            let told = read(figures).expect_err(figures);
-            assert!(told.contains(expected), "{figures}\nexpected {expected}\ntold     {told}");
+            let message = read(figures).expect_err(figures);
+            assert!(message.contains(expected), "{figures}\nexpected {expected}\ntold     {message}");
         }
     }
 

@@ -26,7 +26,7 @@ pub(super) static ROOT: Table = Table {
             "What it is for, in one line; the report shows it.",
         ),
         key("wind", Holds::Table(&WIND), "", Required, "The wind that comes in."),
-        key("flow", Holds::Table(&FLOW), "", Otherwise("all defaults"), "How the air is solved."),
+        key("flow", Holds::Table(&FLOW), "", Otherwise("all defaults"), "The flow solver."),
         key("time", Holds::Table(&TIME), "", Required, "How long every run lasts."),
         key(
             "turbine",
@@ -78,7 +78,7 @@ const SEED_MOST: u64 = i64::MAX as u64;
 /// `[flow]`: what moves the air, what the kinds of flow solver need, what all need.
 pub(super) static FLOW: Table = Table {
     heading: "[flow]",
-    about: "How the air is solved. The domain is sized from the layout; lengths are in diameters of the first turbine.",
+    about: "The flow solver. The domain is sized from the layout; lengths are in diameters of the first turbine.",
     keys: &FLOW_KEYS,
 };
 
@@ -87,7 +87,7 @@ const SOLVER_KEY: Key = key(
     Holds::Choice(&solvers::NAMES),
     "",
     Value("\"lattice\""),
-    "`lattice`: lattice Boltzmann large-eddy simulation with actuator lines; turbines feel each other's wakes. The others prescribe the wind, and each turbine makes its own induction by blade-element momentum, without wakes: `uniform` the mean profile with `wind.veer_deg_per_m` and `wind.event`, without turbulence, `turbulence` with turbulence on it, `planes` from `wind.planes`. Only `lattice` uses the keys from here to `sides`.",
+    "What moves the air. The page docs/case-file.md says under `flow.solver` what each does and which keys it alone uses.",
 );
 
 const COMMON_KEYS: [Key; 2] = [
@@ -206,7 +206,7 @@ pub(super) static TURBINE: Table = Table {
             "stall",
             Holds::Choice(&["dynamic", "steady"]),
             "",
-            Otherwise("`dynamic` in prescribed wind, `steady` in solved air"),
+            Otherwise("`dynamic` in prescribed wind, `steady` in resolved flow"),
             "`dynamic`: flow about the blades' sections separates and attaches with delay. `steady`: their polars hold at once.",
         ),
         key(
@@ -214,7 +214,7 @@ pub(super) static TURBINE: Table = Table {
             Holds::Choice(&["two-constant", "snel-schepers", "none"]),
             "",
             Otherwise("`two-constant` in prescribed wind"),
-            "How the rotor's induction follows its loads, in prescribed wind only: solved air has a wake of its own. `two-constant`: with two time constants, after Øye, as OpenFAST's DBEMT. `snel-schepers`: with the inertia of the air, after Snel and Schepers. `none`: at once.",
+            "How the rotor's induction follows its loads, in prescribed wind only: a resolved flow has a wake of its own. `two-constant`: with two time constants, after Øye, as OpenFAST's DBEMT. `snel-schepers`: with the inertia of the air, after Snel and Schepers. `none`: at once.",
         ),
         key(
             "slow_constant",
@@ -228,7 +228,7 @@ pub(super) static TURBINE: Table = Table {
             Holds::Choice(&["none", "potential", "potential-with-drag", "potential-and-shadow"]),
             "",
             Value("\"none\""),
-            "What the tower does to the wind that the blades meet, in prescribed wind only: in solved air its drag acts on the air itself. `potential`: the wind parts as about a cylinder (AeroDyn's `TwrPotent` 1). `potential-with-drag`: and its drag slows the wind ahead, after Bak (`TwrPotent` 2). `potential-and-shadow`: as about a cylinder, and slow behind it, after Powles (`TwrShadow` 1).",
+            "What the tower does to the wind that the blades meet, in prescribed wind only: in resolved flow its drag acts on the flow itself. `potential`: the wind parts as about a cylinder (AeroDyn's `TwrPotent` 1). `potential-with-drag`: and its drag slows the wind ahead, after Bak (`TwrPotent` 2). `potential-and-shadow`: as about a cylinder, and slow behind it, after Powles (`TwrShadow` 1).",
         ),
         key(
             "instruments",

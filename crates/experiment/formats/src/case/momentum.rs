@@ -13,7 +13,7 @@ const TOWER_INFLUENCES: [(&str, TowerInfluence); 4] = [
     ("potential-and-shadow", TowerInfluence::PotentialAndShadow),
 ];
 
-/// How the induction of `turbine` follows its loads; notes where the air of `solver`, or what else is asked, has no use for it.
+/// How the induction of `turbine` follows its loads; notes where the air of `solver`, or another key, has no use for it.
 pub(super) fn dynamic_inflow_of(turbine: &Section, solver: Solver) -> DynamicInflow {
     if solver.resolves_induction {
         let why =
@@ -48,7 +48,7 @@ pub(super) fn tower_influence_of(turbine: &Section, solver: Solver) -> TowerInfl
     influence
 }
 
-/// What mends a key that goes with prescribed wind.
+/// How to fix a key that goes with prescribed wind.
 fn other_solver() -> String {
     format!("leave it out, or take flow.solver = {}", without_induction())
 }
@@ -69,9 +69,9 @@ pub(super) fn momentum_text(turbine: &Placement) -> String {
         }
         DynamicInflow::TwoConstant { slow_constant: None } => String::new(),
     };
-    let asked = turbine.tower_influence;
-    let influence = TOWER_INFLUENCES.iter().find(|(_, influence)| *influence == asked);
-    if let Some((word, _)) = influence.filter(|_| asked != TowerInfluence::None) {
+    let requested = turbine.tower_influence;
+    let influence = TOWER_INFLUENCES.iter().find(|(_, influence)| *influence == requested);
+    if let Some((word, _)) = influence.filter(|_| requested != TowerInfluence::None) {
         text += &format!("tower_influence = \"{word}\"\n");
     }
     text
@@ -114,8 +114,8 @@ name = "baseline"
         case.turbines[0].clone()
     }
 
-    /// What a user is told who asks for `keys` in the air of `solver`.
-    fn told(keys: &str, solver: &str) -> String {
+    /// Message for `keys` in the air of `solver`.
+    fn message(keys: &str, solver: &str) -> String {
         let text = text(keys).replace("\"uniform\"", &format!("\"{solver}\""));
         parse("small.toml", &text, &[]).expect_err(keys).to_lines()
     }
@@ -173,10 +173,10 @@ name = "baseline"
             ),
         ];
         for (keys, solver, expected) in cases {
-            let lines = told(keys, solver);
+            let lines = message(keys, solver);
             assert!(lines.contains(expected), "{keys}\nexpected {expected}\ntold     {lines}");
         }
-        // This much is true of solved air too.
+        // This much is true of resolved flow too.
         let still = text("tower_influence = \"none\"").replace("\"uniform\"", "\"lattice\"");
         assert!(parse("small.toml", &still, &[]).is_ok());
     }

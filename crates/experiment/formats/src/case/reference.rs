@@ -5,22 +5,28 @@ use super::keys::{
 };
 use basis::keys::{Holds, Key, LeftOut, Table};
 use control::CONTROLLERS;
-use farm::solvers::GROUND;
+use farm::solvers::{self, GROUND};
 use sensing::SENSORS;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 /// What the page says around the tables of keys.
 const PREFACE: &str = include_str!("preface.md");
+/// What the page says above the table of flow solvers.
+const SOLVERS: &str = "What moves the air. Where induction is not resolved, each turbine makes its own by blade-element momentum, and leaves no wake.";
 
 /// The page docs/case-file.md: how a case file is read, and every key with unit, range and default.
 pub fn reference() -> String {
     let mut page = PREFACE.to_owned();
     let events = EVENTS.iter().map(|(_, table)| *table);
-    let air = [&FLOW, &GROUND, &TIME, &TURBINE, &INSTRUMENTS].into_iter().chain(INSTRUMENT_KINDS);
-    let tables = [&ROOT, &WIND].into_iter().chain(events).chain(air).chain([&RUN]);
+    let wind = [&ROOT, &WIND].into_iter().chain(events);
+    let turbines = [&TIME, &TURBINE, &INSTRUMENTS].into_iter().chain(INSTRUMENT_KINDS);
     // Writing to a string cannot fail.
-    for table in tables {
+    for table in wind.chain([&FLOW]) {
+        let _ = write_table(&mut page, table, None);
+    }
+    let _ = write_solvers(&mut page);
+    for table in [&GROUND].into_iter().chain(turbines).chain([&RUN]) {
         let _ = write_table(&mut page, table, None);
     }
     for kind in CONTROLLERS.all() {
@@ -36,6 +42,23 @@ pub fn reference() -> String {
     }
     let _ = write_table(&mut page, &OUTPUT, None);
     page
+}
+
+/// Writes what each kind of flow solver does.
+fn write_solvers(page: &mut String) -> std::fmt::Result {
+    writeln!(page, "\n## `flow.solver`\n\n{SOLVERS}\n")?;
+    writeln!(
+        page,
+        "| solver | what it does | resolves induction | keys of `[flow]` that it alone uses |"
+    )?;
+    writeln!(page, "| --- | --- | --- | --- |")?;
+    for kind in solvers::ALL {
+        let induction = if kind.resolves_induction { "yes" } else { "no" };
+        let keys: Vec<String> = kind.keys.iter().map(|key| format!("`{}`", key.name)).collect();
+        let keys = if keys.is_empty() { "none".to_owned() } else { keys.join(", ") };
+        writeln!(page, "| `\"{}\"` | {} | {induction} | {keys} |", kind.name, kind.about)?;
+    }
+    Ok(())
 }
 
 /// Writes `table`; where it is that of a kind, with the kind's name and what its key `kind` means.

@@ -130,7 +130,7 @@ fn the_azimuth_offset_of_a_turbine_in_step_is_found_unless_given() {
     assert_eq!(phase_sync("").azimuth_offset, None);
     assert_eq!(phase_sync(", azimuth_offset_deg = 0").azimuth_offset, Some(0.0));
     assert_eq!(phase_sync(", azimuth_offset_deg = 17").azimuth_offset, Some(17f64.to_radians()));
-    // What only watches pitches nothing; its records are those of a turbine that was given none.
+    // What only monitors pitches nothing; its records are those of a turbine that was given none.
     let watching = |keys: &str| {
         let control = "kind = \"phase-sync\", offset_deg = 90, amplitude_deg = 0";
         small(&[&format!("run.helix.control.T2={{ {control}{keys} }}")]).unwrap()
@@ -161,8 +161,8 @@ fn stall_is_dynamic_where_the_wind_is_prescribed_unless_the_case_says_otherwise(
 #[test]
 fn a_turbine_may_name_the_input_of_its_controller() {
     let case = small(&["turbine.T2.discon=rosco/DISCON.IN"]).unwrap();
-    let asked: Vec<Option<&str>> = case.turbines.iter().map(|t| t.discon.as_deref()).collect();
-    assert_eq!(asked, [None, Some("rosco/DISCON.IN")]);
+    let requested: Vec<Option<&str>> = case.turbines.iter().map(|t| t.discon.as_deref()).collect();
+    assert_eq!(requested, [None, Some("rosco/DISCON.IN")]);
     // Of one model, and yet not alike.
     assert_eq!(case.turbines[0].machine(), "iea-15mw");
     assert_ne!(case.turbines[0].machine(), case.turbines[1].machine());

@@ -76,16 +76,16 @@ fn a_roughness_length_makes_the_profile_logarithmic() {
 
 #[test]
 fn a_rough_ground_asks_for_its_own_profile() {
-    let told = |text: String, ground: &str| {
+    let message = |text: String, ground: &str| {
         let text = text.replace("solver = \"uniform\"", &format!("ground = {ground}"));
         off_balance(&parse("windy.toml", &text, &[]).unwrap())
     };
     let rough = "{ roughness_length = 0.001 }";
-    assert_eq!(told(logarithmic("0.001"), rough), None);
-    assert_eq!(told(logarithmic("0.002"), "\"slip\""), None);
-    let other = told(logarithmic("0.002"), rough).unwrap();
+    assert_eq!(message(logarithmic("0.001"), rough), None);
+    assert_eq!(message(logarithmic("0.002"), "\"slip\""), None);
+    let other = message(logarithmic("0.002"), rough).unwrap();
     assert!(other.contains("the logarithmic law of z₀ = 0.002 m blows in"), "{other}");
-    let power = told(text(""), rough).unwrap();
+    let power = message(text(""), rough).unwrap();
     assert!(power.contains("a power law of exponent 0.2 blows in"), "{power}");
     assert!(power.contains("write wind.roughness_length = 0.001, and no wind.shear_exponent"));
     // Prescribed wind meets no ground.
@@ -205,14 +205,14 @@ fn what_cannot_be_is_told_with_its_line() {
     ];
     for (keys, solver, expected) in cases {
         let text = text(keys).replace("\"uniform\"", &format!("\"{solver}\""));
-        let told = parse("windy.toml", &text, &[]).unwrap_err().to_lines();
-        assert!(told.contains(expected), "{keys}\nexpected {expected}\ntold     {told}");
+        let message = parse("windy.toml", &text, &[]).unwrap_err().to_lines();
+        assert!(message.contains(expected), "{keys}\nexpected {expected}\ntold     {message}");
     }
     for (text, other) in [(text(""), "roughness_length"), (logarithmic("0.06"), "shear_exponent")] {
-        let told = parse("windy.toml", &text, &[format!("wind.{other}=0.1")]);
-        let told = told.unwrap_err().to_lines();
-        assert!(told.contains("`wind.shear_exponent` is of no use here"), "{other}: {told}");
-        assert!(told.contains("where --set gives one, the other must go from the file"), "{told}");
+        let message = parse("windy.toml", &text, &[format!("wind.{other}=0.1")]);
+        let message = message.unwrap_err().to_lines();
+        assert!(message.contains("`wind.shear_exponent` is of no use here"), "{other}: {message}");
+        assert!(message.contains("where --set gives one, the other must go from the file"), "{message}");
     }
     let veering = |flow: &str| {
         let text = text("veer_deg_per_m = 0.05").replace("solver = \"uniform\"", flow);
@@ -220,8 +220,8 @@ fn what_cannot_be_is_told_with_its_line() {
     };
     assert!(veering("solver = \"turbulence\"").is_ok());
     assert!(veering("solver = \"lattice\"").is_ok());
-    let told = veering("sides = \"slip\"").unwrap_err().to_lines();
-    assert!(told.contains("sides along which the air is to slip; leave it out"), "{told}");
+    let message = veering("sides = \"slip\"").unwrap_err().to_lines();
+    assert!(message.contains("sides along which the air is to slip; leave it out"), "{message}");
     let read = text("planes = \"field.bts\"").replace("\"uniform\"", "\"planes\"");
     let case = parse("windy.toml", &read, &[]).unwrap();
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);

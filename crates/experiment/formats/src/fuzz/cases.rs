@@ -21,7 +21,7 @@ const OVERRIDES: [&str; 5] = [
     "name=other",
 ];
 
-/// That everything that is wrong has a line, and is told.
+/// That everything that is wrong has a line, and is reported.
 fn lines(error: &CaseError) -> Result<(), TestCaseError> {
     prop_assert!(!error.to_lines().is_empty());
     for problem in error.problems() {

@@ -72,7 +72,7 @@ fn survives(files: Vec<(&'static str, Vec<u8>)>, read: impl Fn(&Path) -> Result<
     let folder = Folder::new(files);
     let path = folder.folder.path();
     if let Err(error) = read(path) {
-        panic!("the sound files are refused: {}", told(&*error));
+        panic!("the sound files are refused: {}", message(&*error));
     }
     let names: Vec<&str> = folder.files.iter().map(|(name, _)| *name).collect();
     proptest!(config(), |(which in 0..names.len(), damages in damages())| {
@@ -85,9 +85,9 @@ fn survives(files: Vec<(&'static str, Vec<u8>)>, read: impl Fn(&Path) -> Result<
     });
 }
 
-/// That `error` names one of the files `names` and says what mends it, and that it can be drawn.
+/// That `error` names one of the files `names` and says how to fix it, and that it can be drawn.
 fn helps(error: &dyn Diagnostic, names: &[&str]) -> Result<(), TestCaseError> {
-    let drawn = told(error);
+    let drawn = message(error);
     let all = format!("{error} {drawn}");
     let ends = |name: &&str| all.contains(name.rsplit('/').next().unwrap_or(name));
     prop_assert!(names.iter().any(ends), "no file is named: {all}");
@@ -98,7 +98,7 @@ fn helps(error: &dyn Diagnostic, names: &[&str]) -> Result<(), TestCaseError> {
 }
 
 /// `error` as a terminal shows it.
-fn told(error: &dyn Diagnostic) -> String {
+fn message(error: &dyn Diagnostic) -> String {
     let mut drawn = String::new();
     GraphicalReportHandler::new().render_report(&mut drawn, error).unwrap();
     drawn

@@ -147,7 +147,7 @@ fn speed_notches(deck: &Deck) -> Result<Vec<[f64; 3]>, TurbineFileError> {
 
 /// Corner of the filter between the estimated wind and torque (rad/s), where the deck has one.
 fn wind_speed_filter_corner(deck: &Deck) -> Result<Option<f64>, TurbineFileError> {
-    // From version 2.10 on the speed that torque is asked for has a filter of its own.
+    // From version 2.10 on the speed that commands the torque has a filter of its own.
     let keys = ["F_VSRefSpdCornerFreq", "F_WECornerFreq"];
     keys.into_iter().find(|key| deck.has(key)).map(|key| deck.number(key)).transpose()
 }

@@ -121,16 +121,16 @@ fn what_is_not_finished_leaves_nothing() {
 #[test]
 fn what_the_format_cannot_hold_is_told() {
     let (_folder, path) = place();
-    let told = |layout, encoding| complaint(OutbWriter::create(&path, layout, encoding));
-    assert!(told(layout(&[]), Encoding::Exact).contains("no channel"));
-    assert!(told(layout(&["two words"]), Encoding::Exact).contains("one word of ASCII"));
-    assert!(told(layout(&["AB1N001Alpha"]), Encoding::Exact).contains("or write compressed"));
+    let message = |layout, encoding| complaint(OutbWriter::create(&path, layout, encoding));
+    assert!(message(layout(&[]), Encoding::Exact).contains("no channel"));
+    assert!(message(layout(&["two words"]), Encoding::Exact).contains("one word of ASCII"));
+    assert!(message(layout(&["AB1N001Alpha"]), Encoding::Exact).contains("or write compressed"));
     let no_time = Layout { interval: 0.0, ..layout(&["A"]) };
-    assert!(told(no_time, Encoding::Exact).contains("positive interval"));
+    assert!(message(no_time, Encoding::Exact).contains("positive interval"));
     let mut writer = OutbWriter::create(&path, layout(&["A", "B"]), Encoding::Exact).unwrap();
     writer.write(&[1.0, 2.0]).unwrap();
-    let told = complaint(writer.write(&[1.0, f64::NAN]));
-    assert!(told.starts_with("at 2.6 s B is NaN"), "{told}");
+    let message = complaint(writer.write(&[1.0, f64::NAN]));
+    assert!(message.starts_with("at 2.6 s B is NaN"), "{message}");
 }
 
 #[test]
@@ -160,8 +160,8 @@ fn damaged_files_are_told_with_place_and_fix() {
     let (_folder, path) = place();
     for (bytes, expected) in cases {
         fs::write(&path, bytes).unwrap();
-        let told = complaint(read(&path));
-        assert!(told.contains(expected), "{told}\n{expected}");
+        let message = complaint(read(&path));
+        assert!(message.contains(expected), "{message}\n{expected}");
     }
 }
 

@@ -15,7 +15,7 @@ const LONGEST_HEAD: u64 = 100;
 /// # Errors
 /// [`FileError`].
 pub(crate) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
-    let told = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
+    let refusal = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
     let mut rows = TextRows::open(path)?;
     let mut description: Vec<String> = Vec::new();
     let names = loop {
@@ -23,7 +23,7 @@ pub(crate) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
         let Some(line) = line else {
             let problem = format!("none of its first {LONGEST_HEAD} lines begins with Time");
             let fix = "give a text output of OpenFAST (OutFileFmt 1 or 3), or name CSV .csv";
-            return Err(told(problem, fix));
+            return Err(refusal(problem, fix));
         };
         let words = tokens(line);
         if words.first().is_some_and(|word| word.eq_ignore_ascii_case("time")) {
@@ -51,7 +51,7 @@ pub(crate) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
         .zip(units)
         .map(|(name, unit)| Column { name, unit: unit.trim_matches(['(', ')']).to_owned() })
         .collect();
-    let time = find_time(&columns).map_err(|(problem, fix)| told(problem, &fix))?;
+    let time = find_time(&columns).map_err(|(problem, fix)| refusal(problem, &fix))?;
     Ok((Head { description: description.join("; "), columns, time }, Rows::Text(rows)))
 }
 

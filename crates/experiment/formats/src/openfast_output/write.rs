@@ -193,14 +193,14 @@ impl OutbWriter {
 }
 
 fn check(path: &Path, layout: &Layout, encoding: Encoding) -> Result<(), FileError> {
-    let told = |problem: String, fix: &str| Err(FileError::content(WHAT, path, problem, fix));
+    let refusal = |problem: String, fix: &str| Err(FileError::content(WHAT, path, problem, fix));
     if layout.channels.is_empty() {
-        return told("there is no channel to write".into(), "choose at least one channel");
+        return refusal("there is no channel to write".into(), "choose at least one channel");
     }
     let (start, interval) = (layout.start, layout.interval);
     if !(start.is_finite() && interval.is_finite() && interval > 0.0) {
         let problem = format!("rows every {interval} s from {start} s on give no time");
-        return told(problem, "give a start and a positive interval in seconds");
+        return refusal(problem, "give a start and a positive interval in seconds");
     }
     let longest = match encoding {
         Encoding::Compressed => 1000,
@@ -210,11 +210,11 @@ fn check(path: &Path, layout: &Layout, encoding: Encoding) -> Result<(), FileErr
         let is_word = |text: &str| text.chars().all(|c| c.is_ascii_graphic());
         if name.is_empty() || !is_word(name) || !is_word(unit) {
             let problem = format!("the channel \"{name}\" in \"{unit}\" is not one word of ASCII");
-            return told(problem, "use letters, digits and signs without blanks, such as kN-m");
+            return refusal(problem, "use letters, digits and signs without blanks, such as kN-m");
         }
         if name.len() > longest || unit.len() + 2 > longest {
             let problem = format!("the channel \"{name}\" in \"{unit}\" is too long a name");
-            return told(problem, "shorten it, or write compressed output");
+            return refusal(problem, "shorten it, or write compressed output");
         }
     }
     Ok(())

@@ -1,10 +1,10 @@
 //! What a run leaves behind: `DIR/RUN/` with summary, series, planes, volumes, manifest and checkpoint.
 //!
 //! `summary.json` comes last: a run whose folder has one is complete. Everything that a report needs is in these
-//! files, planes included, so that a study can be told anew from its folder alone.
+//! files, planes included, so that a study can be reported anew from its folder alone.
 
 mod manifest;
-mod probes;
+mod pitch_responses;
 mod series;
 mod series_file;
 mod study;
@@ -12,7 +12,7 @@ mod study;
 mod summary_page;
 
 pub use manifest::{Machine, Manifest, now, read_manifest, sha256, write_manifest};
-pub use probes::{ProbeRecord, read_probes, write_probes};
+pub use pitch_responses::{PitchResponseRecord, read_pitch_responses, write_pitch_responses};
 pub use series::SeriesWriter;
 pub use series_file::{SeriesFile, read_series};
 pub use study::{RunRecords, StudyRecords, read_study, read_summaries};

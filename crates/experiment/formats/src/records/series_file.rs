@@ -71,7 +71,7 @@ impl SeriesFile {
             if reader.read_line(&mut line).map_err(failed)? == 0 {
                 break;
             }
-            let told = |problem: String| {
+            let refusal = |problem: String| {
                 let fix = "restore the file, or make the run again";
                 FileError::content(WHAT, path, format!("line {number}: {problem}"), fix)
             };
@@ -79,17 +79,17 @@ impl SeriesFile {
             for (index, value) in line.trim_end().split(',').enumerate() {
                 let place = places.get(index);
                 let place =
-                    place.ok_or_else(|| told(format!("more than {} values", names.len())))?;
+                    place.ok_or_else(|| refusal(format!("more than {} values", names.len())))?;
                 n_values = index + 1;
                 let Some(place) = *place else { continue };
                 let name = || &names[index];
                 let value = value
                     .parse()
-                    .map_err(|_| told(format!("`{value}` in column {} is no number", name())))?;
+                    .map_err(|_| refusal(format!("`{value}` in column {} is no number", name())))?;
                 series.columns[place].push(value);
             }
             if n_values != names.len() {
-                return Err(told(format!("{n_values} values, the header has {}", names.len())));
+                return Err(refusal(format!("{n_values} values, the header has {}", names.len())));
             }
         }
         Ok(series)

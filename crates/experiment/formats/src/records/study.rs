@@ -297,8 +297,8 @@ mod tests {
             (error.to_string(), help)
         };
         let (problem, help) = other(1);
-        let told = "its schema_version is 1, that of an earlier wakemix; this one reads 2";
-        assert!(problem.contains(told), "{problem}");
+        let written = "its schema_version is 1, that of an earlier wakemix; this one reads 2";
+        assert!(problem.contains(written), "{problem}");
         assert!(help.contains("--overwrite") && help.contains("manifest.json"), "{help}");
         let (problem, help) = other(3);
         assert!(problem.contains("schema_version is 3, that of a later wakemix"), "{problem}");

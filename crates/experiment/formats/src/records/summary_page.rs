@@ -60,8 +60,8 @@ fn the_page_tells_every_field_with_its_unit() {
     let value = serde_json::to_value(examples::full()).unwrap();
     let (mut found, mut kinds) = (BTreeSet::new(), BTreeSet::new());
     walk(&value, "", &mut found, &mut kinds);
-    let told: Vec<[&str; 3]> = rows();
-    let on_page: BTreeSet<String> = told.iter().map(|[path, ..]| (*path).to_owned()).collect();
+    let refusal: Vec<[&str; 3]> = rows();
+    let on_page: BTreeSet<String> = refusal.iter().map(|[path, ..]| (*path).to_owned()).collect();
     let statistic = ["mean", "standard_deviation", "half_width_95", "n_blocks"];
     let mut expected: BTreeSet<String> =
         found.iter().map(|path| without_statistics(path)).collect();
@@ -70,12 +70,12 @@ fn the_page_tells_every_field_with_its_unit() {
     assert!(missing.is_empty(), "docs/summary.md lacks {missing:?}");
     let unknown: Vec<&String> = on_page.difference(&expected).collect();
     assert!(unknown.is_empty(), "no summary holds {unknown:?} of docs/summary.md");
-    assert_eq!(told.len(), on_page.len(), "a field stands twice in docs/summary.md");
-    for [path, unit, meaning] in &told {
+    assert_eq!(refusal.len(), on_page.len(), "a field stands twice in docs/summary.md");
+    for [path, unit, meaning] in &refusal {
         assert!(!unit.is_empty() && !meaning.is_empty(), "{path}");
     }
     for [path, word] in kinds {
-        let row = told.iter().find(|row| row[0] == path).unwrap();
+        let row = refusal.iter().find(|row| row[0] == path).unwrap();
         assert!(row[2].contains(&format!("`{word}`")), "{path} does not tell `{word}`");
     }
 }

@@ -1,4 +1,4 @@
-//! What a ROSCO input file may hold: the limits of a turbine file, told with the keys of ROSCO.
+//! What a ROSCO input file may hold: the limits of a turbine file, stated with the keys of ROSCO.
 
 use crate::openfast::deck::Deck;
 use crate::turbine_file::{Controller, TurbineFileError, check_controller};

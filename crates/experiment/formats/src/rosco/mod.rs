@@ -30,7 +30,7 @@ pub struct Discon {
 ///
 /// Keys are read by name, so that their order and further ones do not matter. Rotor radius, efficiency, inertia and air
 /// density are those that the file itself names; the table of coefficients is the one that it points to. Wind speeds
-/// that the controller believes in are then those of ROSCO, errors of the table included. Without a table the constants
+/// of the controller are then those of ROSCO, errors of the table included. Without a table the constants
 /// come without an estimator.
 /// Source: <https://rosco.readthedocs.io>, description of the input file; `ReadSetParameters.f90` of ROSCO.
 ///

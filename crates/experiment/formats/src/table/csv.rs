@@ -12,18 +12,18 @@ use std::path::Path;
 /// # Errors
 /// [`FileError`].
 pub(super) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
-    let told = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
+    let refusal = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
     let mut rows = TextRows::open(path)?;
     let (names, separator) = loop {
         let Some(line) = rows.next_line(path)? else {
-            return Err(told(
+            return Err(refusal(
                 "it has no line of names".into(),
                 "write the names in the first line",
             ));
         };
         let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
         if line.contains(&0) {
-            return Err(told(
+            return Err(refusal(
                 "its first line is no text".into(),
                 "name OpenFAST's binary output NAME.outb; give CSV as UTF-8 text",
             ));
@@ -36,7 +36,7 @@ pub(super) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
     let place = rows.line_number();
     if names.iter().all(|name| number(name.as_bytes()).is_some()) {
         let problem = format!("line {place} has numbers where names are needed");
-        return Err(told(problem, "write the names in the first line, such as time_s,RootMyc1"));
+        return Err(refusal(problem, "write the names in the first line, such as time_s,RootMyc1"));
     }
     let mut columns: Vec<Column> = names.iter().map(|name| column(name)).collect();
     rows.separator = separator;
@@ -51,7 +51,7 @@ pub(super) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
             rows.keep_line();
         }
     }
-    let time = find_time(&columns).map_err(|(problem, fix)| told(problem, &fix))?;
+    let time = find_time(&columns).map_err(|(problem, fix)| refusal(problem, &fix))?;
     Ok((Head { description: String::new(), columns, time }, Rows::Text(rows)))
 }
 

@@ -99,8 +99,8 @@ impl TableReader {
         let mut wanted = vec![self.head.time];
         for name in names {
             let found = names::find(name, &self.head.columns);
-            let told = |(problem, fix)| FileError::content(WHAT, &self.path, problem, fix);
-            wanted.push(found.map_err(told)?);
+            let refusal = |(problem, fix)| FileError::content(WHAT, &self.path, problem, fix);
+            wanted.push(found.map_err(refusal)?);
         }
         self.wanted = wanted;
         Ok(())

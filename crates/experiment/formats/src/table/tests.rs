@@ -107,13 +107,13 @@ fn openfast_s_text_is_a_table() {
 fn a_name_that_is_not_there_is_told_with_what_may_be_meant() {
     let names = "time,RootMyc1,RootMyc2,RootMyc3,TwrBsMyt_kN-m";
     let (_folder, path) = written("a.csv", &format!("{names}\n0,1,2,3,4\n"));
-    let told = |name: &str| complaint(rows(&path, &[name]));
-    assert_eq!(told("RotMyc1"), "it has no channel \"RotMyc1\" | did you mean \"RootMyc1\"?");
-    let with_unit = told("TwrBsMxt");
+    let message = |name: &str| complaint(rows(&path, &[name]));
+    assert_eq!(message("RotMyc1"), "it has no channel \"RotMyc1\" | did you mean \"RootMyc1\"?");
+    let with_unit = message("TwrBsMxt");
     assert!(with_unit.ends_with("did you mean \"TwrBsMyt_kN-m\"?"), "{with_unit}");
-    let several = told("Myc");
+    let several = message("Myc");
     assert!(several.ends_with("one of its 3 channels: RootMyc1, RootMyc2, RootMyc3"), "{several}");
-    let all = told("blade");
+    let all = message("blade");
     assert!(all.contains("one of its 5 channels: time, RootMyc1"), "{all}");
     assert_eq!(rows(&path, &["twrbsmyt"]).unwrap(), [[0.0, 4.0]]);
     let (_folder, path) = written("b.csv", "time,a_1,a_2\n0,1,2\n");
@@ -128,10 +128,10 @@ fn a_name_that_is_not_there_is_told_with_what_may_be_meant() {
 fn openfast_s_other_names_find_the_channel_that_is_written() {
     let names = "time_s,T1.RootMyb1_kN-m,T1.RootMxb1_kN-m,T1.RotTorq_kN-m,T1.LSSTipMys_kN-m";
     let (_folder, path) = written("series.csv", &format!("{names}\n0,1,2,3,4\n"));
-    let asked = ["T1.RootMFlp1", "t1.rootmedg1", "T1.LSSGagMxs", "T1.LSSGagMys"];
-    assert_eq!(rows(&path, &asked).unwrap(), [[0.0, 1.0, 2.0, 3.0, 4.0]]);
-    let told = complaint(rows(&path, &["T1.RootMFlp2"]));
-    assert!(told.starts_with("it has no channel \"T1.RootMFlp2\" | "), "{told}");
+    let requested = ["T1.RootMFlp1", "t1.rootmedg1", "T1.LSSGagMxs", "T1.LSSGagMys"];
+    assert_eq!(rows(&path, &requested).unwrap(), [[0.0, 1.0, 2.0, 3.0, 4.0]]);
+    let message = complaint(rows(&path, &["T1.RootMFlp2"]));
+    assert!(message.starts_with("it has no channel \"T1.RootMFlp2\" | "), "{message}");
     let (_folder, path) = written("T1.out", "Time RootMyb1 RotTorq\n(s) (kN-m) (kN-m)\n0.0 5 6\n");
     assert_eq!(rows(&path, &["LSSGagMxs", "RootMFlp1"]).unwrap(), [[0.0, 6.0, 5.0]]);
     // What a file has under the very name comes first.
@@ -162,9 +162,9 @@ fn bad_tables_are_told_with_line_and_fix() {
     ];
     for (name, text, expected) in cases {
         let (_folder, path) = written(name, text);
-        let told = complaint(rows(&path, &["a"]));
-        assert!(told.contains(expected), "{told}\n{expected}");
-        assert!(told.len() > told.find('|').unwrap() + 10, "{told}");
+        let message = complaint(rows(&path, &["a"]));
+        assert!(message.contains(expected), "{message}\n{expected}");
+        assert!(message.len() > message.find('|').unwrap() + 10, "{message}");
     }
     let missing = TableReader::open(Path::new("/nowhere/a.csv")).unwrap_err();
     assert!(matches!(missing, FileError::System { .. }), "{missing}");

@@ -105,13 +105,13 @@ impl TextRows {
         }
         split(&self.line, self.separator, &mut self.fields);
         if self.fields.len() != columns.len() {
-            return Err(self.told(path, self.wrong_count(columns.len())));
+            return Err(self.refusal(path, self.wrong_count(columns.len())));
         }
         for (value, column) in row.iter_mut().zip(wanted) {
             let field = &self.line[self.fields[*column].clone()];
             *value = number(field).ok_or_else(|| {
                 let text = String::from_utf8_lossy(&field[..field.len().min(40)]);
-                self.told(path, format!("`{text}` in {} is no number", columns[*column].name))
+                self.refusal(path, format!("`{text}` in {} is no number", columns[*column].name))
             })?;
         }
         Ok(true)
@@ -123,9 +123,9 @@ impl TextRows {
         format!("{n_fields} values under {n_columns} names{cut}")
     }
 
-    fn told(&self, path: &Path, problem: String) -> FileError {
+    fn refusal(&self, path: &Path, problem: String) -> FileError {
         let problem = format!("line {}: {problem}", self.line_number);
-        let fix = "let the program that writes it finish, copy the file again, or mend the line";
+        let fix = "let the program that writes it finish, copy the file again, or correct the line";
         FileError::content(WHAT, path, problem, fix)
     }
 }

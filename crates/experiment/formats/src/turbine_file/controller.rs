@@ -169,7 +169,7 @@ pub fn controller_of(
                 denominator_damping: *denominator_damping,
             })
             .collect(),
-        torque_control: controller.torque_control.map(|asked| match asked {
+        torque_control: controller.torque_control.map(|given| match given {
             document::TorqueControl::KOmegaSquared => TorqueControl::KOmegaSquared,
             document::TorqueControl::TipSpeedRatio => TorqueControl::TipSpeedRatio,
         }),
@@ -186,14 +186,14 @@ pub fn controller_of(
     }
 }
 
-fn individual_pitch_of(asked: &document::IndividualPitch) -> IndividualPitch {
+fn individual_pitch_of(given: &document::IndividualPitch) -> IndividualPitch {
     IndividualPitch {
-        proportional: asked.proportional,
-        integral: asked.integral,
-        azimuth_offset: asked.azimuth_offset_deg.map(f64::to_radians),
-        limit: asked.limit_deg.to_radians(),
-        ramp: asked.ramp,
-        floor: match asked.floor {
+        proportional: given.proportional,
+        integral: given.integral,
+        azimuth_offset: given.azimuth_offset_deg.map(f64::to_radians),
+        limit: given.limit_deg.to_radians(),
+        ramp: given.ramp,
+        floor: match given.floor {
             document::PitchFloor::None => PitchFloor::None,
             document::PitchFloor::FinePitch => PitchFloor::Fine,
             document::PitchFloor::MinimumPitch => PitchFloor::Least,

@@ -16,7 +16,7 @@ pub enum TurbineFileError {
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
-        /// What mends it.
+        /// How to fix it.
         #[help]
         fix: String,
     },
@@ -24,7 +24,7 @@ pub enum TurbineFileError {
     #[error("no turbine is called \"{name}\"")]
     #[diagnostic(code(wakemix::turbine::unknown))]
     Unknown {
-        /// What was asked for.
+        /// What was requested.
         name: String,
         /// What there is.
         #[help]
@@ -40,7 +40,7 @@ pub enum TurbineFileError {
         line: usize,
         /// What the reader stumbled over.
         message: String,
-        /// What mends it.
+        /// How to fix it.
         #[help]
         fix: String,
     },
@@ -58,7 +58,7 @@ pub enum TurbineFileError {
         expected: Box<str>,
         /// What is there.
         found: Box<str>,
-        /// What mends it.
+        /// How to fix it.
         #[help]
         fix: Box<str>,
     },

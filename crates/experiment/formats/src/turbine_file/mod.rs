@@ -38,7 +38,7 @@ pub struct TurbineFile {
 /// The turbine in `text`, which errors call `file`.
 ///
 /// # Errors
-/// [`TurbineFileError`] naming file, line, key, what was expected there and what mends it.
+/// [`TurbineFileError`] naming file, line, key, what was expected there and how to fix it.
 pub fn parse(file: &str, text: &str) -> Result<TurbineFile, TurbineFileError> {
     let document: Document =
         toml::from_str(text).map_err(|error| TurbineFileError::syntax(file, text, &error))?;

@@ -99,7 +99,7 @@ mod tests {
             let error = blocks.plane(place).unwrap_err();
             assert!(matches!(error, FileError::System { path: named, .. } if named == path));
         }
-        // What is gone is told, and what came before it is still there.
+        // What is gone is reported, and what came before it is still there.
         File::options().write(true).open(&path).unwrap().set_len(350_000).unwrap();
         assert!(blocks.plane(4).is_err());
         assert!(blocks.plane(3).is_err());

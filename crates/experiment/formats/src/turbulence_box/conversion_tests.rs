@@ -118,7 +118,7 @@ fn a_damaged_file_leaves_what_was_there_before() {
     let component = source.path().join("box_w.bin");
     let whole = fs::read(&component).unwrap();
     let good = &whole[..whole.len() - 4];
-    for (damaged, told) in [
+    for (damaged, message) in [
         ([good, &f32::NAN.to_le_bytes()].concat(), "plane 7, column 4, row 3) is NaN"),
         (good.to_vec(), "ends within plane 7 of 7"),
     ] {
@@ -128,7 +128,7 @@ fn a_damaged_file_leaves_what_was_there_before() {
             let path = target.path().join(name);
             fs::write(&path, "before").unwrap();
             let error = convert(&from, &path).unwrap_err().to_string();
-            assert!(error.contains("box_w.bin") && error.contains(told), "{error}");
+            assert!(error.contains("box_w.bin") && error.contains(message), "{error}");
             assert_eq!(files(target.path()), [(OsString::from(name), b"before".to_vec())]);
         }
     }

@@ -321,7 +321,7 @@ impl Component {
                 COMPONENT,
                 path,
                 problem,
-                "copy or write the file again, or mend box.n_points in the header",
+                "copy or write the file again, or correct box.n_points in the header",
             ));
         }
         let planes = Blocks::new(file, path, COMPONENT, 0, 4 * size, n_x);

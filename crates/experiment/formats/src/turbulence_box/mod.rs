@@ -143,13 +143,13 @@ const SPACINGS: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
 /// Makes sure that wind can come in over `grid`, which stands in the file of `what` at `path`.
 fn sound(path: &Path, what: &'static str, grid: &PlaneGrid) -> Result<(), FileError> {
     let fix = "copy the file again, or make it again";
-    let told = |problem: String| FileError::content(what, path, problem, fix);
-    grid.check().map_err(|error| told(error.to_string()))?;
+    let refusal = |problem: String| FileError::content(what, path, problem, fix);
+    grid.check().map_err(|error| refusal(error.to_string()))?;
     let along = grid.speed * grid.interval;
     for (axis, spacing) in ["x", "y", "z"].iter().zip([along, grid.spacing[0], grid.spacing[1]]) {
         if !SPACINGS.contains(&spacing) {
             let [least, most] = [SPACINGS.start(), SPACINGS.end()];
-            return Err(told(format!(
+            return Err(refusal(format!(
                 "its points stand {spacing} m apart along {axis}; {least} to {most} m is the range"
             )));
         }
@@ -157,7 +157,7 @@ fn sound(path: &Path, what: &'static str, grid: &PlaneGrid) -> Result<(), FileEr
     Ok(())
 }
 
-/// What a flow hears when plane `step` cannot be read.
+/// The error of a flow when plane `step` cannot be read.
 fn plane_error(step: usize, error: &FileError) -> InflowError {
     let mut problem = error.to_string();
     if let Some(source) = std::error::Error::source(error) {

@@ -67,7 +67,7 @@ fn all_ways_of_blowing_agree_at_the_points_of_the_box() {
     }
 }
 
-/// A file that shrinks during the run is told with its name and the plane.
+/// A file that shrinks during the run is reported with its name and the plane.
 #[test]
 fn a_plane_that_is_gone_is_named() {
     let folder = folder();

@@ -171,7 +171,7 @@ fn headers_that_do_not_fit_are_refused() {
     let path = folder.path().join("box.toml");
     write(&path, &stored([6, 3, 2])).unwrap();
     let good = fs::read_to_string(&path).unwrap();
-    for (from, to, told) in [
+    for (from, to, message) in [
         ("hub_speed", "hub_sped", "line "),
         ("x_runs = \"upwind\"", "x_runs = \"left\"", "x_runs"),
         ("n_points = [6, 3, 2]", "n_points = [6, 0, 2]", "n_points"),
@@ -182,7 +182,7 @@ fn headers_that_do_not_fit_are_refused() {
         assert!(good.contains(from), "{from}");
         fs::write(&path, good.replace(from, to)).unwrap();
         let (problem, _) = complaint(&path);
-        assert!(problem.contains(told), "{problem}");
+        assert!(problem.contains(message), "{problem}");
     }
 }
 

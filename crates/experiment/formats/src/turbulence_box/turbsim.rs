@@ -240,7 +240,7 @@ fn scale([least, most]: [f64; 2]) -> (f32, f32) {
     (slope, (f64::from(i16::MIN) - f64::from(slope) * least) as f32)
 }
 
-/// What is wrong with a file, and what mends it.
+/// What is wrong with a file, and how to fix it.
 type Wrong = (String, &'static str);
 
 const COPY_AGAIN: &str = "copy the file again or run TurbSim again";

@@ -52,7 +52,7 @@ impl File {
 /// Makes sure that the lists and groups of `text` do not lie deeper within each other than what reads them can go down.
 ///
 /// # Errors
-/// Line and problem; what is no YAML is not told here.
+/// Line and problem; what is no YAML is not reported here.
 fn check_depth(text: &str) -> Result<(), (usize, String)> {
     let mut depth = 0;
     for event in Parser::new_from_str(text) {

@@ -67,7 +67,7 @@ pub enum Takes {
     Choice(&'static [(&'static str, &'static str)]),
 }
 
-/// What is asked of an analysis.
+/// A request to an analysis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Request {
     /// Folders of the records.

@@ -20,7 +20,7 @@ pub(super) const SETTINGS: &[Setting] = &[
         name: "turbine",
         value: "NAME",
         takes: Takes::Text,
-        about: "Turbine that the helix meets; when left out each that seeks one, for `tune` the first of them",
+        about: "Turbine that the helix meets; when left out each that looks for one, for `tune` the first of them",
     },
     Setting {
         name: "truth",
@@ -35,7 +35,7 @@ pub(super) const SETTINGS: &[Setting] = &[
             ("robust", "With states for what its model lacks"),
             ("published", "The four states of van Vondelen et al. (2025)"),
         ]),
-        about: "Run this estimator over the records, instead of reading what the run itself believed",
+        about: "Run this estimator over the records, instead of reading the run's own estimate",
     },
     Setting {
         name: "from",
@@ -69,7 +69,7 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     })
 }
 
-/// An object, or a list of them where several turbines seek a helix.
+/// An object, or a list of them where several turbines look for a helix.
 fn all_json(answers: &[PhaseAnswer]) -> serde_json::Value {
     match answers {
         [answer] => json(answer),
@@ -120,11 +120,11 @@ fn text(answer: &PhaseAnswer) -> String {
         );
     }
     text += "± 95 %; coherence and phase error, estimate before truth, at the helix's frequency, from the cross-spectrum\n";
-    if let Some([tilt, yaw]) = answer.hindsight {
+    if let Some([tilt, yaw]) = answer.zero_phase {
         let [tilt, yaw] =
             [tilt, yaw].map(|found| (found.spread.to_degrees(), found.bias.to_degrees()));
         text += &format!(
-            "in hindsight, the same blade moments through the filter of the truth: spread {:.1}° about {:+.1}° in tilt, {:.1}° about {:+.1}° in yaw\n",
+            "zero-phase estimate, the same blade moments through the filter of the truth: spread {:.1}° about {:+.1}° in tilt, {:.1}° about {:+.1}° in yaw\n",
             tilt.0, tilt.1, yaw.0, yaw.1
         );
     }
@@ -165,7 +165,7 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
         "trust": answer.trust,
         "tilt": axis(&answer.tilt),
         "yaw": axis(&answer.yaw),
-        "hindsight": answer.hindsight.map(|axes| axes.map(|found| json!({
+        "hindsight": answer.zero_phase.map(|axes| axes.map(|found| json!({
             "spread_deg": found.spread.to_degrees(),
             "bias_deg": found.bias.to_degrees(),
         }))),
@@ -216,7 +216,7 @@ mod tests {
             tilt: axis(Some(-12.34)),
             yaw: axis(None),
             trust: 0.5,
-            hindsight: None,
+            zero_phase: None,
         };
         let text = text(&answer);
         let lines: Vec<&str> = text.lines().collect();

@@ -1,6 +1,6 @@
 //! An estimator run again over the records of a turbine, and tuned on them.
 
-use super::asked::{Asked, Records};
+use super::query::{Query, Records};
 use super::{Estimates, PhaseQuestion, Wave, column};
 use crate::PostprocessingError;
 use analysis::phase::uniform_interval;
@@ -12,17 +12,17 @@ use estimation::helix::{HelixSettings, Options};
 use estimation::{EstimationError, HelixEstimator};
 use farm::assemble::AssemblyError;
 
-/// What `estimator` believes when it is given the records of the turbine row by row, calibrated as it was in the run.
+/// Estimate of `estimator` on the records of the turbine, row by row, calibrated as in the run.
 pub(super) fn replay(
-    asked: &Asked<'_>,
+    query: &Query<'_>,
     estimator: PhaseEstimator,
 ) -> Result<Estimates, PostprocessingError> {
-    let interval = uniform_interval(column(asked.series, "time_s")?)?;
-    let setting = setting(asked, interval);
-    let options = options(asked, estimator);
+    let interval = uniform_interval(column(query.series, "time_s")?)?;
+    let setting = setting(query, interval);
+    let options = options(query, estimator);
     let mut estimator =
-        HelixEstimator::new(&asked.definition, &setting, options).map_err(not_estimated)?;
-    let record = record(asked, interval)?;
+        HelixEstimator::new(&query.definition, &setting, options).map_err(not_estimated)?;
+    let record = record(query, interval)?;
     let replayed = tuning::replay(&mut estimator, &record, interval).map_err(not_estimated)?;
     let mut estimates = Estimates {
         wind: Vec::new(),
@@ -52,11 +52,11 @@ pub(super) fn replay(
 pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
     let mut records = Records::read(question)?;
     let first = records.turbines[0];
-    let asked = records.asked(first)?;
-    let truth = &asked.truth.wind;
-    let interval = uniform_interval(column(asked.series, "time_s")?)?;
-    let from = question.from.unwrap_or(asked.case.time.spin_up);
-    let whole = record(&asked, interval)?;
+    let query = records.query(first)?;
+    let truth = &query.truth.wind;
+    let interval = uniform_interval(column(query.series, "time_s")?)?;
+    let from = question.from.unwrap_or(query.case.time.spin_up);
+    let whole = record(&query, interval)?;
     let (mut measured, mut tilt, mut yaw) = (Vec::new(), Vec::new(), Vec::new());
     for measurements in whole {
         let at = truth.index_at(measurements.time).filter(|at| truth.trusted.contains(at));
@@ -67,19 +67,19 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
         }
     }
     let estimator = question.estimator.unwrap_or(PhaseEstimator::Robust);
-    let options = options(&asked, estimator);
-    let setting = setting(&asked, interval);
-    let tuned = tuning::tune(&asked.definition, &setting, options, &measured, [&tilt, &yaw]);
+    let options = options(&query, estimator);
+    let setting = setting(&query, interval);
+    let tuned = tuning::tune(&query.definition, &setting, options, &measured, [&tilt, &yaw]);
     Ok(tuned.map_err(not_estimated)?)
 }
 
 /// Choices of `estimator`, calibrated as in the run, with the noise that it was given there.
-fn options(asked: &Asked<'_>, estimator: PhaseEstimator) -> Options {
-    let options = estimator.options(asked.case.flow.solver.resolves_induction);
-    let calibration = asked.calibration.filter(|_| estimator == PhaseEstimator::Robust);
+fn options(query: &Query<'_>, estimator: PhaseEstimator) -> Options {
+    let options = estimator.options(query.case.flow.solver.resolves_induction);
+    let calibration = query.calibration.filter(|_| estimator == PhaseEstimator::Robust);
     let options = calibration.map_or(options, |found| found.apply(options));
-    // Noise is given to one estimator; another's states may wander otherwise.
-    let sync = asked.sync.filter(|sync| sync.estimator == estimator);
+    // Noise is given to one estimator; another's states may have other process noise.
+    let sync = query.sync.filter(|sync| sync.estimator == estimator);
     sync.map_or(options, |sync| sync.noise.apply(options))
 }
 
@@ -87,23 +87,23 @@ fn not_estimated(error: EstimationError) -> AssemblyError {
     ControlError::from(error).into()
 }
 
-/// What the estimator of the turbine is told.
-fn setting(asked: &Asked<'_>, interval: f64) -> HelixSettings {
+/// Settings of the turbine's estimator.
+fn setting(query: &Query<'_>, interval: f64) -> HelixSettings {
     HelixSettings {
-        sense: asked.reference.sense,
-        rate: asked.reference.rate,
+        sense: query.reference.sense,
+        rate: query.reference.rate,
         interval,
-        air_density: asked.case.wind.air_density,
+        air_density: query.case.wind.air_density,
         n_elements: HelixSettings::N_ELEMENTS,
     }
 }
 
 /// What the turbine measured, row by row.
 fn record(
-    asked: &Asked<'_>,
+    query: &Query<'_>,
     interval: f64,
 ) -> Result<Vec<Measurements<'static>>, PostprocessingError> {
-    let (name, series, n_blades) = (asked.name, asked.series, asked.definition.n_blades);
+    let (name, series, n_blades) = (query.name, query.series, query.definition.n_blades);
     let channel = |what: &str| column(series, &format!("{name}.{what}"));
     let per_blade = |what: &str| {
         (1..=n_blades)

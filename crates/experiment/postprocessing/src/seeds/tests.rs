@@ -89,9 +89,9 @@ fn gains_of_three_winds_have_the_interval_of_student() {
     assert_eq!(answer.case, "row");
     assert_eq!(answer.seeds, [1, 2, 3]);
     assert_eq!(answer.downstream, ["T3", "T2"]);
-    let told: Vec<[&str; 2]> =
+    let reported: Vec<[&str; 2]> =
         answer.runs.iter().map(|run| [run.run.as_str(), run.compare_with.as_str()]).collect();
-    assert_eq!(told, [["helix", "baseline"], ["two", "baseline"]]);
+    assert_eq!(reported, [["helix", "baseline"], ["two", "baseline"]]);
     let parts = &answer.runs[0].parts;
     let names: Vec<&str> = parts.iter().map(|part| part.name.as_str()).collect();
     assert_eq!(names, ["T3", "T1", "T2", "downstream", "all"]);
@@ -162,6 +162,6 @@ fn studies_that_do_not_belong_together_are_refused() {
 
     leave(other.path(), &seeded(3), 1, &powers[1..]);
     let error = refused(&[&first, &other], &["helix"]);
-    let told = format!("T1, T2 in {} and T3, T1, T2 in", other.path().display());
-    assert!(error.to_string().contains(&told), "{error}");
+    let reported = format!("T1, T2 in {} and T3, T1, T2 in", other.path().display());
+    assert!(error.to_string().contains(&reported), "{error}");
 }

@@ -21,9 +21,9 @@ fn channel(blade: usize) -> String {
     format!("pitch_{blade}_rad")
 }
 
-/// Whether the channel `asked` of an excited turbine is shown.
-pub(crate) fn draws(asked: &str) -> bool {
-    (1..=N_BLADES).any(|blade| channel(blade) == asked)
+/// Whether the channel `requested` of an excited turbine is shown.
+pub(crate) fn draws(requested: &str) -> bool {
+    (1..=N_BLADES).any(|blade| channel(blade) == requested)
 }
 
 /// One excited turbine in one run.

@@ -80,7 +80,7 @@ impl Sheet<'_> {
         Figure {
             name: name.to_owned(),
             title: title.to_owned(),
-            caption: format!("{caption} U∞ = {free_stream}{SPACE}m/s, as asked for at hub height."),
+            caption: format!("{caption} U∞ = {free_stream}{SPACE}m/s, the target at hub height."),
             width: WIDTH,
             height: base + 48.0,
             shapes,

@@ -17,7 +17,7 @@ pub(crate) fn phases(study: &Study) -> Vec<Value> {
         context! {
             run => row.run.clone(),
             turbine => turbine.clone(),
-            offset => row.offset.map_or("watches".to_owned(), |offset| number(offset.to_degrees(), 0)),
+            offset => row.offset.map_or("monitoring".to_owned(), |offset| number(offset.to_degrees(), 0)),
             axis,
             rmse => degrees(numbers.rmse),
             bias => degrees(numbers.bias),
@@ -126,7 +126,7 @@ pub(crate) fn responses(study: &Study) -> Vec<Value> {
 
 /// What turbines found of meandering and made of it, a row for each axis.
 pub(crate) fn meanderings(study: &Study) -> Vec<Value> {
-    let told = |value: Option<f64>, decimals: fn(f64) -> usize| {
+    let stated = |value: Option<f64>, decimals: fn(f64) -> usize| {
         value.map_or("–".to_owned(), |value| number(value, decimals(value)))
     };
     let mut rows = Vec::new();
@@ -146,12 +146,12 @@ pub(crate) fn meanderings(study: &Study) -> Vec<Value> {
                     turbine => turbine.name.clone(),
                     control => turbine.control.description.clone(),
                     locked => percent(found.locked_share),
-                    frequency => told(found.frequency_hz, |_| 4),
-                    strouhal => told(found.frequency_hz.map(strouhal), |_| 3),
+                    frequency => stated(found.frequency_hz, |_| 4),
+                    strouhal => stated(found.frequency_hz.map(strouhal), |_| 3),
                     axis,
-                    amplitude => told(mega(|moment| Some(moment.amplitude)), three_figures),
-                    reference => told(mega(|moment| moment.reference), three_figures),
-                    factor => told(moment.and_then(|moment| moment.factor), |_| 2),
+                    amplitude => stated(mega(|moment| Some(moment.amplitude)), three_figures),
+                    reference => stated(mega(|moment| moment.reference), three_figures),
+                    factor => stated(moment.and_then(|moment| moment.factor), |_| 2),
                 });
             }
         }

@@ -34,7 +34,7 @@ enum Quantity {
 }
 
 impl Quantity {
-    /// All that is told of `turbine`.
+    /// All that is reported of `turbine`.
     fn of(turbine: &TurbineSummary) -> Vec<Self> {
         let mut found = Vec::new();
         if let Some(duty) = &turbine.pitch_duty {

@@ -57,7 +57,7 @@ fn changes_of_loads_come_with_their_intervals() {
             "<td>{label}</td><td class=\"n\">12500</td><td class=\"pm\"></td><td class=\"n\">10000</td><td class=\"pm\">{change}</td>"
         )
     };
-    // A load without a change of its own is told beside that of the other run.
+    // A load without a change of its own stands beside that of the other run.
     let whole = page(&study);
     assert!(whole.contains(&cells("−20.0 %")));
     assert!(

@@ -23,8 +23,8 @@ pub(super) struct WindLines {
 
 /// Places of the turbines that are not there in `run` and at which the case asks for lines.
 fn places<'a>(setup: &'a Prepared, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
-    let asked = setup.case.output.lines_at.iter().copied();
-    asked.filter(|&index| !run.control[index].is_there())
+    let requested = setup.case.output.lines_at.iter().copied();
+    requested.filter(|&index| !run.control[index].is_there())
 }
 
 /// Places at which `run` has lines (–).

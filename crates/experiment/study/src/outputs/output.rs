@@ -76,7 +76,7 @@ pub trait Output {
     /// Takes in what it needs of the farm before a step that is due.
     fn before_step(&mut self, _scene: &Scene) {}
 
-    /// Takes in how turbine number `turbine` fared when a step that is due began, the truth whatever its instruments showed,
+    /// Takes in the state of turbine number `turbine` when a step that is due began, the truth whatever its instruments showed,
     /// and what its controller commanded.
     fn record(&mut self, _turbine: usize, _truth: &Truth, _commands: &Commands) {}
 

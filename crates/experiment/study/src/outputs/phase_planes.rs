@@ -21,7 +21,7 @@ pub(super) static KIND: OutputKind = OutputKind {
 };
 
 /// Phases, and the rate of the helix (rad/s), where the case asks for them and `run` has a helix.
-fn asked(setup: &Prepared, run: &Run) -> Option<(usize, f64)> {
+fn requested(setup: &Prepared, run: &Run) -> Option<(usize, f64)> {
     let n_phases = setup.case.output.helix_phases?;
     let (_, strouhal) = setup.case.first_helix(run)?;
     let rate = excitation_rate(strouhal, setup.case.wind.speed, setup.plan.diameter);
@@ -29,7 +29,7 @@ fn asked(setup: &Prepared, run: &Run) -> Option<(usize, f64)> {
 }
 
 fn disk(setup: &Prepared, run: &Run) -> u64 {
-    let n_phases = asked(setup, run).map_or(0, |(n_phases, _)| n_phases as u64);
+    let n_phases = requested(setup, run).map_or(0, |(n_phases, _)| n_phases as u64);
     n_phases * slices::n_points_at_hub_height(setup) * (POINT_BYTES + SUM_BYTES)
 }
 
@@ -40,8 +40,8 @@ struct PhasePlanes {
 }
 
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
-    let asked = asked(scene.setup, scene.run).zip(scene.farm.flow().fields());
-    let Some(((n_phases, rate), fields)) = asked else { return Ok(None) };
+    let requested = requested(scene.setup, scene.run).zip(scene.farm.flow().fields());
+    let Some(((n_phases, rate), fields)) = requested else { return Ok(None) };
     let slice = slices::hub_height(scene.setup);
     let average = match stored {
         Some(stored) => stored.state()?,

@@ -58,7 +58,7 @@ struct Series {
     writer: SeriesWriter,
 }
 
-/// Point at hub height where the arriving wind is read (m): upstream of the first turbine, in prescribed wind at it.
+/// Point at hub height where the realised wind is measured (m): upstream of the first turbine, in prescribed wind at it.
 fn probe(setup: &Prepared) -> Vector3 {
     let plan = &setup.plan;
     let foot = plan.positions[0];

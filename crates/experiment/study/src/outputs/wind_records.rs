@@ -39,8 +39,8 @@ fn schedule(setup: &Prepared) -> Schedule {
 
 /// Places of the turbines that are not there in `run` and whose wind the case asks for.
 fn places<'a>(setup: &'a Prepared, run: &'a Run) -> impl Iterator<Item = usize> + 'a {
-    let asked = setup.case.output.inflow_at.iter().copied();
-    asked.filter(|&index| !run.control[index].is_there())
+    let requested = setup.case.output.inflow_at.iter().copied();
+    requested.filter(|&index| !run.control[index].is_there())
 }
 
 /// Points of the planes at the place of turbine number `index`.

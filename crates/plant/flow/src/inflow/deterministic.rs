@@ -20,7 +20,7 @@ pub const COHERENT_GUST_DURATION: f64 = 10.0;
 /// Duration of the extreme wind shear (s).
 pub const EXTREME_SHEAR_DURATION: f64 = 12.0;
 
-/// A wind without chance: a mean profile that veers with height, and one event in time.
+/// A deterministic wind: a mean profile that veers with height, and one event in time.
 ///
 /// The event comes to all places at once, wherever they lie along x. Directions are angles of the horizontal wind
 /// from x, counter-clockwise seen from above: positive blows towards +y, to the left looking downwind.

@@ -1,4 +1,4 @@
-//! Tests of winds without chance: what the standard says of them at chosen times.
+//! Tests of deterministic winds: what the standard says of them at chosen times.
 
 use super::*;
 use crate::inflow::iec;

@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What to make.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Settings {
+pub struct KaimalSettings {
     /// Points along x, y, z (–), at least 2 each; x, which is time, even. Products of 2, 3 and 5 are fastest.
     pub n_points: [usize; 3],
     /// Distance of neighbouring points along x, y, z (m); along x it is hub speed × time step.
@@ -41,7 +41,7 @@ pub struct Settings {
 }
 
 /// What is done about a realised standard deviation, which lies below the model's: a record holds neither waves
-/// longer than itself nor shorter than two time steps, and chance does the rest.
+/// longer than itself nor shorter than two time steps, and it varies with the seed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Scaling {
     /// Nothing.
@@ -53,7 +53,7 @@ pub enum Scaling {
     EachPoint,
 }
 
-impl Settings {
+impl KaimalSettings {
     /// # Errors
     /// [`InflowError::Setting`] names what cannot be used.
     fn check(&self) -> Result<(), InflowError> {
@@ -95,7 +95,7 @@ pub fn peak_memory([n_x, n_y, n_z]: [usize; 3]) -> u64 {
     plane * (3 * 4 * n_x as u64 + 8 * (n_x as u64 / 2 + 1))
 }
 
-/// Draws a box; `progress` hears the share done, 0 to 1, on the calling thread.
+/// Draws a box; `progress` receives the share done, 0 to 1, on the calling thread.
 ///
 /// Each point and component is a sum of waves at the record's frequencies f with amplitude √(2 S(f) Δf) and random
 /// phase. Phases of v and w are independent from point to point. Those of u are made coherent: at each frequency the
@@ -110,7 +110,7 @@ pub fn peak_memory([n_x, n_y, n_z]: [usize; 3]) -> u64 {
 ///
 /// # Errors
 /// [`InflowError`] for settings out of range, or a box that memory cannot hold.
-pub fn generate(settings: &Settings, progress: impl Fn(f64)) -> Result<TurbulenceBox, InflowError> {
+pub fn generate(settings: &KaimalSettings, progress: impl Fn(f64)) -> Result<TurbulenceBox, InflowError> {
     settings.check()?;
     let model = settings.model()?;
     let [n_x, n_y, n_z] = settings.n_points;
@@ -159,7 +159,7 @@ pub fn generate(settings: &Settings, progress: impl Fn(f64)) -> Result<Turbulenc
 ///
 /// # Errors
 /// As [`generate`].
-pub fn clipped_share(settings: &Settings) -> Result<f64, InflowError> {
+pub fn clipped_share(settings: &KaimalSettings) -> Result<f64, InflowError> {
     settings.check()?;
     let coherent = Coherent::new(settings, &settings.model()?);
     Ok(coherent.clipped_share())
@@ -176,15 +176,15 @@ fn by_planes(
     let n_planes = spectrum.len() / size;
     let planes = Mutex::new(spectrum.chunks_mut(size).enumerate());
     let done = AtomicUsize::new(0);
-    let work = |watch: Option<&dyn Fn(f64)>| {
+    let work = |progress: Option<&dyn Fn(f64)>| {
         let mut workspace = coherent::Workspace::default();
         loop {
             let next = planes.lock().map_or(None, |mut planes| planes.next());
             let Some((index, plane)) = next else { break };
             fill(index, plane, &mut workspace);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if let Some(watch) = watch.filter(|_| done.is_multiple_of(64)) {
-                watch(done as f64 / n_planes as f64);
+            if let Some(progress) = progress.filter(|_| done.is_multiple_of(64)) {
+                progress(done as f64 / n_planes as f64);
             }
         }
     };
@@ -196,8 +196,8 @@ fn by_planes(
     });
 }
 
-/// On return the standard deviation of `values`, planes of one component, is `deviation` (m/s) where asked for.
-fn scale(settings: &Settings, deviation: f64, values: &mut [f32]) {
+/// On return the standard deviation of `values`, planes of one component, is `deviation` (m/s) where given.
+fn scale(settings: &KaimalSettings, deviation: f64, values: &mut [f32]) {
     if settings.scaling == Scaling::None {
         return;
     }

@@ -3,8 +3,8 @@
 use super::*;
 use crate::inflow::iec::DEVIATION_RATIOS;
 
-fn settings(seed: u64) -> Settings {
-    Settings {
+fn settings(seed: u64) -> KaimalSettings {
+    KaimalSettings {
         n_points: [1024, 9, 7],
         spacing: [4.0, 10.0, 12.0],
         hub_speed: 8.0,
@@ -20,7 +20,7 @@ fn settings(seed: u64) -> Settings {
 #[test]
 fn is_the_same_for_any_number_of_threads_and_another_for_another_seed() {
     let one = generate(&settings(3), |_| {}).unwrap();
-    let three = generate(&Settings { threads: Some(3), ..settings(3) }, |_| {}).unwrap();
+    let three = generate(&KaimalSettings { threads: Some(3), ..settings(3) }, |_| {}).unwrap();
     assert_eq!(one, three);
     assert_ne!(one, generate(&settings(4), |_| {}).unwrap());
 }
@@ -52,8 +52,8 @@ fn scaling_meets_the_deviation_at_the_hub_or_everywhere() {
             .sum();
         (square / 1024.0).sqrt()
     };
-    let hub = generate(&Settings { scaling: Scaling::Hub, ..settings(2) }, |_| {}).unwrap();
-    let each = generate(&Settings { scaling: Scaling::EachPoint, ..settings(2) }, |_| {}).unwrap();
+    let hub = generate(&KaimalSettings { scaling: Scaling::Hub, ..settings(2) }, |_| {}).unwrap();
+    let each = generate(&KaimalSettings { scaling: Scaling::EachPoint, ..settings(2) }, |_| {}).unwrap();
     for (component, ratio) in DEVIATION_RATIOS.into_iter().enumerate() {
         // The hub at 100 m is on row 3 and in column 4.
         assert!((deviation(&hub, component, [4, 3]) - 1.2 * ratio).abs() < 1e-5);
@@ -74,7 +74,7 @@ fn coherence_is_that_of_the_model() {
     let base = settings(0);
     let model = base.model().unwrap();
     for seed in 0..n_seeds {
-        let settings = Settings { seed, ..base };
+        let settings = KaimalSettings { seed, ..base };
         let coherent = Coherent::new(&settings, &model);
         let phases = Phases::new(seed);
         let mut workspace = coherent::Workspace::default();
@@ -100,7 +100,7 @@ fn coherence_is_that_of_the_model() {
 #[test]
 fn little_is_clipped() {
     for n_points in [[1024, 9, 7], [1024, 31, 31], [64, 2, 2]] {
-        let share = clipped_share(&Settings { n_points, ..settings(1) }).unwrap();
+        let share = clipped_share(&KaimalSettings { n_points, ..settings(1) }).unwrap();
         assert!(share < 2e-4, "{n_points:?}: {share}");
     }
 }
@@ -108,11 +108,11 @@ fn little_is_clipped() {
 #[test]
 fn settings_out_of_range_are_named() {
     for (wrong, name) in [
-        (Settings { n_points: [1023, 9, 7], ..settings(1) }, "along x"),
-        (Settings { n_points: [1024, 1, 7], ..settings(1) }, "points"),
-        (Settings { hub_speed: 0.0, ..settings(1) }, "speed"),
-        (Settings { standard_deviation: f64::NAN, ..settings(1) }, "deviation"),
-        (Settings { spacing: [4.0, -1.0, 3.0], ..settings(1) }, "spacing"),
+        (KaimalSettings { n_points: [1023, 9, 7], ..settings(1) }, "along x"),
+        (KaimalSettings { n_points: [1024, 1, 7], ..settings(1) }, "points"),
+        (KaimalSettings { hub_speed: 0.0, ..settings(1) }, "speed"),
+        (KaimalSettings { standard_deviation: f64::NAN, ..settings(1) }, "deviation"),
+        (KaimalSettings { spacing: [4.0, -1.0, 3.0], ..settings(1) }, "spacing"),
     ] {
         let error = generate(&wrong, |_| {}).unwrap_err();
         assert!(error.to_string().contains(name), "{error}");

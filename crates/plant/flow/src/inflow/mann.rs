@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 /// What to make.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Settings {
+pub struct MannSettings {
     /// Points along x, y, z (–), at least 2 each; x even. Products of 2, 3 and 5 are fastest.
     pub n_points: [usize; 3],
     /// Distance of neighbouring points along x, y, z (m).
@@ -28,7 +28,7 @@ pub struct Settings {
     pub threads: Option<usize>,
 }
 
-impl Settings {
+impl MannSettings {
     /// # Errors
     /// [`InflowError::Setting`] names what cannot be used.
     fn check(&self) -> Result<(), InflowError> {
@@ -49,7 +49,7 @@ pub(crate) fn points_along_x(memory: u64, n_y: usize, n_z: usize) -> usize {
     (planes.saturating_sub(24) / 16) as usize
 }
 
-/// Draws a box; `progress` hears the share done, 0 to 1, on the calling thread.
+/// Draws a box; `progress` receives the share done, 0 to 1, on the calling thread.
 ///
 /// u(x) = Σ exp(i k·x) Z(k) over the box's wave numbers, E ZZ* = ∫ Φ dk over the cell of wave numbers around
 /// k, projected normal to k: the field is free of divergence, wave by wave. Cells are integrated by midpoints
@@ -57,13 +57,13 @@ pub(crate) fn points_along_x(memory: u64, n_y: usize, n_z: usize) -> usize {
 /// enough. Left out: the mean, k = 0; waves at the Nyquist numbers, whose sense is ambiguous; and u of waves that are
 /// uniform across the box, which continuity forbids. The last are long gusts: of a box 19 L wide and high and
 /// 154 L long at Γ = 3.9 they hold 15 % of the tensor's streamwise variance, of one 36 L × 27 L across 9 %.
-/// αε^(2/3) is then set so that the streamwise standard deviation over the box is the one asked for, with which
+/// αε^(2/3) is then set so that the streamwise standard deviation over the box is the target, with which
 /// spectra lie higher by that share; all components are scaled alike.
 /// Source: [Mann1998, eqs. 35-39, 46], with the projection added.
 ///
 /// # Errors
 /// [`InflowError`] for settings out of range, or a box that memory cannot hold.
-pub fn generate(settings: &Settings, progress: impl Fn(f64)) -> Result<TurbulenceBox, InflowError> {
+pub fn generate(settings: &MannSettings, progress: impl Fn(f64)) -> Result<TurbulenceBox, InflowError> {
     settings.check()?;
     let tensor = SpectralTensor::new(settings.length_scale, settings.anisotropy)?;
     let [n_x, n_y, n_z] = settings.n_points;
@@ -110,7 +110,7 @@ pub fn generate(settings: &Settings, progress: impl Fn(f64)) -> Result<Turbulenc
 
 /// Amplitudes of the box's waves.
 struct Waves<'a> {
-    settings: &'a Settings,
+    settings: &'a MannSettings,
     tensor: SpectralTensor,
 }
 

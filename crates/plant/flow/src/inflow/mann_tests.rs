@@ -4,8 +4,8 @@ use super::*;
 use crate::inflow::spectra;
 use proptest::prelude::*;
 
-fn settings() -> Settings {
-    Settings {
+fn settings() -> MannSettings {
+    MannSettings {
         n_points: [64, 24, 20],
         spacing: [12.0, 10.0, 11.0],
         length_scale: 33.6,
@@ -16,7 +16,7 @@ fn settings() -> Settings {
     }
 }
 
-fn make(settings: &Settings) -> TurbulenceBox {
+fn make(settings: &MannSettings) -> TurbulenceBox {
     generate(settings, |_| {}).unwrap()
 }
 
@@ -38,10 +38,10 @@ fn is_free_of_divergence_wave_by_wave() {
 /// Γ = 0: all components alike, no stress, up to the scatter of one draw.
 #[test]
 fn is_isotropic_without_shear() {
-    let sizes = Settings { n_points: [48; 3], spacing: [14.0; 3], anisotropy: 0.0, ..settings() };
+    let sizes = MannSettings { n_points: [48; 3], spacing: [14.0; 3], anisotropy: 0.0, ..settings() };
     let [mut v, mut w, mut stress] = [0.0; 3];
     for seed in 0..6 {
-        let turbulence = make(&Settings { seed, ..sizes });
+        let turbulence = make(&MannSettings { seed, ..sizes });
         let deviations = turbulence.standard_deviations();
         v += deviations[1] / 0.5 / 6.0;
         w += deviations[2] / 0.5 / 6.0;
@@ -56,17 +56,17 @@ fn is_isotropic_without_shear() {
 fn threads_change_no_bit_and_seeds_every_value() {
     let one = make(&settings());
     for threads in [2, 3, 7] {
-        assert_eq!(one, make(&Settings { threads: Some(threads), ..settings() }));
+        assert_eq!(one, make(&MannSettings { threads: Some(threads), ..settings() }));
     }
     assert_eq!(one, make(&settings()));
-    assert_ne!(one, make(&Settings { seed: 4, ..settings() }));
+    assert_ne!(one, make(&MannSettings { seed: 4, ..settings() }));
 }
 
 /// Large eddies are the same ones when the grid is refined: they keep their numbers.
 #[test]
 fn a_finer_grid_keeps_the_large_eddies() {
-    let coarse = make(&Settings { length_scale: 150.0, ..settings() });
-    let fine = make(&Settings {
+    let coarse = make(&MannSettings { length_scale: 150.0, ..settings() });
+    let fine = make(&MannSettings {
         n_points: [128, 48, 40],
         spacing: [6.0, 5.0, 5.5],
         length_scale: 150.0,
@@ -90,7 +90,7 @@ fn a_finer_grid_keeps_the_large_eddies() {
 /// Sheared eddies lean with the wind: air higher up is ahead.
 #[test]
 fn eddies_lean_downwind_with_height() {
-    let turbulence = make(&Settings { n_points: [256, 24, 24], spacing: [10.0; 3], ..settings() });
+    let turbulence = make(&MannSettings { n_points: [256, 24, 24], spacing: [10.0; 3], ..settings() });
     let correlation = |shift: usize| -> f64 {
         let mut sum = 0.0;
         for x in 0..256 {
@@ -110,28 +110,28 @@ fn eddies_lean_downwind_with_height() {
 #[test]
 fn refuses_settings_out_of_range() {
     for wrong in [
-        Settings { n_points: [63, 24, 20], ..settings() },
-        Settings { n_points: [64, 1, 20], ..settings() },
-        Settings { spacing: [0.0, 1.0, 1.0], ..settings() },
-        Settings { standard_deviation: -1.0, ..settings() },
-        Settings { standard_deviation: f64::NAN, ..settings() },
-        Settings { length_scale: -3.0, ..settings() },
-        Settings { anisotropy: f64::INFINITY, ..settings() },
+        MannSettings { n_points: [63, 24, 20], ..settings() },
+        MannSettings { n_points: [64, 1, 20], ..settings() },
+        MannSettings { spacing: [0.0, 1.0, 1.0], ..settings() },
+        MannSettings { standard_deviation: -1.0, ..settings() },
+        MannSettings { standard_deviation: f64::NAN, ..settings() },
+        MannSettings { length_scale: -3.0, ..settings() },
+        MannSettings { anisotropy: f64::INFINITY, ..settings() },
     ] {
         assert!(matches!(generate(&wrong, |_| {}), Err(InflowError::Setting { .. })));
     }
-    let huge = Settings { n_points: [1 << 20, 1 << 20, 1 << 19], ..settings() };
+    let huge = MannSettings { n_points: [1 << 20, 1 << 20, 1 << 19], ..settings() };
     assert!(matches!(generate(&huge, |_| {}), Err(InflowError::Memory { .. })));
 }
 
 #[test]
 fn progress_rises_to_one() {
-    let heard = std::cell::RefCell::new(Vec::new());
-    let two = Settings { threads: Some(2), ..settings() };
-    generate(&two, |share| heard.borrow_mut().push(share)).unwrap();
-    let heard = heard.into_inner();
-    assert!(heard.windows(2).all(|pair| pair[0] <= pair[1]));
-    assert_eq!(heard.last(), Some(&1.0));
+    let reported = std::cell::RefCell::new(Vec::new());
+    let two = MannSettings { threads: Some(2), ..settings() };
+    generate(&two, |share| reported.borrow_mut().push(share)).unwrap();
+    let reported = reported.into_inner();
+    assert!(reported.windows(2).all(|pair| pair[0] <= pair[1]));
+    assert_eq!(reported.last(), Some(&1.0));
 }
 
 proptest! {
@@ -141,7 +141,7 @@ proptest! {
         half_x in 2_usize..20, n_y in 3_usize..17, n_z in 3_usize..17, anisotropy in 0.0..5.0_f64,
         deviation in 0.01..3.0_f64, seed: u64,
     ) {
-        let settings = Settings {
+        let settings = MannSettings {
             n_points: [2 * half_x, n_y, n_z], anisotropy, standard_deviation: deviation, seed, ..settings()
         };
         let turbulence = make(&settings);

@@ -2,7 +2,7 @@
 //!
 //! [`MeanProfile`] alone is steady wind, [`DeterministicWind`] adds veer and one event; [`mann::generate`] and
 //! [`kaimal::generate`] make a [`TurbulenceBox`]. For a solver's inlet [`TurbulentInflow`] carries it past the farm on top
-//! of a profile, [`sizing`] says how large it must be. Where no air is solved, [`PrescribedWind`] is the flow: any of these
+//! of a profile, [`sizing`] says how large it must be. Without a flow solver, [`PrescribedWind`] is the flow: any of these
 //! winds, or [`Planes`] that come from a file one by one.
 //! Sources: Mann (1994) J. Mann, J. Fluid Mech. 273 (1994) 141-168; Mann (1998) J. Mann, Probabilistic
 //! Engineering Mechanics 13 (1998) 269-282.
@@ -71,7 +71,7 @@ pub enum InflowError {
         memory: u64,
     },
     /// A place where the wind is not known.
-    #[error("the wind is asked for at y {y:.1} m, z {z:.1} m, outside its grid of y {left:.1} to {right:.1} m, z {low:.1} to {high:.1} m; make the grid larger, or move it", y = position.y, z = position.z, left = across[0], right = across[1], low = up[0], high = up[1])]
+    #[error("the wind is needed at y {y:.1} m, z {z:.1} m, outside its grid of y {left:.1} to {right:.1} m, z {low:.1} to {high:.1} m; make the grid larger, or move it", y = position.y, z = position.z, left = across[0], right = across[1], low = up[0], high = up[1])]
     Outside {
         /// The place, farm frame (m).
         position: Vector3,
@@ -87,7 +87,7 @@ pub enum InflowError {
     Ended {
         /// Length of the record (s).
         length: f64,
-        /// Time into the record that was asked for (s).
+        /// Time into the record (s).
         time: f64,
     },
     /// A plane of wind that its source could not give.

@@ -1,4 +1,4 @@
-//! The flow where no air is solved: wind that blows as prescribed, whatever the rotors do.
+//! Prescribed wind as a flow: the rotors do not change it.
 
 mod window;
 
@@ -32,7 +32,7 @@ pub struct Placement {
     pub origin_x: f64,
     /// Shift of the grid along y (m): where its middle comes to lie, given that it was at 0.
     pub shift_y: f64,
-    /// Least and greatest x (m) at which the wind will be asked for; planes between them stay in memory.
+    /// Least and greatest x (m) at which the wind will be sampled; planes between them stay in memory.
     pub extent: [f64; 2],
 }
 

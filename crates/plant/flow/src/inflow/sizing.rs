@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// What a run needs of its turbulence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Need {
-    /// Streamwise extent over which the wind is asked at any one time (m); 0 for an inlet plane alone.
+    /// Streamwise extent over which the wind is sampled at any one time (m); 0 for an inlet plane alone.
     pub length: f64,
     /// Domain width (m). The box is exactly as wide, so that it repeats with a domain of periodic sides.
     pub width: f64,

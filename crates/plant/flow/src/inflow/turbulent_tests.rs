@@ -7,7 +7,7 @@ use proptest::prelude::*;
 const SPACING: f64 = 10.0;
 
 fn turbulence() -> Arc<TurbulenceBox> {
-    let settings = mann::Settings {
+    let settings = mann::MannSettings {
         n_points: [48, 16, 12],
         spacing: [SPACING; 3],
         length_scale: 60.0,

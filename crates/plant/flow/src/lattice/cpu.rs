@@ -11,7 +11,7 @@ use super::memory::Memory;
 use super::pool::Pool;
 use super::probe::{RowState, View};
 use super::scaling::Scaling;
-use super::settings::{Ends, Ground, Settings, SettingsError, Sides};
+use super::settings::{Ends, Ground, LatticeSettings, LatticeError, Sides};
 use super::simd::{Backend, MAXIMUM_LANES};
 use super::spreading::Spreader;
 use super::sweep::{Share, Step};
@@ -87,8 +87,8 @@ impl Cpu {
     /// An engine for `settings`, which were checked; its air is at rest until it is started.
     ///
     /// # Errors
-    /// [`SettingsError::Memory`] when the system refuses that much.
-    pub(crate) fn new(settings: &Settings) -> std::result::Result<Self, SettingsError> {
+    /// [`LatticeError::Memory`] when the system refuses that much.
+    pub(crate) fn new(settings: &LatticeSettings) -> std::result::Result<Self, LatticeError> {
         let scaling = settings.scaling();
         let backend = settings.backend.unwrap_or_else(Backend::detect);
         let kernel = Kernel::new(settings.stencil, backend);
@@ -102,7 +102,7 @@ impl Cpu {
         };
         let layout = Layout::new(settings.n_cells, kernel.directions, sides, levels);
         let refused =
-            SettingsError::Memory { n_cells: settings.cells(), bytes: 4 * layout.n_values() };
+            LatticeError::Memory { n_cells: settings.cells(), bytes: 4 * layout.n_values() };
         let memory = Memory::zeroed(layout.n_values()).ok_or(refused)?;
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         let n_threads = settings.threads.unwrap_or_else(cores).min(layout.n_rows());
@@ -268,7 +268,7 @@ impl Worker {
     fn new(
         thread: usize,
         n_threads: usize,
-        settings: &Settings,
+        settings: &LatticeSettings,
         layout: &Layout,
         has_wall: bool,
     ) -> Self {
@@ -350,7 +350,7 @@ fn own(worker: &Mutex<Worker>) -> MutexGuard<'_, Worker> {
 }
 
 /// 1/2 + 3 ν along x, with the sponge before the outlet; padded to whole vectors.
-fn relaxation_times(settings: &Settings, scaling: &Scaling) -> Vec<f32> {
+fn relaxation_times(settings: &LatticeSettings, scaling: &Scaling) -> Vec<f32> {
     let n = settings.n_cells[0];
     let viscosity = scaling.to_lattice_viscosity(settings.kinematic_viscosity);
     let length = match settings.ends {

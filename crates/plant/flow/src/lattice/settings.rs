@@ -14,7 +14,7 @@ const FEWEST_CELLS: usize = 4;
 
 /// A box of air, in SI units.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct LatticeSettings {
     /// Corner with the least coordinates, farm frame (m).
     pub origin: Vector3,
     /// Edge of a cell (m).
@@ -53,7 +53,7 @@ pub struct Settings {
 /// 0.14, isotropic turbulence with 0.17 (Lilly 1967).
 pub const DEFAULT_SMAGORINSKY: f64 = 0.12;
 
-impl Settings {
+impl LatticeSettings {
     /// Real air between inlet and outlet, slip sides, slip ground, and the defaults of everything else.
     pub fn new(
         origin: Vector3,
@@ -99,8 +99,8 @@ impl Settings {
     /// Checks what the method assumes.
     ///
     /// # Errors
-    /// [`SettingsError`] names the quantity, its value and what would do.
-    pub fn check(&self) -> Result<(), SettingsError> {
+    /// [`LatticeError`] names the quantity, its value and what would do.
+    pub fn check(&self) -> Result<(), LatticeError> {
         let positive = [
             ("spacing", self.spacing),
             ("interval", self.interval),
@@ -109,25 +109,25 @@ impl Settings {
         ];
         for (name, value) in positive {
             if !(value.is_finite() && value > 0.0) {
-                return Err(SettingsError::NotPositive { name, value });
+                return Err(LatticeError::NotPositive { name, value });
             }
         }
         let not_negative =
             [("reference speed", self.reference_speed), ("smagorinsky constant", self.smagorinsky)];
         for (name, value) in not_negative {
             if !(value.is_finite() && value >= 0.0) {
-                return Err(SettingsError::NotPositive { name, value });
+                return Err(LatticeError::NotPositive { name, value });
             }
         }
         for (axis, (name, n_cells)) in ["x", "y", "z"].into_iter().zip(self.n_cells).enumerate() {
             let needed = if axis == 0 { FEWEST_CELLS } else { 1 };
             if n_cells < needed {
-                return Err(SettingsError::TooFewCells { axis: name, n_cells, needed });
+                return Err(LatticeError::TooFewCells { axis: name, n_cells, needed });
             }
         }
         let lattice_speed = self.lattice_speed();
         if lattice_speed > FASTEST_REFERENCE {
-            return Err(SettingsError::TooFast {
+            return Err(LatticeError::TooFast {
                 speed: self.reference_speed,
                 lattice_speed,
                 longest: FASTEST_REFERENCE * self.spacing / self.reference_speed,
@@ -135,7 +135,7 @@ impl Settings {
         }
         let viscosity = self.scaling().to_lattice_viscosity(self.kinematic_viscosity);
         if viscosity > MOST_VISCOUS {
-            return Err(SettingsError::TooViscous {
+            return Err(LatticeError::TooViscous {
                 viscosity,
                 longest: MOST_VISCOUS * self.spacing * self.spacing / self.kinematic_viscosity,
             });
@@ -144,15 +144,15 @@ impl Settings {
             // The logarithmic law is applied at the centre of the lowest cell.
             let highest = 0.5 * self.spacing / std::f64::consts::E;
             if !(roughness_length > 0.0 && roughness_length <= highest) {
-                return Err(SettingsError::Roughness { roughness_length, highest });
+                return Err(LatticeError::Roughness { roughness_length, highest });
             }
         }
         if self.threads == Some(0) {
-            return Err(SettingsError::NoThreads);
+            return Err(LatticeError::NoThreads);
         }
         match self.backend {
             Some(backend) if !backend.is_available() => {
-                Err(SettingsError::MissingBackend { backend })
+                Err(LatticeError::MissingBackend { backend })
             }
             _ => Ok(()),
         }
@@ -210,9 +210,9 @@ impl Stencil {
     }
 }
 
-/// Why a lattice cannot be built as asked.
+/// Why a lattice cannot be built with these settings.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum SettingsError {
+pub enum LatticeError {
     /// A quantity that must be positive is not.
     #[error("the {name} must be a positive number, not {value}")]
     NotPositive {
@@ -226,7 +226,7 @@ pub enum SettingsError {
     TooFewCells {
         /// Axis.
         axis: &'static str,
-        /// Cells asked for (–).
+        /// Cells given (–).
         n_cells: usize,
         /// Fewest cells (–).
         needed: usize,
@@ -266,10 +266,10 @@ pub enum SettingsError {
     /// No thread to run on.
     #[error("at least one thread is needed")]
     NoThreads,
-    /// The asked instruction set is not there.
+    /// The requested instruction set is not available.
     #[error("this machine does not have the instructions of the {backend:?} back-end")]
     MissingBackend {
-        /// Asked back-end.
+        /// Back-end given.
         backend: Backend,
     },
     /// The memory is not there.
@@ -279,7 +279,7 @@ pub enum SettingsError {
     Memory {
         /// Cells in all (–).
         n_cells: usize,
-        /// Bytes asked for.
+        /// Bytes requested.
         bytes: usize,
     },
 }

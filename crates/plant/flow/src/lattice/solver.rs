@@ -4,7 +4,7 @@ use super::cpu::Cpu;
 use super::engine::Engine;
 use super::probe::RowState;
 use super::scaling::Scaling;
-use super::settings::{Settings, SettingsError};
+use super::settings::{LatticeSettings, LatticeError};
 use crate::{FlowError, FlowSolver, Inflow};
 use basis::{PointForce, Vector3};
 use std::sync::{Arc, Mutex};
@@ -19,7 +19,7 @@ const LOOKS: u64 = 8;
 /// Populations, and what the boundaries remember, are its [`Engine`]'s. Time is the number of steps times the interval. The same
 /// settings, inflow and forces give the same bits on any number of threads.
 pub struct Lattice {
-    settings: Settings,
+    settings: LatticeSettings,
     scaling: Scaling,
     inflow: Arc<dyn Inflow>,
     pub(super) engine: Box<dyn Engine>,
@@ -34,8 +34,8 @@ impl Lattice {
     /// Air that moves as `inflow` does at time zero, at every cell, on this machine's processor.
     ///
     /// # Errors
-    /// [`SettingsError`] when the settings break an assumption of the method or ask for more memory than there is.
-    pub fn new(settings: Settings, inflow: Arc<dyn Inflow>) -> Result<Self, SettingsError> {
+    /// [`LatticeError`] when the settings break an assumption of the method or ask for more memory than there is.
+    pub fn new(settings: LatticeSettings, inflow: Arc<dyn Inflow>) -> Result<Self, LatticeError> {
         settings.check()?;
         let engine = Box::new(Cpu::new(&settings)?);
         Self::on(engine, settings, inflow)
@@ -44,12 +44,12 @@ impl Lattice {
     /// The same on `engine`, which was made for `settings`.
     ///
     /// # Errors
-    /// [`SettingsError`] when the settings break an assumption of the method.
+    /// [`LatticeError`] when the settings break an assumption of the method.
     pub fn on(
         mut engine: Box<dyn Engine>,
-        settings: Settings,
+        settings: LatticeSettings,
         inflow: Arc<dyn Inflow>,
-    ) -> Result<Self, SettingsError> {
+    ) -> Result<Self, LatticeError> {
         settings.check()?;
         engine.start(&*inflow);
         let scaling = settings.scaling();
@@ -68,7 +68,7 @@ impl Lattice {
     }
 
     /// What it was built from.
-    pub fn settings(&self) -> &Settings {
+    pub fn settings(&self) -> &LatticeSettings {
         &self.settings
     }
 

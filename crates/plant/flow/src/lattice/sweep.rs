@@ -13,9 +13,9 @@ use super::simd::{MAXIMUM_LANES, Simd};
 use super::stencil::{Moments, Stencil};
 use std::ops::Range;
 
-/// How far ahead of a cell its populations are asked for, in values: nineteen streams are more than a processor's own
+/// How far ahead of a cell its populations are prefetched, in values: nineteen streams are more than a processor's own
 /// prefetching follows, and a miss is longer than the cells that it can look ahead to. Rows follow one another in
-/// memory, so that what is asked for beyond a row's end is the next row's start.
+/// memory, so that what is prefetched beyond a row's end is the next row's start.
 const AHEAD: usize = 8 * LINE;
 
 /// What all rows of a step share, in lattice units.

@@ -24,8 +24,8 @@ impl<F: Fn(f64, Vector3) -> Vector3 + Send + Sync> Inflow for Wind<F> {
 }
 
 /// A box on all sides periodic, of cells one metre wide, steps of a second: lattice units are SI units.
-fn periodic_box(n_cells: [usize; 3], viscosity: f64) -> Settings {
-    let mut settings = Settings::new(Vector3::splat(-0.5), 1.0, n_cells, 1.0, 0.1);
+fn periodic_box(n_cells: [usize; 3], viscosity: f64) -> LatticeSettings {
+    let mut settings = LatticeSettings::new(Vector3::splat(-0.5), 1.0, n_cells, 1.0, 0.1);
     settings.air_density = 1.0;
     settings.kinematic_viscosity = viscosity;
     settings.ends = Ends::Periodic;
@@ -37,7 +37,7 @@ fn periodic_box(n_cells: [usize; 3], viscosity: f64) -> Settings {
 }
 
 fn lattice(
-    settings: Settings,
+    settings: LatticeSettings,
     wind: impl Fn(f64, Vector3) -> Vector3 + Send + Sync + 'static,
 ) -> Lattice {
     Lattice::new(settings, Arc::new(Wind(wind))).expect("sound settings")

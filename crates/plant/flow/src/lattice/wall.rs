@@ -10,7 +10,7 @@ use super::engine::Rows;
 use super::layout::Layout;
 use super::probe::RowState;
 use super::scaling::Scaling;
-use super::settings::{Ground, Settings};
+use super::settings::{Ground, LatticeSettings};
 use super::sweep::Share;
 
 /// Von Kármán's constant (–).
@@ -46,7 +46,7 @@ impl WallMemory {
 
 impl Wall {
     /// The wall that `settings` ask for, if any.
-    pub(crate) fn new(settings: &Settings, scaling: &Scaling) -> Option<Self> {
+    pub(crate) fn new(settings: &LatticeSettings, scaling: &Scaling) -> Option<Self> {
         let Ground::WallStress { roughness_length } = settings.ground else { return None };
         let level = MATCHING_CELL.min(settings.n_cells[2] - 1);
         let height = level as f64 + 0.5;

@@ -12,7 +12,7 @@ pub fn statistic(mean: f64) -> Statistic {
     Statistic { mean, standard_deviation: 0.0, half_width_95: None, n_blocks: 1 }
 }
 
-/// A turbine called `name` at baseline that makes `power` (W), and of which nothing more is told.
+/// A turbine called `name` at baseline that makes `power` (W), and of which nothing more is known.
 pub fn turbine(name: &str, power: f64) -> TurbineSummary {
     TurbineSummary {
         name: name.to_owned(),

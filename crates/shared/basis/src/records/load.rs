@@ -20,7 +20,7 @@ pub struct Load {
     pub change: Option<Statistic>,
 }
 
-/// What is told of a moment.
+/// What is reported of a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum LoadKind {

@@ -9,7 +9,7 @@ pub struct Warning {
     pub kind: WarningKind,
     /// Turbine that it is about; absent where it is about the whole run.
     pub turbine: Option<String>,
-    /// What happened, in words, and how to mend it.
+    /// What happened, in words, and how to fix it.
     pub message: String,
 }
 

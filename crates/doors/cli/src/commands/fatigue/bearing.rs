@@ -25,7 +25,7 @@ pub(super) struct Duty {
 /// Counts the pitching of the blade that `arguments` ask for.
 ///
 /// # Errors
-/// Files and channels that cannot be read, units that are not told or differ, and times that leave nothing to count.
+/// Files and channels that cannot be read, units that are missing or differ, and times that leave nothing to count.
 pub(super) fn count(arguments: &FatigueArguments) -> Result<Duty> {
     let slope = match arguments.slope[..] {
         [] => BEARING_SLOPE,
@@ -170,7 +170,7 @@ mod tests {
         assert_eq!(radians(&column("T1.pitch_1_rad", "")).ok(), Some(1.0));
         assert_eq!(radians(&column("BldPitch1", "deg")).ok(), Some(1_f64.to_radians()));
         assert_eq!(radians(&column("BldPitch1_deg", "")).ok(), Some(1_f64.to_radians()));
-        let told = radians(&column("BldPitch1", "")).unwrap_err().to_string();
-        assert_eq!(told, "BldPitch1 has the unit \"\", neither deg nor rad");
+        let message = radians(&column("BldPitch1", "")).unwrap_err().to_string();
+        assert_eq!(message, "BldPitch1 has the unit \"\", neither deg nor rad");
     }
 }

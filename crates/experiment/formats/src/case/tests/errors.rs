@@ -1,4 +1,4 @@
-//! What is wrong with a case file is told where it stands, and how to mend it.
+//! What is wrong with a case file is told where it stands, and how to fix it.
 
 use super::{SMALL, small};
 use crate::case::{Problem, parse, read};
@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// The lines that a user sees after `from` was replaced by `to` in the small case.
-fn told(from: &str, to: &str) -> String {
+fn message(from: &str, to: &str) -> String {
     assert!(SMALL.contains(from), "the small case does not hold {from}");
     parse("small.toml", &SMALL.replacen(from, to, 1), &[]).unwrap_err().to_lines()
 }
@@ -96,7 +96,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
             "\"meandering\", factor = 1.5, amplitude_deg = 4.0, strouhal_low = 0.3",
-            "`run.helix.control.T1.strouhal_low` = 0.3 is not below `strouhal_high` = 0.3; meandering wanders",
+            "`run.helix.control.T1.strouhal_low` = 0.3 is not below `strouhal_high` = 0.3; wakes meander",
         ),
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
@@ -166,7 +166,7 @@ fn errors_name_file_line_key_and_fix() {
         ("speed = 9", "speed = 9\nspeed = 8", "small.toml:5: this is not TOML: duplicate key"),
     ];
     for (from, to, expected) in cases {
-        let lines = told(from, to);
+        let lines = message(from, to);
         assert!(lines.contains(expected), "{from} -> {to}\nexpected {expected}\ntold     {lines}");
     }
 }

@@ -36,7 +36,7 @@ pub struct Synchronisation {
 pub struct PhaseRow {
     /// Name of the run.
     pub run: String,
-    /// Phase offset (rad, [0, 2π)); absent where the turbine only watched.
+    /// Phase offset (rad, [0, 2π)); absent where the turbine only monitored.
     pub offset: Option<f64>,
     /// Tilt.
     pub tilt: PhaseNumbers,

@@ -1,6 +1,6 @@
 //! Waves of u that are coherent across the grid, by Fourier modes of a torus that holds it.
 
-use super::{Kaimal, Phases, Settings};
+use super::{Kaimal, Phases, KaimalSettings};
 use crate::inflow::sizing::smooth_at_least;
 use rustfft::num_complex::Complex32;
 use rustfft::{Fft, FftPlanner};
@@ -43,7 +43,7 @@ pub(super) struct Workspace {
 }
 
 impl Coherent {
-    pub(super) fn new(settings: &Settings, model: &Kaimal) -> Self {
+    pub(super) fn new(settings: &KaimalSettings, model: &Kaimal) -> Self {
         let [n_x, n_y, n_z] = settings.n_points;
         let [_, spacing_y, spacing_z] = settings.spacing;
         let mut planner = FftPlanner::new();

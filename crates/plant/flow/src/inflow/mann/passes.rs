@@ -11,7 +11,7 @@ const BLOCK: usize = 32;
 
 /// Fills each streamwise plane of three half-spectra by `fill(x, planes)`, then transforms it over y and z.
 ///
-/// `spectra` are n × n_z × n_y, y fastest. `progress` hears the share done on the calling thread.
+/// `spectra` are n × n_z × n_y, y fastest. `progress` receives the share done on the calling thread.
 pub(super) fn across(
     spectra: &mut [Vec<Complex32>; 3],
     n_y: usize,
@@ -28,7 +28,7 @@ pub(super) fn across(
     let planes = u.chunks_mut(size).zip(v.chunks_mut(size)).zip(w.chunks_mut(size)).enumerate();
     let planes = Mutex::new(planes);
     let done = AtomicUsize::new(0);
-    let work = |watch: Option<&dyn Fn(f64)>| {
+    let work = |progress: Option<&dyn Fn(f64)>| {
         let mut turned = vec![Complex32::default(); size];
         let needed = over_y.get_inplace_scratch_len().max(over_z.get_inplace_scratch_len());
         let mut scratch = vec![Complex32::default(); needed];
@@ -43,8 +43,8 @@ pub(super) fn across(
                 turn(&turned, plane, n_z);
             }
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if let Some(watch) = watch {
-                watch(done as f64 / n_planes as f64);
+            if let Some(progress) = progress {
+                progress(done as f64 / n_planes as f64);
             }
         }
     };

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 ///
 /// The wave lies in the component along `along`, is carried by the uniform wind `mean`, and decays as exp(−ν k² t).
 fn measured_viscosity(
-    settings: Settings,
+    settings: LatticeSettings,
     wave: Vector3,
     along: Vector3,
     mean: Vector3,
@@ -65,7 +65,7 @@ fn shear_waves_decay_alike_whatever_the_wind_carries_them() {
     for (wave, along, tolerance) in waves {
         let depth = if wave.z == 0.0 { 1 } else { n };
         let viscosity_in = |stencil, wind| {
-            let settings = Settings { stencil, ..periodic_box([n, n, depth], viscosity) };
+            let settings = LatticeSettings { stencil, ..periodic_box([n, n, depth], viscosity) };
             measured_viscosity(settings, wave, along, wind, 400.0)
         };
         for stencil in [Stencil::D3Q19, Stencil::D3Q27] {

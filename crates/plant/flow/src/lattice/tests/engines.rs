@@ -32,7 +32,7 @@ fn moments_of(populations: &[f32; 19]) -> Moments<Portable> {
 }
 
 impl Plain {
-    fn new(settings: &Settings) -> Self {
+    fn new(settings: &LatticeSettings) -> Self {
         let scaling = settings.scaling();
         let viscosity = scaling.to_lattice_viscosity(settings.kinematic_viscosity);
         let subgrid = (SUBGRID_FACTOR * settings.smagorinsky.powi(2)) as f32;

@@ -16,7 +16,7 @@ fn logarithmic(z: f64) -> f64 {
 fn half_channel(n: [usize; 3]) -> Lattice {
     let spacing = HEIGHT / n[2] as f64;
     let top = logarithmic(HEIGHT);
-    let mut settings = Settings::new(Vector3::ZERO, spacing, n, 0.13 * spacing / top, top);
+    let mut settings = LatticeSettings::new(Vector3::ZERO, spacing, n, 0.13 * spacing / top, top);
     settings.ends = Ends::Periodic;
     settings.ground = Ground::WallStress { roughness_length: ROUGHNESS_LENGTH };
     settings.acceleration = Vector3::new(FRICTION_VELOCITY.powi(2) / HEIGHT, 0.0, 0.0);

@@ -10,7 +10,7 @@ fn gusty(threads: usize, backend: Backend) -> (Lattice, [PointForce; 2]) {
 }
 
 fn gusty_on(stencil: Stencil, threads: usize, backend: Backend) -> (Lattice, [PointForce; 2]) {
-    let mut settings = Settings::new(Vector3::new(-40.0, -60.0, 0.0), 10.0, [37, 12, 9], 0.1, 10.0);
+    let mut settings = LatticeSettings::new(Vector3::new(-40.0, -60.0, 0.0), 10.0, [37, 12, 9], 0.1, 10.0);
     settings.threads = Some(threads);
     settings.backend = Some(backend);
     settings.stencil = stencil;
@@ -47,7 +47,7 @@ fn fingerprint(air: &Lattice) -> Vec<[u64; 3]> {
 #[test]
 fn a_free_stream_stays_one() {
     for (ends, sides) in [(Ends::InletOutlet, Sides::Slip), (Ends::InletOutlet, Sides::Periodic)] {
-        let mut settings = Settings::new(Vector3::ZERO, 10.0, [37, 12, 9], 0.1, 10.0);
+        let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [37, 12, 9], 0.1, 10.0);
         settings.threads = Some(2);
         (settings.ends, settings.sides) = (ends, sides);
         let wind = Vector3::new(10.0, 0.0, 0.0);
@@ -243,9 +243,9 @@ fn planes_and_volumes_show_what_sampling_gives() {
 
 #[test]
 fn assumptions_are_checked_with_what_would_do() {
-    let sound = Settings::new(Vector3::ZERO, 10.0, [16, 16, 16], 0.1, 10.0);
+    let sound = LatticeSettings::new(Vector3::ZERO, 10.0, [16, 16, 16], 0.1, 10.0);
     assert_eq!(sound.check(), Ok(()));
-    let refusal = |change: fn(&mut Settings)| {
+    let refusal = |change: fn(&mut LatticeSettings)| {
         let mut settings = sound.clone();
         change(&mut settings);
         match Lattice::new(settings, Arc::new(Wind(|_, _| Vector3::ZERO))) {

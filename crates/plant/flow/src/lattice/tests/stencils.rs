@@ -18,16 +18,16 @@ fn state() -> Moments<Portable> {
 }
 
 fn moments_come_back<L: Set<Q>, const Q: usize>() {
-    let asked = state();
-    let found = L::moments(&L::populations(&asked));
-    let pairs = [(asked.density_excess, found.density_excess)]
+    let given = state();
+    let found = L::moments(&L::populations(&given));
+    let pairs = [(given.density_excess, found.density_excess)]
         .into_iter()
-        .chain(asked.momentum.into_iter().zip(found.momentum))
-        .chain(asked.velocity.into_iter().zip(found.velocity))
-        .chain(asked.stress.into_iter().zip(found.stress));
-    for (asked, found) in pairs {
-        let difference = first_lane(found) - first_lane(asked);
-        assert!(difference.abs() < 1e-7, "{} for {}", first_lane(found), first_lane(asked));
+        .chain(given.momentum.into_iter().zip(found.momentum))
+        .chain(given.velocity.into_iter().zip(found.velocity))
+        .chain(given.stress.into_iter().zip(found.stress));
+    for (given, found) in pairs {
+        let difference = first_lane(found) - first_lane(given);
+        assert!(difference.abs() < 1e-7, "{} for {}", first_lane(found), first_lane(given));
     }
 }
 
@@ -67,11 +67,11 @@ fn twenty_seven_directions() {
 #[test]
 fn twenty_seven_directions_hold_a_gaussian() {
     // Sixth central moment of the populations against Isserlis' theorem, with the background of air at rest added.
-    let asked = state();
-    let populations = D3Q27::populations(&asked).map(first_lane);
+    let given = state();
+    let populations = D3Q27::populations(&given).map(first_lane);
     let weight = |e: [i8; 3]| [8.0, 2.0, 0.5, 0.125][e.iter().filter(|c| **c != 0).count()] / 27.0;
-    let velocity = asked.velocity.map(first_lane);
-    let rho = 1.0 + first_lane(asked.density_excess);
+    let velocity = given.velocity.map(first_lane);
+    let rho = 1.0 + first_lane(given.density_excess);
     let central = |powers: [i32; 3]| -> f64 {
         D3Q27::DIRECTIONS
             .iter()
@@ -83,7 +83,7 @@ fn twenty_seven_directions_hold_a_gaussian() {
             })
             .sum()
     };
-    let [xx, yy, zz, xy, xz, yz] = asked.stress.map(first_lane);
+    let [xx, yy, zz, xy, xz, yz] = given.stress.map(first_lane);
     let (xx, yy, zz) = (xx + rho / 3.0, yy + rho / 3.0, zz + rho / 3.0);
     let gaussian =
         (xx * yy * zz + 2.0 * (xx * yz * yz + yy * xz * xz + zz * xy * xy) + 8.0 * xy * xz * yz)

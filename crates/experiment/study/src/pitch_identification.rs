@@ -1,65 +1,65 @@
-//! Probing before the runs: how the pitch of a turbine acts, found once for turbines that are alike, kept in the study's folder.
+//! Pitch-response identification before the runs: once for turbines that are alike, kept in the study's folder.
 
 use crate::StudyError;
 use crate::models::text_names;
 use crate::prepared::Prepared;
-use crate::watcher::{Probing, Watcher};
+use crate::observer::{IdentificationProgress, Observer};
 use basis::records::PitchResponse;
 use control::Identification;
 use control::phase_sync::{PhaseEstimator, PhaseNoise, response_of};
 use farm::Progress;
 use farm::case::DynamicInflow;
 use farm::pitch_response::{
-    CalibrationError, INDIVIDUAL_PITCH_STROUHAL, ProbeCost, decoupling, decoupling_cost,
+    CalibrationError, INDIVIDUAL_PITCH_STROUHAL, IdentificationCost, decoupling, decoupling_cost,
     individual_pitch_offset, individual_pitch_offset_cost, own_pitch, own_pitch_cost,
 };
-use formats::records::{ProbeRecord, sha256};
+use formats::records::{PitchResponseRecord, sha256};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Takes what pitch-response identification has found so far, each time something is added to it.
-pub(crate) type Keep<'a> = &'a mut dyn FnMut(&[ProbeRecord]) -> Result<(), StudyError>;
+pub(crate) type Keep<'a> = &'a mut dyn FnMut(&[PitchResponseRecord]) -> Result<(), StudyError>;
 
 /// Wall time between two reports of progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 
 /// One thing to be found.
-struct Probe {
-    /// Runs and turbines of the case that need it; the first turbine is probed for all.
+struct PitchIdentification {
+    /// Runs and turbines of the case that need it; the first turbine is identified for all.
     places: Vec<(usize, usize)>,
-    asked: Asked,
+    needed: Needed,
     /// Digest of everything that decides what is found.
     key: String,
-    cost: ProbeCost,
+    cost: IdentificationCost,
 }
 
 /// What the runs of a study need to have found, each once, and what is known.
-pub(crate) struct Probes {
-    wanted: Vec<Probe>,
-    known: Vec<ProbeRecord>,
+pub(crate) struct PitchIdentifications {
+    wanted: Vec<PitchIdentification>,
+    known: Vec<PitchResponseRecord>,
 }
 
-impl Probes {
-    fn found(&self, probe: &Probe) -> Option<&PitchResponse> {
+impl PitchIdentifications {
+    fn found(&self, identification: &PitchIdentification) -> Option<&PitchResponse> {
         let mut known = self.known.iter();
-        known.find(|found| found.key == probe.key).map(|found| &found.response)
+        known.find(|found| found.key == identification.key).map(|found| &found.response)
     }
 
     /// What is not known yet.
-    fn open(&self) -> impl Iterator<Item = &Probe> {
-        self.wanted.iter().filter(|probe| self.found(probe).is_none())
+    fn open(&self) -> impl Iterator<Item = &PitchIdentification> {
+        self.wanted.iter().filter(|identification| self.found(identification).is_none())
     }
 
     /// What it costs to find what is not known yet, each.
-    pub(crate) fn costs(&self) -> Vec<ProbeCost> {
-        self.open().map(|probe| probe.cost).collect()
+    pub(crate) fn costs(&self) -> Vec<IdentificationCost> {
+        self.open().map(|identification| identification.cost).collect()
     }
 }
 
-/// Whose pitch is probed for what.
+/// Whose pitch response is identified for what.
 #[derive(Clone, Copy)]
-enum Asked {
+enum Needed {
     /// Azimuth offset of individual pitch control.
     IndividualPitch,
     /// What a kind of controller needs to know.
@@ -68,16 +68,16 @@ enum Asked {
 
 impl Prepared {
     /// What `runs` need to have found, each with the run and the turbine that need it. Individual pitch control comes first: it
-    /// is at work while a turbine is probed for the rest.
-    fn asked(&self, runs: &[usize]) -> Vec<(usize, usize, Asked)> {
+    /// is at work while a turbine is identified for the rest.
+    fn needed(&self, runs: &[usize]) -> Vec<(usize, usize, Needed)> {
         let (mut first, mut rest) = (Vec::new(), Vec::new());
         for &run in runs {
             for (index, control) in self.case.runs[run].control.iter().enumerate() {
                 if control.is_there() && self.models[index].lacks_individual_pitch_offset() {
-                    first.push((run, index, Asked::IndividualPitch));
+                    first.push((run, index, Needed::IndividualPitch));
                 }
                 let identification = control.kind().identification(control);
-                rest.extend(identification.map(|asked| (run, index, Asked::Control(asked))));
+                rest.extend(identification.map(|needed| (run, index, Needed::Control(needed))));
             }
         }
         first.append(&mut rest);
@@ -85,31 +85,31 @@ impl Prepared {
     }
 
     /// What `runs` need to have found, each once, where `known` was found before.
-    pub(crate) fn probes(&self, runs: &[usize], known: Vec<ProbeRecord>) -> Probes {
-        let mut wanted: Vec<Probe> = Vec::new();
-        for (run, index, asked) in self.asked(runs) {
-            let key = self.key(index, &asked);
-            if let Some(probe) = wanted.iter_mut().find(|probe| probe.key == key) {
-                probe.places.push((run, index));
+    pub(crate) fn identifications(&self, runs: &[usize], known: Vec<PitchResponseRecord>) -> PitchIdentifications {
+        let mut wanted: Vec<PitchIdentification> = Vec::new();
+        for (run, index, needed) in self.needed(runs) {
+            let key = self.key(index, &needed);
+            if let Some(identification) = wanted.iter_mut().find(|identification| identification.key == key) {
+                identification.places.push((run, index));
                 continue;
             }
             let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
-            let cost = match &asked {
-                Asked::IndividualPitch => individual_pitch_offset_cost(case, plan, model),
-                Asked::Control(Identification::OwnPitch(sync)) => {
+            let cost = match &needed {
+                Needed::IndividualPitch => individual_pitch_offset_cost(case, plan, model),
+                Needed::Control(Identification::OwnPitch(sync)) => {
                     own_pitch_cost(case, plan, model, sync)
                 }
-                Asked::Control(Identification::Loads { strouhal }) => {
+                Needed::Control(Identification::Loads { strouhal }) => {
                     decoupling_cost(case, plan, model, *strouhal)
                 }
             };
-            wanted.push(Probe { places: vec![(run, index)], asked, key, cost });
+            wanted.push(PitchIdentification { places: vec![(run, index)], needed, key, cost });
         }
-        Probes { wanted, known }
+        PitchIdentifications { wanted, known }
     }
 
     /// Digest of everything that decides what is found for turbine number `index`: offset, start and fallback do not.
-    fn key(&self, index: usize, asked: &Asked) -> String {
+    fn key(&self, index: usize, needed: &Needed) -> String {
         let (case, plan) = (&self.case, &self.plan);
         let placement = &case.turbines[index];
         let text = |name: &String| self.turbine_texts.get(name).map_or("", String::as_str);
@@ -118,14 +118,14 @@ impl Prepared {
             None => String::new(),
             Some(path) => text_names(path).iter().map(text).collect(),
         };
-        let asked = match asked {
-            Asked::IndividualPitch => format!("individual pitch {INDIVIDUAL_PITCH_STROUHAL:?}"),
-            Asked::Control(Identification::OwnPitch(sync))
+        let needed = match needed {
+            Needed::IndividualPitch => format!("individual pitch {INDIVIDUAL_PITCH_STROUHAL:?}"),
+            Needed::Control(Identification::OwnPitch(sync))
                 if sync.estimator == PhaseEstimator::Published =>
             {
                 format!("azimuth offset {:?}", sync.strouhal)
             }
-            Asked::Control(Identification::OwnPitch(sync)) => format!(
+            Needed::Control(Identification::OwnPitch(sync)) => format!(
                 "calibration {:?} {:?} {:?} {}{}",
                 sync.sense,
                 sync.amplitude,
@@ -133,7 +133,7 @@ impl Prepared {
                 sync.azimuth_offset.map_or("found".to_owned(), |given| format!("{given:?}")),
                 trace(&sync.noise)
             ),
-            Asked::Control(Identification::Loads { strouhal }) => {
+            Needed::Control(Identification::Loads { strouhal }) => {
                 format!("decoupling {strouhal:?}")
             }
         };
@@ -146,7 +146,7 @@ impl Prepared {
         let wind = &case.wind;
         sha256(
             format!(
-                "{} {} {} {}{inflow} {asked} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}{controller}",
+                "{} {} {} {}{inflow} {needed} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}{controller}",
                 env!("CARGO_PKG_VERSION"),
                 placement.model,
                 placement.flexible,
@@ -165,33 +165,33 @@ impl Prepared {
 
     /// On return the models know the azimuth offset of every individual pitch control, and the case with which azimuth offset
     /// every turbine pitches that joins a helix, and what its phase estimator makes of that, and how pitch acts on the loads of
-    /// every turbine that acts on meandering and is not told, as far as `probes` name them. What is found goes to `keep`. A
+    /// every turbine that acts on meandering and is not given it, as far as `identifications` name them. What is found goes to `keep`. A
     /// break when `stop` asked for an end before all was found.
     ///
     /// # Errors
     /// [`StudyError::Calibration`] when it cannot be found, and what `keep` errs with.
     pub(crate) fn calibrate(
         &mut self,
-        probes: Probes,
+        identifications: PitchIdentifications,
         keep: Keep,
         stop: &AtomicBool,
-        watcher: &mut dyn Watcher,
+        observer: &mut dyn Observer,
     ) -> Result<ControlFlow<()>, StudyError> {
-        let n_probes = probes.open().count();
-        let all: f64 = probes.open().map(|probe| probe.cost.work).sum();
-        let mut known = probes.known.clone();
+        let n_identifications = identifications.open().count();
+        let all: f64 = identifications.open().map(|identification| identification.cost.work).sum();
+        let mut known = identifications.known.clone();
         let started = Instant::now();
         let (mut place, mut done) = (0, 0.0);
-        for probe in &probes.wanted {
-            let index = probe.places[0].1;
+        for identification in &identifications.wanted {
+            let index = identification.places[0].1;
             let name = self.case.turbines[index].name.clone();
-            if let Some(found) = probes.found(probe) {
-                watcher.probed(&name, found, true);
-                self.tell(probe, found);
+            if let Some(found) = identifications.found(identification) {
+                observer.identified(&name, found, true);
+                self.tell(identification, found);
                 continue;
             }
             let mut last: Option<Instant> = None;
-            let mut told = |share: f64| {
+            let mut report = |share: f64| {
                 if stop.load(Ordering::Relaxed) {
                     return ControlFlow::Break(());
                 }
@@ -199,55 +199,55 @@ impl Prepared {
                     return ControlFlow::Continue(());
                 }
                 last = Some(Instant::now());
-                let made = done + share * probe.cost.work;
+                let made = done + share * identification.cost.work;
                 let elapsed = started.elapsed().as_secs_f64();
-                watcher.probing(&Probing {
+                observer.identifying(&IdentificationProgress {
                     turbine: &name,
                     index: place,
-                    n_probes,
+                    n_identifications,
                     share,
                     time_left: elapsed * (all - made) / made.max(f64::MIN_POSITIVE),
                 });
                 ControlFlow::Continue(())
             };
-            let response = match self.find(index, &probe.asked, &mut told) {
+            let response = match self.find(index, &identification.needed, &mut report) {
                 Err(CalibrationError::BrokenOff) => return Ok(ControlFlow::Break(())),
                 found => found?,
             };
             place += 1;
-            done += probe.cost.work;
-            known.push(ProbeRecord { key: probe.key.clone(), turbine: name.clone(), response });
+            done += identification.cost.work;
+            known.push(PitchResponseRecord { key: identification.key.clone(), turbine: name.clone(), response });
             keep(&known)?;
-            watcher.probed(&name, &response, false);
-            self.tell(probe, &response);
+            observer.identified(&name, &response, false);
+            self.tell(identification, &response);
         }
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Probes turbine number `index` for what is `asked`; `progress` is told the share done.
+    /// Identifies turbine number `index` for what is `needed`; `progress` receives the share done.
     fn find(
         &self,
         index: usize,
-        asked: &Asked,
+        needed: &Needed,
         progress: Progress,
     ) -> Result<PitchResponse, CalibrationError> {
         let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
-        match asked {
-            Asked::IndividualPitch => individual_pitch_offset(case, plan, model, index, progress)
+        match needed {
+            Needed::IndividualPitch => individual_pitch_offset(case, plan, model, index, progress)
                 .map(|azimuth_offset| PitchResponse::IndividualPitch { azimuth_offset }),
-            Asked::Control(Identification::OwnPitch(sync)) => {
+            Needed::Control(Identification::OwnPitch(sync)) => {
                 own_pitch(case, plan, model, index, sync, progress)
                     .map(|found| response_of(found.azimuth_offset, found.calibration))
             }
-            Asked::Control(Identification::Loads { strouhal }) => {
+            Needed::Control(Identification::Loads { strouhal }) => {
                 decoupling(case, plan, model, index, *strouhal, progress).map(PitchResponse::from)
             }
         }
     }
 
-    /// On return all that need `probe` know what was `found`.
-    fn tell(&mut self, probe: &Probe, found: &PitchResponse) {
-        for &(run, index) in &probe.places {
+    /// On return all that need `identification` know what was `found`.
+    fn tell(&mut self, identification: &PitchIdentification, found: &PitchResponse) {
+        for &(run, index) in &identification.places {
             if let PitchResponse::IndividualPitch { azimuth_offset } = *found {
                 if let Some(control) = &mut self.models[index].constants.individual_pitch {
                     control.azimuth_offset = Some(azimuth_offset);

@@ -1,16 +1,16 @@
-//! What was probed before the runs of a study: `DIR/probes.json`, so that a resumed study need not probe again.
+//! Pitch responses identified before the runs of a study: `DIR/records.json`, so that a resumed study need not identify them again.
 
 use crate::{FileError, atomic};
 use basis::records::PitchResponse;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-const WHAT: &str = "what was probed before the runs";
+const WHAT: &str = "what was identified before the runs";
 
 /// How the pitch of one turbine was found to act.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ProbeRecord {
-    /// SHA-256 of everything that decides what is found, hexadecimal: equal for equal probes alone.
+pub struct PitchResponseRecord {
+    /// SHA-256 of everything that decides what is found, hexadecimal: equal for equal identifications alone.
     pub key: String,
     /// Name of the turbine for which it was found first.
     pub turbine: String,
@@ -22,22 +22,22 @@ fn path_in(study: &Path) -> PathBuf {
     study.join("probes.json")
 }
 
-/// Reads what was probed for the study in the folder `study`; nothing where nothing was.
+/// Reads what was identified for the study in the folder `study`; nothing where nothing was.
 ///
 /// # Errors
 /// [`FileError::System`] and [`FileError::Content`].
-pub fn read_probes(study: &Path) -> Result<Vec<ProbeRecord>, FileError> {
+pub fn read_pitch_responses(study: &Path) -> Result<Vec<PitchResponseRecord>, FileError> {
     let path = path_in(study);
     if path.is_file() { super::read_json(&path, WHAT) } else { Ok(Vec::new()) }
 }
 
-/// Writes `probes`, all that was probed, into the folder `study`.
+/// Writes `records`, all that was identified, into the folder `study`.
 ///
 /// # Errors
 /// [`FileError::System`].
-pub fn write_probes(study: &Path, probes: &[ProbeRecord]) -> Result<(), FileError> {
+pub fn write_pitch_responses(study: &Path, records: &[PitchResponseRecord]) -> Result<(), FileError> {
     atomic::create_folder(study)?;
-    super::write_json(&path_in(study), WHAT, &probes)
+    super::write_json(&path_in(study), WHAT, &records)
 }
 
 #[cfg(test)]
@@ -47,9 +47,9 @@ mod tests {
     #[test]
     fn numbers_come_back_with_their_bits() {
         let study = tempfile::tempdir().unwrap();
-        assert_eq!(read_probes(study.path()).unwrap(), []);
+        assert_eq!(read_pitch_responses(study.path()).unwrap(), []);
         let third = 1.0 / 3.0;
-        let probes: Vec<ProbeRecord> = (0..200)
+        let records: Vec<PitchResponseRecord> = (0..200)
             .map(|index| {
                 let value = third * 1.1_f64.powi(index);
                 let loads = PitchResponse::Loads {
@@ -57,11 +57,11 @@ mod tests {
                     delay: value.sqrt(),
                     gain: 1e8 * value.sin(),
                 };
-                ProbeRecord { key: format!("{index}"), turbine: "T2".into(), response: loads }
+                PitchResponseRecord { key: format!("{index}"), turbine: "T2".into(), response: loads }
             })
             .collect();
-        write_probes(study.path(), &probes).unwrap();
-        assert_eq!(read_probes(study.path()).unwrap(), probes);
+        write_pitch_responses(study.path(), &records).unwrap();
+        assert_eq!(read_pitch_responses(study.path()).unwrap(), records);
     }
 
     #[test]
@@ -76,15 +76,15 @@ mod tests {
         };
         let transformation = PitchResponse::Transformation { azimuth_offset: 0.6 };
         let individual = PitchResponse::IndividualPitch { azimuth_offset: 0.6 };
-        let probes =
+        let records =
             [estimator(Some(0.6)), estimator(None), transformation, individual].map(|response| {
-                ProbeRecord { key: "a".to_owned(), turbine: "T2".to_owned(), response }
+                PitchResponseRecord { key: "a".to_owned(), turbine: "T2".to_owned(), response }
             });
-        write_probes(study.path(), &probes).unwrap();
-        assert_eq!(read_probes(study.path()).unwrap(), probes);
+        write_pitch_responses(study.path(), &records).unwrap();
+        assert_eq!(read_pitch_responses(study.path()).unwrap(), records);
         let older = r#"[{"key": "a", "turbine": "T2", "response": {"estimator":
             {"gain": 1.04, "azimuth_offset": -0.01, "before": 0.12, "after": 0.0}}}]"#;
         std::fs::write(path_in(study.path()), older).unwrap();
-        assert_eq!(read_probes(study.path()).unwrap(), &probes[1..2]);
+        assert_eq!(read_pitch_responses(study.path()).unwrap(), &records[1..2]);
     }
 }

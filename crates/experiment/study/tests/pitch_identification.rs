@@ -1,4 +1,4 @@
-//! What is probed before the runs stands in the records, and a resumed study takes it from there, with the same bits.
+//! What is identified before the runs stands in the records, and a resumed study takes it from there, with the same bits.
 
 mod small;
 
@@ -7,7 +7,7 @@ use small::{NREL_5MW, written};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Estimate, Options, Outcome, Probing, Watcher};
+use study::{Estimate, Options, Outcome, IdentificationProgress, Observer};
 
 fn case() -> String {
     let runs = r#"[[run]]
@@ -23,27 +23,27 @@ control.T1 = { kind = "meandering", factor = 0.5, amplitude_deg = 2.0 }
     small::case("probed", "shear_exponent = 0.0\n", [10.0, 60.0], &[NREL_5MW], runs)
 }
 
-/// What was told.
+/// What was reported.
 #[derive(Default)]
-struct Told {
-    n_probes: usize,
+struct Reports {
+    n_identifications: usize,
     shares: Vec<f64>,
     found: Vec<(PitchResponse, bool)>,
 }
 
-impl Watcher for Told {
+impl Observer for Reports {
     fn estimated(&mut self, estimate: &Estimate) {
-        self.n_probes = estimate.n_probes;
-        assert_eq!(estimate.n_probe_steps > 0, estimate.n_probes > 0);
-        assert_eq!(estimate.probe_share() > 0.0, estimate.n_probes > 0);
+        self.n_identifications = estimate.n_identifications;
+        assert_eq!(estimate.n_identification_steps > 0, estimate.n_identifications > 0);
+        assert_eq!(estimate.identification_share() > 0.0, estimate.n_identifications > 0);
     }
 
-    fn probing(&mut self, probing: &Probing) {
-        assert!(probing.time_left >= 0.0 && probing.index < probing.n_probes);
-        self.shares.push(probing.share);
+    fn identifying(&mut self, progress: &IdentificationProgress) {
+        assert!(progress.time_left >= 0.0 && progress.index < progress.n_identifications);
+        self.shares.push(progress.share);
     }
 
-    fn probed(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
+    fn identified(&mut self, turbine: &str, response: &PitchResponse, again: bool) {
         assert_eq!(turbine, "T1");
         self.found.push((*response, again));
     }
@@ -54,21 +54,21 @@ fn options(folder: &Path, resume: bool, overrides: &[&str]) -> Options {
     Options { overrides, resume, ..small::options(folder) }
 }
 
-fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Told, Vec<Option<PitchResponse>>) {
+fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Reports, Vec<Option<PitchResponse>>) {
     let options = options(folder, resume, overrides);
-    let mut told = Told::default();
-    let outcome = study::run(&options, &AtomicBool::new(false), &mut told).expect("a sound case");
+    let mut reports = Reports::default();
+    let outcome = study::run(&options, &AtomicBool::new(false), &mut reports).expect("a sound case");
     let Outcome::Done { summaries, .. } = outcome else { panic!("{outcome:?}") };
     let responses = summaries.iter().map(|summary| summary.turbines[0].pitch_response).collect();
-    (told, responses)
+    (reports, responses)
 }
 
 #[test]
-fn a_resumed_study_takes_what_was_probed() {
+fn a_resumed_study_takes_what_was_identified() {
     let folder = written(&case());
     let (first, responses) = run(folder.path(), false, &[]);
-    // Once for both runs that act; the one that watches needs nothing.
-    assert_eq!((first.n_probes, first.found.len()), (1, 1));
+    // Once for both runs that act; the one that monitors needs nothing.
+    assert_eq!((first.n_identifications, first.found.len()), (1, 1));
     assert!(!first.shares.is_empty());
     let (response, again) = first.found[0];
     assert!(!again);
@@ -78,33 +78,33 @@ fn a_resumed_study_takes_what_was_probed() {
     let before = fs::read(folder.path().join("out/attenuate/series.csv")).expect("a series");
     fs::remove_dir_all(folder.path().join("out/attenuate")).expect("a run");
     let (second, responses) = run(folder.path(), true, &[]);
-    assert_eq!((second.n_probes, second.shares.len()), (0, 0));
+    assert_eq!((second.n_identifications, second.shares.len()), (0, 0));
     assert_eq!(second.found, [(response, true)]);
     assert_eq!(responses[2], Some(response));
     let after = fs::read(folder.path().join("out/attenuate/series.csv")).expect("a series");
-    assert!(before == after, "a study that takes what was probed has other bits");
+    assert!(before == after, "a study that takes what was identified has other bits");
 
-    // Another wind is another probe.
+    // Another wind is another identification.
     fs::remove_dir_all(folder.path().join("out/attenuate")).expect("a run");
     fs::remove_dir_all(folder.path().join("out/amplify")).expect("a run");
     fs::remove_dir_all(folder.path().join("out/watch")).expect("a run");
     let (third, _) = run(folder.path(), true, &["wind.speed=8.0"]);
-    assert_eq!((third.n_probes, third.found.len()), (1, 1));
+    assert_eq!((third.n_identifications, third.found.len()), (1, 1));
     assert!(!third.found[0].1 && third.found[0].0 != response);
 }
 
-/// Asks for an end as soon as a probe moves.
+/// Asks for an end as soon as an identification moves.
 struct Impatient<'a>(&'a AtomicBool);
 
-impl Watcher for Impatient<'_> {
-    fn probing(&mut self, probing: &Probing) {
-        assert!(probing.share < 1.0, "the probe went on to its end");
+impl Observer for Impatient<'_> {
+    fn identifying(&mut self, progress: &IdentificationProgress) {
+        assert!(progress.share < 1.0, "the identification went on to its end");
         self.0.store(true, Ordering::Relaxed);
     }
 }
 
 #[test]
-fn a_probe_stops_when_asked() {
+fn an_identification_stops_when_asked() {
     let folder = written(&case());
     let stop = AtomicBool::new(false);
     let options = options(folder.path(), false, &[]);
@@ -112,5 +112,5 @@ fn a_probe_stops_when_asked() {
     assert!(matches!(outcome, Outcome::Interrupted { .. }), "{outcome:?}");
     assert!(!folder.path().join("out/watch").exists(), "a run began after the end was asked for");
     let (resumed, responses) = run(folder.path(), true, &[]);
-    assert_eq!((resumed.n_probes, responses.len()), (1, 3));
+    assert_eq!((resumed.n_identifications, responses.len()), (1, 3));
 }

@@ -1,4 +1,4 @@
-//! Watching a study: what it will cost, how far it is, what it found.
+//! Observing a study: what it will cost, how far it is, what it found.
 
 use basis::records::{PitchResponse, Summary};
 use farm::self_check::SelfCheck;
@@ -8,12 +8,12 @@ use farm::self_check::SelfCheck;
 pub struct Estimate {
     /// Runs still to be made (–).
     pub n_runs: usize,
-    /// Probes before them of how a turbine's pitch acts (–).
-    pub n_probes: usize,
-    /// Steps of all probes together (–).
-    pub n_probe_steps: u64,
-    /// Cell updates of all probes together, or what takes as long (–); steps in prescribed wind.
-    pub probe_work: f64,
+    /// Pitch-response identifications before them (–).
+    pub n_identifications: usize,
+    /// Steps of all identifications together (–).
+    pub n_identification_steps: u64,
+    /// Cell updates of all identifications together, or what takes as long (–); steps in prescribed wind.
+    pub identification_work: f64,
     /// Cells along x, y, z (–).
     pub n_cells: [usize; 3],
     /// Edge of a cell (m).
@@ -37,32 +37,32 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Wall time of probes and runs together (s), once the machine's speed is known.
+    /// Wall time of identifications and runs together (s), once the machine's speed is known.
     pub fn wall_time(&self) -> Option<f64> {
         let updates = self.n_cells.iter().product::<usize>() as f64 * self.n_steps as f64;
-        let all = self.n_runs as f64 * updates + self.probe_work;
+        let all = self.n_runs as f64 * updates + self.identification_work;
         self.updates_per_second.map(|speed| all / speed)
     }
 
-    /// Work of the probes over that of one run (–).
-    pub fn probe_share(&self) -> f64 {
+    /// Work of the identifications over that of one run (–).
+    pub fn identification_share(&self) -> f64 {
         let cells = self.n_cells.iter().product::<usize>().max(1) as f64;
-        self.probe_work / (cells * self.n_steps as f64)
+        self.identification_work / (cells * self.n_steps as f64)
     }
 }
 
-/// How far the probes before the runs are.
+/// How far the identifications before the runs are.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Probing<'a> {
-    /// Turbine whose pitch is probed.
+pub struct IdentificationProgress<'a> {
+    /// Turbine whose pitch response is identified.
     pub turbine: &'a str,
-    /// Place of the probe among those to be made, from 0.
+    /// Place of the identification among those to be made, from 0.
     pub index: usize,
-    /// Probes to be made (–).
-    pub n_probes: usize,
+    /// Identifications to be made (–).
+    pub n_identifications: usize,
     /// Share of this one that is done (–).
     pub share: f64,
-    /// Wall time left for all probes (s).
+    /// Wall time left for all identifications (s).
     pub time_left: f64,
 }
 
@@ -85,18 +85,18 @@ pub struct Progress<'a> {
     pub time_left: f64,
 }
 
-/// Watches a study; every method may be left out.
-pub trait Watcher {
+/// Observes a study; every method may be left out.
+pub trait Observer {
     /// The cost, before the first step.
     fn estimated(&mut self, _estimate: &Estimate) {}
     /// Something is being prepared: `share` (–) of it is done.
     fn preparing(&mut self, _what: &str, _share: f64) {}
     /// A rotor was checked against blade-element momentum.
     fn checked(&mut self, _check: &SelfCheck) {}
-    /// A probe moved on.
-    fn probing(&mut self, _probing: &Probing) {}
+    /// An identification moved on.
+    fn identifying(&mut self, _progress: &IdentificationProgress) {}
     /// It was found how the pitch of the turbine called `turbine`, and of those alike, acts; `again`: by an earlier session.
-    fn probed(&mut self, _turbine: &str, _response: &PitchResponse, _again: bool) {}
+    fn identified(&mut self, _turbine: &str, _response: &PitchResponse, _again: bool) {}
     /// A run moved on.
     fn advanced(&mut self, _progress: &Progress) {}
     /// A run is complete.
@@ -105,8 +105,8 @@ pub trait Watcher {
     fn warned(&mut self, _warning: &str) {}
 }
 
-/// Hears nothing.
+/// Ignores every event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Silent;
 
-impl Watcher for Silent {}
+impl Observer for Silent {}

@@ -30,8 +30,8 @@ pub(super) struct Records<'q> {
     without: BTreeMap<PathBuf, Series>,
 }
 
-/// What is asked of one turbine.
-pub(super) struct Asked<'r> {
+/// A query about one turbine.
+pub(super) struct Query<'r> {
     /// Name of the run.
     pub(super) run: &'r str,
     pub(super) case: &'r Case,
@@ -42,7 +42,7 @@ pub(super) struct Asked<'r> {
     pub(super) definition: Arc<Definition>,
     /// What the run made of its own pitch, where it asked.
     pub(super) calibration: Option<Calibration>,
-    /// How it was asked to join a helix, where it was.
+    /// How it was set to join a helix, where it was.
     pub(super) sync: Option<PhaseSyncSettings>,
     /// Whether it pitches a helix of its own.
     pub(super) pitches: bool,
@@ -58,17 +58,17 @@ impl<'q> Records<'q> {
         let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
         let turbines = turbines_of(question, &case, &manifest)?;
         let summary = records::read_summary(&folder)?;
-        let told = |channel: &str| tells_of_any(&case, &turbines, channel);
-        let series = records::read_series(&folder.series_path(), told)?;
+        let wanted = |channel: &str| tells_of_any(&case, &turbines, channel);
+        let series = records::read_series(&folder.series_path(), wanted)?;
         let without = BTreeMap::new();
         Ok(Self { question, folder, manifest, case, turbines, summary, series, without })
     }
 
-    /// What is asked of turbine number `index` of the case.
+    /// The query about turbine number `index` of the case.
     ///
     /// # Errors
     /// [`PostprocessingError::NoHelix`], [`PostprocessingError::NoTruth`], and [`PostprocessingError`] for records that cannot be read.
-    pub(super) fn asked(&mut self, index: usize) -> Result<Asked<'_>, PostprocessingError> {
+    pub(super) fn query(&mut self, index: usize) -> Result<Query<'_>, PostprocessingError> {
         let (manifest, case, without) = (&self.manifest, &self.case, &mut self.without);
         let turbines = &self.turbines;
         let turbine = &case.turbines[index];
@@ -96,8 +96,8 @@ impl<'q> Records<'q> {
         };
         let truth = match truth_folder {
             Some(folder) => {
-                let told = |channel: &str| tells_of_any(case, turbines, channel);
-                let series = read_once(without, folder.series_path(), told)?;
+                let wanted = |channel: &str| tells_of_any(case, turbines, channel);
+                let series = read_once(without, folder.series_path(), wanted)?;
                 truth(&folder.run(), &turbine.name, series, &reference)?
             }
             None => None,
@@ -110,10 +110,10 @@ impl<'q> Records<'q> {
         let pitches = own.is_some_and(|own| own.sense.is_some() && own.amplitude != 0.0);
         let sync = PhaseSyncSettings::of(&control[index]);
         let definition = Arc::new(rotor(&turbine.model, manifest)?);
-        let told = self.summary.turbines.iter().find(|told| told.name == turbine.name);
-        let response = told.and_then(|told| told.pitch_response.as_ref());
+        let recorded = self.summary.turbines.iter().find(|recorded| recorded.name == turbine.name);
+        let response = recorded.and_then(|recorded| recorded.pitch_response.as_ref());
         let calibration = response.and_then(calibration_of);
-        Ok(Asked {
+        Ok(Query {
             run: &manifest.run,
             case,
             name: &turbine.name,
@@ -148,7 +148,7 @@ fn read_once(
     })
 }
 
-/// Places in `case` of the turbine that `question` names, or of those that seek a helix in the run of `manifest` where it
+/// Places in `case` of the turbine that `question` names, or of those that look for a helix in the run of `manifest` where it
 /// names none; one or more.
 fn turbines_of(
     question: &PhaseQuestion,
@@ -164,7 +164,7 @@ fn turbines_of(
     if turbines.is_empty() {
         return Err(PostprocessingError::NobodySeeks {
             run: manifest.run.clone(),
-            asked: question.turbine.clone(),
+            requested: question.turbine.clone(),
             turbines: case.turbines.iter().map(|turbine| turbine.name.clone()).collect(),
         });
     }

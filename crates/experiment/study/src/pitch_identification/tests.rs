@@ -1,11 +1,11 @@
-//! What is asked of a probe, and what a run is told of it.
+//! What an identification needs, and what a run is given of it.
 
 use super::*;
 use crate::{OffsetQuestion, Silent, azimuth_offset};
 use control::phase_sync::PhaseSyncSettings;
 use estimation::helix::{Measurement, Options};
 use farm::pitch_response::OwnPitch;
-use formats::records::{read_probes, write_probes};
+use formats::records::{read_pitch_responses, write_pitch_responses};
 
 /// A case whose T2 joins the helix of T1 with `keys` beside the needed ones, under `overrides`.
 fn setup(keys: &str, overrides: &[&str]) -> Prepared {
@@ -45,24 +45,24 @@ control.T2 = {{ kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 2.0{keys
 fn key(keys: &str) -> String {
     let setup = setup(keys, &[]);
     let control = &setup.case.runs[0].control[1];
-    let asked = control.kind().identification(control).expect("a calibration");
-    setup.key(1, &Asked::Control(asked))
+    let needed = control.kind().identification(control).expect("a calibration");
+    setup.key(1, &Needed::Control(needed))
 }
 
-/// How T2 of `setup` is asked to join the helix, or was told to.
+/// How T2 of `setup` is set to join the helix.
 fn sync_of(setup: &Prepared) -> PhaseSyncSettings {
     PhaseSyncSettings::of(&setup.case.runs[0].control[1]).expect("phase-sync")
 }
 
-/// What T2 of `setup` is told of its own pitch, and the shares that its probe told.
+/// Pitch response given to T2 of `setup`, and the progress of its identification.
 fn told_of(setup: &Prepared) -> (OwnPitch, Vec<f64>) {
     let (case, plan, model) = (&setup.case, &setup.plan, &setup.models[1]);
     let mut shares = Vec::new();
-    let mut told = |share: f64| {
+    let mut reported = |share: f64| {
         shares.push(share);
         ControlFlow::Continue(())
     };
-    let found = own_pitch(case, plan, model, 1, &sync_of(setup), &mut told);
+    let found = own_pitch(case, plan, model, 1, &sync_of(setup), &mut reported);
     (found.expect("a sound turbine"), shares)
 }
 
@@ -98,7 +98,7 @@ fn what_is_given_is_not_sought_and_a_turbine_that_watches_needs_nothing() {
     assert!(found != none && found != ten && none != ten);
 }
 
-/// `turbine offset` in the wind and at the rate of the probe: the same turbine, the same two helices.
+/// `turbine offset` in the wind and at the rate of the identification: the same turbine, the same two helices.
 #[test]
 fn the_offset_is_the_turbines_whatever_moves_the_air() {
     let question = OffsetQuestion {
@@ -114,27 +114,27 @@ fn the_offset_is_the_turbines_whatever_moves_the_air() {
     assert!((found.azimuth_offset - alone).abs() < 1e-3, "{found:?}, alone {alone}");
     assert_eq!(found.calibration, None);
 
-    let solved = [
+    let resolved = [
         "turbine.T2.structure=rigid",
         "turbine.T2.stall=dynamic",
         "flow.solver=lattice",
         "flow.cells_per_diameter=8",
         "flow.step=0.05",
     ];
-    let solved = setup(published, &solved);
-    let (found, _) = told_of(&solved);
-    // Torque is controlled otherwise in solved air, so that the rotor turns a little slower or faster.
+    let resolved = setup(published, &resolved);
+    let (found, _) = told_of(&resolved);
+    // Torque is controlled otherwise in resolved flow, so that the rotor turns a little slower or faster.
     assert!((found.azimuth_offset - alone).abs() < 5f64.to_radians(), "{found:?}, alone {alone}");
     // Its steps are those of prescribed wind, not the lattice's.
     let steps = |setup: &Prepared| {
         let (case, plan, model) = (&setup.case, &setup.plan, &setup.models[1]);
         own_pitch_cost(case, plan, model, &sync_of(setup)).n_steps
     };
-    assert_eq!(steps(&solved), steps(&prescribed));
+    assert_eq!(steps(&resolved), steps(&prescribed));
 }
 
 #[test]
-fn both_parts_of_a_probe_move_its_progress() {
+fn both_parts_of_an_identification_move_its_progress() {
     let (found, shares) = told_of(&setup("", &["turbine.T2.structure=rigid"]));
     assert!(found.calibration.is_some());
     assert!(shares.windows(2).all(|pair| pair[0] < pair[1]), "{shares:?}");
@@ -145,34 +145,34 @@ fn both_parts_of_a_probe_move_its_progress() {
 #[test]
 fn a_resumed_study_is_told_the_same_to_the_last_bit() {
     let folder = tempfile::tempdir().expect("a folder");
-    // How many probes were made, and how T2 was told to join the helix.
-    let told = |keys: &str, resume: bool| {
+    // How many identifications were made, and how T2 was set to join the helix.
+    let reported = |keys: &str, resume: bool| {
         let mut setup = setup(keys, &["turbine.T2.structure=rigid"]);
         let known =
-            if resume { read_probes(folder.path()).expect("sound records") } else { Vec::new() };
-        let probes = setup.probes(&[0], known);
-        let n_probes = probes.costs().len();
-        let keep = &mut |found: &[_]| Ok(write_probes(folder.path(), found)?);
-        let ended = setup.calibrate(probes, keep, &AtomicBool::new(false), &mut Silent);
+            if resume { read_pitch_responses(folder.path()).expect("sound records") } else { Vec::new() };
+        let identifications = setup.identifications(&[0], known);
+        let n_identifications = identifications.costs().len();
+        let keep = &mut |found: &[_]| Ok(write_pitch_responses(folder.path(), found)?);
+        let ended = setup.calibrate(identifications, keep, &AtomicBool::new(false), &mut Silent);
         assert!(ended.expect("a sound turbine").is_continue());
-        (n_probes, setup.case.runs[0].control[1].clone())
+        (n_identifications, setup.case.runs[0].control[1].clone())
     };
-    let (n_probes, joined) = told("", false);
+    let (n_identifications, joined) = reported("", false);
     let Some(PitchResponse::Estimator { azimuth_offset, transformation_offset, .. }) =
         joined.kind().pitch_response(&joined)
     else {
         panic!("{joined:?}")
     };
     let found = transformation_offset.expect("an azimuth offset");
-    assert!(n_probes == 1 && found != azimuth_offset, "{joined:?}");
-    assert_eq!(told("", true), (0, joined));
+    assert!(n_identifications == 1 && found != azimuth_offset, "{joined:?}");
+    assert_eq!(reported("", true), (0, joined));
 
-    let (n_probes, published) = told(", estimator = \"published\"", true);
+    let (n_identifications, published) = reported(", estimator = \"published\"", true);
     let response = PitchResponse::Transformation { azimuth_offset: found };
-    assert_eq!((n_probes, published.kind().pitch_response(&published)), (1, Some(response)));
-    assert_eq!(told(", estimator = \"published\"", true), (0, published));
+    assert_eq!((n_identifications, published.kind().pitch_response(&published)), (1, Some(response)));
+    assert_eq!(reported(", estimator = \"published\"", true), (0, published));
 
-    let (_, given) = told(", azimuth_offset_deg = 10", true);
+    let (_, given) = reported(", azimuth_offset_deg = 10", true);
     let given = PhaseSyncSettings::of(&given).expect("phase-sync");
     assert_eq!(given.azimuth_offset, Some(10f64.to_radians()));
 }
