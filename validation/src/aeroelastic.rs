@@ -9,7 +9,7 @@ mod turbulence;
 
 use crate::Row;
 use crate::row::Tolerance::Within;
-use rig::{Conditions, CHANNELS, Run, Speed, run};
+use rig::{CHANNELS, Conditions, Run, Speed, run};
 use turbine::structure::{GRAVITY, Projection};
 pub use turbulence::openfast_turbulence;
 
@@ -167,7 +167,8 @@ pub fn openfast_steady() -> Vec<Row> {
         for (((name, unit), measured), expected) in names.zip(units).zip(measured).zip(means) {
             add(format!("{rotor_speed} rpm: mean {name}"), measured, expected, unit);
         }
-        let annular = run(&Conditions { projection: Projection::Annular, ..conditions(Speed::Held) });
+        let annular =
+            run(&Conditions { projection: Projection::Annular, ..conditions(Speed::Held) });
         for channel in TURNED {
             let what = format!("sections seen as there: mean {}", CHANNELS[channel]);
             add(what, annular.mean(channel), means[2 + channel], "MN m");

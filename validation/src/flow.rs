@@ -171,7 +171,8 @@ pub fn mass_drift() -> Vec<Row> {
 /// What comes back from the outlet of a sound pulse, and what stays of a vortex that left.
 pub fn outlet() -> Vec<Row> {
     let speed = 0.1;
-    let open = |n_cells| LatticeSettings { ends: Ends::InletOutlet, ..periodic_box(n_cells, 1e-6, 0.12) };
+    let open =
+        |n_cells| LatticeSettings { ends: Ends::InletOutlet, ..periodic_box(n_cells, 1e-6, 0.12) };
     let mut air = lattice(open([320, 1, 1]), move |_, p| {
         let bump = (-((p.x - 160.0) / 8.0).powi(2)).exp();
         Vector3::new(speed + 0.004 * bump, 0.0, 0.0)

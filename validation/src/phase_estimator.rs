@@ -21,7 +21,7 @@ use estimation::helix::{
 };
 use estimation::{EstimationError, Estimator};
 use flow::Inflow;
-use rig::{AIR_DENSITY, Trial, Errors, INTERVAL, Instruments, Noise, SETTLED};
+use rig::{AIR_DENSITY, Errors, INTERVAL, Instruments, Noise, SETTLED, Trial};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use turbine::Definition;

@@ -7,7 +7,7 @@ use basis::records::Summary;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::AtomicBool;
-use study::{Options, Outcome, Observer};
+use study::{Observer, Options, Outcome};
 
 /// Where the expected values come from.
 const SOURCE: &str = "–";

@@ -145,7 +145,9 @@ pub(super) fn run(conditions: &Conditions<'_>) -> Run {
     };
     while farm.time() < conditions.window[1] {
         farm.advance(&mut Silent).expect("the wind does not end");
-        if farm.time() > conditions.window[0] && farm.step().is_multiple_of(conditions.steps_per_sample) {
+        if farm.time() > conditions.window[0]
+            && farm.step().is_multiple_of(conditions.steps_per_sample)
+        {
             let turbine = &farm.machines()[0].turbine;
             let read = turbine.truth(farm.time(), INTERVAL);
             result.power += 1e-6 * read.aerodynamic_torque * read.rotor_speed;
@@ -181,7 +183,8 @@ fn machine(conditions: &Conditions<'_>) -> Machine {
         model = model.equipped(Solver::UNIFORM, AIR_DENSITY).into_owned();
     }
     let diameter = definition.rotor_diameter();
-    let tower = conditions.tower.map(|effects| TowerInfluence::new(&definition, Vector3::ZERO, effects));
+    let tower =
+        conditions.tower.map(|effects| TowerInfluence::new(&definition, Vector3::ZERO, effects));
     let settings = turbine::TurbineSettings {
         induction: Induction::ByMomentum(aero::rotor::BemSettings {
             induction: aero::Induction::TwoConstant(TwoConstant::fixed(conditions.slow_constant)),
@@ -215,7 +218,9 @@ fn machine(conditions: &Conditions<'_>) -> Machine {
 /// What blows.
 fn air(conditions: &Conditions<'_>) -> Air {
     let wind = match &conditions.planes {
-        None => PrescribedWind::everywhere(Arc::new(MeanProfile::Uniform { speed: conditions.wind })),
+        None => {
+            PrescribedWind::everywhere(Arc::new(MeanProfile::Uniform { speed: conditions.wind }))
+        }
         Some(planes) => {
             let placement = Placement { origin_x: 0.0, shift_y: 0.0, extent: EXTENT };
             PrescribedWind::over_planes(Box::new(planes.clone()), placement)

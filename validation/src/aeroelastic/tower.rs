@@ -1,7 +1,7 @@
 //! What the tower does to the loads of blades and tower top by the wind about it, beside the reference with its tower and without.
 
 use super::CHANGE_SHARE;
-use super::rig::{Conditions, CHANNELS, run};
+use super::rig::{CHANNELS, Conditions, run};
 use crate::Row;
 use crate::least_squares::Fit;
 use crate::row::Tolerance::Within;
@@ -46,8 +46,9 @@ const THRUST: f64 = -0.002_833;
 
 /// Changes by the tower in 9 m/s, the rotor held at the speeds of the reference.
 pub(super) fn changes() -> Vec<Row> {
-    let at =
-        |rotor_speed, tower| run(&Conditions { rotor_speed, tower, ..Conditions::in_nine_metres_a_second() });
+    let at = |rotor_speed, tower| {
+        run(&Conditions { rotor_speed, tower, ..Conditions::in_nine_metres_a_second() })
+    };
     let [without, with] = [at(ROTOR_SPEEDS[0], None), at(ROTOR_SPEEDS[1], Some(EFFECTS))];
     let mut rows = vec![row("mean thrust", with.thrust - without.thrust, THRUST, "MN")];
     for Change { channel, mean, amplitudes } in CHANGES {

@@ -1,6 +1,6 @@
 //! The flexible turbine in Kaimal turbulence: deviations and equivalent loads of our own records beside the reference's one.
 
-use super::rig::{Conditions, CHANNELS, Run, Speed, run};
+use super::rig::{CHANNELS, Conditions, Run, Speed, run};
 use crate::Row;
 use crate::inflow::{kaimal, mean_of};
 use crate::row::Tolerance::Within;

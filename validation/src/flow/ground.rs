@@ -26,7 +26,8 @@ pub fn log_profile() -> Vec<Row> {
     let n = [36, 36, 24];
     let spacing = HEIGHT / n[2] as f64;
     let top = logarithmic(HEIGHT);
-    let mut settings = LatticeSettings::new(Vector3::ZERO, spacing, n, LATTICE_SPEED * spacing / top, top);
+    let mut settings =
+        LatticeSettings::new(Vector3::ZERO, spacing, n, LATTICE_SPEED * spacing / top, top);
     settings.ends = Ends::Periodic;
     settings.ground = Ground::WallStress { roughness_length: ROUGHNESS_LENGTH };
     settings.acceleration = Vector3::new(FRICTION_VELOCITY.powi(2) / HEIGHT, 0.0, 0.0);

@@ -6,7 +6,7 @@ use crate::row::Tolerance::{AtMost, Within};
 use basis::records::PlaneAxes;
 use basis::{PointForce, Vector3};
 use flow::WindField;
-use flow::lattice::{Ends, Ground, Lattice, PlaneAverage, LatticeSettings, Stencil};
+use flow::lattice::{Ends, Ground, Lattice, LatticeSettings, PlaneAverage, Stencil};
 use std::f64::consts::{PI, TAU};
 
 /// Where the expected values come from.

@@ -4,7 +4,7 @@ use super::mean_of;
 use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
 use flow::inflow::iec::Kaimal;
-use flow::inflow::kaimal::{Scaling, KaimalSettings, clipped_share, generate};
+use flow::inflow::kaimal::{KaimalSettings, Scaling, clipped_share, generate};
 use flow::inflow::statistics::line_deviations;
 use flow::inflow::{TurbulenceBox, spectra};
 use std::f64::consts::TAU;

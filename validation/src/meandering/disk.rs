@@ -7,7 +7,9 @@ use super::rig::{INTERVAL, Reading, Rig};
 use crate::Row;
 use crate::row::Tolerance::AtMost;
 use basis::{FixedFrame, Sense};
-use control::meandering::{Decoupling, Followed, Meandering, Reference, MeanderingControlSettings, TwoAxisSettings};
+use control::meandering::{
+    Decoupling, Followed, Meandering, MeanderingControlSettings, Reference, TwoAxisSettings,
+};
 use estimation::Estimator;
 use estimation::phase_locked::{Leader, PhaseLockedSettings as Signal, TwoAxisLoop};
 use flow::inflow::deterministic::Event;

@@ -1,7 +1,7 @@
 //! Effect of each choice of the robust form, and the linear filter of the earlier method, on the aeroelastic turbine.
 
 use super::rig::Instruments;
-use super::{AIM, Machine, OWN, ROTOR_SPEED, SPEED, trial, robust, row, setting, tell};
+use super::{AIM, Machine, OWN, ROTOR_SPEED, SPEED, robust, row, setting, tell, trial};
 use crate::Row;
 use basis::Sense;
 use estimation::EstimationError;

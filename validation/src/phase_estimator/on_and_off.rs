@@ -3,7 +3,7 @@
 
 use super::rig::{self, Errors, Instruments};
 use super::wind::HelixWind;
-use super::{AIM, Machine, OWN, PERIOD, SOURCE, trial, row};
+use super::{AIM, Machine, OWN, PERIOD, SOURCE, row, trial};
 use crate::Row;
 use crate::row::Tolerance::Within;
 use basis::Sense;

@@ -2,7 +2,7 @@
 
 use super::rig::{self, Errors, Instruments, SETTLED};
 use super::wind::{HelixWind, Swing, degrees, turbulent};
-use super::{AIM, Machine, OWN, PERIOD, SHEAR, SPEED, trial, robust, row, tell};
+use super::{AIM, Machine, OWN, PERIOD, SHEAR, SPEED, robust, row, tell, trial};
 use crate::Row;
 use basis::Sense;
 use estimation::EstimationError;

@@ -7,7 +7,7 @@
 use super::rig::{self, Instruments, Noise};
 use super::wind::degrees;
 use super::{
-    Machine, OWN, PERIOD, PHASE, ROTOR_SPEED, SPEED, trial, pitch, reading, robust, row, setting,
+    Machine, OWN, PERIOD, PHASE, ROTOR_SPEED, SPEED, pitch, reading, robust, row, setting, trial,
 };
 use crate::Row;
 use basis::mbc::to_fixed_frame;

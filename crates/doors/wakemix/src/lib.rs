@@ -69,5 +69,6 @@ pub use flow;
 pub use formats;
 pub use postprocessing;
 pub use report;
+pub use sensing;
 pub use study;
 pub use turbine;

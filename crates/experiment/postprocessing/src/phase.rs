@@ -10,10 +10,10 @@ use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
     fixed_frame_moments, ground_truth, uniform_interval,
 };
-use query::{Query, Records};
 use basis::FixedFrame;
 use basis::records::Series;
 use control::phase_sync::PhaseEstimator;
+use query::{Query, Records};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 

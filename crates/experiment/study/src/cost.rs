@@ -1,15 +1,20 @@
 //! What a prepared study will cost, known before it starts.
 
 use crate::StudyError;
-use crate::outputs::Outputs;
-use crate::prepared::Prepared;
-use crate::pitch_identification::PitchIdentifications;
-use crate::warnings::wall_gain;
 use crate::observer::Estimate;
+use crate::outputs::Outputs;
+use crate::pitch_identification::PitchIdentifications;
+use crate::prepared::Prepared;
+use crate::warnings::wall_gain;
 
 impl Prepared {
     /// The cost of `n_runs` runs with their `outputs`, and of `identifications` before them; the machine's speed is not known yet.
-    pub(crate) fn estimate(&self, n_runs: usize, identifications: &PitchIdentifications, outputs: &Outputs) -> Estimate {
+    pub(crate) fn estimate(
+        &self,
+        n_runs: usize,
+        identifications: &PitchIdentifications,
+        outputs: &Outputs,
+    ) -> Estimate {
         let plan = &self.plan;
         let costs = identifications.costs();
         let field = (self.case.flow.solver.memory)(plan);

@@ -7,7 +7,7 @@ use farm::plan::PlanError;
 use farm::self_check::SelfCheckError;
 use flow::FlowError;
 use flow::inflow::InflowError;
-use flow::lattice::{PlaneSizeError, LatticeError};
+use flow::lattice::{LatticeError, PlaneSizeError};
 use formats::atomic::FileError;
 use formats::case::CaseError;
 use formats::turbine_file::TurbineFileError;

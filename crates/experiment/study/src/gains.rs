@@ -4,7 +4,7 @@ use crate::columns::{Columns, add_to};
 use crate::loads;
 use crate::prepared::Prepared;
 use crate::same_case::check_same;
-use crate::{StudyError, Observer};
+use crate::{Observer, StudyError};
 use analysis::statistics::{BLOCK_LENGTH, gain};
 use basis::records::{Summary, TurbineSummary};
 use farm::case::Run;

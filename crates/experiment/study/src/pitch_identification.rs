@@ -2,8 +2,8 @@
 
 use crate::StudyError;
 use crate::models::text_names;
-use crate::prepared::Prepared;
 use crate::observer::{IdentificationProgress, Observer};
+use crate::prepared::Prepared;
 use basis::records::PitchResponse;
 use control::Identification;
 use control::phase_sync::{PhaseEstimator, PhaseNoise, response_of};
@@ -85,11 +85,17 @@ impl Prepared {
     }
 
     /// What `runs` need to have found, each once, where `known` was found before.
-    pub(crate) fn identifications(&self, runs: &[usize], known: Vec<PitchResponseRecord>) -> PitchIdentifications {
+    pub(crate) fn identifications(
+        &self,
+        runs: &[usize],
+        known: Vec<PitchResponseRecord>,
+    ) -> PitchIdentifications {
         let mut wanted: Vec<PitchIdentification> = Vec::new();
         for (run, index, needed) in self.needed(runs) {
             let key = self.key(index, &needed);
-            if let Some(identification) = wanted.iter_mut().find(|identification| identification.key == key) {
+            if let Some(identification) =
+                wanted.iter_mut().find(|identification| identification.key == key)
+            {
                 identification.places.push((run, index));
                 continue;
             }
@@ -216,7 +222,11 @@ impl Prepared {
             };
             place += 1;
             done += identification.cost.work;
-            known.push(PitchResponseRecord { key: identification.key.clone(), turbine: name.clone(), response });
+            known.push(PitchResponseRecord {
+                key: identification.key.clone(),
+                turbine: name.clone(),
+                response,
+            });
             keep(&known)?;
             observer.identified(&name, &response, false);
             self.tell(identification, &response);

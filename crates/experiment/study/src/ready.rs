@@ -2,10 +2,10 @@
 
 use crate::StudyError;
 use crate::air;
-use crate::prepared::Prepared;
+use crate::observer::{Observer, Silent};
 use crate::pitch_identification::{Keep, PitchIdentifications};
+use crate::prepared::Prepared;
 use crate::self_check::SelfChecked;
-use crate::observer::{Silent, Observer};
 use farm::case::Run;
 use farm::pitch_response::CalibrationError;
 use farm::self_check::SelfCheckError;

@@ -1,8 +1,8 @@
 //! The rotors of a prepared study against blade-element momentum, on its grid.
 
 use crate::StudyError;
-use crate::prepared::Prepared;
 use crate::observer::Observer;
+use crate::prepared::Prepared;
 use farm::assemble::Model;
 use farm::self_check::{SelfCheck, SelfCheckError, Tunnel, self_check};
 use std::ops::ControlFlow;

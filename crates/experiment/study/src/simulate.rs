@@ -3,9 +3,9 @@
 mod checkpoint;
 
 use crate::StudyError;
+use crate::observer::{Observer, Progress};
 use crate::outputs::{Outputs, Scene, Writers};
 use crate::ready::Ready;
-use crate::observer::{Progress, Observer};
 use basis::records::Cost;
 use checkpoint::Before;
 use farm::case::Run;

@@ -90,7 +90,9 @@ mod tests {
         assert!((moved - 1.0 / 3.0_f64.sqrt()).abs() < 1e-12, "{moved}");
         let message = found.warning("helix", "T1");
         assert!(message.starts_with("helix: the tip of T1 outran"), "{message}");
-        assert!(message.contains("50.0 % of the time, first at 400 s; at 500 s it moved at 90.0 m/s"));
+        assert!(
+            message.contains("50.0 % of the time, first at 400 s; at 500 s it moved at 90.0 m/s")
+        );
         assert!(message.ends_with("take flow.step = 0.0962 or less"), "{message}");
     }
 }

@@ -6,7 +6,7 @@ use small::{NREL_5MW, written};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use study::{Options, Outcome, StudyError, Observer};
+use study::{Observer, Options, Outcome, StudyError};
 
 fn case() -> String {
     let runs = r#"[[run]]

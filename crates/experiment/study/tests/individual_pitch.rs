@@ -12,7 +12,8 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use study::{
-    Estimate, OffsetQuestion, Options, Outcome, Prepared, IdentificationProgress, Observer, azimuth_offset,
+    Estimate, IdentificationProgress, Observer, OffsetQuestion, Options, Outcome, Prepared,
+    azimuth_offset,
 };
 use tempfile::TempDir;
 
@@ -65,7 +66,8 @@ fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Reports, Vec<Summary
     let overrides = overrides.iter().map(|&text| text.to_owned()).collect();
     let options = Options { overrides, resume, ..small::options(folder) };
     let mut reports = Reports::default();
-    let outcome = study::run(&options, &AtomicBool::new(false), &mut reports).expect("a sound case");
+    let outcome =
+        study::run(&options, &AtomicBool::new(false), &mut reports).expect("a sound case");
     let Outcome::Done { summaries, .. } = outcome else { panic!("{outcome:?}") };
     (reports, summaries)
 }

@@ -15,7 +15,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Options, Outcome, Progress, Silent, Observer};
+use study::{Observer, Options, Outcome, Progress, Silent};
 
 const CASE: &str = r#"
 name = "instruments"
@@ -162,7 +162,10 @@ fn noise_reaches_the_phase_estimator_and_nothing_else() {
         let mut values = vec![f64::NAN; signals.len()];
         controller.write_signals(&mut values);
         let [wind, phase] = ["estimated_wind_m_s", "estimated_tilt_phase_rad"].map(|wanted| {
-            values[signals.iter().position(|signal| *signal == wanted).expect("T2 looks for the helix")]
+            values[signals
+                .iter()
+                .position(|signal| *signal == wanted)
+                .expect("T2 looks for the helix")]
         });
         (records, wind, phase)
     };

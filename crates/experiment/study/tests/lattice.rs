@@ -102,5 +102,8 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
     let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
     let reported = Outputs::standard().disk(&setup) as f64;
     let taken: usize = whole.iter().map(|(_, bytes)| bytes.len()).sum();
-    assert!((0.5..2.0).contains(&(reported / taken as f64)), "{reported} bytes reported, {taken} taken");
+    assert!(
+        (0.5..2.0).contains(&(reported / taken as f64)),
+        "{reported} bytes reported, {taken} taken"
+    );
 }

@@ -13,7 +13,7 @@ use control::{
 use small::{case, done, options, written};
 use std::fs;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Outcome, Progress, Silent, Observer};
+use study::{Observer, Outcome, Progress, Silent};
 
 /// Less torque than greedy control asks for, by a share that grows with the number of instants: it has a state.
 struct Derated {

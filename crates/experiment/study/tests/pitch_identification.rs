@@ -7,7 +7,7 @@ use small::{NREL_5MW, written};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Estimate, Options, Outcome, IdentificationProgress, Observer};
+use study::{Estimate, IdentificationProgress, Observer, Options, Outcome};
 
 fn case() -> String {
     let runs = r#"[[run]]
@@ -57,7 +57,8 @@ fn options(folder: &Path, resume: bool, overrides: &[&str]) -> Options {
 fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Reports, Vec<Option<PitchResponse>>) {
     let options = options(folder, resume, overrides);
     let mut reports = Reports::default();
-    let outcome = study::run(&options, &AtomicBool::new(false), &mut reports).expect("a sound case");
+    let outcome =
+        study::run(&options, &AtomicBool::new(false), &mut reports).expect("a sound case");
     let Outcome::Done { summaries, .. } = outcome else { panic!("{outcome:?}") };
     let responses = summaries.iter().map(|summary| summary.turbines[0].pitch_response).collect();
     (reports, responses)

@@ -4,7 +4,7 @@ mod small;
 
 use small::{options, written};
 use std::sync::atomic::AtomicBool;
-use study::{Estimate, Options, Outcome, StudyError, Observer};
+use study::{Estimate, Observer, Options, Outcome, StudyError};
 
 const LATTICE: &str = r#"
 name = "lattice"
@@ -118,8 +118,9 @@ fn what_does_not_fit_is_pointed_at_in_the_file() {
 fn a_long_record_of_turbulence_returns_rather_than_fill_the_memory() {
     let (outcome, ten_minutes) = dry(PRESCRIBED);
     assert!(matches!(outcome, Ok(Outcome::Estimated)), "{outcome:?}");
-    let returns =
-        |reports: &Reports| reports.warnings.iter().any(|warning| warning.contains("returns after"));
+    let returns = |reports: &Reports| {
+        reports.warnings.iter().any(|warning| warning.contains("returns after"))
+    };
     assert!(ten_minutes.memory > 1 << 20 && !returns(&ten_minutes));
     let (outcome, ten_hours) = dry(&PRESCRIBED.replace("660.0", "36000.0"));
     assert!(matches!(outcome, Ok(Outcome::Estimated)), "{outcome:?}");

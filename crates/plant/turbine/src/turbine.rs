@@ -10,7 +10,6 @@ pub use settings::{Induction, TurbineSettings};
 pub use state::TurbineState;
 
 use crate::actuator_line::ActuatorLine;
-use crate::actuators::PitchState;
 use crate::bodies::{self, Body};
 use crate::definition::Definition;
 use crate::rotor::Frame;
@@ -86,15 +85,8 @@ impl Turbine {
                 heights: &heights,
             },
         )?;
-        let pitch = PitchState { pitch: settings.pitch, rate: 0.0 };
-        let state = TurbineState {
-            structure: structure.state().clone(),
-            pitch: PerBlade::splat(definition.n_blades, pitch),
-            aerodynamics: aerodynamics.start(),
-            readings: Readings::default(),
-            n_instants: 0,
-            n_limited: 0,
-        };
+        let pitch = PerBlade::splat(definition.n_blades, settings.pitch);
+        let state = TurbineState::at_start(structure.state().clone(), pitch, aerodynamics.start());
         let n_points = definition.n_blades * N_ELEMENTS;
         let workspace = Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0));
         let held = if settings.flexible { Vec::new() } else { all_but_the_generator() };

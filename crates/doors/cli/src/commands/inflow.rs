@@ -119,7 +119,7 @@ pub(crate) struct GenerateArguments {
 /// Runs `command`.
 ///
 /// # Errors
-/// Settings that make no box, files that cannot be read or written.
+/// BoxSettings that make no box, files that cannot be read or written.
 pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
     match command {
         InflowCommand::Generate(arguments) => generate(&arguments),
@@ -221,59 +221,75 @@ impl Plan {
                 "the lowest points would be at {lowest_height:.1} m, under the ground"
             ));
         }
-        let intensity = standard_deviation / speed;
+        let place = Place { n_points, spacing, lowest_height, standard_deviation };
         let (settings, model) = match arguments.model {
-            Model::Mann => {
-                if arguments.scale.is_some() {
-                    return Err(miette!(
-                        help =
-                            "a box of Mann's turbulence always has the target deviation as a whole",
-                        "--scale belongs to --model kaimal"
-                    ));
-                }
-                let length_scale = arguments.length_scale.unwrap_or(33.6);
-                let anisotropy = arguments.gamma.unwrap_or(3.9);
-                let settings = mann::MannSettings {
-                    n_points,
-                    spacing,
-                    length_scale,
-                    anisotropy,
-                    standard_deviation,
-                    seed,
-                    threads: None,
-                };
-                let model = format!("Mann, L {length_scale} m, Gamma {anisotropy}");
-                (BoxSettings::Mann(settings), model)
-            }
-            Model::Kaimal => {
-                if arguments.length_scale.is_some() || arguments.gamma.is_some() {
-                    return Err(miette!(
-                        help = "Kaimal's scales follow from the hub height",
-                        "--length-scale and --gamma belong to --model mann"
-                    ));
-                }
-                let settings = kaimal::KaimalSettings {
-                    n_points,
-                    spacing,
-                    hub_speed: speed,
-                    hub_height: arguments.hub_height,
-                    lowest_height,
-                    standard_deviation,
-                    scaling: match arguments.scale {
-                        None | Some(Scale::None) => kaimal::Scaling::None,
-                        Some(Scale::Hub) => kaimal::Scaling::Hub,
-                        Some(Scale::EachPoint) => kaimal::Scaling::EachPoint,
-                    },
-                    seed,
-                    threads: None,
-                };
-                (BoxSettings::Kaimal(settings), "IEC Kaimal".to_owned())
-            }
+            Model::Mann => mann_of(arguments, &place)?,
+            Model::Kaimal => kaimal_of(arguments, &place)?,
         };
+        let intensity = standard_deviation / speed;
         let description = format!("{model}, TI {intensity:.4}, seed {seed}");
         let profile = profile(arguments)?;
         Ok(Self { settings, profile, spacing, lowest_height, description })
     }
+}
+
+/// Points of a box and the deviation of the wind there.
+struct Place {
+    n_points: [usize; 3],
+    /// Distance of points (m).
+    spacing: [f64; 3],
+    lowest_height: f64,
+    /// Of the streamwise wind (m/s).
+    standard_deviation: f64,
+}
+
+/// BoxSettings of Mann's turbulence at `place`, and what the description of its box says of them.
+fn mann_of(arguments: &GenerateArguments, place: &Place) -> miette::Result<(BoxSettings, String)> {
+    if arguments.scale.is_some() {
+        return Err(miette!(
+            help = "a box of Mann's turbulence always has the target deviation as a whole",
+            "--scale belongs to --model kaimal"
+        ));
+    }
+    let length_scale = arguments.length_scale.unwrap_or(33.6);
+    let anisotropy = arguments.gamma.unwrap_or(3.9);
+    let settings = mann::MannSettings {
+        n_points: place.n_points,
+        spacing: place.spacing,
+        length_scale,
+        anisotropy,
+        standard_deviation: place.standard_deviation,
+        seed: arguments.seed,
+        threads: None,
+    };
+    let model = format!("Mann, L {length_scale} m, Gamma {anisotropy}");
+    Ok((BoxSettings::Mann(settings), model))
+}
+
+/// BoxSettings of Kaimal's turbulence at `place`, and what the description of its box says of them.
+fn kaimal_of(arguments: &GenerateArguments, place: &Place) -> miette::Result<(BoxSettings, String)> {
+    if arguments.length_scale.is_some() || arguments.gamma.is_some() {
+        return Err(miette!(
+            help = "Kaimal's scales follow from the hub height",
+            "--length-scale and --gamma belong to --model mann"
+        ));
+    }
+    let settings = kaimal::KaimalSettings {
+        n_points: place.n_points,
+        spacing: place.spacing,
+        hub_speed: arguments.speed,
+        hub_height: arguments.hub_height,
+        lowest_height: place.lowest_height,
+        standard_deviation: place.standard_deviation,
+        scaling: match arguments.scale {
+            None | Some(Scale::None) => kaimal::Scaling::None,
+            Some(Scale::Hub) => kaimal::Scaling::Hub,
+            Some(Scale::EachPoint) => kaimal::Scaling::EachPoint,
+        },
+        seed: arguments.seed,
+        threads: None,
+    };
+    Ok((BoxSettings::Kaimal(settings), "IEC Kaimal".to_owned()))
 }
 
 /// The mean profile that is written beside the fluctuations.

@@ -229,7 +229,10 @@ name = "baseline"
         ];
         for (figures, expected) in cases {
             let message = read(figures).expect_err(figures);
-            assert!(message.contains(expected), "{figures}\nexpected {expected}\ntold     {message}");
+            assert!(
+                message.contains(expected),
+                "{figures}\nexpected {expected}\ntold     {message}"
+            );
         }
     }
 

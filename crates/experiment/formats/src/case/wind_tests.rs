@@ -212,7 +212,10 @@ fn what_cannot_be_is_told_with_its_line() {
         let message = parse("windy.toml", &text, &[format!("wind.{other}=0.1")]);
         let message = message.unwrap_err().to_lines();
         assert!(message.contains("`wind.shear_exponent` is of no use here"), "{other}: {message}");
-        assert!(message.contains("where --set gives one, the other must go from the file"), "{message}");
+        assert!(
+            message.contains("where --set gives one, the other must go from the file"),
+            "{message}"
+        );
     }
     let veering = |flow: &str| {
         let text = text("veer_deg_per_m = 0.05").replace("solver = \"uniform\"", flow);

@@ -35,7 +35,10 @@ pub fn read_pitch_responses(study: &Path) -> Result<Vec<PitchResponseRecord>, Fi
 ///
 /// # Errors
 /// [`FileError::System`].
-pub fn write_pitch_responses(study: &Path, records: &[PitchResponseRecord]) -> Result<(), FileError> {
+pub fn write_pitch_responses(
+    study: &Path,
+    records: &[PitchResponseRecord],
+) -> Result<(), FileError> {
     atomic::create_folder(study)?;
     super::write_json(&path_in(study), WHAT, &records)
 }
@@ -57,7 +60,11 @@ mod tests {
                     delay: value.sqrt(),
                     gain: 1e8 * value.sin(),
                 };
-                PitchResponseRecord { key: format!("{index}"), turbine: "T2".into(), response: loads }
+                PitchResponseRecord {
+                    key: format!("{index}"),
+                    turbine: "T2".into(),
+                    response: loads,
+                }
             })
             .collect();
         write_pitch_responses(study.path(), &records).unwrap();

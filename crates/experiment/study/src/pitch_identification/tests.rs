@@ -148,8 +148,11 @@ fn a_resumed_study_is_told_the_same_to_the_last_bit() {
     // How many identifications were made, and how T2 was set to join the helix.
     let reported = |keys: &str, resume: bool| {
         let mut setup = setup(keys, &["turbine.T2.structure=rigid"]);
-        let known =
-            if resume { read_pitch_responses(folder.path()).expect("sound records") } else { Vec::new() };
+        let known = if resume {
+            read_pitch_responses(folder.path()).expect("sound records")
+        } else {
+            Vec::new()
+        };
         let identifications = setup.identifications(&[0], known);
         let n_identifications = identifications.costs().len();
         let keep = &mut |found: &[_]| Ok(write_pitch_responses(folder.path(), found)?);
@@ -169,7 +172,10 @@ fn a_resumed_study_is_told_the_same_to_the_last_bit() {
 
     let (n_identifications, published) = reported(", estimator = \"published\"", true);
     let response = PitchResponse::Transformation { azimuth_offset: found };
-    assert_eq!((n_identifications, published.kind().pitch_response(&published)), (1, Some(response)));
+    assert_eq!(
+        (n_identifications, published.kind().pitch_response(&published)),
+        (1, Some(response))
+    );
     assert_eq!(reported(", estimator = \"published\"", true), (0, published));
 
     let (_, given) = reported(", azimuth_offset_deg = 10", true);

@@ -110,7 +110,10 @@ pub fn peak_memory([n_x, n_y, n_z]: [usize; 3]) -> u64 {
 ///
 /// # Errors
 /// [`InflowError`] for settings out of range, or a box that memory cannot hold.
-pub fn generate(settings: &KaimalSettings, progress: impl Fn(f64)) -> Result<TurbulenceBox, InflowError> {
+pub fn generate(
+    settings: &KaimalSettings,
+    progress: impl Fn(f64),
+) -> Result<TurbulenceBox, InflowError> {
     settings.check()?;
     let model = settings.model()?;
     let [n_x, n_y, n_z] = settings.n_points;

@@ -53,7 +53,8 @@ fn scaling_meets_the_deviation_at_the_hub_or_everywhere() {
         (square / 1024.0).sqrt()
     };
     let hub = generate(&KaimalSettings { scaling: Scaling::Hub, ..settings(2) }, |_| {}).unwrap();
-    let each = generate(&KaimalSettings { scaling: Scaling::EachPoint, ..settings(2) }, |_| {}).unwrap();
+    let each =
+        generate(&KaimalSettings { scaling: Scaling::EachPoint, ..settings(2) }, |_| {}).unwrap();
     for (component, ratio) in DEVIATION_RATIOS.into_iter().enumerate() {
         // The hub at 100 m is on row 3 and in column 4.
         assert!((deviation(&hub, component, [4, 3]) - 1.2 * ratio).abs() < 1e-5);

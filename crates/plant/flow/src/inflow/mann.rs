@@ -63,7 +63,10 @@ pub(crate) fn points_along_x(memory: u64, n_y: usize, n_z: usize) -> usize {
 ///
 /// # Errors
 /// [`InflowError`] for settings out of range, or a box that memory cannot hold.
-pub fn generate(settings: &MannSettings, progress: impl Fn(f64)) -> Result<TurbulenceBox, InflowError> {
+pub fn generate(
+    settings: &MannSettings,
+    progress: impl Fn(f64),
+) -> Result<TurbulenceBox, InflowError> {
     settings.check()?;
     let tensor = SpectralTensor::new(settings.length_scale, settings.anisotropy)?;
     let [n_x, n_y, n_z] = settings.n_points;

@@ -38,7 +38,8 @@ fn is_free_of_divergence_wave_by_wave() {
 /// Γ = 0: all components alike, no stress, up to the scatter of one draw.
 #[test]
 fn is_isotropic_without_shear() {
-    let sizes = MannSettings { n_points: [48; 3], spacing: [14.0; 3], anisotropy: 0.0, ..settings() };
+    let sizes =
+        MannSettings { n_points: [48; 3], spacing: [14.0; 3], anisotropy: 0.0, ..settings() };
     let [mut v, mut w, mut stress] = [0.0; 3];
     for seed in 0..6 {
         let turbulence = make(&MannSettings { seed, ..sizes });
@@ -90,7 +91,8 @@ fn a_finer_grid_keeps_the_large_eddies() {
 /// Sheared eddies lean with the wind: air higher up is ahead.
 #[test]
 fn eddies_lean_downwind_with_height() {
-    let turbulence = make(&MannSettings { n_points: [256, 24, 24], spacing: [10.0; 3], ..settings() });
+    let turbulence =
+        make(&MannSettings { n_points: [256, 24, 24], spacing: [10.0; 3], ..settings() });
     let correlation = |shift: usize| -> f64 {
         let mut sum = 0.0;
         for x in 0..256 {

@@ -11,7 +11,7 @@ use super::memory::Memory;
 use super::pool::Pool;
 use super::probe::{RowState, View};
 use super::scaling::Scaling;
-use super::settings::{Ends, Ground, LatticeSettings, LatticeError, Sides};
+use super::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides};
 use super::simd::{Backend, MAXIMUM_LANES};
 use super::spreading::Spreader;
 use super::sweep::{Share, Step};

@@ -39,7 +39,9 @@ pub use engine::Engine;
 pub use forces::ForceBlock;
 pub use probe::RowState;
 pub use scaling::Scaling;
-pub use settings::{DEFAULT_SMAGORINSKY, Ends, Ground, LatticeSettings, LatticeError, Sides, Stencil};
+pub use settings::{
+    DEFAULT_SMAGORINSKY, Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil,
+};
 pub use simd::Backend;
 pub use solver::Lattice;
 pub use wall::VON_KARMAN;

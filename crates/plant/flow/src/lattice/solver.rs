@@ -4,7 +4,7 @@ use super::cpu::Cpu;
 use super::engine::Engine;
 use super::probe::RowState;
 use super::scaling::Scaling;
-use super::settings::{LatticeSettings, LatticeError};
+use super::settings::{LatticeError, LatticeSettings};
 use crate::{FlowError, FlowSolver, Inflow};
 use basis::{PointForce, Vector3};
 use std::sync::{Arc, Mutex};

@@ -27,6 +27,23 @@ pub(super) struct Readings {
 }
 
 impl TurbineState {
+    /// Of a turbine that has not run yet, its blades at rest at `pitch` (rad).
+    pub(super) fn at_start(
+        structure: StructureState,
+        pitch: PerBlade<f64>,
+        aerodynamics: AerodynamicState,
+    ) -> Self {
+        let pitch = pitch.map(|pitch| PitchState { pitch, rate: 0.0 });
+        Self {
+            structure,
+            pitch,
+            aerodynamics,
+            readings: Readings::default(),
+            n_instants: 0,
+            n_limited: 0,
+        }
+    }
+
     /// Smearing correction of each blade element, axial and along the rotation (m/s), blade after blade; empty where momentum
     /// theory gives the induction.
     pub fn smearing_corrections(&self) -> &[[f64; 2]] {

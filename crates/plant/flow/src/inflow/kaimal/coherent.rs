@@ -1,6 +1,6 @@
 //! Waves of u that are coherent across the grid, by Fourier modes of a torus that holds it.
 
-use super::{Kaimal, Phases, KaimalSettings};
+use super::{Kaimal, KaimalSettings, Phases};
 use crate::inflow::sizing::smooth_at_least;
 use rustfft::num_complex::Complex32;
 use rustfft::{Fft, FftPlanner};

@@ -10,7 +10,8 @@ fn gusty(threads: usize, backend: Backend) -> (Lattice, [PointForce; 2]) {
 }
 
 fn gusty_on(stencil: Stencil, threads: usize, backend: Backend) -> (Lattice, [PointForce; 2]) {
-    let mut settings = LatticeSettings::new(Vector3::new(-40.0, -60.0, 0.0), 10.0, [37, 12, 9], 0.1, 10.0);
+    let mut settings =
+        LatticeSettings::new(Vector3::new(-40.0, -60.0, 0.0), 10.0, [37, 12, 9], 0.1, 10.0);
     settings.threads = Some(threads);
     settings.backend = Some(backend);
     settings.stencil = stencil;
