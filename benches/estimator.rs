@@ -1,7 +1,7 @@
 //! Cost of one update of the helix estimator on one core: `cargo bench -p wakemix-benches --bench estimator`.
 //!
-//! IEA 15 MW, blade moments of a helix in 9 m/s, an update every 0.1 s. The best of short repeats counts, so that on a
-//! loaded machine some go undisturbed. A number after `--` sets the repeats.
+//! IEA 15 MW, blade moments of a helix in 9 m/s, an update every 0.1 s. The best of short repeats counts, so
+//! that on a loaded machine some go undisturbed. A number after `--` sets the repeats.
 
 use basis::angle::wrap_to_turn;
 use basis::mbc::to_blades;

@@ -1,8 +1,8 @@
 //! Speed of rainflow counting on one core: `cargo bench -p wakemix-benches --bench fatigue`.
 //!
-//! Three loads: a smooth one as turbines give (two sines and a slow drift), the same with noise, and noise alone, whose
-//! samples turn round most of the time. Each is counted alone, for one slope and for three. Repeats are short, so that on a
-//! loaded machine some go undisturbed; the best counts.
+//! Three loads: a smooth one as turbines give (two sines and a slow drift), the same with noise, and noise
+//! alone, whose samples turn round most of the time. Each is counted alone, for one slope and for three.
+//! Repeats are short, so that on a loaded machine some go undisturbed; the best counts.
 //! Options after `--`: `quick` for short loads, a number for the repeats.
 
 use analysis::fatigue::{LoadCounter, Rainflow};

@@ -1,9 +1,9 @@
 //! Speed of the lattice against the limit that memory sets: `cargo bench -p wakemix-benches --bench lattice`.
 //!
-//! A cell update reads and writes each population once. The limit is the rate at which the same threads read and
-//! write back an array in place. Neighbours of a machine change both within seconds, by as much as half; so the limit is
-//! measured before and after every figure, and the share is the median of such pairs, with the least and the greatest.
-//! Options after `--`: `quick` for a small box, a number for the repeats.
+//! A cell update reads and writes each population once. The limit is the rate at which the same threads read
+//! and write back an array in place. Neighbours of a machine change both within seconds, by as much as half;
+//! so the limit is measured before and after every figure, and the share is the median of such pairs, with
+//! the least and the greatest. Options after `--`: `quick` for a small box, a number for the repeats.
 
 use basis::{PointForce, Vector3};
 use benches::in_place_bandwidth;

@@ -3,9 +3,11 @@
 use std::sync::Barrier;
 use std::time::Instant;
 
-/// Best rate of reading and writing back an array in place (bytes/s, both directions counted), on `n_threads` threads.
+/// Best rate of reading and writing back an array in place (bytes/s, both directions counted), on `n_threads`
+/// threads.
 ///
-/// `mebibytes` is the array's size, many times that of the caches; `n_repeats` runs are made and the best one counts.
+/// `mebibytes` is the array's size, many times that of the caches; `n_repeats` runs are made and the best one
+/// counts.
 pub fn in_place_bandwidth(n_threads: usize, mebibytes: usize, n_repeats: usize) -> f64 {
     let n = (mebibytes * (1 << 20) / size_of::<f32>()).next_multiple_of(n_threads);
     let mut array = HugeArray::new(n);

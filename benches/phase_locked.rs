@@ -1,7 +1,7 @@
 //! Cost of a phase-locked loop's update on one core: `cargo bench -p wakemix-benches --bench phase_locked`.
 //!
-//! One signal, and a turbine's two from its blades' moments, with each generator. Repeats are short, so that on a loaded
-//! machine some go undisturbed; the best counts. A number after `--` is that of the repeats.
+//! One signal, and a turbine's two from its blades' moments, with each generator. Repeats are short, so that
+//! on a loaded machine some go undisturbed; the best counts. A number after `--` is that of the repeats.
 
 use basis::{Measurements, PerBlade, Sense};
 use estimation::Estimator;

@@ -1,9 +1,9 @@
 //! Cost of one step of a turbine on one core, part by part: `cargo bench -p wakemix-benches --bench turbine`.
 //!
-//! IEA 15 MW in a sheared wind of 9 m/s, flexible, steps of 0.02 s: the structure alone under loads that are held, the
-//! blade elements alone with momentum theory and dynamic stall, actuator lines as in a lattice, the whole turbine, and a row
-//! of its record as CSV and as `.outb`. Repeats are short, so that on a loaded machine some go undisturbed; the best counts.
-//! A number after `--` is that of the repeats.
+//! IEA 15 MW in a sheared wind of 9 m/s, flexible, steps of 0.02 s: the structure alone under loads that are
+//! held, the blade elements alone with momentum theory and dynamic stall, actuator lines as in a lattice, the
+//! whole turbine, and a row of its record as CSV and as `.outb`. Repeats are short, so that on a loaded
+//! machine some go undisturbed; the best counts. A number after `--` is that of the repeats.
 
 use basis::{Commands, PerBlade, Vector3};
 use formats::openfast_output::{Encoding, Layout, OutbWriter};
@@ -206,7 +206,8 @@ fn csv(n_channels: usize) -> f64 {
     cost
 }
 
-/// Microseconds a row of `n_channels` in a binary file, its end with scaling and copying shared among the rows.
+/// Microseconds a row of `n_channels` in a binary file, its end with scaling and copying shared among the
+/// rows.
 fn outb(n_channels: usize) -> f64 {
     let path = std::env::temp_dir().join(format!("wakemix-bench-{}.outb", std::process::id()));
     let channel = |channel| Column { name: format!("channel{channel}"), unit: "-".to_owned() };

@@ -1,4 +1,5 @@
-//! A controller of your own on a turbine of the library: it sees what the instruments show, and commands torque and pitch.
+//! A controller of your own on a turbine of the library: it sees what the instruments show, and commands
+//! torque and pitch.
 //!
 //! cargo run --release -p wakemix --example 03-own-controller
 

@@ -1,5 +1,5 @@
-//! The actuator line on coarse grids against blade-element momentum, and against blade elements in the flow that rings make
-//! together: power and thrust in a steady uniform wind.
+//! The actuator line on coarse grids against blade-element momentum, and against blade elements in the flow
+//! that rings make together: power and thrust in a steady uniform wind.
 
 use crate::Row;
 use crate::axisymmetric::{self, Flow};
@@ -15,11 +15,11 @@ use turbine::steady::{Coefficients, SteadyRotor};
 
 /// Accepted distance of power and thrust from their expectations (–).
 const TOLERANCE: f64 = 0.03;
-/// Cells that the tip moves in a step (–): below the lattice's speed of sound, 0.577, beyond which a blade outruns the
-/// pressure that should make room for it and meets its own bound vortex.
+/// Cells that the tip moves in a step (–): below the lattice's speed of sound, 0.577, beyond which a blade
+/// outruns the pressure that should make room for it and meets its own bound vortex.
 const TIP_CELLS: f64 = 0.5;
-/// The tunnel, in diameters: large enough for what its walls and its inlet do to be below a percent of the power, and time
-/// enough for the near wake to stand.
+/// The tunnel, in diameters: large enough for what its walls and its inlet do to be below a percent of the
+/// power, and time enough for the near wake to stand.
 const UPSTREAM: f64 = 5.0;
 const DOWNSTREAM: f64 = 5.0;
 const WIDTH: f64 = 6.0;
@@ -56,7 +56,8 @@ pub fn actuator_line_fine() -> Vec<Row> {
     on(32.0)
 }
 
-/// The three rotors on 16 and 24 cells per diameter without tilt, precone and prebend: what the theories are about.
+/// The three rotors on 16 and 24 cells per diameter without tilt, precone and prebend: what the theories are
+/// about.
 pub fn actuator_line_flat() -> Vec<Row> {
     let rotors = ["iea-15mw", "iea-22mw", "nrel-5mw"];
     [16.0, 24.0]
@@ -145,7 +146,8 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
     ]
 }
 
-/// Coefficients of `model` at its least pitch in the axisymmetric flow of the tunnel, its tilt as blade-element momentum has it.
+/// Coefficients of `model` at its least pitch in the axisymmetric flow of the tunnel, its tilt as
+/// blade-element momentum has it.
 fn in_axisymmetric_flow(model: &Model, tip_speed_ratio: f64) -> Coefficients {
     let pitch = model.constants.fine_pitch;
     // A round duct as wide as the square tunnel is, in radii.

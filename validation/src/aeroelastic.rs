@@ -1,7 +1,8 @@
 //! The flexible turbine in prescribed wind against OpenFAST 5.0.0 with ROSCO 2.10.1 on the same definitions.
 //!
-//! Reference: own runs of OpenFAST (commit 2895884): BEM_Mod 1, Pitt/Peters skew, DBEMT_Mod 3 with the time constants below,
-//! UA_Mod 3, tower influence off except where stated, clamped tower, steps of 0.02 s (IEA 15 MW) and 0.0125 s (NREL 5 MW).
+//! Reference: own runs of OpenFAST (commit 2895884): BEM_Mod 1, Pitt/Peters skew, DBEMT_Mod 3 with the time
+//! constants below, UA_Mod 3, tower influence off except where stated, clamped tower, steps of 0.02 s (IEA 15
+//! MW) and 0.0125 s (NREL 5 MW).
 
 mod rig;
 mod tower;
@@ -19,11 +20,13 @@ const PUBLISHED_SOURCE: &str = "NREL/TP-500-38060 (2009), figs. 9-1 and 9-2";
 
 /// Accepted distance of means from the reference (–).
 const TOLERANCE: f64 = 0.02;
-/// Accepted distance of a change by the helix, or by the tower, from the reference's: points (–), or share of the change (–).
+/// Accepted distance of a change by the helix, or by the tower, from the reference's: points (–), or share of
+/// the change (–).
 const CHANGE_POINTS: f64 = 0.03;
 const CHANGE_SHARE: f64 = 0.15;
 
-/// A steady state of the reference: under a controller that tracks the tip-speed ratio, from a table of its own.
+/// A steady state of the reference: under a controller that tracks the tip-speed ratio, from a table of its
+/// own.
 struct Steady {
     model: &'static str,
     /// Wind (m/s).
@@ -34,7 +37,8 @@ struct Steady {
     rotor_speed: f64,
     /// Generator power (MW).
     generator_power: f64,
-    /// Power (MW) and thrust (MN) of the air, means of RootMyc1, TwrBsMyt, YawBrMyp, YawBrMzp and LSSTipMys (MN m), OoPDefl1 (m).
+    /// Power (MW) and thrust (MN) of the air, means of RootMyc1, TwrBsMyt, YawBrMyp, YawBrMzp and LSSTipMys
+    /// (MN m), OoPDefl1 (m).
     means: [f64; 8],
 }
 
@@ -83,8 +87,9 @@ const STEADY: [Steady; 5] = [
     },
 ];
 
-/// Figures of the helix: mean power (MW) and thrust (MN) of the air, the 1-Hz damage-equivalent load (m = 10) of RootMxc1, standard
-/// deviations and equivalent loads (m = 10) of RootMyc1, (m = 4) of TwrBsMyt, YawBrMyp, YawBrMzp and LSSTipMys (MN m).
+/// Figures of the helix: mean power (MW) and thrust (MN) of the air, the 1-Hz damage-equivalent load (m = 10)
+/// of RootMxc1, standard deviations and equivalent loads (m = 10) of RootMyc1, (m = 4) of TwrBsMyt, YawBrMyp,
+/// YawBrMzp and LSSTipMys (MN m).
 const HELIX_FIGURES: [&str; 10] = [
     "mean power of the air",
     "mean thrust",
@@ -132,11 +137,13 @@ const HELIX: [(f64, [f64; 10]); 5] = [
     ),
 ];
 
-/// Those of [`CHANNELS`] whose means hang on how sections of a blade are seen that bends in both directions: YawBrMzp and LSSTipMys.
+/// Those of [`CHANNELS`] whose means hang on how sections of a blade are seen that bends in both directions:
+/// YawBrMzp and LSSTipMys.
 const TURNED: [usize; 2] = [3, 4];
 
-/// Steady wind: means at the reference's rotor speed, those of [`TURNED`] again with blades seen as the reference does, then speed and
-/// power under the turbine's own control, last what the tower changes where its wind is felt.
+/// Steady wind: means at the reference's rotor speed, those of [`TURNED`] again with blades seen as the
+/// reference does, then speed and power under the turbine's own control, last what the tower changes where
+/// its wind is felt.
 pub fn openfast_steady() -> Vec<Row> {
     let mut rows = Vec::new();
     for steady in STEADY {
@@ -183,10 +190,12 @@ pub fn openfast_steady() -> Vec<Row> {
     rows
 }
 
-/// NREL 5 MW as its authors published it: wind (m/s), generator power (kW), and thrust (kN) with the rotor's weight along the shaft.
+/// NREL 5 MW as its authors published it: wind (m/s), generator power (kW), and thrust (kN) with the rotor's
+/// weight along the shaft.
 ///
-/// Source: Jonkman, Butterfield, Musial, Scott, NREL/TP-500-38060 (2009), figs. 9-1 and 9-2, by FAST with AeroDyn's blade-element momentum
-/// of then and the torque law k ω²; figures from NREL's archive of turbine models, "NREL_5MW_126_RWT".
+/// Source: Jonkman, Butterfield, Musial, Scott, NREL/TP-500-38060 (2009), figs. 9-1 and 9-2, by FAST with
+/// AeroDyn's blade-element momentum of then and the torque law k ω²; figures from NREL's archive of turbine
+/// models, "NREL_5MW_126_RWT".
 const PUBLISHED: [[f64; 3]; 4] =
     [[7.0, 1187.2, 398.6], [8.0, 1771.1, 478.0], [9.0, 2518.6, 579.2], [10.0, 3448.41, 691.496]];
 
@@ -253,7 +262,8 @@ pub fn openfast_helix() -> Vec<Row> {
     for (run, (amplitude, reference)) in runs.iter().zip(HELIX).skip(1) {
         let (measured, without) = (numbers(run), numbers(&runs[0]));
         for index in 0..HELIX_FIGURES.len() {
-            // Most loads without a helix are next to nothing in a steady wind: their changes are given as such.
+            // Most loads without a helix are next to nothing in a steady wind: their changes are given as
+            // such.
             let (measured, expected, unit, least) = if index < SHARES {
                 let change = |now: f64, before: f64| now / before - 1.0;
                 let expected = change(reference[index], HELIX[0].1[index]);

@@ -1,15 +1,16 @@
 //! Steady axisymmetric flow through a loaded disc in a duct: what momentum theory, ring by ring, leaves out.
 //!
-//! Without swirl and mixing, the head H that a stream surface ψ lost at the disc stays with it, and what differs from
-//! surface to surface is vorticity behind the disc:
+//! Without swirl and mixing, the head H that a stream surface ψ lost at the disc stays with it, and what
+//! differs from surface to surface is vorticity behind the disc:
 //!
 //! ```text
-//! ∂²ψ/∂x² + r ∂/∂r (1/r ∂ψ/∂r) = r² dH/dψ,      H = −Δp/ρ of the disc where the surface passes it,      u = 1/r ∂ψ/∂r.
+//! ∂²ψ/∂x² + r ∂/∂r (1/r ∂ψ/∂r) = r² dH/dψ,  u = 1/r ∂ψ/∂r,  H = −Δp/ρ of the disc where the surface passes it
 //! ```
 //!
-//! Rings feel one another through the pressure and the widening wake, where momentum theory takes each for itself; the mean
-//! over a uniformly loaded disc is momentum theory's, which is a test. Source: Wu (1962), Schriften Schiffbau 9, for a heavily loaded disc.
-//! Lengths are over the rotor's radius, speeds over the wind's.
+//! Rings feel one another through the pressure and the widening wake, where momentum theory takes each for
+//! itself; the mean over a uniformly loaded disc is momentum theory's, which is a test. Source: Wu (1962),
+//! Schriften Schiffbau 9, for a heavily loaded disc. Lengths are over the rotor's radius, speeds over the
+//! wind's.
 
 mod rotor;
 
@@ -154,7 +155,8 @@ impl Flow {
     }
 }
 
-/// On return `values` solves the system across for one sine, whose second derivative along the axis is −`along` of itself.
+/// On return `values` solves the system across for one sine, whose second derivative along the axis is
+/// −`along` of itself.
 fn solve_across(neighbours: &[[f64; 2]], along: f64, values: &mut [f64]) {
     let mut factors = vec![0.0; values.len()];
     let (mut factor, mut value) = (0.0, 0.0);

@@ -26,7 +26,8 @@ const WIND_SPEED: f64 = 9.0;
 /// Rotor speed of the spanwise reference (rad/s).
 const ROTOR_SPEED: f64 = 9.0 * WIND_SPEED / 120.97;
 
-/// Power and thrust of the three library turbines, and loads along a blade; docs/validation/blade-element.md explains the gaps.
+/// Power and thrust of the three library turbines, and loads along a blade; docs/validation/blade-element.md
+/// explains the gaps.
 ///
 /// # Panics
 /// When a library turbine or the data that the program carries cannot be read.
@@ -57,7 +58,8 @@ fn records(text: &'static str) -> impl Iterator<Item = (Vec<&'static str>, Vec<f
     })
 }
 
-/// Coefficient tables, tip-speed ratio 6 to 11, one row per pitch and coefficient: the largest deviation of all tip-speed ratios.
+/// Coefficient tables, tip-speed ratio 6 to 11, one row per pitch and coefficient: the largest deviation of
+/// all tip-speed ratios.
 fn table_rows(name: &str, definition: &Definition, rows: &mut Vec<Row>) {
     let rotor = SteadyRotor::at_stations(definition, Theory::default());
     let mut deviations: Vec<(f64, [Vec<f64>; 2])> = Vec::new();
@@ -132,12 +134,13 @@ fn rotor_rows(name: &str, definition: &Definition, rows: &mut Vec<Row>) {
     }
 }
 
-/// What the unsteady airfoils of OpenFAST's NREL 5 MW take from a steady rotor: the change between its first instant and
-/// its settled state, beside the change when polars are bent down to their own attached flow.
+/// What the unsteady airfoils of OpenFAST's NREL 5 MW take from a steady rotor: the change between its first
+/// instant and its settled state, beside the change when polars are bent down to their own attached flow.
 ///
-/// The model that the reference ran (Beddoes-Leishman after Minnema and Pierce, theory in NREL/TP-5000-66347) writes a
-/// steady section as attached flow times separation. It cannot return more than attached flow, C_nα (α − α₀) across the
-/// chord and that times tan α along it; these polars have up to a fifth more, being corrected for stall delay.
+/// The model that the reference ran (Beddoes-Leishman after Minnema and Pierce, theory in NREL/TP-5000-66347)
+/// writes a steady section as attached flow times separation. It cannot return more than attached flow, C_nα
+/// (α − α₀) across the chord and that times tan α along it; these polars have up to a fifth more, being
+/// corrected for stall delay.
 fn attached_rows(rows: &mut Vec<Row>) {
     let name = "nrel-5mw";
     let definition = definition_of(name);

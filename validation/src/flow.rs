@@ -1,4 +1,5 @@
-//! The lattice against closed forms: decay, conservation, momentum theory, the logarithmic law, an open outlet.
+//! The lattice against closed forms: decay, conservation, momentum theory, the logarithmic law, an open
+//! outlet.
 
 mod disc;
 mod ground;

@@ -1,11 +1,13 @@
-//! Today's rows against the record: what is as recorded, what got worse, and what is better than the record says.
+//! Today's rows against the record: what is as recorded, what got worse, and what is better than the record
+//! says.
 
 use crate::record::{Record, RecordedRow, Verdict};
 use crate::row::{Row, Tolerance};
 use serde::Serialize;
 
-/// Share of a recorded shortfall by which it may grow: a case gives the same bits on one kind of processor, and another rounds in
-/// another order, which a turbulent flow makes visible. A tenth of a shortfall is no new finding.
+/// Share of a recorded shortfall by which it may grow: a case gives the same bits on one kind of processor,
+/// and another rounds in another order, which a turbulent flow makes visible. A tenth of a shortfall is no
+/// new finding.
 const GROWTH: f64 = 0.1;
 /// The same for shortfalls next to nothing: share of the tolerance, or of the limit.
 const LEAST_GROWTH: f64 = 0.01;

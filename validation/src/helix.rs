@@ -1,4 +1,5 @@
-//! What the helix costs the first turbine, what it gives the array, and how the wake recovers, beside published large-eddy figures.
+//! What the helix costs the first turbine, what it gives the array, and how the wake recovers, beside
+//! published large-eddy figures.
 
 mod pitch;
 
@@ -20,11 +21,11 @@ const CASE_ITSELF: &str = "the case itself";
 /// (amplitude in degrees, ratio).
 const POWER_RATIOS: [(u32, f64); 4] = [(2, 0.994), (3, 0.986), (4, 0.975), (5, 0.963)];
 const RATIO_TOLERANCE: f64 = 0.01;
-/// Array gain of a tuned helix, two IEA 22 MW turbines at 5 D in 8 m/s (van der Hoek, Dammann, van Wingerden: 7.5 % ccw,
-/// about 3 % cw, near 4° and St 0.25).
+/// Array gain of a tuned helix, two IEA 22 MW turbines at 5 D in 8 m/s (van der Hoek, Dammann, van Wingerden:
+/// 7.5 % ccw, about 3 % cw, near 4° and St 0.25).
 const ARRAY_GAINS: [(&str, f64); 2] = [("ccw-4", 7.5), ("cw-4", 3.0)];
-/// Hub-height centre-line speed (m/s) behind one IEA 22 MW turbine in 10 m/s: distance (D), baseline, helix ccw 4°
-/// (published large-eddy tables).
+/// Hub-height centre-line speed (m/s) behind one IEA 22 MW turbine in 10 m/s: distance (D), baseline, helix
+/// ccw 4° (published large-eddy tables).
 const CENTRE_LINE: [(f64, f64, f64); 6] = [
     (3.0, 5.04, 4.85),
     (4.0, 5.02, 5.53),
@@ -39,8 +40,8 @@ fn positive(what: String, gain: f64) -> Row {
     Row { what, measured: gain, expected: 0.0, tolerance: AtLeast, unit: "%", source: POSITIVE }
 }
 
-/// `cases/helix-two-turbines.toml`: power ratio of the first turbine and gain of the array against amplitude and sense,
-/// and the delivered pitch of helix and pulse.
+/// `cases/helix-two-turbines.toml`: power ratio of the first turbine and gain of the array against amplitude
+/// and sense, and the delivered pitch of helix and pulse.
 pub fn helix() -> Vec<Row> {
     let (summaries, _) =
         match summaries(Path::new("cases/helix-two-turbines.toml"), "helix", Vec::new()) {

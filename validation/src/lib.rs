@@ -1,7 +1,7 @@
 //! Recorded validations: each compares the program with a closed form, a published figure or another program.
 //!
-//! `wakemix validate NAME` repeats one and sets it beside its record (`validation/recorded/`), of which the pages in
-//! `docs/validation/` show the verdicts.
+//! `wakemix validate NAME` repeats one and sets it beside its record (`validation/recorded/`), of which the
+//! pages in `docs/validation/` show the verdicts.
 
 pub mod actuator_line;
 pub mod aeroelastic;
@@ -76,7 +76,8 @@ pub struct Elsewhere {
 /// How long a validation takes on two quiet cores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cost {
-    /// Less than a minute of one core, and no row measures time or memory: what is repeated with every change.
+    /// Less than a minute of one core, and no row measures time or memory: what is repeated with every
+    /// change.
     UnderAMinute,
     /// About so many minutes.
     Minutes(u32),

@@ -1,4 +1,5 @@
-//! All validations, in the order in which they are listed; and comparisons that are recorded but made by other means.
+//! All validations, in the order in which they are listed; and comparisons that are recorded but made by
+//! other means.
 
 use crate::{Cost, Elsewhere, Validation};
 use crate::{

@@ -1,5 +1,6 @@
-//! Meandering synchronised with phase-locked loops, beside van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream
-//! Wind Turbines", TU Delft 2024, chapters 2 to 4: loops alone, three masses on springs, a turbine in a rotating disk.
+//! Meandering synchronised with phase-locked loops, beside van Veldhoven, "Closed-Loop Wake Meandering
+//! Control of Downstream Wind Turbines", TU Delft 2024, chapters 2 to 4: loops alone, three masses on
+//! springs, a turbine in a rotating disk.
 
 mod bench;
 mod disk;

@@ -1,4 +1,5 @@
-//! Memory of a run: ten minutes, an hour and three of one flexible turbine in turbulence, each in a process of its own.
+//! Memory of a run: ten minutes, an hour and three of one flexible turbine in turbulence, each in a process
+//! of its own.
 
 use crate::Row;
 use crate::row::Tolerance::AtMost;
@@ -21,15 +22,17 @@ const RUN: &str = "baseline";
 const DURATIONS: [u64; 3] = [600, 3600, 10_800];
 /// Most memory that a run may take (MB).
 const MOST: f64 = 200.0;
-/// Most that a longer run may take beyond the shortest (MB): making the box of turbulence takes 88 MB for the shortest, and 134 MB
-/// at most for any.
+/// Most that a longer run may take beyond the shortest (MB): making the box of turbulence takes 88 MB for the
+/// shortest, and 134 MB at most for any.
 const MOST_GROWTH: f64 = 46.0;
 /// Wall time between two looks at a running process.
 const LOOK_INTERVAL: Duration = Duration::from_millis(5);
 
-/// Most memory of a run as its summary tells it and as it is seen from outside, its report included; and how it grows with length.
+/// Most memory of a run as its summary tells it and as it is seen from outside, its report included; and how
+/// it grows with length.
 ///
-/// A process tells the most that it ever held, so each run has one of its own, which holds nothing of this validation's.
+/// A process tells the most that it ever held, so each run has one of its own, which holds nothing of this
+/// validation's.
 pub fn memory() -> Vec<Row> {
     compare().unwrap_or_else(failure)
 }

@@ -1,4 +1,5 @@
-//! What the pages in `docs/validation/` say of the records: a verdict and a table at the top of each, and the list of all.
+//! What the pages in `docs/validation/` say of the records: a verdict and a table at the top of each, and the
+//! list of all.
 
 use crate::record::{Record, RecordError, RecordedRow, Verdict};
 use crate::row::Tolerance;

@@ -1,8 +1,10 @@
-//! The estimator of the helix's phase: on its own model's blade moments, and on an aeroelastic turbine in known winds.
+//! The estimator of the helix's phase: on its own model's blade moments, and on an aeroelastic turbine in
+//! known winds.
 //!
-//! The aeroelastic turbine knows nothing of the estimator's shortcuts: its blades, tower and drive train bend, sections
-//! stall dynamically, the wake is skewed, the wind is sheared and turbulent. Its momentum theory keeps the wake's delay with
-//! each blade, so the estimator has the same model of the wake; in a resolved flow it keeps its default.
+//! The aeroelastic turbine knows nothing of the estimator's shortcuts: its blades, tower and drive train
+//! bend, sections stall dynamically, the wake is skewed, the wind is sheared and turbulent. Its momentum
+//! theory keeps the wake's delay with each blade, so the estimator has the same model of the wake; in a
+//! resolved flow it keeps its default.
 
 mod choices;
 mod on_and_off;
@@ -294,7 +296,8 @@ fn turbulence(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationEr
         );
         for ((form, _), errors) in forms.iter().zip(&errors) {
             let [tilt, yaw] = errors.rms;
-            // The published form has no aim: its authors identified an azimuth offset for their turbine, which is not given here.
+            // The published form has no aim: its authors identified an azimuth offset for their turbine,
+            // which is not given here.
             if *form == "robust" {
                 rows.push(row(format!("{name}, {form}: tilt, rms error"), tilt, AIM, "deg"));
                 rows.push(row(format!("{name}, {form}: yaw, rms error"), yaw, AIM, "deg"));

@@ -1,4 +1,5 @@
-//! What a validation gave when it was last recorded: `validation/recorded/NAME.toml`, in the program and in the repository.
+//! What a validation gave when it was last recorded: `validation/recorded/NAME.toml`, in the program and in
+//! the repository.
 
 use crate::row::{Row, Tolerance};
 use serde::{Deserialize, Serialize};
@@ -12,7 +13,8 @@ pub const FOLDER: &str = "validation/recorded";
 /// How a record is weakened where that is meant.
 const BY_HAND: &str = "if that is meant, take its row out of the record's file first, where a reader of the change sees it";
 
-/// Share of a tolerance by which a recorded claim and one of today may differ: what rounding to six digits leaves.
+/// Share of a tolerance by which a recorded claim and one of today may differ: what rounding to six digits
+/// leaves.
 const SAME: f64 = 0.01;
 
 /// The rows of one validation as they were recorded.
@@ -170,8 +172,8 @@ impl Record {
     /// `rows` recorded on the day `date` under `conditions`, where this record was before.
     ///
     /// # Errors
-    /// [`RecordError::Twice`]; [`RecordError::Loosened`] when a row claims less than its record does, or expects another figure;
-    /// [`RecordError::Lost`] when a recorded claim is not among `rows`.
+    /// [`RecordError::Twice`]; [`RecordError::Loosened`] when a row claims less than its record does, or
+    /// expects another figure; [`RecordError::Lost`] when a recorded claim is not among `rows`.
     pub fn renewed(&self, rows: &[Row], date: &str, conditions: &str) -> Result<Self, RecordError> {
         let mut renewed: Vec<RecordedRow> = Vec::new();
         let mut loosened = Vec::new();

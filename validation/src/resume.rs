@@ -12,8 +12,8 @@ use std::time::Instant;
 const SOURCE: &str = "the same bits";
 
 const N_KILLS: u32 = 20;
-/// A small row in turbulent wind: every state that a run has, in seconds. The estimator is one that is not calibrated first, and the
-/// azimuth offset is given, or most kills would hit their identification.
+/// A small row in turbulent wind: every state that a run has, in seconds. The estimator is one that is not
+/// calibrated first, and the azimuth offset is given, or most kills would hit their identification.
 const CASE: &str = r#"
 name = "kills"
 [wind]
@@ -51,7 +51,8 @@ control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.
 control.T2 = { kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 3.0, start = 60.0, estimator = "published", azimuth_offset_deg = 0.0 }
 "#;
 
-/// Files that differ between an undisturbed run and one that was killed [`N_KILLS`] times, out of those compared.
+/// Files that differ between an undisturbed run and one that was killed [`N_KILLS`] times, out of those
+/// compared.
 pub fn resume() -> Vec<Row> {
     let row = |what: &str, measured: f64, expected: f64| Row {
         what: what.to_owned(),

@@ -15,7 +15,8 @@ pub enum Tolerance {
 }
 
 impl Tolerance {
-    /// How far `measured` lies beyond what is accepted around `expected`; zero where it is accepted, infinite for what is not a number.
+    /// How far `measured` lies beyond what is accepted around `expected`; zero where it is accepted, infinite
+    /// for what is not a number.
     pub fn beyond(self, measured: f64, expected: f64) -> f64 {
         if measured.is_nan() || expected.is_nan() {
             return f64::INFINITY;
@@ -29,7 +30,8 @@ impl Tolerance {
         if beyond.is_nan() { f64::INFINITY } else { beyond.max(0.0) }
     }
 
-    /// What a small difference is measured against, in the row's unit: the tolerance itself, or the limit where there is one only.
+    /// What a small difference is measured against, in the row's unit: the tolerance itself, or the limit
+    /// where there is one only.
     pub(crate) fn scale(self, expected: f64) -> f64 {
         match self {
             Self::Within(most) => most.abs(),
@@ -61,8 +63,8 @@ impl Row {
         self.tolerance.beyond(self.measured, self.expected) == 0.0
     }
 
-    /// Name of the row within its validation: `what` in lower case, with hyphens for all that is neither letter nor digit. A claim
-    /// that is worded anew is a new row, and recorded as one.
+    /// Name of the row within its validation: `what` in lower case, with hyphens for all that is neither
+    /// letter nor digit. A claim that is worded anew is a new row, and recorded as one.
     pub fn id(&self) -> String {
         let mut id = String::new();
         for letter in self.what.chars().flat_map(char::to_lowercase) {

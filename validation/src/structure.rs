@@ -1,4 +1,5 @@
-//! The flexible turbine by itself: natural frequencies beside published ones, what free motion keeps, loads in closed form.
+//! The flexible turbine by itself: natural frequencies beside published ones, what free motion keeps, loads
+//! in closed form.
 
 use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
@@ -65,8 +66,9 @@ fn frequency_row(
     Row { what, measured, expected, tolerance: Within(share * expected), unit: "Hz", source }
 }
 
-/// Whole machines: NREL 5 MW parked, after table 9-1 of Jonkman et al., NREL/TP-500-38060 (2009), its FAST column; IEA 15 MW
-/// turning at 6.45 rpm, after the spectral peaks of an OpenFAST 5.0.0 run from an impulsive start.
+/// Whole machines: NREL 5 MW parked, after table 9-1 of Jonkman et al., NREL/TP-500-38060 (2009), its FAST
+/// column; IEA 15 MW turning at 6.45 rpm, after the spectral peaks of an OpenFAST 5.0.0 run from an impulsive
+/// start.
 fn machine_rows(rows: &mut Vec<Row>) {
     let nrel = built(
         &definition_of("nrel-5mw"),
@@ -122,7 +124,8 @@ fn machine_rows(rows: &mut Vec<Row>) {
     }
 }
 
-/// Single blades at rest beside finite-element cantilevers of the same mass, stiffness and twist (200 elements, own computation).
+/// Single blades at rest beside finite-element cantilevers of the same mass, stiffness and twist (200
+/// elements, own computation).
 fn blade_rows(rows: &mut Vec<Row>) {
     let held = &DegreeOfFreedom::ALL[..6];
     for (name, flapwise, edgewise) in

@@ -1,5 +1,5 @@
-//! Whole studies as validations run them: with lines of progress, or silent in a process of their own; on from where an earlier
-//! call stopped.
+//! Whole studies as validations run them: with lines of progress, or silent in a process of their own; on
+//! from where an earlier call stopped.
 
 use crate::Row;
 use crate::row::Tolerance::Within;
@@ -32,8 +32,8 @@ impl Observer for Lines {
     }
 }
 
-/// Runs the case at `path` with `overrides` of its keys, or takes up what is left of it in `runs/validate-NAME`; gives
-/// summaries and that folder.
+/// Runs the case at `path` with `overrides` of its keys, or takes up what is left of it in
+/// `runs/validate-NAME`; gives summaries and that folder.
 pub(crate) fn summaries(
     path: &Path,
     name: &str,

@@ -21,7 +21,8 @@ use turbine::{Induction, Turbine};
 pub(super) const INTERVAL: f64 = 0.02;
 /// Density of the air in the reference (kg/m³).
 const AIR_DENSITY: f64 = 1.225;
-/// Least and greatest x (m) of the planes that are held: the rotor's, with room for prebend, deflection and tilt.
+/// Least and greatest x (m) of the planes that are held: the rotor's, with room for prebend, deflection and
+/// tilt.
 const EXTENT: [f64; 2] = [-80.0, 80.0];
 
 /// Channels that are looked at.
@@ -77,7 +78,8 @@ pub(super) enum Speed {
     Held,
     /// Torque control k ω².
     Square,
-    /// Torque control that tracks the tip-speed ratio on an estimated wind, as prescribed wind has it by default.
+    /// Torque control that tracks the tip-speed ratio on an estimated wind, as prescribed wind has it by
+    /// default.
     Tracked,
 }
 
@@ -106,7 +108,8 @@ pub(super) struct Conditions<'a> {
 }
 
 impl Conditions<'_> {
-    /// IEA 15 MW in 9 m/s without helix and tower, its speed held at the reference's and every step of the last 100 s read.
+    /// IEA 15 MW in 9 m/s without helix and tower, its speed held at the reference's and every step of the
+    /// last 100 s read.
     pub(super) fn in_nine_metres_a_second() -> Self {
         Self {
             model: "iea-15mw",

@@ -1,4 +1,5 @@
-//! What the tower does to the loads of blades and tower top by the wind about it, beside the reference with its tower and without.
+//! What the tower does to the loads of blades and tower top by the wind about it, beside the reference with
+//! its tower and without.
 
 use super::CHANGE_SHARE;
 use super::rig::{CHANNELS, Conditions, run};
@@ -10,7 +11,8 @@ use turbine::aero::tower_influence::{Effects, Potential};
 /// Where the expected values come from.
 const SOURCE: &str = "OpenFAST 5.0.0, TwrPotent 1 and TwrShadow 1";
 
-/// Harmonics of the rotor's speed that are told apart: as many as two rows a second, which the reference kept, hold.
+/// Harmonics of the rotor's speed that are told apart: as many as two rows a second, which the reference
+/// kept, hold.
 const N_HARMONICS: usize = 9;
 const N_PARTS: usize = 1 + 2 * N_HARMONICS;
 
@@ -29,7 +31,8 @@ struct Change {
     amplitudes: &'static [(usize, f64)],
 }
 
-/// The reference, 100 to 200 s with the tower less the same without, harmonics by least squares on the azimuth.
+/// The reference, 100 to 200 s with the tower less the same without, harmonics by least squares on the
+/// azimuth.
 ///
 /// The halves of that time give each figure within 2 % of these.
 const CHANGES: [Change; 3] = [
@@ -79,7 +82,8 @@ fn row(what: &str, measured: f64, expected: f64, unit: &'static str) -> Row {
     }
 }
 
-/// Mean of `samples`, then sine and cosine of each harmonic of `azimuth` (rad), from the first, in their unit.
+/// Mean of `samples`, then sine and cosine of each harmonic of `azimuth` (rad), from the first, in their
+/// unit.
 fn harmonics(azimuth: &[f64], samples: &[f64]) -> [f64; N_PARTS] {
     let mut fit = Fit::<N_PARTS>::default();
     for (azimuth, sample) in azimuth.iter().zip(samples) {

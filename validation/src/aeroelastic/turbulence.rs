@@ -1,4 +1,5 @@
-//! The flexible turbine in Kaimal turbulence: deviations and equivalent loads of our own records beside the reference's one.
+//! The flexible turbine in Kaimal turbulence: deviations and equivalent loads of our own records beside the
+//! reference's one.
 
 use super::rig::{CHANNELS, Conditions, Run, Speed, run};
 use crate::Row;
@@ -29,7 +30,8 @@ struct Reference {
     equivalent: f64,
 }
 
-/// OpenFAST in the record that TurbSim made of [`kaimal::settings`] with its seed 20260101, power law 0.14; 60 to 600 s at 10 Hz.
+/// OpenFAST in the record that TurbSim made of [`kaimal::settings`] with its seed 20260101, power law 0.14;
+/// 60 to 600 s at 10 Hz.
 const REFERENCE: [Reference; 6] = [
     Reference { channel: 0, slope: 10.0, deviation: 3.058_64, equivalent: 8.711_7 },
     Reference { channel: 6, slope: 10.0, deviation: 13.3627, equivalent: 30.4277 },
@@ -86,9 +88,9 @@ fn in_turbulence(seed: u64) -> Run {
 
 /// The mean of `measured`, one value a record of ours (MN m), beside the `reference`'s (MN m).
 ///
-/// Two programs that agree give two single records that differ by chance. So accepted is the larger of the share `aim` (–) of
-/// the reference and the half width within which 95 % of further records of ours lie of the mean of those made: t s √(1 + 1/n).
-/// The row says which it was.
+/// Two programs that agree give two single records that differ by chance. So accepted is the larger of the
+/// share `aim` (–) of the reference and the half width within which 95 % of further records of ours lie of
+/// the mean of those made: t s √(1 + 1/n). The row says which it was.
 fn beside(what: &str, measured: &[f64], reference: f64, aim: f64) -> Row {
     let n = measured.len() as f64;
     let (mean, standard_error) = mean_of(measured.iter().copied());

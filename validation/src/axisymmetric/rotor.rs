@@ -41,10 +41,13 @@ impl Table {
     }
 }
 
-/// Power and thrust coefficient of `definition` without its tilt, at `tip_speed_ratio` (–) and `pitch` (rad), in the duct `flow`.
+/// Power and thrust coefficient of `definition` without its tilt, at `tip_speed_ratio` (–) and `pitch` (rad),
+/// in the duct `flow`.
 ///
-/// The number of blades enters as in blade-element momentum: a blade feels the mean induction of its ring over Prandtl's factor,
-/// and swirl is that of momentum theory. Not numbers where flow and loads do not converge. The local cone angle enters by two cosines: of the blade force along the shaft, and of the induced velocity normal to the blade.
+/// The number of blades enters as in blade-element momentum: a blade feels the mean induction of its ring
+/// over Prandtl's factor, and swirl is that of momentum theory. Not numbers where flow and loads do not
+/// converge. The local cone angle enters by two cosines: of the blade force along the shaft, and of the
+/// induced velocity normal to the blade.
 pub(crate) fn coefficients(
     definition: &Definition,
     tip_speed_ratio: f64,

@@ -26,8 +26,8 @@ pub fn momentum_theory() -> Vec<Row> {
 
 /// Momentum theory of a disc in a duct, speeds over that far upstream: at the disc, in the wake, beside it.
 ///
-/// Bernoulli beside the wake and along it, mass and momentum of the whole duct: Garrett, Cummins (2007), J. Fluid
-/// Mech. 588, 243. `blockage` is the disc's share of the cross-section (–).
+/// Bernoulli beside the wake and along it, mass and momentum of the whole duct: Garrett, Cummins (2007), J.
+/// Fluid Mech. 588, 243. `blockage` is the disc's share of the cross-section (–).
 fn ducted_disc(thrust_coefficient: f64, blockage: f64) -> [f64; 3] {
     let speeds = |beside: f64| {
         let wake = (beside * beside - thrust_coefficient).sqrt();
@@ -111,7 +111,8 @@ fn disc(thrust_coefficient: f64) -> Vec<Row> {
     ]
 }
 
-/// Wind (m/s) weighted with the force on each cell; thrust coefficient of the loading (–), weighted with itself; that on the axis.
+/// Wind (m/s) weighted with the force on each cell; thrust coefficient of the loading (–), weighted with
+/// itself; that on the axis.
 fn loaded_wind(air: &Lattice, forces: &[PointForce], head: f64) -> (f64, f64, f64) {
     let mut spreader = Spreader::new(*air.scaling(), air.n_cells());
     let spacing = air.scaling().spacing();

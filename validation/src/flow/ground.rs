@@ -20,8 +20,8 @@ fn logarithmic(z: f64) -> f64 {
     FRICTION_VELOCITY / VON_KARMAN * (z / ROUGHNESS_LENGTH).ln()
 }
 
-/// Half a channel driven by u*²/H, periodic, four turnovers H/u* to settle and six to average, with the subgrid constant
-/// that studies over a rough ground run with.
+/// Half a channel driven by u*²/H, periodic, four turnovers H/u* to settle and six to average, with the
+/// subgrid constant that studies over a rough ground run with.
 pub fn log_profile() -> Vec<Row> {
     let n = [36, 36, 24];
     let spacing = HEIGHT / n[2] as f64;

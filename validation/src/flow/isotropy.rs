@@ -57,7 +57,8 @@ fn columns() -> Vec<Row> {
     rows
 }
 
-/// Largest fourfold part of u and largest radial wind on circles around the axis, over the free stream, after ten diameters.
+/// Largest fourfold part of u and largest radial wind on circles around the axis, over the free stream, after
+/// ten diameters.
 fn column(stencil: Stencil, cells_per_diameter: f64, swirl: f64) -> [f64; 2] {
     let mut settings = settings(stencil, cells_per_diameter, 8.0 / cells_per_diameter);
     settings.ends = Ends::Periodic;
@@ -91,7 +92,8 @@ fn column(stencil: Stencil, cells_per_diameter: f64, swirl: f64) -> [f64; 2] {
     [fourfold / SPEED, radial / SPEED]
 }
 
-/// A disc loaded more on one side, the heavy side along y or along the diagonal: the wake must not tell which.
+/// A disc loaded more on one side, the heavy side along y or along the diagonal: the wake must not tell
+/// which.
 fn deflected_wakes() -> Vec<Row> {
     let mut rows = Vec::new();
     for stencil in STENCILS {
@@ -132,8 +134,9 @@ fn helical_wake() -> Vec<Row> {
         .collect()
 }
 
-/// Disc means of u and u³ over the free stream and distance of the wake's centre from the axis over the diameter, three
-/// diameters behind a disc of thrust coefficient 0.8 whose load grows by 0.8 r/R towards `heavy` (rad, from y to z).
+/// Disc means of u and u³ over the free stream and distance of the wake's centre from the axis over the
+/// diameter, three diameters behind a disc of thrust coefficient 0.8 whose load grows by 0.8 r/R towards
+/// `heavy` (rad, from y to z).
 fn wake(stencil: Stencil, duration: f64, averaging: f64, heavy: impl Fn(f64) -> f64) -> [f64; 3] {
     let cells_per_diameter = 16.0;
     let settings = settings(stencil, cells_per_diameter, 7.0);

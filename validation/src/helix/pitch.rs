@@ -81,8 +81,8 @@ pub fn helix_pitch() -> Vec<Row> {
     rows
 }
 
-/// Amplitude (rad) of T1's first blade at the line of a helix of `sense` and `rate` (rad/s), which turns with the azimuth, and
-/// the share of its pitch's variance that lies beside it (–).
+/// Amplitude (rad) of T1's first blade at the line of a helix of `sense` and `rate` (rad/s), which turns with
+/// the azimuth, and the share of its pitch's variance that lies beside it (–).
 fn line(series: &Series, sense: Sense, rate: f64) -> Option<[f64; 2]> {
     let [times, azimuth, pitch] = CHANNELS.map(|channel| series.column(channel));
     let (times, azimuth, pitch) = (times?, azimuth?, pitch?);

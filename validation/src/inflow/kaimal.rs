@@ -24,8 +24,9 @@ const BANDS: [[f64; 2]; 4] = [[0.003, 0.01], [0.01, 0.03], [0.03, 0.1], [0.1, 0.
 /// Points apart along y and z at which coherence is compared; one spacing is 9.667 m.
 const APART: [[usize; 2]; 5] = [[1, 0], [3, 0], [10, 0], [0, 3], [0, 10]];
 
-/// What TurbSim 2 (OpenFAST 5.0.0, commit 2895884) made of the same settings: IECKAI, NTM, 6 %, 9 m/s at 150 m, grid 31 × 31
-/// of 290 m, 6600 steps of 0.1 s, power law 0.14, no scaling, seed 20260101. By band, coherence of u at the distances of `APART`.
+/// What TurbSim 2 (OpenFAST 5.0.0, commit 2895884) made of the same settings: IECKAI, NTM, 6 %, 9 m/s at 150
+/// m, grid 31 × 31 of 290 m, 6600 steps of 0.1 s, power law 0.14, no scaling, seed 20260101. By band,
+/// coherence of u at the distances of `APART`.
 const TURBSIM_COHERENCE: [[f64; 5]; 4] = [
     [0.9097, 0.7479, 0.3345, 0.7518, 0.2914],
     [0.7903, 0.5022, 0.1387, 0.4987, 0.1322],
@@ -286,7 +287,8 @@ impl Sample {
     }
 }
 
-/// In-phase coherence (–) by band of `component` at all pairs of points `apart` that do not reach across the edge.
+/// In-phase coherence (–) by band of `component` at all pairs of points `apart` that do not reach across the
+/// edge.
 fn coherent(turbulence: &TurbulenceBox, component: usize, apart: [usize; 2]) -> [f64; 4] {
     let transforms = spectra::lines(turbulence, component);
     let [_, n_y, n_z] = turbulence.n_points();

@@ -1,4 +1,5 @@
-//! Spectra that Mann's tensor implies, by numerical integration that shares nothing with the synthesis but Φ itself.
+//! Spectra that Mann's tensor implies, by numerical integration that shares nothing with the synthesis but Φ
+//! itself.
 
 use basis::{Matrix3, Vector3};
 use flow::inflow::{SpectralTensor, mann};
@@ -16,8 +17,8 @@ pub(super) struct Theory {
     tensor: SpectralTensor,
     /// Largest |k₁|, |k₂|, |k₃| (rad/m).
     largest: [f64; 3],
-    /// Half-widths of the cell around zero (rad/m). Waves whose k₂ and k₃ lie in it are uniform across a box; there a
-    /// field without divergence has no u, and at k₁ in it, too, the box has its mean, which is zero.
+    /// Half-widths of the cell around zero (rad/m). Waves whose k₂ and k₃ lie in it are uniform across a box;
+    /// there a field without divergence has no u, and at k₁ in it, too, the box has its mean, which is zero.
     uniform: [f64; 3],
 }
 

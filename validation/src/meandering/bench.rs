@@ -1,4 +1,5 @@
-//! The source's chapter 3: three generators side by side on a frequency step and ramp, jumps, offset, noise, attenuation.
+//! The source's chapter 3: three generators side by side on a frequency step and ramp, jumps, offset, noise,
+//! attenuation.
 
 use super::follower::{Case, END, INTERVAL, Instant, START, run};
 use super::loops::kinds;
@@ -27,8 +28,8 @@ const STEP: Case = Case {
 const ATTENUATION: Case =
     Case { name: "attenuation (3-8)", figure: "3-8", factor: 0.1, strouhals: [0.2, 0.2], ..STEP };
 
-/// The source's figures, and attenuation by the way that the program takes by default. Their steps, jumps, offsets and references are not given in numbers; these are ours, within the
-/// band of St 0.15 to 0.25.
+/// The source's figures, and attenuation by the way that the program takes by default. Their steps, jumps,
+/// offsets and references are not given in numbers; these are ours, within the band of St 0.15 to 0.25.
 pub(super) const CASES: [Case; 7] = [
     STEP,
     Case {
@@ -61,9 +62,11 @@ const BAND: f64 = 0.02;
 
 /// What a run of one generator comes to.
 struct Outcome {
-    /// Time after control begins, and after 1000 s, until the rate stays within [`BAND`] (s); infinite if it never does.
+    /// Time after control begins, and after 1000 s, until the rate stays within [`BAND`] (s); infinite if it
+    /// never does.
     settling: [f64; 2],
-    /// Furthest that the rate goes beyond the new one after 1000 s, over the step (–), or over the rate where there is none.
+    /// Furthest that the rate goes beyond the new one after 1000 s, over the step (–), or over the rate where
+    /// there is none.
     overshoot: f64,
     /// Largest error of the rate over the last 400 s (–).
     ripple: f64,

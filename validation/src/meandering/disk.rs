@@ -1,5 +1,5 @@
-//! The source's section 4-2-1: the aeroelastic turbine in the rotating disk, loads brought to factors of their own amplitude; and
-//! what it leaves open, the same where the disk meets a part of the rotor only.
+//! The source's section 4-2-1: the aeroelastic turbine in the rotating disk, loads brought to factors of
+//! their own amplitude; and what it leaves open, the same where the disk meets a part of the rotor only.
 
 use super::identify::decoupling;
 use super::judge::{Record, Table};
@@ -71,7 +71,8 @@ pub fn disk() -> Vec<Row> {
         let choice = LoopChoice { followed, reference, decoupling };
         rows.extend(full.table(name, factors, choice, published));
     }
-    // Pitch acts as it was found in full overlap: a turbine that is identified alone knows nothing of where the wake will meet it.
+    // Pitch acts as it was found in full overlap: a turbine that is identified alone knows nothing of where
+    // the wake will meet it.
     for (aside, place) in [(0.25, "¼ D aside"), (0.5, "½ D aside")] {
         let partial = Bench::new(aside, following());
         rows.extend(partial.rows(place));
@@ -83,7 +84,8 @@ pub fn disk() -> Vec<Row> {
             rows.extend(partial.table(&format!("{place}, {how}"), &PARTIAL_FACTORS, choice, &[]));
         }
     }
-    // Half a diameter aside the load circles against the disk: does a loop set so, or one of yaw alone, find it?
+    // Half a diameter aside the load circles against the disk: does a loop set so, or one of yaw alone, find
+    // it?
     let against = TwoAxisSettings { sense: Sense::CounterClockwise, ..following() };
     let yaw_leads = TwoAxisSettings { leader: Leader::Yaw, ..following() };
     rows.extend(Bench::new(0.5, against).rows("½ D aside, the other sense followed"));
@@ -106,8 +108,8 @@ struct Bench {
 }
 
 impl Bench {
-    /// The turbine `aside` (diameters) to the left of the middle of the disk's path, looking downwind, its loads followed as
-    /// `following` says.
+    /// The turbine `aside` (diameters) to the left of the middle of the disk's path, looking downwind, its
+    /// loads followed as `following` says.
     fn new(aside: f64, following: TwoAxisSettings) -> Self {
         let disk = RotatingDisk::of_wake(DIAMETER, HUB_HEIGHT, AMBIENT, true);
         let middle = [-aside * DIAMETER, HUB_HEIGHT];

@@ -59,7 +59,8 @@ pub(super) struct Instant {
     pub(super) reference: f64,
 }
 
-/// Settings of the loop around a generator of `kind`: between St 0.14 and 0.33, ω_n = 0.01 rad/s, ξ = 1/√2, k = √2.
+/// Settings of the loop around a generator of `kind`: between St 0.14 and 0.33, ω_n = 0.01 rad/s, ξ = 1/√2, k
+/// = √2.
 ///
 /// The source gives ξ and k, and ω_n only as less than ω₀.
 pub(super) fn settings(kind: Kind) -> PhaseLockedSettings {
@@ -73,8 +74,8 @@ pub(super) fn settings(kind: Kind) -> PhaseLockedSettings {
     PhaseLockedSettings { generator: kind, damping: SQRT_2, follower }
 }
 
-/// Integral gain of amplitude and offset (1/s), slow against the masses' own memory, which near their resonance is some
-/// 190 s, and the largest force of either (N). The source gives neither.
+/// Integral gain of amplitude and offset (1/s), slow against the masses' own memory, which near their
+/// resonance is some 190 s, and the largest force of either (N). The source gives neither.
 const BANDWIDTH: f64 = 0.004;
 const LARGEST_FORCE: f64 = 2.0;
 
@@ -91,8 +92,9 @@ impl Action {
 
 /// Runs `case` under a loop with a generator of `kind`; without control where `controlled` is false.
 ///
-/// The force that is added runs ahead by what the masses lag at the estimated rate, which takes the place of the turbine's
-/// azimuth offset and delay; without it the masses, whose resonance lies in the band, would turn the phase by 17 to 128°.
+/// The force that is added runs ahead by what the masses lag at the estimated rate, which takes the place of
+/// the turbine's azimuth offset and delay; without it the masses, whose resonance lies in the band, would
+/// turn the phase by 17 to 128°.
 pub(super) fn run(
     case: &Case,
     kind: Kind,

@@ -6,15 +6,16 @@ use control::Helix;
 use control::meandering::{Answer, Decoupling};
 use std::f64::consts::TAU;
 
-/// Strouhal number (–) of the helices in the disk's ambient wind, amid those of the disk, and their amplitude (rad).
+/// Strouhal number (–) of the helices in the disk's ambient wind, amid those of the disk, and their amplitude
+/// (rad).
 const STROUHAL: f64 = 0.2;
 const AMPLITUDE: f64 = std::f64::consts::PI / 180.0;
 /// When the answer is taken to have settled (s), and over how many periods it is looked at (–).
 const SETTLED: f64 = 400.0;
 const PERIODS: f64 = 8.0;
 
-/// Azimuth offset, delay and gain, from runs of `rig` with a helix of either sense beside `loads` (N m, one for each step)
-/// without: the wind being the same to the last bit, the difference is what the helix does.
+/// Azimuth offset, delay and gain, from runs of `rig` with a helix of either sense beside `loads` (N m, one
+/// for each step) without: the wind being the same to the last bit, the difference is what the helix does.
 pub(super) fn decoupling(rig: &Rig, loads: &[FixedFrame]) -> Decoupling {
     let helix = |sense| Helix::new(sense, AMPLITUDE, STROUHAL, 16.0, 240.0);
     let rate = helix(Sense::Clockwise).rate;
@@ -22,7 +23,8 @@ pub(super) fn decoupling(rig: &Rig, loads: &[FixedFrame]) -> Decoupling {
         let helix = helix(sense);
         let mut machine = rig.clone();
         let end = SETTLED + PERIODS * TAU / rate;
-        // Correlation of the moment lost with the tilt command and with the same a quarter period earlier, both axes.
+        // Correlation of the moment lost with the tilt command and with the same a quarter period earlier,
+        // both axes.
         let mut sums = [0.0; 2];
         let mut n = 0.0;
         for before in loads.iter().take((end / INTERVAL) as usize) {

@@ -123,8 +123,9 @@ fn ramps() -> Vec<Row> {
     rows
 }
 
-/// Time (s) until the rate stays within 2 % of a tone's, and how far it strays, over the tone's rate (–), after a step of
-/// frequency (St 0.18 to 0.22), of offset (by the amplitude) and of amplitude (by half) at 9 m/s.
+/// Time (s) until the rate stays within 2 % of a tone's, and how far it strays, over the tone's rate (–),
+/// after a step of frequency (St 0.18 to 0.22), of offset (by the amplitude) and of amplitude (by half) at 9
+/// m/s.
 fn steps() -> Vec<Row> {
     let rate_of = |strouhal: f64| TAU * strouhal * 9.0 / 240.0;
     let [first, last] = [0.18, 0.22].map(rate_of);
@@ -210,7 +211,8 @@ fn transfers() -> Vec<Row> {
     rows
 }
 
-/// In-phase, quadrature and offset of a generator at `centre` (rad/s) per sine at `ratio` times that, as cosine and sine part.
+/// In-phase, quadrature and offset of a generator at `centre` (rad/s) per sine at `ratio` times that, as
+/// cosine and sine part.
 fn response(kind: Kind, centre: f64, ratio: f64) -> [[f64; 2]; 3] {
     let mut generator = Generator::new(kind, SQRT_2).expect("a sound generator");
     let n_period = (TAU / (ratio * centre * INTERVAL)).round();
@@ -232,8 +234,8 @@ fn response(kind: Kind, centre: f64, ratio: f64) -> [[f64; 2]; 3] {
     sums
 }
 
-/// Phase errors of a loop without its generator, θ̃' = ω̃, ω̃' = −k_p e'(θ̃) ω̃ − k_i e(θ̃): what Eqs. 2-31 to 2-33 come to when the
-/// phase that is compared is the oscillator's.
+/// Phase errors of a loop without its generator, θ̃' = ω̃, ω̃' = −k_p e'(θ̃) ω̃ − k_i e(θ̃): what Eqs. 2-31
+/// to 2-33 come to when the phase that is compared is the oscillator's.
 struct Large {
     gains: Gains,
     /// e and its slope.

@@ -8,7 +8,8 @@ use report::{ReportError, Synchronisation, TrackFigure, TrackLine, TrackRow};
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// Runs all cases of the bench again and draws them into `folder`/figures, as SVG and PNG; gives the figures' names.
+/// Runs all cases of the bench again and draws them into `folder`/figures, as SVG and PNG; gives the figures'
+/// names.
 ///
 /// # Errors
 /// Those of [`report::write_synchronisation`].
@@ -69,7 +70,8 @@ fn line(name: &str, colour: usize, run: &[Instant], of: fn(&Instant) -> f64) -> 
 mod tests {
     use super::*;
 
-    /// On the jump of amplitude, whose frequency stays: the loops end at the true rate, the reference and the true phase.
+    /// On the jump of amplitude, whose frequency stays: the loops end at the true rate, the reference and the
+    /// true phase.
     #[test]
     fn a_picture_holds_what_its_labels_say() {
         let case = CASES.iter().find(|case| case.figure == "3-6").expect("a case");

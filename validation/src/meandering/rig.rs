@@ -1,4 +1,5 @@
-//! The flexible IEA 15 MW turbine in wind in closed form, under its own control with something added to its pitch.
+//! The flexible IEA 15 MW turbine in wind in closed form, under its own control with something added to its
+//! pitch.
 
 use basis::mbc::to_fixed_frame;
 use basis::{FixedFrame, Measurements, PerBlade, Vector3};

@@ -2,15 +2,16 @@
 
 use lti::Complex64;
 
-/// Masses (kg), damping constants (N s/m) and stiffnesses (N/m) from the wall outwards. van Veldhoven (2024), §3-1.
+/// Masses (kg), damping constants (N s/m) and stiffnesses (N/m) from the wall outwards. van Veldhoven (2024),
+/// §3-1.
 const MASSES: [f64; 3] = [14.0, 16.0, 15.0];
 const DAMPING: [f64; 3] = [0.6, 0.6, 0.6];
 const STIFFNESS: [f64; 3] = [0.1, 0.1, 0.3];
 
 /// Places (m) and speeds (m/s) of the masses.
 ///
-/// The source's matrices (Eq. 3-3) couple the third mass back to the second with k₂ and c₂; here, as its figure 3-1 shows,
-/// the same spring k₃ and damper c₃ pull at both.
+/// The source's matrices (Eq. 3-3) couple the third mass back to the second with k₂ and c₂; here, as its
+/// figure 3-1 shows, the same spring k₃ and damper c₃ pull at both.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SpringMass([f64; 6]);
 
@@ -20,7 +21,8 @@ impl SpringMass {
         self.0[0]
     }
 
-    /// Moves on by `interval` (s) under `force` (N) on the first mass, held meanwhile; fourth-order Runge-Kutta.
+    /// Moves on by `interval` (s) under `force` (N) on the first mass, held meanwhile; fourth-order
+    /// Runge-Kutta.
     pub(super) fn advance(&mut self, interval: f64, force: f64) {
         let shifted = |slope: [f64; 6], by: f64| {
             Self(std::array::from_fn(|index| self.0[index] + by * slope[index]))

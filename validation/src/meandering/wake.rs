@@ -1,5 +1,5 @@
-//! The source's section 4-2-2: the aeroelastic turbine in the recorded wake of a helix, loads brought to factors of their own
-//! amplitude.
+//! The source's section 4-2-2: the aeroelastic turbine in the recorded wake of a helix, loads brought to
+//! factors of their own amplitude.
 
 use super::judge::{beside, percent, print_line, reached};
 use super::rig::MOMENTS;
@@ -16,7 +16,8 @@ const SOURCE: &str = "van Veldhoven (2024), section 4-2-2";
 const WAKE: &str = "cases/wake-inflow.toml";
 const TURBINE: &str = "cases/meandering-in-wake.toml";
 
-/// Runs of the second, factor, and changes (%) of the seven deviations and of power in the source's table 4-6.
+/// Runs of the second, factor, and changes (%) of the seven deviations and of power in the source's table
+/// 4-6.
 type Published = (&'static str, f64, Option<[f64; 8]>);
 const PUBLISHED: [Published; 7] = [
     ("factor-2", 2.0, Some([2.7, 40.6, 80.8, 17.6, 84.6, 6.2, 1.1, -1.8])),

@@ -1,4 +1,5 @@
-//! Effect of each choice of the robust form, and the linear filter of the earlier method, on the aeroelastic turbine.
+//! Effect of each choice of the robust form, and the linear filter of the earlier method, on the aeroelastic
+//! turbine.
 
 use super::rig::Instruments;
 use super::{AIM, Machine, OWN, ROTOR_SPEED, SPEED, robust, row, setting, tell, trial};
@@ -9,9 +10,10 @@ use estimation::helix::{Adaptation, Form, LinearEstimator, OperatingPoint, Optio
 
 /// Each choice of the robust form against what it replaces, turbulence 6 %, own pitch.
 ///
-/// A choice that changes noise, correlation, rate or interval alone leaves the filter's model of rotor and wind whole, and has
-/// the form's own aim. One that takes a part of either away, or lets the filter learn it, has none: 4° of own pitch do to the
-/// moments what 3 to 4 m/s of tilt and yaw do, of which the fifth that such a part is worth outweighs a helix of 0.7 m/s.
+/// A choice that changes noise, correlation, rate or interval alone leaves the filter's model of rotor and
+/// wind whole, and has the form's own aim. One that takes a part of either away, or lets the filter learn it,
+/// has none: 4° of own pitch do to the moments what 3 to 4 m/s of tilt and yaw do, of which the fifth that
+/// such a part is worth outweighs a helix of 0.7 m/s.
 pub(super) fn options(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
     let base = robust();
     let of_the_wave = base.adaptation.map(|adaptation| Adaptation { wave: true, ..adaptation });
@@ -51,9 +53,11 @@ pub(super) fn options(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), Esti
     Ok(())
 }
 
-/// The linear Kalman filter of van Vondelen et al. (2023), around the point at which the turbine runs, turbulence 6 %.
+/// The linear Kalman filter of van Vondelen et al. (2023), around the point at which the turbine runs,
+/// turbulence 6 %.
 ///
-/// It has no aim: its model has neither the wake's delay nor blades that bend, as the choices above without one.
+/// It has no aim: its model has neither the wake's delay nor blades that bend, as the choices above without
+/// one.
 pub(super) fn linear(machine: &Machine) -> Result<(), EstimationError> {
     let ccw = Sense::CounterClockwise;
     let pitch = machine.constants.fine_pitch;

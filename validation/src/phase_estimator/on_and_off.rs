@@ -1,5 +1,5 @@
-//! A helix that is switched off for several periods and on again, and an aeroelastic turbine that joins it: trust, fallback
-//! and phase.
+//! A helix that is switched off for several periods and on again, and an aeroelastic turbine that joins it:
+//! trust, fallback and phase.
 
 use super::rig::{self, Errors, Instruments};
 use super::wind::HelixWind;
@@ -12,7 +12,8 @@ use control::phase_sync::{SyncSettings, TRUST};
 use estimation::EstimationError;
 use estimation::helix::HelixEstimate;
 
-/// Times at which the turbine begins to join, at which the helix goes and comes back, and at which the record ends (s).
+/// Times at which the turbine begins to join, at which the helix goes and comes back, and at which the record
+/// ends (s).
 const START: f64 = 3.0 * PERIOD;
 const GONE: f64 = 8.0 * PERIOD;
 const BACK: f64 = GONE + ABSENCE * PERIOD;

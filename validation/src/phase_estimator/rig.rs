@@ -44,7 +44,8 @@ impl Noise {
 pub(super) struct Instruments {
     /// Standard deviation of moments over their mean (–).
     pub(super) noise: f64,
-    /// Chance that a blade's moment is not read at an instant (–), half of which show the last value and half no number.
+    /// Chance that a blade's moment is not read at an instant (–), half of which show the last value and half
+    /// no number.
     pub(super) dropouts: f64,
 }
 
@@ -123,7 +124,8 @@ pub(super) fn run<E: Estimator<Estimate = HelixEstimate>>(
     errors.into_iter().map(Errors::finish).collect()
 }
 
-/// Runs the turbine and lets `estimators` listen; `seen` receives time (s), place in `estimators` and estimate.
+/// Runs the turbine and lets `estimators` listen; `seen` receives time (s), place in `estimators` and
+/// estimate.
 pub(super) fn follow<E: Estimator<Estimate = HelixEstimate>>(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
@@ -138,8 +140,8 @@ pub(super) fn follow<E: Estimator<Estimate = HelixEstimate>>(
     });
 }
 
-/// Runs the turbine with the own pitch that is commanded; `take` receives its measurements once it has come to rest
-/// from its start.
+/// Runs the turbine with the own pitch that is commanded; `take` receives its measurements once it has come
+/// to rest from its start.
 pub(super) fn drive(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
@@ -155,8 +157,8 @@ pub(super) fn drive(
     });
 }
 
-/// Runs the turbine; `excite` receives its measurements once it has come to rest from its start, and gives what is
-/// added to each blade's pitch (rad).
+/// Runs the turbine; `excite` receives its measurements once it has come to rest from its start, and gives
+/// what is added to each blade's pitch (rad).
 pub(super) fn fly(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,

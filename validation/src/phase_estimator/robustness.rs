@@ -1,4 +1,5 @@
-//! The estimator where it is hard: wrong polars, poor instruments, wakes aside, a gust, a helix that goes and comes.
+//! The estimator where it is hard: wrong polars, poor instruments, wakes aside, a gust, a helix that goes and
+//! comes.
 
 use super::rig::{self, Errors, Instruments, SETTLED};
 use super::wind::{HelixWind, Swing, degrees, turbulent};

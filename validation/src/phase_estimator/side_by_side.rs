@@ -1,8 +1,9 @@
-//! The Kalman filter and the phase-locked loops behind one seam, on the same blade moments: error, settling, noise, cost.
+//! The Kalman filter and the phase-locked loops behind one seam, on the same blade moments: error, settling,
+//! noise, cost.
 //!
-//! The filter knows the rotor and tells the phase of the *wind*, the helix's rate given or estimated; the loops know nothing but
-//! a band of rates and tell the phase of the *load*. Each is judged against its own truth: the load's is read off the same
-//! record without noise and turbulence.
+//! The filter knows the rotor and tells the phase of the *wind*, the helix's rate given or estimated; the
+//! loops know nothing but a band of rates and tell the phase of the *load*. Each is judged against its own
+//! truth: the load's is read off the same record without noise and turbulence.
 
 use super::rig::{self, Instruments, Noise};
 use super::wind::degrees;
@@ -20,8 +21,8 @@ use std::f64::consts::{SQRT_2, TAU};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Length of a record, and what is left out before errors count (s): six periods, in which a loop of the usual gains comes
-/// from half a turn to two degrees.
+/// Length of a record, and what is left out before errors count (s): six periods, in which a loop of the
+/// usual gains comes from half a turn to two degrees.
 const DURATION: f64 = 1500.0;
 const JUDGED: f64 = 6.0 * PERIOD;
 /// An error that stays below is settled (deg).
@@ -77,7 +78,8 @@ fn side_by_side(machine: &Machine) -> Result<Vec<Row>, EstimationError> {
     eprintln!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     let (mut rows, mut costs) = (Vec::new(), [0.0_f64; 4]);
     for (index, known) in records(machine)?.iter().enumerate() {
-        // On the turbine in prescribed wind the wake stays with the blades, on its own model it is the model's.
+        // On the turbine in prescribed wind the wake stays with the blades, on its own model it is the
+        // model's.
         let options = if known.aim == AIMS[2] { robust() } else { Options::default() };
         let sought = Options { rate: Some(1e-9), ..options };
         let mut outcomes = vec![
@@ -189,7 +191,8 @@ fn records(machine: &Machine) -> Result<Vec<Known>, EstimationError> {
     ])
 }
 
-/// Moments that the filter's own model makes with finer blades, in 1 m/s of helix at `off` (–) of the usual rate.
+/// Moments that the filter's own model makes with finer blades, in 1 m/s of helix at `off` (–) of the usual
+/// rate.
 fn own_model(
     machine: &Machine,
     name: &'static str,
@@ -237,8 +240,8 @@ fn turbine(machine: &Machine, name: &'static str, intensity: f64, own: f64) -> K
     Known { name, aim: AIMS[2], rate, record: made(intensity), wind, load }
 }
 
-/// Phases (rad) of tilt and yaw moment over the angle of an excitation of `rate` (rad/s), by the last whole periods of
-/// `record` after [`JUDGED`].
+/// Phases (rad) of tilt and yaw moment over the angle of an excitation of `rate` (rad/s), by the last whole
+/// periods of `record` after [`JUDGED`].
 fn swing(record: &[Measurements], rate: f64) -> [f64; 2] {
     let n_period = TAU / rate / INTERVAL;
     let n_late = record.iter().filter(|read| read.time >= JUDGED).count() as f64;

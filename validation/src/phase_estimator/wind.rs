@@ -16,8 +16,8 @@ const N_POINTS: usize = 20;
 pub(super) enum Swing {
     /// Tilt and yaw of this amplitude (m/s) averaged over a blade, linear in the distance from the shaft.
     Gradient(f64),
-    /// A Gaussian deficit of `depth` (m/s) and standard deviation `width` (m) whose middle goes round at `offset` (m) from
-    /// a point `aside` (m along y) of the shaft.
+    /// A Gaussian deficit of `depth` (m/s) and standard deviation `width` (m) whose middle goes round at
+    /// `offset` (m) from a point `aside` (m along y) of the shaft.
     Wake { depth: f64, width: f64, offset: f64, aside: f64 },
 }
 
@@ -56,7 +56,8 @@ impl HelixWind {
         }
     }
 
-    /// Phases of tilt and yaw of the helix alone (rad), from lines over the rotor and one period: Eq. 23, first harmonic.
+    /// Phases of tilt and yaw of the helix alone (rad), from lines over the rotor and one period: Eq. 23,
+    /// first harmonic.
     pub(super) fn truth(&self) -> [f64; 2] {
         let n_steps = 72;
         let mut sums = [[0.0; 2]; 2];

@@ -87,8 +87,8 @@ pub(super) fn check(
     Ok(Rules { folders, permits, unused })
 }
 
-/// Checks the manifest of `row` against what it may import and against its sources; gives manifest and name of what no
-/// source uses.
+/// Checks the manifest of `row` against what it may import and against its sources; gives manifest and name
+/// of what no source uses.
 fn check_manifest(
     root: &Path,
     row: &Row,

@@ -1,7 +1,8 @@
 //! No file needs, through others, itself: circles of files inside a room.
 //!
-//! A file that others lie under may hold what they share and name them in turn: what a file needs from those above it makes
-//! no circle. A name that a file only passes on (`pub use`, `use`) is looked up where it comes from.
+//! A file that others lie under may hold what they share and name them in turn: what a file needs from those
+//! above it makes no circle. A name that a file only passes on (`pub use`, `use`) is looked up where it comes
+//! from.
 
 use super::Finding;
 use super::exceptions::Exceptions;

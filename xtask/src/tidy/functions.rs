@@ -1,7 +1,8 @@
 //! Functions that one can see at once.
 //!
-//! Counted from the line of `fn` to that of the closing brace. Tests do not count, nor do tables of data: functions in
-//! which nothing is decided or repeated (no `if`, `match`, `for`, `while`, `loop`) and nothing named (no `let`).
+//! Counted from the line of `fn` to that of the closing brace. Tests do not count, nor do tables of data:
+//! functions in which nothing is decided or repeated (no `if`, `match`, `for`, `while`, `loop`) and nothing
+//! named (no `let`).
 
 use super::Finding;
 use super::exceptions::Exceptions;
@@ -13,7 +14,8 @@ use std::path::PathBuf;
 /// Longest function (lines).
 const MAXIMUM_LINES: usize = 60;
 
-/// Adds the functions of `module` that are too long and not among `exceptions`; gives file and name of all that are.
+/// Adds the functions of `module` that are too long and not among `exceptions`; gives file and name of all
+/// that are.
 pub(super) fn check(
     module: &Module,
     exceptions: &Exceptions,

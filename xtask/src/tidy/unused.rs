@@ -11,9 +11,9 @@ use toml::{Table, Value};
 /// Folders beside `src` with sources of tests, examples and benches.
 const BESIDE: [&str; 3] = ["tests", "examples", "benches"];
 
-/// Kind and name of the dependencies in the `manifest` of the room in `folder` (relative to `root`) that none of its files uses: those of
-/// the product outside tests, those of tests anywhere, examples in doc comments included. What is `refused` already is not
-/// named again.
+/// Kind and name of the dependencies in the `manifest` of the room in `folder` (relative to `root`) that none
+/// of its files uses: those of the product outside tests, those of tests anywhere, examples in doc comments
+/// included. What is `refused` already is not named again.
 ///
 /// # Errors
 /// When a file or folder cannot be read.

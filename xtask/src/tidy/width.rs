@@ -8,8 +8,8 @@ const MAXIMUM_WIDTH: usize = 110;
 
 /// Adds every line of the source `text` of `file` that is too long.
 ///
-/// What stands in a string literal does not count: sentences of the program, such as those of the tables of keys, stay in
-/// one piece, where a search finds them.
+/// What stands in a string literal does not count: sentences of the program, such as those of the tables of
+/// keys, stay in one piece, where a search finds them.
 pub(super) fn check(file: &Path, text: &str, findings: &mut Vec<Finding>) {
     if file.extension().is_none_or(|extension| extension != "rs") {
         return;
@@ -34,7 +34,8 @@ enum Place {
     Raw(usize),
 }
 
-/// Columns of `line` without what stands in string literals; on return `place` is that of the next line's first.
+/// Columns of `line` without what stands in string literals; on return `place` is that of the next line's
+/// first.
 fn width(line: &str, place: &mut Place) -> usize {
     let characters: Vec<char> = line.chars().collect();
     let (mut width, mut at) = (0, 0);

@@ -29,12 +29,12 @@ use tower::TowerDamper;
 
 /// Least distance of torque control's speed reference below pitch control's, relative to rated speed (–).
 ///
-/// With one reference for both, the two loops can share the work at a pitch above the least one and a torque below
-/// rated, for ever and at a loss of power; apart, only one of them can stand still at its reference.
+/// With one reference for both, the two loops can share the work at a pitch above the least one and a torque
+/// below rated, for ever and at a loss of power; apart, only one of them can stand still at its reference.
 const REFERENCE_DISTANCE: f64 = 0.005;
 
-/// Greedy control: greatest power by torque below rated, collective pitch above; tower and individual-pitch damping where
-/// its constants ask for them.
+/// Greedy control: greatest power by torque below rated, collective pitch above; tower and individual-pitch
+/// damping where its constants ask for them.
 ///
 /// Starts without a bump from the first measurements it sees, and holds for any interval up to about 0.3 s.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -149,8 +149,8 @@ impl BaselineState {
         state
     }
 
-    /// Torque (N m) for the filtered `rotor_speed` (rad/s) in a wind of `wind_speed` (m/s), the references shifted by
-    /// `shift` (rad/s).
+    /// Torque (N m) for the filtered `rotor_speed` (rad/s) in a wind of `wind_speed` (m/s), the references
+    /// shifted by `shift` (rad/s).
     fn ask_torque(
         &mut self,
         interval: f64,
@@ -172,7 +172,8 @@ impl BaselineState {
         }
     }
 
-    /// Positive while pitch is at work (torque then leaves rotor speed to it), negative while power is missing.
+    /// Positive while pitch is at work (torque then leaves rotor speed to it), negative while power is
+    /// missing.
     fn reference_shift(&self, least_pitch: f64, constants: &Constants) -> f64 {
         let smoothing = constants.set_point_smoothing;
         let power =
@@ -210,15 +211,16 @@ impl BaselineState {
     }
 }
 
-/// Rotor speed (rad/s) that torque tracks in a wind of `wind_speed` (m/s): optimal tip-speed ratio, between the least speed
-/// and one just below rated, less a `shift` (rad/s) while pitch is at work.
+/// Rotor speed (rad/s) that torque tracks in a wind of `wind_speed` (m/s): optimal tip-speed ratio, between
+/// the least speed and one just below rated, less a `shift` (rad/s) while pitch is at work.
 fn tracking_speed(wind_speed: f64, shift: f64, constants: &Constants) -> f64 {
     let optimal = constants.optimal_tip_speed_ratio * wind_speed / constants.rotor_radius;
     let most = (1.0 - REFERENCE_DISTANCE) * constants.rated_rotor_speed;
     (optimal.min(most) - shift.max(0.0)).max(constants.minimum_rotor_speed)
 }
 
-/// `value` between `low` and `high`; unlike `clamp` it cannot panic, and a value that is no number becomes `low`.
+/// `value` between `low` and `high`; unlike `clamp` it cannot panic, and a value that is no number becomes
+/// `low`.
 fn bounded(value: f64, low: f64, high: f64) -> f64 {
     value.max(low).min(high)
 }

@@ -34,20 +34,21 @@ use thiserror::Error;
 /// assert_eq!(commands.generator_torque, 2.5e6);
 /// ```
 pub trait Controller: Send {
-    /// What the turbine does until the next control instant, given its `measurements` at this one. Must not allocate, block or
-    /// fail.
+    /// What the turbine does until the next control instant, given its `measurements` at this one. Must not
+    /// allocate, block or fail.
     fn update(&mut self, measurements: &Measurements) -> Commands;
 
     /// What runs, in a few words: "baseline", "helix ccw 4.0° St 0.25".
     fn describe(&self) -> String;
 
-    /// Names of the signals that it adds to the series, each ending in its unit, such as `estimated_tilt_phase_rad`.
+    /// Names of the signals that it adds to the series, each ending in its unit, such as
+    /// `estimated_tilt_phase_rad`.
     fn signals(&self) -> Vec<&'static str> {
         Vec::new()
     }
 
-    /// On return `values`, one for each of [`Self::signals`], hold them as they are after the last update. A signal that is not
-    /// known yet is left as it is.
+    /// On return `values`, one for each of [`Self::signals`], hold them as they are after the last update. A
+    /// signal that is not known yet is left as it is.
     fn write_signals(&self, _values: &mut [f64]) {}
 
     /// Everything that time changes, for a checkpoint; [`to_bytes`] makes it of plain data.

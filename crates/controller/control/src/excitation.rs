@@ -2,8 +2,8 @@
 //!
 //! # The sense of the helix
 //!
-//! Symbols of van Vondelen et al. (2025), Eqs. 1-7: A amplitude, ω_e excitation rate, ω_r rotor speed, φ phase,
-//! ψ_i = ω_r t + ψ_i0 azimuth of blade i, ψ_o azimuth offset. The fixed-frame commands are (Eq. 2)
+//! Symbols of van Vondelen et al. (2025), Eqs. 1-7: A amplitude, ω_e excitation rate, ω_r rotor speed, φ
+//! phase, ψ_i = ω_r t + ψ_i0 azimuth of blade i, ψ_o azimuth offset. The fixed-frame commands are (Eq. 2)
 //!
 //! ```text
 //! tilt = A sin(ω_e t + φ)            yaw = A sin(ω_e t + φ ± π/2) = ± A cos(ω_e t + φ)
@@ -17,8 +17,8 @@
 //! lower sign:  β_i = −A sin((ω_r − ω_e) t + ψ_i0 + ψ_o − φ)     rotor − excitation frequency: cw
 //! ```
 //!
-//! The second line carries a minus that Eq. 7 leaves out; it is half a turn of phase and changes no frequency.
-//! Here **ccw is the upper sign: blades pitch at rotor frequency plus excitation frequency**.
+//! The second line carries a minus that Eq. 7 leaves out; it is half a turn of phase and changes no
+//! frequency. Here **ccw is the upper sign: blades pitch at rotor frequency plus excitation frequency**.
 
 use crate::controller::{Controller, ForeignState, from_bytes, to_bytes};
 use basis::{Commands, Measurements, PerBlade};
@@ -26,8 +26,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Pitch on top of what another controller decides.
 pub trait Excitation: Send {
-    /// Adds the excitation at the instant of `measurements` to `pitch` (rad); amplitude zero leaves every bit as it was. Must not
-    /// allocate, block or fail.
+    /// Adds the excitation at the instant of `measurements` to `pitch` (rad); amplitude zero leaves every bit
+    /// as it was. Must not allocate, block or fail.
     fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements);
 
     /// What it is, in a few words: "helix ccw 4.0° St 0.25".
@@ -117,8 +117,8 @@ pub fn excitation_rate(strouhal: f64, wind_speed: f64, diameter: f64) -> f64 {
     TAU * strouhal * wind_speed / diameter
 }
 
-/// Share of the amplitude (–) at `time` (s): nothing up to `start` (s), then a raised cosine over one period of
-/// `rate` (rad/s), then all. Steps to all at `start` when `rate` is zero.
+/// Share of the amplitude (–) at `time` (s): nothing up to `start` (s), then a raised cosine over one period
+/// of `rate` (rad/s), then all. Steps to all at `start` when `rate` is zero.
 pub(crate) fn fade_in(time: f64, start: f64, rate: f64) -> f64 {
     let turns = (time - start) * rate.abs() / TAU;
     if time <= start {
@@ -130,9 +130,9 @@ pub(crate) fn fade_in(time: f64, start: f64, rate: f64) -> f64 {
     }
 }
 
-/// Share of the amplitude (–) at `time` (s) of what fades in at `start` (s) and, where it has a `stop` (s), out from then
-/// on, each over one period of `rate` (rad/s). Both fades add up to one, so it lies between 0 and 1 for a stop at or after
-/// the start.
+/// Share of the amplitude (–) at `time` (s) of what fades in at `start` (s) and, where it has a `stop` (s),
+/// out from then on, each over one period of `rate` (rad/s). Both fades add up to one, so it lies between 0
+/// and 1 for a stop at or after the start.
 pub(crate) fn share(time: f64, start: f64, stop: Option<f64>, rate: f64) -> f64 {
     fade_in(time, start, rate) - stop.map_or(0.0, |stop| fade_in(time, stop, rate))
 }

@@ -1,4 +1,5 @@
-//! What the program knows of a kind of controller: its keys, its checks, how it is built, what the summary says of it.
+//! What the program knows of a kind of controller: its keys, its checks, how it is built, what the summary
+//! says of it.
 
 use crate::baseline::Constants;
 use crate::excitation::excitation_rate;
@@ -22,7 +23,8 @@ pub trait ControllerKind: Named + Sync {
     /// Its keys in the case file, beside `kind`.
     fn table(&self) -> &'static Table;
 
-    /// Completes `values` by what `place` tells; gives what about them cannot be, beyond what the keys say one by one.
+    /// Completes `values` by what `place` tells; gives what about them cannot be, beyond what the keys say
+    /// one by one.
     fn check(&self, _values: &mut Values, _place: &Place) -> Vec<Objection> {
         Vec::new()
     }
@@ -48,7 +50,8 @@ pub trait ControllerKind: Named + Sync {
         None
     }
 
-    /// The periodic pitch whose amplitude at the blades is to be measured; none where there is none, or it varies.
+    /// The periodic pitch whose amplitude at the blades is to be measured; none where there is none, or it
+    /// varies.
     fn pitching(&self, _control: &Control) -> Option<Pitching> {
         None
     }
@@ -68,12 +71,14 @@ pub trait ControllerKind: Named + Sync {
         control.response
     }
 
-    /// Whatever response in the place of one that is yet to be found, so that a controller can be built for a check.
+    /// Whatever response in the place of one that is yet to be found, so that a controller can be built for a
+    /// check.
     fn any_response(&self) -> Option<PitchResponse> {
         None
     }
 
-    /// Channels of the turbine, of `n_blades` blades, that [`Self::outcome`] reads, named without the turbine, or `time_s`.
+    /// Channels of the turbine, of `n_blades` blades, that [`Self::outcome`] reads, named without the
+    /// turbine, or `time_s`.
     fn outcome_channels(&self, _control: &Control, _n_blades: usize) -> Vec<String> {
         Vec::new()
     }
@@ -164,7 +169,8 @@ pub struct Pitching {
     pub start: f64,
     /// Time at which it fades out (s); never when absent.
     pub stop: Option<f64>,
-    /// Whether its phase is steady; a phase that follows the wind spreads the line, so that less of it is one line.
+    /// Whether its phase is steady; a phase that follows the wind spreads the line, so that less of it is one
+    /// line.
     pub is_steady: bool,
 }
 
@@ -262,7 +268,8 @@ impl Control {
     /// ```
     ///
     /// # Errors
-    /// [`ControlError::Key`] for a key that the kind does not have, a value that it cannot hold, and one that is missing.
+    /// [`ControlError::Key`] for a key that the kind does not have, a value that it cannot hold, and one that
+    /// is missing.
     pub fn new(
         kind: &'static dyn ControllerKind,
         given: &[(&str, Value)],
@@ -353,7 +360,8 @@ impl PartialEq for Control {
     }
 }
 
-/// The `stop` (s) of an excitation of `rate` (rad/s) that begins at `start` (s), which is to be whole before it ends.
+/// The `stop` (s) of an excitation of `rate` (rad/s) that begins at `start` (s), which is to be whole before
+/// it ends.
 pub(crate) fn stop_of(
     start: f64,
     stop: Option<f64>,

@@ -1,9 +1,10 @@
 //! Decisions: what a turbine does, from its measurements alone.
 //!
-//! A [`Controller`] runs on one turbine. Controllers compose by wrapping: an [`Excitation`] goes [on top](OnTop) of what another
-//! controller decides, in the end of [`Baseline`]. Each kind of controller has a folder of its own with its law and its
-//! [`ControllerKind`]: its keys in the case file, its checks, how it is built, what the summary says of it. The list of kinds is
-//! [`CONTROLLERS`]. Nothing here allocates, blocks or fails in [`Controller::update`].
+//! A [`Controller`] runs on one turbine. Controllers compose by wrapping: an [`Excitation`] goes [on
+//! top](OnTop) of what another controller decides, in the end of [`Baseline`]. Each kind of controller has a
+//! folder of its own with its law and its
+//! [`ControllerKind`]: its keys in the case file, its checks, how it is built, what the summary says of it.
+//! The list of kinds is [`CONTROLLERS`]. Nothing here allocates, blocks or fails in [`Controller::update`].
 
 mod absent;
 pub mod baseline;

@@ -1,4 +1,5 @@
-//! The baseline along k ω² on a rotor with a known power coefficient: settles where theory says, within its limits.
+//! The baseline along k ω² on a rotor with a known power coefficient: settles where theory says, within its
+//! limits.
 
 mod rotor;
 

@@ -54,7 +54,8 @@ fn the_tower_damper_damps_as_much_as_its_gain_says() {
     assert!((with - without - expected).abs() < 0.03 * expected, "{with} for {expected}");
 }
 
-/// Root moments under a tilted load that pitch takes away with `per_pitch` (N m/rad), after the lag of the blades (rad).
+/// Root moments under a tilted load that pitch takes away with `per_pitch` (N m/rad), after the lag of the
+/// blades (rad).
 fn with_moments(measurements: &mut Truth, load: FixedFrame, per_pitch: f64, lag: f64) {
     let azimuth = measurements.azimuth;
     let pitch = to_fixed_frame(azimuth + lag, &measurements.pitch);

@@ -1,4 +1,5 @@
-//! Tip-speed-ratio tracking on a rotor with a known power coefficient: unbiased estimate, tracked ratio, rated power held.
+//! Tip-speed-ratio tracking on a rotor with a known power coefficient: unbiased estimate, tracked ratio,
+//! rated power held.
 
 mod rotor;
 
@@ -203,19 +204,21 @@ proptest! {
     }
 }
 
-/// Steady states of the IEA 15 MW turbine in OpenFAST 5.0.0 under ROSCO 2.10.1: wind (m/s), electrical power (kW), rpm.
+/// Steady states of the IEA 15 MW turbine in OpenFAST 5.0.0 under ROSCO 2.10.1: wind (m/s), electrical power
+/// (kW), rpm.
 const OPENFAST: [[f64; 3]; 4] =
     [[7.0, 4485.1, 5.0286], [8.0, 6684.4, 5.7425], [9.0, 9467.2, 6.4487], [10.0, 12862.5, 7.1418]];
 
 /// Its rotor runs at a tip-speed ratio of 9.05 to 9.1 and not at its target of 9: the table of the input set
-/// gives it a power coefficient of 0.469 where OpenFAST's own rotor has 0.48 to 0.49, so that the estimate of the wind
-/// is high by a third of the difference. With the same table, so is ours.
+/// gives it a power coefficient of 0.469 where OpenFAST's own rotor has 0.48 to 0.49, so that the estimate of
+/// the wind is high by a third of the difference. With the same table, so is ours.
 #[test]
 fn a_table_that_is_too_low_gives_roscos_rotor_speeds() {
     let radius = 120.97;
     let rpm = std::f64::consts::PI / 30.0;
     let efficiency = 0.95756;
-    // Cp_Ct_Cq.IEA15MW.txt of the input set IEA-15-240-RWT, commit 6b3fd8a: tip-speed ratios 8 to 10.5, pitch -1 to 2°.
+    // Cp_Ct_Cq.IEA15MW.txt of the input set IEA-15-240-RWT, commit 6b3fd8a: tip-speed ratios 8 to 10.5, pitch
+    // -1 to 2°.
     let power = [
         [0.467887, 0.463986, 0.454086, 0.438469],
         [0.47036, 0.469685, 0.462112, 0.4475],

@@ -1,8 +1,8 @@
 //! State estimation: from a turbine's own measurements to the wind that no instrument measures.
 //!
 //! Estimators run at control rate beside the controller: no allocation, no blocking, no failure in
-//! [`Estimator::update`]. Parameters are made once from the case; the state is plain data, so that a run that was killed
-//! continues with the same bits.
+//! [`Estimator::update`]. Parameters are made once from the case; the state is plain data, so that a run that
+//! was killed continues with the same bits.
 
 pub mod phase_locked;
 

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 pub enum Quantity {
     /// Wind at the rotor (m/s); the effect of the rotor's own pitch on the moments is removed.
     Wind,
-    /// Moments at the blade roots (N m) as measured: with the lag of blades and wake, and with the effect of the rotor's own
-    /// pitch.
+    /// Moments at the blade roots (N m) as measured: with the lag of blades and wake, and with the effect of
+    /// the rotor's own pitch.
     Load,
 }
 

@@ -22,10 +22,12 @@ const CW: Sense = Sense::Clockwise;
 const PERIODS: f64 = 10.0;
 /// Beginning of the dropout, its length, and where its marks are judged again, in periods (–).
 const DROPOUT: [f64; 3] = [4.5, 0.5, 7.5];
-/// Confidence above which a phase is used, and under which none is (–): synchronisation's threshold for the first.
+/// Confidence above which a phase is used, and under which none is (–): synchronisation's threshold for the
+/// first.
 const TRUSTED: f64 = 0.15;
 
-/// What an estimator promises, with 5 % of noise on a helix of 1 m/s and without noise; noise counts for more on a weaker one.
+/// What an estimator promises, with 5 % of noise on a helix of 1 m/s and without noise; noise counts for more
+/// on a weaker one.
 struct Promise {
     /// Periods after which it holds (–).
     settled: f64,
@@ -59,7 +61,8 @@ struct Known {
 }
 
 impl Known {
-    /// Moments of a helix of `amplitude` (m/s) at `factor` (–) of the usual rate, the rotor pitching by `own` (rad).
+    /// Moments of a helix of `amplitude` (m/s) at `factor` (–) of the usual rate, the rotor pitching by `own`
+    /// (rad).
     fn new(sense: Sense, factor: f64, amplitude: f64, noise: f64, own: f64) -> Self {
         let (definition, options) = (definition(), Options::default());
         let rate = factor * TAU / PERIOD;

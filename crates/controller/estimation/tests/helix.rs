@@ -13,7 +13,8 @@ const SENSES: [Sense; 2] = [Sense::CounterClockwise, Sense::Clockwise];
 /// Three helix periods.
 const CONVERGED: f64 = 3.0 * PERIOD;
 
-/// Runs `duration` (s) in a world that `change` may change at each step; gives each instant's world and estimate.
+/// Runs `duration` (s) in a world that `change` may change at each step; gives each instant's world and
+/// estimate.
 fn run(
     options: Options,
     world: World,
@@ -296,8 +297,8 @@ fn a_rate_that_is_not_the_nominal_one_is_found() {
     assert!(wrap_to_half_turn(last.tilt.phase - truth).abs() < 0.05);
 }
 
-/// Where the rotor does not pitch and the wake answers at once the earlier method serves; with a rotor that pitches in a
-/// wake that takes its time it is out several times as far as the extended filter.
+/// Where the rotor does not pitch and the wake answers at once the earlier method serves; with a rotor that
+/// pitches in a wake that takes its time it is out several times as far as the extended filter.
 #[test]
 fn the_linear_filter_serves_at_its_point_alone() {
     let (definition, sense) = (definition(), Sense::CounterClockwise);

@@ -23,8 +23,8 @@ pub struct Line {
 /// The strongest sine in `samples` (any unit, every `interval` s), the mean aside.
 ///
 /// The record's Hann-windowed spectrum shows where to look; a least-squares fit of mean, cosine and sine,
-/// weighted by the same window, gives amplitude and phase, and the frequency is the one whose fit leaves least
-/// behind. Exact for a pure sine, whether or not whole periods fit the record.
+/// weighted by the same window, gives amplitude and phase, and the frequency is the one whose fit leaves
+/// least behind. Exact for a pure sine, whether or not whole periods fit the record.
 ///
 /// Source: IEEE Std 1057-2017, Annex B (four-parameter sine fit), with a window against neighbouring lines.
 /// Limits: at least three periods; a second line closer than four periods per record biases the first.
@@ -50,8 +50,8 @@ pub fn strongest(samples: &[f64], interval: f64) -> Result<Line, AnalysisError> 
     Ok(Line { amplitude: sine.norm(), frequency, phase: sine.arg() })
 }
 
-/// The strongest rotation in the vector with components `first` and `second` (one unit, every `interval` s), its
-/// mean aside: `first` ≈ A cos(2π f t + φ), `second` ≈ A sin(2π f t + φ) with f of either sign.
+/// The strongest rotation in the vector with components `first` and `second` (one unit, every `interval` s),
+/// its mean aside: `first` ≈ A cos(2π f t + φ), `second` ≈ A sin(2π f t + φ) with f of either sign.
 ///
 /// Found as [`strongest`] finds a sine.
 ///
@@ -172,7 +172,8 @@ mod tests {
     proptest! {
         #[test]
         fn a_pure_sine_is_found_between_the_bins(
-            amplitude in 0.01..10.0_f64, cycles in 3.0..150.0_f64, phase in -3.0..3.0_f64, mean in -5.0..5.0_f64,
+            amplitude in 0.01..10.0_f64, cycles in 3.0..150.0_f64, phase in -3.0..3.0_f64,
+            mean in -5.0..5.0_f64,
         ) {
             let samples: Vec<f64> = (0..400)
                 .map(|i| mean + amplitude * (TAU * cycles * f64::from(i) / 400.0 + phase).cos())

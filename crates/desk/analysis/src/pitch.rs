@@ -19,21 +19,21 @@ pub enum Motion {
 
 /// Amplitude and frequencies of the delivered excitation.
 ///
-/// `azimuth` (rad, any range) and `pitch` (rad, one record per blade, blade 1 first) are sampled every `interval`
-/// (s) while the excitation runs at full amplitude; `commanded_amplitude` (rad) and `clipped_share` (–) are
-/// passed through.
+/// `azimuth` (rad, any range) and `pitch` (rad, one record per blade, blade 1 first) are sampled every
+/// `interval` (s) while the excitation runs at full amplitude; `commanded_amplitude` (rad) and
+/// `clipped_share` (–) are passed through.
 ///
-/// A helix is identified in the fixed frame, where it is one spectral line even with varying rotor speed: tilt and yaw of
-/// the delivered pitch turn together at −ω_e (ccw) or +ω_e (cw). The line in the blade's frame then lies at mean
-/// rotor frequency minus the signed frequency of that turning, and has the same amplitude. A pulse is
-/// identified in the mean over the blades and has one frequency in both frames.
+/// A helix is identified in the fixed frame, where it is one spectral line even with varying rotor speed:
+/// tilt and yaw of the delivered pitch turn together at −ω_e (ccw) or +ω_e (cw). The line in the blade's
+/// frame then lies at mean rotor frequency minus the signed frequency of that turning, and has the same
+/// amplitude. A pulse is identified in the mean over the blades and has one frequency in both frames.
 ///
-/// Source: van Vondelen et al. (2025), Eqs. 4-7. Limits: collective pitch control that moves at the pulse's frequency counts
-/// as delivered pulse.
+/// Source: van Vondelen et al. (2025), Eqs. 4-7. Limits: collective pitch control that moves at the pulse's
+/// frequency counts as delivered pulse.
 ///
 /// # Errors
-/// [`AnalysisError::TooFewBlades`] for a helix on fewer than three blades, [`AnalysisError::UnequalLengths`], and
-/// those of [`strongest`].
+/// [`AnalysisError::TooFewBlades`] for a helix on fewer than three blades, [`AnalysisError::UnequalLengths`],
+/// and those of [`strongest`].
 pub fn delivered(
     motion: Motion,
     azimuth: &[f64],
@@ -80,7 +80,8 @@ pub fn delivered(
     })
 }
 
-/// Mean rotor frequency (Hz) from `azimuth` (rad, any range), sampled every `interval` (s), at least twice a turn.
+/// Mean rotor frequency (Hz) from `azimuth` (rad, any range), sampled every `interval` (s), at least twice a
+/// turn.
 pub fn rotor_frequency(azimuth: &[f64], interval: f64) -> f64 {
     if azimuth.len() < 2 {
         return 0.0;
@@ -100,8 +101,8 @@ mod tests {
     const INTERVAL: f64 = 0.2;
     const RATE: f64 = 0.0687;
 
-    /// Azimuth of a rotor whose speed breathes by 8 %, and three blades' pitch with a helix of `sign` (+1 ccw)
-    /// on top of a wandering collective pitch.
+    /// Azimuth of a rotor whose speed breathes by 8 %, and three blades' pitch with a helix of `sign` (+1
+    /// ccw) on top of a wandering collective pitch.
     fn record(sign: f64, amplitude: f64) -> (Vec<f64>, [Vec<f64>; 3]) {
         let times: Vec<f64> = (0..9000).map(|step| INTERVAL * f64::from(step)).collect();
         let azimuth: Vec<f64> =

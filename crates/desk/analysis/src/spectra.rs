@@ -20,16 +20,16 @@ impl Spectrum {
     }
 }
 
-/// One-sided power spectral density of `samples` (any unit, every `interval` s), in unit²/Hz, whose integral over
-/// frequency is the variance.
+/// One-sided power spectral density of `samples` (any unit, every `interval` s), in unit²/Hz, whose integral
+/// over frequency is the variance.
 ///
 /// Segments of `n_segment` samples that overlap by half, mean removed from the whole record, Hann's window.
 /// Source: Welch, "The use of fast Fourier transform for the estimation of power spectra", IEEE Trans. Audio
 /// Electroacoust. 15, 1967.
 ///
 /// # Errors
-/// [`AnalysisError::TooShort`] when a segment has fewer than [`FEWEST_SAMPLES`] samples or does not fit the record;
-/// [`AnalysisError::NotPositive`] for the interval.
+/// [`AnalysisError::TooShort`] when a segment has fewer than [`FEWEST_SAMPLES`] samples or does not fit the
+/// record; [`AnalysisError::NotPositive`] for the interval.
 pub fn power_density(
     samples: &[f64],
     interval: f64,
@@ -41,11 +41,11 @@ pub fn power_density(
     Ok(Spectrum { frequency_step: 1.0 / (n_segment as f64 * interval), values })
 }
 
-/// Amplitude of the sine at each frequency of `samples` (any unit, every `interval` s), in their unit: a sine of
-/// amplitude A shows a peak of A, at worst 1.5 % less, half-way between two frequencies.
+/// Amplitude of the sine at each frequency of `samples` (any unit, every `interval` s), in their unit: a sine
+/// of amplitude A shows a peak of A, at worst 1.5 % less, half-way between two frequencies.
 ///
-/// One Hann-windowed transform of the whole record, mean removed, at frequencies a quarter of its resolution apart. For
-/// the exact amplitude of one sine use [`strongest`](crate::line::strongest).
+/// One Hann-windowed transform of the whole record, mean removed, at frequencies a quarter of its resolution
+/// apart. For the exact amplitude of one sine use [`strongest`](crate::line::strongest).
 ///
 /// # Errors
 /// As [`power_density`].

@@ -13,18 +13,20 @@ pub const BLOCK_LENGTH: f64 = 600.0;
 /// Share of a block that may be missing at the end of a record (–).
 const SHORT: f64 = 0.01;
 
-/// Mean of `samples` (any unit, every `interval` s), standard deviation, and the half width of the 95 % interval
-/// of the mean from blocks of `block_length` (s).
+/// Mean of `samples` (any unit, every `interval` s), standard deviation, and the half width of the 95 %
+/// interval of the mean from blocks of `block_length` (s).
 ///
 /// The half width is t s / √n with the standard deviation s of the n block means and Student's t for n − 1
-/// degrees of freedom; with fewer than two whole blocks there is none. Samples after the last whole block count
-/// for mean and standard deviation, not for the interval.
+/// degrees of freedom; with fewer than two whole blocks there is none. Samples after the last whole block
+/// count for mean and standard deviation, not for the interval.
 ///
 /// Source: Law, "Simulation Modeling and Analysis", 5th ed., 2015, §9.5.3 (batch means).
-/// Limits: right as far as block means are independent; blocks must be long against the slowest motion of the wake.
+/// Limits: right as far as block means are independent; blocks must be long against the slowest motion of the
+/// wake.
 ///
 /// # Errors
-/// [`AnalysisError::TooShort`] without samples; [`AnalysisError::NotPositive`] for a block that holds no sample.
+/// [`AnalysisError::TooShort`] without samples; [`AnalysisError::NotPositive`] for a block that holds no
+/// sample.
 ///
 /// ```
 /// // 1 in the first block, 3 in the second: t(0.975, 1) = 12.706, s / √2 = 1
@@ -48,8 +50,8 @@ pub fn statistic(
     })
 }
 
-/// Gain of `samples` over `compared` (same unit, same instants, every `interval` s): ratio of the two means minus
-/// one (–), with its interval from paired blocks of `block_length` (s).
+/// Gain of `samples` over `compared` (same unit, same instants, every `interval` s): ratio of the two means
+/// minus one (–), with its interval from paired blocks of `block_length` (s).
 ///
 /// Both runs met the same wind, so what the wind does to a block cancels within the pair. With block means
 /// yᵢ and xᵢ, ratio r and mean x̄, the half width is t s / √n with the standard deviation s of
@@ -83,9 +85,10 @@ pub fn gain(
     })
 }
 
-/// Mean of independent `values` (any unit), such as one of each seed of the wind, and the half width of its 95 % interval,
-/// t s / √n with the standard deviation s of the n values and Student's t for n − 1 degrees of freedom; with fewer than two
-/// there is none. `standard_deviation` of the result is this s (zero with fewer than two).
+/// Mean of independent `values` (any unit), such as one of each seed of the wind, and the half width of its
+/// 95 % interval, t s / √n with the standard deviation s of the n values and Student's t for n − 1 degrees of
+/// freedom; with fewer than two there is none. `standard_deviation` of the result is this s (zero with fewer
+/// than two).
 ///
 /// # Errors
 /// [`AnalysisError::TooShort`] without values.
@@ -124,7 +127,8 @@ pub fn turbulence_intensity(samples: &[f64]) -> Result<f64, AnalysisError> {
 /// Mean of each whole block of `block_length` (s) in `samples`, taken every `interval` (s).
 ///
 /// # Errors
-/// [`AnalysisError::TooShort`] without samples; [`AnalysisError::NotPositive`] for a block that holds no sample.
+/// [`AnalysisError::TooShort`] without samples; [`AnalysisError::NotPositive`] for a block that holds no
+/// sample.
 pub fn block_means(
     samples: &[f64],
     interval: f64,

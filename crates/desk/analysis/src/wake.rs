@@ -19,11 +19,11 @@ pub use swing::{Orbit, Swing, orbit, swing};
 use crate::AnalysisError;
 use basis::records::{Plane, PlaneAxes};
 
-/// Momentum that the wake lacks, over density: ∫ u (U − u) dA (m⁴/s²), over the crosswind `plane` with the free
-/// stream U(z) = `free_stream` (z).
+/// Momentum that the wake lacks, over density: ∫ u (U − u) dA (m⁴/s²), over the crosswind `plane` with the
+/// free stream U(z) = `free_stream` (z).
 ///
-/// Far enough downstream for the pressure to have recovered, and without change of the free stream, this is thrust over
-/// density. Source: Tennekes and Lumley, "A First Course in Turbulence", 1972, §4.1.
+/// Far enough downstream for the pressure to have recovered, and without change of the free stream, this is
+/// thrust over density. Source: Tennekes and Lumley, "A First Course in Turbulence", 1972, §4.1.
 ///
 /// # Errors
 /// [`AnalysisError::WrongPlane`] unless the plane lies across the wind.
@@ -42,12 +42,13 @@ pub fn momentum_deficit(
     Ok(sum * plane.spacing[0] * plane.spacing[1])
 }
 
-/// Standard deviation over time of each velocity component (m/s) at each point of `planes`, which are instants
-/// of one plane; `velocity` of the result holds the deviations, `averaged` the time that the instants span.
+/// Standard deviation over time of each velocity component (m/s) at each point of `planes`, which are
+/// instants of one plane; `velocity` of the result holds the deviations, `averaged` the time that the
+/// instants span.
 ///
 /// # Errors
-/// [`AnalysisError::TooShort`] with fewer than two instants, [`AnalysisError::UnequalLengths`] when they differ in
-/// their points.
+/// [`AnalysisError::TooShort`] with fewer than two instants, [`AnalysisError::UnequalLengths`] when they
+/// differ in their points.
 pub fn fluctuation(planes: &[Plane]) -> Result<Plane, AnalysisError> {
     let [first, .., last] = planes else {
         return Err(AnalysisError::TooShort { n_samples: planes.len(), needed: 2 });

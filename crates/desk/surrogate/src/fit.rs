@@ -42,10 +42,10 @@ const MAXIMUM_ITERATIONS: u64 = 200;
 
 /// The hyperparameters of maximum marginal likelihood for `observations`.
 ///
-/// Each is searched between bounds that are wide against the data: the signal's variance within 10⁻⁴ to 10⁴ of the
-/// values' own, lengths from a hundredth of the inputs' range to a hundred times it (0.05 to 50 for a periodic
-/// kernel), the noise's variance within 10⁻⁸ to 10² of the values'. The search runs over the logit of each
-/// logarithm's place between its bounds, so that no step leaves them.
+/// Each is searched between bounds that are wide against the data: the signal's variance within 10⁻⁴ to 10⁴
+/// of the values' own, lengths from a hundredth of the inputs' range to a hundred times it (0.05 to 50 for a
+/// periodic kernel), the noise's variance within 10⁻⁸ to 10² of the values'. The search runs over the logit
+/// of each logarithm's place between its bounds, so that no step leaves them.
 pub(crate) fn hyperparameters(
     shape: Shape,
     observations: &Observations,
@@ -121,7 +121,8 @@ impl<'a> Search<'a> {
         Self { shape, observations, mean: settings.mean, bounds, fixed_noise, best }
     }
 
-    /// Signal as large as the spread, lengths of a third of the range (one for a periodic kernel), noise of a hundredth.
+    /// Signal as large as the spread, lengths of a third of the range (one for a periodic kernel), noise of a
+    /// hundredth.
     fn first_place(&self) -> Vec<f64> {
         let shares = |index: usize, [low, high]: [f64; 2]| {
             let wanted = match (index, self.shape) {

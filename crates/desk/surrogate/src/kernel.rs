@@ -1,7 +1,7 @@
 //! Covariance kernels and their derivatives.
 //!
-//! Source: Rasmussen and Williams, "Gaussian Processes for Machine Learning", 2006, §4.2; the periodic one MacKay,
-//! "Introduction to Gaussian processes", 1998, as in their Eq. 4.31.
+//! Source: Rasmussen and Williams, "Gaussian Processes for Machine Learning", 2006, §4.2; the periodic one
+//! MacKay, "Introduction to Gaussian processes", 1998, as in their Eq. 4.31.
 
 use crate::SurrogateError;
 use std::f64::consts::PI;

@@ -1,8 +1,8 @@
 //! Surrogate models: a curve with its uncertainty from a few expensive results.
 //!
-//! [`GaussianProcess`] is exact Gaussian-process regression: a covariance kernel, noise that is known, estimated or both, and
-//! hyperparameters of maximum marginal likelihood. Power over a phase offset is periodic and known from a handful of runs;
-//! its kernel is [`Shape::Periodic`].
+//! [`GaussianProcess`] is exact Gaussian-process regression: a covariance kernel, noise that is known,
+//! estimated or both, and hyperparameters of maximum marginal likelihood. Power over a phase offset is
+//! periodic and known from a handful of runs; its kernel is [`Shape::Periodic`].
 //!
 //! ```
 //! use surrogate::{GaussianProcess, Observations, FitSettings, Shape};
@@ -11,7 +11,8 @@
 //! let offsets: Vec<f64> = (0..8).map(|i| TAU * f64::from(i) / 8.0).collect();
 //! let gains = offsets.iter().map(|o| 0.1 * (o - 150_f64.to_radians()).cos()).collect();
 //! let observations = Observations::of_curve(offsets, gains);
-//! let process = GaussianProcess::fit(Shape::Periodic { period: TAU }, observations, &FitSettings::default())?;
+//! let shape = Shape::Periodic { period: TAU };
+//! let process = GaussianProcess::fit(shape, observations, &FitSettings::default())?;
 //! let [low, high] = process.predict(&[150_f64.to_radians()])?.band_95();
 //! assert!(low < 0.1 && 0.1 < high && high - low < 0.02);
 //! # Ok::<(), surrogate::SurrogateError>(())

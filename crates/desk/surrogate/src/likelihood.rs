@@ -1,6 +1,7 @@
 //! Marginal likelihood of observations under hyperparameters, and its derivatives.
 //!
-//! Source: Rasmussen and Williams (2006), Eqs. 5.8 and 5.9; an estimated mean, §2.7 with its generalised least squares.
+//! Source: Rasmussen and Williams (2006), Eqs. 5.8 and 5.9; an estimated mean, §2.7 with its generalised
+//! least squares.
 
 use crate::factor::{Factor, dot};
 use crate::{Hyperparameters, Observations, Shape, SurrogateError};
@@ -49,7 +50,8 @@ impl Likelihood {
         Ok(Self { factor, mean, weights, of_ones, log })
     }
 
-    /// Derivatives of the logarithm by the logarithms of signal variance, lengths and noise variance, in that order.
+    /// Derivatives of the logarithm by the logarithms of signal variance, lengths and noise variance, in that
+    /// order.
     ///
     /// A constant mean is at its own optimum for every set, so that its movement adds nothing.
     pub(crate) fn slopes(

@@ -12,7 +12,8 @@ const NORMAL_97_5: f64 = 1.959_963_984_540_054;
 
 /// Exact Gaussian-process regression.
 ///
-/// Memory grows with the square of the number of observations and work with its cube: for up to a few thousand.
+/// Memory grows with the square of the number of observations and work with its cube: for up to a few
+/// thousand.
 #[derive(Clone, Debug)]
 pub struct GaussianProcess {
     shape: Shape,
@@ -57,20 +58,21 @@ pub struct LeaveOneOut {
 }
 
 impl LeaveOneOut {
-    /// Standardised residual: standard deviations that the observation lies above its prediction (–); beyond ±2 about one
-    /// time in twenty.
+    /// Standardised residual: standard deviations that the observation lies above its prediction (–); beyond
+    /// ±2 about one time in twenty.
     pub fn standardised(&self) -> f64 {
         (self.value - self.mean) / self.standard_deviation
     }
 }
 
 impl GaussianProcess {
-    /// The process of kernel `shape` with the hyperparameters of maximum marginal likelihood for `observations`.
+    /// The process of kernel `shape` with the hyperparameters of maximum marginal likelihood for
+    /// `observations`.
     ///
     /// # Errors
     /// [`SurrogateError::TooFew`] with fewer than three observations, too few to estimate a length;
-    /// [`SurrogateError::Lengths`], [`SurrogateError::NotFinite`], [`SurrogateError::NotPositive`] for bad data;
-    /// [`SurrogateError::NotPositiveDefinite`].
+    /// [`SurrogateError::Lengths`], [`SurrogateError::NotFinite`], [`SurrogateError::NotPositive`] for bad
+    /// data; [`SurrogateError::NotPositiveDefinite`].
     pub fn fit(
         shape: Shape,
         observations: Observations,
@@ -122,8 +124,8 @@ impl GaussianProcess {
         self.likelihood.log
     }
 
-    /// Derivatives of [`log_marginal_likelihood`](Self::log_marginal_likelihood) by the logarithms of signal variance,
-    /// lengths and noise variance, in that order; near zero where a fit ended inside its bounds.
+    /// Derivatives of [`log_marginal_likelihood`](Self::log_marginal_likelihood) by the logarithms of signal
+    /// variance, lengths and noise variance, in that order; near zero where a fit ended inside its bounds.
     pub fn likelihood_slopes(&self) -> Vec<f64> {
         self.likelihood.slopes(self.shape, &self.parameters, &self.observations)
     }
@@ -150,8 +152,8 @@ impl GaussianProcess {
 
     /// Leave-one-out predictions: each observation predicted from the others, hyperparameters unchanged.
     ///
-    /// Source: Rasmussen and Williams (2006), Eqs. 5.10-5.12; with an estimated mean, Dubrule, "Cross validation of
-    /// kriging in a unique neighborhood", Math. Geol. 15, 1983.
+    /// Source: Rasmussen and Williams (2006), Eqs. 5.10-5.12; with an estimated mean, Dubrule, "Cross
+    /// validation of kriging in a unique neighborhood", Math. Geol. 15, 1983.
     pub fn leave_one_out(&self) -> Vec<LeaveOneOut> {
         let inverse = self.likelihood.factor.inverse();
         let of_ones = &self.likelihood.of_ones;
@@ -169,11 +171,12 @@ impl GaussianProcess {
         (0..self.observations.len()).map(leave).collect()
     }
 
-    /// `n_samples` curves drawn from the process, each at all `inputs`: `n_samples × inputs`. The same `seed` gives the same
-    /// curves.
+    /// `n_samples` curves drawn from the process, each at all `inputs`: `n_samples × inputs`. The same `seed`
+    /// gives the same curves.
     ///
     /// # Errors
-    /// As [`predict`](Self::predict); [`SurrogateError::NotPositiveDefinite`] for a covariance that is not positive definite after rounding.
+    /// As [`predict`](Self::predict); [`SurrogateError::NotPositiveDefinite`] for a covariance that is not
+    /// positive definite after rounding.
     pub fn samples(
         &self,
         inputs: &[Vec<f64>],
@@ -221,7 +224,8 @@ impl GaussianProcess {
         (0..self.observations.len()).map(covariance).collect()
     }
 
-    /// Contribution of the estimated mean's uncertainty to the covariance of two inputs with `first` and `second` covariances.
+    /// Contribution of the estimated mean's uncertainty to the covariance of two inputs with `first` and
+    /// `second` covariances.
     fn mean_share(&self, first: &[f64], second: &[f64]) -> f64 {
         let of_ones = &self.likelihood.of_ones;
         match self.mean {

@@ -31,7 +31,8 @@ enum Command {
     /// Turbulent inflow: generate, inspect, convert boxes
     #[command(subcommand)]
     Inflow(commands::inflow::InflowCommand),
-    /// Damage-equivalent loads of channels, or of a pitch bearing, in OpenFAST output, CSV or the records of a run
+    /// Damage-equivalent loads of channels, or of a pitch bearing, in OpenFAST output, CSV or the records of
+    /// a run
     Fatigue(commands::fatigue::FatigueArguments),
     /// Analyse the records of runs: the phase of a helix, gains in several winds, what a loop would lock to
     #[command(subcommand)]

@@ -134,8 +134,8 @@ fn the_count_ends_where_it_is_asked_to() {
     assert_eq!(run(&[]).status.code(), Some(2));
 }
 
-/// A blade that swings by 10 degrees at the reference's 600 degrees in 10 minutes, and steady moments; `pitch` names its
-/// column, of which one degree is `degree`, and `prefix` stands before the moments.
+/// A blade that swings by 10 degrees at the reference's 600 degrees in 10 minutes, and steady moments;
+/// `pitch` names its column, of which one degree is `degree`, and `prefix` stands before the moments.
 fn pitching(prefix: &str, pitch: &str, degree: f64) -> String {
     let rows = (0..=120_i32).map(|index| {
         let swing = f64::from((index % 40 - 20).abs()) / 2.0;

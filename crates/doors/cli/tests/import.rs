@@ -1,4 +1,5 @@
-//! `wakemix turbine import` from outside: what the input holds is written, what it lacks is listed and no success.
+//! `wakemix turbine import` from outside: what the input holds is written, what it lacks is listed and no
+//! success.
 
 use std::fs;
 use std::process::Command;

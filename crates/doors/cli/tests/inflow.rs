@@ -1,4 +1,5 @@
-//! `wakemix inflow` from outside: the wind of a case sampled, other kinds of wind refused, profiles beside boxes.
+//! `wakemix inflow` from outside: the wind of a case sampled, other kinds of wind refused, profiles beside
+//! boxes.
 
 use std::fs;
 use std::path::Path;

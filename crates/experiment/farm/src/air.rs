@@ -9,7 +9,8 @@ use std::io::{Error, ErrorKind, Read, Result, Write};
 
 /// A flow in which a farm can stand: it goes on from a checkpoint, and may be looked at.
 pub trait FarmFlow: FlowSolver + Send + Sync {
-    /// Writes everything that time has changed; a flow made alike that [reads](Self::read_state) it goes on with the same bits.
+    /// Writes everything that time has changed; a flow made alike that [reads](Self::read_state) it goes on
+    /// with the same bits.
     ///
     /// # Errors
     /// Those of `writer`, and [`ErrorKind::InvalidData`] when the flow is no longer worth keeping.

@@ -67,12 +67,14 @@ impl Model {
             .clamp(self.constants.minimum_rotor_speed, self.constants.rated_rotor_speed)
     }
 
-    /// Azimuth offset with which its individual pitch control works (rad), given or found; none where there is no such control.
+    /// Azimuth offset with which its individual pitch control works (rad), given or found; none where there
+    /// is no such control.
     pub fn individual_pitch_offset(&self) -> Option<f64> {
         self.constants.individual_pitch.and_then(|control| control.azimuth_offset)
     }
 
-    /// Whether the azimuth offset of its individual pitch control is yet to be found; not where there is no such control.
+    /// Whether the azimuth offset of its individual pitch control is yet to be found; not where there is no
+    /// such control.
     pub fn lacks_individual_pitch_offset(&self) -> bool {
         self.constants.individual_pitch.is_some_and(|control| control.azimuth_offset.is_none())
     }
@@ -87,8 +89,8 @@ impl Model {
 /// Gaussian width over cell size (–): two cells is the least that the lattice carries without ringing.
 pub const SMEARING_CELLS: f64 = 2.0;
 
-/// Smagorinsky's constant above a rough ground (–): with 0.16 the friction velocity lies within 3 % of the logarithmic law's,
-/// with the 0.12 of wakes in free air 20 % below it (docs/validation/flow.md).
+/// Smagorinsky's constant above a rough ground (–): with 0.16 the friction velocity lies within 3 % of the
+/// logarithmic law's, with the 0.12 of wakes in free air 20 % below it (docs/validation/flow.md).
 pub const SMAGORINSKY_OVER_GROUND: f64 = 0.16;
 
 /// Settings of the air for `plan`.
@@ -120,8 +122,8 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
 /// What runs on a turbine of `model` under `control`, at time steps of `plan`.
 ///
 /// # Errors
-/// [`AssemblyError::Control`] for what cannot be controlled so, [`AssemblyError::NoIndividualPitchOffset`] when individual pitch
-/// control cannot know where its pitch acts.
+/// [`AssemblyError::Control`] for what cannot be controlled so, [`AssemblyError::NoIndividualPitchOffset`]
+/// when individual pitch control cannot know where its pitch acts.
 pub fn controller(
     control: &Control,
     model: &Model,
@@ -134,8 +136,8 @@ pub fn controller(
     Ok(control.build(&site(model, case, plan))?)
 }
 
-/// What a controller of a turbine of `model` is built for, at time steps of `plan`; Strouhal numbers are taken with the case's wind
-/// speed and the first turbine's diameter.
+/// What a controller of a turbine of `model` is built for, at time steps of `plan`; Strouhal numbers are
+/// taken with the case's wind speed and the first turbine's diameter.
 pub fn site<'a>(model: &'a Model, case: &Case, plan: &Plan) -> Site<'a> {
     Site {
         constants: &model.constants,
@@ -148,8 +150,8 @@ pub fn site<'a>(model: &'a Model, case: &Case, plan: &Plan) -> Site<'a> {
     }
 }
 
-/// How a turbine of `model` at `placement` stands in the air when time begins; `tower` is what its blades feel of its tower,
-/// where the wind is prescribed.
+/// How a turbine of `model` at `placement` stands in the air when time begins; `tower` is what its blades
+/// feel of its tower, where the wind is prescribed.
 pub(crate) fn turbine_settings(
     case: &Case,
     plan: &Plan,
@@ -167,14 +169,16 @@ pub(crate) fn turbine_settings(
     }
 }
 
-/// The farm of one run, at time zero: the turbines that are there in it, in the case's order, in `air`. `models` holds one
-/// entry per turbine of the case, in its order, each [equipped](Model::equipped) for the case; the farm's machines are those of [`Run::present`].
+/// The farm of one run, at time zero: the turbines that are there in it, in the case's order, in `air`.
+/// `models` holds one entry per turbine of the case, in its order, each [equipped](Model::equipped) for the
+/// case; the farm's machines are those of [`Run::present`].
 ///
 /// # Errors
 /// [`AssemblyError`].
 ///
 /// # Panics
-/// When `air` and the descriptor of the case's flow solver disagree on whether the wind contains the rotors' induction.
+/// When `air` and the descriptor of the case's flow solver disagree on whether the wind contains the rotors'
+/// induction.
 pub fn farm(
     case: &Case,
     run: &Run,
@@ -212,7 +216,8 @@ pub fn farm(
     Ok(Farm::new(machines, air, plan.interval, case.flow.threads.unwrap_or(cores))?)
 }
 
-/// The tower of a turbine of `model`, with its foot at `foot` (m), as its blades feel it; none where `placement` asks for none.
+/// The tower of a turbine of `model`, with its foot at `foot` (m), as its blades feel it; none where
+/// `placement` asks for none.
 fn tower_influence(model: &Model, placement: &Placement, foot: Vector3) -> Option<TowerInfluence> {
     let (potential, shadow) = match placement.tower_influence {
         AskedInfluence::None => return None,

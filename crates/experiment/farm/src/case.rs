@@ -51,7 +51,8 @@ pub struct Wind {
     pub turbulence_model: TurbulenceModel,
     /// File with the planes of wind that [`Solver::PLANES`] reads, relative to the case file.
     pub planes: Option<String>,
-    /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at hub height.
+    /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at
+    /// hub height.
     pub veer: f64,
     /// What happens in time, with [`Solver::UNIFORM`]; nothing when absent.
     pub event: Option<WindEvent>,
@@ -76,8 +77,8 @@ pub enum Shear {
 
 /// What happens in time in a wind without turbulence. Times in s since the run's start.
 ///
-/// It is the [`deterministic::Event`](flow::inflow::deterministic::Event) of the same name, with lengths in diameters of the
-/// first turbine and its hub as the place.
+/// It is the [`deterministic::Event`](flow::inflow::deterministic::Event) of the same name, with lengths in
+/// diameters of the first turbine and its hub as the place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum WindEvent {
     /// The wind changes at all places alike.
@@ -144,8 +145,8 @@ pub struct Flow {
     pub ground: Ground,
     /// What it meets at the sides.
     pub sides: Sides,
-    /// Step of air and turbines (s); when absent chosen from the tip speed and the Mach number for the lattice, and
-    /// [`PRESCRIBED_STEP`](crate::plan::PRESCRIBED_STEP) for prescribed wind.
+    /// Step of air and turbines (s); when absent chosen from the tip speed and the Mach number for the
+    /// lattice, and [`PRESCRIBED_STEP`](crate::plan::PRESCRIBED_STEP) for prescribed wind.
     pub step: Option<f64>,
     /// Threads; all cores when absent. The result does not depend on it.
     pub threads: Option<usize>,
@@ -188,7 +189,8 @@ pub struct Placement {
     pub name: String,
     /// Turbine model in the library, or a path to a turbine file.
     pub model: String,
-    /// Path to a ROSCO input file (DISCON.IN) with the constants of its controller; the model's own when absent.
+    /// Path to a ROSCO input file (DISCON.IN) with the constants of its controller; the model's own when
+    /// absent.
     pub discon: Option<String>,
     /// Position of the tower's foot, farm frame x and y (diameters of the first turbine).
     pub position_diameters: [f64; 2],
@@ -207,8 +209,8 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Name of what stands there: the model, and the input file of its controller where it has one of its own. Turbines of
-    /// one name are alike, machine and controller.
+    /// Name of what stands there: the model, and the input file of its controller where it has one of its
+    /// own. Turbines of one name are alike, machine and controller.
     pub fn machine(&self) -> String {
         match &self.discon {
             None => self.model.clone(),
@@ -263,7 +265,8 @@ pub struct Run {
 }
 
 impl Run {
-    /// Places in [`Case::turbines`] of the turbines that are there in this run, in order: the farm's machines.
+    /// Places in [`Case::turbines`] of the turbines that are there in this run, in order: the farm's
+    /// machines.
     pub fn present(&self) -> impl Iterator<Item = usize> + '_ {
         let is_there = |(index, control): (usize, &Control)| control.is_there().then_some(index);
         self.control.iter().enumerate().filter_map(is_there)
@@ -280,8 +283,8 @@ impl Case {
     }
 }
 
-/// Sense and Strouhal number of the helix on the nearest of `turbines` upstream of turbine `index` that has one under
-/// `controls`.
+/// Sense and Strouhal number of the helix on the nearest of `turbines` upstream of turbine `index` that has
+/// one under `controls`.
 pub fn helix_upstream(
     index: usize,
     turbines: &[Placement],
@@ -307,7 +310,8 @@ pub struct Output {
     pub crosswind_diameters: Vec<f64>,
     /// Phases of the first helix in the row by which the hub-height plane is averaged (–); none when absent.
     pub helix_phases: Option<usize>,
-    /// Places in [`Case::turbines`] of the turbines where runs without them keep the wind along radial lines over the disc.
+    /// Places in [`Case::turbines`] of the turbines where runs without them keep the wind along radial lines
+    /// over the disc.
     pub lines_at: Vec<usize>,
     /// Places in [`Case::turbines`] of the turbines where runs without them record the wind over the rotor.
     pub inflow_at: Vec<usize>,

@@ -49,7 +49,8 @@ impl Machine {
         Self { sensing, ..self }
     }
 
-    /// Reads the instruments at `time` (s) in the `wind` and decides for an `interval` (s); gives the truth that was read.
+    /// Reads the instruments at `time` (s) in the `wind` and decides for an `interval` (s); gives the truth
+    /// that was read.
     fn decide(&mut self, time: f64, interval: f64, wind: &dyn WindField) -> Truth {
         let truth = self.turbine.truth(time, interval);
         let scene = Scene { truth: &truth, turbine: &self.turbine, wind };
@@ -76,8 +77,8 @@ pub struct Farm<Flow> {
 }
 
 impl<Flow: FlowSolver + Sync> Farm<Flow> {
-    /// A farm at time zero that moves on in steps of `interval` (s), its turbines on at most `n_threads` threads; their
-    /// number changes no bit of the result.
+    /// A farm at time zero that moves on in steps of `interval` (s), its turbines on at most `n_threads`
+    /// threads; their number changes no bit of the result.
     ///
     /// # Errors
     /// [`ThreadPoolBuildError`] when the system has no more threads to give.

@@ -1,5 +1,5 @@
-//! A turbine alone in a steady wind that pitches a helix: the record on which a phase estimator is calibrated, and which
-//! tells how pitch acts on the loads.
+//! A turbine alone in a steady wind that pitches a helix: the record on which a phase estimator is
+//! calibrated, and which tells how pitch acts on the loads.
 
 mod joining;
 mod prescribed;
@@ -29,8 +29,9 @@ use turbine::Turbine;
 
 /// Wind of the record over the case's (–): about what is left in a wake.
 const WAKE_SPEED: f64 = 0.75;
-/// Excitation periods counted where no filter has to settle (–): moments answer as soon as the near wake has settled, some
-/// periods after the pitch began, so that waiting longer would tell nothing more and cost a third of the identification.
+/// Excitation periods counted where no filter has to settle (–): moments answer as soon as the near wake has
+/// settled, some periods after the pitch began, so that waiting longer would tell nothing more and cost a
+/// third of the identification.
 const COUNTED: f64 = 2.0;
 /// Amplitude of the helices that tell how pitch acts on the loads (rad): a degree.
 pub const IDENTIFICATION_AMPLITUDE: f64 = std::f64::consts::PI / 180.0;
@@ -60,7 +61,8 @@ pub enum CalibrationError {
 pub struct IdentificationCost {
     /// Steps, those of all its trials together (–).
     pub n_steps: u64,
-    /// Cell updates or what takes as long, steps where the case's wind is prescribed (–): what wall time goes with.
+    /// Cell updates or what takes as long, steps where the case's wind is prescribed (–): what wall time goes
+    /// with.
     pub work: f64,
 }
 
@@ -81,7 +83,8 @@ fn middle([low, high]: [f64; 2]) -> f64 {
     0.5 * (low + high)
 }
 
-/// Steps of one trial: until the near wake has settled and the pitch, which fades in over a period, is whole; and after it.
+/// Steps of one trial: until the near wake has settled and the pitch, which fades in over a period, is whole;
+/// and after it.
 #[derive(Clone, Copy)]
 struct Course {
     n_settling: u64,
@@ -117,9 +120,10 @@ impl Course {
 /// How pitch acts on tilt and yaw moment of turbine number `index` of `case` in the middle of the range
 /// `strouhal` (–).
 ///
-/// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in prescribed wind as
-/// the case has it, with perfect instruments, and pitches a helix of [`IDENTIFICATION_AMPLITUDE`], first counter-clockwise, then clockwise; what
-/// either takes off the moments is given by [`Decoupling::from_senses`]; `progress` receives the share done.
+/// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in
+/// prescribed wind as the case has it, with perfect instruments, and pitches a helix of
+/// [`IDENTIFICATION_AMPLITUDE`], first counter-clockwise, then clockwise; what either takes off the moments
+/// is given by [`Decoupling::from_senses`]; `progress` receives the share done.
 ///
 /// # Errors
 /// [`CalibrationError`].
@@ -138,8 +142,9 @@ pub fn decoupling(
     Ok(Decoupling::from_senses(rate, counter_clockwise, clockwise))
 }
 
-/// What a counter-clockwise and a clockwise helix of [`IDENTIFICATION_AMPLITUDE`] at `rate` (rad/s) take off the moments of turbine number `index`
-/// of `case`, alone in a steady wind of `wind_speed` (m/s); `progress` receives the share done.
+/// What a counter-clockwise and a clockwise helix of [`IDENTIFICATION_AMPLITUDE`] at `rate` (rad/s) take off
+/// the moments of turbine number `index` of `case`, alone in a steady wind of `wind_speed` (m/s); `progress`
+/// receives the share done.
 ///
 /// # Errors
 /// [`CalibrationError`].
@@ -170,8 +175,9 @@ pub fn answers(
     Ok([answer(Sense::CounterClockwise, 0.0)?, answer(Sense::Clockwise, 0.5)?])
 }
 
-/// What a helix of [`IDENTIFICATION_AMPLITUDE`] at `rate` (rad/s) takes off the moments in `record`, whole periods of it in a steady wind: both
-/// axes correlated with their command and with the same a quarter period earlier.
+/// What a helix of [`IDENTIFICATION_AMPLITUDE`] at `rate` (rad/s) takes off the moments in `record`, whole
+/// periods of it in a steady wind: both axes correlated with their command and with the same a quarter period
+/// earlier.
 fn answer_to(record: &[Truth], sense: Sense, rate: f64) -> Answer {
     let moments = |of: &Truth| to_fixed_frame(of.azimuth, &of.flap_moments);
     let n = record.len().max(1) as f64;
@@ -208,8 +214,8 @@ struct Pitching {
     periods: f64,
 }
 
-/// What a turbine of `model` measures, alone in a steady wind as turbine number `index` of `case`, while it pitches as `pitch`
-/// has it, after the near wake has settled.
+/// What a turbine of `model` measures, alone in a steady wind as turbine number `index` of `case`, while it
+/// pitches as `pitch` has it, after the near wake has settled.
 fn pitching(
     case: &Case,
     plan: &Plan,
@@ -278,8 +284,8 @@ mod tests {
     use basis::FixedFrame;
     use basis::mbc::to_blades;
 
-    /// Measurements of a rotor whose moments lose `gain` (N m/rad) of a helix, `lead` (rad) ahead of it, beside constants and
-    /// an oscillation at three times the rotor's frequency.
+    /// Measurements of a rotor whose moments lose `gain` (N m/rad) of a helix, `lead` (rad) ahead of it,
+    /// beside constants and an oscillation at three times the rotor's frequency.
     fn record(sense: Sense, rate: f64, gain: f64, lead: f64) -> Vec<Truth> {
         let (interval, rotor_speed) = (0.2, 0.61);
         let n = (COUNTED * TAU / rate / interval).round() as usize;

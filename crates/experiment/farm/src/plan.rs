@@ -16,16 +16,17 @@ pub const MINIMUM_CELLS_PER_DIAMETER: f64 = 8.0;
 /// Speed of sound on the lattice, in cells a step: a tip that outruns it meets its own bound vortex
 /// (docs/validation/actuator-line.md).
 pub const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
-/// Fastest tip that a chosen step allows, in cells a step, in the mean wind; what a gust adds beyond the speed of sound is warned of
-/// after the run.
+/// Fastest tip that a chosen step allows, in cells a step, in the mean wind; what a gust adds beyond the
+/// speed of sound is warned of after the run.
 const FASTEST_TIP: f64 = 0.5;
-/// Farthest that a wind which veers may turn between hub height and the ends of the domain below and above (rad): wind comes in at
-/// every height of the inlet.
+/// Farthest that a wind which veers may turn between hub height and the ends of the domain below and above
+/// (rad): wind comes in at every height of the inlet.
 const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_3;
 /// Longest step between two control instants (s): pitch actuators and rotor speed are integrated on it.
 const LONGEST_STEP: f64 = 0.5;
 
-/// Step of turbines in prescribed wind unless the case says otherwise (s): a thirtieth of the fastest period that carries load.
+/// Step of turbines in prescribed wind unless the case says otherwise (s): a thirtieth of the fastest period
+/// that carries load.
 pub const PRESCRIBED_STEP: f64 = 0.02;
 /// Time between rows of the series in prescribed wind unless the case says otherwise (s).
 pub const PRESCRIBED_ROW: f64 = 0.1;
@@ -122,8 +123,8 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
 
 /// The plan of turbines in a box of cells, as the lattice needs it.
 ///
-/// The step is the longest one that keeps tips well below the speed of sound on the lattice and the free stream within
-/// [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole number of steps.
+/// The step is the longest one that keeps tips well below the speed of sound on the lattice and the free
+/// stream within [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole number of steps.
 ///
 /// # Errors
 /// [`PlanError`] names what does not fit and the key that fixes it.

@@ -1,4 +1,5 @@
-//! Before a study: does each rotor, alone in a steady wind on this grid, give what blade-element momentum says?
+//! Before a study: does each rotor, alone in a steady wind on this grid, give what blade-element momentum
+//! says?
 
 use crate::Progress;
 use crate::assemble::{Model, SMEARING_CELLS};
@@ -16,7 +17,8 @@ use turbine::steady::SteadyRotor;
 use turbine::structure::StructureError;
 use turbine::{Definition, Induction, Turbine};
 
-/// Power and thrust of one turbine in steady uniform flow, by the actuator line and by blade-element momentum.
+/// Power and thrust of one turbine in steady uniform flow, by the actuator line and by blade-element
+/// momentum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SelfCheck {
     /// Turbine model.
@@ -83,8 +85,8 @@ impl Tunnel {
         Self { upstream, downstream, width, settling: 10.0, averaging: 1.0, spacing, interval }
     }
 
-    /// The one in which a turbine's pitch response is identified: smaller, since walls change little of what pitch does. What is averaged
-    /// is counted in periods of the pitch instead.
+    /// The one in which a turbine's pitch response is identified: smaller, since walls change little of what
+    /// pitch does. What is averaged is counted in periods of the pitch instead.
     pub fn for_identification(spacing: f64, interval: f64) -> Self {
         let [upstream, downstream, width] = [3.0, 3.0, 5.0];
         Self { upstream, downstream, width, settling: 8.0, averaging: 0.0, spacing, interval }
@@ -120,11 +122,12 @@ impl Tunnel {
     }
 }
 
-/// Checks `model` in the steady speed of `wind` in `tunnel`, rotor speed held at its optimum (or rated), pitch at its
-/// least, tower and nacelle left out, polars holding at once; `progress` receives the share done.
+/// Checks `model` in the steady speed of `wind` in `tunnel`, rotor speed held at its optimum (or rated),
+/// pitch at its least, tower and nacelle left out, polars holding at once; `progress` receives the share
+/// done.
 ///
-/// The tunnel is narrow, so the expectation is taken in the wind that an open sky would need for the same rotor state
-/// ([`turbine::blockage`]).
+/// The tunnel is narrow, so the expectation is taken in the wind that an open sky would need for the same
+/// rotor state ([`turbine::blockage`]).
 ///
 /// # Errors
 /// [`SelfCheckError`] when the air cannot be set up or does not stay finite.
@@ -182,7 +185,8 @@ pub fn self_check(
     })
 }
 
-/// The rotor of `model` at the origin of `tunnel`, stiff, with no tower or nacelle in the wind, at held speed.
+/// The rotor of `model` at the origin of `tunnel`, stiff, with no tower or nacelle in the wind, at held
+/// speed.
 fn bare_rotor(model: &Model, wind: &Wind, tunnel: &Tunnel) -> Result<Turbine, StructureError> {
     let definition = &model.definition;
     let rotor = Turbine::new(

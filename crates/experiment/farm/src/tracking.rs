@@ -1,4 +1,5 @@
-//! What a controller must know of its rotor to track the tip-speed ratio: coefficients by blade-element momentum.
+//! What a controller must know of its rotor to track the tip-speed ratio: coefficients by blade-element
+//! momentum.
 
 use crate::assemble::Model;
 use crate::case::Solver;
@@ -20,7 +21,8 @@ const PITCHES_DEG: [f64; 22] = [
 ];
 
 /// Power and thrust coefficient of the rotor of `definition` by blade-element momentum, for its
-/// [`Definition::rotor_radius`]; linear between entries half a tip-speed ratio and a degree apart where it runs.
+/// [`Definition::rotor_radius`]; linear between entries half a tip-speed ratio and a degree apart where it
+/// runs.
 pub fn coefficient_table(definition: &Definition) -> CoefficientTable {
     let rotor = SteadyRotor::new(definition, Theory::default());
     let pitches = PITCHES_DEG.map(f64::to_radians).to_vec();
@@ -34,8 +36,8 @@ pub fn coefficient_table(definition: &Definition) -> CoefficientTable {
 }
 
 impl Model {
-    /// The same with what its controller needs to estimate the wind in air of `air_density` (kg/m³): it then tracks the
-    /// tip-speed ratio, unless the turbine's file asks for k ω². Takes a fraction of a second.
+    /// The same with what its controller needs to estimate the wind in air of `air_density` (kg/m³): it then
+    /// tracks the tip-speed ratio, unless the turbine's file asks for k ω². Takes a fraction of a second.
     pub fn with_estimator(self, air_density: f64) -> Self {
         let inertia = self.definition.drive_train_inertia();
         let table = coefficient_table(&self.definition);
@@ -43,9 +45,9 @@ impl Model {
         Self { constants, ..self }
     }
 
-    /// The same with what its controller needs in the air of `solver` with `air_density` (kg/m³): torque is controlled as the
-    /// turbine's file asks; otherwise it tracks the tip-speed ratio in prescribed wind, and follows k ω² in resolved flow,
-    /// whose studies have been made so.
+    /// The same with what its controller needs in the air of `solver` with `air_density` (kg/m³): torque is
+    /// controlled as the turbine's file asks; otherwise it tracks the tip-speed ratio in prescribed wind, and
+    /// follows k ω² in resolved flow, whose studies have been made so.
     pub fn equipped(&self, solver: Solver, air_density: f64) -> Cow<'_, Self> {
         let default = if solver.resolves_induction {
             TorqueControl::KOmegaSquared

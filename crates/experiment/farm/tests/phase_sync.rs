@@ -80,7 +80,8 @@ impl Loop {
         }
     }
 
-    /// Runs for `duration` (s) in a helix of `amplitude` (m/s) and `phase` (rad); gives the steps' tilt and yaw pitch (rad).
+    /// Runs for `duration` (s) in a helix of `amplitude` (m/s) and `phase` (rad); gives the steps' tilt and
+    /// yaw pitch (rad).
     fn run(&mut self, duration: f64, amplitude: f64, phase: f64) -> Vec<FixedFrame> {
         let n_steps = (duration / INTERVAL) as usize;
         let mut pitches = Vec::with_capacity(n_steps);

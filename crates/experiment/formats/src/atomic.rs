@@ -146,7 +146,8 @@ pub fn read_bytes(path: &Path, what: &'static str) -> Result<Vec<u8>, FileError>
     fs::read(path).map_err(|source| FileError::system("read", what, path, source))
 }
 
-/// A file being written beside its place; [`commit`](Self::commit) moves it there, dropping it leaves nothing.
+/// A file being written beside its place; [`commit`](Self::commit) moves it there, dropping it leaves
+/// nothing.
 #[derive(Debug)]
 pub struct AtomicFile {
     file: Option<BufWriter<File>>,

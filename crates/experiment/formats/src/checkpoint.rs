@@ -1,9 +1,9 @@
 //! Checkpoints: named sections of state, checked on reading, streamed so that no field is copied in memory.
 //!
-//! Layout, little-endian: magic, version (u32), sections, end. A section is the length of its name (u32) and the
-//! name, then chunks, each its length (u32, not 0) and bytes, then a chunk length of 0 and the CRC-32 of name and
-//! bytes. The end is a name length of `u32::MAX` and the number of sections (u32). The first section says which
-//! run of which case it is.
+//! Layout, little-endian: magic, version (u32), sections, end. A section is the length of its name (u32) and
+//! the name, then chunks, each its length (u32, not 0) and bytes, then a chunk length of 0 and the CRC-32 of
+//! name and bytes. The end is a name length of `u32::MAX` and the number of sections (u32). The first section
+//! says which run of which case it is.
 
 use crate::FileError;
 use crate::atomic::AtomicFile;
@@ -228,10 +228,11 @@ pub struct CheckpointReader {
 }
 
 impl CheckpointReader {
-    /// Opens the checkpoint at `path`, which must belong to the run `run` of the case in `case_text` and be whole.
+    /// Opens the checkpoint at `path`, which must be whole and of the run `run` of the case in `case_text`.
     ///
     /// # Errors
-    /// [`FileError::System`] when it cannot be read, [`FileError::Checkpoint`] when the run cannot go on from it.
+    /// [`FileError::System`] when it cannot be read, [`FileError::Checkpoint`] when the run cannot go on from
+    /// it.
     pub fn open(path: &Path, case_text: &str, run: &str) -> Result<Self, FileError> {
         let read = |source| FileError::system("read", WHAT, path, source);
         let file = File::open(path).map_err(read)?;
@@ -329,8 +330,8 @@ impl CheckpointReader {
     /// Hands the bytes of the section `name` to `read`.
     ///
     /// # Errors
-    /// [`FileError::Checkpoint`] when there is none, or it is damaged, or `read` makes nothing of it; what `read`
-    /// has taken in is worthless then.
+    /// [`FileError::Checkpoint`] when there is none, or it is damaged, or `read` makes nothing of it; what
+    /// `read` has taken in is worthless then.
     pub fn stream(
         &mut self,
         name: &str,

@@ -43,8 +43,8 @@ mod tests {
 
     #[test]
     fn the_library_loads_and_stands_as_published() {
-        // Rated power (W), swept diameter, hub height (m), and published blade mass (kg) with the margin of the
-        // versions between report and input set.
+        // Rated power (W), swept diameter, hub height (m), and published blade mass (kg) with the margin of
+        // the versions between report and input set.
         let published = [
             ("iea-15mw", 15e6, 240.8, 150.0, 65.25e3, 0.06),
             ("iea-22mw", 22e6, 282.3, 170.0, 82.3e3, 0.01),

@@ -1,7 +1,8 @@
 //! Planes as NetCDF files that xarray, ParaView and MATLAB open as they are, and back.
 //!
 //! The classic format (64-bit offsets where needed), which needs no HDF5 on either side. Velocity stands over
-//! `time`, `z`, `y`, `x`, the axis across the plane having one point, so that a plane lies where it was taken.
+//! `time`, `z`, `y`, `x`, the axis across the plane having one point, so that a plane lies where it was
+//! taken.
 
 use crate::{FileError, atomic};
 use basis::records::{Plane, PlaneAxes};

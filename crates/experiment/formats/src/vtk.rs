@@ -10,8 +10,8 @@ const WHAT: &str = "a volume of velocities (VTK)";
 /// Points that are converted at a time.
 const CHUNK: usize = 16 * 1024;
 
-/// Writes `volume` to `path`: point data `velocity` (m/s, three components, single precision), and its instant (s)
-/// as ParaView's time.
+/// Writes `volume` to `path`: point data `velocity` (m/s, three components, single precision), and its
+/// instant (s) as ParaView's time.
 ///
 /// # Errors
 /// [`FileError::System`].

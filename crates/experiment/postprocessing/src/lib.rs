@@ -1,4 +1,5 @@
-//! What records of runs tell afterwards: the phase of a helix, gains over several winds, what a loop would lock to; and the report.
+//! What records of runs tell afterwards: the phase of a helix, gains over several winds, what a loop would
+//! lock to; and the report.
 //!
 //! Records in, numbers out: nothing is simulated here. [`ANALYSES`] lists what `wakemix analyse` offers.
 
@@ -22,8 +23,8 @@ use std::path::{Path, PathBuf};
 /// Makes the report of the study in `directory` from its records; gives the summaries and the report's path.
 ///
 /// # Errors
-/// [`PostprocessingError::File`] for records that cannot be read, [`PostprocessingError::Report`] for a report that cannot be
-/// written.
+/// [`PostprocessingError::File`] for records that cannot be read, [`PostprocessingError::Report`] for a
+/// report that cannot be written.
 pub fn report(directory: &Path) -> Result<(Vec<Summary>, PathBuf), PostprocessingError> {
     let study = records::read_study(directory)?;
     let synchronisation = synchronisation::synchronisation(&study)?;

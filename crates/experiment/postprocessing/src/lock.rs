@@ -26,7 +26,8 @@ pub struct LockQuestion {
     pub run: PathBuf,
     /// Turbine whose blades are listened to; each that is there when absent.
     pub turbine: Option<String>,
-    /// Lowest and highest Strouhal number that is followed (–); the turbine's own, or the case file's default, when absent.
+    /// Lowest and highest Strouhal number that is followed (–); the turbine's own, or the case file's
+    /// default, when absent.
     pub strouhal: [Option<f64>; 2],
     /// Way the loads circle; the turbine's own, or the case file's default, when absent.
     pub sense: Option<Sense>,
@@ -53,11 +54,12 @@ pub struct LockAnswer {
     pub strouhal: f64,
 }
 
-/// Runs a loop over the blade moments of each turbine that `question` asks for, as they were recorded: what a turbine's own
-/// pitch did to them is among them.
+/// Runs a loop over the blade moments of each turbine that `question` asks for, as they were recorded: what a
+/// turbine's own pitch did to them is among them.
 ///
 /// # Errors
-/// [`PostprocessingError`] for records that cannot be read, lack a channel or have gaps, and for Strouhal numbers that no loop follows.
+/// [`PostprocessingError`] for records that cannot be read, lack a channel or have gaps, and for Strouhal
+/// numbers that no loop follows.
 pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingError> {
     let folder = folder_of(&question.run);
     let manifest = records::read_manifest(&folder)?;
@@ -122,7 +124,8 @@ struct Tracked {
     rate: f64,
 }
 
-/// Runs a loop of `settings` over `moments` (N m, fixed frame) at `times` (s); what it finds counts from the time `from` (s) on.
+/// Runs a loop of `settings` over `moments` (N m, fixed frame) at `times` (s); what it finds counts from the
+/// time `from` (s) on.
 fn track(
     times: &[f64],
     moments: &[FixedFrame],
@@ -164,8 +167,8 @@ mod tests {
     const INTERVAL: f64 = 0.5;
     const RATE: f64 = 0.05;
 
-    /// What a loop for 0.6 to 1.4 of [`RATE`] finds in moments that circle with it, and with `disturbance` (–) as much besides at
-    /// four fifths of it.
+    /// What a loop for 0.6 to 1.4 of [`RATE`] finds in moments that circle with it, and with `disturbance`
+    /// (–) as much besides at four fifths of it.
     fn tracked(disturbance: f64) -> Tracked {
         let settings = TwoAxisSettings {
             signal: PhaseLockedSettings::between([0.6 * RATE, 1.4 * RATE]),
@@ -194,7 +197,8 @@ mod tests {
         assert_eq!(pure.locked_share, 1.0);
         assert!((pure.rate / RATE - 1.0).abs() < 1e-4, "{} rad/s", pure.rate);
         assert!(pure.phase_error < 1e-3, "{} rad", pure.phase_error);
-        // The phase of the sum swings by 0.3 rad about that of the wave; a loop follows part of it and keeps its lock.
+        // The phase of the sum swings by 0.3 rad about that of the wave; a loop follows part of it and keeps
+        // its lock.
         let disturbed = tracked(0.3);
         assert!((0.01..0.7).contains(&disturbed.phase_error), "{} rad", disturbed.phase_error);
     }

@@ -1,4 +1,5 @@
-//! How well the phase of a helix is estimated on the turbine that it meets: records in, agreement with the true wind out.
+//! How well the phase of a helix is estimated on the turbine that it meets: records in, agreement with the
+//! true wind out.
 
 pub(crate) mod query;
 mod replay;
@@ -19,7 +20,8 @@ use std::path::PathBuf;
 
 /// Excitation periods in a segment of the cross-spectrum (–).
 const SEGMENT_PERIODS: f64 = 4.0;
-/// What the channels of a turbine begin with that tell of a phase: measured, estimated, and the true wind where it would stand.
+/// What the channels of a turbine begin with that tell of a phase: measured, estimated, and the true wind
+/// where it would stand.
 const CHANNELS: [&str; 6] =
     ["azimuth_", "rotor_speed_", "pitch_", "flap_moment_", "estimate", "lines_"];
 
@@ -30,8 +32,8 @@ pub struct PhaseQuestion {
     pub run: PathBuf,
     /// Turbine that a helix meets; the first that looks for one when absent.
     pub turbine: Option<String>,
-    /// Folder of a run of the same study without that turbine, whose series holds the true wind at its place; a run
-    /// beside this one when absent.
+    /// Folder of a run of the same study without that turbine, whose series holds the true wind at its place;
+    /// a run beside this one when absent.
     pub truth: Option<PathBuf>,
     /// Estimator to run over the records; the run's own estimate when absent.
     pub estimator: Option<PhaseEstimator>,
@@ -75,8 +77,9 @@ pub struct PhaseAnswer {
     pub yaw: PhaseAxis,
     /// Mean trust (–).
     pub trust: f64,
-    /// Tilt and yaw phase of the turbine's own blade moments through the filter of the truth, which knows the future: what
-    /// its loads hold, beside what an estimator made of them in time. Absent where the turbine pitched a helix of its own.
+    /// Tilt and yaw phase of the turbine's own blade moments through the filter of the truth, which knows the
+    /// future: what its loads hold, beside what an estimator made of them in time. Absent where the turbine
+    /// pitched a helix of its own.
     pub zero_phase: Option<[Agreement; 2]>,
 }
 
@@ -120,7 +123,8 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, PostprocessingErro
     answer(question, &records.query(first)?)
 }
 
-/// What [`phase`] answers for the turbine that `question` names, for each that looks for a helix where it names none.
+/// What [`phase`] answers for the turbine that `question` names, for each that looks for a helix where it
+/// names none.
 ///
 /// # Errors
 /// As [`phase`]; [`PostprocessingError::NoTruth`] only where no turbine has an answer.
@@ -158,7 +162,8 @@ fn answer(question: &PhaseQuestion, query: &Query<'_>) -> Result<PhaseAnswer, Po
     Ok(PhaseAnswer { zero_phase, ..compared(&estimates)? })
 }
 
-/// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m) stand for winds.
+/// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m)
+/// stand for winds.
 fn zero_phase(
     series: &Series,
     name: &str,

@@ -1,4 +1,5 @@
-//! Gains of one case in several winds: studies that differ in the wind's seed, beside each other and together.
+//! Gains of one case in several winds: studies that differ in the wind's seed, beside each other and
+//! together.
 
 mod error;
 
@@ -42,8 +43,8 @@ pub struct RunGains {
     pub run: String,
     /// Run that it compares with.
     pub compare_with: String,
-    /// Of each turbine that is there in both runs, of all downstream of the first together where they are two or more, and of
-    /// the whole array; the latter two where the same turbines are there in both runs.
+    /// Of each turbine that is there in both runs, of all downstream of the first together where they are two
+    /// or more, and of the whole array; the latter two where the same turbines are there in both runs.
     pub parts: Vec<PartGains>,
 }
 
@@ -87,11 +88,12 @@ struct Pair<'s> {
 
 /// What the studies that `question` names tell together of the gains of their runs.
 ///
-/// Gains are ratios of mean powers minus one, as in [`analysis::statistics::gain`]; winds of unlike seeds are taken as
-/// independent.
+/// Gains are ratios of mean powers minus one, as in [`analysis::statistics::gain`]; winds of unlike seeds are
+/// taken as independent.
 ///
 /// # Errors
-/// [`PostprocessingError::Seeds`] for studies that do not belong together, and [`PostprocessingError`] for records that cannot be read.
+/// [`PostprocessingError::Seeds`] for studies that do not belong together, and [`PostprocessingError`] for
+/// records that cannot be read.
 pub fn gains_over_seeds(question: &GainsQuestion) -> Result<GainsAnswer, PostprocessingError> {
     if question.studies.len() < 2 {
         return Err(SeedsError::TooFew { n_studies: question.studies.len() }.into());

@@ -1,7 +1,7 @@
 //! What a study of phase synchronisation has to show: its records made into the data of the report's figures.
 //!
-//! The figures are those of van Vondelen et al. (2025): estimates beside the truth (their Figs. 10, 11), the answer to the
-//! pitch (12, 13), power and loads over the offset (14, 15), the wake (16, 17).
+//! The figures are those of van Vondelen et al. (2025): estimates beside the truth (their Figs. 10, 11), the
+//! answer to the pitch (12, 13), power and loads over the offset (14, 15), the wake (16, 17).
 
 mod offsets;
 mod tracks;
@@ -64,7 +64,8 @@ impl Pairing {
         (self.turbine, self.sense, self.strouhal) == (turbine, sync.sense, sync.strouhal)
     }
 
-    /// The turbine's name, with the helix's sense and Strouhal number where `all` hold another helix that it joins.
+    /// The turbine's name, with the helix's sense and Strouhal number where `all` hold another helix that it
+    /// joins.
     fn name(&self, case: &Case, all: &[Self]) -> String {
         let name = &case.turbines[self.turbine].name;
         let Self { sense, strouhal, .. } = self;
@@ -100,7 +101,8 @@ fn pairings(case: &Case, run_indices: &[usize]) -> Vec<Pairing> {
     found
 }
 
-/// The data of the figures and the lines of the table of phases, for each turbine and each helix that it joins.
+/// The data of the figures and the lines of the table of phases, for each turbine and each helix that it
+/// joins.
 ///
 /// # Errors
 /// [`PostprocessingError`] for records that cannot be analysed.
@@ -176,7 +178,8 @@ fn synchronised(
     })
 }
 
-/// `found`, or nothing to show where records are too short for it: that is no reason to withhold the rest of a report.
+/// `found`, or nothing to show where records are too short for it: that is no reason to withhold the rest of
+/// a report.
 fn unless_short<T: Default>(
     found: Result<T, PostprocessingError>,
 ) -> Result<T, PostprocessingError> {

@@ -1,4 +1,5 @@
-//! An analysis of one's own: a value in this file, in a list beside those of the program, put to the records of a run.
+//! An analysis of one's own: a value in this file, in a list beside those of the program, put to the records
+//! of a run.
 
 #[path = "../../study/tests/small/mod.rs"]
 mod small;

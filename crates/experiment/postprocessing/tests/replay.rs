@@ -1,4 +1,5 @@
-//! An estimator replayed on the records of a run gives the estimates of the run: same rotor, same calibration.
+//! An estimator replayed on the records of a run gives the estimates of the run: same rotor, same
+//! calibration.
 
 #[path = "../../study/tests/small/mod.rs"]
 mod small;
@@ -9,8 +10,8 @@ use postprocessing::PhaseQuestion;
 use small::{ABSENT, DISK, behind_helix, done, options, written};
 use std::fs;
 
-/// The turbines stand side by side in the path of one disk of slow air, whose waves T2 takes for a helix of T1; `keys` are
-/// in the control of T2.
+/// The turbines stand side by side in the path of one disk of slow air, whose waves T2 takes for a helix of
+/// T1; `keys` are in the control of T2.
 fn case(keys: &str) -> String {
     let joins = format!(
         r#"{{ kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 2.0, fallback = "none" {keys} }}"#

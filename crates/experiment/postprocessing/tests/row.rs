@@ -1,4 +1,5 @@
-//! A row in which each turbine looks for the helix of the one before: all of them are answered for, in analysis and report.
+//! A row in which each turbine looks for the helix of the one before: all of them are answered for, in
+//! analysis and report.
 
 #[path = "../../study/tests/small/mod.rs"]
 mod small;

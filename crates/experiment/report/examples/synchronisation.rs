@@ -1,4 +1,5 @@
-//! Draws a made-up phase synchronisation, to look at: `cargo run -p wakemix-report --example synchronisation -- FOLDER`.
+//! Draws a made-up phase synchronisation, to look at:
+//! `cargo run -p wakemix-report --example synchronisation -- FOLDER`.
 
 #[path = "../tests/synchronised/mod.rs"]
 mod synchronised;

@@ -155,7 +155,8 @@ impl<'a> Study<'a> {
             .collect()
     }
 
-    /// Those of them that the run which `run` is compared with did not have; all where that tells nothing apart.
+    /// Those of them that the run which `run` is compared with did not have; all where that tells nothing
+    /// apart.
     pub(crate) fn changed_excitations(&self, run: &'a RunRecords) -> Vec<Excitation<'a>> {
         let measure = run.summary.compare_with.as_deref();
         let before = self.runs().iter().find(|other| Some(other.summary.run.as_str()) == measure);

@@ -10,8 +10,8 @@ use std::sync::Arc;
 /// The air of the study `setup` at time zero, which `inflow` enters.
 ///
 /// # Errors
-/// [`StudyError`] when its solver cannot be set up, turbulence cannot be made, or a file of wind cannot be read or does not
-/// cover the rotors.
+/// [`StudyError`] when its solver cannot be set up, turbulence cannot be made, or a file of wind cannot be
+/// read or does not cover the rotors.
 pub(crate) fn begin(setup: &Prepared, inflow: &Arc<dyn Inflow>) -> Result<Air, StudyError> {
     let solver = setup.case.flow.solver;
     let planes = if solver.wind == WindSource::Planes {

@@ -1,4 +1,5 @@
-//! The azimuth offset with which tilt pitch answers in the tilt moment and yaw pitch in the yaw moment, of any turbine.
+//! The azimuth offset with which tilt pitch answers in the tilt moment and yaw pitch in the yaw moment, of
+//! any turbine.
 
 use crate::StudyError;
 use crate::models::turbine;
@@ -35,14 +36,15 @@ pub struct OffsetAnswer {
     pub relative_gain: [f64; 2],
 }
 
-/// Finds the azimuth offset of a turbine alone in a steady wind, under its own control, from what a counter-clockwise and a
-/// clockwise helix of a degree take off the moments of its blades.
+/// Finds the azimuth offset of a turbine alone in a steady wind, under its own control, from what a
+/// counter-clockwise and a clockwise helix of a degree take off the moments of its blades.
 ///
-/// The wind is prescribed, the turbine makes its own induction, and its individual pitch control, which would work against the
-/// helices, is switched off.
+/// The wind is prescribed, the turbine makes its own induction, and its individual pitch control, which would
+/// work against the helices, is switched off.
 ///
 /// # Errors
-/// [`StudyError`] for a turbine that cannot be read, and for a wind or Strouhal number that a case file could not have.
+/// [`StudyError`] for a turbine that cannot be read, and for a wind or Strouhal number that a case file could
+/// not have.
 pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyError> {
     let (_, file) = turbine(&question.model, Path::new(""))?;
     let structure = if question.flexible { "flexible" } else { "rigid" };
@@ -74,7 +76,8 @@ pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyEr
 mod tests {
     use super::*;
 
-    /// A rotor alike in all directions: some offset parts tilt from yaw, and it belongs to the machine, not to the identification.
+    /// A rotor alike in all directions: some offset parts tilt from yaw, and it belongs to the machine, not
+    /// to the identification.
     #[test]
     fn the_offset_parts_the_axes_and_hardly_depends_on_the_frequency() {
         let question = OffsetQuestion {

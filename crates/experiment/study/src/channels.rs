@@ -9,7 +9,8 @@ use turbine::Turbine;
 /// Channels before the turbines' own.
 const SHARED: [&str; 4] = ["time_s", "wind.u_m_s", "wind.v_m_s", "wind.w_m_s"];
 
-/// Loads and motions that are kept of a turbine in resolved flow, under OpenFAST's names; in prescribed wind all are.
+/// Loads and motions that are kept of a turbine in resolved flow, under OpenFAST's names; in prescribed wind
+/// all are.
 pub(crate) const LOADS: [&str; 18] = [
     "RootMxc1",
     "RootMyc1",
@@ -34,15 +35,18 @@ pub(crate) const LOADS: [&str; 18] = [
 /// Gathers one row of the series from the turbines' signals.
 ///
 /// A row is: time, wind at the hub-height probe upstream of the first turbine, then for each
-/// turbine its true state, whatever its instruments showed, its commands, its loads, the signals of its controller and what its further sensors show; then the wind along
-/// radial lines at the places of turbines that are not there.
+/// turbine its true state, whatever its instruments showed, its commands, its loads, the signals of its
+/// controller and what its further sensors show; then the wind along radial lines at the places of turbines
+/// that are not there.
 pub(crate) struct Row {
     names: Vec<String>,
     values: Vec<f64>,
     offsets: Vec<usize>,
-    /// Of each turbine: where its loads begin, and places among its channels with the factor to the unit in the name.
+    /// Of each turbine: where its loads begin, and places among its channels with the factor to the unit in
+    /// the name.
     loads: Vec<(usize, Vec<(usize, f64)>)>,
-    /// Of each turbine: where the signals of its controller begin and end; behind them is what its further sensors show.
+    /// Of each turbine: where the signals of its controller begin and end; behind them is what its further
+    /// sensors show.
     signals: Vec<Range<usize>>,
     /// Where the winds along lines begin.
     lines: usize,
@@ -51,7 +55,8 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// The row for `machines`, each with its name, and for lines at the places `lines`; `all_loads` or a choice of them.
+    /// The row for `machines`, each with its name, and for lines at the places `lines`; `all_loads` or a
+    /// choice of them.
     pub(crate) fn new<'a>(
         machines: impl Iterator<Item = (&'a str, &'a Machine)>,
         lines: &[&str],
@@ -120,8 +125,8 @@ impl Row {
         }
     }
 
-    /// Takes in the signals of the controller of `machine` number `index` after its last decision, and what its further sensors
-    /// showed it.
+    /// Takes in the signals of the controller of `machine` number `index` after its last decision, and what
+    /// its further sensors showed it.
     pub(crate) fn signals(&mut self, index: usize, machine: &Machine) {
         let place = self.signals[index].clone();
         let mut next = place.end;

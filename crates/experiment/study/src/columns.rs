@@ -1,4 +1,5 @@
-//! The columns of a run's series, a group at a time, so that memory does not grow with every channel of a long run.
+//! The columns of a run's series, a group at a time, so that memory does not grow with every channel of a
+//! long run.
 
 use crate::StudyError;
 use crate::prepared::Prepared;
@@ -20,8 +21,8 @@ enum Source {
 
 /// The series of one run, and those of its columns that are in memory.
 ///
-/// What is asked for together is in memory together. What is expected to be asked for next comes with it, as far as the
-/// budget goes: a usual run is read once, a long one in a few passes, with the same numbers.
+/// What is asked for together is in memory together. What is expected to be asked for next comes with it, as
+/// far as the budget goes: a usual run is read once, a long one in a few passes, with the same numbers.
 pub(crate) struct Columns {
     source: Source,
     first: usize,

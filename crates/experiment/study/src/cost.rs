@@ -8,7 +8,8 @@ use crate::prepared::Prepared;
 use crate::warnings::wall_gain;
 
 impl Prepared {
-    /// The cost of `n_runs` runs with their `outputs`, and of `identifications` before them; the machine's speed is not known yet.
+    /// The cost of `n_runs` runs with their `outputs`, and of `identifications` before them; the machine's
+    /// speed is not known yet.
     pub(crate) fn estimate(
         &self,
         n_runs: usize,

@@ -59,7 +59,7 @@ pub enum StudyError {
         /// Turbine.
         turbine: String,
         /// Why.
-        source: AssemblyError,
+        source: Box<AssemblyError>,
     },
     /// A phase estimator cannot be calibrated.
     #[error(transparent)]

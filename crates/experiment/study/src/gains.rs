@@ -53,7 +53,8 @@ pub(crate) fn comparison<'a>(
     }
 }
 
-/// On return `summary`, which is that of `run`, holds its gains over the run `other`; each run comes with its columns.
+/// On return `summary`, which is that of `run`, holds its gains over the run `other`; each run comes with its
+/// columns.
 pub(crate) fn add(
     summary: &mut Summary,
     (run, own): (&Run, &mut Columns),
@@ -105,7 +106,8 @@ fn power(turbine: &str) -> [String; 1] {
     [format!("{turbine}.power_w")]
 }
 
-/// On return the summary of run number `index` holds its gains where the run that it compares with was made after it.
+/// On return the summary of run number `index` holds its gains where the run that it compares with was made
+/// after it.
 ///
 /// # Errors
 /// [`StudyError::File`] for records that cannot be read or written.

@@ -3,14 +3,15 @@
 //! | stage | what it is | file |
 //! | --- | --- | --- |
 //! | [`Case`](farm::case::Case) | plain data: what the case file says | |
-//! | [`Prepared`] | checked, turbines loaded, domain laid out; its cost is known | `prepared`, `models`, `warnings`, `cost`, `self_check` |
-//! | [`Ready`] | pitch responses identified, turbulence made | `ready`, `pitch_identification`, `turbulence`, `air` |
+//! | [`Prepared`] | checked, laid out; its cost is known | `prepared`, `models`, `warnings`, `self_check` |
+//! | [`Ready`] | pitch responses identified, turbulence made | `ready`, `pitch_identification`, `air` |
 //! | run | from time zero to the last step | `simulate` with its `outputs`, `channels` |
 //! | | the same as values, without files | `in_memory` |
 //! | summary | its numbers, and gains over another run | `summarise` from `columns`, `gains` |
 //!
-//! No stage is ever half built: each comes whole from the one before. The stages need no files; [`run`] takes a study through
-//! all of them in a folder, from the case file to the records; [`Ready::run_all`] makes the runs as values.
+//! No stage is ever half built: each comes whole from the one before. The stages need no files; [`run`] takes
+//! a study through all of them in a folder, from the case file to the records; [`Ready::run_all`] makes the
+//! runs as values.
 
 mod air;
 mod azimuth_offset;

@@ -1,4 +1,5 @@
-//! Damage-equivalent loads and standard deviations of the moments of a run, their change, and what its pitching cost.
+//! Damage-equivalent loads and standard deviations of the moments of a run, their change, and what its
+//! pitching cost.
 
 use crate::StudyError;
 use crate::channels::LOADS;
@@ -42,7 +43,8 @@ pub(crate) fn moments(names: &[String], turbine: &str) -> Vec<Moment> {
     names.iter().filter_map(moment).collect()
 }
 
-/// Damage-equivalent load and standard deviation of `moment` (kN m), compared with nothing; the former of two samples or more.
+/// Damage-equivalent load and standard deviation of `moment` (kN m), compared with nothing; the former of two
+/// samples or more.
 ///
 /// Slopes as van der Hoek et al., section 2.4: 10 for the blade's composite, 4 for steel.
 pub(crate) fn loads(moment: &Moment, analysed: &Analysed<'_>) -> Result<Vec<Load>, StudyError> {
@@ -64,8 +66,8 @@ pub(crate) fn loads(moment: &Moment, analysed: &Analysed<'_>) -> Result<Vec<Load
     Ok(loads)
 }
 
-/// On return the `loads` of `moment` hold their change from `compared` to `analysed`; none where the compared run does not
-/// keep that moment.
+/// On return the `loads` of `moment` hold their change from `compared` to `analysed`; none where the compared
+/// run does not keep that moment.
 pub(crate) fn compare(
     loads: &mut [Load],
     moment: &Moment,
@@ -168,7 +170,8 @@ mod tests {
         }
     }
 
-    /// A sine of 2° and 8 s travels the reference, so that the bearing carries its steady moment where it presses.
+    /// A sine of 2° and 8 s travels the reference, so that the bearing carries its steady moment where it
+    /// presses.
     #[test]
     fn a_steady_moment_on_a_bearing_that_travels_the_reference_is_its_load() {
         let series = series(0.01, 6001);
@@ -188,7 +191,8 @@ mod tests {
         assert_eq!((duty.bearing_slope, duty.sample_interval), (3.0, 0.01));
     }
 
-    /// Swings that grow by 20 % and 30 % in two blocks, about another mean; a moment at rest beside them has no change.
+    /// Swings that grow by 20 % and 30 % in two blocks, about another mean; a moment at rest beside them has
+    /// no change.
     #[test]
     fn moments_that_swing_further_say_so_with_an_interval() {
         let names = ["time_s", "T1.RootMyb1_kN-m", "T1.TwrBsMyt_kN-m"];

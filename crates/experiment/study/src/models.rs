@@ -12,7 +12,8 @@ use std::path::Path;
 use std::sync::Arc;
 use turbine::Definition;
 
-/// Radius of the rotor in a controller's input file over the turbine's, less one, beyond which a reader must know (–).
+/// Radius of the rotor in a controller's input file over the turbine's, less one, beyond which a reader must
+/// know (–).
 const RADIUS_TO_WARN: f64 = 0.05;
 
 /// The kinds of machine that stand in a case.
@@ -20,8 +21,8 @@ const RADIUS_TO_WARN: f64 = 0.05;
 pub(crate) struct Machines {
     /// By the name of the machine, [`Placement::machine`].
     pub(crate) models: BTreeMap<String, Model>,
-    /// Text of each turbine model's file by the model's name, and of each controller's input file and its table by the
-    /// names that [`text_names`] gives.
+    /// Text of each turbine model's file by the model's name, and of each controller's input file and its
+    /// table by the names that [`text_names`] gives.
     pub(crate) texts: BTreeMap<String, String>,
     /// What a reader of the numbers must know.
     pub(crate) warnings: Vec<String>,
@@ -73,12 +74,14 @@ pub(crate) fn load(file: &CaseFile) -> Result<Machines, StudyError> {
     Ok(machines)
 }
 
-/// Names under which the texts of the controller's input file at `path` and of its table of coefficients are kept.
+/// Names under which the texts of the controller's input file at `path` and of its table of coefficients are
+/// kept.
 pub(crate) fn text_names(path: &str) -> [String; 2] {
     [format!("discon {path}"), format!("PerfFileName of discon {path}")]
 }
 
-/// The turbine of the library called `model`, or that in the file of this path, relative to `folder`; with its text.
+/// The turbine of the library called `model`, or that in the file of this path, relative to `folder`; with
+/// its text.
 pub(crate) fn turbine(model: &str, folder: &Path) -> Result<(String, TurbineFile), StudyError> {
     if let Some(text) = formats::library::text(model) {
         return Ok((text.to_owned(), formats::library::load(model)?));
@@ -93,7 +96,8 @@ pub(crate) fn turbine(model: &str, folder: &Path) -> Result<(String, TurbineFile
     Ok((String::new(), formats::library::load(model)?))
 }
 
-/// The controller's input file at `path`, relative to the folder of `file`; one that cannot be opened is pointed at there.
+/// The controller's input file at `path`, relative to the folder of `file`; one that cannot be opened is
+/// pointed at there.
 fn discon_of(file: &CaseFile, placement: &Placement, path: &str) -> Result<Discon, StudyError> {
     rosco::read(&file.folder().join(path)).map_err(|error| match error {
         TurbineFileError::Unreadable { path, source, .. } => {

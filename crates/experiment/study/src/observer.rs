@@ -95,7 +95,8 @@ pub trait Observer {
     fn checked(&mut self, _check: &SelfCheck) {}
     /// An identification moved on.
     fn identifying(&mut self, _progress: &IdentificationProgress) {}
-    /// It was found how the pitch of the turbine called `turbine`, and of those alike, acts; `again`: by an earlier session.
+    /// It was found how the pitch of the turbine called `turbine`, and of those alike, acts; `again`: by an
+    /// earlier session.
     fn identified(&mut self, _turbine: &str, _response: &PitchResponse, _again: bool) {}
     /// A run moved on.
     fn advanced(&mut self, _progress: &Progress) {}

@@ -1,4 +1,5 @@
-//! Pitch-response identification before the runs: once for turbines that are alike, kept in the study's folder.
+//! Pitch-response identification before the runs: once for turbines that are alike, kept in the study's
+//! folder.
 
 use crate::StudyError;
 use crate::models::text_names;
@@ -67,8 +68,8 @@ enum Needed {
 }
 
 impl Prepared {
-    /// What `runs` need to have found, each with the run and the turbine that need it. Individual pitch control comes first: it
-    /// is at work while a turbine is identified for the rest.
+    /// What `runs` need to have found, each with the run and the turbine that need it. Individual pitch
+    /// control comes first: it is at work while a turbine is identified for the rest.
     fn needed(&self, runs: &[usize]) -> Vec<(usize, usize, Needed)> {
         let (mut first, mut rest) = (Vec::new(), Vec::new());
         for &run in runs {
@@ -114,7 +115,8 @@ impl Prepared {
         PitchIdentifications { wanted, known }
     }
 
-    /// Digest of everything that decides what is found for turbine number `index`: offset, start and fallback do not.
+    /// Digest of everything that decides what is found for turbine number `index`: offset, start and fallback
+    /// do not.
     fn key(&self, index: usize, needed: &Needed) -> String {
         let (case, plan) = (&self.case, &self.plan);
         let placement = &case.turbines[index];
@@ -169,10 +171,11 @@ impl Prepared {
         )
     }
 
-    /// On return the models know the azimuth offset of every individual pitch control, and the case with which azimuth offset
-    /// every turbine pitches that joins a helix, and what its phase estimator makes of that, and how pitch acts on the loads of
-    /// every turbine that acts on meandering and is not given it, as far as `identifications` name them. What is found goes to `keep`. A
-    /// break when `stop` asked for an end before all was found.
+    /// On return the models know the azimuth offset of every individual pitch control, and the case with
+    /// which azimuth offset every turbine pitches that joins a helix, and what its phase estimator makes of
+    /// that, and how pitch acts on the loads of every turbine that acts on meandering and is not given it, as
+    /// far as `identifications` name them. What is found goes to `keep`. A break when `stop` asked for an end
+    /// before all was found.
     ///
     /// # Errors
     /// [`StudyError::Calibration`] when it cannot be found, and what `keep` errs with.
@@ -269,8 +272,8 @@ impl Prepared {
     }
 }
 
-/// What `noise` leaves in the digest of a calibration: nothing where none is given, so that what was found before one could
-/// give any is still known.
+/// What `noise` leaves in the digest of a calibration: nothing where none is given, so that what was found
+/// before one could give any is still known.
 fn trace(noise: &PhaseNoise) -> String {
     if *noise == PhaseNoise::default() { String::new() } else { format!(" {noise:?}") }
 }

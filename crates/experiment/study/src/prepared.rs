@@ -1,4 +1,5 @@
-//! The first stage: a case that is checked, its turbines loaded, its domain laid out. Nothing is simulated yet.
+//! The first stage: a case that is checked, its turbines loaded, its domain laid out. Nothing is simulated
+//! yet.
 
 use crate::StudyError;
 use crate::models::{self, Machines};
@@ -24,8 +25,8 @@ pub struct Prepared {
     pub case_text: String,
     /// One per turbine, in the case's order.
     pub models: Vec<Model>,
-    /// Text of each turbine model's file, and of each controller's own input file with its table; none of models that were
-    /// given as values.
+    /// Text of each turbine model's file, and of each controller's own input file with its table; none of
+    /// models that were given as values.
     pub turbine_texts: BTreeMap<String, String>,
     /// Domain and steps.
     pub plan: Plan,
@@ -123,8 +124,8 @@ fn pointed_at(file: &CaseFile, error: StudyError) -> StudyError {
     }
 }
 
-/// Whether every rotor that shall pitch by tilt and yaw has the blades for it, and every controller can be made: known now,
-/// not when its run begins after hours of others.
+/// Whether every rotor that shall pitch by tilt and yaw has the blades for it, and every controller can be
+/// made: known now, not when its run begins after hours of others.
 fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), StudyError> {
     for run in &case.runs {
         for ((control, placement), model) in run.control.iter().zip(&case.turbines).zip(models) {
@@ -142,7 +143,7 @@ fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), Study
             control.response = control.response.or(control.kind().any_response());
             if let Err(source) = controller(&control, &model, case, plan) {
                 let (run, turbine) = (run.name.clone(), placement.name.clone());
-                return Err(StudyError::Control { run, turbine, source });
+                return Err(StudyError::Control { run, turbine, source: Box::new(source) });
             }
         }
     }

@@ -18,16 +18,16 @@ use std::sync::atomic::AtomicBool;
 
 /// A study whose runs can begin, in any order.
 pub struct Ready {
-    /// The study; its controls and models hold what pitch-response identification found, its warnings those of the
-    /// self-check, too.
+    /// The study; its controls and models hold what pitch-response identification found, its warnings those
+    /// of the self-check, too.
     pub prepared: Prepared,
     /// The wind that enters, turbulence included.
     pub inflow: Arc<dyn Inflow>,
 }
 
 impl Prepared {
-    /// Does all that the runs of the case need before they begin, in silence: checks the rotors, identifies pitch responses,
-    /// makes the turbulence.
+    /// Does all that the runs of the case need before they begin, in silence: checks the rotors, identifies
+    /// pitch responses, makes the turbulence.
     ///
     /// # Errors
     /// [`StudyError`] of the self-check, of the identification, or of turbulence that cannot be made.
@@ -46,8 +46,8 @@ impl Prepared {
 }
 
 impl Ready {
-    /// `prepared`, whose rotors are `checked`, with what `identifications` name found and kept, and the turbulence made. A break when
-    /// `stop` asked for an end before all was found.
+    /// `prepared`, whose rotors are `checked`, with what `identifications` name found and kept, and the
+    /// turbulence made. A break when `stop` asked for an end before all was found.
     ///
     /// # Errors
     /// [`StudyError::Calibration`], [`StudyError::Inflow`], and what `keep` errs with.
@@ -72,8 +72,8 @@ impl Ready {
         Ok(ControlFlow::Continue(Self { prepared, inflow }))
     }
 
-    /// The farm of `run`, one of the case's, at time zero: turbines under their control in the case's air, to be stepped with
-    /// [`Farm::advance`].
+    /// The farm of `run`, one of the case's, at time zero: turbines under their control in the case's air, to
+    /// be stepped with [`Farm::advance`].
     ///
     /// # Errors
     /// [`StudyError`] for air that cannot be set up, and for turbines that cannot be put together.

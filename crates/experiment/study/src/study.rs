@@ -1,4 +1,5 @@
-//! A study in its folder: from the case file to the records of every run. The stages that it goes through need no files.
+//! A study in its folder: from the case file to the records of every run. The stages that it goes through
+//! need no files.
 
 use crate::columns::Columns;
 use crate::cost::check_memory;
@@ -171,8 +172,8 @@ impl<'a> Study<'a> {
         Ok(Self { outputs, directory, folders, wanted, open, resume: options.resume })
     }
 
-    /// Tells `observer` what the open runs will cost, and checks the rotors where there are such runs; a break when `stop` asked
-    /// for an end.
+    /// Tells `observer` what the open runs will cost, and checks the rotors where there are such runs; a
+    /// break when `stop` asked for an end.
     ///
     /// # Errors
     /// [`StudyError::Memory`], [`StudyError::SelfCheck`].
@@ -257,7 +258,8 @@ impl<'a> Study<'a> {
     }
 }
 
-/// On return the run's folder is ready: empty but for the manifest, or as an interrupted run left it when `resume`.
+/// On return the run's folder is ready: empty but for the manifest, or as an interrupted run left it when
+/// `resume`.
 fn begin_run(
     prepared: &Prepared,
     index: usize,

@@ -23,8 +23,8 @@ const WIND: &str = "wind.u_m_s";
 
 /// The run `run` in numbers, its gains left out, from its `columns`.
 ///
-/// `clipped_shares` (–) holds, for each turbine that is there, the share of control instants at which a pitch limit
-/// held a command back.
+/// `clipped_shares` (–) holds, for each turbine that is there, the share of control instants at which a pitch
+/// limit held a command back.
 pub(crate) fn summarise(
     setup: &Prepared,
     run: &Run,
@@ -87,7 +87,8 @@ impl<'a> Turbine<'a> {
         }
     }
 
-    /// Its numbers; on return `array` holds its power too (W), and `warnings` what a reader of its numbers must know.
+    /// Its numbers; on return `array` holds its power too (W), and `warnings` what a reader of its numbers
+    /// must know.
     fn summarise(
         &self,
         columns: &mut Columns,
@@ -158,7 +159,8 @@ impl<'a> Turbine<'a> {
     /// Its excitation as its blades delivered it; none without one, or in too short a record.
     fn delivered_pitch(&self, analysed: &Analysed) -> Result<Option<DeliveredPitch>, StudyError> {
         let Some(set) = excited(self.control) else { return Ok(None) };
-        // The excitation fades in over one period, and out from its stop on; only what lies between is measured.
+        // The excitation fades in over one period, and out from its stop on; only what lies between is
+        // measured.
         let period = self.setup.plan.diameter / (set.strouhal * self.setup.case.wind.speed);
         let row = |time: f64| (time / analysed.interval).ceil() as usize;
         let skip = row(set.start + period).saturating_sub(analysed.first);
@@ -285,8 +287,8 @@ fn collective_pitch(
     Ok(statistic(&mean, analysed.interval, BLOCK_LENGTH)?)
 }
 
-/// How the tip of the turbine at `index` outran the sound on the lattice in the analysed time; none where it did not, and
-/// where there is no lattice.
+/// How the tip of the turbine at `index` outran the sound on the lattice in the analysed time; none where it
+/// did not, and where there is no lattice.
 fn outrun(
     analysed: &Analysed,
     index: usize,

@@ -1,4 +1,5 @@
-//! Blade tips that outran the sound on the lattice: the step is chosen in the mean wind, and a gust may turn a rotor faster.
+//! Blade tips that outran the sound on the lattice: the step is chosen in the mean wind, and a gust may turn
+//! a rotor faster.
 
 use farm::plan::LATTICE_SOUND_SPEED;
 
@@ -19,8 +20,8 @@ pub(crate) struct Outrun {
 }
 
 impl Outrun {
-    /// None where the tip stayed slower: `radius` (m) from the axis of a rotor that turned at `rotor_speeds` (rad/s) at
-    /// `times` (s), over cells of `spacing` (m) in steps of `interval` (s).
+    /// None where the tip stayed slower: `radius` (m) from the axis of a rotor that turned at `rotor_speeds`
+    /// (rad/s) at `times` (s), over cells of `spacing` (m) in steps of `interval` (s).
     pub(crate) fn of(
         times: &[f64],
         rotor_speeds: &[f64],

@@ -33,7 +33,8 @@ name = "helix"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
 "#;
 
-/// Steps until all that is made once is made, and the helix, which fades in over a period of 107 s, is whole (–).
+/// Steps until all that is made once is made, and the helix, which fades in over a period of 107 s, is whole
+/// (–).
 const N_WARM: usize = 2200;
 /// Steps that are monitored (–).
 const N_WATCHED: usize = 100;
@@ -81,14 +82,16 @@ impl Recorder for Last {
     }
 }
 
-/// The flexible turbine of run number `run`, alone in wind that is the same everywhere, on the thread that asks.
+/// The flexible turbine of run number `run`, alone in wind that is the same everywhere, on the thread that
+/// asks.
 fn farm_of(run: usize) -> Farm<Air> {
     let (case, plan, model) = laid_out(CASE, &[], "iea-15mw");
     let air = uniform_air(&case);
     assemble::farm(&case, &case.runs[run], &plan, &[model], air).expect("such a farm can be")
 }
 
-/// Allocations of the monitored steps of run number `run` (–), and how far the pitch of blade 1 moved meanwhile (rad).
+/// Allocations of the monitored steps of run number `run` (–), and how far the pitch of blade 1 moved
+/// meanwhile (rad).
 fn allocations(run: usize) -> (usize, f64) {
     let mut farm = farm_of(run);
     let mut last = Last(0.0);

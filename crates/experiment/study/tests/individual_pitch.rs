@@ -1,4 +1,5 @@
-//! Individual pitch control whose turbine file leaves its azimuth offset out works with the one that is found before the runs.
+//! Individual pitch control whose turbine file leaves its azimuth offset out works with the one that is found
+//! before the runs.
 
 mod small;
 
@@ -22,7 +23,8 @@ const MINE: &str = r#"model = "mine.toml""#;
 const CONTROL: &str =
     r#"integral = 1e-9, proportional = 0.0, limit_deg = 2.0, ramp = [5.0, 7.0], floor = "none""#;
 
-/// A folder with a case of two turbines, whose file has the `keys` of individual pitch control beside those of [`CONTROL`].
+/// A folder with a case of two turbines, whose file has the `keys` of individual pitch control beside those
+/// of [`CONTROL`].
 fn folder(keys: &str) -> TempDir {
     let runs = r#"[[run]]
 name = "alone"
@@ -112,8 +114,8 @@ fn what_is_given_is_not_sought() {
     assert_eq!(offsets(&summaries), [Some(20f64.to_radians()); 3]);
 }
 
-/// The offset belongs to the turbine: a quicker helix tells the same within a degree. Pitch that is held over longer steps lags
-/// by half of what they are longer.
+/// The offset belongs to the turbine: a quicker helix tells the same within a degree. Pitch that is held over
+/// longer steps lags by half of what they are longer.
 #[test]
 fn the_command_tells_what_the_study_finds() {
     const STEP: f64 = 0.1;

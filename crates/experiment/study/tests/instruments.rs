@@ -1,5 +1,6 @@
-//! Instruments in the farm, in resolved flow and in prescribed wind: perfect ones change no bit, noise has the deviation that was set,
-//! records hold the truth, and a run that was stopped goes on with the same noise.
+//! Instruments in the farm, in resolved flow and in prescribed wind: perfect ones change no bit, noise has
+//! the deviation that was set, records hold the truth, and a run that was stopped goes on with the same
+//! noise.
 
 mod small;
 
@@ -100,8 +101,8 @@ fn perfect_instruments_change_no_bit() {
     for overrides in airs(&[]) {
         let parts = case(&overrides);
         let recorded = records(&mut farm_of(&parts), 40);
-        // The same turbines and controllers moved on by hand, with nothing between them; the air of the lattice feels
-        // the turbines only through the farm, so that by hand it is asked for one step.
+        // The same turbines and controllers moved on by hand, with nothing between them; the air of the
+        // lattice feels the turbines only through the farm, so that by hand it is asked for one step.
         let n_steps = if parts.0.flow.solver.resolves_induction { 1 } else { 40 };
         let mut by_hand = farm_of(&parts);
         for step in 0..n_steps {

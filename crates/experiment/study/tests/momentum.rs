@@ -67,8 +67,8 @@ fn deepest(moments: &[f64]) -> f64 {
     moments.iter().copied().fold(0.0, f64::min)
 }
 
-/// A blade loses load when it passes the tower, and only then. Ahead of a cylinder of radius R the wind lacks (R/x)²: here
-/// from a seventh at the blade's root to a twenty-fifth at its tip.
+/// A blade loses load when it passes the tower, and only then. Ahead of a cylinder of radius R the wind lacks
+/// (R/x)²: here from a seventh at the blade's root to a twenty-fifth at its tip.
 #[test]
 fn a_tower_takes_load_from_a_blade_once_a_turn() {
     let free = records(&[]);
@@ -109,8 +109,8 @@ const STEP_AT: f64 = 5.0;
 /// Time that is recorded afterwards (s).
 const WATCHED: f64 = 120.0;
 
-/// Thrust (N) of the turbine of the case with `overrides`, instant after instant, at held rotor speed in a wind along its
-/// shaft, the same on every blade wherever it stands; its pitch steps meanwhile.
+/// Thrust (N) of the turbine of the case with `overrides`, instant after instant, at held rotor speed in a
+/// wind along its shaft, the same on every blade wherever it stands; its pitch steps meanwhile.
 fn thrusts(overrides: &[&str]) -> Vec<f64> {
     let interval = 0.1;
     let farm = farm_of(overrides);
@@ -127,8 +127,9 @@ fn thrusts(overrides: &[&str]) -> Vec<f64> {
     thrusts
 }
 
-/// Before and long after a step of the pitch momentum theory says how much thrust there is, whatever the delay. In between
-/// the old wake still slows the wind: less thrust than without delay, each model at its own pace.
+/// Before and long after a step of the pitch momentum theory says how much thrust there is, whatever the
+/// delay. In between the old wake still slows the wind: less thrust than without delay, each model at its own
+/// pace.
 #[test]
 fn every_dynamic_inflow_answers_a_step_of_the_pitch_in_its_own_way() {
     let of = |inflow: &str| thrusts(&[&format!("turbine.T1.dynamic_inflow={inflow}")]);

@@ -1,4 +1,5 @@
-//! A kind of controller from outside: its law, its keys and its signal in this file, one line that adds it to the list.
+//! A kind of controller from outside: its law, its keys and its signal in this file, one line that adds it to
+//! the list.
 
 mod small;
 
@@ -15,7 +16,8 @@ use std::fs;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::{Observer, Outcome, Progress, Silent};
 
-/// Less torque than greedy control asks for, by a share that grows with the number of instants: it has a state.
+/// Less torque than greedy control asks for, by a share that grows with the number of instants: it has a
+/// state.
 struct Derated {
     inner: Box<dyn Controller>,
     share: f64,

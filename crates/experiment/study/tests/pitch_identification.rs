@@ -1,4 +1,5 @@
-//! What is identified before the runs stands in the records, and a resumed study takes it from there, with the same bits.
+//! What is identified before the runs stands in the records, and a resumed study takes it from there, with
+//! the same bits.
 
 mod small;
 

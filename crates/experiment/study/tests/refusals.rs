@@ -1,4 +1,5 @@
-//! What shows only once turbines and controllers are there is reported before the first step, at its line of the case file.
+//! What shows only once turbines and controllers are there is reported before the first step, at its line of
+//! the case file.
 
 mod small;
 

@@ -1,4 +1,5 @@
-//! A kind of flow solver from outside: even wind with wakes that follow the rotors' thrust, in this file alone.
+//! A kind of flow solver from outside: even wind with wakes that follow the rotors' thrust, in this file
+//! alone.
 
 mod small;
 
@@ -146,8 +147,8 @@ fn a_kind_from_outside_moves_the_air_of_a_farm() {
     let [first, second] = advanced(&mut farm, 200);
     let [alone, unwaked] = advanced(&mut farm_in(Solver::UNIFORM).2, 200);
     assert!((first / alone - 1.0).abs() < 1e-9, "nobody stands upstream of the first");
-    // Rotors below rated take a thrust coefficient of 0.7 to 0.9: 1 − √(1 − C_T) is 0.45 to 0.68 where the wake begins.
-    // Five diameters on the wake is (1 + 10 · 0.05)² as wide.
+    // Rotors below rated take a thrust coefficient of 0.7 to 0.9: 1 − √(1 − C_T) is 0.45 to 0.68 where the
+    // wake begins. Five diameters on the wake is (1 + 10 · 0.05)² as wide.
     let missing = 1.0 - second / unwaked;
     assert!((0.45 / 2.25..0.68 / 2.25).contains(&missing), "{missing}");
 }

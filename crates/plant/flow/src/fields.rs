@@ -8,7 +8,8 @@ pub trait FieldSource {
     /// The wind now on the plane that `axes` span at `position` (m, farm frame) along the third axis.
     fn plane(&self, name: &str, axes: PlaneAxes, position: f64) -> Plane;
 
-    /// On return `plane`, which [`plane`](Self::plane) gave, holds the wind and the time of now; allocates nothing.
+    /// On return `plane`, which [`plane`](Self::plane) gave, holds the wind and the time of now; allocates
+    /// nothing.
     fn refresh(&self, plane: &mut Plane);
 
     /// The wind now at every `stride`-th point along each axis.

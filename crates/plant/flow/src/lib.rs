@@ -11,7 +11,8 @@ use thiserror::Error;
 
 /// A wind field that can be sampled.
 pub trait WindField {
-    /// Writes the wind (m/s, farm frame) at each of `positions` (m, farm frame) into `velocities`, of the same length.
+    /// Writes the wind (m/s, farm frame) at each of `positions` (m, farm frame) into `velocities`, of the
+    /// same length.
     fn sample(&self, positions: &[Vector3], velocities: &mut [Vector3]);
 }
 
@@ -20,7 +21,8 @@ pub trait FlowSolver: WindField {
     /// Moves the air on by `duration` (s) under `forces`, which act throughout.
     ///
     /// # Errors
-    /// [`FlowError::Diverged`] when the field is no longer finite or leaves the speeds that the solver can carry.
+    /// [`FlowError::Diverged`] when the field is no longer finite or leaves the speeds that the solver can
+    /// carry.
     fn advance(&mut self, duration: f64, forces: &[PointForce]) -> Result<(), FlowError>;
 
     /// Whether sampled velocities already contain the rotors' induction.
@@ -43,9 +45,11 @@ impl<Flow: FlowSolver + ?Sized> FlowSolver for Box<Flow> {
     }
 }
 
-/// Wind prescribed everywhere and for all time: what enters a solver's inlet, or is the wind where no flow is resolved.
+/// Wind prescribed everywhere and for all time: what enters a solver's inlet, or is the wind where no flow is
+/// resolved.
 pub trait Inflow: Send + Sync {
-    /// Writes the wind (m/s) at `time` (s) at each of `positions` (m, farm frame) into `velocities`, of the same length.
+    /// Writes the wind (m/s) at `time` (s) at each of `positions` (m, farm frame) into `velocities`, of the
+    /// same length.
     fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]);
 }
 

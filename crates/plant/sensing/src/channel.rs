@@ -18,9 +18,11 @@ pub(crate) struct Channel {
 }
 
 impl Channel {
-    /// What `instrument` shows of `truth` an `interval` (s) after the reading before, with the noise of `draw`.
+    /// What `instrument` shows of `truth` an `interval` (s) after the reading before, with the noise of
+    /// `draw`.
     ///
-    /// The truth is taken to go straight from reading to reading, and lags are exact for its value in the middle.
+    /// The truth is taken to go straight from reading to reading, and lags are exact for its value in the
+    /// middle.
     pub(crate) fn read(
         &mut self,
         instrument: Instrument,

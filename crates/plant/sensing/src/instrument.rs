@@ -3,7 +3,8 @@
 use crate::InstrumentError;
 use serde::{Deserialize, Serialize};
 
-/// The instruments of a turbine; those of the blades are alike and err apart. Figures are in the unit of the measurement.
+/// The instruments of a turbine; those of the blades are alike and err apart. Figures are in the unit of the
+/// measurement.
 ///
 /// Thrust, aerodynamic torque and the wind at the rotor have no instrument.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,9 +1,9 @@
 //! Instruments and sensors: what a controller sees of the truth.
 //!
-//! A turbine's standard [`Instruments`] show the truth with lag, bias, noise, resolution and drop-outs; they are perfect unless
-//! they are set otherwise, and then every bit of the truth goes through. Further [sensors](Sensor) have names and may look at the
-//! flow. Noise belongs to a seed, a quantity and the number of the reading, so that a run that was killed goes on with the same
-//! noise.
+//! A turbine's standard [`Instruments`] show the truth with lag, bias, noise, resolution and drop-outs; they
+//! are perfect unless they are set otherwise, and then every bit of the truth goes through. Further
+//! [sensors](Sensor) have names and may look at the flow. Noise belongs to a seed, a quantity and the number
+//! of the reading, so that a run that was killed goes on with the same noise.
 
 mod channel;
 mod instrument;
@@ -20,8 +20,8 @@ use quantity::{QUANTITIES, Quantity};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The seed of the noise of turbine number `turbine` of a layout in a wind of `seed`: another wind and another turbine
-/// have other noise.
+/// The seed of the noise of turbine number `turbine` of a layout in a wind of `seed`: another wind and
+/// another turbine have other noise.
 pub fn seed_of_turbine(seed: u64, turbine: usize) -> u64 {
     noise::mixed(noise::mixed(seed).wrapping_add(turbine as u64))
 }

@@ -31,8 +31,8 @@ impl Draw {
 
 /// A number with the bits of `number` well mixed.
 ///
-/// Source: the output function of Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014
-/// (variant 13 of Stafford).
+/// Source: the output function of Steele, Lea, Flood, "Fast splittable pseudorandom number generators",
+/// OOPSLA 2014 (variant 13 of Stafford).
 pub(crate) fn mixed(number: u64) -> u64 {
     let a = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let b = (a ^ (a >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

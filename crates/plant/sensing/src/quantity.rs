@@ -8,8 +8,8 @@ use basis::Measurements;
 pub(crate) struct Quantity {
     /// Name, as the field of [`Instruments`] is called.
     pub(crate) name: &'static str,
-    /// Stream of its noise, of the first blade's where there is one for each (–). A stream belongs to a quantity for good: noise of
-    /// recorded runs depends on it.
+    /// Stream of its noise, of the first blade's where there is one for each (–). A stream belongs to a
+    /// quantity for good: noise of recorded runs depends on it.
     first_stream: usize,
     /// Whether it goes on beyond full turns and is shown within one.
     pub(crate) is_azimuth: bool,

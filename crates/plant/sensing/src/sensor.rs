@@ -1,4 +1,5 @@
-//! Sensors beyond the standard instruments: they see the turbine and look at the flow, and their readings cross the wall by name.
+//! Sensors beyond the standard instruments: they see the turbine and look at the flow, and their readings
+//! cross the wall by name.
 
 use basis::keys::{Objection, Table, Values};
 use basis::registry::{Named, Registry};

@@ -1,4 +1,5 @@
-//! Actuator lines: blades as lines of elements in a wind that already contains the rotor's own, smeared induction.
+//! Actuator lines: blades as lines of elements in a wind that already contains the rotor's own, smeared
+//! induction.
 
 use crate::aero::Polar;
 use crate::definition::{BladeStation, Definition};
@@ -9,11 +10,13 @@ use basis::Vector3;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Sweeps of the lifting-line fixed point per step (–); each step starts from the last result, so few suffice.
+/// Sweeps of the lifting-line fixed point per step (–); each step starts from the last result, so few
+/// suffice.
 const N_SWEEPS: usize = 4;
 /// Relaxation of a sweep at an element whose circulation does not react to its own induction (–).
 const RELAXATION: f64 = 0.6;
-/// Share of uniform spacing among the elements' borders (–); the rest is cosine spacing, finer at root and tip.
+/// Share of uniform spacing among the elements' borders (–); the rest is cosine spacing, finer at root and
+/// tip.
 const UNIFORM_SHARE: f64 = 0.5;
 
 /// The blades of a rotor, all alike; parameters only.
@@ -72,8 +75,8 @@ pub struct Load {
 
 /// How the sections of a rotor respond to the wind at them.
 pub trait Sections {
-    /// Lift and drag coefficient (–) of element number `index`, blade after blade, at `angle_of_attack` (rad) and a relative
-    /// `speed` (m/s). It may be called several times for one instant; the last call counts.
+    /// Lift and drag coefficient (–) of element number `index`, blade after blade, at `angle_of_attack` (rad)
+    /// and a relative `speed` (m/s). It may be called several times for one instant; the last call counts.
     fn coefficients(&mut self, index: usize, angle_of_attack: f64, speed: f64) -> [f64; 2];
 }
 
@@ -119,8 +122,9 @@ impl Scratch {
 impl ActuatorLine {
     /// The blades of `definition` in `n_elements` each, forces smeared over `smearing_length` (m).
     ///
-    /// Wind samples that a flow interpolates linearly between points `sample_spacing` (m) apart are smeared a little
-    /// more: a hat of that half-width has the variance `sample_spacing`²/6 where a Gaussian of width ε has ε²/2.
+    /// Wind samples that a flow interpolates linearly between points `sample_spacing` (m) apart are smeared a
+    /// little more: a hat of that half-width has the variance `sample_spacing`²/6 where a Gaussian of width ε
+    /// has ε²/2.
     pub fn new(
         definition: Arc<Definition>,
         n_elements: usize,
@@ -160,7 +164,8 @@ impl ActuatorLine {
             })
             .collect();
         for element in &mut elements {
-            // Γ reacts to an upwash with π c (thin aerofoil), the upwash to Γ with 1/(π Δr) (its own border vortices).
+            // Γ reacts to an upwash with π c (thin aerofoil), the upwash to Γ with 1/(π Δr) (its own border
+            // vortices).
             element.relaxation = RELAXATION / (1.0 + element.chord / element.width);
         }
         let core = |station: &BladeStation| {
@@ -183,12 +188,14 @@ impl ActuatorLine {
         &self.elements
     }
 
-    /// Loads of all elements in the winds `onsets`, sections turned by `pitch` (rad) beside their twist, with the smearing correction.
+    /// Loads of all elements in the winds `onsets`, sections turned by `pitch` (rad) beside their twist, with
+    /// the smearing correction.
     ///
-    /// `onsets`, `pitch`, `corrections` and `loads` hold `n_blades × n_elements` values, blade after blade. `corrections` is the
-    /// state of the smearing correction: the induced velocity lost by smearing, axial and along the rotation (m/s). On return it
-    /// has been relaxed towards the value that belongs to `loads`. `rotor_speed` (rad/s) sets the pitch of the helical wake
-    /// together with the mean wind through the rotor; `sections` respond to the wind at each element.
+    /// `onsets`, `pitch`, `corrections` and `loads` hold `n_blades × n_elements` values, blade after blade.
+    /// `corrections` is the state of the smearing correction: the induced velocity lost by smearing, axial
+    /// and along the rotation (m/s). On return it has been relaxed towards the value that belongs to `loads`.
+    /// `rotor_speed` (rad/s) sets the pitch of the helical wake together with the mean wind through the
+    /// rotor; `sections` respond to the wind at each element.
     pub fn loads(
         &self,
         onsets: &[Onset],
@@ -243,7 +250,8 @@ impl ActuatorLine {
         }
     }
 
-    /// On return `scratch.excess` holds the nonlinear part of the smearing correction on each ring (m/s), by momentum theory.
+    /// On return `scratch.excess` holds the nonlinear part of the smearing correction on each ring (m/s), by
+    /// momentum theory.
     fn nonlinear_part(&self, onsets: &[Onset], carried: f64, scratch: &mut Scratch) {
         let n = self.elements.len();
         let Scratch { circulations, thrusts, speeds, excess: parts } = scratch;
@@ -262,7 +270,8 @@ impl ActuatorLine {
         }
     }
 
-    /// Component of `winds` (m/s, one for each element, blade after blade) along `shaft`, averaged over the swept area (m/s).
+    /// Component of `winds` (m/s, one for each element, blade after blade) along `shaft`, averaged over the
+    /// swept area (m/s).
     pub fn mean_axial(&self, winds: &[Vector3], shaft: Vector3) -> f64 {
         let (mut sum, mut area) = (Vector3::ZERO, 0.0);
         for (wind, element) in winds.iter().zip(self.elements.iter().cycle()) {
@@ -317,14 +326,16 @@ impl Element {
         }
     }
 
-    /// Its middle, farm frame (m), on a blade at `azimuth` (rad) whose pitch axis is coned by `precone` (rad).
+    /// Its middle, farm frame (m), on a blade at `azimuth` (rad) whose pitch axis is coned by `precone`
+    /// (rad).
     pub fn position(&self, frame: &Frame, azimuth: f64, precone: f64) -> Vector3 {
         let axes = frame.blade(azimuth, precone);
         frame.hub + axes.span * self.span - axes.normal * self.prebend
     }
 }
 
-/// The blade at `span` (m) from its root, linear between `stations`; their two polars, and the share of the second (–).
+/// The blade at `span` (m) from its root, linear between `stations`; their two polars, and the share of the
+/// second (–).
 fn section(stations: &[BladeStation], span: f64) -> (BladeStation, [usize; 2], f64) {
     let next =
         stations.partition_point(|station| station.span <= span).clamp(1, stations.len() - 1);

@@ -33,8 +33,9 @@ pub struct PitchState {
 impl PitchActuator {
     /// Advances `state` by `interval` (s) towards the constant `command` (rad); true if a limit acted.
     ///
-    /// Between limits θ″ = ω² (command − θ) − 2 ζ ω θ′ is followed exactly for any interval. The rate is limited sub-step
-    /// by sub-step; at a position limit the blade stands still. A command out of range counts as limited.
+    /// Between limits θ″ = ω² (command − θ) − 2 ζ ω θ′ is followed exactly for any interval. The rate is
+    /// limited sub-step by sub-step; at a position limit the blade stands still. A command out of range
+    /// counts as limited.
     pub fn advance(&self, state: &mut PitchState, interval: f64, command: f64) -> bool {
         let target = command.clamp(self.minimum_pitch, self.maximum_pitch);
         let mut limited = target != command;

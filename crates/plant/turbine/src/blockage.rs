@@ -5,15 +5,16 @@ const GREATEST_THRUST: f64 = 0.96;
 
 /// Ratio of the equivalent unbounded free-stream speed to the channel's inflow speed (–), never below one.
 ///
-/// `thrust_coefficient` (–) is on the channel's inflow speed and the rotor's area; `area_ratio` (–) is the rotor's area
-/// over the channel's cross-section, whose walls are frictionless or whose sides are periodic.
+/// `thrust_coefficient` (–) is on the channel's inflow speed and the rotor's area; `area_ratio` (–) is the
+/// rotor's area over the channel's cross-section, whose walls are frictionless or whose sides are periodic.
 ///
-/// A disc of the same thrust T and the same speed through it, u₁, in unbounded air has U′ with T = 2 ρ A u₁ (U′ − u₁),
-/// so U′/U = u₁/U + C_T / (4 u₁/U). The speed u₁ follows from mass, momentum and Bernoulli in the channel, with the wake
-/// and the faster bypass at one pressure far behind.
+/// A disc of the same thrust T and the same speed through it, u₁, in unbounded air has U′ with T = 2 ρ A u₁
+/// (U′ − u₁), so U′/U = u₁/U + C_T / (4 u₁/U). The speed u₁ follows from mass, momentum and Bernoulli in the
+/// channel, with the wake and the faster bypass at one pressure far behind.
 /// Source: axial momentum theory of a disc in a wind tunnel, Glauert (1935), ch. IX, in the form of
 /// Mikkelsen, Sørensen (2002) and Werle (2010).
-/// Limits: no swirl, no mixing of wake and bypass; above C_T 0.96, where that no longer holds, the value at 0.96.
+/// Limits: no swirl, no mixing of wake and bypass; above C_T 0.96, where that no longer holds, the value at
+/// 0.96.
 ///
 /// ```
 /// // 8 D × 8 D: a percent of blockage lets a rotor at C_T 0.8 work as if the wind were 0.5 % faster
@@ -72,7 +73,8 @@ mod tests {
     fn the_channel_balances_mass_momentum_and_energy() {
         let (thrust_coefficient, area_ratio) = (0.75, 0.1);
         let disc = disc_speed_ratio(thrust_coefficient, area_ratio);
-        // Rebuild the channel from the disc speed: mass through the disc fixes the wake's area for each wake speed.
+        // Rebuild the channel from the disc speed: mass through the disc fixes the wake's area for each wake
+        // speed.
         let mut best = f64::MAX;
         for i in 1..10_000 {
             let w = f64::from(i) * 1e-4;

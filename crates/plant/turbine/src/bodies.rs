@@ -5,8 +5,8 @@ use crate::rotor::Frame;
 use basis::{PointForce, Vector3};
 use std::f64::consts::PI;
 
-/// Drag coefficient of hub and nacelle on the hub's frontal area (–): a blunt cylinder along the flow, one to two
-/// diameters long. Source: Hoerner, Fluid-Dynamic Drag (1965), ch. III.
+/// Drag coefficient of hub and nacelle on the hub's frontal area (–): a blunt cylinder along the flow, one to
+/// two diameters long. Source: Hoerner, Fluid-Dynamic Drag (1965), ch. III.
 const NACELLE_DRAG_COEFFICIENT: f64 = 0.85;
 /// Tower segments are no longer than this share of the smearing length, so that their Gaussians blend.
 const LONGEST_SEGMENT: f64 = 0.75;
@@ -24,7 +24,8 @@ pub struct Body {
     axis: Vector3,
 }
 
-/// The bodies of a turbine of `definition` with its tower's foot at `position` (m): tower from the bottom up, then nacelle.
+/// The bodies of a turbine of `definition` with its tower's foot at `position` (m): tower from the bottom up,
+/// then nacelle.
 pub fn of(
     definition: &Definition,
     position: Vector3,
@@ -70,8 +71,8 @@ fn tower_at(profile: &[TowerProfile], height: f64) -> (f64, f64) {
 impl Body {
     /// A segment of a round tower: `height` (m) of it around `position`, `diameter` (m) wide.
     ///
-    /// The wake of a two-dimensional drag smeared over ε takes c_d d / (4 √π ε) from the wind at its own centre,
-    /// Martínez-Tossas (2017): half the wake's centre-line deficit.
+    /// The wake of a two-dimensional drag smeared over ε takes c_d d / (4 √π ε) from the wind at its own
+    /// centre, Martínez-Tossas (2017): half the wake's centre-line deficit.
     pub fn tower_segment(
         position: Vector3,
         height: f64,
@@ -98,10 +99,12 @@ impl Body {
         self.self_induction = 0.0;
     }
 
-    /// Force on the air in `wind` (m/s) sampled at the body's position, ½ ρ c_d A |v| v against the free wind v.
+    /// Force on the air in `wind` (m/s) sampled at the body's position, ½ ρ c_d A |v| v against the free wind
+    /// v.
     pub fn force(&self, wind: Vector3, air_density: f64, smearing_length: f64) -> PointForce {
         let across = wind - self.axis * wind.dot(self.axis);
-        // A body wider than its smearing would reduce its own wind to nothing; at most half of the wind is restored.
+        // A body wider than its smearing would reduce its own wind to nothing; at most half of the wind is
+        // restored.
         let free = across / (1.0 - self.self_induction.min(0.5));
         let force = free * (-0.5 * air_density * self.drag_area * free.length());
         PointForce::of_body(self.position, force, smearing_length)

@@ -66,7 +66,8 @@ pub struct BladeStation {
     pub twist: f64,
     /// Aerodynamic centre off the pitch axis, positive upwind at zero pitch (m).
     pub prebend: f64,
-    /// Aerodynamic centre off the pitch axis in the plane of rotation, positive towards the trailing edge (m).
+    /// Aerodynamic centre off the pitch axis in the plane of rotation, positive towards the trailing edge
+    /// (m).
     pub sweep: f64,
     /// Index into [`Definition::polars`].
     pub polar: usize,
@@ -205,13 +206,15 @@ impl Definition {
         radius * cosine - prebend * sine
     }
 
-    /// Radius of the disc that the blade tips sweep, seen along the shaft (m): tip radius less what precone and prebend take.
+    /// Radius of the disc that the blade tips sweep, seen along the shaft (m): tip radius less what precone
+    /// and prebend take.
     pub fn rotor_radius(&self) -> f64 {
         let prebend = self.blade.last().map_or(0.0, |tip| tip.prebend);
         self.distance_from_shaft(self.rotor.tip_radius, prebend)
     }
 
-    /// Diameter of the swept disc (m), twice [`Definition::rotor_radius`]; a little less than the name of a turbine says.
+    /// Diameter of the swept disc (m), twice [`Definition::rotor_radius`]; a little less than the name of a
+    /// turbine says.
     pub fn rotor_diameter(&self) -> f64 {
         2.0 * self.rotor_radius()
     }
@@ -250,7 +253,8 @@ impl Definition {
         self.drive_train.gearbox_efficiency * self.drive_train.generator_efficiency
     }
 
-    /// ∫ mass × `weight`(span) over one blade; mass and weight linear between sections, exact for their product up to cubic.
+    /// ∫ mass × `weight`(span) over one blade; mass and weight linear between sections, exact for their
+    /// product up to cubic.
     fn blade_moment(&self, weight: impl Fn(f64) -> f64) -> f64 {
         self.blade_structure
             .sections

@@ -1,31 +1,34 @@
-//! Smearing correction of an actuator line: the induction lost by smearing, from the helical wake that the blades trail.
+//! Smearing correction of an actuator line: the induction lost by smearing, from the helical wake that the
+//! blades trail.
 //!
-//! Spreading a blade's force over a Gaussian of width ε convolves its whole wake with that Gaussian: to first order in
-//! the disturbance, the flow around the actuator line is the thin wake's flow, smeared. The velocity to be added at the
-//! blade is thus known,
+//! Spreading a blade's force over a Gaussian of width ε convolves its whole wake with that Gaussian: to first
+//! order in the disturbance, the flow around the actuator line is the thin wake's flow, smeared. The velocity
+//! to be added at the blade is thus known,
 //!
 //! ```text
 //! correction(x) = Σ_filaments  γ/4π ∫ [q(d/ε_core) − q(d/ε)]  dl × d / |d|³,        d = x − filament point,
 //! q(s) = erf(s) − 2 s exp(−s²)/√π,
 //! ```
 //!
-//! with q the share of a vortex element's circulation within the distance s of a Gaussian blob. The bracket decays as
-//! exp(−d²/ε²): only the wake within some 3 ε of the blade counts, with its helical shape and with the filaments of
-//! other blades and earlier turns that pass within reach. The flow solver resolves the rest. With ε at the core ε_core, the
-//! optimal width of a quarter chord, the correction is zero.
+//! with q the share of a vortex element's circulation within the distance s of a Gaussian blob. The bracket
+//! decays as exp(−d²/ε²): only the wake within some 3 ε of the blade counts, with its helical shape and with
+//! the filaments of other blades and earlier turns that pass within reach. The flow solver resolves the rest.
+//! With ε at the core ε_core, the optimal width of a quarter chord, the correction is zero.
 //!
 //! Sources: the Gaussian-smeared line as a lifting line with a viscous core, Martínez-Tossas (2019) and
 //! Meyer Forsting (2019); ε_core = c/4, Martínez-Tossas (2017); q is the radial integral of the Gaussian blob
 //! exp(−r²/ε²)/(ε³ π^{3/2}) that `basis::PointForce` defines.
-//! Limits: the near wake is a helix of constant radius and of one pitch for the whole rotor; circulation changes slowly
-//! against the passage of a few ε; blades are straight and lie in the rotor plane (precone is neglected here).
+//! Limits: the near wake is a helix of constant radius and of one pitch for the whole rotor; circulation
+//! changes slowly against the passage of a few ε; blades are straight and lie in the rotor plane (precone is
+//! neglected here).
 
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
 /// Optimal Gaussian width over chord (–), Martínez-Tossas (2017).
 pub const OPTIMAL_WIDTH_OVER_CHORD: f64 = 0.25;
-/// Helix pitches, advance per radian over rotor radius, for which influences are tabulated: the first of them, …
+/// Helix pitches, advance per radian over rotor radius, for which influences are tabulated: the first of
+/// them, …
 const FIRST_PITCH: f64 = 0.03;
 /// … the ratio of one to the one before, …
 const PITCH_RATIO: f64 = 1.35;
@@ -51,8 +54,9 @@ pub struct SmearingCorrection {
     n_blades: usize,
     n_stations: usize,
     radius: f64,
-    /// Axial and tangential influence, `N_PITCHES × n_blades × n_stations × n_stations`: of one unit of circulation
-    /// on an element (last index) of the blade so many ahead (second) on a control point (third) (1/m).
+    /// Axial and tangential influence, `N_PITCHES × n_blades × n_stations × n_stations`: of one unit of
+    /// circulation on an element (last index) of the blade so many ahead (second) on a control point (third)
+    /// (1/m).
     axial: Vec<f64>,
     tangential: Vec<f64>,
 }
@@ -65,7 +69,8 @@ pub struct HelixShare {
 }
 
 impl SmearingCorrection {
-    /// Tabulates the influences between the blades of a rotor whose forces are smeared over `smearing_length` (m).
+    /// Tabulates the influences between the blades of a rotor whose forces are smeared over `smearing_length`
+    /// (m).
     ///
     /// The rotor's radius is the last border of `span`. Takes a fraction of a second.
     pub fn new(n_blades: usize, span: &Span, smearing_length: f64) -> Self {
@@ -116,10 +121,11 @@ impl SmearingCorrection {
         HelixShare { index, share: position - index as f64 }
     }
 
-    /// Smearing correction at element `station` of `blade` (m/s): axial (downwind) and tangential (along the rotation).
+    /// Smearing correction at element `station` of `blade` (m/s): axial (downwind) and tangential (along the
+    /// rotation).
     ///
-    /// `circulations` (m²/s) holds `n_blades × n_stations` values, positive where the lift drives the rotor and pushes
-    /// it downwind.
+    /// `circulations` (m²/s) holds `n_blades × n_stations` values, positive where the lift drives the rotor
+    /// and pushes it downwind.
     pub fn velocity_correction(
         &self,
         helix: HelixShare,
@@ -147,7 +153,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// A trailing vortex: a helix of `radius` (m) behind a blade `lead` (rad) ahead, downwind by `advance` (m) per radian.
+/// A trailing vortex: a helix of `radius` (m) behind a blade `lead` (rad) ahead, downwind by `advance` (m)
+/// per radian.
 struct Helix {
     radius: f64,
     advance: f64,
@@ -155,13 +162,13 @@ struct Helix {
 }
 
 impl Helix {
-    /// Axial and tangential velocity (1/m, per unit circulation) lost at radius `r` (m) of the blade at azimuth zero by
-    /// smearing over `smearing_length` (m) instead of `core` (m).
+    /// Axial and tangential velocity (1/m, per unit circulation) lost at radius `r` (m) of the blade at
+    /// azimuth zero by smearing over `smearing_length` (m) instead of `core` (m).
     fn correction_influence(&self, r: f64, core: f64, smearing_length: f64) -> (f64, f64) {
         let mut total = (0.0, 0.0);
         let reach = REACH * smearing_length;
-        // The filament passes the blade's azimuth once a turn; each passage is integrated on either side, the points
-        // gathered where it is nearest.
+        // The filament passes the blade's azimuth once a turn; each passage is integrated on either side, the
+        // points gathered where it is nearest.
         let mut passage = self.lead;
         let oldest = reach / self.advance;
         while passage - PI < oldest {
@@ -186,8 +193,9 @@ impl Helix {
 
     /// Integrand of [`Self::correction_influence`] at `theta` (rad) of wake age.
     fn element(&self, r: f64, theta: f64, core: f64, smearing_length: f64) -> (f64, f64) {
-        // Symbols: axes are downwind, radial of the blade at azimuth zero, tangential along the rotation, right-handed.
-        // Filament point (h θ, ρ cos α, ρ sin α) with α = lead − θ; d from it to (0, r, 0); l its derivative to θ.
+        // Symbols: axes are downwind, radial of the blade at azimuth zero, tangential along the rotation,
+        // right-handed. Filament point (h θ, ρ cos α, ρ sin α) with α = lead − θ; d from it to (0, r, 0); l
+        // its derivative to θ.
         let (rho, h) = (self.radius, self.advance);
         let (sine, cosine) = (self.lead - theta).sin_cos();
         let distance_squared =
@@ -222,7 +230,8 @@ pub(crate) fn blob_share(s: f64) -> f64 {
     if s > 5.0 {
         return 1.0;
     }
-    // 2/√π exp(−s²) Σ_{n≥1} 2ⁿ s^{2n+1} / (2n+1)!!, all terms positive: exact for small s, where erf would cancel.
+    // 2/√π exp(−s²) Σ_{n≥1} 2ⁿ s^{2n+1} / (2n+1)!!, all terms positive: exact for small s, where erf would
+    // cancel.
     let square = s * s;
     let mut term = 2.0 / PI.sqrt() * (-square).exp() * s;
     let mut sum = 0.0;

@@ -1,16 +1,18 @@
-//! Nonlinear part of the smearing correction of a heavily loaded disc, beyond the linear wake of [`crate::lifting_line`].
+//! Nonlinear part of the smearing correction of a heavily loaded disc, beyond the linear wake of
+//! [`crate::lifting_line`].
 //!
-//! In linear theory the smeared wake lacks the induction of the load that smearing moves beyond the tip. A loaded disc
-//! is not linear: the wake of a lighter annulus is convected faster and induces less than in proportion. Annulus by
-//! annulus, momentum theory gives both the flow that the solver should find under the smeared load τ_s and the one
-//! under the thin blades' load τ (N/m²), from the speed u through the disc alone:
+//! In linear theory the smeared wake lacks the induction of the load that smearing moves beyond the tip. A
+//! loaded disc is not linear: the wake of a lighter annulus is convected faster and induces less than in
+//! proportion. Annulus by annulus, momentum theory gives both the flow that the solver should find under the
+//! smeared load τ_s and the one under the thin blades' load τ (N/m²), from the speed u through the disc
+//! alone:
 //!
 //! ```text
 //! U − u_s = τ_s / (2 ρ u_s),        u_t (U − u_t) = τ / (2 ρ),        correction = u_t − u_s.
 //! ```
 //!
-//! The helices convected at u_c give the linear (τ_s − τ) / (2 ρ u_c) on average over the azimuth; [`excess`] gives the
-//! difference. It vanishes for light loads and for narrow smearing.
+//! The helices convected at u_c give the linear (τ_s − τ) / (2 ρ u_c) on average over the azimuth; [`excess`]
+//! gives the difference. It vanishes for light loads and for narrow smearing.
 //! Source: axial momentum theory; above an induction of 0.4 its tangent, as Glauert's empirical relation.
 
 use std::f64::consts::PI;
@@ -34,7 +36,8 @@ impl Loading {
             .iter()
             .flat_map(|&r| centres.iter().map(move |&q| (r, q)))
             .map(|(r, q)| {
-                // Gaussian at distance r from the axis, averaged over a ring of radius q: Bessel's I₀, scaled.
+                // Gaussian at distance r from the axis, averaged over a ring of radius q: Bessel's I₀,
+                // scaled.
                 let argument = 2.0 * r * q / (smearing_length * smearing_length);
                 let apart = (r - q) / smearing_length;
                 (-apart * apart).exp() * scaled_bessel(argument) / area
@@ -49,8 +52,9 @@ impl Loading {
     }
 }
 
-/// Axial velocity (m/s) that the linear wake leaves out: `speed` (m/s) is sampled through the disc, `smeared` and `thin`
-/// are the loads there over the air's density (m²/s²), `carried` the speed at which the linear wake is convected (m/s).
+/// Axial velocity (m/s) that the linear wake leaves out: `speed` (m/s) is sampled through the disc, `smeared`
+/// and `thin` are the loads there over the air's density (m²/s²), `carried` the speed at which the linear
+/// wake is convected (m/s).
 pub fn excess(speed: f64, smeared: f64, thin: f64, carried: f64) -> f64 {
     if speed <= 0.0 || carried <= 0.0 || thin <= 0.0 {
         return 0.0;
@@ -73,8 +77,9 @@ fn induction(coefficient: f64) -> f64 {
     }
 }
 
-/// Speed through a disc over the free stream's (–), given its `load` over the air's density and the square of the speed
-/// through it (–): [`induction`] solved for the free stream, so that both agree however slow the air is.
+/// Speed through a disc over the free stream's (–), given its `load` over the air's density and the square of
+/// the speed through it (–): [`induction`] solved for the free stream, so that both agree however slow the
+/// air is.
 fn through(load: f64) -> f64 {
     // Symbols: b the unknown ratio, one less the induction; load b² = C(1 − b)/2.
     let b = 1.0 / (1.0 + 0.5 * load);

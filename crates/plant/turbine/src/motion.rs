@@ -12,7 +12,7 @@ pub struct ElementMotion {
     pub velocity: Vector3,
     /// Its directions: precone, prebend and bending included, pitch and twist not.
     pub axes: BladeFrame,
-    /// Rotation of the section about `axes.span`, away from facing `axes.normal`, positive to feather (rad): pitch, and the
-    /// rotation by combined out-of-plane and in-plane bending; twist not.
+    /// Rotation of the section about `axes.span`, away from facing `axes.normal`, positive to feather (rad):
+    /// pitch, and the rotation by combined out-of-plane and in-plane bending; twist not.
     pub pitch: f64,
 }

@@ -1,6 +1,7 @@
 //! A turbine for tests and examples: cylinders at the root, aerofoils that stall further out.
 //!
-//! No published turbine. What a test changes it overrides: `Definition { rated_power: 3e6, ..sample::definition() }`.
+//! No published turbine. What a test changes it overrides:
+//! `Definition { rated_power: 3e6, ..sample::definition() }`.
 
 use crate::actuators::PitchActuator;
 use crate::aero::Polar;

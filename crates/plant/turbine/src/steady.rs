@@ -87,7 +87,8 @@ pub fn steady(definition: &Definition, tip_speed_ratio: f64, pitch: f64) -> Coef
 }
 
 impl<'a> SteadyRotor<'a> {
-    /// Divides the blades of `definition` into equal lengths; sections are interpolated linearly between its stations.
+    /// Divides the blades of `definition` into equal lengths; sections are interpolated linearly between its
+    /// stations.
     pub fn new(definition: &'a Definition, theory: Theory) -> Self {
         let length = definition.blade_length();
         let edge = |k: usize| length * k as f64 / N_ELEMENTS as f64;
@@ -95,8 +96,9 @@ impl<'a> SteadyRotor<'a> {
         Self::with_elements(definition, theory, elements)
     }
 
-    /// Takes the stations of `definition` as nodes and integrates their loads by the trapezoidal rule, with no load at root
-    /// and tip: coarser near the tip than [`SteadyRotor::new`], but the method behind published tables.
+    /// Takes the stations of `definition` as nodes and integrates their loads by the trapezoidal rule, with
+    /// no load at root and tip: coarser near the tip than [`SteadyRotor::new`], but the method behind
+    /// published tables.
     pub fn at_stations(definition: &'a Definition, theory: Theory) -> Self {
         let blade = &definition.blade;
         let nodes = blade.windows(3).map(|stations| {
@@ -122,8 +124,9 @@ impl<'a> SteadyRotor<'a> {
         }
     }
 
-    /// The same rotor with momentum balanced along the shaft instead of normal to the coned blades, as in a resolved flow. With
-    /// cone and prebend this gives a few percent more power than the programs behind published tables.
+    /// The same rotor with momentum balanced along the shaft instead of normal to the coned blades, as in a
+    /// resolved flow. With cone and prebend this gives a few percent more power than the programs behind
+    /// published tables.
     pub fn along_shaft(self) -> Self {
         Self { along_shaft: true, ..self }
     }
@@ -147,7 +150,8 @@ impl<'a> SteadyRotor<'a> {
         Coefficients { power: torque * tip_speed_ratio, thrust: scale * thrust, torque }
     }
 
-    /// State along the blade, root to tip, at `tip_speed_ratio` (–) and `pitch` (rad), written to `points` (`n_elements` long).
+    /// State along the blade, root to tip, at `tip_speed_ratio` (–) and `pitch` (rad), written to `points`
+    /// (`n_elements` long).
     pub fn distribution(&self, tip_speed_ratio: f64, pitch: f64, points: &mut [SpanwisePoint]) {
         for (element, point) in self.elements.iter().zip(points) {
             *point = self.point(element, tip_speed_ratio, pitch);

@@ -1,4 +1,5 @@
-//! One turbine: given commands and the wind at its stations, it turns, pitches, bends and exerts forces on the flow.
+//! One turbine: given commands and the wind at its stations, it turns, pitches, bends and exerts forces on
+//! the flow.
 
 mod aerodynamics;
 mod separation;
@@ -24,8 +25,9 @@ use workspace::Workspace;
 
 /// Elements, and so point forces, of each blade.
 pub const N_ELEMENTS: usize = 32;
-/// Longest step of the structure (s): a sixtieth of the period of the fastest mode that carries load, the blades' second
-/// flapwise one. Longer intervals are cut into equal steps, over which the wind at each element is held.
+/// Longest step of the structure (s): a sixtieth of the period of the fastest mode that carries load, the
+/// blades' second flapwise one. Longer intervals are cut into equal steps, over which the wind at each
+/// element is held.
 pub const LONGEST_STRUCTURAL_STEP: f64 = 0.025;
 
 /// A turbine: definition, derived parameters, state, and working memory.
@@ -109,7 +111,8 @@ impl Turbine {
         Ok(turbine)
     }
 
-    /// The same turbine without tower and nacelle in the wind: the rotor alone, as blade-element momentum sees it.
+    /// The same turbine without tower and nacelle in the wind: the rotor alone, as blade-element momentum
+    /// sees it.
     pub fn without_bodies(mut self) -> Self {
         self.bodies.clear();
         self.workspace.tower.clear();
@@ -138,8 +141,9 @@ impl Turbine {
 
     /// Advances the turbine by `interval` (s) under constant `commands`.
     ///
-    /// `winds` (m/s) holds the wind at each of [`Turbine::stations`] now, the rotor's induction included as far as the
-    /// flow resolves it. On return [`Turbine::forces`] holds the forces that act on the air throughout the interval.
+    /// `winds` (m/s) holds the wind at each of [`Turbine::stations`] now, the rotor's induction included as
+    /// far as the flow resolves it. On return [`Turbine::forces`] holds the forces that act on the air
+    /// throughout the interval.
     pub fn advance(&mut self, interval: f64, winds: &[Vector3], commands: &Commands) {
         let n_steps = (interval / LONGEST_STRUCTURAL_STEP - 1e-9).ceil().max(1.0) as usize;
         let step = interval / n_steps as f64;
@@ -196,8 +200,8 @@ impl Turbine {
         self.place_stations();
     }
 
-    /// Forces on the air over the last interval: blade elements with their bound vortices, blade after blade from root to tip,
-    /// then bodies.
+    /// Forces on the air over the last interval: blade elements with their bound vortices, blade after blade
+    /// from root to tip, then bodies.
     pub fn forces(&self) -> &[PointForce] {
         &self.workspace.forces
     }

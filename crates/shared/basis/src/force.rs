@@ -19,9 +19,10 @@ pub struct PointForce {
 
 /// Element of a lifting line: what a solver that sheds vorticity needs beside the force.
 ///
-/// Kutta-Joukowski, with V the wind relative to the element (m/s) and Γ⃗ = Γ · `along`: the lift of the element on the air is
-/// −ρ V × Γ⃗, what is left of [`PointForce::force`] is drag, along V. Γ is counted right-handed about the direction from root
-/// to tip, so that it is positive where lift drives a rotor that turns clockwise seen from upwind.
+/// Kutta-Joukowski, with V the wind relative to the element (m/s) and Γ⃗ = Γ · `along`: the lift of the
+/// element on the air is −ρ V × Γ⃗, what is left of [`PointForce::force`] is drag, along V. Γ is counted
+/// right-handed about the direction from root to tip, so that it is positive where lift drives a rotor that
+/// turns clockwise seen from upwind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundVortex {
     /// Blade, from 0 (–).

@@ -1,4 +1,5 @@
-//! Keys that a person may write: what a table of a case file is made of, as data that reader, reference and schema share.
+//! Keys that a person may write: what a table of a case file is made of, as data that reader, reference and
+//! schema share.
 
 /// One table of the case file.
 #[derive(Debug)]

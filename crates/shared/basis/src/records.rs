@@ -12,7 +12,8 @@ pub use warning::{Warning, WarningKind};
 
 /// Version of the layout of [`Summary`]; raised when a field changes its name, its place or its meaning.
 ///
-/// 2: loads, control and warnings are typed, where they were sentences; the wind is given as target and realised.
+/// 2: loads, control and warnings are typed, where they were sentences; the wind is given as target and
+/// realised.
 pub const SCHEMA_VERSION: u32 = 2;
 
 /// Mean of a quantity over the analysed time, with what is known of its uncertainty.
@@ -22,7 +23,8 @@ pub struct Statistic {
     pub mean: f64,
     /// Standard deviation of the samples, in the quantity's unit.
     pub standard_deviation: f64,
-    /// Half width of the 95 % interval of the mean from block means, in the quantity's unit; absent with fewer than two blocks.
+    /// Half width of the 95 % interval of the mean from block means, in the quantity's unit; absent with
+    /// fewer than two blocks.
     pub half_width_95: Option<f64>,
     /// Number of blocks behind the interval.
     pub n_blocks: usize,
@@ -58,8 +60,8 @@ pub struct PitchDuty {
     pub n_reversals: usize,
     /// Slope of the bearing loads (–).
     pub bearing_slope: f64,
-    /// Equivalent moment of the pitch bearing at equally spaced positions all round its ring (kN m), the first in the direction
-    /// of the flapwise moment, the others towards the edgewise one.
+    /// Equivalent moment of the pitch bearing at equally spaced positions all round its ring (kN m), the
+    /// first in the direction of the flapwise moment, the others towards the edgewise one.
     pub bearing_loads_kn_m: Vec<f64>,
     /// Time between the samples of pitch and moments that these figures are made of (s).
     pub sample_interval: f64,
@@ -76,7 +78,8 @@ impl PitchDuty {
     }
 }
 
-/// How a turbine's own pitch acts, as its controller is given it before the run: identified, or set in the case file.
+/// How a turbine's own pitch acts, as its controller is given it before the run: identified, or set in the
+/// case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PitchResponse {
@@ -90,8 +93,8 @@ pub enum PitchResponse {
         before: f64,
         /// The same after (m/s).
         after: f64,
-        /// Azimuth offset of the inverse multi-blade transformation with which it pitches (rad); absent in records that do
-        /// not tell.
+        /// Azimuth offset of the inverse multi-blade transformation with which it pitches (rad); absent in
+        /// records that do not tell.
         #[serde(default)]
         transformation_offset: Option<f64>,
     },
@@ -163,7 +166,8 @@ pub struct TurbineSummary {
     pub power_gain: Option<Statistic>,
     /// How its own pitch acts; absent where its controller need not know.
     pub pitch_response: Option<PitchResponse>,
-    /// Azimuth offset with which its individual pitch control works (rad); absent where there is no such control.
+    /// Azimuth offset with which its individual pitch control works (rad); absent where there is no such
+    /// control.
     pub individual_pitch_offset: Option<f64>,
     /// What it found of meandering and made of it; absent on a turbine that does not follow any.
     pub meandering: Option<MeanderingSummary>,
@@ -200,8 +204,9 @@ pub struct Cost {
     pub n_threads: usize,
     /// Memory of the flow field (bytes).
     pub memory: u64,
-    /// Most that the program's process held at once until the run's numbers were made, runs before it in the same process
-    /// included (bytes); of a run that was resumed the most of any of its processes. Absent where the system does not tell.
+    /// Most that the program's process held at once until the run's numbers were made, runs before it in the
+    /// same process included (bytes); of a run that was resumed the most of any of its processes. Absent
+    /// where the system does not tell.
     pub peak_memory: Option<u64>,
 }
 

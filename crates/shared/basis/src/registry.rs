@@ -1,4 +1,5 @@
-//! Lists of kinds that programs built on wakemix can extend: the kinds that come with it, and those that were added.
+//! Lists of kinds that programs built on wakemix can extend: the kinds that come with it, and those that were
+//! added.
 
 use std::sync::RwLock;
 use thiserror::Error;
@@ -9,8 +10,8 @@ pub trait Named {
     fn name(&self) -> &'static str;
 }
 
-/// A list of descriptors: one kind of controller each, or of sensor. What reads case files, prints the reference or puts a farm
-/// together looks kinds up here.
+/// A list of descriptors: one kind of controller each, or of sensor. What reads case files, prints the
+/// reference or puts a farm together looks kinds up here.
 #[derive(Debug)]
 pub struct Registry<K: ?Sized + 'static> {
     standard: &'static [&'static K],

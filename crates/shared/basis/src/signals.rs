@@ -14,7 +14,8 @@ pub struct Truth {
     pub azimuth: f64,
     /// Rotor speed (rad/s).
     pub rotor_speed: f64,
-    /// Generator speed on the low-speed side, over the gear ratio: rotor speed but for the twist of the shaft (rad/s).
+    /// Generator speed on the low-speed side, over the gear ratio: rotor speed but for the twist of the shaft
+    /// (rad/s).
     pub generator_speed: f64,
     /// Blade pitch angles, positive to feather (rad).
     pub pitch: PerBlade<f64>,
@@ -37,7 +38,8 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// State of a machine of `n_blades` at rest in still air at time zero: zeros, to be overwritten by what a trial is about.
+    /// State of a machine of `n_blades` at rest in still air at time zero: zeros, to be overwritten by what a
+    /// trial is about.
     pub fn at_rest(n_blades: usize) -> Self {
         let none = PerBlade::splat(n_blades, 0.0);
         Self {

@@ -1,11 +1,13 @@
 //! Lags of first and second order over one interval, exact for an input that is held over it.
 
-/// Angle over the interval (–) beyond which hyperbolic functions would overflow and exponentials take their place.
+/// Angle over the interval (–) beyond which hyperbolic functions would overflow and exponentials take their
+/// place.
 const LARGEST_ANGLE: f64 = 300.0;
 /// Angle over the interval (–) below which damping counts as critical: off by a sixth of its square.
 const SMALLEST_ANGLE: f64 = 1e-6;
 
-/// Share (–) of an old value that a lag of first order with `time_constant` (s) keeps over `interval` (s), e^(−T/τ).
+/// Share (–) of an old value that a lag of first order with `time_constant` (s) keeps over `interval` (s),
+/// e^(−T/τ).
 pub fn kept(interval: f64, time_constant: f64) -> f64 {
     (-interval / time_constant).exp()
 }
@@ -35,12 +37,13 @@ pub fn second(
     ]
 }
 
-/// Exponential of the free motion y″ + 2 ζ ω y′ + ω² y = 0 over `interval` (s): value and rate after it (rows), per unit of
-/// value and rate before (columns).
+/// Exponential of the free motion y″ + 2 ζ ω y′ + ω² y = 0 over `interval` (s): value and rate after it
+/// (rows), per unit of value and rate before (columns).
 ///
 /// `frequency` ω is in rad/s, `damping` ζ a ratio (–): under-damped, critical or over-damped.
 pub fn free_response(frequency: f64, damping: f64, interval: f64) -> [[f64; 2]; 2] {
-    // Symbols: w natural frequency, s = sqrt(zeta² − 1) w; c and k are cosh(s t), sinh(s t)/s or their trigonometric twins.
+    // Symbols: w natural frequency, s = sqrt(zeta² − 1) w; c and k are cosh(s t), sinh(s t)/s or their
+    // trigonometric twins.
     let (w, zeta) = (frequency, damping);
     let decay = (-zeta * w * interval).exp();
     let square = (zeta * zeta - 1.0) * w * w;
@@ -85,7 +88,8 @@ mod tests {
         let [value, rate] = second([0.0, 0.0], 1.0, t, w, 1.0);
         assert!((value - (1.0 - (1.0 + w * t) * (-w * t).exp())).abs() < 1e-12);
         assert!((rate - w * w * t * (-w * t).exp()).abs() < 1e-12);
-        // Poles −a and −b: 1 − (b e^(−a t) − a e^(−b t))/(b − a), with a and b at 1 and 4 rad/s: ω = 2, ζ = 1.25.
+        // Poles −a and −b: 1 − (b e^(−a t) − a e^(−b t))/(b − a), with a and b at 1 and 4 rad/s: ω = 2, ζ =
+        // 1.25.
         let exact = |t: f64| 1.0 - (4.0 * (-t).exp() - (-4.0 * t).exp()) / 3.0;
         for t in [0.1, 1.0, 3.0] {
             let [value, _] = second([0.0, 0.0], 1.0, t, 2.0, 1.25);

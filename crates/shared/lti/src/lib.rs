@@ -1,13 +1,15 @@
-//! Linear time-invariant systems in discrete time: lags and filters of first and second order, roots of polynomials.
+//! Linear time-invariant systems in discrete time: lags and filters of first and second order, roots of
+//! polynomials.
 //!
 //! | wanted | use | discretised |
 //! | --- | --- | --- |
-//! | a lag without state of its own | [`lag::first`], [`lag::second`] | exact for an input held over the interval |
+//! | lag without state of its own | [`lag::first`], [`lag::second`] | exact for an input that is held |
 //! | a low-pass of first order | [`LowPass`] | exact for an input held over the interval |
-//! | a low-pass, high-pass or notch of second order | [`SecondOrder`] | bilinear rule, exact at its own frequency |
+//! | low-pass, high-pass, notch, second order | [`SecondOrder`] | bilinear, exact at its own frequency |
 //! | poles | [`roots`] | |
 //!
-//! The interval is given with every sample, so that a filter works at any. Filters are plain data that serialise whole.
+//! The interval is given with every sample, so that a filter works at any. Filters are plain data that
+//! serialise whole.
 
 pub mod lag;
 mod low_pass;

@@ -48,7 +48,8 @@ pub enum Smoother {
 }
 
 impl Smoother {
-    /// A filter with `corner` (rad/s) that has settled at `value`; of second order where there is a `damping` ratio (–).
+    /// A filter with `corner` (rad/s) that has settled at `value`; of second order where there is a `damping`
+    /// ratio (–).
     pub fn settled(corner: f64, damping: Option<f64>, value: f64) -> Self {
         match damping {
             None => Self::First(LowPass::settled(corner, value)),

@@ -2,7 +2,8 @@
 
 use num_complex::Complex64;
 
-/// Roots of the monic polynomial x^N + c\[N−1\] x^(N−1) + … + c\[0\], by simultaneous iteration (Weierstrass).
+/// Roots of the monic polynomial x^N + c\[N−1\] x^(N−1) + … + c\[0\], by simultaneous iteration
+/// (Weierstrass).
 ///
 /// `coefficients` c should be of order one; the roots come in no particular order.
 ///

@@ -19,11 +19,12 @@ enum Passes {
 
 /// A filter of second order, N(s) / (s² + 2 ζ ω s + ω²): low-pass, high-pass or notch.
 ///
-/// Discretised by the bilinear rule, exact at the frequency ω: at any other rate Ω its gain and phase are those of the
-/// continuous filter at ω tan(Ω T/2)/tan(ω T/2). A frequency that cannot be sampled (ω T ≥ 3) lets a low-pass and a notch pass
-/// everything, a high-pass nothing.
+/// Discretised by the bilinear rule, exact at the frequency ω: at any other rate Ω its gain and phase are
+/// those of the continuous filter at ω tan(Ω T/2)/tan(ω T/2). A frequency that cannot be sampled (ω T ≥ 3)
+/// lets a low-pass and a notch pass everything, a high-pass nothing.
 ///
-/// Source: Oppenheim and Schafer, "Discrete-Time Signal Processing", 3rd ed., 2010, §7.2.2 (bilinear transformation).
+/// Source: Oppenheim and Schafer, "Discrete-Time Signal Processing", 3rd ed., 2010, §7.2.2 (bilinear
+/// transformation).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SecondOrder {
     frequency: f64,
@@ -39,13 +40,14 @@ impl SecondOrder {
         Self::settled(frequency, damping, Passes::Low, value)
     }
 
-    /// A notch at `frequency` (rad/s), damping ratios of numerator and denominator (–), that has settled at `value`.
+    /// A notch at `frequency` (rad/s), damping ratios of numerator and denominator (–), that has settled at
+    /// `value`.
     pub fn notch(frequency: f64, numerator: f64, denominator: f64, value: f64) -> Self {
         Self::settled(frequency, denominator, Passes::AllBut(numerator), value)
     }
 
-    /// A high-pass filter of natural `frequency` (rad/s) and `damping` ratio (–, 1/√2: Butterworth) that has settled at zero
-    /// under a steady input of `value`.
+    /// A high-pass filter of natural `frequency` (rad/s) and `damping` ratio (–, 1/√2: Butterworth) that has
+    /// settled at zero under a steady input of `value`.
     pub fn high_pass(frequency: f64, damping: f64, value: f64) -> Self {
         Self { outputs: [0.0; 2], ..Self::settled(frequency, damping, Passes::High, value) }
     }
@@ -54,8 +56,8 @@ impl SecondOrder {
         Self { frequency, damping, passes, inputs: [value; 2], outputs: [value; 2] }
     }
 
-    /// The filter's output after `interval` (s), at whose end the input is `input`; an input that is no number leaves it
-    /// as it was.
+    /// The filter's output after `interval` (s), at whose end the input is `input`; an input that is no
+    /// number leaves it as it was.
     pub fn update(&mut self, interval: f64, input: f64) -> f64 {
         if !input.is_finite() {
             return self.outputs[0];
@@ -92,7 +94,8 @@ impl SecondOrder {
     }
 }
 
-/// Coefficients of 1, z⁻¹ and z⁻² that `square` s² + 2 `damping` ω s + `constant` ω² becomes, times t²/ω² (1 + z⁻¹)².
+/// Coefficients of 1, z⁻¹ and z⁻² that `square` s² + 2 `damping` ω s + `constant` ω² becomes, times t²/ω² (1
+/// + z⁻¹)².
 ///
 /// s = ω/t (z − 1)/(z + 1) with t = tan(ω T/2).
 fn transformed(square: f64, damping: f64, constant: f64, t: f64) -> [f64; 3] {

@@ -5,8 +5,8 @@ use thiserror::Error;
 
 /// Power and thrust coefficient against tip-speed ratio and collective pitch.
 ///
-/// Bilinear between the rows and columns, constant beyond them; a look-up allocates nothing. Coefficients refer to the
-/// free-stream speed and to the disc of the radius that tip-speed ratios are formed with.
+/// Bilinear between the rows and columns, constant beyond them; a look-up allocates nothing. Coefficients
+/// refer to the free-stream speed and to the disc of the radius that tip-speed ratios are formed with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CoefficientTable {
     tip_speed_ratios: Vec<f64>,
@@ -55,12 +55,12 @@ struct Place {
 }
 
 impl CoefficientTable {
-    /// The table of `power` and `thrust` (–), `n_tip_speed_ratios × n_pitches` each, row after row of one tip-speed ratio;
-    /// `tip_speed_ratios` (–) and `pitches` (rad) rise.
+    /// The table of `power` and `thrust` (–), `n_tip_speed_ratios × n_pitches` each, row after row of one
+    /// tip-speed ratio; `tip_speed_ratios` (–) and `pitches` (rad) rise.
     ///
     /// # Errors
-    /// [`CoefficientTableError`] when an axis has fewer than two entries or does not rise, or when there are more or fewer
-    /// coefficients than places for them, or one is no number.
+    /// [`CoefficientTableError`] when an axis has fewer than two entries or does not rise, or when there are
+    /// more or fewer coefficients than places for them, or one is no number.
     pub fn new(
         tip_speed_ratios: Vec<f64>,
         pitches: Vec<f64>,
@@ -128,8 +128,8 @@ impl CoefficientTable {
         self.between(&self.thrust, tip_speed_ratio, pitch)
     }
 
-    /// Change of the power coefficient per tip-speed ratio (–), at `tip_speed_ratio` (–) and `pitch` (rad); zero beyond
-    /// the rows.
+    /// Change of the power coefficient per tip-speed ratio (–), at `tip_speed_ratio` (–) and `pitch` (rad);
+    /// zero beyond the rows.
     pub fn power_slope(&self, tip_speed_ratio: f64, pitch: f64) -> f64 {
         let rows = &self.tip_speed_ratios;
         if tip_speed_ratio <= rows[0] || tip_speed_ratio >= rows[rows.len() - 1] {
@@ -140,8 +140,9 @@ impl CoefficientTable {
         (high - low) / (rows[row.low + 1] - rows[row.low])
     }
 
-    /// Greatest tip-speed ratio λ (–) at which C_P/λ³ reaches `power_over_cube` (–) at `pitch` (rad): the one at which a
-    /// rotor of known speed and pitch gives a known power, on the branch where more wind gives more power.
+    /// Greatest tip-speed ratio λ (–) at which C_P/λ³ reaches `power_over_cube` (–) at `pitch` (rad): the one
+    /// at which a rotor of known speed and pitch gives a known power, on the branch where more wind gives
+    /// more power.
     ///
     /// The least of the table's tip-speed ratios where none gives that much.
     pub fn tip_speed_ratio(&self, power_over_cube: f64, pitch: f64) -> f64 {
@@ -188,7 +189,8 @@ fn first_that_breaks(entries: &[f64]) -> Option<usize> {
     (0..entries.len()).find(|k| !rises(*k)).map(|k| k + 1)
 }
 
-/// Place of `value` on a rising `axis`; at its nearer end beyond it, at its first entry where it is no number.
+/// Place of `value` on a rising `axis`; at its nearer end beyond it, at its first entry where it is no
+/// number.
 fn place(axis: &[f64], value: f64) -> Place {
     let low = axis.partition_point(|entry| *entry <= value).clamp(1, axis.len() - 1) - 1;
     let share = (value - axis[low]) / (axis[low + 1] - axis[low]);

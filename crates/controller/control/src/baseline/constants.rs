@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Most notch filters on rotor speed (–).
 pub const MAXIMUM_NOTCHES: usize = 4;
 
-/// Corner of the filter on the estimated wind speed where nothing else is known (rad/s): a period of half a minute.
+/// Corner of the filter on the estimated wind speed where nothing else is known (rad/s): a period of half a
+/// minute.
 pub const WIND_SPEED_FILTER_CORNER: f64 = std::f64::consts::TAU / 30.0;
 
 /// Constants of torque and collective pitch control; everything on the low-speed side of the gearbox.
@@ -46,7 +47,8 @@ pub struct Constants {
     pub torque_gains: TorqueGains,
     /// Collective pitch below rated (rad).
     pub fine_pitch: f64,
-    /// Least collective pitch against wind speed, rising wind speed; empty where [`Constants::fine_pitch`] holds throughout.
+    /// Least collective pitch against wind speed, rising wind speed; empty where [`Constants::fine_pitch`]
+    /// holds throughout.
     pub minimum_pitch: Vec<MinimumPitch>,
     /// Greatest collective pitch (rad).
     pub maximum_pitch: f64,
@@ -76,8 +78,8 @@ pub struct Constants {
 }
 
 impl Constants {
-    /// The same with the wind speed estimated from a rotor of `inertia` (kg m², with the generator, low-speed side) and
-    /// `coefficients` in air of `air_density` (kg/m³).
+    /// The same with the wind speed estimated from a rotor of `inertia` (kg m², with the generator, low-speed
+    /// side) and `coefficients` in air of `air_density` (kg/m³).
     pub fn with_estimator(
         self,
         inertia: f64,
@@ -146,8 +148,8 @@ pub struct IndividualPitch {
     pub proportional: f64,
     /// Pitch rate over moment (rad/(N m s)).
     pub integral: f64,
-    /// Added to the azimuth on the way back to the blades (rad); none while it is yet to be found: whoever puts a controller
-    /// together tells it before, and nothing is added without.
+    /// Added to the azimuth on the way back to the blades (rad); none while it is yet to be found: whoever
+    /// puts a controller together tells it before, and nothing is added without.
     pub azimuth_offset: Option<f64>,
     /// Greatest amplitude (rad).
     pub limit: f64,
@@ -157,7 +159,8 @@ pub struct IndividualPitch {
     pub floor: PitchFloor,
 }
 
-/// What the blades stay above under individual pitch control: its amplitude shrinks with the room that is left.
+/// What the blades stay above under individual pitch control: its amplitude shrinks with the room that is
+/// left.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PitchFloor {
     /// Nothing but the actuators' own limits.
@@ -189,7 +192,8 @@ pub struct PitchGains {
     pub integral: f64,
 }
 
-/// Least collective pitch at one wind speed (peak shaving, or best power away from the optimal tip-speed ratio).
+/// Least collective pitch at one wind speed (peak shaving, or best power away from the optimal tip-speed
+/// ratio).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MinimumPitch {
     /// Free-stream wind speed (m/s).

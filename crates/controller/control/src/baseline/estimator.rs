@@ -13,8 +13,8 @@ const TURBULENCE_INTENSITY: f64 = 0.18;
 const SPEED_NOISE: f64 = 1e-5;
 /// Power of the drift of the mean wind ((m/s)²/s): 2 m/s in ten minutes.
 const MEAN_NOISE: f64 = 2.0 * 2.0 / 600.0;
-/// Power of the noise on measured rotor speed ((rad/s)² s): 0.02 (rad/s)² in every sample at the 0.02 s of common
-/// simulations. As a power it gives the same estimate at any interval.
+/// Power of the noise on measured rotor speed ((rad/s)² s): 0.02 (rad/s)² in every sample at the 0.02 s of
+/// common simulations. As a power it gives the same estimate at any interval.
 const MEASUREMENT_NOISE: f64 = 0.02 * 0.02;
 /// First variances of rotor speed ((rad/s)²), turbulence and mean wind ((m/s)²).
 const FIRST_VARIANCES: [f64; 3] = [0.01, 0.01, 1.0];
@@ -26,13 +26,13 @@ const LEAST_POWER_COEFFICIENT: f64 = 0.01;
 /// State of the estimator.
 ///
 /// Rotor speed turns by J ω′ = ½ ρ π R² v³ C_P(λ, β)/ω − Q with v = v_t + v_m; turbulence v_t fades as
-/// v_t′ = −π v_m/(2 L) v_t + noise, the mean v_m drifts. Where all stands still the estimate is the wind in which the
-/// *table's* rotor gives the torque that the real one gives, so an error ε of the table's power coefficient is an error
-/// of −ε/3 of the wind speed.
+/// v_t′ = −π v_m/(2 L) v_t + noise, the mean v_m drifts. Where all stands still the estimate is the wind in
+/// which the *table's* rotor gives the torque that the real one gives, so an error ε of the table's power
+/// coefficient is an error of −ε/3 of the wind speed.
 ///
-/// Source: Abbas, Zalkind, Pao, Wright, Wind Energ. Sci. 7, 53–73, 2022, §2.4; model of the wind after Knudsen, Bak,
-/// Soltani, "Prediction models for wind speed at turbine locations in a wind farm", Wind Energy 14, 2011.
-/// Limits: intervals up to about 0.5 s; noise on measured speed is per second, not per sample.
+/// Source: Abbas, Zalkind, Pao, Wright, Wind Energ. Sci. 7, 53–73, 2022, §2.4; model of the wind after
+/// Knudsen, Bak, Soltani, "Prediction models for wind speed at turbine locations in a wind farm", Wind Energy
+/// 14, 2011. Limits: intervals up to about 0.5 s; noise on measured speed is per second, not per sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Estimator {
     rotor_speed: f64,
@@ -43,8 +43,8 @@ pub(super) struct Estimator {
 }
 
 impl Estimator {
-    /// An estimator that has settled where a rotor of radius `rotor_radius` (m) turns steadily at `rotor_speed` (rad/s)
-    /// under `torque` (N m) and `pitch` (rad).
+    /// An estimator that has settled where a rotor of radius `rotor_radius` (m) turns steadily at
+    /// `rotor_speed` (rad/s) under `torque` (N m) and `pitch` (rad).
     pub(super) fn settled(
         rotor_speed: f64,
         torque: f64,
@@ -67,8 +67,8 @@ impl Estimator {
         }
     }
 
-    /// Smoothed wind speed (m/s) after `interval` (s) with `torque` (N m) at the generator and `pitch` (rad), at whose end
-    /// `rotor_speed` (rad/s) is measured.
+    /// Smoothed wind speed (m/s) after `interval` (s) with `torque` (N m) at the generator and `pitch` (rad),
+    /// at whose end `rotor_speed` (rad/s) is measured.
     pub(super) fn update(
         &mut self,
         interval: f64,
@@ -102,8 +102,8 @@ impl Estimator {
         rotor_radius: f64,
         constants: &WindSpeedEstimator,
     ) {
-        // Symbols of the source: v wind, omega rotor speed, lambda tip-speed ratio, cp power coefficient, f Jacobian of
-        // the states' rates, p covariance, q power of the noise that drives them.
+        // Symbols of the source: v wind, omega rotor speed, lambda tip-speed ratio, cp power coefficient, f
+        // Jacobian of the states' rates, p covariance, q power of the noise that drives them.
         let (v, omega) = (self.wind_speed(), rotor_speed.max(LEAST_ROTOR_SPEED));
         let lambda = omega * rotor_radius / v;
         let table = &constants.coefficients;
@@ -155,8 +155,8 @@ impl Estimator {
     }
 }
 
-/// Wind speed (m/s) in which the table's rotor, radius `rotor_radius` (m), turns steadily at `rotor_speed` (rad/s) under
-/// `torque` (N m) and `pitch` (rad).
+/// Wind speed (m/s) in which the table's rotor, radius `rotor_radius` (m), turns steadily at `rotor_speed`
+/// (rad/s) under `torque` (N m) and `pitch` (rad).
 pub(super) fn steady_wind_speed(
     rotor_speed: f64,
     torque: f64,

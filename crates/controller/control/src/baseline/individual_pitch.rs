@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 
 /// State of individual pitch control: the integral parts of tilt and yaw (rad).
 ///
-/// Root moments go to the fixed frame, a PI controller for each of tilt and yaw turns them into pitch, and that goes back
-/// to the blades with an azimuth offset, which makes up for what actuators and blades lag behind.
+/// Root moments go to the fixed frame, a PI controller for each of tilt and yaw turns them into pitch, and
+/// that goes back to the blades with an azimuth offset, which makes up for what actuators and blades lag
+/// behind.
 ///
-/// Source: Bossanyi, "Individual blade pitch control for load reduction", Wind Energy 6, 2003; with the azimuth offset of
-/// Mulders, Pamososuryo, Disario, van Wingerden, Wind Energy 22, 2019.
+/// Source: Bossanyi, "Individual blade pitch control for load reduction", Wind Energy 6, 2003; with the
+/// azimuth offset of Mulders, Pamososuryo, Disario, van Wingerden, Wind Energy 22, 2019.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Individual {
     tilt: f64,
@@ -19,8 +20,9 @@ pub(super) struct Individual {
 }
 
 impl Individual {
-    /// What each blade adds (rad) to `collective` (rad) over `interval` (s) in a wind of `wind_speed` (m/s), amplitude
-    /// within the limit and above the floor, whose scheduled form stands at `least_pitch` (rad), fixed one at `fine_pitch` (rad).
+    /// What each blade adds (rad) to `collective` (rad) over `interval` (s) in a wind of `wind_speed` (m/s),
+    /// amplitude within the limit and above the floor, whose scheduled form stands at `least_pitch` (rad),
+    /// fixed one at `fine_pitch` (rad).
     pub(super) fn update(
         &mut self,
         measurements: &Measurements,

@@ -18,10 +18,11 @@ impl Pitch {
         Self { integral: pitch, command: pitch }
     }
 
-    /// Collective pitch (rad) for the filtered `rotor_speed` (rad/s) over `interval` (s), at least `least` (rad).
+    /// Collective pitch (rad) for the filtered `rotor_speed` (rad/s) over `interval` (s), at least `least`
+    /// (rad).
     ///
-    /// PI control with gains scheduled by the last command. The integral part stays within the limits on pitch and
-    /// stands still while the limit on pitch rate holds it back, so that it never winds up.
+    /// PI control with gains scheduled by the last command. The integral part stays within the limits on
+    /// pitch and stands still while the limit on pitch rate holds it back, so that it never winds up.
     pub(super) fn update(
         &mut self,
         interval: f64,

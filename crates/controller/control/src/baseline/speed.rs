@@ -6,8 +6,8 @@ use basis::Measurements;
 use lti::{LowPass, SecondOrder, Smoother};
 use serde::{Deserialize, Serialize};
 
-/// Corner of the filter on the power that the wind speed is guessed from without an estimator (rad/s): slower than the
-/// rotor, faster than gusts as large as the rotor.
+/// Corner of the filter on the power that the wind speed is guessed from without an estimator (rad/s): slower
+/// than the rotor, faster than gusts as large as the rotor.
 const POWER_FILTER_CORNER: f64 = 0.2;
 
 /// Low-pass and notch filters on rotor speed.
@@ -80,8 +80,8 @@ impl Wind {
         }
     }
 
-    /// Wind speed (m/s) after the interval of `measurements` with `torque` (N m) in force, at whose end filtered speed is
-    /// `rotor_speed` (rad/s).
+    /// Wind speed (m/s) after the interval of `measurements` with `torque` (N m) in force, at whose end
+    /// filtered speed is `rotor_speed` (rad/s).
     pub(super) fn update(
         &mut self,
         measurements: &Measurements,

@@ -19,8 +19,8 @@ impl Torque {
         Self { integral: command, command }
     }
 
-    /// Torque control that goes on from `command` (N m) without a step, whatever the distance of `rotor_speed` (rad/s) from
-    /// its `reference` (rad/s).
+    /// Torque control that goes on from `command` (N m) without a step, whatever the distance of
+    /// `rotor_speed` (rad/s) from its `reference` (rad/s).
     pub(super) fn continued(
         command: f64,
         rotor_speed: f64,
@@ -34,8 +34,8 @@ impl Torque {
         Self { integral, command }
     }
 
-    /// Torque (N m) for the filtered `rotor_speed` (rad/s) over `interval` (s) along k ω²; the rotor is kept at or below
-    /// `speed_reference` (rad/s) as long as torque can.
+    /// Torque (N m) for the filtered `rotor_speed` (rad/s) over `interval` (s) along k ω²; the rotor is kept
+    /// at or below `speed_reference` (rad/s) as long as torque can.
     ///
     /// A PI speed controller between two limits that close on k ω² away from minimum and rated speed:
     /// Hansen and Henriksen, "Basic DTU Wind Energy controller", DTU Wind Energy E-0028, 2013, §2.1.
@@ -57,7 +57,8 @@ impl Torque {
         self.hold(interval, rotor_speed - reference, [low, high], constants)
     }
 
-    /// Torque (N m) for the filtered `rotor_speed` (rad/s) over `interval` (s) that brings the rotor to `reference` (rad/s).
+    /// Torque (N m) for the filtered `rotor_speed` (rad/s) over `interval` (s) that brings the rotor to
+    /// `reference` (rad/s).
     pub(super) fn track(
         &mut self,
         interval: f64,

@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 
 /// State of the tower damper.
 ///
-/// Acceleration is integrated to velocity and pitch follows velocity: a tower top that moves downwind meets more
-/// pitch, so less thrust. What is slower than the corner is forgotten, twice: once from the acceleration, whose offset is an
-/// instrument's, and once from the velocity, which would otherwise keep what the first let through.
+/// Acceleration is integrated to velocity and pitch follows velocity: a tower top that moves downwind meets
+/// more pitch, so less thrust. What is slower than the corner is forgotten, twice: once from the
+/// acceleration, whose offset is an instrument's, and once from the velocity, which would otherwise keep what
+/// the first let through.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct TowerDamper {
     offset: LowPass,
@@ -24,7 +25,8 @@ impl TowerDamper {
         Self { offset: LowPass::settled(constants.high_pass_corner, offset), velocity: 0.0 }
     }
 
-    /// Pitch to add (rad) after `interval` (s), at whose end the tower top's `acceleration` (m/s²) downwind is measured.
+    /// Pitch to add (rad) after `interval` (s), at whose end the tower top's `acceleration` (m/s²) downwind
+    /// is measured.
     pub(super) fn update(
         &mut self,
         interval: f64,

@@ -1,4 +1,5 @@
-//! One axis: amplitude and offset of its load, brought to their references by proportional and integral action.
+//! One axis: amplitude and offset of its load, brought to their references by proportional and integral
+//! action.
 
 use super::MeanderingControlSettings;
 use estimation::phase_locked::Axis;
@@ -14,8 +15,8 @@ struct Action {
 }
 
 impl Action {
-    /// Takes in `error` (N m) over `interval` (s). The first error moves nothing at once, whatever the proportional gain;
-    /// at a bound the integral stays where the sum just reaches it.
+    /// Takes in `error` (N m) over `interval` (s). The first error moves nothing at once, whatever the
+    /// proportional gain; at a bound the integral stays where the sum just reaches it.
     fn update(
         &mut self,
         interval: f64,

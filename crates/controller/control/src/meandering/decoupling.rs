@@ -1,12 +1,13 @@
-//! How cyclic pitch has to be turned so that tilt pitch answers in the tilt moment, and yaw pitch in the yaw moment.
+//! How cyclic pitch has to be turned so that tilt pitch answers in the tilt moment, and yaw pitch in the yaw
+//! moment.
 
 use basis::angle::wrap_to_half_turn;
 use serde::{Deserialize, Serialize};
 
 /// What a small helix does to the rotor's moments at one rate.
 ///
-/// With the tilt command a sin θ, and the yaw command a quarter period away as the sense has it, the tilt moment changes by
-/// −`gain` a sin(θ + `lead`): pitch to feather unloads.
+/// With the tilt command a sin θ, and the yaw command a quarter period away as the sense has it, the tilt
+/// moment changes by −`gain` a sin(θ + `lead`): pitch to feather unloads.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// Moment lost per pitch (N m/rad).
@@ -29,10 +30,10 @@ pub struct Decoupling {
 impl Decoupling {
     /// From what a counter-clockwise and a clockwise helix do at `rate` (rad/s).
     ///
-    /// The rotor is taken to be alike in all directions: then moments follow pitch by one complex number per sense,
-    /// −G e^(−jδ) (ccw) and −G e^(+jδ) (cw) on tilt + j yaw. An azimuth offset ψ turns pitch by e^(−jψ) and adds to δ of the
-    /// one what it takes from the other; a command that runs ahead adds to both. Hence ψ is half the difference of the two
-    /// leads, and half their sum is the lag that is left.
+    /// The rotor is taken to be alike in all directions: then moments follow pitch by one complex number per
+    /// sense, −G e^(−jδ) (ccw) and −G e^(+jδ) (cw) on tilt + j yaw. An azimuth offset ψ turns pitch by
+    /// e^(−jψ) and adds to δ of the one what it takes from the other; a command that runs ahead adds to both.
+    /// Hence ψ is half the difference of the two leads, and half their sum is the lag that is left.
     pub fn from_senses(rate: f64, counter_clockwise: Answer, clockwise: Answer) -> Self {
         let difference = wrap_to_half_turn(clockwise.lead - counter_clockwise.lead);
         let middle = counter_clockwise.lead + 0.5 * difference;
@@ -44,14 +45,17 @@ impl Decoupling {
     }
 }
 
-/// Element of the relative gain array (–) that pairs tilt pitch with the tilt moment, and yaw with yaw, when the inverse
-/// multi-blade transformation has `azimuth_offset` (rad), from what either sense does; its real part.
+/// Element of the relative gain array (–) that pairs tilt pitch with the tilt moment, and yaw with yaw, when
+/// the inverse multi-blade transformation has `azimuth_offset` (rad), from what either sense does; its real
+/// part.
 ///
-/// 1 where each axis answers for itself alone, 1/2 where both answer both, 0 where tilt pitch moves only the yaw moment. For a
-/// rotor alike in all directions moments follow pitch by [[a, −b], [b, a]], of which helices see a ∓ jb; the element is
-/// a² / (a² + b²). It cannot become 1 by any offset where the two senses gain differently.
+/// 1 where each axis answers for itself alone, 1/2 where both answer both, 0 where tilt pitch moves only the
+/// yaw moment. For a rotor alike in all directions moments follow pitch by [[a, −b], [b, a]], of which
+/// helices see a ∓ jb; the element is a² / (a² + b²). It cannot become 1 by any offset where the two senses
+/// gain differently.
 ///
-/// Source: Bristol, "On a new measure of interaction for multivariable process control", IEEE Trans. Autom. Control 11, 1966.
+/// Source: Bristol, "On a new measure of interaction for multivariable process control", IEEE Trans. Autom.
+/// Control 11, 1966.
 pub fn relative_gain(counter_clockwise: Answer, clockwise: Answer, azimuth_offset: f64) -> f64 {
     let apart = 0.5 * wrap_to_half_turn(clockwise.lead - counter_clockwise.lead) - azimuth_offset;
     let (one, other) = (counter_clockwise.gain, clockwise.gain);

@@ -7,12 +7,13 @@ use serde::{Deserialize, Serialize};
 /// What the phase-locked loop is locked to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Followed {
-    /// The loads as they are, what pitch adds among them, as the source has it. The phase then answers to the control that
-    /// it commands, the more the less is left of the load; deep attenuation oscillates or loses the lock.
+    /// The loads as they are, what pitch adds among them, as the source has it. The phase then answers to the
+    /// control that it commands, the more the less is left of the load; deep attenuation oscillates or loses
+    /// the lock.
     #[default]
     Load,
-    /// The loads less what pitch adds to them: the wake's own part, which stays however little is left of the sum. Each axis'
-    /// pitch then goes with that axis' own phase.
+    /// The loads less what pitch adds to them: the wake's own part, which stays however little is left of the
+    /// sum. Each axis' pitch then goes with that axis' own phase.
     Wake,
 }
 
@@ -37,8 +38,8 @@ pub struct MeanderingControlSettings {
     pub maximum_amplitude: f64,
     /// Largest constant pitch on either axis to bring offsets to zero (rad); 0 leaves offsets alone.
     pub maximum_offset: f64,
-    /// Whether it fades out while the loop is not locked, and learns nothing then. Without it the estimated phase is pitched with
-    /// whatever it follows, as the source does.
+    /// Whether it fades out while the loop is not locked, and learns nothing then. Without it the estimated
+    /// phase is pitched with whatever it follows, as the source does.
     pub needs_lock: bool,
     /// Time from which it acts (s).
     pub start: f64,

@@ -1,19 +1,22 @@
-//! Meandering synchronised: cyclic pitch in phase with a slow oscillation of the rotor's own loads, which it amplifies to mix
-//! the wake or attenuates to spare the turbine.
+//! Meandering synchronised: cyclic pitch in phase with a slow oscillation of the rotor's own loads, which it
+//! amplifies to mix the wake or attenuates to spare the turbine.
 //!
-//! A phase-locked loop tells phase, amplitude and offset of tilt and yaw moment. Each axis' amplitude is brought to a factor
-//! α of the baseline's by proportional and integral action, and what that asks for is multiplied with the phase:
+//! A phase-locked loop tells phase, amplitude and offset of tilt and yaw moment. Each axis' amplitude is
+//! brought to a factor α of the baseline's by proportional and integral action, and what that asks for is
+//! multiplied with the phase:
 //!
 //! ```text
 //! tilt pitch = −(A_tilt sin(θ + λ) + b_tilt)/g          yaw pitch = −(A_yaw sin(θ ± π/2 + λ) + b_yaw)/g
 //! ```
 //!
-//! with amplitudes A and offsets b that are to be added to the load (N m), the loss g of moment per pitch, the lead λ that
-//! makes up for the load's delay, and the upper sign for a load that circles counter-clockwise looking downwind. The blades'
-//! pitch follows by the inverse multi-blade transformation with an azimuth offset.
+//! with amplitudes A and offsets b that are to be added to the load (N m), the loss g of moment per pitch,
+//! the lead λ that makes up for the load's delay, and the upper sign for a load that circles
+//! counter-clockwise looking downwind. The blades' pitch follows by the inverse multi-blade transformation
+//! with an azimuth offset.
 //!
-//! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, Eqs. 2-37 to
-//! 2-40, 4-2; the azimuth offset by [`Decoupling::from_senses`], which the source leaves to trial.
+//! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024,
+//! Eqs. 2-37 to 2-40, 4-2; the azimuth offset by [`Decoupling::from_senses`], which the source leaves to
+//! trial.
 
 mod axis;
 mod decoupling;
@@ -62,7 +65,8 @@ impl Meandering {
     /// Control with `settings` for measurements every `interval` (s).
     ///
     /// # Errors
-    /// [`MeanderingError`] names what cannot be used; gains that would not be stable come with the pole that is not.
+    /// [`MeanderingError`] names what cannot be used; gains that would not be stable come with the pole that
+    /// is not.
     pub fn new(
         settings: MeanderingControlSettings,
         interval: f64,
@@ -87,7 +91,8 @@ impl Meandering {
 
     /// Takes in `measurements` and adds the command of each blade to `pitch` (rad).
     ///
-    /// Begins without a step, and fades out over a period whenever the loop loses the lock that it [needs](Settings::needs_lock).
+    /// Begins without a step, and fades out over a period whenever the loop loses the lock that it
+    /// [needs](Settings::needs_lock).
     pub fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
         let interval = measurements.interval;
         let moments = to_fixed_frame(measurements.azimuth, &measurements.flap_moments);
@@ -131,8 +136,8 @@ impl Meandering {
         }
     }
 
-    /// Angles (rad) that pitch on tilt and yaw is meant for, `further` (rad) than the estimate: a quarter period apart,
-    /// or, where the wake's own part is followed, each axis its own.
+    /// Angles (rad) that pitch on tilt and yaw is meant for, `further` (rad) than the estimate: a quarter
+    /// period apart, or, where the wake's own part is followed, each axis its own.
     fn angles(&self, estimate: &TwoAxisEstimate, further: f64) -> [f64; 2] {
         let angles = match self.settings.followed {
             Followed::Load => {
@@ -159,7 +164,8 @@ impl Meandering {
         FixedFrame { average: 0.0, tilt: -load.tilt / gain, yaw: -load.yaw / gain }
     }
 
-    /// The load on each axis, the wake's part and what pitch adds together; below zero where pitch adds more than it should.
+    /// The load on each axis, the wake's part and what pitch adds together; below zero where pitch adds more
+    /// than it should.
     fn loads(&self, estimate: &TwoAxisEstimate) -> [Axis; 2] {
         let believed = [estimate.tilt, estimate.yaw];
         if self.settings.followed == Followed::Load {
@@ -218,7 +224,8 @@ impl Meandering {
         self.follower.estimate()
     }
 
-    /// Amplitudes of tilt and yaw moment that it takes for the baseline's (N m); nothing while they are being learned.
+    /// Amplitudes of tilt and yaw moment that it takes for the baseline's (N m); nothing while they are being
+    /// learned.
     pub fn baseline(&self) -> Option<[f64; 2]> {
         self.baseline.amplitudes(self.estimate().rate, self.settings.reference)
     }

@@ -53,8 +53,9 @@ pub(super) fn outcome(
 
 /// What the turbine of `record` followed, under control from `start` (s) on.
 ///
-/// Amplitudes are those of the moments themselves, correlated with the phase that the turbine estimated: what drifts away
-/// from that phase does not count, so that they lie somewhat below the loop's own estimate where it follows slowly.
+/// Amplitudes are those of the moments themselves, correlated with the phase that the turbine estimated: what
+/// drifts away from that phase does not count, so that they lie somewhat below the loop's own estimate where
+/// it follows slowly.
 ///
 /// # Errors
 /// [`MissingChannel`].
@@ -96,7 +97,8 @@ fn moments(record: &dyn TurbineRecord, rows: &[usize]) -> Result<Vec<FixedFrame>
     Ok(rows.iter().map(at).collect())
 }
 
-/// The part of `moment` (N m) in step with `phase` (rad), against the amplitudes `reference` (N m), zero while not known.
+/// The part of `moment` (N m) in step with `phase` (rad), against the amplitudes `reference` (N m), zero
+/// while not known.
 fn axis_of(moment: &[f64], phase: &[f64], reference: &[f64]) -> MeanderingAxis {
     let steady = mean(moment).unwrap_or(0.0);
     let scale = 2.0 / moment.len() as f64;
@@ -135,7 +137,8 @@ mod tests {
         Control::new(&MEANDERING, &values).expect("such control can be")
     }
 
-    /// 2000 s, locked from `locked_from` (s) on; 3 MN m in tilt and 1 MN m in yaw once control starts, ten times as much before.
+    /// 2000 s, locked from `locked_from` (s) on; 3 MN m in tilt and 1 MN m in yaw once control starts, ten
+    /// times as much before.
     fn series(locked_from: f64) -> Series {
         let times: Vec<f64> = (0..4000).map(|row| INTERVAL * f64::from(row)).collect();
         let azimuth = |time: f64| 0.6 * time;

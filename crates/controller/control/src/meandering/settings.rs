@@ -145,7 +145,8 @@ const LEARNING_TIME: f64 = 300.0;
 pub struct MeanderingSettings {
     /// Target amplitude of the loads over that of the baseline, α (–).
     pub factor: f64,
-    /// Largest pitch amplitude on either axis (rad); 0 is the baseline that only follows, whatever `offset` says.
+    /// Largest pitch amplitude on either axis (rad); 0 is the baseline that only follows, whatever `offset`
+    /// says.
     pub amplitude: f64,
     /// Largest constant pitch on either axis, to bring the loads' means to zero (rad).
     pub offset: f64,

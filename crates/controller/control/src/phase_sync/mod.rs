@@ -1,20 +1,23 @@
-//! Phase synchronisation: a turbine in a helix joins it, a chosen angle ahead of or behind the wind that meets it.
+//! Phase synchronisation: a turbine in a helix joins it, a chosen angle ahead of or behind the wind that
+//! meets it.
 //!
-//! Source: van Vondelen et al. (2025), "Synchronized Helix wake mixing control", Wind Energ. Sci. 10, 2411, Eq. 22:
+//! Source: van Vondelen et al. (2025), "Synchronized Helix wake mixing control", Wind Energ. Sci. 10, 2411,
+//! Eq. 22:
 //!
 //! ```text
-//! tilt = A sin(ω_e t + φ̂_tilt + φ_off)        yaw = A sin(ω_e t ± π/2 + φ̂_yaw + φ_off)        upper sign: ccw
+//! tilt = A sin(ω_e t + φ̂_tilt + φ_off)     yaw = A sin(ω_e t ± π/2 + φ̂_yaw + φ_off)     upper sign: ccw
 //! ```
 //!
-//! with the phases φ̂ of the wind that [`HelixEstimator`] finds. Offset 0: pitch rises where the wind does, and the blades
-//! lose load there; offset 180°: pitch falls where the wind rises.
+//! with the phases φ̂ of the wind that [`HelixEstimator`] finds. Offset 0: pitch rises where the wind does,
+//! and the blades lose load there; offset 180°: pitch falls where the wind rises.
 //!
-//! The blades follow by the inverse multi-blade transformation with the azimuth offset ψ_o, which multiplies tilt + j yaw by
-//! e^(−jψ_o). Where both axes have one phase that is another phase: the blades pitch as with φ_off + ψ_o (ccw) or φ_off − ψ_o
-//! (cw) and no azimuth offset. What the axes' phases differ by is a wave of the other sense, which is turned the other way.
+//! The blades follow by the inverse multi-blade transformation with the azimuth offset ψ_o, which multiplies
+//! tilt + j yaw by e^(−jψ_o). Where both axes have one phase that is another phase: the blades pitch as with
+//! φ_off + ψ_o (ccw) or φ_off − ψ_o (cw) and no azimuth offset. What the axes' phases differ by is a wave of
+//! the other sense, which is turned the other way.
 //!
-//! What the paper leaves open: the excitation is as strong as the estimate is trusted. Where the wind carries no helix, or
-//! the loads go missing, it fades to the baseline, and comes back when the helix does.
+//! What the paper leaves open: the excitation is as strong as the estimate is trusted. Where the wind carries
+//! no helix, or the loads go missing, it fades to the baseline, and comes back when the helix does.
 
 mod kind;
 mod settings;
@@ -46,13 +49,14 @@ pub struct SyncSettings {
     pub azimuth_offset: f64,
     /// Time at which it fades in, over one excitation period (s); the estimator runs from the beginning.
     pub start: f64,
-    /// Trust (–) below which the excitation fades out, and above which it comes back; none: it never fades out.
+    /// Trust (–) below which the excitation fades out, and above which it comes back; none: it never fades
+    /// out.
     pub trust: Option<[f64; 2]>,
 }
 
 impl SyncSettings {
-    /// Tilt and yaw commands (rad) at `time` (s), of a `share` (–) of the amplitude, where tilt and yaw of the wind have the
-    /// `phases` (rad). van Vondelen et al. (2025), Eq. 22.
+    /// Tilt and yaw commands (rad) at `time` (s), of a `share` (–) of the amplitude, where tilt and yaw of
+    /// the wind have the `phases` (rad). van Vondelen et al. (2025), Eq. 22.
     fn commands(&self, time: f64, share: f64, phases: [f64; 2]) -> FixedFrame {
         let Self { sense, amplitude, rate, offset, start, .. } = *self;
         let amplitude = amplitude * share * fade_in(time, start, rate);
@@ -67,8 +71,8 @@ impl SyncSettings {
 
 /// Trust below which the excitation fades out, and above which it comes back (–).
 ///
-/// [`Trust::overall`](estimation::helix::Trust::overall) lies near 0 in turbulence without a helix; five diameters behind one it was
-/// 0.2 to 0.5 in large-eddy flow (docs/validation/synchronised-helix.md).
+/// [`Trust::overall`](estimation::helix::Trust::overall) lies near 0 in turbulence without a helix; five
+/// diameters behind one it was 0.2 to 0.5 in large-eddy flow (docs/validation/synchronised-helix.md).
 pub const TRUST: [f64; 2] = [0.05, 0.15];
 
 /// Excitation periods over which the found phases are steadied before they pitch (–).
@@ -141,7 +145,8 @@ impl PhaseSync {
         self.estimate.as_ref()
     }
 
-    /// Share of the amplitude that trust allowed at the last instant (–), [`fade-in`](SyncSettings::start) aside.
+    /// Share of the amplitude that trust allowed at the last instant (–), [`fade-in`](SyncSettings::start)
+    /// aside.
     pub fn share(&self) -> f64 {
         self.share
     }
@@ -262,7 +267,8 @@ mod tests {
     }
 
     proptest! {
-        /// Axes half a turn apart in phase make a wave of the other sense, which an azimuth offset turns the other way.
+        /// Axes half a turn apart in phase make a wave of the other sense, which an azimuth offset turns the
+        /// other way.
         #[test]
         fn an_azimuth_offset_is_another_offset_where_both_axes_have_one_phase(
             offset in 0.0..TAU, azimuth_offset in -PI..PI, phase in -PI..PI,

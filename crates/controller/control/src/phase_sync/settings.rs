@@ -210,7 +210,8 @@ impl PhaseEstimator {
     pub fn options(self, flow_resolves_induction: bool) -> Options {
         match self {
             Self::Robust if !flow_resolves_induction => {
-                // Momentum theory keeps the wake's delay with the blade, a resolved flow where the blade has passed.
+                // Momentum theory keeps the wake's delay with the blade, a resolved flow where the blade has
+                // passed.
                 let mut options = Options::default();
                 options.rotor.wake = Wake::WithBlades { time_factor: 1.0 };
                 options

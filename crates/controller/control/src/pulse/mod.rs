@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 /// The pulse as it runs on one turbine; it has no state, its phase follows from time.
 ///
-/// Source: Munters and Meyers, "Towards practical dynamic induction control of wind farms", Wind Energ. Sci. 3,
-/// 409–425, 2018, in its pitch-driven form.
+/// Source: Munters and Meyers, "Towards practical dynamic induction control of wind farms", Wind Energ. Sci.
+/// 3, 409–425, 2018, in its pitch-driven form.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pulse {
     /// Pitch amplitude (rad).

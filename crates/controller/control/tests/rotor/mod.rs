@@ -17,8 +17,8 @@ pub(crate) const EFFICIENCY: f64 = 0.944;
 
 /// Power coefficient (–) at tip-speed ratio and pitch (rad).
 ///
-/// Source: Slootweg, de Haan, Polinder, Kling, "General model for representing variable speed wind turbines in
-/// power system dynamics simulations", IEEE Trans. Power Syst. 18, 144–151, 2003.
+/// Source: Slootweg, de Haan, Polinder, Kling, "General model for representing variable speed wind turbines
+/// in power system dynamics simulations", IEEE Trans. Power Syst. 18, 144–151, 2003.
 pub(crate) fn slootweg(tip_speed_ratio: f64, pitch: f64) -> f64 {
     let beta = pitch.to_degrees().max(0.0);
     let inverse = 1.0 / (tip_speed_ratio - 0.02 * beta) - 0.003 / (beta.powi(3) + 1.0);

@@ -68,8 +68,8 @@ impl Belief {
         }
     }
 
-    /// Corrects by one measurement: its `innovation`, its derivatives by the states `slopes`, and its noise `variance`. Joseph's
-    /// form: the covariance stays symmetric and positive whatever the rounding.
+    /// Corrects by one measurement: its `innovation`, its derivatives by the states `slopes`, and its noise
+    /// `variance`. Joseph's form: the covariance stays symmetric and positive whatever the rounding.
     pub(super) fn correct(&mut self, slopes: &Vector, innovation: f64, variance: f64) {
         // Symbols: P covariance, h slopes, r variance, k gain; P' = (I − k hᵀ) P (I − k hᵀ)ᵀ + r k kᵀ.
         let along = self.along(slopes);
@@ -143,11 +143,13 @@ mod tests {
     }
 
     proptest! {
-        /// Joseph's form is the textbook's, P − P h hᵀ P / s, and stays symmetric and positive along any direction.
+        /// Joseph's form is the textbook's, P − P h hᵀ P / s, and stays symmetric and positive along any
+        /// direction.
         #[test]
         fn josephs_form_is_the_short_one(
             root in prop::collection::vec(-1.0..1.0_f64, N_STATES * N_STATES),
-            slopes in prop::array::uniform12(-2.0..2.0_f64), direction in prop::array::uniform12(-1.0..1.0_f64),
+            slopes in prop::array::uniform12(-2.0..2.0_f64),
+            direction in prop::array::uniform12(-1.0..1.0_f64),
             innovation in -3.0..3.0_f64, variance in 1e-3..10.0_f64,
         ) {
             let before = belief(&root);

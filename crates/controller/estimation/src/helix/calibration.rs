@@ -1,12 +1,12 @@
 //! Calibration of the model's response to the rotor's own pitch, on a record without a helix in the wind.
 //!
-//! A rotor that pitches at the rate of the helix that it estimates takes every error of its pitch response for wind: a few
-//! percent of four degrees are as much wind as a helix five diameters downstream. In a steady wind there is no helix, so
-//! whatever the filter finds is that error. It is linear in a complex factor on the pitch, gain and azimuth offset. Two trials
-//! give the factor with which no error is left.
+//! A rotor that pitches at the rate of the helix that it estimates takes every error of its pitch response
+//! for wind: a few percent of four degrees are as much wind as a helix five diameters downstream. In a steady
+//! wind there is no helix, so whatever the filter finds is that error. It is linear in a complex factor on
+//! the pitch, gain and azimuth offset. Two trials give the factor with which no error is left.
 //!
-//! The paper identifies an azimuth offset for the same end (van Vondelen et al., 2025, §2.4) and names calibration against
-//! experiments as a remedy for its biases (§4.2).
+//! The paper identifies an azimuth offset for the same end (van Vondelen et al., 2025, §2.4) and names
+//! calibration against experiments as a remedy for its biases (§4.2).
 
 use super::estimator::{HelixEstimator, HelixSettings};
 use super::options::Options;
@@ -46,12 +46,13 @@ impl Calibration {
     }
 }
 
-/// Calibrates `options` on `record`: measurements at every [`HelixSettings::interval`] of a rotor that pitches a helix with
-/// the rate and sense of `settings` in a steady wind. The filter settles for `settling` (s); whole periods after that count.
+/// Calibrates `options` on `record`: measurements at every [`HelixSettings::interval`] of a rotor that
+/// pitches a helix with the rate and sense of `settings` in a steady wind. The filter settles for `settling`
+/// (s); whole periods after that count.
 ///
 /// # Errors
-/// Those of [`HelixEstimator::new`]; [`EstimationError::RecordTooShort`] without a whole period after the settling time;
-/// [`EstimationError::NothingToCalibrate`] when the rotor did not pitch.
+/// Those of [`HelixEstimator::new`]; [`EstimationError::RecordTooShort`] without a whole period after the
+/// settling time; [`EstimationError::NothingToCalibrate`] when the rotor did not pitch.
 pub fn calibrate(
     definition: &Arc<Definition>,
     settings: &HelixSettings,
@@ -107,8 +108,8 @@ pub fn calibrate(
     })
 }
 
-/// `options` with a complex `factor` on the pitch's phasor: turning tilt and yaw by an azimuth takes it from a ccw
-/// helix's phase and adds it to a cw one's.
+/// `options` with a complex `factor` on the pitch's phasor: turning tilt and yaw by an azimuth takes it from
+/// a ccw helix's phase and adds it to a cw one's.
 fn with_factor(options: Options, sense: Sense, factor: Complex64) -> Options {
     let turned = factor.arg();
     let mut options = options;

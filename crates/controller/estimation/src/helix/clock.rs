@@ -17,7 +17,8 @@ const LONGEST_INTERVAL: f64 = 3600.0;
 pub(super) struct Clock {
     /// Time of the last update (s); none before the first.
     last: Option<f64>,
-    /// Moments at the last control instant (N m): a reading that repeats to the last bit comes from a stuck instrument.
+    /// Moments at the last control instant (N m): a reading that repeats to the last bit comes from a stuck
+    /// instrument.
     moments: PerBlade<f64>,
     /// Control instants since the last update (–).
     waited: usize,
@@ -38,8 +39,8 @@ impl Clock {
         Self { last: None, moments: PerBlade::splat(n_blades, 0.0), waited: 0 }
     }
 
-    /// What `measurements` can be used for; updates are due at every `every`-th control instant, a `nominal` interval (s)
-    /// apart, on a rotor with rated speed `rated_speed` (rad/s).
+    /// What `measurements` can be used for; updates are due at every `every`-th control instant, a `nominal`
+    /// interval (s) apart, on a rotor with rated speed `rated_speed` (rad/s).
     pub(super) fn look(
         &mut self,
         measurements: &Measurements,

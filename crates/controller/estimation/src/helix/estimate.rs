@@ -32,7 +32,8 @@ pub struct HelixEstimate {
     pub angle: f64,
     /// Excitation rate (rad/s): the nominal one, unless it is estimated.
     pub rate: f64,
-    /// Mean of the normalised innovation squared over an excitation period (–): one where the filter's noise is right.
+    /// Mean of the normalised innovation squared over an excitation period (–): one where the filter's noise
+    /// is right.
     pub innovation: f64,
     /// Confidence in the phases.
     pub trust: Trust,

@@ -30,15 +30,17 @@ pub struct HelixSettings {
 }
 
 impl HelixSettings {
-    /// Elements of each blade (–) that give the effect of pitch on the moments of a modern rotor to well within a percent. An
-    /// error there counts several times in the phase, since pitch changes the moments more than the helix does.
+    /// Elements of each blade (–) that give the effect of pitch on the moments of a modern rotor to well
+    /// within a percent. An error there counts several times in the phase, since pitch changes the moments
+    /// more than the helix does.
     pub const N_ELEMENTS: usize = 16;
 }
 
-/// Estimates mean wind, amplitude and phases of a helix from the moments at the blade roots, while its own rotor pitches.
+/// Estimates mean wind, amplitude and phases of a helix from the moments at the blade roots, while its own
+/// rotor pitches.
 ///
-/// The filter of van Vondelen et al. (2025), Eqs. 8-21; [`Options`] hold what they leave open. Parameters come from the case;
-/// [`HelixEstimator::state`] is the whole state.
+/// The filter of van Vondelen et al. (2025), Eqs. 8-21; [`Options`] hold what they leave open. Parameters
+/// come from the case; [`HelixEstimator::state`] is the whole state.
 #[derive(Clone, Debug)]
 pub struct HelixEstimator {
     filter: Filter,
@@ -63,8 +65,8 @@ impl HelixEstimator {
     /// An estimator on a turbine of `definition`.
     ///
     /// # Errors
-    /// [`EstimationError`] for settings out of range, noise that is not positive definite, an excitation above the Nyquist
-    /// rate of the updates, or a rotor of fewer than three blades.
+    /// [`EstimationError`] for settings out of range, noise that is not positive definite, an excitation
+    /// above the Nyquist rate of the updates, or a rotor of fewer than three blades.
     pub fn new(
         definition: &Arc<Definition>,
         settings: &HelixSettings,
@@ -99,7 +101,8 @@ impl HelixEstimator {
         self.filter.rate * (measurements.time - self.filter.options.rotor.reading_delay)
     }
 
-    /// Initialises with the uniform wind that gives the mean of the moments; false unless all moments are usable.
+    /// Initialises with the uniform wind that gives the mean of the moments; false unless all moments are
+    /// usable.
     fn begin(&mut self, kinematics: &RotorKinematics, readings: &Readings) -> bool {
         if readings.iter().any(Option::is_none) {
             return false;
@@ -156,8 +159,8 @@ impl HelixEstimator {
         }
     }
 
-    /// Slopes of each blade's moment over the states by central differences of the whole measurement function, wake held.
-    /// van Vondelen et al. (2025), Eq. 18.
+    /// Slopes of each blade's moment over the states by central differences of the whole measurement
+    /// function, wake held. van Vondelen et al. (2025), Eq. 18.
     fn differences(
         &self,
         step: f64,

@@ -130,8 +130,9 @@ impl Filter {
             self.turn(interval, &mut state.belief);
         }
         incoming[MEAN_WIND] = noise.mean_wind * interval;
-        // The process noise of the wave scales with the variance of the eddies, so that the filter keeps its bandwidth: with
-        // adapted eddies alone it would become ever slower, and a slow filter takes the helix for eddies.
+        // The process noise of the wave scales with the variance of the eddies, so that the filter keeps its
+        // bandwidth: with adapted eddies alone it would become ever slower, and a slow filter takes the helix
+        // for eddies.
         let stirred = eddies.map_or(1.0, |eddies| state.eddies / eddies.deviation.powi(2));
         for index in (0..4).filter(|index| form.is_used(*index)) {
             let density = if form.is_phase(index) { noise.phase } else { noise.amplitude };
@@ -155,8 +156,8 @@ impl Filter {
         state.belief.spread(&incoming, &pairs);
     }
 
-    /// The fixed frame's wind (m/s) at `angle` (rad) of the excitation where the states are `mean`, and its derivatives by them;
-    /// `pitch_wind` is the wind equivalent of the rotor's pitch, tilt and yaw (m/s).
+    /// The fixed frame's wind (m/s) at `angle` (rad) of the excitation where the states are `mean`, and its
+    /// derivatives by them; `pitch_wind` is the wind equivalent of the rotor's pitch, tilt and yaw (m/s).
     pub(super) fn wind(
         &self,
         mean: &Vector,
@@ -187,8 +188,8 @@ impl Filter {
         (wind, slopes)
     }
 
-    /// Corrects `state` by the `readings` of `now`, given the `expected` moments and their `slopes` over the states; gives the
-    /// number of blades used.
+    /// Corrects `state` by the `readings` of `now`, given the `expected` moments and their `slopes` over the
+    /// states; gives the number of blades used.
     pub(super) fn correct(
         &self,
         now: &Instant,
@@ -222,7 +223,8 @@ impl Filter {
             state.belief.correct(slopes, innovation, inflated);
             n_used += 1;
             square += (distance * distance).min(1e6);
-            // Posterior residual plus the remaining uncertainty of the state: an estimate of the measurement noise.
+            // Posterior residual plus the remaining uncertainty of the state: an estimate of the measurement
+            // noise.
             let residual = (innovation * inflated / (inflation * total)).abs();
             let limit = HUBER_LIMIT * variance.sqrt();
             left += (residual.min(limit).powi(2) + state.belief.variance_along(slopes)) / nominal;
@@ -310,8 +312,8 @@ impl Filter {
         }
     }
 
-    /// Adapts the noise: `left` is the estimated measurement variance over the nominal one (–), `before` are the states before
-    /// the correction.
+    /// Adapts the noise: `left` is the estimated measurement variance over the nominal one (–), `before` are
+    /// the states before the correction.
     fn learn(
         &self,
         interval: f64,

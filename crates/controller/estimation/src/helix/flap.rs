@@ -1,19 +1,19 @@
 //! The first flapwise mode of a blade, which delays the effect of aerodynamic loads on its root.
 //!
-//! Symbols: q deflection of the tip downwind, φ mode shape, s span from the root, r distance from the shaft, μ mass per
-//! length, Ω rotor speed, M aerodynamic moment on a rigid blade, U its wind, g chord × r, to which the derivative of the
-//! force by the wind is proportional, ω rate of the excitation in the blade.
+//! Symbols: q deflection of the tip downwind, φ mode shape, s span from the root, r distance from the shaft,
+//! μ mass per length, Ω rotor speed, M aerodynamic moment on a rigid blade, U its wind, g chord × r, to which
+//! the derivative of the force by the wind is proportional, ω rate of the excitation in the blade.
 //!
 //! ```text
 //! m q̈ + d q̇ + k q = a M               m = ∫ μ φ² ds,   a = ∫ g φ ds / ∫ g s ds,
-//!                                       k = ∫ EI φ″² ds + Ω² ∫ φ′² ∫ₛ μ r ds′ ds,   d = ∂M/∂U ∫ g φ² ds / ∫ g s ds
+//!                         k = ∫ EI φ″² ds + Ω² ∫ φ′² ∫ₛ μ r ds′ ds,   d = ∂M/∂U ∫ g φ² ds / ∫ g s ds
 //! root moment = M − ∂M/∂U b q̇ − i q̈ − Ω² c q
 //!                                       b = ∫ g φ s ds / ∫ g s ds,   i = ∫ μ φ s ds,   c = ∫ μ r φ ds
 //! ```
 //!
-//! Tilt and yaw excite the blade at the sum of the rotor's and the helix's rate; the response at that rate is a gain and a lag,
-//! which rotate tilt and yaw into each other. The steady-state response is used, so that noise in the estimate does not excite
-//! the model's blades.
+//! Tilt and yaw excite the blade at the sum of the rotor's and the helix's rate; the response at that rate is
+//! a gain and a lag, which rotate tilt and yaw into each other. The steady-state response is used, so that
+//! noise in the estimate does not excite the model's blades.
 
 use basis::PerBlade;
 use basis::mbc::{blade_azimuth, to_fixed_frame};
@@ -96,8 +96,8 @@ impl Flap {
         flap
     }
 
-    /// Effect of bending on moments that oscillate at `rate` (rad/s) in the blade, with blade 1 at `azimuth` (rad); their
-    /// derivative by the wind is `slope` (N m/(m/s)).
+    /// Effect of bending on moments that oscillate at `rate` (rad/s) in the blade, with blade 1 at `azimuth`
+    /// (rad); their derivative by the wind is `slope` (N m/(m/s)).
     pub(super) fn bend(&self, rate: f64, rotor_speed: f64, azimuth: f64, slope: f64) -> Bend {
         let (held, square) = (self.held(rotor_speed), rotor_speed * rotor_speed);
         let slope = slope.max(0.0);

@@ -1,8 +1,9 @@
 //! The earlier method: a linear Kalman filter around one operating point.
 //!
-//! After van Vondelen et al. (2023), "Phase synchronization for Helix enhanced wake mixing in downstream wind turbines",
-//! IFAC-PapersOnLine 56, 8426: moments are linear in wind and pitch, the helix an undamped oscillator, which here stands
-//! still as sine and cosine components against the excitation. Kept for comparison.
+//! After van Vondelen et al. (2023), "Phase synchronization for Helix enhanced wake mixing in downstream wind
+//! turbines", IFAC-PapersOnLine 56, 8426: moments are linear in wind and pitch, the helix an undamped
+//! oscillator, which here stands still as sine and cosine components against the excitation. Kept for
+//! comparison.
 
 use super::belief::MEAN_WIND;
 use super::clock::{Clock, Use};
@@ -58,8 +59,8 @@ pub struct LinearEstimatorState {
 }
 
 impl LinearEstimator {
-    /// An estimator on a turbine of `definition`, linear around `point`, with the noise and control intervals of `options`;
-    /// derivatives are those of a steady wake and of rigid blades.
+    /// An estimator on a turbine of `definition`, linear around `point`, with the noise and control intervals
+    /// of `options`; derivatives are those of a steady wake and of rigid blades.
     ///
     /// # Errors
     /// Those of [`HelixEstimator::new`](super::HelixEstimator::new), and for an operating point out of range.
@@ -199,7 +200,8 @@ impl LinearEstimator {
     }
 }
 
-/// Mean blade moment (N m) of `model` at rest in an even `wind` (m/s), at `rotor_speed` (rad/s) and `pitch` (rad).
+/// Mean blade moment (N m) of `model` at rest in an even `wind` (m/s), at `rotor_speed` (rad/s) and `pitch`
+/// (rad).
 fn moment_at_rest(model: &Rotor, wind: f64, rotor_speed: f64, pitch: PerBlade<f64>) -> f64 {
     let (mut state, mut memory) = (model.start(), model.memory());
     let wind = FixedFrame { average: wind, ..FixedFrame::default() };

@@ -1,9 +1,11 @@
-//! Estimation of the helix in the wind at a rotor: its amplitude and phases, from the moments at the blade roots.
+//! Estimation of the helix in the wind at a rotor: its amplitude and phases, from the moments at the blade
+//! roots.
 //!
-//! After van Vondelen et al. (2025), "Synchronized Helix wake mixing control", Wind Energ. Sci. 10, 2411: the wind that
-//! meets the rotor has a tilt and a yaw component that oscillate at the excitation rate, which the rotating blades sample. A
-//! blade-element model with a wake predicts the blade moments; an extended Kalman filter estimates the wind for which they
-//! equal the measured ones. Pitch is an input of the model, so the rotor may pitch in any way meanwhile.
+//! After van Vondelen et al. (2025), "Synchronized Helix wake mixing control", Wind Energ. Sci. 10, 2411: the
+//! wind that meets the rotor has a tilt and a yaw component that oscillate at the excitation rate, which the
+//! rotating blades sample. A blade-element model with a wake predicts the blade moments; an extended Kalman
+//! filter estimates the wind for which they equal the measured ones. Pitch is an input of the model, so the
+//! rotor may pitch in any way meanwhile.
 
 mod belief;
 mod calibration;

@@ -33,9 +33,9 @@ impl MeasurementModel {
         Ok(Self { rotor, state, memory, settled: false })
     }
 
-    /// Moments at the blade roots (N m) an `interval` (s) after the last ones, blade 1 at `azimuth` (rad), the rotor turning
-    /// with `rotor_speed` (rad/s), blades pitched by `pitch` (rad), in the fixed frame's `wind` (m/s). The first call starts
-    /// from the steady wake in its mean wind.
+    /// Moments at the blade roots (N m) an `interval` (s) after the last ones, blade 1 at `azimuth` (rad),
+    /// the rotor turning with `rotor_speed` (rad/s), blades pitched by `pitch` (rad), in the fixed frame's
+    /// `wind` (m/s). The first call starts from the steady wake in its mean wind.
     pub fn moments(
         &mut self,
         interval: f64,

@@ -13,24 +13,27 @@ pub struct Options {
     pub rotor: Rotor,
     /// Noise model of the filter.
     pub noise: Noise,
-    /// Constant tilt and yaw outside the model, as of shear, gravity and shaft tilt: their process noise intensity ((m/s)²/s);
-    /// none without such states.
+    /// Constant tilt and yaw outside the model, as of shear, gravity and shaft tilt: their process noise
+    /// intensity ((m/s)²/s); none without such states.
     pub bias: Option<f64>,
-    /// Tilt and yaw of passing eddies; none without such states. With them the process noise intensity of the wave scales with
-    /// their adapted variance.
+    /// Tilt and yaw of passing eddies; none without such states. With them the process noise intensity of the
+    /// wave scales with their adapted variance.
     pub eddies: Option<Eddies>,
-    /// Initial uncertainty of the model's response to the rotor's own pitch (–, a standard deviation over the wind equivalent of
-    /// the pitch), with states that estimate it as the pitch begins or changes; none without such states.
+    /// Initial uncertainty of the model's response to the rotor's own pitch (–, a standard deviation over the
+    /// wind equivalent of the pitch), with states that estimate it as the pitch begins or changes; none
+    /// without such states.
     pub response: Option<f64>,
-    /// Uncertainty of the model's response to the rotor's own pitch in the confidence of the phases (–, a standard deviation
-    /// over the wind equivalent of the pitch). It does not decrease with time, as the effect of noise does, and it changes no
-    /// estimate.
+    /// Uncertainty of the model's response to the rotor's own pitch in the confidence of the phases (–, a
+    /// standard deviation over the wind equivalent of the pitch). It does not decrease with time, as the
+    /// effect of noise does, and it changes no estimate.
     pub model_uncertainty: f64,
-    /// Process noise intensity of the excitation rate ((rad/s)²/s); none where the rate is taken to be the nominal one.
+    /// Process noise intensity of the excitation rate ((rad/s)²/s); none where the rate is taken to be the
+    /// nominal one.
     pub rate: Option<f64>,
     /// Adaptation of the noise to the innovation; none for constant noise.
     pub adaptation: Option<Adaptation>,
-    /// Correlation of the process noise of tilt and yaw (–, 0 to below 1): one would be a helix that stays round.
+    /// Correlation of the process noise of tilt and yaw (–, 0 to below 1): one would be a helix that stays
+    /// round.
     pub roundness: f64,
     /// Method for the Jacobian.
     pub jacobian: Jacobian,
@@ -47,8 +50,8 @@ pub struct Rotor {
     pub flexible: bool,
     /// Factor on tilt and yaw of the pitch (–): the blades' response to it over the model's.
     pub pitch_gain: f64,
-    /// Angle by which a blade leads its pitch (rad): the pitch that acts is the one measured this part of a turn before. For
-    /// lags outside the models of wake and bending.
+    /// Angle by which a blade leads its pitch (rad): the pitch that acts is the one measured this part of a
+    /// turn before. For lags outside the models of wake and bending.
     pub pitch_azimuth_offset: f64,
     /// Age of the moments when they are read (s): delay of the instruments, or half a step of a simulation.
     pub reading_delay: f64,
@@ -59,17 +62,19 @@ pub struct Rotor {
 pub enum Wake {
     /// Quasi-steady: blade-element momentum at every instant.
     Static,
-    /// Dynamic inflow of Snel and Schepers, time constant times `time_factor` (–), in the rotating frame of each blade.
+    /// Dynamic inflow of Snel and Schepers, time constant times `time_factor` (–), in the rotating frame of
+    /// each blade.
     WithBlades {
         /// Factor on the model's time constant (–).
         time_factor: f64,
     },
     /// The same dynamic inflow in the non-rotating frame, fixed in space.
     ///
-    /// A load that oscillates from side to side of the rotor changes the induction less, and sooner, than one that changes
-    /// uniformly (as in Pitt and Peters's inflow, whose tilt and yaw have half the average's time constant). In records of
-    /// resolved flow with rotors that pitch a helix in a wind without one, a factor of 0.4 and a share of 0.6 leave the
-    /// smallest spurious helix; docs/phase-estimation.md has the table.
+    /// A load that oscillates from side to side of the rotor changes the induction less, and sooner, than one
+    /// that changes uniformly (as in Pitt and Peters's inflow, whose tilt and yaw have half the average's
+    /// time constant). In records of resolved flow with rotors that pitch a helix in a wind without one, a
+    /// factor of 0.4 and a share of 0.6 leave the smallest spurious helix; docs/phase-estimation.md has the
+    /// table.
     InAir {
         /// Factor on the model's time constant (–).
         time_factor: f64,
@@ -166,11 +171,11 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The form of van Vondelen et al. (2025): mean wind, one amplitude, two phases; a wake with delay; fixed noise; slopes
-    /// by central differences.
+    /// The form of van Vondelen et al. (2025): mean wind, one amplitude, two phases; a wake with delay; fixed
+    /// noise; slopes by central differences.
     ///
-    /// The paper gives no numbers for its noise; with these the filter converges within about two periods on its own model.
-    /// [`tuning`](super::tuning) finds others from records.
+    /// The paper gives no numbers for its noise; with these the filter converges within about two periods on
+    /// its own model. [`tuning`](super::tuning) finds others from records.
     pub fn published() -> Self {
         Self {
             form: Form::SharedAmplitude,

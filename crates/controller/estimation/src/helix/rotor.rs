@@ -153,15 +153,16 @@ impl Rotor {
         RotorKinematics { azimuth, rotor_speed: measurements.rotor_speed, pitch }
     }
 
-    /// Approximate wind equivalent of the pitch of `kinematics`, tilt and yaw (m/s): the angle times the blades' speed at the
-    /// effective radius.
+    /// Approximate wind equivalent of the pitch of `kinematics`, tilt and yaw (m/s): the angle times the
+    /// blades' speed at the effective radius.
     pub(super) fn wind_equivalent_of_pitch(&self, kinematics: &RotorKinematics) -> [f64; 2] {
         let fixed = to_fixed_frame(kinematics.azimuth, &kinematics.pitch);
         let speed = EFFECTIVE_RADIUS * self.radius * kinematics.rotor_speed;
         [-speed * fixed.tilt, -speed * fixed.yaw]
     }
 
-    /// Finds the uniform wind (m/s) that gives the `mean_moment` (N m); on return `state` is the steady wake in it.
+    /// Finds the uniform wind (m/s) that gives the `mean_moment` (N m); on return `state` is the steady wake
+    /// in it.
     pub(super) fn settle(
         &self,
         mean_moment: f64,
@@ -198,8 +199,8 @@ impl Rotor {
         }
     }
 
-    /// Advances `state` by `interval` (s) to the instant of `kinematics`, at which the fixed frame's wind is `wind` (m/s); gives
-    /// the expected moments.
+    /// Advances `state` by `interval` (s) to the instant of `kinematics`, at which the fixed frame's wind is
+    /// `wind` (m/s); gives the expected moments.
     pub(super) fn advance(
         &self,
         interval: f64,
@@ -270,7 +271,8 @@ impl Rotor {
         memory: &mut Memory,
     ) {
         if let Some(share) = self.in_air {
-            // Each sector responds to the wind at its azimuth, and to a blade with the pitch of one that passes there.
+            // Each sector responds to the wind at its azimuth, and to a blade with the pitch of one that
+            // passes there.
             let pitch = to_fixed_frame(kinematics.azimuth, &kinematics.pitch);
             let conditions = Conditions {
                 winds: to_blades(0.0, wind, self.n_blades),

@@ -1,4 +1,5 @@
-//! Confidence in an estimate: variance of its phases, coherence of the estimated wave, consistency of the innovation.
+//! Confidence in an estimate: variance of its phases, coherence of the estimated wave, consistency of the
+//! innovation.
 
 use basis::FixedFrame;
 use lti::lag::kept;
@@ -13,11 +14,11 @@ const JUDGING: f64 = 4.0;
 /// Confidence in the phases; all numbers from 0, none, to 1, full.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Trust {
-    /// exp(−σ²/2) of the less certain axis (–), σ² the variance of its phase by noise and by the model uncertainty of the pitch
-    /// response: the length of the mean unit vector of that phase.
+    /// exp(−σ²/2) of the less certain axis (–), σ² the variance of its phase by noise and by the model
+    /// uncertainty of the pitch response: the length of the mean unit vector of that phase.
     pub certainty: f64,
-    /// How steadily the wind's component at the excitation rate keeps its phase against the excitation (–): near 1 for a
-    /// helix, near 0 for turbulence alone.
+    /// How steadily the wind's component at the excitation rate keeps its phase against the excitation (–):
+    /// near 1 for a helix, near 0 for turbulence alone.
     pub coherence: f64,
     /// 1 while the innovations have the predicted variance, less as they grow (–).
     pub consistency: f64,
@@ -33,7 +34,8 @@ impl Trust {
 /// Monitor of the confidence: running means.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct TrustMonitor {
-    /// Tilt's and yaw's component at the excitation rate: in phase and a quarter ahead (m/s), over one period.
+    /// Tilt's and yaw's component at the excitation rate: in phase and a quarter ahead (m/s), over one
+    /// period.
     picked: [[f64; 2]; 2],
     picked_weight: f64,
     /// Mean of the components (m/s) and of their square (m²/s²) over some periods.
@@ -46,8 +48,8 @@ pub(super) struct TrustMonitor {
 }
 
 impl TrustMonitor {
-    /// Takes in the instantaneous `wind` (m/s), without constant parts, at `angle` (rad) of an excitation of `rate` (rad/s), an
-    /// `interval` (s) after the last one.
+    /// Takes in the instantaneous `wind` (m/s), without constant parts, at `angle` (rad) of an excitation of
+    /// `rate` (rad/s), an `interval` (s) after the last one.
     pub(super) fn observe(&mut self, interval: f64, rate: f64, angle: f64, wind: FixedFrame) {
         let period = TAU / rate;
         let (sine, cosine) = angle.sin_cos();
@@ -77,7 +79,8 @@ impl TrustMonitor {
         smooth(&mut self.innovation_weight, share, 1.0);
     }
 
-    /// Mean of the normalised innovation squared over an excitation period (–), one where the filter's noise is right.
+    /// Mean of the normalised innovation squared over an excitation period (–), one where the filter's noise
+    /// is right.
     pub(super) fn innovation(&self) -> f64 {
         if self.innovation_weight > 0.0 { self.innovation / self.innovation_weight } else { 1.0 }
     }

@@ -1,7 +1,9 @@
-//! Noise of the filter from records: measurement noise, process noise intensity of the wave, and its best scale.
+//! Noise of the filter from records: measurement noise, process noise intensity of the wave, and its best
+//! scale.
 //!
-//! Algorithm 1 of van Vondelen et al. (2025): the variance of high-passed moments, the variance of the derivative of the
-//! filtered true wave, and a factor on the latter found by trial against the truth. Pure functions on slices.
+//! Algorithm 1 of van Vondelen et al. (2025): the variance of high-passed moments, the variance of the
+//! derivative of the filtered true wave, and a factor on the latter found by trial against the truth. Pure
+//! functions on slices.
 
 use super::options::{Measurement, Options, positive};
 use super::{HelixEstimate, HelixEstimator, HelixSettings};
@@ -39,7 +41,8 @@ pub struct Tuned {
 }
 
 /// # Errors
-/// [`EstimationError`] when `record` is not sampled every `interval` (s) without a gap, or an azimuth is not a number.
+/// [`EstimationError`] when `record` is not sampled every `interval` (s) without a gap, or an azimuth is not
+/// a number.
 pub fn check_record(record: &[Measurements], interval: f64) -> Result<(), EstimationError> {
     positive("sampling interval (s)", interval)?;
     if record.len() < 2 {
@@ -64,12 +67,12 @@ pub fn check_record(record: &[Measurements], interval: f64) -> Result<(), Estima
     Ok(())
 }
 
-/// Variance (in the square of the unit of `signal`) of what `signal`, sampled every `interval` (s), holds above `corner`
-/// (rad/s): Algorithm 1, step 1. Second-order Butterworth.
+/// Variance (in the square of the unit of `signal`) of what `signal`, sampled every `interval` (s), holds
+/// above `corner` (rad/s): Algorithm 1, step 1. Second-order Butterworth.
 ///
 /// # Errors
-/// [`EstimationError`] for a record shorter than two periods of the corner, a corner above the Nyquist rate, or a sample
-/// that is no number.
+/// [`EstimationError`] for a record shorter than two periods of the corner, a corner above the Nyquist rate,
+/// or a sample that is no number.
 pub fn high_passed_variance(
     signal: &[f64],
     interval: f64,
@@ -100,14 +103,15 @@ pub fn high_passed_variance(
     Ok(sum / n)
 }
 
-/// Amplitude (m/s) and phase (rad, unwrapped from the first) of the component of `signal` (m/s) at `rate` (rad/s), sampled
-/// every `interval` (s) from `start` (s) on: A sin(ω t + φ), averaged around each sample with weights that fall linearly
-/// to zero a period away.
+/// Amplitude (m/s) and phase (rad, unwrapped from the first) of the component of `signal` (m/s) at `rate`
+/// (rad/s), sampled every `interval` (s) from `start` (s) on: A sin(ω t + φ), averaged around each sample
+/// with weights that fall linearly to zero a period away.
 ///
 /// The first and last period have no value: the columns begin a period after `start`.
 ///
 /// # Errors
-/// [`EstimationError`] for a record shorter than three periods, a rate above the Nyquist rate, or a sample that is no number.
+/// [`EstimationError`] for a record shorter than three periods, a rate above the Nyquist rate, or a sample
+/// that is no number.
 pub fn wave(
     signal: &[f64],
     start: f64,
@@ -154,9 +158,9 @@ fn moving_mean(column: &[f64], n: usize) -> Vec<f64> {
     means
 }
 
-/// Process noise intensities of amplitude and phase of a helix, from the true fixed-frame winds `tilt` and `yaw` (m/s) sampled
-/// every `interval` (s) from `start` (s) on: Algorithm 1, step 2. Variances of the derivatives times the interval, which are the
-/// variances per time of a walk with such steps.
+/// Process noise intensities of amplitude and phase of a helix, from the true fixed-frame winds `tilt` and
+/// `yaw` (m/s) sampled every `interval` (s) from `start` (s) on: Algorithm 1, step 2. Variances of the
+/// derivatives times the interval, which are the variances per time of a walk with such steps.
 ///
 /// # Errors
 /// Those of [`wave`], and columns of different length.
@@ -182,8 +186,8 @@ pub fn process_noise(
     Ok(ProcessNoise { amplitude, phase })
 }
 
-/// True phases φ_tilt and φ_yaw (rad, [0, 2π)) at each sample of the true winds, as [`wave`] gives them; the yaw's without
-/// the lead of its `sense`. The first and last period repeat their neighbours.
+/// True phases φ_tilt and φ_yaw (rad, [0, 2π)) at each sample of the true winds, as [`wave`] gives them; the
+/// yaw's without the lead of its `sense`. The first and last period repeat their neighbours.
 ///
 /// # Errors
 /// Those of [`process_noise`].
@@ -222,7 +226,8 @@ pub fn replay<E: Estimator<Estimate = HelixEstimate>>(
     Ok(record.iter().map(|measurements| estimator.update(measurements)).collect())
 }
 
-/// Root-mean-square error (rad) of the phases of `estimates` against `truth`, both axes together, after `settled` samples.
+/// Root-mean-square error (rad) of the phases of `estimates` against `truth`, both axes together, after
+/// `settled` samples.
 pub fn phase_error(estimates: &[HelixEstimate], truth: &[[f64; 2]], settled: usize) -> f64 {
     let (mut sum, mut n) = (0.0, 0.0);
     for (estimate, truth) in estimates.iter().zip(truth).skip(settled) {
@@ -234,8 +239,8 @@ pub fn phase_error(estimates: &[HelixEstimate], truth: &[[f64; 2]], settled: usi
     (sum / f64::max(n, 1.0)).sqrt()
 }
 
-/// The factor (–) between those of `range` for which `cost` is least, and that cost: a grid of factors a decade over three
-/// apart, then the golden section around the best of them. Algorithm 1, step 3.
+/// The factor (–) between those of `range` for which `cost` is least, and that cost: a grid of factors a
+/// decade over three apart, then the golden section around the best of them. Algorithm 1, step 3.
 pub fn best_scale(range: [f64; 2], mut cost: impl FnMut(f64) -> f64) -> (f64, f64) {
     let [low, high] = range.map(f64::log10);
     let n = ((high - low) * 3.0).ceil().max(1.0) as usize;
@@ -263,8 +268,9 @@ pub fn best_scale(range: [f64; 2], mut cost: impl FnMut(f64) -> f64) -> (f64, f6
     (10.0_f64.powf(best.0), best.1)
 }
 
-/// Algorithm 1 whole: measurement noise from the `record`'s moments above twice the excitation rate in the fixed frame's
-/// tilt, process noise intensity from the `truth` (tilt and yaw wind, m/s, sample by sample), its scale by trial.
+/// Algorithm 1 whole: measurement noise from the `record`'s moments above twice the excitation rate in the
+/// fixed frame's tilt, process noise intensity from the `truth` (tilt and yaw wind, m/s, sample by sample),
+/// its scale by trial.
 ///
 /// # Errors
 /// [`EstimationError`] for a record that is uneven, too short, or of another length than the truth.

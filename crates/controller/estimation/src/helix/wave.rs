@@ -11,23 +11,23 @@ pub(super) const UNKNOWN_PHASE: f64 = PI * PI / 3.0;
 
 /// States of the wave.
 ///
-/// In every form the wind of a helix is, with the excitation's angle θ = ω_e t and the sense's lead λ of yaw over tilt
-/// (π/2 for ccw, −π/2 for cw),
+/// In every form the wind of a helix is, with the excitation's angle θ = ω_e t and the sense's lead λ of yaw
+/// over tilt (π/2 for ccw, −π/2 for cw),
 ///
 /// ```text
 /// tilt = A_tilt sin(θ + φ_tilt)        yaw = A_yaw sin(θ + λ + φ_yaw)
 /// ```
 ///
-/// so that ccw has the yaw A cos(θ + φ_yaw) of van Vondelen et al. (2025), Eq. 20, cw its negative, and pitch commands
-/// with the same phases (Eq. 22, offset zero) rise where the wind does in both senses.
+/// so that ccw has the yaw A cos(θ + φ_yaw) of van Vondelen et al. (2025), Eq. 20, cw its negative, and pitch
+/// commands with the same phases (Eq. 22, offset zero) rise where the wind does in both senses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Form {
     /// One amplitude for both axes, and a phase for each: the published state (Eq. 21).
     SharedAmplitude,
     /// An amplitude and a phase for each axis.
     SeparateAmplitudes,
-    /// A sine and a cosine component for each axis: the wind is linear in them, and a helix that fades leaves no spurious
-    /// phase.
+    /// A sine and a cosine component for each axis: the wind is linear in them, and a helix that fades leaves
+    /// no spurious phase.
     Quadrature,
 }
 
@@ -197,9 +197,12 @@ mod tests {
     }
 
     proptest! {
-        /// All forms give the same wind, that of Eq. 20; turning ahead adds to its phase; the axes hold that phase.
+        /// All forms give the same wind, that of Eq. 20; turning ahead adds to its phase; the axes hold that
+        /// phase.
         #[test]
-        fn every_form_is_the_helix(amplitude in 0.1..3.0_f64, phase in -3.0..3.0_f64, angle in -20.0..20.0_f64) {
+        fn every_form_is_the_helix(
+            amplitude in 0.1..3.0_f64, phase in -3.0..3.0_f64, angle in -20.0..20.0_f64,
+        ) {
             for form in FORMS {
                 let wave = states(form, amplitude, phase);
                 let ccw = form.swing(Sense::CounterClockwise, &wave, angle);
@@ -210,7 +213,8 @@ mod tests {
                 let mut turned = wave;
                 form.turn(&mut turned, 0.7);
                 let later = form.swing(Sense::CounterClockwise, &wave, angle + 0.7);
-                prop_assert!((form.swing(Sense::CounterClockwise, &turned, angle).yaw - later.yaw).abs() < 1e-12);
+                let swung = form.swing(Sense::CounterClockwise, &turned, angle).yaw;
+                prop_assert!((swung - later.yaw).abs() < 1e-12);
                 let mut belief = Belief::zero();
                 belief.mean[WAVE..WAVE + 4].copy_from_slice(&wave);
                 for axis in form.axes(&belief) {

@@ -1,15 +1,17 @@
-//! Root moments by gravity and centrifugal force: the same on all blades, and so equivalent to a change of the mean wind.
+//! Root moments by gravity and centrifugal force: the same on all blades, and so equivalent to a change of
+//! the mean wind.
 //!
-//! The shaft is tilted, so that gravity has a component along it; the blades are coned and prebent upwind, so that centrifugal
-//! force straightens them. On a rotor of 15 MW both together are a fifth of the aerodynamic moment.
+//! The shaft is tilted, so that gravity has a component along it; the blades are coned and prebent upwind, so
+//! that centrifugal force straightens them. On a rotor of 15 MW both together are a fifth of the aerodynamic
+//! moment.
 //!
 //! ```text
-//! M = g sin τ ∫ μ s ds + Ω² ∫ μ r x ds        μ mass per length, s span from the root, r distance from the shaft,
-//!                                              x distance upwind of the root, τ tilt of the shaft, Ω rotor speed
+//! M = g sin τ ∫ μ s ds + Ω² ∫ μ r x ds   μ mass per length, s span from the root, r distance from the shaft
+//!                                        x distance upwind of the root, τ tilt of the shaft, Ω rotor speed
 //! ```
 //!
-//! The part of gravity that varies once per revolution is a constant tilt or yaw of the moments, for which the filter has
-//! states.
+//! The part of gravity that varies once per revolution is a constant tilt or yaw of the moments, for which
+//! the filter has states.
 
 use super::flap::{between, mass_at};
 use turbine::Definition;

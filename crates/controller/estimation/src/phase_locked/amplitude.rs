@@ -1,14 +1,16 @@
 //! Stability of a loop that controls an amplitude, measured by a generator, to a reference.
 //!
-//! For a slow change of amplitude a generator is a lag τ (see [`Kind::lag`](super::Kind::lag) over the rate). With proportional
-//! and integral action P and I, and a delay T from the control action to the signal,
+//! For a slow change of amplitude a generator is a lag τ (see [`Kind::lag`](super::Kind::lag) over the rate).
+//! With proportional and integral action P and I, and a delay T from the control action to the signal,
 //!
 //! ```text
-//! s (1 + τ s) + (P s + I) e^(−s T) = 0 ,    at the border, s = jν:   P + cos νT = τν sin νT ,   I = ν (τν cos νT + sin νT)
+//! s (1 + τ s) + (P s + I) e^(−s T) = 0
+//! at the border, s = jν:   P + cos νT = τν sin νT ,   I = ν (τν cos νT + sin νT)
 //! ```
 //!
-//! which without delay is stable for every I. This is too optimistic where I or 1/T comes near the rate itself: the signals
-//! of a disturbed generator pulsate at twice the rate. So the loop itself is simulated, with the phase in lock.
+//! which without delay is stable for every I. This is too optimistic where I or 1/T comes near the rate
+//! itself: the signals of a disturbed generator pulsate at twice the rate. So the loop itself is simulated,
+//! with the phase in lock.
 
 use super::PhaseLockedError;
 use super::generator::Generator;
@@ -27,7 +29,8 @@ const END: i32 = 40;
 const PUSH: f64 = 1e-6;
 const AWAY: f64 = 1.0;
 
-/// Proportional and integral action on the amplitude measured by a generator; their sum is added to the signal in phase.
+/// Proportional and integral action on the amplitude measured by a generator; their sum is added to the
+/// signal in phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmplitudeLoop {
     /// Integral action: amplitude added per time and amplitude error (1/s).
@@ -41,11 +44,12 @@ pub struct AmplitudeLoop {
 }
 
 impl AmplitudeLoop {
-    /// Checks the loop around the generator of `signal`, whose rates are sound, at the lowest and the highest of them.
+    /// Checks the loop around the generator of `signal`, whose rates are sound, at the lowest and the highest
+    /// of them.
     ///
     /// # Errors
-    /// [`PhaseLockedError::AmplitudeUnstable`] with the unstable pole and the largest stable integral action; those of
-    /// [`Generator::new`].
+    /// [`PhaseLockedError::AmplitudeUnstable`] with the unstable pole and the largest stable integral action;
+    /// those of [`Generator::new`].
     pub fn check(&self, signal: &PhaseLockedSettings) -> Result<(), PhaseLockedError> {
         let generator = settled(&Generator::new(signal.generator, signal.damping)?, N_SAMPLES);
         for rate in signal.follower.rates {
@@ -58,7 +62,8 @@ impl AmplitudeLoop {
         Ok(())
     }
 
-    /// Growth and frequency of a small amplitude error about a tone of `rate` (rad/s) that `generator` has settled on.
+    /// Growth and frequency of a small amplitude error about a tone of `rate` (rad/s) that `generator` has
+    /// settled on.
     fn pole(&self, generator: &Generator, rate: f64) -> Pole {
         let turned = TAU / f64::from(N_SAMPLES);
         let interval = turned / rate;
@@ -99,7 +104,8 @@ impl AmplitudeLoop {
         Pole { real, imaginary: crossings.rate() / interval }
     }
 
-    /// Largest stable integral action (1/s) at `rate` (rad/s), below this loop's own; zero where none is stable.
+    /// Largest stable integral action (1/s) at `rate` (rad/s), below this loop's own; zero where none is
+    /// stable.
     fn border(&self, generator: &Generator, rate: f64) -> f64 {
         let is_stable = |integral: f64| Self { integral, ..*self }.pole(generator, rate).real < 0.0;
         let part = |n: i32| self.integral * f64::from(n) / 32.0;
@@ -167,8 +173,8 @@ mod tests {
         PhaseLockedSettings { generator, ..PhaseLockedSettings::between([RATE, 1.01 * RATE]) }
     }
 
-    /// With a delay of three periods everything is slow against the rate, and a generator is a pure lag: borders within 3 % of
-    /// the closed form, the frequency of the pole that crosses within 5 % of ν.
+    /// With a delay of three periods everything is slow against the rate, and a generator is a pure lag:
+    /// borders within 3 % of the closed form, the frequency of the pole that crosses within 5 % of ν.
     #[test]
     fn the_border_is_that_of_the_closed_form_where_the_delay_is_long() {
         for kind in [Kind::Second, Kind::extended(SQRT_2, 1.0).unwrap(), Kind::Mixed] {
@@ -192,7 +198,8 @@ mod tests {
         }
     }
 
-    /// Without delay the closed form has no border; the second-order generator has one near its own rate, the mixed one none.
+    /// Without delay the closed form has no border; the second-order generator has one near its own rate, the
+    /// mixed one none.
     #[test]
     fn pulsation_is_refused_although_the_closed_form_allows_it() {
         let at_once = AmplitudeLoop {
@@ -213,7 +220,8 @@ mod tests {
         assert_eq!(at_once.check(&signal(Kind::Mixed)), Ok(()));
     }
 
-    /// Subtracted before the generator, the control action acts at once: stable for proportional action below one.
+    /// Subtracted before the generator, the control action acts at once: stable for proportional action below
+    /// one.
     #[test]
     fn a_subtracted_control_action_is_stable_up_to_a_proportional_action_of_one() {
         let with = |proportional: f64| {

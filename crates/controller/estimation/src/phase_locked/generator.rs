@@ -9,18 +9,20 @@
 //! mixed:     ẋ₁ = ω (k (u − x₁) − x₂)           ẋ₂ = ω x₁      ẋ₃ = ω (k (u − x₁) − x₃)
 //! ```
 //!
-//! with damping k and, in the extended one, dc gain κ. The in-phase signal is x₁; the quadrature signal, a quarter period
-//! behind, is x₂, in the mixed one x₂ − x₃; the offset is x₃, in the mixed one x₃/k.
-//! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, Eqs. A-1, A-9.
+//! with damping k and, in the extended one, dc gain κ. The in-phase signal is x₁; the quadrature signal, a
+//! quarter period behind, is x₂, in the mixed one x₂ − x₃; the offset is x₃, in the mixed one x₃/k.
+//! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024,
+//! Eqs. A-1, A-9.
 //!
 //! # Discretisation
 //!
-//! By the trapezoidal rule with 2 tan(φ/2) in place of φ = ω × interval. Three things follow. A sine at the centre passes
-//! with gain one and without delay *exactly*, whatever the interval, and while the centre moves too: what is left of the
-//! equations in lock is a rotation, and its Cayley transform with tan(φ/2) turns by φ. The gains for a constant are exact as
-//! well. And however the centre moves, the filter stays stable: each step multiplies the state by a rational function of the
-//! one matrix A, these functions commute, and each maps the left half plane into the unit disk. (The exponential of φ A has
-//! the last property, not the first two: with the input interpolated linearly its gain at the centre is φ²/12 short.)
+//! By the trapezoidal rule with 2 tan(φ/2) in place of φ = ω × interval. Three things follow. A sine at the
+//! centre passes with gain one and without delay *exactly*, whatever the interval, and while the centre moves
+//! too: what is left of the equations in lock is a rotation, and its Cayley transform with tan(φ/2) turns by
+//! φ. The gains for a constant are exact as well. And however the centre moves, the filter stays stable: each
+//! step multiplies the state by a rational function of the one matrix A, these functions commute, and each
+//! maps the left half plane into the unit disk. (The exponential of φ A has the last property, not the first
+//! two: with the input interpolated linearly its gain at the centre is φ²/12 short.)
 
 use super::PhaseLockedError;
 use serde::{Deserialize, Serialize};
@@ -36,19 +38,22 @@ pub(super) fn is_usable(sample: f64) -> bool {
 /// Structure of the generator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Kind {
-    /// Second-order generalised integrator (SOGI): does not estimate the offset, which disturbs its quadrature signal.
+    /// Second-order generalised integrator (SOGI): does not estimate the offset, which disturbs its
+    /// quadrature signal.
     Second,
     /// Extended by a third integrator that removes the offset from the input (ESOGI).
     Extended {
         /// Gain of the offset's integrator (–), see [`dc_gain`].
         dc_gain: f64,
     },
-    /// Mixed second- and third-order (MSTOGI): a third-order branch removes the offset from the quadrature signal.
+    /// Mixed second- and third-order (MSTOGI): a third-order branch removes the offset from the quadrature
+    /// signal.
     Mixed,
 }
 
 impl Kind {
-    /// The extended generator whose real pole decays `pole_ratio` (–) times as fast as its pair, see [`dc_gain`].
+    /// The extended generator whose real pole decays `pole_ratio` (–) times as fast as its pair, see
+    /// [`dc_gain`].
     ///
     /// # Errors
     /// Those of [`dc_gain`].
@@ -58,8 +63,8 @@ impl Kind {
 
     /// Lag of a slow change of phase, times the centre rate (rad).
     ///
-    /// Group delay of the two signals at the centre, averaged: 2/k of all, and half a radian more where the quadrature
-    /// signal passes an all-pass. It is the time constant τ of Eqs. 2-25 and 2-30.
+    /// Group delay of the two signals at the centre, averaged: 2/k of all, and half a radian more where the
+    /// quadrature signal passes an all-pass. It is the time constant τ of Eqs. 2-25 and 2-30.
     pub fn lag(self, damping: f64) -> f64 {
         2.0 / damping + if self == Self::Mixed { 0.5 } else { 0.0 }
     }
@@ -67,9 +72,10 @@ impl Kind {
 
 /// Gain κ (–) of the extended generator's offset that puts its real pole at −m α beside the pair −α ± jβ.
 ///
-/// `damping` is k (–), `pole_ratio` is m (–): with 1 offset and oscillation settle alike, with less the offset is slower.
-/// Source: van Veldhoven (2024), Eqs. 2-12 to 2-14: the positive root of
-/// κ³ + 3 k κ² + (3 k² + ((m+2)/m)²) κ + k³ − (m+2)² k / (2 m) = 0, which rises with κ and so has one at most.
+/// `damping` is k (–), `pole_ratio` is m (–): with 1 offset and oscillation settle alike, with less the
+/// offset is slower. Source: van Veldhoven (2024), Eqs. 2-12 to 2-14: the positive root of
+/// κ³ + 3 k κ² + (3 k² + ((m+2)/m)²) κ + k³ − (m+2)² k / (2 m) = 0, which rises with κ and so has one at
+/// most.
 ///
 /// # Errors
 /// [`PhaseLockedError::Damping`] when k is not positive or too strong for a positive root, k² ≥ (m+2)²/(2 m);
@@ -92,7 +98,8 @@ pub fn dc_gain(damping: f64, pole_ratio: f64) -> Result<f64, PhaseLockedError> {
     }
     let linear = 3.0 * k * k + ((m + 2.0) / m).powi(2);
     let constant = k.powi(3) - (m + 2.0).powi(2) * k / (2.0 * m);
-    // Convex and rising: Newton's method from above the root comes down to it. It starts where the line alone is zero.
+    // Convex and rising: Newton's method from above the root comes down to it. It starts where the line alone
+    // is zero.
     let mut gain = -constant / linear;
     for _ in 0..50 {
         let value = ((gain + 3.0 * k) * gain + linear) * gain + constant;
@@ -131,10 +138,11 @@ impl Generator {
         Ok(Self { kind, damping, state: [0.0; 3], last: None })
     }
 
-    /// Takes in `sample` (any unit), the centre having turned by `turned` (rad, below π) since the sample before.
+    /// Takes in `sample` (any unit), the centre having turned by `turned` (rad, below π) since the sample
+    /// before.
     ///
-    /// The first sample is taken as the offset, so that a large one causes no transient. An unusable sample is replaced by
-    /// the expected one: the generator turns on undisturbed, and the result is false.
+    /// The first sample is taken as the offset, so that a large one causes no transient. An unusable sample
+    /// is replaced by the expected one: the generator turns on undisturbed, and the result is false.
     pub fn update(&mut self, turned: f64, sample: f64) -> bool {
         if !is_usable(sample) {
             self.coast(turned);

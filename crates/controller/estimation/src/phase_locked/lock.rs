@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Root mean square of the phase error below which a loop locks (rad). An action with a phase error of this standard deviation
-/// (normally distributed) still has exp(−σ²/2) = 78 % of its effect.
+/// Root mean square of the phase error below which a loop locks (rad). An action with a phase error of this
+/// standard deviation (normally distributed) still has exp(−σ²/2) = 78 % of its effect.
 const LOCKS_BELOW: f64 = 0.7;
-/// Root mean square of the phase error above which it has lost the lock (rad): below half of the effect. A loop without an
-/// oscillation to follow has 2 to 4 rad.
+/// Root mean square of the phase error above which it has lost the lock (rad): below half of the effect. A
+/// loop without an oscillation to follow has 2 to 4 rad.
 const LOSES_ABOVE: f64 = 1.2;
 /// Least power of the oscillation, A²/2, over that of the residual (–); half of it loses the lock.
 const LEAST_POWER_RATIO: f64 = 0.5;
@@ -36,8 +36,8 @@ impl Lock {
         Self { phase: 1.0, residual: 0.0, limited: 0.0, turned: 0.0, silent: 0.0, locked: false }
     }
 
-    /// Takes in one instant: `turned` (rad) since the one before, phase error (rad), residual and amplitude (one unit),
-    /// whether the rate is at a limit.
+    /// Takes in one instant: `turned` (rad) since the one before, phase error (rad), residual and amplitude
+    /// (one unit), whether the rate is at a limit.
     pub(super) fn update(
         &mut self,
         turned: f64,

@@ -1,4 +1,5 @@
-//! Phase-locked loops: frequency, phase, amplitude and offset of a slow, irregular oscillation such as wake meandering.
+//! Phase-locked loops: frequency, phase, amplitude and offset of a slow, irregular oscillation such as wake
+//! meandering.
 //!
 //! ```text
 //!            ┌───────────┐ A sin θ   ┌─────────────┐ θ̃  ┌─────────────┐
@@ -9,10 +10,12 @@
 //!              └───────── ω̂      offset
 //! ```
 //!
-//! [`PhaseLockedLoop`] follows one signal, [`TwoAxisLoop`] a rotor's tilt and yaw moments as an [`Estimator`](crate::Estimator);
-//! [`follow`] follows a whole record. `docs/phase-locked-loops.md` has the theory.
+//! [`PhaseLockedLoop`] follows one signal, [`TwoAxisLoop`] a rotor's tilt and yaw moments as an
+//! [`Estimator`](crate::Estimator); [`follow`] follows a whole record. `docs/phase-locked-loops.md` has the
+//! theory.
 //!
-//! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, chapter 2.
+//! Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024,
+//! chapter 2.
 
 mod amplitude;
 mod generator;
@@ -102,7 +105,8 @@ pub enum PhaseLockedError {
         rate: f64,
         /// Integral gain given (1/s).
         integral: f64,
-        /// Largest stable integral gain at that rate (1/s); zero where the proportional gain alone is too large.
+        /// Largest stable integral gain at that rate (1/s); zero where the proportional gain alone is too
+        /// large.
         largest: f64,
     },
     /// Too few samples to follow anything.

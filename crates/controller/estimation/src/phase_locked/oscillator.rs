@@ -1,20 +1,22 @@
 //! The loop behind a generator: phase error, loop filter, oscillator.
 //!
-//! Symbols of van Veldhoven (2024), §2-3: θ phase of the input, θ̂ of the oscillator, θ̃ = θ − θ̂; k_p, k_i, k_a gains.
+//! Symbols of van Veldhoven (2024), §2-3: θ phase of the input, θ̂ of the oscillator, θ̃ = θ − θ̂; k_p, k_i,
+//! k_a gains.
 //!
-//! The oscillator turns at ω̂ = k_p e + ∫(k_i e + ∫k_a e), with the phase error e = 2 tan(θ̃/2) (Eq. 2-21, doubled so that
-//! small errors pass with gain one and the gains have their usual meaning). It rises without bound towards half a turn, so that
-//! there is no second equilibrium, and it does not depend on the amplitude.
+//! The oscillator turns at ω̂ = k_p e + ∫(k_i e + ∫k_a e), with the phase error e = 2 tan(θ̃/2) (Eq. 2-21,
+//! doubled so that small errors pass with gain one and the gains have their usual meaning). It rises without
+//! bound towards half a turn, so that there is no second equilibrium, and it does not depend on the
+//! amplitude.
 //!
-//! A loop with k_p and k_i alone (type 2) follows a frequency ramp with a constant error e = ω̇/k_i. The quasi-type-2 loop
-//! adds the whole of θ̃ to its output phase, not to the phase in the comparison: then
+//! A loop with k_p and k_i alone (type 2) follows a frequency ramp with a constant error e = ω̇/k_i. The
+//! quasi-type-2 loop adds the whole of θ̃ to its output phase, not to the phase in the comparison: then
 //!
 //! ```text
 //! θ_out/θ = F + (1 − F) θ̂/θ ,   θ̂/θ = F L/(s + F L) ,   L = k_p + k_i/s ,   F = 1/(1 + τ s)
 //! ```
 //!
-//! whose open loop is (s² + k_p s + k_i)/(τ s³), that of Eq. 2-30: type 3 with the gains of type 2. Half of θ̃, which
-//! tan(θ̃/2) would add, leaves half of the error.
+//! whose open loop is (s² + k_p s + k_i)/(τ s³), that of Eq. 2-30: type 3 with the gains of type 2. Half of
+//! θ̃, which tan(θ̃/2) would add, leaves half of the error.
 
 use super::PhaseLockedError;
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
@@ -55,7 +57,8 @@ pub struct Gains {
 impl Gains {
     /// Gains of a loop of `order` with `natural_rate` ω_n (rad/s) and `damping_ratio` ξ (–).
     ///
-    /// Types two: k_p = 2 ξ ω_n, k_i = ω_n² (Eq. 2-36). Type three has the same pair of poles and a real one at −ω_n.
+    /// Types two: k_p = 2 ξ ω_n, k_i = ω_n² (Eq. 2-36). Type three has the same pair of poles and a real one
+    /// at −ω_n.
     pub fn new(order: Order, natural_rate: f64, damping_ratio: f64) -> Self {
         let (rate, ratio) = (natural_rate, damping_ratio);
         match order {
@@ -122,8 +125,8 @@ pub struct LoopSettings {
 }
 
 impl LoopSettings {
-    /// A quasi-type-2 loop between `rates` (rad/s) that starts at their middle, with ξ = 1/√2 and ω_n 0.3 times the lowest
-    /// rate: two thirds of the stability limit there with any generator of k = √2.
+    /// A quasi-type-2 loop between `rates` (rad/s) that starts at their middle, with ξ = 1/√2 and ω_n 0.3
+    /// times the lowest rate: two thirds of the stability limit there with any generator of k = √2.
     pub fn between(rates: [f64; 2]) -> Self {
         let natural_rate = 0.3 * rates[0];
         Self { order: Order::QuasiTwo, natural_rate, damping_ratio: FRAC_1_SQRT_2, rates }
@@ -191,7 +194,8 @@ pub struct Oscillator {
 }
 
 impl Oscillator {
-    /// An oscillator at phase zero that turns at the middle of its rates; `settings` are checked by their owner.
+    /// An oscillator at phase zero that turns at the middle of its rates; `settings` are checked by their
+    /// owner.
     pub(super) fn new(settings: &LoopSettings) -> Self {
         let rate = settings.middle();
         Self {
@@ -207,7 +211,8 @@ impl Oscillator {
         }
     }
 
-    /// Turns on by `interval` (s), or by the last one where this is not a number or negative; gives the angle (rad).
+    /// Turns on by `interval` (s), or by the last one where this is not a number or negative; gives the angle
+    /// (rad).
     pub(super) fn turn(&mut self, interval: f64) -> f64 {
         if interval.is_finite() && interval >= 0.0 {
             self.interval = interval;
@@ -217,7 +222,8 @@ impl Oscillator {
         turned
     }
 
-    /// Follows the vector `in_phase` = A sin θ, `quadrature` = −A cos θ (one unit) over the interval that it turned by.
+    /// Follows the vector `in_phase` = A sin θ, `quadrature` = −A cos θ (one unit) over the interval that it
+    /// turned by.
     pub(super) fn follow(&mut self, in_phase: f64, quadrature: f64) {
         let interval = self.interval;
         let (sine, cosine) = self.phase.sin_cos();

@@ -4,14 +4,16 @@ use super::PhaseLockedError;
 use super::single::{Estimate, PhaseLockedLoop, PhaseLockedSettings};
 use std::f64::consts::TAU;
 
-/// Least length of a record in periods of the lowest rate (–): two for generator and loop to settle, one for the estimate.
+/// Least length of a record in periods of the lowest rate (–): two for generator and loop to settle, one for
+/// the estimate.
 pub const FEWEST_PERIODS: f64 = 3.0;
 
 /// Estimate after each of `samples` (any unit, every `interval` s) of a signal followed with `settings`.
 ///
 /// # Errors
-/// [`PhaseLockedError::TooShort`] when the record has fewer than [`FEWEST_PERIODS`] periods of the lowest rate,
-/// [`PhaseLockedError::Constant`] when it is constant or has no numbers, and those of [`PhaseLockedLoop::new`].
+/// [`PhaseLockedError::TooShort`] when the record has fewer than [`FEWEST_PERIODS`] periods of the lowest
+/// rate, [`PhaseLockedError::Constant`] when it is constant or has no numbers, and those of
+/// [`PhaseLockedLoop::new`].
 pub fn follow(
     samples: &[f64],
     interval: f64,

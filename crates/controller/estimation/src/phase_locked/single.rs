@@ -20,7 +20,8 @@ pub struct PhaseLockedSettings {
 }
 
 impl PhaseLockedSettings {
-    /// A mixed generator of damping √2 in a quasi-type-2 loop between `rates` (rad/s), see [`LoopSettings::between`].
+    /// A mixed generator of damping √2 in a quasi-type-2 loop between `rates` (rad/s), see
+    /// [`LoopSettings::between`].
     pub fn between(rates: [f64; 2]) -> Self {
         let follower = LoopSettings::between(rates);
         Self { generator: Kind::Mixed, damping: SQRT_2, follower }
@@ -102,8 +103,8 @@ impl PhaseLockedLoop {
 
     /// Takes in `sample` (any unit), `interval` (s) after the one before.
     ///
-    /// With an unusable sample oscillator and generator turn on as before, and [`Estimate::held`] is true; after half a period
-    /// of them the lock is lost.
+    /// With an unusable sample oscillator and generator turn on as before, and [`Estimate::held`] is true;
+    /// after half a period of them the lock is lost.
     pub fn update(&mut self, interval: f64, sample: f64) -> Estimate {
         let turned = self.oscillator.turn(interval);
         // After a long gap the sample is not used.

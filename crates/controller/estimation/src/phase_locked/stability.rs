@@ -1,8 +1,9 @@
 //! Stability of the whole loop, generator included, near lock to a tone.
 //!
-//! The loop filter's poles with a phase lag leave out that a generator's vector also pulsates at twice its rate, which the
-//! centre, following ω̂, feeds back. This reduces the largest stable natural rate by a third with the second-order and the
-//! mixed generator, and by more than half with the extended one's slow pole. So the loop itself is simulated.
+//! The loop filter's poles with a phase lag leave out that a generator's vector also pulsates at twice its
+//! rate, which the centre, following ω̂, feeds back. This reduces the largest stable natural rate by a third
+//! with the second-order and the mixed generator, and by more than half with the extended one's slow pole. So
+//! the loop itself is simulated.
 
 use super::generator::Generator;
 use super::oscillator::{LoopSettings, Oscillator};
@@ -14,7 +15,8 @@ const SETTLING: i32 = 30;
 const EARLY: i32 = 10;
 const LATE: i32 = 40;
 
-/// `fresh` after thirty periods of a sine of amplitude one, `n_samples` (–) per period, the last of them at phase zero.
+/// `fresh` after thirty periods of a sine of amplitude one, `n_samples` (–) per period, the last of them at
+/// phase zero.
 pub(super) fn settled(fresh: &Generator, n_samples: i32) -> Generator {
     let turned = TAU / f64::from(n_samples);
     let mut generator = *fresh;
@@ -24,7 +26,8 @@ pub(super) fn settled(fresh: &Generator, n_samples: i32) -> Generator {
     generator
 }
 
-/// Growth (1/s) of small errors about the lock to a tone of `rate` (rad/s), over thirty periods; negative where they decay.
+/// Growth (1/s) of small errors about the lock to a tone of `rate` (rad/s), over thirty periods; negative
+/// where they decay.
 pub(super) fn growth(settings: &LoopSettings, fresh: &Generator, rate: f64) -> f64 {
     let turned = TAU / f64::from(N_SAMPLES);
     let interval = turned / rate;

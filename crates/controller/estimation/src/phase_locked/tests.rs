@@ -251,8 +251,8 @@ fn settled_on_a_tone(kind: Kind, turned: f64) -> Generator {
     generator
 }
 
-/// What the constructor accepts comes closer to a tone, what it refuses does not; the lag of the phase alone would accept
-/// more.
+/// What the constructor accepts comes closer to a tone, what it refuses does not; the lag of the phase alone
+/// would accept more.
 #[test]
 fn the_whole_loop_is_stable_where_it_can_be_built() {
     let rate = 0.05;

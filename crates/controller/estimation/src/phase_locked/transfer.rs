@@ -25,8 +25,8 @@ pub struct Transfer {
 
 /// Transfer functions of a generator of `kind` with `damping` k (–) at `ratio` (–) times its centre rate.
 ///
-/// Source: van Veldhoven (2024), Eqs. 2-7, 2-11, 2-15 with, in which s² + k ω̂ + ω̂² is to be read with k ω̂ s. The
-/// mixed generator's offset is v_dc / k, so that a constant passes with gain one.
+/// Source: van Veldhoven (2024), Eqs. 2-7, 2-11, 2-15 with, in which s² + k ω̂ + ω̂² is to be
+/// read with k ω̂ s. The mixed generator's offset is v_dc / k, so that a constant passes with gain one.
 pub fn transfer(kind: Kind, damping: f64, ratio: f64) -> Transfer {
     let k = damping;
     let s = Complex64::new(0.0, ratio);

@@ -1,4 +1,5 @@
-//! Phase-locked loop for two signals of a turbine: tilt and yaw moments of its blades, followed by one oscillator.
+//! Phase-locked loop for two signals of a turbine: tilt and yaw moments of its blades, followed by one
+//! oscillator.
 
 use super::PhaseLockedError;
 use super::generator::{Generator, is_usable};
@@ -28,8 +29,9 @@ pub enum Leader {
 pub struct TwoAxisSettings {
     /// Generator of each, and the loop.
     pub signal: PhaseLockedSettings,
-    /// Sense in which the load circles, looking downwind; the yaw moment leads the tilt moment by [`Sense::yaw_lead`].
-    /// van Veldhoven (2024), Eq. 2-5, whose signs of yaw and sense are the opposite of ours.
+    /// Sense in which the load circles, looking downwind; the yaw moment leads the tilt moment by
+    /// [`Sense::yaw_lead`]. van Veldhoven (2024), Eq. 2-5, whose signs of yaw and sense are the opposite of
+    /// ours.
     pub sense: Sense,
     /// Which signal the oscillator follows.
     pub leader: Leader,
@@ -95,8 +97,8 @@ impl TwoAxisLoop {
 
     /// Takes in `moments` (N m, fixed frame), `interval` (s) after the ones before.
     ///
-    /// Where either is unusable, or comes after a long gap, both axes turn on as before, and [`TwoAxisEstimate::held`] is
-    /// true.
+    /// Where either is unusable, or comes after a long gap, both axes turn on as before, and
+    /// [`TwoAxisEstimate::held`] is true.
     pub fn follow(&mut self, interval: f64, moments: FixedFrame) -> TwoAxisEstimate {
         let turned = self.oscillator.turn(interval);
         self.held = turned > LONGEST_TURN || !is_usable(moments.tilt) || !is_usable(moments.yaw);
@@ -134,8 +136,8 @@ impl TwoAxisLoop {
         }
     }
 
-    /// Root mean square of the oscillator's phase error, an exponential mean over one period of the oscillation (rad): the
-    /// criterion of the lock, 1 before the first sample.
+    /// Root mean square of the oscillator's phase error, an exponential mean over one period of the
+    /// oscillation (rad): the criterion of the lock, 1 before the first sample.
     pub fn phase_error(&self) -> f64 {
         self.lock.phase_error()
     }

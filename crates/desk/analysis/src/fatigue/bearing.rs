@@ -7,7 +7,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Pitch travel per time of the reference motion (rad/s): 600° in 10 minutes.
 ///
-/// Source: van der Hoek et al., section 2.4: what a helix of 2° at St 0.25 and 10 m/s travels on the IEA 22 MW turbine.
+/// Source: van der Hoek et al., section 2.4: what a helix of 2° at St 0.25 and 10 m/s travels on the IEA 22
+/// MW turbine.
 pub const REFERENCE_TRAVEL_RATE: f64 = PI / 180.0;
 
 /// Slope of a pitch bearing's equivalent load (–), after the same.
@@ -16,8 +17,8 @@ pub const BEARING_SLOPE: f64 = 3.0;
 /// Positions round a pitch bearing's ring (–): every 10°, after the same.
 pub const N_BEARING_POSITIONS: usize = 36;
 
-/// The convention of pitch-bearing load and pitch travel in words, for printing beside a figure: moments and pitch of one
-/// blade, sampled every `interval` (s).
+/// The convention of pitch-bearing load and pitch travel in words, for printing beside a figure: moments and
+/// pitch of one blade, sampled every `interval` (s).
 pub fn duty_convention(slope: f64, n_positions: usize, interval: f64) -> String {
     format!(
         "pitch-bearing load (van der Hoek et al., Eq. 9): that moment which, over the reference travel of 600° in 10 minutes, does the \
@@ -31,7 +32,8 @@ pub fn duty_convention(slope: f64, n_positions: usize, interval: f64) -> String 
 /// Equivalent load of a bearing at one position of its ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BearingLoad {
-    /// Angle round the ring from the direction of the flapwise moment towards the edgewise one (rad), [0, 2π).
+    /// Angle round the ring from the direction of the flapwise moment towards the edgewise one (rad), [0,
+    /// 2π).
     pub position: f64,
     /// Moment (N m) that does the same damage over the reference travel.
     pub load: f64,
@@ -39,12 +41,12 @@ pub struct BearingLoad {
 
 /// Accumulates the damage of one pitch bearing at positions round its ring, sample by sample.
 ///
-/// Where the ring is pressed, the moment there counts to the power m, weighted with the pitch travelled since the sample
-/// before; where it is relieved, nothing. The equivalent load is that moment which does the same over the reference travel,
-/// [`REFERENCE_TRAVEL_RATE`] × duration.
+/// Where the ring is pressed, the moment there counts to the power m, weighted with the pitch travelled since
+/// the sample before; where it is relieved, nothing. The equivalent load is that moment which does the same
+/// over the reference travel, [`REFERENCE_TRAVEL_RATE`] × duration.
 ///
-/// Source: van der Hoek et al., Eq. 9 (see [the module](super)), after van Vondelen et al. (2024); there m is [`BEARING_SLOPE`] and
-/// positions are [`N_BEARING_POSITIONS`].
+/// Source: van der Hoek et al., Eq. 9 (see [the module](super)), after van Vondelen et al. (2024); there m is
+/// [`BEARING_SLOPE`] and positions are [`N_BEARING_POSITIONS`].
 #[derive(Clone, Debug)]
 pub struct PitchBearing {
     positions: Vec<Position>,
@@ -61,8 +63,8 @@ struct Position {
 }
 
 impl PitchBearing {
-    /// A bearing that has not moved, for the slope `slope` (–) at `n_positions` equally spaced positions, the first at the
-    /// flapwise moment.
+    /// A bearing that has not moved, for the slope `slope` (–) at `n_positions` equally spaced positions, the
+    /// first at the flapwise moment.
     ///
     /// # Errors
     /// [`AnalysisError::Slope`].

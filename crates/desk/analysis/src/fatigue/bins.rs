@@ -5,10 +5,11 @@ use super::{Cycle, Damage, REFERENCE_FREQUENCY};
 use crate::AnalysisError;
 use std::num::NonZeroUsize;
 
-/// Cycles in equal bins from zero to the largest range, as published studies count them (200 in van der Hoek et al.).
+/// Cycles in equal bins from zero to the largest range, as published studies count them (200 in van der Hoek
+/// et al.).
 ///
-/// A cycle in a bin does the damage of the bin's middle, so that the equivalent load differs from that of the cycles
-/// themselves by at most half a bin times (cycles / N_eq)^(1/m).
+/// A cycle in a bin does the damage of the bin's middle, so that the equivalent load differs from that of the
+/// cycles themselves by at most half a bin times (cycles / N_eq)^(1/m).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RangeBins {
     width: f64,
@@ -23,8 +24,8 @@ impl RangeBins {
         let width = largest / n_bins as f64;
         let mut counts = vec![0.0; n_bins];
         for cycle in cycles {
-            // One rounding alone, so that whole numbers fall on the edges that they are on; the largest range belongs to
-            // the last bin.
+            // One rounding alone, so that whole numbers fall on the edges that they are on; the largest range
+            // belongs to the last bin.
             let bin = ((cycle.range * n_bins as f64 / largest) as usize).min(n_bins - 1);
             counts[bin] += cycle.count;
         }
@@ -46,7 +47,8 @@ impl RangeBins {
         (index as f64 + 0.5) * self.width
     }
 
-    /// 1-Hz damage-equivalent load for the slope `slope` (–) over `duration` (s), peak to peak in the unit of the load.
+    /// 1-Hz damage-equivalent load for the slope `slope` (–) over `duration` (s), peak to peak in the unit of
+    /// the load.
     ///
     /// Source: van der Hoek et al., Eq. 8 (see [the module](super)).
     ///

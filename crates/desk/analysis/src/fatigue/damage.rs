@@ -32,7 +32,8 @@ impl Damage {
         self.slope
     }
 
-    /// Adds `count` (any unit) times the damage of `load` (any unit), which is finite; a load of zero or less does none.
+    /// Adds `count` (any unit) times the damage of `load` (any unit), which is finite; a load of zero or less
+    /// does none.
     #[inline]
     pub fn add(&mut self, load: f64, count: f64) {
         if load > self.largest {
@@ -44,7 +45,8 @@ impl Damage {
         }
     }
 
-    /// The one load, in the unit of the loads, that does the same damage `n_equivalent` times (unit of the counts, > 0).
+    /// The one load, in the unit of the loads, that does the same damage `n_equivalent` times (unit of the
+    /// counts, > 0).
     pub fn equivalent_load(&self, n_equivalent: f64) -> f64 {
         self.largest * (self.sum / n_equivalent).powf(1.0 / self.slope)
     }

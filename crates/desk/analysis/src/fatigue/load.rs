@@ -27,8 +27,8 @@ pub struct Fatigue {
 
 /// Accumulates the damage of one channel, sample by sample.
 ///
-/// Memory does not grow with the record; see [`Rainflow`] for how cycles are counted and [the module](super) for the
-/// convention.
+/// Memory does not grow with the record; see [`Rainflow`] for how cycles are counted and [the module](super)
+/// for the convention.
 #[derive(Clone, Debug)]
 pub struct LoadCounter {
     rainflow: Rainflow,
@@ -90,7 +90,8 @@ impl LoadCounter {
     /// Ends the count of a record that took `duration` (s) from its first sample to its last.
     ///
     /// # Errors
-    /// [`AnalysisError::TooShort`] for fewer than two samples, [`AnalysisError::NotPositive`] for the duration.
+    /// [`AnalysisError::TooShort`] for fewer than two samples, [`AnalysisError::NotPositive`] for the
+    /// duration.
     pub fn finish(self, duration: f64) -> Result<Fatigue, AnalysisError> {
         let n_samples = self.n_samples();
         if n_samples < 2 {
@@ -120,15 +121,16 @@ pub(super) fn check_duration(duration: f64) -> Result<(), AnalysisError> {
 
 /// Damage-equivalent load of one signal.
 ///
-/// `load` (any unit) is sampled every `interval` (s); `slope` (–) is Wöhler's exponent m. Gives the range, peak to peak in
-/// the unit of `load`, that does the same damage when it repeats at `reference_frequency` (Hz) over the record. Convention:
-/// see [the module](super).
+/// `load` (any unit) is sampled every `interval` (s); `slope` (–) is Wöhler's exponent m. Gives the range,
+/// peak to peak in the unit of `load`, that does the same damage when it repeats at `reference_frequency`
+/// (Hz) over the record. Convention: see [the module](super).
 ///
-/// Source: ASTM E1049-85 (2017), §5.4.4, for the count; van der Hoek et al., Eq. 8 (see [the module](super)), for the load.
+/// Source: ASTM E1049-85 (2017), §5.4.4, for the count; van der Hoek et al., Eq. 8 (see [the module](super)),
+/// for the load.
 ///
 /// # Errors
-/// [`AnalysisError::TooShort`] for fewer than two samples, [`AnalysisError::NotPositive`] for the interval or frequency,
-/// [`AnalysisError::Slope`], [`AnalysisError::NotFinite`].
+/// [`AnalysisError::TooShort`] for fewer than two samples, [`AnalysisError::NotPositive`] for the interval or
+/// frequency, [`AnalysisError::Slope`], [`AnalysisError::NotFinite`].
 ///
 /// ```
 /// # use analysis::fatigue::damage_equivalent_load;

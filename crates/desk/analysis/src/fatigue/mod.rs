@@ -1,14 +1,16 @@
 //! Fatigue: rainflow counting, damage-equivalent loads, pitch bearings, pitch travel.
 //!
-//! The convention, wherever no other is named: ranges are peak to peak; cycles are counted by rainflow after ASTM
-//! E1049-85 (2017), §5.4.4, ranges that stay open count one half; a load that repeats N_eq times in the record, with N_eq =
-//! duration × 1 Hz and duration from the first sample to the last, does the same damage; no correction for the mean.
+//! The convention, wherever no other is named: ranges are peak to peak; cycles are counted by rainflow after
+//! ASTM E1049-85 (2017), §5.4.4, ranges that stay open count one half; a load that repeats N_eq times in the
+//! record, with N_eq = duration × 1 Hz and duration from the first sample to the last, does the same damage;
+//! no correction for the mean.
 //!
-//! Equations of van der Hoek et al. are those of van der Hoek, Dammann and van Wingerden, "Gaussian process surrogate modeling
-//! for efficient controller tuning and fatigue load prediction of the helix wake-mixing method".
+//! Equations of van der Hoek et al. are those of van der Hoek, Dammann and van Wingerden, "Gaussian process
+//! surrogate modeling for efficient controller tuning and fatigue load prediction of the helix wake-mixing
+//! method".
 //!
-//! Everything works on streams: [`Rainflow`] takes samples one by one and hands cycles to a closure, [`LoadCounter`]
-//! adds them up for any number of slopes. Neither allocates while it counts.
+//! Everything works on streams: [`Rainflow`] takes samples one by one and hands cycles to a closure,
+//! [`LoadCounter`] adds them up for any number of slopes. Neither allocates while it counts.
 
 mod bearing;
 mod bins;

@@ -18,12 +18,13 @@ pub struct Cycle {
 
 /// Counts cycles sample by sample.
 ///
-/// ASTM E1049-85 (2017), §5.4.4: the first sample, every change of direction and the last sample are reversals; with X the
-/// latest range and Y the one before, Y is counted once X is no smaller, as one cycle, or as one half when it holds the
-/// starting point; what is left at the end counts one half each. Equal samples in a row are one.
+/// ASTM E1049-85 (2017), §5.4.4: the first sample, every change of direction and the last sample are
+/// reversals; with X the latest range and Y the one before, Y is counted once X is no smaller, as one cycle,
+/// or as one half when it holds the starting point; what is left at the end counts one half each. Equal
+/// samples in a row are one.
 ///
-/// Limits: counting allocates only once more than 1024 reversals are open together, which takes a load that narrows 1024
-/// times in a row.
+/// Limits: counting allocates only once more than 1024 reversals are open together, which takes a load that
+/// narrows 1024 times in a row.
 ///
 /// ```
 /// # use analysis::fatigue::Rainflow;
@@ -76,8 +77,8 @@ impl Rainflow {
     /// Takes the samples of `load` in turn; `counted` is given each cycle that closes with them.
     ///
     /// # Errors
-    /// [`AnalysisError::NotFinite`] with the sample's index, counted from the first sample ever; on return the counter has
-    /// taken the samples before it.
+    /// [`AnalysisError::NotFinite`] with the sample's index, counted from the first sample ever; on return
+    /// the counter has taken the samples before it.
     #[inline]
     pub fn extend(
         &mut self,
@@ -117,8 +118,8 @@ impl Rainflow {
         not_finite.map_or(Ok(()), |index| Err(AnalysisError::NotFinite { index }))
     }
 
-    /// Ends the count: the latest sample is a reversal, and `counted` is given what closes with it, then every range
-    /// that is still open, oldest first, as one half.
+    /// Ends the count: the latest sample is a reversal, and `counted` is given what closes with it, then
+    /// every range that is still open, oldest first, as one half.
     pub fn finish(mut self, mut counted: impl FnMut(Cycle)) {
         if self.rising.is_some() {
             close(&mut self.open, self.latest, &mut counted);

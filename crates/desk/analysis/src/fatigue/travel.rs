@@ -62,7 +62,8 @@ impl PitchTravel {
     /// The motion so far, sampled every `interval` (s).
     ///
     /// # Errors
-    /// [`AnalysisError::TooShort`] for fewer than two samples, [`AnalysisError::NotPositive`] for the interval.
+    /// [`AnalysisError::TooShort`] for fewer than two samples, [`AnalysisError::NotPositive`] for the
+    /// interval.
     pub fn travel(&self, interval: f64) -> Result<Travel, AnalysisError> {
         if self.n_samples < 2 {
             return Err(AnalysisError::TooShort { n_samples: self.n_samples, needed: 2 });
@@ -82,8 +83,8 @@ impl PitchTravel {
 impl Travel {
     /// Actuator duty cycle (–): the mean rate over the actuator's largest rate, `maximum_rate` (rad/s).
     ///
-    /// Source: Bottasso et al., "Optimization-based study of bend-twist coupled rotor blades for passive and integrated
-    /// passive/active load alleviation", Wind Energy 16, 2013.
+    /// Source: Bottasso et al., "Optimization-based study of bend-twist coupled rotor blades for passive and
+    /// integrated passive/active load alleviation", Wind Energy 16, 2013.
     pub fn duty_cycle(&self, maximum_rate: f64) -> f64 {
         self.mean_rate / maximum_rate
     }

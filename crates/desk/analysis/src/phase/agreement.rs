@@ -21,16 +21,16 @@ pub struct Agreement {
     pub locking: f64,
 }
 
-/// Agreement of the phases `estimated` with `truth` (rad, any turn), one each `interval` (s), intervals from blocks of
-/// `block_length` (s).
+/// Agreement of the phases `estimated` with `truth` (rad, any turn), one each `interval` (s), intervals from
+/// blocks of `block_length` (s).
 ///
-/// Source: van Vondelen et al. (2025), §3.3.4 (RMSE, phase error); Mardia and Jupp, "Directional Statistics", 2000,
-/// §2.2-2.3 (mean direction and resultant length).
+/// Source: van Vondelen et al. (2025), §3.3.4 (RMSE, phase error); Mardia and Jupp, "Directional Statistics",
+/// 2000, §2.2-2.3 (mean direction and resultant length).
 /// Limits: an interval is right as far as the means of blocks are independent.
 ///
 /// # Errors
-/// [`AnalysisError::UnequalLengths`], [`AnalysisError::TooShort`] without samples, [`AnalysisError::NotFinite`],
-/// [`AnalysisError::NotPositive`] for an interval or block without length.
+/// [`AnalysisError::UnequalLengths`], [`AnalysisError::TooShort`] without samples,
+/// [`AnalysisError::NotFinite`], [`AnalysisError::NotPositive`] for an interval or block without length.
 pub fn agreement(
     estimated: &[f64],
     truth: &[f64],

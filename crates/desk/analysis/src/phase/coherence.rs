@@ -28,19 +28,21 @@ pub struct Coherence {
     pub n_segments: usize,
 }
 
-/// How `estimated` follows `truth` (one unit each, every `interval` s) at `frequency` (Hz), from segments of `n_segment`
-/// samples that overlap by half under Hann's window.
+/// How `estimated` follows `truth` (one unit each, every `interval` s) at `frequency` (Hz), from segments of
+/// `n_segment` samples that overlap by half under Hann's window.
 ///
-/// The cross-spectrum is taken at `frequency` itself, not at the nearest of a grid. A segment should hold at least three
-/// periods; with p periods it tells the frequency from others a share 2/p of it away. Two pure sines are coherent whatever
-/// their phases; here coherence is reduced by amplitudes and phases that change differently from segment to segment.
+/// The cross-spectrum is taken at `frequency` itself, not at the nearest of a grid. A segment should hold at
+/// least three periods; with p periods it tells the frequency from others a share 2/p of it away. Two pure
+/// sines are coherent whatever their phases; here coherence is reduced by amplitudes and phases that change
+/// differently from segment to segment.
 ///
-/// Source: Welch (1967); Bendat and Piersol, "Random Data", 4th ed., 2010, §9.2 (errors of coherence and phase), with the
-/// segments counted for as many as are independent (Harris, Proc. IEEE 66, 1978, Eq. 17).
+/// Source: Welch (1967); Bendat and Piersol, "Random Data", 4th ed., 2010, §9.2 (errors of coherence and
+/// phase), with the segments counted for as many as are independent (Harris, Proc. IEEE 66, 1978, Eq. 17).
 ///
 /// # Errors
 /// [`AnalysisError::UnequalLengths`]; [`AnalysisError::TooShort`] with fewer than two segments;
-/// [`AnalysisError::NotPositive`] for the interval; [`AnalysisError::AboveNyquist`]; [`AnalysisError::NotFinite`].
+/// [`AnalysisError::NotPositive`] for the interval; [`AnalysisError::AboveNyquist`];
+/// [`AnalysisError::NotFinite`].
 pub fn coherence(
     estimated: &[f64],
     truth: &[f64],

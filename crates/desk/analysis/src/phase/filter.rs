@@ -17,13 +17,15 @@ impl Band {
     /// Ratio of edge to centre in [`Band::around`] unless another is given (–).
     pub const RATIO: f64 = 1.5;
 
-    /// From `frequency` / `ratio` to `frequency` · `ratio` (Hz; `ratio` > 1): passes `frequency` itself unchanged.
+    /// From `frequency` / `ratio` to `frequency` · `ratio` (Hz; `ratio` > 1): passes `frequency` itself
+    /// unchanged.
     pub fn around(frequency: f64, ratio: f64) -> Self {
         Self { low: frequency / ratio, high: frequency * ratio }
     }
 
-    /// Time (s) over which the filter remembers an end of the record: this far inside, what an end does to the phase of a
-    /// lone wave is below a twentieth of a radian, and falls about tenfold over each further stretch of this length.
+    /// Time (s) over which the filter remembers an end of the record: this far inside, what an end does to
+    /// the phase of a lone wave is below a twentieth of a radian, and falls about tenfold over each further
+    /// stretch of this length.
     pub fn memory(&self) -> f64 {
         1.5 / (self.high - self.low)
     }
@@ -52,18 +54,20 @@ pub struct Narrowband {
 
 /// What `samples` (any unit, every `interval` s) do within `band`.
 ///
-/// The band-pass has the amplitude response 1/(1 + q⁴), q = (f² − f₁f₂)/(f (f₂ − f₁)), and no phase: a second-order
-/// Butterworth band-pass run forwards and backwards, without the warping of a recursive filter. Amplitude and angle are
-/// those of the analytic signal, the wave plus i times its Hilbert transform. Beyond its ends the record is continued by its
-/// reflection through the end point, which fades out over four times [`Band::memory`]; what lies closer to an end than
-/// that memory owes more to the continuation than to the record.
+/// The band-pass has the amplitude response 1/(1 + q⁴), q = (f² − f₁f₂)/(f (f₂ − f₁)), and no phase: a
+/// second-order Butterworth band-pass run forwards and backwards, without the warping of a recursive filter.
+/// Amplitude and angle are those of the analytic signal, the wave plus i times its Hilbert transform. Beyond
+/// its ends the record is continued by its reflection through the end point, which fades out over four times
+/// [`Band::memory`]; what lies closer to an end than that memory owes more to the continuation than to the
+/// record.
 ///
-/// Source: Oppenheim and Schafer, "Discrete-Time Signal Processing", 3rd ed., 2010, §12.4 (Hilbert transform).
+/// Source: Oppenheim and Schafer, "Discrete-Time Signal Processing", 3rd ed., 2010, §12.4 (Hilbert
+/// transform).
 ///
 /// # Errors
 /// [`AnalysisError::NotPositive`] for the interval; [`AnalysisError::Band`] unless 0 < low < high;
-/// [`AnalysisError::AboveNyquist`] when its upper end cannot be sampled; [`AnalysisError::TooShort`] for a record shorter
-/// than twice the filter's memory; [`AnalysisError::NotFinite`] for a gap.
+/// [`AnalysisError::AboveNyquist`] when its upper end cannot be sampled; [`AnalysisError::TooShort`] for a
+/// record shorter than twice the filter's memory; [`AnalysisError::NotFinite`] for a gap.
 pub fn narrowband(samples: &[f64], interval: f64, band: Band) -> Result<Narrowband, AnalysisError> {
     check(samples, interval, band)?;
     let n_samples = samples.len();

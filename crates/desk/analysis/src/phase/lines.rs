@@ -1,14 +1,15 @@
 //! Line-effective winds: radial lines over a rotor's disc, and their fixed-frame components.
 //!
-//! Source: van Vondelen et al. (2025), Eq. 23 and Algorithm 2; Moens, Coquelet, Trigaux, Duponcheel, "Handling Individual
-//! Pitch Control within an Actuator Disk framework", J. Phys.: Conf. Ser. 2265, 022053, 2022.
+//! Source: van Vondelen et al. (2025), Eq. 23 and Algorithm 2; Moens, Coquelet, Trigaux, Duponcheel,
+//! "Handling Individual Pitch Control within an Actuator Disk framework", J. Phys.: Conf. Ser. 2265, 022053,
+//! 2022.
 
 use crate::AnalysisError;
 use basis::mbc::blade_azimuth;
 use basis::{FixedFrame, Vector3};
 
-/// Radial lines over a disc across the wind, from its centre outwards, line 1 upwards and the others after it in the
-/// rotor's turning.
+/// Radial lines over a disc across the wind, from its centre outwards, line 1 upwards and the others after it
+/// in the rotor's turning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lines {
     /// Centre of the disc, farm frame (m).
@@ -34,8 +35,8 @@ impl Lines {
             .collect()
     }
 
-    /// On return `means` (`n_lines` long) holds the mean streamwise velocity along each line (m/s) of the `velocities`
-    /// (m/s, farm frame) at [`positions`](Self::positions).
+    /// On return `means` (`n_lines` long) holds the mean streamwise velocity along each line (m/s) of the
+    /// `velocities` (m/s, farm frame) at [`positions`](Self::positions).
     ///
     /// Every piece of a line counts the same, whatever its radius, as in Algorithm 2.
     pub fn means(&self, velocities: &[Vector3], means: &mut [f64]) {
@@ -75,8 +76,8 @@ pub(super) fn fixed_frame(azimuth: f64, n: usize, value: impl Fn(usize) -> f64) 
 /// Fixed-frame winds (m/s) over time from one column of winds (m/s) for each line, line 1 pointing up.
 ///
 /// # Errors
-/// [`AnalysisError::TooFewLines`] with fewer than three columns, [`AnalysisError::UnequalLengths`] when they differ in
-/// length.
+/// [`AnalysisError::TooFewLines`] with fewer than three columns, [`AnalysisError::UnequalLengths`] when they
+/// differ in length.
 pub fn winds_of_lines(columns: &[&[f64]]) -> Result<Vec<FixedFrame>, AnalysisError> {
     let [first, _, _, ..] = columns else {
         return Err(AnalysisError::TooFewLines { n_lines: columns.len() });

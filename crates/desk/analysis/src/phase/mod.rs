@@ -2,17 +2,17 @@
 //!
 //! # What a wind phase is
 //!
-//! Symbols of van Vondelen et al. (2025), Eq. 20: ω_e excitation rate, t time since the run's start, A amplitude,
-//! φ wind phase. The wind at a rotor is, in the fixed frame,
+//! Symbols of van Vondelen et al. (2025), Eq. 20: ω_e excitation rate, t time since the run's start, A
+//! amplitude, φ wind phase. The wind at a rotor is, in the fixed frame,
 //!
 //! ```text
 //! U_tilt = A_tilt sin(ω_e t + φ_tilt)
-//! U_yaw  = A_yaw  sin(ω_e t ± π/2 + φ_yaw)        upper sign: ccw, for which this is A_yaw cos(ω_e t + φ_yaw)
+//! U_yaw  = A_yaw  sin(ω_e t ± π/2 + φ_yaw)      upper sign: ccw, for which this is A_yaw cos(ω_e t + φ_yaw)
 //! ```
 //!
-//! so that an undistorted helix has φ_tilt = φ_yaw in either sense, and a pitch command with the same phases is in
-//! phase with the wind (their Eq. 22). Eq. 20 itself writes the upper sign alone. Positive tilt is more wind on the upper rotor
-//! half, positive yaw more wind at azimuth 90°, the right half looking downwind.
+//! so that an undistorted helix has φ_tilt = φ_yaw in either sense, and a pitch command with the same phases
+//! is in phase with the wind (their Eq. 22). Eq. 20 itself writes the upper sign alone. Positive tilt is more
+//! wind on the upper rotor half, positive yaw more wind at azimuth 90°, the right half looking downwind.
 
 mod agreement;
 mod coherence;
@@ -61,8 +61,8 @@ impl Reference {
 /// The interval (s) of equally spaced `times` (s).
 ///
 /// # Errors
-/// [`AnalysisError::TooShort`] with fewer than two; [`AnalysisError::UnevenTimes`] where a step differs by more than a
-/// thousandth from the mean one, as after a gap or a change of sampling rate.
+/// [`AnalysisError::TooShort`] with fewer than two; [`AnalysisError::UnevenTimes`] where a step differs by
+/// more than a thousandth from the mean one, as after a gap or a change of sampling rate.
 pub fn uniform_interval(times: &[f64]) -> Result<f64, AnalysisError> {
     let [first, .., last] = times else {
         return Err(AnalysisError::TooShort { n_samples: times.len(), needed: 2 });

@@ -4,8 +4,8 @@ use super::lines::fixed_frame;
 use crate::AnalysisError;
 use basis::FixedFrame;
 
-/// Fixed-frame moments (unit of the blades' moments) over time, from the `azimuths` of blade 1 (rad) and one column of
-/// moments for each blade, all of one length. van Vondelen et al. (2025), Eq. 4.
+/// Fixed-frame moments (unit of the blades' moments) over time, from the `azimuths` of blade 1 (rad) and one
+/// column of moments for each blade, all of one length. van Vondelen et al. (2025), Eq. 4.
 ///
 /// # Errors
 /// [`AnalysisError::TooFewBlades`] below three blades; [`AnalysisError::UnequalLengths`];

@@ -36,8 +36,9 @@ fn truth(winds: &[FixedFrame], start: f64, reference: &Reference) -> GroundTruth
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// The definition itself: what went in as φ comes out, in either sense, from any start. The slowest pole of the band
-    /// from f/1.5 to 1.5 f decays by e^{1.3} a period; eleven periods in, what an end did is below 10⁻⁶.
+    /// The definition itself: what went in as φ comes out, in either sense, from any start. The slowest pole
+    /// of the band from f/1.5 to 1.5 f decays by e^{1.3} a period; eleven periods in, what an end did is
+    /// below 10⁻⁶.
     #[test]
     fn a_pure_helix_gives_back_its_phases(
         tilt in -3.1..3.1_f64, yaw in -3.1..3.1_f64, start in 0.0..900.0_f64, ccw: bool,
@@ -116,7 +117,8 @@ fn turbulence_off_the_band_moves_the_phase_little_and_a_slow_drift_is_followed()
     }
 }
 
-/// The filter is its formula: a sine at the band's edges passes at half, one two octaves off at next to nothing.
+/// The filter is its formula: a sine at the band's edges passes at half, one two octaves off at next to
+/// nothing.
 #[test]
 fn the_band_passes_its_centre_and_half_its_edges() {
     let band = Band::around(0.02, 1.5);
@@ -204,7 +206,8 @@ fn coherence_tells_a_delayed_copy_from_a_stranger() {
     assert!(found.coherence < found.floor_95 && found.phase_error_half_width_95 > 0.5);
 }
 
-/// With noise of known power the coherence is 1/(1 + noise/signal)², and the intervals hold what they promise.
+/// With noise of known power the coherence is 1/(1 + noise/signal)², and the intervals hold what they
+/// promise.
 #[test]
 fn intervals_of_coherence_and_phase_cover_the_truth() {
     let (mut held, mut phase_held, n_trials) = (0, 0, 200);

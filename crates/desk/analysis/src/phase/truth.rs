@@ -48,12 +48,13 @@ impl GroundTruth {
     }
 }
 
-/// Phases of the helix in the fixed-frame `winds` (m/s), the first at `start` (s since the run's start), one every
-/// `interval` (s), against `reference`; only what lies in `band` counts as helix.
+/// Phases of the helix in the fixed-frame `winds` (m/s), the first at `start` (s since the run's start), one
+/// every `interval` (s), against `reference`; only what lies in `band` counts as helix.
 ///
 /// Each of tilt and yaw goes through [`narrowband`]; the angle of the analytic signal, less what the
-/// reference has turned, is the wind phase as the [module](super) defines it. A [`Band::around`] the excitation with
-/// [`Band::RATIO`] follows changes of phase within about two periods and removes turbulence beyond the neighbouring octave.
+/// reference has turned, is the wind phase as the [module](super) defines it. A [`Band::around`] the
+/// excitation with [`Band::RATIO`] follows changes of phase within about two periods and removes turbulence
+/// beyond the neighbouring octave.
 ///
 /// Source: van Vondelen et al. (2025), Algorithm 2 and §3.3.1.
 ///

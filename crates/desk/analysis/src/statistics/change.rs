@@ -1,22 +1,23 @@
-//! Change of a statistic other than the mean, such as a standard deviation or an equivalent load, with its interval.
+//! Change of a statistic other than the mean, such as a standard deviation or an equivalent load, with its
+//! interval.
 
 use super::{blocks, check_lengths, half_width_95, sample_deviation};
 use crate::AnalysisError;
 use basis::records::Statistic;
 
-/// Change from `compared` to `samples` (same unit, same instants, every `interval` s) of the statistic `of` of a record:
-/// ratio of the two minus one (–), with its interval from paired blocks of `block_length` (s).
+/// Change from `compared` to `samples` (same unit, same instants, every `interval` s) of the statistic `of`
+/// of a record: ratio of the two minus one (–), with its interval from paired blocks of `block_length` (s).
 ///
-/// The half width is t s / √n with the standard deviation s of the same change in each of the n pairs of blocks; with
-/// fewer than two there is none. `standard_deviation` of the result is this s (zero with fewer than two blocks). Both runs
-/// have the same wind, so its effect on a block cancels within the pair. For means there is
-/// [`gain`](super::gain), whose blocks add up to the whole.
+/// The half width is t s / √n with the standard deviation s of the same change in each of the n pairs of
+/// blocks; with fewer than two there is none. `standard_deviation` of the result is this s (zero with fewer
+/// than two blocks). Both runs have the same wind, so its effect on a block cancels within the pair. For
+/// means there is [`gain`](super::gain), whose blocks add up to the whole.
 ///
 /// Limits: variations slower than a block are in the change, not in its interval.
 ///
 /// # Errors
-/// [`AnalysisError::UnequalLengths`], [`AnalysisError::NoReference`] where `of` gives zero for `compared` or a block of it,
-/// those of `of`, and those of [`statistic`](super::statistic).
+/// [`AnalysisError::UnequalLengths`], [`AnalysisError::NoReference`] where `of` gives zero for `compared` or
+/// a block of it, those of `of`, and those of [`statistic`](super::statistic).
 ///
 /// ```
 /// # use analysis::statistics::{change, standard_deviation};

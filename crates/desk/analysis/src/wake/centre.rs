@@ -10,12 +10,12 @@ use basis::records::{Plane, PlaneAxes};
 
 /// Wake centre (y and z, farm frame, m) in a crosswind `plane`.
 ///
-/// The deficit U(z) − u is convolved with a Gaussian of standard deviation `width` (m, about half a rotor radius);
-/// the centre is the maximum, by a parabola between the plane's points.
+/// The deficit U(z) − u is convolved with a Gaussian of standard deviation `width` (m, about half a rotor
+/// radius); the centre is the maximum, by a parabola between the plane's points.
 ///
 /// # Errors
-/// [`AnalysisError::WrongPlane`] unless the plane lies across the wind, [`AnalysisError::TooShort`] for a plane without
-/// points.
+/// [`AnalysisError::WrongPlane`] unless the plane lies across the wind, [`AnalysisError::TooShort`] for a
+/// plane without points.
 pub fn centre(
     plane: &Plane,
     free_stream: impl Fn(f64) -> f64,
@@ -57,7 +57,8 @@ pub fn centre(
 /// As [`centre`], in one dimension; upstream of the rotor the result means nothing.
 ///
 /// # Errors
-/// [`AnalysisError::WrongPlane`] for a plane across the wind, [`AnalysisError::TooShort`] for one without points.
+/// [`AnalysisError::WrongPlane`] for a plane across the wind, [`AnalysisError::TooShort`] for one without
+/// points.
 pub fn centre_line(
     plane: &Plane,
     free_stream: impl Fn(f64) -> f64,
@@ -92,7 +93,8 @@ fn expect_points(plane: &Plane) -> Result<(), AnalysisError> {
     }
 }
 
-/// Values of the Gaussian at 0, 1, 2, … spacings from its middle; only the place of the maximum counts, so not its scale.
+/// Values of the Gaussian at 0, 1, 2, … spacings from its middle; only the place of the maximum counts, so
+/// not its scale.
 fn kernel(n_points: usize, spacing: f64, width: f64) -> Vec<f64> {
     (0..n_points).map(|index| (-0.5 * (index as f64 * spacing / width).powi(2)).exp()).collect()
 }

@@ -18,14 +18,15 @@ pub struct Disc {
     pub rotor_equivalent: f64,
 }
 
-/// Streamwise velocity over the disc of `radius` (m) around `centre` (y and z, farm frame, m) in a crosswind `plane`.
+/// Streamwise velocity over the disc of `radius` (m) around `centre` (y and z, farm frame, m) in a crosswind
+/// `plane`.
 ///
 /// Midpoint rule over rings of equal area, bilinear between the plane's points.
 /// Source of the rotor-equivalent speed: IEC 61400-12-1:2017, Annex Q, without veer.
 ///
 /// # Errors
-/// [`AnalysisError::WrongPlane`] unless the plane lies across the wind, [`AnalysisError::OutsidePlane`] where the disc
-/// reaches beyond it.
+/// [`AnalysisError::WrongPlane`] unless the plane lies across the wind, [`AnalysisError::OutsidePlane`] where
+/// the disc reaches beyond it.
 pub fn disc_average(plane: &Plane, centre: [f64; 2], radius: f64) -> Result<Disc, AnalysisError> {
     expect_axes(plane, &[PlaneAxes::Crosswind], "one across the wind")?;
     let (mut sum, mut cubes) = (0.0, 0.0);

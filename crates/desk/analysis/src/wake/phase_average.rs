@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 
 /// Sums of one plane's velocities, one for each phase of the excitation.
 ///
-/// Phase k of n stands for the instants at which the excitation's angle ω_e t lies within half a step of 2πk/n; what turns
-/// with the excitation keeps sin(π/n)/(π/n) of its amplitude, 99.9 % for 36 phases.
+/// Phase k of n stands for the instants at which the excitation's angle ω_e t lies within half a step of
+/// 2πk/n; what turns with the excitation keeps sin(π/n)/(π/n) of its amplitude, 99.9 % for 36 phases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PhaseAverage {
     /// The plane without velocities.
@@ -40,8 +40,8 @@ impl PhaseAverage {
     /// Phases in the published slices (–), one every ten degrees.
     pub const N_PHASES: usize = 36;
 
-    /// An average of planes with the points of `like` over `n_phases` phases of an excitation of `rate` (rad/s); nothing
-    /// taken in yet. At least one phase.
+    /// An average of planes with the points of `like` over `n_phases` phases of an excitation of `rate`
+    /// (rad/s); nothing taken in yet. At least one phase.
     pub fn new(like: &Plane, rate: f64, n_phases: usize) -> Self {
         let n_phases = n_phases.max(1);
         let n_points = like.n_points.iter().product();

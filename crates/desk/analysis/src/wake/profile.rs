@@ -12,8 +12,8 @@ pub struct Profile {
     pub velocities: Vec<f64>,
 }
 
-/// Velocity (m/s, farm frame) at the coordinates `first` and `second` (m, farm frame) of `plane`, bilinear between
-/// its points.
+/// Velocity (m/s, farm frame) at the coordinates `first` and `second` (m, farm frame) of `plane`, bilinear
+/// between its points.
 ///
 /// # Errors
 /// [`AnalysisError::OutsidePlane`] beyond its outermost points.

@@ -6,15 +6,15 @@ use super::{PhasePlane, along_second, centre_line, expect_axes, velocity_at};
 use crate::AnalysisError;
 use basis::records::{Plane, PlaneAxes};
 
-/// Mean velocity deficit (m/s) at `offsets` (m, positive to the left) from the wake's centre, at the distance `x` (m) of
-/// the horizontal `planes`.
+/// Mean velocity deficit (m/s) at `offsets` (m, positive to the left) from the wake's centre, at the distance
+/// `x` (m) of the horizontal `planes`.
 ///
-/// At each phase the centre is found as in [`centre_line`], with a Gaussian of `width` (m), and the profile shifted by it;
-/// phases weigh as many instants as they hold.
+/// At each phase the centre is found as in [`centre_line`], with a Gaussian of `width` (m), and the profile
+/// shifted by it; phases weigh as many instants as they hold.
 ///
 /// # Errors
-/// [`AnalysisError::WrongPlane`] unless planes are horizontal; [`AnalysisError::OutsidePlane`] where a shifted profile
-/// leaves its plane; [`AnalysisError::TooShort`] without planes.
+/// [`AnalysisError::WrongPlane`] unless planes are horizontal; [`AnalysisError::OutsidePlane`] where a
+/// shifted profile leaves its plane; [`AnalysisError::TooShort`] without planes.
 pub fn recentred_deficit(
     planes: &[PhasePlane],
     free_stream: impl Fn(f64) -> f64,

@@ -1,7 +1,8 @@
 //! The helix of a wake's centre: how far it swings and with which phase.
 //!
-//! A wake that moves left leaves more wind on the right, one that sinks more wind above. So the phase of its centre is given
-//! as the wind phase that it brings (see [`phase`](crate::phase)): with the excitation's angle θ and the yaw's lead λ,
+//! A wake that moves left leaves more wind on the right, one that sinks more wind above. So the phase of its
+//! centre is given as the wind phase that it brings (see [`phase`](crate::phase)): with the excitation's
+//! angle θ and the yaw's lead λ,
 //!
 //! ```text
 //! y = mean + r sin(θ + λ + φ)        z = mean − r sin(θ + φ)
@@ -37,14 +38,16 @@ pub struct Orbit {
     pub radius: f64,
     /// Phase φ on that circle (rad, [0, 2π)).
     pub phase: f64,
-    /// Radius of the circle in the other sense (m); the path is an ellipse of half axes `radius` ± `counter_radius`.
+    /// Radius of the circle in the other sense (m); the path is an ellipse of half axes `radius` ±
+    /// `counter_radius`.
     pub counter_radius: f64,
 }
 
-/// Swing of the wake's centre line at each x of the horizontal or streamwise `planes`, in one sense with `reference`.
+/// Swing of the wake's centre line at each x of the horizontal or streamwise `planes`, in one sense with
+/// `reference`.
 ///
-/// Centres as in [`centre_line`], with a Gaussian of `width` (m); then a least-squares fit of mean and first harmonic over
-/// the phases.
+/// Centres as in [`centre_line`], with a Gaussian of `width` (m); then a least-squares fit of mean and first
+/// harmonic over the phases.
 ///
 /// # Errors
 /// Those of [`centre_line`]; [`AnalysisError::TooShort`] with fewer than three phases;
@@ -76,8 +79,9 @@ pub fn swing(
 /// Path of the wake's centre in the crosswind `planes`, in the sense of `reference` and against it.
 ///
 /// Centres as in [`centre`], with a Gaussian of `width` (m).
-/// Limits: a plane that ends at the ground cuts the wake there; a wake of deviation 0.4 D about a hub at 0.6 D seems to swing
-/// some 6 % less in the vertical than it does, which shows as a `counter_radius` of 3 % of the radius.
+/// Limits: a plane that ends at the ground cuts the wake there; a wake of deviation 0.4 D about a hub at 0.6
+/// D seems to swing some 6 % less in the vertical than it does, which shows as a `counter_radius` of 3 % of
+/// the radius.
 ///
 /// # Errors
 /// Those of [`centre`]; [`AnalysisError::TooShort`] with fewer than three phases.
@@ -94,7 +98,8 @@ pub fn orbit(
         .collect::<Result<_, _>>()?;
     let [y, y_cosine, y_sine] = fit.harmonic(|phase| centres[phase][0]);
     let [z, z_cosine, z_sine] = fit.harmonic(|phase| centres[phase][1]);
-    // The centre as a number that turns forwards with the excitation in its own sense: ±(y − mean) − i (z − mean).
+    // The centre as a number that turns forwards with the excitation in its own sense: ±(y − mean) − i (z −
+    // mean).
     let side = reference.sense.yaw_lead().signum();
     let cosine = Complex64::new(side * y_cosine, -z_cosine);
     let sine = Complex64::new(side * y_sine, -z_sine);

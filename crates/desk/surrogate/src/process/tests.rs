@@ -131,7 +131,8 @@ fn a_leave_one_out_prediction_is_a_process_of_the_others() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// With an estimated mean, a constant added to all values is added to the curve, and the band does not change.
+    /// With an estimated mean, a constant added to all values is added to the curve, and the band does not
+    /// change.
     #[test]
     fn an_estimated_mean_follows_the_values(added in -50.0..50.0_f64, at in -2.0..2.0_f64) {
         let of = |added: f64| {
@@ -229,7 +230,8 @@ fn golden() -> Vec<Golden<'static>> {
     cases
 }
 
-/// Likelihood, slopes and curve at given hyperparameters to rounding; the best ones as far as two searches agree.
+/// Likelihood, slopes and curve at given hyperparameters to rounding; the best ones as far as two searches
+/// agree.
 #[test]
 fn scikit_learn_finds_the_same() {
     for case in golden() {

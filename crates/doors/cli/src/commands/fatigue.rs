@@ -28,7 +28,8 @@ pub(crate) struct FatigueArguments {
         value_delimiter = ','
     )]
     channel: Vec<String>,
-    /// Wöhler slopes m of the S-N line: 4 is usual for welded steel, 10 for composite blades; one, 3 when left out, with --bearing
+    /// Wöhler slopes m of the S-N line: 4 is usual for welded steel, 10 for composite blades; one, 3 when
+    /// left out, with --bearing
     #[arg(
         long,
         value_name = "M",
@@ -37,7 +38,8 @@ pub(crate) struct FatigueArguments {
         value_parser = slope
     )]
     slope: Vec<f64>,
-    /// Load of a blade's pitch bearing all round its ring, from pitch and root moments (BldPitch1, RootMyb1, RootMxb1), instead of channels
+    /// Load of a blade's pitch bearing all round its ring, from pitch and root moments (BldPitch1, RootMyb1,
+    /// RootMxb1), instead of channels
     #[arg(long)]
     bearing: bool,
     /// Blade whose bearing it is; 1 when left out
@@ -228,8 +230,8 @@ fn read_span(
     Ok(span)
 }
 
-/// The error that `n_samples` of the table at `path` are too few; `rows` are its first time and the last that was read (s),
-/// `is_cut` whether --to ended the reading there.
+/// The error that `n_samples` of the table at `path` are too few; `rows` are its first time and the last that
+/// was read (s), `is_cut` whether --to ended the reading there.
 fn too_few(path: &Path, n_samples: u64, rows: Option<(f64, f64)>, is_cut: bool) -> miette::Report {
     let problem = format!("{} leaves {n_samples} samples to count", path.display());
     match rows {

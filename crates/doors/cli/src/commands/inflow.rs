@@ -21,7 +21,8 @@ pub(crate) enum InflowCommand {
         #[arg(long)]
         json: bool,
     },
-    /// Convert a box between HAWC2-style binaries (.toml, .bin), TurbSim's (.bts) and Bladed's (.wnd) full fields
+    /// Convert a box between HAWC2-style binaries (.toml, .bin), TurbSim's (.bts) and Bladed's (.wnd) full
+    /// fields
     Convert {
         /// Box to read
         from: PathBuf,
@@ -267,7 +268,10 @@ fn mann_of(arguments: &GenerateArguments, place: &Place) -> miette::Result<(BoxS
 }
 
 /// BoxSettings of Kaimal's turbulence at `place`, and what the description of its box says of them.
-fn kaimal_of(arguments: &GenerateArguments, place: &Place) -> miette::Result<(BoxSettings, String)> {
+fn kaimal_of(
+    arguments: &GenerateArguments,
+    place: &Place,
+) -> miette::Result<(BoxSettings, String)> {
     if arguments.length_scale.is_some() || arguments.gamma.is_some() {
         return Err(miette!(
             help = "Kaimal's scales follow from the hub height",

@@ -14,8 +14,8 @@ const REACH: f64 = 1.2;
 /// Arguments of `wakemix inflow sample`.
 #[derive(Args)]
 pub(crate) struct SampleArguments {
-    /// Case file (TOML) with flow.solver = "uniform": shear, wind.veer_deg_per_m and wind.event are sampled for
-    /// time.duration
+    /// Case file (TOML) with flow.solver = "uniform": shear, wind.veer_deg_per_m and wind.event are sampled
+    /// for time.duration
     case: PathBuf,
     /// Override a key of the case, as in `--set wind.speed=8` (may be repeated)
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -23,8 +23,8 @@ pub(crate) struct SampleArguments {
     /// Points along y and z, such as 31x31
     #[arg(long, default_value = "31x31", value_parser = across)]
     size: [usize; 2],
-    /// Distance of points (m): one for both axes, or two such as 8x10 [default: 1.2 diameters of the first turbine over
-    /// the points]
+    /// Distance of points (m): one for both axes, or two such as 8x10 [default: 1.2 diameters of the first
+    /// turbine over the points]
     #[arg(long, value_parser = distances)]
     spacing: Option<[f64; 2]>,
     /// Time between planes (s)
@@ -38,7 +38,8 @@ pub(crate) struct SampleArguments {
 /// Writes the wind of the case around the first turbine.
 ///
 /// # Errors
-/// A case that cannot be read or has another kind of wind, a grid that makes no sense, a file that cannot be written.
+/// A case that cannot be read or has another kind of wind, a grid that makes no sense, a file that cannot be
+/// written.
 pub(crate) fn run(arguments: &SampleArguments) -> miette::Result<()> {
     turbulence_box::check_name(&arguments.output)?;
     let setup = Prepared::read(&arguments.case, &arguments.overrides)?;

@@ -10,8 +10,8 @@ const LOADS: [(&str, &str, &str); 2] = [
     ("tower MN m", "TwrBsMyt", "fore-aft at the tower base"),
 ];
 
-/// Runs × turbines: power, gain, thrust, rotor speed, delivered excitation, and loads and their changes where any turbine
-/// has them; the conditions above, the conventions below.
+/// Runs × turbines: power, gain, thrust, rotor speed, delivered excitation, and loads and their changes where
+/// any turbine has them; the conditions above, the conventions below.
 pub(crate) fn render(summaries: &[Summary]) -> String {
     let Some(first) = summaries.first() else {
         return String::new();

@@ -28,8 +28,8 @@ pub(crate) enum TurbineCommand {
     },
     /// Convert an OpenFAST deck (.fst) or a windIO file (.yaml) into a turbine file
     ///
-    /// windIO files lack mode shapes, damping, generator inertia and controller gains: what is to be completed by hand is
-    /// listed, and the exit code is 2 until the file is whole.
+    /// windIO files lack mode shapes, damping, generator inertia and controller gains: what is to be
+    /// completed by hand is listed, and the exit code is 2 until the file is whole.
     Import {
         /// Main file of the deck, or the windIO file
         file: PathBuf,
@@ -184,7 +184,8 @@ fn show(file: &TurbineFile) -> Result<()> {
     print(&text)
 }
 
-/// What there is to know of a turbine at a glance; `best` are its coefficients at the optimal tip-speed ratio.
+/// What there is to know of a turbine at a glance; `best` are its coefficients at the optimal tip-speed
+/// ratio.
 fn rows(
     definition: &Definition,
     controller: &Constants,

@@ -34,8 +34,8 @@ pub(crate) struct ValidateArguments {
     pictures: Option<PathBuf>,
 }
 
-/// Prints each row beside its record, and draws it on request; exit code 1 when a row is not as recorded, 2 for an unknown name,
-/// for pictures of what has none, and for what cannot be read or written.
+/// Prints each row beside its record, and draws it on request; exit code 1 when a row is not as recorded, 2
+/// for an unknown name, for pictures of what has none, and for what cannot be read or written.
 pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
     if arguments.pages {
         return renew_pages();

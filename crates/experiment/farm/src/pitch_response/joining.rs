@@ -1,4 +1,5 @@
-//! Pitch response given to a turbine that joins a helix: its azimuth offset, and the calibration of its phase estimator.
+//! Pitch response given to a turbine that joins a helix: its azimuth offset, and the calibration of its phase
+//! estimator.
 
 use super::prescribed::{found_offset, offset_cost};
 use super::{CalibrationError, Course, IdentificationCost, Pitching, WAKE_SPEED, pitching};
@@ -63,8 +64,8 @@ fn costs(
     costs
 }
 
-/// Pitch response for `sync` on turbine number `index` of `case`: the azimuth offset, given or else identified,
-/// and with it the calibration of a robust estimator; `progress` receives the share done.
+/// Pitch response for `sync` on turbine number `index` of `case`: the azimuth offset, given or else
+/// identified, and with it the calibration of a robust estimator; `progress` receives the share done.
 ///
 /// # Errors
 /// [`CalibrationError`].
@@ -97,11 +98,12 @@ pub fn own_pitch(
     Ok(OwnPitch { azimuth_offset, calibration })
 }
 
-/// Calibrates the estimator of `sync` on turbine number `index` of `case`: gain and azimuth offset of its own pitch.
+/// Calibrates the estimator of `sync` on turbine number `index` of `case`: gain and azimuth offset of its own
+/// pitch.
 ///
-/// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in prescribed wind
-/// as the case has it, with perfect instruments, and pitches the helix that it shall pitch, with the `azimuth_offset` (rad)
-/// with which it shall; `progress` receives the share done.
+/// The turbine stands alone in a steady wind of three quarters of the case's, on the grid of `plan` or in
+/// prescribed wind as the case has it, with perfect instruments, and pitches the helix that it shall pitch,
+/// with the `azimuth_offset` (rad) with which it shall; `progress` receives the share done.
 fn calibration(
     case: &Case,
     plan: &Plan,

@@ -1,5 +1,5 @@
-//! The azimuth offset alone, found in prescribed wind: it belongs to blade, rotor speed and pitch actuator, which momentum
-//! theory tells in seconds.
+//! The azimuth offset alone, found in prescribed wind: it belongs to blade, rotor speed and pitch actuator,
+//! which momentum theory tells in seconds.
 
 use super::{COUNTED, CalibrationError, Course, IdentificationCost, answers};
 use crate::Progress;
@@ -9,11 +9,12 @@ use crate::plan::{Plan, without_air};
 use control::excitation_rate;
 use control::meandering::Decoupling;
 
-/// Strouhal number of the helices that tell the azimuth offset of individual pitch control, with the case's wind and the
-/// turbine's own diameter (–).
+/// Strouhal number of the helices that tell the azimuth offset of individual pitch control, with the case's
+/// wind and the turbine's own diameter (–).
 ///
-/// What that control works against hardly moves in the fixed frame, so they are slow: while one turns once, air passes ten
-/// diameters, and the wake follows within about one. Slower ones would tell the same and take longer.
+/// What that control works against hardly moves in the fixed frame, so they are slow: while one turns once,
+/// air passes ten diameters, and the wake follows within about one. Slower ones would tell the same and take
+/// longer.
 pub const INDIVIDUAL_PITCH_STROUHAL: f64 = 0.1;
 /// Cell updates that take about as long as a step of one turbine in prescribed wind (–).
 const UPDATES_OF_A_STEP: f64 = 1e4;
@@ -23,9 +24,9 @@ pub fn individual_pitch_offset_cost(case: &Case, plan: &Plan, model: &Model) -> 
     offset_cost(case, plan, model, case.wind.speed, individual_pitch_rate(case, model))
 }
 
-/// The azimuth offset (rad) of the individual pitch control of turbine number `index` of `case`, with which tilt pitch answers
-/// in the tilt moment alone: in a steady wind of the case's speed, with that control switched off, at
-/// [`INDIVIDUAL_PITCH_STROUHAL`]; `progress` receives the share done.
+/// The azimuth offset (rad) of the individual pitch control of turbine number `index` of `case`, with which
+/// tilt pitch answers in the tilt moment alone: in a steady wind of the case's speed, with that control
+/// switched off, at [`INDIVIDUAL_PITCH_STROUHAL`]; `progress` receives the share done.
 ///
 /// # Errors
 /// [`CalibrationError`].
@@ -48,8 +49,9 @@ fn individual_pitch_rate(case: &Case, model: &Model) -> f64 {
     excitation_rate(INDIVIDUAL_PITCH_STROUHAL, case.wind.speed, diameter)
 }
 
-/// The azimuth offset (rad) with which tilt pitch of turbine number `index` of `case` answers in the tilt moment alone, alone in
-/// a steady wind of `wind_speed` (m/s) at `rate` (rad/s); in prescribed wind whatever moves the air of the case.
+/// The azimuth offset (rad) with which tilt pitch of turbine number `index` of `case` answers in the tilt
+/// moment alone, alone in a steady wind of `wind_speed` (m/s) at `rate` (rad/s); in prescribed wind whatever
+/// moves the air of the case.
 pub(super) fn found_offset(
     case: &Case,
     plan: &Plan,

@@ -131,7 +131,8 @@ pub enum PlanError {
 }
 
 impl PlanError {
-    /// The key that decides, from the top of the case file; a name where several tables stand under one heading.
+    /// The key that decides, from the top of the case file; a name where several tables stand under one
+    /// heading.
     pub fn key(&self) -> Vec<&str> {
         match self {
             Self::OutsideDomain { name, .. } => vec!["turbine", name, "position_diameters"],

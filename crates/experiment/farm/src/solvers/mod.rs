@@ -1,6 +1,7 @@
 //! What may move the air of a farm: a descriptor for each kind of flow solver, and the one list of them.
 //!
-//! A new kind is a file beside this one with its [`SolverKind`], and a line in [`ALL`]. Everyone else asks the descriptor.
+//! A new kind is a file beside this one with its [`SolverKind`], and a line in [`ALL`]. Everyone else asks
+//! the descriptor.
 
 mod lattice;
 mod prescribed;
@@ -48,7 +49,8 @@ pub struct SolverKind {
     pub keys: &'static [Key],
     /// Which wind it takes in.
     pub wind: WindSource,
-    /// Whether the wind that it gives contains the rotors' induction; otherwise turbines make their own by momentum theory.
+    /// Whether the wind that it gives contains the rotors' induction; otherwise turbines make their own by
+    /// momentum theory.
     pub resolves_induction: bool,
     /// How it wants forces spread, and interpolates the wind, where it resolves induction.
     pub smearing: fn(&Plan) -> Smearing,
@@ -64,7 +66,8 @@ pub struct SolverKind {
     pub begin: fn(Start) -> Result<Air, SolverError>,
     /// The air about one rotor alone, in a steady wind, at time zero.
     pub begin_alone: fn(&Alone) -> Result<Air, SolverError>,
-    /// What a step of that air costs (cell updates; 1 where there are no cells) about a rotor of a diameter (m).
+    /// What a step of that air costs (cell updates; 1 where there are no cells) about a rotor of a diameter
+    /// (m).
     pub updates_alone: fn(&Tunnel, f64) -> f64,
 }
 

@@ -1,4 +1,5 @@
-//! `uniform`, `turbulence`, `planes`: the wind is prescribed, and turbines make their own induction by momentum theory.
+//! `uniform`, `turbulence`, `planes`: the wind is prescribed, and turbines make their own induction by
+//! momentum theory.
 
 use super::{Alone, Fault, Objection, Smearing, SolverError, SolverKind, Start, WindSource};
 use crate::air::Air;

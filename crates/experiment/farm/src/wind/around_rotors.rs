@@ -18,14 +18,15 @@ const MARGIN: f64 = 0.1;
 const POINTS_ACROSS: f64 = 24.0;
 /// Time between planes of made turbulence (s).
 const PLANE_INTERVAL: f64 = 0.1;
-/// Most memory that making turbulence may take (bytes), however long the run is. A run of one turbine shall stay below 200 MB
-/// (docs/validation/memory.md), the columns of its series included that summary and report hold.
+/// Most memory that making turbulence may take (bytes), however long the run is. A run of one turbine shall
+/// stay below 200 MB (docs/validation/memory.md), the columns of its series included that summary and report
+/// hold.
 const MEMORY_LIMIT: u64 = 128 << 20;
 /// Places upstream and downstream of the outermost towers at which turbines may sample the wind (m).
 const REACH: f64 = 50.0;
 
-/// The wind of `site`, prescribed: `planes` where there are any, else `inflow`, with turbulence on it where the case has it made
-/// around the rotors.
+/// The wind of `site`, prescribed: `planes` where there are any, else `inflow`, with turbulence on it where
+/// the case has it made around the rotors.
 ///
 /// # Errors
 /// [`InflowError`] when turbulence cannot be made, or planes do not cover the rotors for the whole run.
@@ -91,7 +92,8 @@ fn made_grid(site: &Site) -> Option<MadeGrid> {
     let (along, whole, n_across) = match wind.turbulence_model {
         TurbulenceModel::Kaimal => (along, whole, [n_y, n_z]),
         TurbulenceModel::Mann => {
-            // Cells of one shape along and across, and twice the width, whose periodic image would be felt otherwise.
+            // Cells of one shape along and across, and twice the width, whose periodic image would be felt
+            // otherwise.
             let stride = (across / along).floor().max(1.0) as usize;
             let n_across = [smooth(2 * n_y), smooth(2 * n_z)];
             (along * stride as f64, smooth(whole.div_ceil(stride)), n_across)

@@ -8,7 +8,8 @@ use flow::inflow::turbulent::BLOCKING_HEIGHT;
 use flow::inflow::{InflowError, TurbulentInflow, mann, size_box};
 use std::sync::Arc;
 
-/// Most memory that the turbulence may take (bytes); a longer run then meets the same wind again, and is warned of it.
+/// Most memory that the turbulence may take (bytes); a longer run then meets the same wind again, and is
+/// warned of it.
 const TURBULENCE_MEMORY: u64 = 6 << 30;
 
 /// The turbulence of a box for the inlet of `site`; none where none enters so.
@@ -24,8 +25,8 @@ pub(super) fn turbulence(site: &Site) -> Option<Turbulence> {
     Some(Turbulence { memory: size.peak_memory, warning })
 }
 
-/// The wind with turbulence that enters the domain of `site`, made now; none where no turbulence enters so. `progress` receives
-/// the share done.
+/// The wind with turbulence that enters the domain of `site`, made now; none where no turbulence enters so.
+/// `progress` receives the share done.
 ///
 /// # Errors
 /// [`InflowError`] when it cannot be made.

@@ -1,4 +1,5 @@
-//! The one place that makes the wind of a case: profile, veer, event and turbulence, for whatever moves the air.
+//! The one place that makes the wind of a case: profile, veer, event and turbulence, for whatever moves the
+//! air.
 
 mod around_rotors;
 mod at_inlet;
@@ -65,8 +66,8 @@ pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
     }
 }
 
-/// Why the profile that blows into `case` is not the one that its rough ground keeps, with the fix; none where it is, and
-/// where no air meets a rough ground.
+/// Why the profile that blows into `case` is not the one that its rough ground keeps, with the fix; none
+/// where it is, and where no air meets a rough ground.
 pub fn off_balance(case: &Case) -> Option<String> {
     let Ground::Rough { roughness_length: ground } = case.flow.ground else { return None };
     if case.flow.solver.wind != WindSource::AtInlet {
@@ -87,7 +88,8 @@ pub fn off_balance(case: &Case) -> Option<String> {
 
 /// The wind of `case` without turbulence; lengths in diameters are those of its first turbine in `plan`.
 ///
-/// The event's place is that turbine: its hub is the middle of the rotating disk's path and of the extreme shear.
+/// The event's place is that turbine: its hub is the middle of the rotating disk's path and of the extreme
+/// shear.
 pub fn deterministic(case: &Case, plan: &Plan) -> DeterministicWind {
     let event = case.wind.event.map_or(Event::Steady, |event| event_of(&event, case, plan));
     let profile = profile(case, plan);

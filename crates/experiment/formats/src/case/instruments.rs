@@ -95,7 +95,8 @@ fn lag_of(section: &Section) -> Lag {
     }
 }
 
-/// The instruments as lines of `[[turbine]]`: those that are not perfect, with the figures that say something.
+/// The instruments as lines of `[[turbine]]`: those that are not perfect, with the figures that say
+/// something.
 pub(super) fn instruments_text(instruments: &Instruments) -> String {
     let mut instruments = *instruments;
     let mut text = String::new();
@@ -251,7 +252,8 @@ name = "baseline"
     proptest! {
         #[test]
         fn any_figures_read_back_as_written(
-            noise in 0.0..100.0, bias in -100.0..100.0, dropout in 0.0..0.99, hertz in 1e-3..1e4, damping in 0.0..10.0,
+            noise in 0.0..100.0, bias in -100.0..100.0, dropout in 0.0..0.99, hertz in 1e-3..1e4,
+            damping in 0.0..10.0,
         ) {
             let figures = |suffix| format!(
                 "noise_{suffix} = {noise:?}, bias_{suffix} = {bias:?}, dropout = {dropout:?}, frequency_hz = {hertz:?}, damping_ratio = {damping:?}"

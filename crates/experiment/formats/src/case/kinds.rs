@@ -1,4 +1,5 @@
-//! Tables whose key `kind` says which keys they have: controllers and sensors, each with its own table of keys.
+//! Tables whose key `kind` says which keys they have: controllers and sensors, each with its own table of
+//! keys.
 
 use super::document::{Entry, Value as Written, find};
 use super::error::ProblemKind;
@@ -19,8 +20,8 @@ pub(super) struct Kinded<'a, K: ?Sized + 'static> {
     findings: &'a Findings<'a>,
 }
 
-/// Reads the table of `entries` at `path`, of one of the kinds of `registry`, whose `table_of` gives their keys; `what` says what
-/// the kind means. None where there is no such kind, which is noted.
+/// Reads the table of `entries` at `path`, of one of the kinds of `registry`, whose `table_of` gives their
+/// keys; `what` says what the kind means. None where there is no such kind, which is noted.
 pub(super) fn read<'a, K: Named + ?Sized>(
     registry: &Registry<K>,
     table_of: impl Fn(&K) -> &'static Table,

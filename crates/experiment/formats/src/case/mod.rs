@@ -42,8 +42,8 @@ pub struct CaseFile {
 }
 
 impl CaseFile {
-    /// A case that stands in no file, checked as if it did: its text is what [`write()`] makes of it, and errors point
-    /// there.
+    /// A case that stands in no file, checked as if it did: its text is what [`write()`] makes of it, and
+    /// errors point there.
     ///
     /// # Errors
     /// [`CaseError::Invalid`] with everything that is wrong in it.
@@ -64,7 +64,8 @@ impl CaseFile {
     }
 }
 
-/// What of `case` no file could say: places of turbines that are not there, and controls for more or fewer than there are.
+/// What of `case` no file could say: places of turbines that are not there, and controls for more or fewer
+/// than there are.
 fn misfit(case: &Case) -> Option<String> {
     let n_turbines = case.turbines.len();
     let run = case.runs.iter().find(|run| run.control.len() != n_turbines);
@@ -89,7 +90,8 @@ fn misfit(case: &Case) -> Option<String> {
 /// `run.helix.control.T1.amplitude_deg=3`. Text needs no quotes.
 ///
 /// # Errors
-/// [`CaseError::File`] when the file cannot be read, [`CaseError::Invalid`] with everything that is wrong in it.
+/// [`CaseError::File`] when the file cannot be read, [`CaseError::Invalid`] with everything that is wrong in
+/// it.
 pub fn read(path: &Path, overrides: &[String]) -> Result<CaseFile, CaseError> {
     let text = atomic::read_text(path, "the case file")?;
     let case = parse(&path.display().to_string(), &text, overrides)?;
@@ -107,8 +109,9 @@ pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, CaseE
         .map_err(|problems| CaseError::Invalid { name: name.to_owned(), problems })
 }
 
-/// What decides the bits of the run `run` of the case in `text`: SHA-256 of the case without what changes no result,
-/// which is its description, threads, checkpoint interval, comparison and other runs. Of the bare text when that is no case.
+/// What decides the bits of the run `run` of the case in `text`: SHA-256 of the case without what changes no
+/// result, which is its description, threads, checkpoint interval, comparison and other runs. Of the bare
+/// text when that is no case.
 pub fn fingerprint(text: &str, run: &str) -> [u8; 32] {
     let decisive = parse("", text, &[]).map(|mut case| {
         case.description = None;

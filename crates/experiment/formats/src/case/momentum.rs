@@ -13,7 +13,8 @@ const TOWER_INFLUENCES: [(&str, TowerInfluence); 4] = [
     ("potential-and-shadow", TowerInfluence::PotentialAndShadow),
 ];
 
-/// How the induction of `turbine` follows its loads; notes where the air of `solver`, or another key, has no use for it.
+/// How the induction of `turbine` follows its loads; notes where the air of `solver`, or another key, has no
+/// use for it.
 pub(super) fn dynamic_inflow_of(turbine: &Section, solver: Solver) -> DynamicInflow {
     if solver.resolves_induction {
         let why =
@@ -35,7 +36,8 @@ pub(super) fn dynamic_inflow_of(turbine: &Section, solver: Solver) -> DynamicInf
     }
 }
 
-/// What the tower does to the wind that the blades of `turbine` meet; notes where the air of `solver` has no use for it.
+/// What the tower does to the wind that the blades of `turbine` meet; notes where the air of `solver` has no
+/// use for it.
 pub(super) fn tower_influence_of(turbine: &Section, solver: Solver) -> TowerInfluence {
     let word = turbine.choice("tower_influence");
     let known = TOWER_INFLUENCES.iter().find(|(name, _)| *name == word);
@@ -58,8 +60,8 @@ fn note_no_use(turbine: &Section, key: &str, why: &str, fix: &str) {
     turbine.findings().note(turbine.span_of(key), kind, Some(fix.to_owned()));
 }
 
-/// The keys as lines of `[[turbine]]`, those alone that differ from what holds without them: so the fingerprint of a case
-/// that does not use them stays what it was.
+/// The keys as lines of `[[turbine]]`, those alone that differ from what holds without them: so the
+/// fingerprint of a case that does not use them stays what it was.
 pub(super) fn momentum_text(turbine: &Placement) -> String {
     let mut text = match turbine.dynamic_inflow {
         DynamicInflow::None => "dynamic_inflow = \"none\"\n".to_owned(),

@@ -5,8 +5,9 @@ use super::document::{self, Entry, Node, Value, find, named};
 use super::error::{CaseError, Problem, ProblemKind};
 use std::ops::Range;
 
-/// That the case of `file` cannot be run for the reason in `message`, which the key at `path` decides: keys from the top, a
-/// name where several tables stand under one heading. The arrow points at as much of the path as the file has.
+/// That the case of `file` cannot be run for the reason in `message`, which the key at `path` decides: keys
+/// from the top, a name where several tables stand under one heading. The arrow points at as much of the path
+/// as the file has.
 pub fn objection(file: &CaseFile, path: &[&str], message: String) -> CaseError {
     let name = file.path.display().to_string();
     let (sources, document) = document::parse(&name, &file.text, &file.overrides);

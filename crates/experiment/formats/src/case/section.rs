@@ -29,10 +29,12 @@ impl<'a> Findings<'a> {
     }
 }
 
-/// Tables under one heading at most (–): what the turbines do in the runs takes memory by the product of both.
+/// Tables under one heading at most (–): what the turbines do in the runs takes memory by the product of
+/// both.
 const MOST_TABLES: usize = 1000;
 
-/// One table of the file. Reading notes what is wrong and goes on with a value that passes every further check.
+/// One table of the file. Reading notes what is wrong and goes on with a value that passes every further
+/// check.
 pub(super) struct Section<'a> {
     table: &'static Table,
     entries: &'a [Entry],

@@ -13,7 +13,8 @@ pub(crate) fn nearest<'n>(misspelt: &str, names: impl Iterator<Item = &'n str>) 
         .map(|(_, name)| name)
 }
 
-/// Insertions, deletions, replacements and swaps of neighbours from `a` to `b` (Damerau's distance, restricted).
+/// Insertions, deletions, replacements and swaps of neighbours from `a` to `b` (Damerau's distance,
+/// restricted).
 fn edits(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let mut rows = vec![vec![0; b.len() + 1]; a.len() + 1];

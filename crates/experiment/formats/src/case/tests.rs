@@ -71,7 +71,8 @@ fn helix_and_pulse_may_stop() {
     assert!(!plain.contains("stop"), "{plain}");
 }
 
-/// The meandering control of a small case that says `keys` beside factor and amplitude, after it was written and read.
+/// The meandering control of a small case that says `keys` beside factor and amplitude, after it was written
+/// and read.
 fn meandering(keys: &str) -> MeanderingSettings {
     let control = format!("kind = \"meandering\", factor = 1.5, amplitude_deg = 4{keys}");
     let case = small(&[&format!("run.helix.control.T1={{ {control} }}")]);
@@ -104,7 +105,8 @@ fn meandering_needs_little_to_be_said() {
     assert_eq!(given.sense, Sense::CounterClockwise);
 }
 
-/// The phase synchronisation of T2 in a small case that says `keys` beside the needed ones, after it was written and read.
+/// The phase synchronisation of T2 in a small case that says `keys` beside the needed ones, after it was
+/// written and read.
 fn phase_sync(keys: &str) -> PhaseSyncSettings {
     let control = format!("kind = \"phase-sync\", offset_deg = 90, amplitude_deg = 4{keys}");
     let case = small(&[&format!("run.helix.control.T2={{ {control} }}")]);

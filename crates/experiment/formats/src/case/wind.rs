@@ -191,8 +191,8 @@ fn start_of(event: &WindEvent) -> f64 {
     }
 }
 
-/// Writes the section of `wind`. What came in later is written only where it is used, so that the fingerprint of a case
-/// without it stays what it was.
+/// Writes the section of `wind`. What came in later is written only where it is used, so that the fingerprint
+/// of a case without it stays what it was.
 pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
     writeln!(text, "\n[wind]")?;
     writeln!(text, "speed = {:?}", wind.speed)?;

@@ -121,7 +121,8 @@ pub(super) fn degrees(angle: f64) -> f64 {
     shortest(angle, angle.to_degrees(), f64::to_radians)
 }
 
-/// The number near `exact` with the fewest digits that `back` makes `value` of again, bit for bit where any does.
+/// The number near `exact` with the fewest digits that `back` makes `value` of again, bit for bit where any
+/// does.
 pub(super) fn shortest(value: f64, exact: f64, back: impl Fn(f64) -> f64) -> f64 {
     (0..17)
         .filter_map(|digits| format!("{exact:.digits$e}").parse::<f64>().ok())

@@ -1,8 +1,10 @@
-//! Bytes that no program should have written: every reader of foreign files gives a result, or an error that names the
-//! file and the fix. It never panics, never runs away and never asks for more memory than a small file deserves.
+//! Bytes that no program should have written: every reader of foreign files gives a result, or an error that
+//! names the file and the fix. It never panics, never runs away and never asks for more memory than a small
+//! file deserves.
 //!
-//! Each test damages small sound files at random: bits, bytes, words, numbers, counts, lines, cuts, or all of it. How
-//! often is `PROPTEST_CASES` (256 unless set); every run draws anew, and a failure prints the least damage that does it.
+//! Each test damages small sound files at random: bits, bytes, words, numbers, counts, lines, cuts, or all of
+//! it. How often is `PROPTEST_CASES` (256 unless set); every run draws anew, and a failure prints the least
+//! damage that does it.
 
 mod cases;
 mod damage;
@@ -24,8 +26,8 @@ use tempfile::TempDir;
 /// Whatever a reader refuses a file with.
 type Refusal = Box<dyn Diagnostic + Send + Sync>;
 
-/// Memory (bytes) that a reader may hold on top of what it held: buffers of a few megabytes, and a hundred times the
-/// longest file.
+/// Memory (bytes) that a reader may hold on top of what it held: buffers of a few megabytes, and a hundred
+/// times the longest file.
 const MOST_MEMORY: usize = (8 << 20) + 100 * damage::LONGEST;
 
 fn config() -> ProptestConfig {
@@ -67,7 +69,8 @@ impl Folder {
     }
 }
 
-/// Hands `read` the folder of `files` again and again, one of them damaged; it must read them when they are sound.
+/// Hands `read` the folder of `files` again and again, one of them damaged; it must read them when they are
+/// sound.
 fn survives(files: Vec<(&'static str, Vec<u8>)>, read: impl Fn(&Path) -> Result<(), Refusal>) {
     let folder = Folder::new(files);
     let path = folder.folder.path();

@@ -93,7 +93,8 @@ fn checkpoints() {
     survives(vec![("checkpoint", bytes)], |folder| go_on(&folder.join("checkpoint")));
 }
 
-/// Checksums guard against damage, not against another program's state: here they are right, and the state is not.
+/// Checksums guard against damage, not against another program's state: here they are right, and the state is
+/// not.
 #[test]
 fn foreign_states() {
     let case = parts();

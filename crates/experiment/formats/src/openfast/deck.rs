@@ -4,7 +4,7 @@ use crate::turbine_file::TurbineFileError;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A text file in which every figure stands before its key: `value  Key - description` or `value ! Key - description`.
+/// A text file of figures before their keys: `value  Key - description` or `value ! Key - description`.
 pub(crate) struct Deck {
     path: PathBuf,
     name: String,
@@ -177,7 +177,7 @@ impl Deck {
         lines.iter().map(value).collect()
     }
 
-    /// The table of as many rows as the number before `count_key` says, below a line that begins with one of `columns`.
+    /// The table with the number of rows before `count_key`, below a line that begins with one of `columns`.
     ///
     /// A table without such a line has the columns in the order of `columns`.
     pub(crate) fn table<'a>(

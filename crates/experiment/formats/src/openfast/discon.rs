@@ -104,7 +104,8 @@ fn torque_control(deck: &Deck) -> Result<(TorqueControl, bool), TurbineFileError
     }
     let constant_power = deck.number("VS_ConstPower")? != 0.0;
     match number {
-        // The third finds its speed from the power by the same constant, so it stands still where the first does.
+        // The third finds its speed from the power by the same constant, so it stands still where the first
+        // does.
         1.0 | 3.0 => Ok((KOmegaSquared, constant_power)),
         2.0 => Ok((TipSpeedRatio, constant_power)),
         _ => Err(deck.value("VS_ControlMode")?.error("1, 2 or 3")),

@@ -1,4 +1,5 @@
-//! OpenFAST input decks, read by key: order, quotes, comments and most of the differences between versions do not matter.
+//! OpenFAST input decks, read by key: order, quotes, comments and most of the differences between versions do
+//! not matter.
 
 mod aerodyn;
 pub(crate) mod deck;
@@ -24,13 +25,14 @@ pub struct ImportOptions {
 
 /// The turbine of the main file `path` (`.fst`), with the files that it names.
 ///
-/// Structure, drive train and geometry come from ElastoDyn, blades and polars from AeroDyn 15, the generator from
-/// ServoDyn and the controller from the ROSCO input file that ServoDyn names. A ServoDyn file without one leaves the
-/// groups `controller` and `pitch_actuator` out. A file whose first line states no version is taken to be of one that is
-/// read: OpenFAST up to 5 or FAST 8, AeroDyn 15, ElastoDyn 1, ServoDyn 1.
+/// Structure, drive train and geometry come from ElastoDyn, blades and polars from AeroDyn 15, the generator
+/// from ServoDyn and the controller from the ROSCO input file that ServoDyn names. A ServoDyn file without
+/// one leaves the groups `controller` and `pitch_actuator` out. A file whose first line states no version is
+/// taken to be of one that is read: OpenFAST up to 5 or FAST 8, AeroDyn 15, ElastoDyn 1, ServoDyn 1.
 ///
 /// # Errors
-/// [`TurbineFileError`] naming file, line, key and what was expected; also for a stated version that is not read.
+/// [`TurbineFileError`] naming file, line, key and what was expected; also for a stated version that is not
+/// read.
 pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineFileError> {
     let main = Deck::read(path)?;
     version::MAIN.check(&main)?;
@@ -102,7 +104,8 @@ fn pitch_actuator(discon: &Deck, source: String) -> Result<PitchActuator, Turbin
     })
 }
 
-/// Air density of the deck (kg/m³); that of the standard atmosphere where the main file leaves it to the modules.
+/// Air density of the deck (kg/m³); that of the standard atmosphere where the main file leaves it to the
+/// modules.
 fn air_density(main: &Deck) -> f64 {
     main.number("AirDens").unwrap_or(1.225)
 }

@@ -5,11 +5,12 @@ use control::baseline::greedy_torque_gain;
 use turbine::aero::blade_element::Theory;
 use turbine::steady::SteadyRotor;
 
-/// Share of the wind speed at which the tracked tip-speed ratio meets rated rotor speed; the pitch there stands for all below rated.
+/// Share of the wind speed at which the tracked tip-speed ratio meets rated rotor speed; the pitch there
+/// stands for all below rated.
 const TYPICAL_SHARE: f64 = 0.75;
 
-/// On return the controller of `document` (all groups present) holds the rotor at its optimal tip-speed ratio in air
-/// of `air_density` (kg/m³), by blade-element momentum, and its source says so.
+/// On return the controller of `document` (all groups present) holds the rotor at its optimal tip-speed ratio
+/// in air of `air_density` (kg/m³), by blade-element momentum, and its source says so.
 pub(super) fn derive(
     document: &mut Document,
     air_density: f64,

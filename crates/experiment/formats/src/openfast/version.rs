@@ -39,7 +39,8 @@ impl Format {
     }
 }
 
-/// Digits and dots after the first `v` that begins a word and has a digit behind it: `15.03` of `AERODYN v15.03.* INPUT FILE`.
+/// Digits and dots after the first `v` that begins a word and has a digit behind it: `15.03` of
+/// `AERODYN v15.03.* INPUT FILE`.
 fn stated(heading: &str) -> Option<&str> {
     heading.match_indices(['v', 'V']).find_map(|(place, _)| {
         if heading[..place].ends_with(char::is_alphanumeric) {

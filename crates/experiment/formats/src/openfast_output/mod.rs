@@ -1,13 +1,14 @@
 //! OpenFAST's results: binary `.outb` read and written, text `.out` read.
 //!
-//! Reading goes through [`TableReader`](crate::table::TableReader), which knows other tables as well. Writing streams: rows
-//! gather on disk beside the file's place, and the file appears, whole, when the last one is in.
+//! Reading goes through [`TableReader`](crate::table::TableReader), which knows other tables as well. Writing
+//! streams: rows gather on disk beside the file's place, and the file appears, whole, when the last one is
+//! in.
 //!
 //! The binary format (little-endian; OpenFAST's NWTC library, subroutine `WrBinFAST`):
 //!
 //! | what | type | in files of kind |
 //! | --- | --- | --- |
-//! | kind: 1 listed times, 2 regular times, 3 regular times and plain doubles, 4 as 2 with the length of names | i16 | all |
+//! | kind: 1 listed times, 2 regular times, 3 with doubles, 4 as 2 with the length of names | i16 | all |
 //! | characters of a name or unit (10 in the others) | i16 | 4 |
 //! | channels n without time, rows | 2 × i32 | all |
 //! | scale and offset of time; or first time and interval (s) | 2 × f64 | 1; others |

@@ -223,10 +223,12 @@ proptest! {
         prop_assert_eq!(rows.len(), found.len());
         for channel in 0..rows[0].len() {
             let values = || rows.iter().map(|row| row[channel]);
-            let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+            let least = values().fold(f64::INFINITY, f64::min);
+            let most = values().fold(f64::NEG_INFINITY, f64::max);
             let range = (most - least).max(1e-6 * least.abs().max(most.abs()));
             for (row, found) in rows.iter().zip(&found) {
-                // Where a small range lies far from zero, up to half the steps are lost to the offset's 32 bits.
+                // Where a small range lies far from zero, up to half the steps are lost to the offset's 32
+                // bits.
                 let step = range / if most - least > 0.01 * most.abs() { 65_000.0 } else { 32_000.0 };
                 prop_assert!((row[channel] - found[channel + 1]).abs() <= 0.5 * step);
             }
@@ -246,7 +248,9 @@ proptest! {
     }
 
     #[test]
-    fn no_damage_makes_the_reader_panic(kind in 1..3_i16, damaged in 0..130_usize, byte in any::<u8>(), end in 0..150_usize) {
+    fn no_damage_makes_the_reader_panic(
+        kind in 1..3_i16, damaged in 0..130_usize, byte in any::<u8>(), end in 0..150_usize,
+    ) {
         let (_folder, path) = place();
         let mut bytes = by_hand(kind);
         let damaged = damaged % bytes.len();

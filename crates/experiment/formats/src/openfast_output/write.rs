@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 const BUFFER: usize = 1 << 18;
 /// Integers that 16 bits tell apart, less the two ends, which rounding may need.
 const STEPS: f64 = 65_533.0;
-/// Smallest range that is spread over the integers, relative to the largest value: below it, 32-bit offsets are too coarse.
+/// Smallest range that is spread over the integers, relative to the largest value: below it, 32-bit offsets
+/// are too coarse.
 const LEAST_RANGE: f64 = 1e-6;
 /// Largest value that 32-bit scales can serve.
 const LARGEST: f64 = 1e30;
@@ -34,11 +35,11 @@ pub struct Layout {
 /// How values are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// 16-bit integers spread over each channel's range, as OpenFAST does by default: errors of at most 1/131000 of the
-    /// range, names of any length, read by pyDatView and openfast_toolbox.
+    /// 16-bit integers spread over each channel's range, as OpenFAST does by default: errors of at most
+    /// 1/131000 of the range, names of any length, read by pyDatView and openfast_toolbox.
     Compressed,
-    /// Doubles, to the last bit, as OpenFAST's regression tests write them; names of at most 10 characters. Not read by
-    /// openfast_toolbox unless asked for `use_buffer`.
+    /// Doubles, to the last bit, as OpenFAST's regression tests write them; names of at most 10 characters.
+    /// Not read by openfast_toolbox unless asked for `use_buffer`.
     Exact,
 }
 
@@ -61,7 +62,8 @@ impl OutbWriter {
     /// Starts the file that will stand at `path`. The folder must exist.
     ///
     /// # Errors
-    /// [`FileError::System`]; [`FileError::Content`] for no channels, a name that the format cannot hold, or no interval.
+    /// [`FileError::System`]; [`FileError::Content`] for no channels, a name that the format cannot hold, or
+    /// no interval.
     pub fn create(path: &Path, layout: Layout, encoding: Encoding) -> Result<Self, FileError> {
         check(path, &layout, encoding)?;
         let n_channels = layout.channels.len();
@@ -79,8 +81,8 @@ impl OutbWriter {
     /// Adds one row: the channels in their order, without time.
     ///
     /// # Errors
-    /// [`FileError::System`]; [`FileError::Content`] for a value that is not finite, naming channel and time, or one row
-    /// more than the format counts.
+    /// [`FileError::System`]; [`FileError::Content`] for a value that is not finite, naming channel and time,
+    /// or one row more than the format counts.
     ///
     /// # Panics
     /// When `row` has not one value per channel.
@@ -222,7 +224,8 @@ fn check(path: &Path, layout: &Layout, encoding: Encoding) -> Result<(), FileErr
 
 /// Scale and offset that spread the values from `least` to `most` over the integers.
 ///
-/// Rounding to 32 bits shifts offsets by whole integers where the values lie far from zero: the ends keep as much free.
+/// Rounding to 32 bits shifts offsets by whole integers where the values lie far from zero: the ends keep as
+/// much free.
 fn scale((least, most): (f64, f64)) -> (f32, f32) {
     let largest = least.abs().max(most.abs());
     let range = (most - least).max(LEAST_RANGE * largest).max(SMALLEST);

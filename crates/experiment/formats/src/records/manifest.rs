@@ -29,7 +29,8 @@ pub struct Manifest {
     pub case_text: String,
     /// SHA-256 of `case_text`, hexadecimal.
     pub case_sha256: String,
-    /// SHA-256 of the text of each turbine model, and of each controller's own input file and its table, hexadecimal.
+    /// SHA-256 of the text of each turbine model, and of each controller's own input file and its table,
+    /// hexadecimal.
     pub turbines_sha256: BTreeMap<String, String>,
     /// Text of each of them that is not of the library, so that records can be asked anew without its file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -70,9 +71,11 @@ fn processor_of(cpuinfo: &str) -> Option<String> {
 }
 
 impl Manifest {
-    /// The manifest of a run that starts now: run number `run_index` (from 0), `run`, of the case in `case_text`.
+    /// The manifest of a run that starts now: run number `run_index` (from 0), `run`, of the case in
+    /// `case_text`.
     ///
-    /// `turbines` holds the text of each turbine model's file by the model's name, and of each controller's input file; `version` is the program's.
+    /// `turbines` holds the text of each turbine model's file by the model's name, and of each controller's
+    /// input file; `version` is the program's.
     pub fn start<'a>(
         version: &str,
         case: &farm::case::Case,

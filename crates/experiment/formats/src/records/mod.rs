@@ -1,7 +1,7 @@
 //! What a run leaves behind: `DIR/RUN/` with summary, series, planes, volumes, manifest and checkpoint.
 //!
-//! `summary.json` comes last: a run whose folder has one is complete. Everything that a report needs is in these
-//! files, planes included, so that a study can be reported anew from its folder alone.
+//! `summary.json` comes last: a run whose folder has one is complete. Everything that a report needs is in
+//! these files, planes included, so that a study can be reported anew from its folder alone.
 
 mod manifest;
 mod pitch_responses;
@@ -52,7 +52,8 @@ impl RunFolder {
         atomic::create_folder(&self.volumes_path())
     }
 
-    /// Takes away what an earlier run of this name left, summary first, so that no mixture is ever taken for a run.
+    /// Takes away what an earlier run of this name left, summary first, so that no mixture is ever taken for
+    /// a run.
     ///
     /// # Errors
     /// [`FileError::System`].
@@ -190,7 +191,8 @@ pub fn write_last_plane(folder: &RunFolder, plane: &Plane) -> Result<(), FileErr
     write_plane(folder, &format!("{}-last.nc", plane.name), plane)
 }
 
-/// Writes the mean of a plane at one `phase` (rad) of the excitation: `planes/NAME-phase-010.nc`, the phase in degrees.
+/// Writes the mean of a plane at one `phase` (rad) of the excitation: `planes/NAME-phase-010.nc`, the phase
+/// in degrees.
 ///
 /// # Errors
 /// [`FileError::System`].
@@ -221,7 +223,8 @@ pub fn write_summary(folder: &RunFolder, summary: &Summary) -> Result<(), FileEr
 /// Reads the summary of a run.
 ///
 /// # Errors
-/// [`FileError::System`], and [`FileError::Content`] when it is something else or of another version of the layout.
+/// [`FileError::System`], and [`FileError::Content`] when it is something else or of another version of the
+/// layout.
 pub fn read_summary(folder: &RunFolder) -> Result<Summary, FileError> {
     #[derive(Deserialize)]
     struct Layout {

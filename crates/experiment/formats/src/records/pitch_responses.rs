@@ -1,4 +1,5 @@
-//! Pitch responses identified before the runs of a study: `DIR/records.json`, so that a resumed study need not identify them again.
+//! Pitch responses identified before the runs of a study: `DIR/records.json`, so that a resumed study need
+//! not identify them again.
 
 use crate::{FileError, atomic};
 use basis::records::PitchResponse;

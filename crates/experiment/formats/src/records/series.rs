@@ -11,7 +11,8 @@ const FIX: &str = "start the run afresh, without --resume";
 
 /// Writes rows as they come; the file bears its name once it is whole, until then `.part` after it.
 ///
-/// Numbers have the fewest digits that read back to the same bits, so a resumed series equals an uninterrupted one.
+/// Numbers have the fewest digits that read back to the same bits, so a resumed series equals an
+/// uninterrupted one.
 #[derive(Debug)]
 pub struct SeriesWriter {
     file: BufWriter<File>,
@@ -37,10 +38,12 @@ impl SeriesWriter {
         Ok(writer)
     }
 
-    /// Goes on with the series that will stand at `path` after its first `n_bytes`; what came after them goes.
+    /// Goes on with the series that will stand at `path` after its first `n_bytes`; what came after them
+    /// goes.
     ///
     /// # Errors
-    /// [`FileError::System`], and [`FileError::Content`] when it is shorter than that or does not end a row there.
+    /// [`FileError::System`], and [`FileError::Content`] when it is shorter than that or does not end a row
+    /// there.
     pub fn resume(path: &Path, n_bytes: u64) -> Result<Self, FileError> {
         let part = atomic::part_of(path);
         let failed = |source| FileError::system("read", WHAT, &part, source);

@@ -47,11 +47,12 @@ impl SeriesFile {
         self.n_rows
     }
 
-    /// The channels for which `wanted` holds, in the order of the file, in one pass over it; the numbers of others are skipped
-    /// unread.
+    /// The channels for which `wanted` holds, in the order of the file, in one pass over it; the numbers of
+    /// others are skipped unread.
     ///
     /// # Errors
-    /// [`FileError::System`] when it cannot be read, [`FileError::Content`] with line and column when it is something else.
+    /// [`FileError::System`] when it cannot be read, [`FileError::Content`] with line and column when it is
+    /// something else.
     pub fn read(&self, wanted: impl Fn(&str) -> bool) -> Result<Series, FileError> {
         let Self { path, names, .. } = self;
         let failed = |source| refused_reading(path, source);
@@ -95,7 +96,8 @@ impl SeriesFile {
         Ok(series)
     }
 
-    /// Rows that the file can hold: each value takes two bytes or more, so a broken file asks for little memory.
+    /// Rows that the file can hold: each value takes two bytes or more, so a broken file asks for little
+    /// memory.
     fn most_rows(&self) -> usize {
         self.n_rows.min(self.n_bytes / (2 * self.names.len()) + 1)
     }

@@ -46,11 +46,12 @@ pub struct RunRecords {
     pub volume_paths: Vec<PathBuf>,
 }
 
-/// Reads the study in the folder `path` back: every run's folder in it, of its series the channels' names alone.
+/// Reads the study in the folder `path` back: every run's folder in it, of its series the channels' names
+/// alone.
 ///
 /// # Errors
-/// [`FileError::System`] when a file cannot be read; [`FileError::Content`] when one holds something else, or when
-/// no run of a study is there.
+/// [`FileError::System`] when a file cannot be read; [`FileError::Content`] when one holds something else, or
+/// when no run of a study is there.
 pub fn read_study(path: &Path) -> Result<StudyRecords, FileError> {
     let Found { complete, incomplete } = find_runs(path)?;
     let mut runs = Vec::with_capacity(complete.len());
@@ -72,8 +73,8 @@ pub fn read_study(path: &Path) -> Result<StudyRecords, FileError> {
     })
 }
 
-/// Reads what the complete runs of the study in the folder `path` came to, without their series and planes: manifest and
-/// summary of each, in the case file's order; one or more.
+/// Reads what the complete runs of the study in the folder `path` came to, without their series and planes:
+/// manifest and summary of each, in the case file's order; one or more.
 ///
 /// # Errors
 /// Those of [`read_study`].

@@ -21,12 +21,14 @@ struct Row {
     numbers: Vec<f64>,
 }
 
-/// The table in `text`, which errors call `file`: pitch angles in degrees and tip-speed ratios, each below a remark that
-/// names them, then a row for each tip-speed ratio, first of the power, then of the thrust coefficient.
+/// The table in `text`, which errors call `file`: pitch angles in degrees and tip-speed ratios, each below a
+/// remark that names them, then a row for each tip-speed ratio, first of the power, then of the thrust
+/// coefficient.
 ///
 /// # Errors
-/// [`TurbineFileError::Value`] naming file, line and what was expected: for words among the numbers, a row with more or fewer
-/// numbers than pitch angles, more or fewer rows than tip-speed ratios, axes that do not rise.
+/// [`TurbineFileError::Value`] naming file, line and what was expected: for words among the numbers, a row
+/// with more or fewer numbers than pitch angles, more or fewer rows than tip-speed ratios, axes that do not
+/// rise.
 pub fn parse_coefficients(file: &str, text: &str) -> Result<CoefficientTable, TurbineFileError> {
     let rows = rows(file, text)?;
     let axis = |part, key: &'static str| {

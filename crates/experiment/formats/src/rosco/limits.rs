@@ -3,8 +3,8 @@
 use crate::openfast::deck::Deck;
 use crate::turbine_file::{Controller, TurbineFileError, check_controller};
 
-/// Keys of a turbine file's group `controller`, each with the key of ROSCO that it comes from; of several the first that
-/// the file has.
+/// Keys of a turbine file's group `controller`, each with the key of ROSCO that it comes from; of several the
+/// first that the file has.
 const KEYS: [(&str, &str); 33] = [
     ("rated_power_kw", "VS_RtPwr"),
     ("rated_rotor_speed_rpm", "PC_RefSpd"),
@@ -41,7 +41,8 @@ const KEYS: [(&str, &str); 33] = [
     ("individual_pitch.ramp", "IPC_Vramp"),
 ];
 
-/// Nothing when `controller`, read from `deck`, holds what a turbine file may hold; errors call the deck `file`.
+/// Nothing when `controller`, read from `deck`, holds what a turbine file may hold; errors call the deck
+/// `file`.
 ///
 /// # Errors
 /// [`TurbineFileError::Value`] naming file, line, key of ROSCO and what was expected.

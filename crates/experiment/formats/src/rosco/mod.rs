@@ -1,4 +1,5 @@
-//! Input of the ROSCO controller: the file that its decks call DISCON.IN, and its table of rotor coefficients.
+//! Input of the ROSCO controller: the file that its decks call DISCON.IN, and its table of rotor
+//! coefficients.
 
 mod coefficients;
 mod limits;
@@ -16,7 +17,8 @@ use std::path::{Path, PathBuf};
 /// What an input file of the controller says, with the texts that say it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Discon {
-    /// Constants of the controller; with the estimator of the wind speed where the table of coefficients is there.
+    /// Constants of the controller; with the estimator of the wind speed where the table of coefficients is
+    /// there.
     pub constants: Constants,
     /// Text of the file.
     pub text: String,
@@ -28,15 +30,16 @@ pub struct Discon {
 
 /// The controller whose input file stands at `path` (versions 2.6 to 2.10).
 ///
-/// Keys are read by name, so that their order and further ones do not matter. Rotor radius, efficiency, inertia and air
-/// density are those that the file itself names; the table of coefficients is the one that it points to. Wind speeds
-/// of the controller are then those of ROSCO, errors of the table included. Without a table the constants
-/// come without an estimator.
+/// Keys are read by name, so that their order and further ones do not matter. Rotor radius, efficiency,
+/// inertia and air density are those that the file itself names; the table of coefficients is the one that it
+/// points to. Wind speeds of the controller are then those of ROSCO, errors of the table included. Without a
+/// table the constants come without an estimator.
 /// Source: <https://rosco.readthedocs.io>, description of the input file; `ReadSetParameters.f90` of ROSCO.
 ///
 /// # Errors
-/// [`TurbineFileError`] naming file, line, key and what was expected: for a key that is missing or no number, for a kind of
-/// control that is not known here, for a figure that no controller can have, for a table that is there but cannot be read.
+/// [`TurbineFileError`] naming file, line, key and what was expected: for a key that is missing or no number,
+/// for a kind of control that is not known here, for a figure that no controller can have, for a table that
+/// is there but cannot be read.
 pub fn read(path: &Path) -> Result<Discon, TurbineFileError> {
     // Decks carry degree signs in whatever encoding their author's editor had.
     let bytes = fs::read(path).map_err(|source| TurbineFileError::unreadable(path, source))?;

@@ -6,8 +6,9 @@ use super::{Column, Head, Rows, WHAT};
 use crate::FileError;
 use std::path::Path;
 
-/// Opens the CSV at `path`: values between commas, semicolons, tabs or blanks, whichever the first line has; units in the
-/// names (`RootMyc1 [kN-m]`, `RootMyc1_(kN-m)`) or in a line of their own below; lines that begin with `#` are passed over.
+/// Opens the CSV at `path`: values between commas, semicolons, tabs or blanks, whichever the first line has;
+/// units in the names (`RootMyc1 [kN-m]`, `RootMyc1_(kN-m)`) or in a line of their own below; lines that
+/// begin with `#` are passed over.
 ///
 /// # Errors
 /// [`FileError`].

@@ -1,8 +1,8 @@
-//! Tables of channels over time, read row by row whatever their format: OpenFAST's `.outb` and `.out`, CSV, the project's
-//! own series.
+//! Tables of channels over time, read row by row whatever their format: OpenFAST's `.outb` and `.out`, CSV,
+//! the project's own series.
 //!
-//! A table of any length takes the memory of one row. The caller selects channels by name and reads rows of time and those
-//! channels; what was not selected is neither parsed nor checked.
+//! A table of any length takes the memory of one row. The caller selects channels by name and reads rows of
+//! time and those channels; what was not selected is neither parsed nor checked.
 
 mod csv;
 pub(crate) mod names;
@@ -53,11 +53,12 @@ pub(crate) enum Rows {
 }
 
 impl TableReader {
-    /// Opens the table at `path`: `.outb` and `.out` of OpenFAST, anything else as CSV with names in its first line. A
-    /// folder stands for the `series.csv` in it.
+    /// Opens the table at `path`: `.outb` and `.out` of OpenFAST, anything else as CSV with names in its
+    /// first line. A folder stands for the `series.csv` in it.
     ///
     /// # Errors
-    /// [`FileError`] names file, place and fix: another format, a file cut short, the wrong byte order, no column of time.
+    /// [`FileError`] names file, place and fix: another format, a file cut short, the wrong byte order, no
+    /// column of time.
     pub fn open(path: &Path) -> Result<Self, FileError> {
         let path = if path.is_dir() { path.join("series.csv") } else { path.to_owned() };
         let extension = path.extension().and_then(OsStr::to_str).map(str::to_lowercase);
@@ -89,9 +90,10 @@ impl TableReader {
 
     /// Chooses what [`read`](Self::read) gives beside time, in this order; replaces an earlier choice.
     ///
-    /// A name is looked for as it is, then ignoring case, then as the beginning of one name up to `_` or a space, so that
-    /// `RootMyc1` finds `RootMyc1_kN-m`; at last under the name that [`turbine::structure::canonical`] gives, so that
-    /// `RootMFlp1` finds `RootMyb1`. [`selected`](Self::selected) tells what was found.
+    /// A name is looked for as it is, then ignoring case, then as the beginning of one name up to `_` or a
+    /// space, so that `RootMyc1` finds `RootMyc1_kN-m`; at last under the name that
+    /// [`turbine::structure::canonical`] gives, so that `RootMFlp1` finds `RootMyb1`.
+    /// [`selected`](Self::selected) tells what was found.
     ///
     /// # Errors
     /// [`FileError::Content`] for a name that the table has not, with those that may have been meant.
@@ -114,7 +116,8 @@ impl TableReader {
     /// Reads the next row into `row`: time (s), then the selected channels. False at the end of the table.
     ///
     /// # Errors
-    /// [`FileError`] with the place: a row cut short, what is no number or not finite, time that runs backwards.
+    /// [`FileError`] with the place: a row cut short, what is no number or not finite, time that runs
+    /// backwards.
     ///
     /// # Panics
     /// When `row` has not one value more than channels were selected.

@@ -7,8 +7,8 @@ use turbine::structure::canonical;
 /// Names that a refusal lists at most.
 const LISTED: usize = 8;
 
-/// Index of the column that `name` means: as it is, ignoring case, as the beginning of one name up to `_` or a space, or
-/// all that again with OpenFAST's other name of the same channel.
+/// Index of the column that `name` means: as it is, ignoring case, as the beginning of one name up to `_` or
+/// a space, or all that again with OpenFAST's other name of the same channel.
 ///
 /// # Errors
 /// The problem and its fix, in words.
@@ -23,7 +23,8 @@ pub(crate) fn find(name: &str, columns: &[Column]) -> Result<usize, (String, Str
     Err((format!("it has no channel \"{name}\""), suggestion))
 }
 
-/// Name under which turbines write the channel that OpenFAST also calls `name`; what stands before a dot is the turbine's.
+/// Name under which turbines write the channel that OpenFAST also calls `name`; what stands before a dot is
+/// the turbine's.
 fn other_name(name: &str) -> Option<String> {
     match name.rsplit_once('.') {
         Some((turbine, channel)) => Some(format!("{turbine}.{}", canonical(channel)?)),

@@ -84,7 +84,8 @@ impl TextRows {
         self.kept = true;
     }
 
-    /// Reads the `wanted` ones of `columns` from the next row into `row`, one after the other. False at the end.
+    /// Reads the `wanted` ones of `columns` from the next row into `row`, one after the other. False at the
+    /// end.
     pub(crate) fn read(
         &mut self,
         path: &Path,

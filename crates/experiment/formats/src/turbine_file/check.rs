@@ -273,7 +273,8 @@ fn tower_of(tower: &file::Tower, rotor: &file::Rotor, place: &Place) -> Checked<
         let fix = "both count from ground or mean sea level";
         return Err(place.error(&at("top_height"), expected, tower.top_height.to_string(), fix));
     }
-    // The hub height follows from tower, shaft and overhang; the file says it twice so that a wrong figure shows.
+    // The hub height follows from tower, shaft and overhang; the file says it twice so that a wrong figure
+    // shows.
     let tilt = rotor.shaft_tilt_deg.to_radians();
     let hub_height = tower.top_height + tower.top_to_shaft + rotor.overhang * tilt.sin();
     if (hub_height - rotor.hub_height).abs() > 0.5 {

@@ -117,8 +117,8 @@ fn optional(controller: &Controller, place: &Place) -> Result<(), TurbineFileErr
     Ok(())
 }
 
-/// The controller's constants in SI, without what estimates the wind; `rotor_radius` (m) and `generator_efficiency` (–)
-/// stand elsewhere in the file.
+/// The controller's constants in SI, without what estimates the wind; `rotor_radius` (m) and
+/// `generator_efficiency` (–) stand elsewhere in the file.
 pub fn controller_of(
     controller: &Controller,
     rotor_radius: f64,

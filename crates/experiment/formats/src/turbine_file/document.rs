@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A turbine file. Groups may be missing while a turbine is being put together; [`super::parse`] asks for all.
+/// A turbine file. Groups may be missing while a turbine is being put together; [`super::parse`] asks for
+/// all.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Document {

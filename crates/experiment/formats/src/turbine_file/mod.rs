@@ -1,4 +1,5 @@
-//! Turbines in the project's own format: TOML, degrees and rpm where the key says so, a source for every group of figures.
+//! Turbines in the project's own format: TOML, degrees and rpm where the key says so, a source for every
+//! group of figures.
 
 mod check;
 mod controller;
@@ -53,7 +54,8 @@ pub fn check(document: &Document, file: &str) -> Result<TurbineFile, TurbineFile
     check::check(document, &error::Place { file, text: "" })
 }
 
-/// Nothing when `controller`, which does not come from a turbine file, holds what one may hold; errors call it `file`.
+/// Nothing when `controller`, which does not come from a turbine file, holds what one may hold; errors call
+/// it `file`.
 ///
 /// # Errors
 /// [`TurbineFileError::Value`] naming the key of a turbine file, without a line.

@@ -16,8 +16,8 @@ pub struct Written {
     pub missing: Vec<String>,
 }
 
-/// The text of `document`, figures to seven digits. Groups that are absent, figures that are not a number and tables
-/// without rows (but for `controller.minimum_pitch`, which may be empty) are missing.
+/// The text of `document`, figures to seven digits. Groups that are absent, figures that are not a number and
+/// tables without rows (but for `controller.minimum_pitch`, which may be empty) are missing.
 pub fn write(document: &Document) -> Written {
     let mut out = Text::default();
     out.line(&format!("# {}", document.title));

@@ -1,11 +1,12 @@
 //! Bladed's binary full field (`.wnd`).
 //!
-//! Time steps in order of arrival; in each, rows of z upwards; in each, columns of y; in each, u, v, w as 16-bit integers:
-//! thousandths of a standard deviation, u around the mean speed. Little-endian. Two headers are in use: the old one of 16-bit integers, and the one
-//! that starts with −99 and a type of turbulence. Only type 4 carries intensities; for others, and for the hub height, the
-//! repetition and the way in which columns count, programs look into a summary beside the file (`NAME.sum`), as we do.
-//! Without one, columns run from the right to the left looking downwind, v blows to the left, the record repeats and
-//! the hub is in the middle of the grid; a file that carries no intensities is refused.
+//! Time steps in order of arrival; in each, rows of z upwards; in each, columns of y; in each, u, v, w as
+//! 16-bit integers: thousandths of a standard deviation, u around the mean speed. Little-endian. Two headers
+//! are in use: the old one of 16-bit integers, and the one that starts with −99 and a type of turbulence.
+//! Only type 4 carries intensities; for others, and for the hub height, the repetition and the way in which
+//! columns count, programs look into a summary beside the file (`NAME.sum`), as we do. Without one, columns
+//! run from the right to the left looking downwind, v blows to the left, the record repeats and the hub is in
+//! the middle of the grid; a file that carries no intensities is refused.
 //!
 //! Source: TurbSim user's guide 2.00, appendix E; headers as OpenFAST's InflowWind reads them (FlowField_IO).
 
@@ -32,7 +33,8 @@ const IMPROVED_VON_KARMAN: i16 = 4;
 
 /// Reads the full field at `path`.
 ///
-/// The mean of u over time and width at each height goes to [`StoredBox::mean_speeds`], so that the fluctuations have none.
+/// The mean of u over time and width at each height goes to [`StoredBox::mean_speeds`], so that the
+/// fluctuations have none.
 ///
 /// # Errors
 /// [`FileError`] names file, place and fix.
@@ -115,10 +117,12 @@ fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
     Ok((PackedPlanes::new(file, path, WHAT, packing), hub_height))
 }
 
-/// Writes the box of `source` to `path` with the header of type 4, and `NAME.sum` beside it, which other programs want.
+/// Writes the box of `source` to `path` with the header of type 4, and `NAME.sum` beside it, which other
+/// programs want.
 ///
-/// Values are rounded to a thousandth of the deviation that scales them: that of the component, or a thirtieth of its
-/// greatest distance from the mean speed where that is more. For these all planes are read three times.
+/// Values are rounded to a thousandth of the deviation that scales them: that of the component, or a
+/// thirtieth of its greatest distance from the mean speed where that is more. For these all planes are read
+/// three times.
 ///
 /// # Errors
 /// [`FileError`]; each file appears whole or not at all, the summary last.
@@ -155,7 +159,8 @@ pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
     atomic::write(&path.with_extension("sum"), SUMMARY, summary.as_bytes())
 }
 
-/// How far component 0 to 2 of the wind is above what the integer zero stands for (m/s): the hub speed for u, none for v, w.
+/// How far component 0 to 2 of the wind is above what the integer zero stands for (m/s): the hub speed for u,
+/// none for v, w.
 fn above(outline: &Outline, component: usize, point: usize, fluctuation: f32) -> f64 {
     let wind = outline.wind(component, point, fluctuation);
     if component == 0 { wind - outline.hub_speed } else { wind }

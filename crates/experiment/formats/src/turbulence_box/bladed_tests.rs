@@ -30,7 +30,8 @@ fn counts_time_z_y_component_in_thousandths_of_a_deviation() {
         f64::from(integer) * 1e-5 * f64::from(real(20 + 4 * component)) * 10.0
     };
     let turbulence = &stored.turbulence;
-    // The first column is the right-most one; u is counted from the hub speed and holds the mean of its height.
+    // The first column is the right-most one; u is counted from the hub speed and holds the mean of its
+    // height.
     let above = f64::from(turbulence.at(0, [0, 0, 1])) + 8.1 - 10.0;
     assert!((value(0, 1, 0, 0) - above).abs() < 1e-3);
     assert!((value(0, 1, 2, 1) - f64::from(turbulence.at(1, [0, 2, 1]))).abs() < 1e-3);
@@ -45,7 +46,8 @@ fn deviations_are_those_of_the_box() {
     let outline = source.outline();
     let found = spreads(&outline, &mut source).unwrap();
     assert_eq!(found.map(|spread| spread.deviation), stored.turbulence.standard_deviations());
-    // v is counted from zero, u from the hub speed of 10 m/s: the lowest row has a mean of 8 m/s, and falls to 7.
+    // v is counted from zero, u from the hub speed of 10 m/s: the lowest row has a mean of 8 m/s, and falls
+    // to 7.
     let v = stored.turbulence.component(1).iter().map(|v| f64::from(v.abs()));
     assert_eq!(found[1].greatest, v.fold(0.0, f64::max));
     assert!((found[0].greatest - 3.0).abs() < 0.01);

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 /// Bytes of a block, where a plane is not longer.
 const BLOCK: usize = 1 << 18;
 
-/// Planes of equal length in a file. One block of neighbours is in memory, so that planes may be asked for in either
-/// direction without asking the system for each.
+/// Planes of equal length in a file. One block of neighbours is in memory, so that planes may be asked for in
+/// either direction without asking the system for each.
 #[derive(Debug)]
 pub(super) struct Blocks {
     file: File,
@@ -26,7 +26,8 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// The `n_planes` planes, at least one, that follow byte `start` of `file`, which stands at `path` and holds `what`.
+    /// The `n_planes` planes, at least one, that follow byte `start` of `file`, which stands at `path` and
+    /// holds `what`.
     pub(super) fn new(
         file: File,
         path: &Path,

@@ -45,7 +45,8 @@ fn a_box_converted_to_itself_stays() {
     assert!(files(folder.path()) == before);
 }
 
-/// The means that are taken off a full field are sums of rows, downwind, to the last bit; the rest is the wind as it is.
+/// The means that are taken off a full field are sums of rows, downwind, to the last bit; the rest is the
+/// wind as it is.
 #[test]
 fn full_fields_are_taken_apart_row_by_row() {
     let folder = folder();

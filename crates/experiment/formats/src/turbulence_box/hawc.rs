@@ -1,9 +1,9 @@
 //! HAWC2-style binaries: one little-endian f32 file per component and a readable header.
 //!
-//! HAWC2's binaries carry no header; programs differ in which way they count. Ours is a TOML file beside them that
-//! says so, and any other program's binaries can be read after writing one by hand. What we write is in the order
-//! in which OpenFAST's InflowWind reads HAWC files: x slowest and in order of arrival, then y from left to right
-//! looking downwind, then z upwards, fastest.
+//! HAWC2's binaries carry no header; programs differ in which way they count. Ours is a TOML file beside them
+//! that says so, and any other program's binaries can be read after writing one by hand. What we write is in
+//! the order in which OpenFAST's InflowWind reads HAWC files: x slowest and in order of arrival, then y from
+//! left to right looking downwind, then z upwards, fastest.
 
 use super::blocks::Blocks;
 use super::source::{Outline, Source, whole};
@@ -73,7 +73,8 @@ const PREFACE: &str = "\
 /// Writes the box of `source` as NAME.toml at `path` with NAME_u.bin, NAME_v.bin, NAME_w.bin beside it.
 ///
 /// # Errors
-/// [`FileError`]; each file appears whole or not at all and none before the last plane is read, the header last.
+/// [`FileError`]; each file appears whole or not at all and none before the last plane is read, the header
+/// last.
 pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
     let Outline {
         n_points,

@@ -1,10 +1,11 @@
 //! Turbulence boxes in files: HAWC2's three binaries with a header, TurbSim's full field, Bladed's.
 //!
-//! In memory a box lies in the farm frame (x downwind, y left looking downwind, z up); each format converts on its way in
-//! and out. Time runs against x: of a box that stands with x index 0 at the inlet at time zero, the planes
-//! n_x − 1, n_x − 2, … arrive next. Formats that count in order of arrival therefore hold plane (n_x − i) mod n_x
-//! at place i. [`read`] takes a whole box into memory, [`open`] gives its planes one at a time, however long it is, and
-//! [`convert`] writes them as they come: no writer holds more than a [`Source`] gives it.
+//! In memory a box lies in the farm frame (x downwind, y left looking downwind, z up); each format converts
+//! on its way in and out. Time runs against x: of a box that stands with x index 0 at the inlet at time zero,
+//! the planes n_x − 1, n_x − 2, … arrive next. Formats that count in order of arrival therefore hold plane
+//! (n_x − i) mod n_x at place i. [`read`] takes a whole box into memory, [`open`] gives its planes one at a
+//! time, however long it is, and [`convert`] writes them as they come: no writer holds more than a [`Source`]
+//! gives it.
 
 mod bladed;
 mod blocks;
@@ -44,12 +45,12 @@ pub struct StoredBox {
     pub description: String,
 }
 
-/// Reads the box at `path`: a HAWC2-style header (`.toml`) or one of its binaries (`.bin`), a full field of TurbSim
-/// (`.bts`) or of Bladed (`.wnd`).
+/// Reads the box at `path`: a HAWC2-style header (`.toml`) or one of its binaries (`.bin`), a full field of
+/// TurbSim (`.bts`) or of Bladed (`.wnd`).
 ///
 /// # Errors
-/// [`FileError`] names file, place and fix: a cut or overlong file, the wrong byte order, values that are not numbers
-/// or no wind, a header that does not fit.
+/// [`FileError`] names file, place and fix: a cut or overlong file, the wrong byte order, values that are not
+/// numbers or no wind, a header that does not fit.
 pub fn read(path: &Path) -> Result<StoredBox, FileError> {
     match kind(path)? {
         Kind::Hawc(header) => hawc::read(&header),
@@ -78,9 +79,10 @@ pub fn write(path: &Path, mut stored: &StoredBox) -> Result<(), FileError> {
     write_from(path, &mut stored)
 }
 
-/// Writes the box at `from` to `to`, whose extensions choose the formats as in [`read`]: the same files as [`write()`] makes of
-/// what [`read`] gives. However long it is, a few planes at a time are in memory; they come once more for mean speeds that
-/// `from` does not tell, and for what the header of `to` tells of all of them.
+/// Writes the box at `from` to `to`, whose extensions choose the formats as in [`read`]: the same files as
+/// [`write()`] makes of what [`read`] gives. However long it is, a few planes at a time are in memory; they
+/// come once more for mean speeds that `from` does not tell, and for what the header of `to` tells of all of
+/// them.
 ///
 /// # Errors
 /// As [`read`] and [`write()`]; where `from` cannot be read to its end, what was at `to` before still stands.
@@ -136,8 +138,8 @@ fn kind(path: &Path) -> Result<Kind, FileError> {
     }
 }
 
-/// Distances of points that a file may hold (m); beyond them the bytes mean something else, and planes of wind would crowd
-/// the memory.
+/// Distances of points that a file may hold (m); beyond them the bytes mean something else, and planes of
+/// wind would crowd the memory.
 const SPACINGS: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
 
 /// Makes sure that wind can come in over `grid`, which stands in the file of `what` at `path`.

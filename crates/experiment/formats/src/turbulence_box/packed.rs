@@ -58,8 +58,8 @@ impl PackedPlanes {
         Ok(())
     }
 
-    /// The planes as those of a box; the mean of u over time and width at each height, for which all of them are read once,
-    /// goes to the mean speeds, so that the fluctuations have none; v and w keep theirs.
+    /// The planes as those of a box; the mean of u over time and width at each height, for which all of them
+    /// are read once, goes to the mean speeds, so that the fluctuations have none; v and w keep theirs.
     ///
     /// # Errors
     /// [`FileError`] when the file cannot be read any more.

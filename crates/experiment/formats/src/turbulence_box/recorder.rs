@@ -1,7 +1,9 @@
-//! A full field of wind that is written while it blows: planes as they come, in the end a `.bts` that does not repeat.
+//! A full field of wind that is written while it blows: planes as they come, in the end a `.bts` that does
+//! not repeat.
 //!
-//! The format's 16-bit integers need the range of the whole record, so planes are kept as they are beside the file to be,
-//! `.part` after its name, until the last one has come. That also lets a record go on after a break.
+//! The format's 16-bit integers need the range of the whole record, so planes are kept as they are beside the
+//! file to be, `.part` after its name, until the last one has come. That also lets a record go on after a
+//! break.
 
 use super::turbsim;
 use crate::{FileError, atomic};
@@ -36,11 +38,12 @@ impl WindRecorder {
         Ok(Self::new(file, part, path, n_points, 0))
     }
 
-    /// Goes on with the record of planes of `n_points` that will stand at `path` after its first `n_bytes`; what came after
-    /// them goes.
+    /// Goes on with the record of planes of `n_points` that will stand at `path` after its first `n_bytes`;
+    /// what came after them goes.
     ///
     /// # Errors
-    /// [`FileError::System`], and [`FileError::Content`] when it is shorter than that or does not end a plane there.
+    /// [`FileError::System`], and [`FileError::Content`] when it is shorter than that or does not end a plane
+    /// there.
     pub fn resume(path: &Path, n_points: usize, n_bytes: u64) -> Result<Self, FileError> {
         let part = atomic::part_of(path);
         let failed = |source| FileError::system("read", WHAT, &part, source);
@@ -61,7 +64,8 @@ impl WindRecorder {
         Self { file, part, path: path.to_owned(), bytes, n_points, n_bytes }
     }
 
-    /// Adds a plane of wind u, v, w (m/s): rows of z upwards, in each, y from the right to the left looking downwind.
+    /// Adds a plane of wind u, v, w (m/s): rows of z upwards, in each, y from the right to the left looking
+    /// downwind.
     ///
     /// # Errors
     /// [`FileError::System`].
@@ -87,14 +91,17 @@ impl WindRecorder {
         Ok(self.n_bytes)
     }
 
-    /// Completes the record: a full field in the format of TurbSim, whose planes lie as `grid` says, the number of steps,
-    /// repetition and speed aside; `hub_height` (m) is a row of it, `description` goes into the file.
+    /// Completes the record: a full field in the format of TurbSim, whose planes lie as `grid` says, the
+    /// number of steps, repetition and speed aside; `hub_height` (m) is a row of it, `description` goes into
+    /// the file.
     ///
-    /// The file's hub speed, with which its planes are carried along, is the mean at hub height in the middle of the width.
-    /// The planes stay beside it for a run that is killed before it can say that it is complete; nothing may be written after.
+    /// The file's hub speed, with which its planes are carried along, is the mean at hub height in the middle
+    /// of the width. The planes stay beside it for a run that is killed before it can say that it is
+    /// complete; nothing may be written after.
     ///
     /// # Errors
-    /// [`FileError::System`], and [`FileError::Content`] when fewer than two planes came, or wind that is no number.
+    /// [`FileError::System`], and [`FileError::Content`] when fewer than two planes came, or wind that is no
+    /// number.
     pub fn finish(
         &mut self,
         grid: &PlaneGrid,

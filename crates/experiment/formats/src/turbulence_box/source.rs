@@ -25,8 +25,8 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Component 0 to 2 of the wind (m/s, the mean included) at point number `point` of a plane, whose fluctuation is
-    /// `fluctuation` (m/s).
+    /// Component 0 to 2 of the wind (m/s, the mean included) at point number `point` of a plane, whose
+    /// fluctuation is `fluctuation` (m/s).
     pub(super) fn wind(&self, component: usize, point: usize, fluctuation: f32) -> f64 {
         let fluctuation = f64::from(fluctuation);
         if component > 0 {
@@ -42,8 +42,8 @@ pub trait Source {
     /// What the box is, its planes aside.
     fn outline(&self) -> Outline;
 
-    /// Fluctuations u, v, w (m/s) on the plane with index `x`, which counts downwind; each n_z × n_y, y fastest and from
-    /// the right to the left looking downwind.
+    /// Fluctuations u, v, w (m/s) on the plane with index `x`, which counts downwind; each n_z × n_y, y
+    /// fastest and from the right to the left looking downwind.
     ///
     /// # Errors
     /// [`FileError`] when it cannot be had.
@@ -69,8 +69,8 @@ impl Source for &StoredBox {
     }
 }
 
-/// Hands the planes of `source` to `take` one after the other, downwind: the order in which a box in memory is summed up,
-/// so that sums are the same to the last bit.
+/// Hands the planes of `source` to `take` one after the other, downwind: the order in which a box in memory
+/// is summed up, so that sums are the same to the last bit.
 pub(super) fn each_plane(
     source: &mut dyn Source,
     mut take: impl FnMut([&[f32]; 3]),

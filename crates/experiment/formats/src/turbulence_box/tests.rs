@@ -219,7 +219,9 @@ proptest! {
             for y in 0..n_y {
                 for z in 0..n_z {
                     for component in 0..3 {
-                        let mean = |stored: &StoredBox| if component == 0 { stored.mean_speeds[z] } else { 0.0 };
+                        let mean = |stored: &StoredBox| {
+                            if component == 0 { stored.mean_speeds[z] } else { 0.0 }
+                        };
                         let there = f64::from(back.turbulence.at(component, [x, y, z])) + mean(&back);
                         let here = f64::from(stored.turbulence.at(component, [x, y, z])) + mean(&stored);
                         prop_assert!((there - here).abs() < 5e-5);

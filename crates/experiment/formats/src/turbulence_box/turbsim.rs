@@ -2,8 +2,8 @@
 //!
 //! Time steps in order of arrival; in each, rows of z upwards, in each, y from the right to the left looking
 //! downwind (TurbSim's own y, which like ours points left), in each, u, v, w as 16-bit integers: (integer −
-//! intercept) / slope in m/s, the mean wind included. Source: TurbSim user's guide 2.00, appendix D; the order of y
-//! was checked against the standard deviations by point in a summary file of TurbSim 2.
+//! intercept) / slope in m/s, the mean wind included. Source: TurbSim user's guide 2.00, appendix D; the
+//! order of y was checked against the standard deviations by point in a summary file of TurbSim 2.
 
 use super::packed::{PackedPlanes, Packing};
 use super::source::{Outline, Source, each_plane, whole};
@@ -44,8 +44,9 @@ struct Header {
 
 /// Reads the full field at `path`.
 ///
-/// Planes stand U Δt apart, with U the hub speed of the file. The mean of u over time and width at each height goes
-/// to [`StoredBox::mean_speeds`], so that the fluctuations have none; v and w keep theirs. Tower points below the grid are passed over.
+/// Planes stand U Δt apart, with U the hub speed of the file. The mean of u over time and width at each
+/// height goes to [`StoredBox::mean_speeds`], so that the fluctuations have none; v and w keep theirs. Tower
+/// points below the grid are passed over.
 ///
 /// # Errors
 /// [`FileError`] names file, place and fix.
@@ -107,8 +108,8 @@ fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
 
 /// Writes the box of `source` to `path`: a record that repeats, interval = spacing along x over hub speed.
 ///
-/// Values are rounded to 1/65535 of their range, a few 1e-5 of it, for which all planes are read twice; the description to
-/// 200 characters of ASCII.
+/// Values are rounded to 1/65535 of their range, a few 1e-5 of it, for which all planes are read twice; the
+/// description to 200 characters of ASCII.
 ///
 /// # Errors
 /// [`FileError`]; the file appears whole or not at all.
@@ -147,7 +148,8 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// Begins the field that will stand at `path`, of planes as `grid` has them whose components lie within `ranges` (m/s).
+    /// Begins the field that will stand at `path`, of planes as `grid` has them whose components lie within
+    /// `ranges` (m/s).
     ///
     /// # Errors
     /// [`FileError`].

@@ -1,4 +1,5 @@
-//! Outer shape and polars of a windIO file: airfoils at a few places, blended by relative thickness between them.
+//! Outer shape and polars of a windIO file: airfoils at a few places, blended by relative thickness between
+//! them.
 
 use super::node::{Curve, Node};
 use crate::turbine_file::{Airfoils, Blade, PolarTable, TurbineFileError};
@@ -7,8 +8,8 @@ use std::f64::consts::PI;
 /// How far a polar of the file may end from ±180° (rad); it is extended to there.
 const END_GAP: f64 = 0.02;
 
-/// Stations of a blade and points of a polar at most (–): each station gets a polar with the points of two airfoils, and
-/// more of both would fill the memory.
+/// Stations of a blade and points of a polar at most (–): each station gets a polar with the points of two
+/// airfoils, and more of both would fill the memory.
 const MOST_STATIONS: usize = 500;
 const MOST_ANGLES: usize = 2000;
 

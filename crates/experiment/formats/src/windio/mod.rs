@@ -1,7 +1,8 @@
 //! windIO turbine files (YAML, the ontology of WISDEM 2 and 3): what they hold of a turbine file.
 //!
-//! They hold outer shape, polars, hub, nacelle, tower and some of the controller, but no mode shapes, damping,
-//! generator inertia or controller gains; those figures are left out and named by the reader of the result.
+//! They hold outer shape, polars, hub, nacelle, tower and some of the controller, but no mode shapes,
+//! damping, generator inertia or controller gains; those figures are left out and named by the reader of the
+//! result.
 
 mod blade;
 mod node;
@@ -19,7 +20,8 @@ use std::path::Path;
 /// Pitch (rad) that ROSCO's smoother, for which the file's gains are meant, divides by.
 const SMOOTHER_PITCH: f64 = 0.524;
 
-/// The turbine of the windIO file at `path`; figures that it does not hold are not a number, groups without any are absent.
+/// The turbine of the windIO file at `path`; figures that it does not hold are not a number, groups without
+/// any are absent.
 ///
 /// # Errors
 /// [`TurbineFileError`] naming file, line, key and what was expected.

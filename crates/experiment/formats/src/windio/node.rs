@@ -49,7 +49,8 @@ impl File {
     }
 }
 
-/// Makes sure that the lists and groups of `text` do not lie deeper within each other than what reads them can go down.
+/// Makes sure that the lists and groups of `text` do not lie deeper within each other than what reads them
+/// can go down.
 ///
 /// # Errors
 /// Line and problem; what is no YAML is not reported here.

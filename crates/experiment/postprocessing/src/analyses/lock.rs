@@ -63,7 +63,8 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     })
 }
 
-/// Turbine by turbine: what was followed, the median phase error, how often it was locked; the convention below.
+/// Turbine by turbine: what was followed, the median phase error, how often it was locked; the convention
+/// below.
 fn text(answers: &[LockAnswer]) -> String {
     let mut text = format!(
         "{:<8} {:<5} {:<14} {:<16} {:>15} {:>9} {:>9}\n",

@@ -1,7 +1,7 @@
 //! What `wakemix analyse` offers: a file here and a line in [`ANALYSES`] each.
 //!
-//! An analysis reads the records of runs and answers in text and in JSON. The command line makes its arguments and its help from
-//! the descriptor; a program calls [`Analysis::run`] with a [`Request`].
+//! An analysis reads the records of runs and answers in text and in JSON. The command line makes its
+//! arguments and its help from the descriptor; a program calls [`Analysis::run`] with a [`Request`].
 
 mod gains;
 mod lock;

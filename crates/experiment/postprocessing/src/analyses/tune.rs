@@ -85,7 +85,8 @@ mod tests {
     use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
     use estimation::helix::Options;
 
-    /// The noise of T2 in a case whose control holds `estimator` and the last line of what is printed for `options`.
+    /// The noise of T2 in a case whose control holds `estimator` and the last line of what is printed for
+    /// `options`.
     fn pasted(options: Options, estimator: &str) -> PhaseNoise {
         let text = super::text(&Tuned { options, scale: 1.0, error: 0.2 });
         let (head, keys) = text.trim_end().rsplit_once('\n').expect("lines");

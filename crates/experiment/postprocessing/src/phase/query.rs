@@ -67,7 +67,8 @@ impl<'q> Records<'q> {
     /// The query about turbine number `index` of the case.
     ///
     /// # Errors
-    /// [`PostprocessingError::NoHelix`], [`PostprocessingError::NoTruth`], and [`PostprocessingError`] for records that cannot be read.
+    /// [`PostprocessingError::NoHelix`], [`PostprocessingError::NoTruth`], and [`PostprocessingError`] for
+    /// records that cannot be read.
     pub(super) fn query(&mut self, index: usize) -> Result<Query<'_>, PostprocessingError> {
         let (manifest, case, without) = (&self.manifest, &self.case, &mut self.without);
         let turbines = &self.turbines;
@@ -148,8 +149,8 @@ fn read_once(
     })
 }
 
-/// Places in `case` of the turbine that `question` names, or of those that look for a helix in the run of `manifest` where it
-/// names none; one or more.
+/// Places in `case` of the turbine that `question` names, or of those that look for a helix in the run of
+/// `manifest` where it names none; one or more.
 fn turbines_of(
     question: &PhaseQuestion,
     case: &Case,
@@ -171,8 +172,8 @@ fn turbines_of(
     Ok(turbines)
 }
 
-/// Whether a run under `without` holds the true wind of turbine `index` in one under `with`: it is away there, and the
-/// turbines upstream of it do the same.
+/// Whether a run under `without` holds the true wind of turbine `index` in one under `with`: it is away
+/// there, and the turbines upstream of it do the same.
 pub(crate) fn tells_truth(
     case: &Case,
     without: &[Control],

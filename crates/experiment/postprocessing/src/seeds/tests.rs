@@ -61,8 +61,8 @@ fn seeded(seed: u64) -> String {
     CASE.replace("speed = 9.0", &format!("speed = 9.0\nseed = {seed}"))
 }
 
-/// A study in which the helix gives T3, T1 and T2 the `gains` (–), and T3 is away in the run "two", in which T2 makes a
-/// quarter more.
+/// A study in which the helix gives T3, T1 and T2 the `gains` (–), and T3 is away in the run "two", in which
+/// T2 makes a quarter more.
 fn study(seed: u64, gains: [f64; 3]) -> TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let text = seeded(seed);

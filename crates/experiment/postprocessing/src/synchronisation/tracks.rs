@@ -78,7 +78,8 @@ fn estimate(study: &Synchronised, run: &Joined, name: &str) -> Option<TrackFigur
     })
 }
 
-/// Runs that signals are shown of: the monitoring one first, then offsets a quarter turn apart where there are.
+/// Runs that signals are shown of: the monitoring one first, then offsets a quarter turn apart where there
+/// are.
 fn shown<'a>(study: &'a Synchronised) -> Vec<&'a Joined> {
     let watching = study.runs.iter().filter(|run| run.offset().is_none());
     let quarter = |run: &&Joined| {

@@ -1,4 +1,5 @@
-//! The wake by phase of the helix: seen from above with its centre line, and its deficit about its own centre.
+//! The wake by phase of the helix: seen from above with its centre line, and its deficit about its own
+//! centre.
 
 use super::{Joined, Synchronised};
 use crate::PostprocessingError;

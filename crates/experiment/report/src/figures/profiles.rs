@@ -43,7 +43,8 @@ fn distances(study: &Study, plane: &Plane) -> Vec<f64> {
 /// Lines of one panel, each with the colour of its run.
 type Lines = Vec<(usize, Vec<[f64; 2]>)>;
 
-/// Velocity over the free stream against the place across the wake (diameters), `distance` (diameters) along it.
+/// Velocity over the free stream against the place across the wake (diameters), `distance` (diameters) along
+/// it.
 fn across(study: &Study, planes: &[(usize, &Plane)], distance: f64) -> Lines {
     let (diameter, free_stream) = (study.diameter(), study.free_stream());
     let profile = |plane: &Plane| {
@@ -161,7 +162,8 @@ pub(crate) fn centre_line(study: &Study) -> Option<Figure> {
     })
 }
 
-/// Velocity over the free stream, mean of the places `sides` (diameters) beside the row, against the place along it.
+/// Velocity over the free stream, mean of the places `sides` (diameters) beside the row, against the place
+/// along it.
 fn along(study: &Study, plane: &Plane, sides: &[f64]) -> Vec<[f64; 2]> {
     let (diameter, free_stream) = (study.diameter(), study.free_stream());
     let center = study.side() * diameter;

@@ -141,7 +141,8 @@ impl Sheet<'_> {
     }
 }
 
-/// A bar of the colours of `map` over `range` in `area`, with about `n_ticks` ticks on its right and `title` above.
+/// A bar of the colours of `map` over `range` in `area`, with about `n_ticks` ticks on its right and `title`
+/// above.
 pub(super) fn colour_bar(
     area: [f64; 4],
     [low, high]: [f64; 2],

@@ -193,6 +193,7 @@ pub(crate) fn costs(study: &Study) -> Vec<Value> {
         .map(|(run, &colour)| {
             let cost = &run.summary.cost;
             let ratio = cost.wall_time / run.summary.conditions.duration;
+            let millions = cost.updates_per_second / 1e6;
             context! {
                 run => run.summary.run.clone(),
                 colour,
@@ -200,7 +201,7 @@ pub(crate) fn costs(study: &Study) -> Vec<Value> {
                 ratio => number(ratio, three_figures(ratio).min(2)),
                 cells => words::count(cost.n_cells),
                 steps => words::count(cost.n_steps),
-                updates => number(cost.updates_per_second / 1e6, three_figures(cost.updates_per_second / 1e6)),
+                updates => number(millions, three_figures(millions)),
                 threads => cost.n_threads,
                 memory => words::memory(cost.memory),
                 peak_memory => cost.peak_memory.map_or_else(|| "–".to_owned(), words::memory),

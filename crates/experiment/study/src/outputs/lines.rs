@@ -1,4 +1,5 @@
-//! The wind along radial lines at the place of a turbine that is not there: the ground truth of a helix's phase.
+//! The wind along radial lines at the place of a turbine that is not there: the ground truth of a helix's
+//! phase.
 
 use crate::prepared::Prepared;
 use analysis::phase::{Lines, lines_to_fixed_frame};

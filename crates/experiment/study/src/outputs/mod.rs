@@ -1,8 +1,9 @@
 //! Outputs: what a run leaves besides its summary, each written on a schedule of its own.
 //!
-//! An output is a file here and a line in [`STANDARD`]; somebody else's is handed to [`run_with`](crate::run_with) with
-//! [`Outputs::with`]. Reading order: `output` (what an output is), `schedule` (when it is due), `section` (its state in a
-//! checkpoint), `writers` (those of one run at work), then any output, `volumes` being the shortest.
+//! An output is a file here and a line in [`STANDARD`]; somebody else's is handed to
+//! [`run_with`](crate::run_with) with [`Outputs::with`]. Reading order: `output` (what an output is),
+//! `schedule` (when it is due), `section` (its state in a checkpoint), `writers` (those of one run at work),
+//! then any output, `volumes` being the shortest.
 
 mod instant_planes;
 mod last_planes;

@@ -49,7 +49,8 @@ impl Output for Outb {
     }
 }
 
-/// Writes `TURBINE.outb` into `folder`, from the run's complete series, for turbine number `index` of the case.
+/// Writes `TURBINE.outb` into `folder`, from the run's complete series, for turbine number `index` of the
+/// case.
 fn write(setup: &Prepared, run: &Run, folder: &RunFolder, index: usize) -> Result<(), StudyError> {
     let turbine = setup.case.turbines[index].name.as_str();
     let mut reader = TableReader::open(&folder.series_path())?;

@@ -66,9 +66,9 @@ pub struct Scene<'a> {
 
 /// One output of a run under way.
 ///
-/// In every step that its schedule names, [`before_step`](Self::before_step) comes first, then the farm moves on and
-/// [`record`](Self::record) is called for each turbine, then comes [`write`](Self::write). These three allocate nothing that
-/// they can hold ready. The last call is [`finish`](Self::finish).
+/// In every step that its schedule names, [`before_step`](Self::before_step) comes first, then the farm moves
+/// on and [`record`](Self::record) is called for each turbine, then comes [`write`](Self::write). These three
+/// allocate nothing that they can hold ready. The last call is [`finish`](Self::finish).
 pub trait Output {
     /// When it is due; the same throughout the run.
     fn schedule(&self) -> Schedule;
@@ -76,8 +76,8 @@ pub trait Output {
     /// Takes in what it needs of the farm before a step that is due.
     fn before_step(&mut self, _scene: &Scene) {}
 
-    /// Takes in the state of turbine number `turbine` when a step that is due began, the truth whatever its instruments showed,
-    /// and what its controller commanded.
+    /// Takes in the state of turbine number `turbine` when a step that is due began, the truth whatever its
+    /// instruments showed, and what its controller commanded.
     fn record(&mut self, _turbine: usize, _truth: &Truth, _commands: &Commands) {}
 
     /// Takes in or writes what the farm shows at the end of a step that is due.
@@ -88,7 +88,8 @@ pub trait Output {
         Ok(())
     }
 
-    /// Puts on the disk what was written so far, and leaves in `section` what [`OutputKind::begin`] needs to go on from here.
+    /// Puts on the disk what was written so far, and leaves in `section` what [`OutputKind::begin`] needs to
+    /// go on from here.
     ///
     /// # Errors
     /// [`StudyError`]; the run ends with it, the checkpoint before stands.
@@ -96,7 +97,8 @@ pub trait Output {
         Ok(())
     }
 
-    /// Puts on the disk what was written so far of a run whose flow has broken down; gives the file, where it is of use.
+    /// Puts on the disk what was written so far of a run whose flow has broken down; gives the file, where it
+    /// is of use.
     fn salvage(&mut self) -> Option<PathBuf> {
         None
     }

@@ -5,7 +5,8 @@ use farm::Plan;
 /// A step that no run makes.
 const NEVER: u64 = u64::MAX;
 
-/// The steps of a run at whose end an output is due; steps are counted from 1, so step n ends n intervals after the start.
+/// The steps of a run at whose end an output is due; steps are counted from 1, so step n ends n intervals
+/// after the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Schedule {
     first: u64,
@@ -26,8 +27,8 @@ impl Schedule {
         Self { first, stride }
     }
 
-    /// Every `interval` (s) of the analysed time of `plan`, rounded to whole steps, one at least; the first time an interval
-    /// after the spin-up.
+    /// Every `interval` (s) of the analysed time of `plan`, rounded to whole steps, one at least; the first
+    /// time an interval after the spin-up.
     pub fn analysed(plan: &Plan, interval: f64) -> Self {
         let stride = (interval / plan.interval).round().max(1.0) as u64;
         Self { first: plan.n_spin_up_steps + stride, stride }

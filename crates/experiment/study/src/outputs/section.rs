@@ -46,8 +46,8 @@ impl<'a> Stored<'a> {
     /// The state that [`Section::keep`] was given.
     ///
     /// # Errors
-    /// [`StudyError::File`] when the section is damaged, holds something else or is not there: the run was then begun without
-    /// this output.
+    /// [`StudyError::File`] when the section is damaged, holds something else or is not there: the run was
+    /// then begun without this output.
     pub fn state<T: DeserializeOwned>(self) -> Result<T, StudyError> {
         Ok(self.reader.state(&self.name)?)
     }

@@ -14,7 +14,8 @@ use flow::WindField;
 use formats::records::SeriesWriter;
 use std::path::PathBuf;
 
-/// Distance of the wind probe upstream of the first turbine (rotor diameters), or halfway to the inlet if nearer.
+/// Distance of the wind probe upstream of the first turbine (rotor diameters), or halfway to the inlet if
+/// nearer.
 const PROBE_DISTANCE: f64 = 2.0;
 /// Channels before the turbines' own, and those of the wind along lines at one place (–).
 const N_SHARED: u64 = 4;
@@ -58,7 +59,8 @@ struct Series {
     writer: SeriesWriter,
 }
 
-/// Point at hub height where the realised wind is measured (m): upstream of the first turbine, in prescribed wind at it.
+/// Point at hub height where the realised wind is measured (m): upstream of the first turbine, in prescribed
+/// wind at it.
 fn probe(setup: &Prepared) -> Vector3 {
     let plan = &setup.plan;
     let foot = plan.positions[0];

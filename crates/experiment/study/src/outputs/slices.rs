@@ -32,7 +32,8 @@ pub(super) fn hub_height(setup: &Prepared) -> Slice {
     Slice { name: "hub-height".to_owned(), axes: PlaneAxes::Horizontal, position }
 }
 
-/// All planes that are kept: at hub height, along the wind through the first turbine, and across it where the case says.
+/// All planes that are kept: at hub height, along the wind through the first turbine, and across it where the
+/// case says.
 pub(crate) fn of(setup: &Prepared) -> Vec<Slice> {
     let plan = &setup.plan;
     let foot = plan.positions[0];

@@ -1,4 +1,5 @@
-//! The wind over the rotor of a turbine that is not there, as a full field that turbines elsewhere can stand in.
+//! The wind over the rotor of a turbine that is not there, as a full field that turbines elsewhere can stand
+//! in.
 
 use super::output::{FedBy, Output, OutputKind, Scene};
 use super::schedule::Schedule;
@@ -125,7 +126,8 @@ impl Output for WindRecords {
 }
 
 impl WindRecord {
-    /// Begins the record at the place of turbine number `index`, or goes on with it after its first `n_bytes`.
+    /// Begins the record at the place of turbine number `index`, or goes on with it after its first
+    /// `n_bytes`.
     fn begin(scene: &Scene, index: usize, n_bytes: Option<u64>) -> Result<Self, StudyError> {
         let Scene { setup, run, folder, .. } = *scene;
         let (grid, foot) = (grid(setup, index), setup.plan.positions[index]);

@@ -19,7 +19,8 @@ struct Writer {
 }
 
 impl Writers {
-    /// Begins those of `kinds` that the case asks for and its flow can feed, or takes them up from the checkpoint `stored`.
+    /// Begins those of `kinds` that the case asks for and its flow can feed, or takes them up from the
+    /// checkpoint `stored`.
     ///
     /// # Errors
     /// [`StudyError`] of an output that cannot be begun, or not go on from the checkpoint.

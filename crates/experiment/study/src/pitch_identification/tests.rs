@@ -98,7 +98,8 @@ fn what_is_given_is_not_sought_and_a_turbine_that_watches_needs_nothing() {
     assert!(found != none && found != ten && none != ten);
 }
 
-/// `turbine offset` in the wind and at the rate of the identification: the same turbine, the same two helices.
+/// `turbine offset` in the wind and at the rate of the identification: the same turbine, the same two
+/// helices.
 #[test]
 fn the_offset_is_the_turbines_whatever_moves_the_air() {
     let question = OffsetQuestion {

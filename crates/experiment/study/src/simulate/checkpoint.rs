@@ -38,7 +38,8 @@ fn has_instruments(farm: &Farm<Air>) -> bool {
     farm.machines().iter().any(|machine| machine.sensing.has_state())
 }
 
-/// Writes `farm` as it stands and the state of its `outputs`; `made` holds what all sessions have cost so far.
+/// Writes `farm` as it stands and the state of its `outputs`; `made` holds what all sessions have cost so
+/// far.
 ///
 /// # Errors
 /// [`StudyError`] when a file cannot be written.
@@ -66,7 +67,8 @@ pub(super) fn write(
     Ok(writer.finish()?)
 }
 
-/// On return `farm` stands where the checkpoint of `reader` was written; gives it with what the sessions before have cost.
+/// On return `farm` stands where the checkpoint of `reader` was written; gives it with what the sessions
+/// before have cost.
 ///
 /// # Errors
 /// [`StudyError::File`] when the checkpoint does not fit.

@@ -6,7 +6,8 @@ use formats::records::{RunFolder, SeriesWriter};
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// A turbine that pitches, one that looks for its helix and one that follows meandering; a baseline beside it.
+/// A turbine that pitches, one that looks for its helix and one that follows meandering; a baseline beside
+/// it.
 const CASE: &str = r#"
 name = "groups"
 [wind]

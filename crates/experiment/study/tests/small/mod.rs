@@ -25,8 +25,9 @@ pub(crate) const WATCHING: &str =
 /// Control of a turbine that is not there.
 pub(crate) const ABSENT: &str = r#"{ kind = "absent" }"#;
 
-/// The case `name` in 9 m/s, with the lines `more_wind` under `[wind]`: spin-up and duration are `times` (s), the stiff
-/// turbines T1, T2, … stand 5 D apart, each with the lines that `machines` hold, and `rest` ends the file with its runs.
+/// The case `name` in 9 m/s, with the lines `more_wind` under `[wind]`: spin-up and duration are `times` (s),
+/// the stiff turbines T1, T2, … stand 5 D apart, each with the lines that `machines` hold, and `rest` ends
+/// the file with its runs.
 pub(crate) fn case(
     name: &str,
     more_wind: &str,
@@ -106,7 +107,8 @@ pub(crate) fn done(options: &Options) -> PathBuf {
     }
 }
 
-/// The case in `text` with `overrides`, laid out, and the turbine of the library called `model` that stands in it.
+/// The case in `text` with `overrides`, laid out, and the turbine of the library called `model` that stands
+/// in it.
 pub(crate) fn laid_out(text: &str, overrides: &[String], model: &str) -> (Case, Plan, Model) {
     let case = formats::case::parse("case.toml", text, overrides)
         .unwrap_or_else(|error| panic!("{}", error.to_lines()));

@@ -1,4 +1,5 @@
-//! Winds in closed form: shear, veer, steps and ramps, the gusts of IEC 61400-1, a disk of slow air that circles.
+//! Winds in closed form: shear, veer, steps and ramps, the gusts of IEC 61400-1, a disk of slow air that
+//! circles.
 
 mod change;
 mod disk;
@@ -22,16 +23,16 @@ pub const EXTREME_SHEAR_DURATION: f64 = 12.0;
 
 /// A deterministic wind: a mean profile that veers with height, and one event in time.
 ///
-/// The event comes to all places at once, wherever they lie along x. Directions are angles of the horizontal wind
-/// from x, counter-clockwise seen from above: positive blows towards +y, to the left looking downwind.
+/// The event comes to all places at once, wherever they lie along x. Directions are angles of the horizontal
+/// wind from x, counter-clockwise seen from above: positive blows towards +y, to the left looking downwind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeterministicWind {
     /// Speed over height before the event.
     pub profile: MeanProfile,
     /// Hub height (m), where veer is zero.
     pub hub_height: f64,
-    /// Veer (rad/m): the wind turns clockwise, seen from above, by so much per metre upwards, as it does in the
-    /// boundary layer of the northern hemisphere; negative backs.
+    /// Veer (rad/m): the wind turns clockwise, seen from above, by so much per metre upwards, as it does in
+    /// the boundary layer of the northern hemisphere; negative backs.
     pub veer: f64,
     /// What happens.
     pub event: Event,
@@ -54,7 +55,8 @@ pub enum Event {
         diameter: f64,
         /// Lateral place of the hub (m).
         hub_y: f64,
-        /// Largest change of speed one radius above the hub (m/s), [`extreme_shear`](super::iec::extreme_shear), either sign.
+        /// Largest change of speed one radius above the hub (m/s),
+        /// [`extreme_shear`](super::iec::extreme_shear), either sign.
         vertical: f64,
         /// The same one radius to the left of the hub, looking downwind (m/s).
         horizontal: f64,
@@ -70,8 +72,8 @@ impl DeterministicWind {
     }
 
     /// # Errors
-    /// [`InflowError::Setting`] names what cannot be used: a number that is not finite, a duration or length that is
-    /// not positive.
+    /// [`InflowError::Setting`] names what cannot be used: a number that is not finite, a duration or length
+    /// that is not positive.
     pub fn check(&self) -> Result<(), InflowError> {
         self.profile.check()?;
         positive("hub height (m)", self.hub_height)?;

@@ -176,9 +176,11 @@ proptest! {
     /// Many points at once are the points one by one.
     #[test]
     fn a_batch_is_its_points(
-        places in prop::collection::vec((-200.0..200.0_f64, -200.0..200.0_f64, 0.0..300.0_f64), 1..20), time in -5.0..40.0_f64,
+        places in prop::collection::vec((-200.0..200.0_f64, -200.0..200.0_f64, 0.0..300.0_f64), 1..20),
+        time in -5.0..40.0_f64,
     ) {
-        let event = Event::Everywhere(Change::CoherentGust { start: 3.0, duration: 10.0, rise: 15.0, change: 0.7 });
+        let gust = Change::CoherentGust { start: 3.0, duration: 10.0, rise: 15.0, change: 0.7 };
+        let event = Event::Everywhere(gust);
         let wind = DeterministicWind { veer: 1e-3, ..wind(event) };
         let positions: Vec<_> = places.iter().map(|&(x, y, z)| Vector3::new(x, y, z)).collect();
         let mut velocities = vec![Vector3::ZERO; positions.len()];

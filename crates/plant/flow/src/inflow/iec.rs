@@ -1,7 +1,7 @@
 //! What IEC 61400-1 says of wind: turbulence classes, Kaimal's spectra, coherence, sizes of gusts.
 //!
-//! Source throughout: [IEC61400-1, edition 3 (2005)], §6.3 and annex B; edition numbers matter, since scales and
-//! the coherence length differ from edition 2.
+//! Source throughout: [IEC61400-1, edition 3 (2005)], §6.3 and annex B; edition numbers matter, since scales
+//! and the coherence length differ from edition 2.
 
 use super::{InflowError, positive};
 use serde::{Deserialize, Serialize};
@@ -36,7 +36,8 @@ impl TurbulenceClass {
         }
     }
 
-    /// Standard deviation of u (m/s) at hub speed `hub_speed` (m/s), 90 % quantile: normal turbulence model, eq. 11.
+    /// Standard deviation of u (m/s) at hub speed `hub_speed` (m/s), 90 % quantile: normal turbulence model,
+    /// eq. 11.
     pub fn standard_deviation(self, hub_speed: f64) -> f64 {
         self.reference_intensity() * (0.75 * hub_speed + 5.6)
     }
@@ -56,7 +57,8 @@ pub struct Kaimal {
 }
 
 impl Kaimal {
-    /// The model for `hub_height` (m), `hub_speed` (m/s) and the standard deviation of u `standard_deviation` (m/s).
+    /// The model for `hub_height` (m), `hub_speed` (m/s) and the standard deviation of u `standard_deviation`
+    /// (m/s).
     ///
     /// # Errors
     /// [`InflowError::Setting`] for a height or speed that is not positive, or a negative deviation.
@@ -108,8 +110,8 @@ impl Kaimal {
 
 /// Peak deficit of the extreme operating gust (m/s), eq. 17.
 ///
-/// `standard_deviation` (m/s) of u, speed `hub_speed` (m/s) at `hub_height` (m), rotor diameter `diameter` (m),
-/// reference speed of the class `reference_speed` (m/s): 50, 42.5, 37.5 for I, II, III.
+/// `standard_deviation` (m/s) of u, speed `hub_speed` (m/s) at `hub_height` (m), rotor diameter `diameter`
+/// (m), reference speed of the class `reference_speed` (m/s): 50, 42.5, 37.5 for I, II, III.
 pub fn operating_gust(
     standard_deviation: f64,
     hub_speed: f64,
@@ -124,7 +126,8 @@ pub fn operating_gust(
     of_year.min(of_turbulence)
 }
 
-/// Change of direction (rad, at most π) of the extreme direction change, eq. 20; arguments as in [`operating_gust`].
+/// Change of direction (rad, at most π) of the extreme direction change, eq. 20; arguments as in
+/// [`operating_gust`].
 pub fn direction_change(
     standard_deviation: f64,
     hub_speed: f64,
@@ -143,8 +146,8 @@ pub fn coherent_direction_change(hub_speed: f64) -> f64 {
     (720.0 / hub_speed.max(4.0)).to_radians()
 }
 
-/// Largest change of speed (m/s) one rotor radius off the hub in the extreme wind shear, eqs. 26 and 27; arguments
-/// as in [`operating_gust`].
+/// Largest change of speed (m/s) one rotor radius off the hub in the extreme wind shear, eqs. 26 and 27;
+/// arguments as in [`operating_gust`].
 pub fn extreme_shear(standard_deviation: f64, hub_height: f64, diameter: f64) -> f64 {
     let scaled = (diameter / turbulence_scale(hub_height)).powf(0.25);
     // (1/2)(2.5 + 0.2 β σ₁ (D/Λ₁)^¼) (1 − cos) with β = 6.4: at half a diameter and mid-time (1 − cos) is 2.
@@ -155,7 +158,8 @@ pub fn extreme_shear(standard_deviation: f64, hub_height: f64, diameter: f64) ->
 mod tests {
     use super::*;
 
-    /// TurbSim's summary for 9 m/s and 6 % at 150 m: scale 42 m, integral scale 340.2 m, coherence decay 12 with offset 0.353e-3/m.
+    /// TurbSim's summary for 9 m/s and 6 % at 150 m: scale 42 m, integral scale 340.2 m, coherence decay 12
+    /// with offset 0.353e-3/m.
     #[test]
     fn agrees_with_turbsim() {
         let model = Kaimal::new(150.0, 9.0, 0.54).unwrap();

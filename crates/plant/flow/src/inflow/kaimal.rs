@@ -1,4 +1,5 @@
-//! IEC turbulence: Kaimal's spectra, u with exponential coherence, v and w without; what TurbSim calls IECKAI.
+//! IEC turbulence: Kaimal's spectra, u with exponential coherence, v and w without; what TurbSim calls
+//! IECKAI.
 
 mod coherent;
 #[cfg(test)]
@@ -40,8 +41,8 @@ pub struct KaimalSettings {
     pub threads: Option<usize>,
 }
 
-/// What is done about a realised standard deviation, which lies below the model's: a record holds neither waves
-/// longer than itself nor shorter than two time steps, and it varies with the seed.
+/// What is done about a realised standard deviation, which lies below the model's: a record holds neither
+/// waves longer than itself nor shorter than two time steps, and it varies with the seed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Scaling {
     /// Nothing.
@@ -97,16 +98,18 @@ pub fn peak_memory([n_x, n_y, n_z]: [usize; 3]) -> u64 {
 
 /// Draws a box; `progress` receives the share done, 0 to 1, on the calling thread.
 ///
-/// Each point and component is a sum of waves at the record's frequencies f with amplitude √(2 S(f) Δf) and random
-/// phase. Phases of v and w are independent from point to point. Those of u are made coherent: at each frequency the
-/// grid is put on a torus large enough that coherence has died away half-way round; there the Fourier modes are the
-/// eigenvectors of the coherence matrix, and a field with random phases per mode, weighted by the roots of the
-/// eigenvalues, has exactly that coherence ("circulant embedding"). Veers' Cholesky factor gives the same statistics
-/// for a cost that grows with the cube of the points; this grows with their logarithm. Eigenvalues that come out
-/// negative are set to zero: [`clipped_share`] measures how much that is.
+/// Each point and component is a sum of waves at the record's frequencies f with amplitude √(2 S(f) Δf) and
+/// random phase. Phases of v and w are independent from point to point. Those of u are made coherent: at each
+/// frequency the grid is put on a torus large enough that coherence has died away half-way round; there the
+/// Fourier modes are the eigenvectors of the coherence matrix, and a field with random phases per mode,
+/// weighted by the roots of the eigenvalues, has exactly that coherence ("circulant embedding"). Veers'
+/// Cholesky factor gives the same statistics for a cost that grows with the cube of the points; this grows
+/// with their logarithm. Eigenvalues that come out negative are set to zero: [`clipped_share`] measures how
+/// much that is.
 ///
-/// The box repeats in x, that is in time; in y and z it does not: its first and last points are as far apart as they look.
-/// Source: Veers (1988) SAND88-0152; Dietrich, Newsam (1997) SIAM J. Sci. Comput. 18 (1997) 1088-1107; spectra and coherence [`Kaimal`].
+/// The box repeats in x, that is in time; in y and z it does not: its first and last points are as far apart
+/// as they look. Source: Veers (1988) SAND88-0152; Dietrich, Newsam (1997) SIAM J. Sci. Comput. 18 (1997)
+/// 1088-1107; spectra and coherence [`Kaimal`].
 ///
 /// # Errors
 /// [`InflowError`] for settings out of range, or a box that memory cannot hold.
@@ -157,8 +160,8 @@ pub fn generate(
     TurbulenceBox::new(settings.n_points, settings.spacing, velocity)
 }
 
-/// Largest share (–) of the variance of u at any one frequency that negative eigenvalues take, see [`generate`]; the
-/// coherence of the box then differs from the model's by no more than twice that.
+/// Largest share (–) of the variance of u at any one frequency that negative eigenvalues take, see
+/// [`generate`]; the coherence of the box then differs from the model's by no more than twice that.
 ///
 /// # Errors
 /// As [`generate`].

@@ -65,7 +65,8 @@ fn scaling_meets_the_deviation_at_the_hub_or_everywhere() {
     assert!((deviation(&hub, 0, [0, 0]) - 1.2).abs() > 1e-3);
 }
 
-/// Over many seeds the cross-spectrum of u is the model's coherence times the spectrum, without a phase; v has none.
+/// Over many seeds the cross-spectrum of u is the model's coherence times the spectrum, without a phase; v
+/// has none.
 #[test]
 fn coherence_is_that_of_the_model() {
     let n_seeds = 60;

@@ -54,11 +54,11 @@ pub(crate) fn points_along_x(memory: u64, n_y: usize, n_z: usize) -> usize {
 /// u(x) = Σ exp(i k·x) Z(k) over the box's wave numbers, E ZZ* = ∫ Φ dk over the cell of wave numbers around
 /// k, projected normal to k: the field is free of divergence, wave by wave. Cells are integrated by midpoints
 /// where Φ changes within them, which is at k below a few cells; elsewhere Φ times the cell's volume is exact
-/// enough. Left out: the mean, k = 0; waves at the Nyquist numbers, whose sense is ambiguous; and u of waves that are
-/// uniform across the box, which continuity forbids. The last are long gusts: of a box 19 L wide and high and
-/// 154 L long at Γ = 3.9 they hold 15 % of the tensor's streamwise variance, of one 36 L × 27 L across 9 %.
-/// αε^(2/3) is then set so that the streamwise standard deviation over the box is the target, with which
-/// spectra lie higher by that share; all components are scaled alike.
+/// enough. Left out: the mean, k = 0; waves at the Nyquist numbers, whose sense is ambiguous; and u of waves
+/// that are uniform across the box, which continuity forbids. The last are long gusts: of a box 19 L wide and
+/// high and 154 L long at Γ = 3.9 they hold 15 % of the tensor's streamwise variance, of one 36 L × 27 L
+/// across 9 %. αε^(2/3) is then set so that the streamwise standard deviation over the box is the target,
+/// with which spectra lie higher by that share; all components are scaled alike.
 /// Source: [Mann1998, eqs. 35-39, 46], with the projection added.
 ///
 /// # Errors
@@ -127,7 +127,8 @@ impl Waves<'_> {
         }
     }
 
-    /// On return `planes` hold the amplitudes of the three components at streamwise index `x`, each n_z × n_y.
+    /// On return `planes` hold the amplitudes of the three components at streamwise index `x`, each n_z ×
+    /// n_y.
     fn fill(&self, x: usize, planes: [&mut [Complex32]; 3]) {
         let [n_x, n_y, n_z] = self.settings.n_points;
         let Some(m1) = Self::signed(x, n_x) else { return };

@@ -1,9 +1,9 @@
 //! Wind that blows in: mean profiles, gusts, synthetic turbulence carried along by Taylor's hypothesis.
 //!
-//! [`MeanProfile`] alone is steady wind, [`DeterministicWind`] adds veer and one event; [`mann::generate`] and
-//! [`kaimal::generate`] make a [`TurbulenceBox`]. For a solver's inlet [`TurbulentInflow`] carries it past the farm on top
-//! of a profile, [`sizing`] says how large it must be. Without a flow solver, [`PrescribedWind`] is the flow: any of these
-//! winds, or [`Planes`] that come from a file one by one.
+//! [`MeanProfile`] alone is steady wind, [`DeterministicWind`] adds veer and one event; [`mann::generate`]
+//! and [`kaimal::generate`] make a [`TurbulenceBox`]. For a solver's inlet [`TurbulentInflow`] carries it
+//! past the farm on top of a profile, [`sizing`] says how large it must be. Without a flow solver,
+//! [`PrescribedWind`] is the flow: any of these winds, or [`Planes`] that come from a file one by one.
 //! Sources: Mann (1994) J. Mann, J. Fluid Mech. 273 (1994) 141-168; Mann (1998) J. Mann, Probabilistic
 //! Engineering Mechanics 13 (1998) 269-282.
 
@@ -71,7 +71,10 @@ pub enum InflowError {
         memory: u64,
     },
     /// A place where the wind is not known.
-    #[error("the wind is needed at y {y:.1} m, z {z:.1} m, outside its grid of y {left:.1} to {right:.1} m, z {low:.1} to {high:.1} m; make the grid larger, or move it", y = position.y, z = position.z, left = across[0], right = across[1], low = up[0], high = up[1])]
+    #[error(
+        "the wind is needed at y {y:.1} m, z {z:.1} m, outside its grid of y {left:.1} to {right:.1} m, z {low:.1} to {high:.1} m; make the grid larger, or move it",
+        y = position.y, z = position.z, left = across[0], right = across[1], low = up[0], high = up[1]
+    )]
     Outside {
         /// The place, farm frame (m).
         position: Vector3,
@@ -101,7 +104,8 @@ pub enum InflowError {
 }
 
 /// # Errors
-/// [`InflowError::Setting`] for numbers of points or spacings (m) along x, y, z that make no box to transform.
+/// [`InflowError::Setting`] for numbers of points or spacings (m) along x, y, z that make no box to
+/// transform.
 pub(crate) fn check_grid(n_points: [usize; 3], spacing: [f64; 3]) -> Result<(), InflowError> {
     for points in n_points {
         if !(2..=1 << 20).contains(&points) {

@@ -61,8 +61,8 @@ pub trait Planes: Send + Sync {
     /// Where the points are.
     fn grid(&self) -> PlaneGrid;
 
-    /// Writes the wind u, v, w (m/s, the mean included) on plane `step`, from 0 in order of arrival, into `values`,
-    /// n_z × n_y, y fastest and from the right to the left, looking downwind.
+    /// Writes the wind u, v, w (m/s, the mean included) on plane `step`, from 0 in order of arrival, into
+    /// `values`, n_z × n_y, y fastest and from the right to the left, looking downwind.
     ///
     /// # Errors
     /// [`InflowError::Plane`] when it cannot be had.
@@ -79,8 +79,9 @@ pub struct BoxPlanes {
 }
 
 impl BoxPlanes {
-    /// `turbulence` on top of `profile` and carried along with its hub speed. The middle of the box's width stands at
-    /// y = 0, its lowest row at `lowest_height` (m). Plane 0 arrives first, then n_x − 1, n_x − 2, …: time runs against x.
+    /// `turbulence` on top of `profile` and carried along with its hub speed. The middle of the box's width
+    /// stands at y = 0, its lowest row at `lowest_height` (m). Plane 0 arrives first, then n_x − 1, n_x − 2,
+    /// …: time runs against x.
     ///
     /// # Errors
     /// [`InflowError::Setting`] when the hub speed is not positive.
@@ -108,9 +109,9 @@ impl BoxPlanes {
         Ok(Self { turbulence, means, grid })
     }
 
-    /// The same, its mean wind turned by `veer` (rad/m) per metre above `hub_height` (m): clockwise seen from above,
-    /// upwards, as [`DeterministicWind::veer`](super::DeterministicWind::veer). The fluctuations are not turned, and all
-    /// is carried along x as before.
+    /// The same, its mean wind turned by `veer` (rad/m) per metre above `hub_height` (m): clockwise seen from
+    /// above, upwards, as [`DeterministicWind::veer`](super::DeterministicWind::veer). The fluctuations are
+    /// not turned, and all is carried along x as before.
     pub fn veering(mut self, veer: f64, hub_height: f64) -> Self {
         let PlaneGrid { first, spacing, .. } = self.grid;
         for (z, mean) in self.means.iter_mut().enumerate() {

@@ -11,9 +11,9 @@ use window::Window;
 
 /// Wind that does not feel the rotors: their induction is left to whoever samples it.
 ///
-/// Over planes: wind at x, y, z and time t is that of the planes at time t − (x − `origin_x`)/U, linear in time and
-/// bilinear in y and z, as other programs of the field read their planes. Outside the grid along y and z the wind of
-/// its edge blows; ask [`covers`](Self::covers) before the run.
+/// Over planes: wind at x, y, z and time t is that of the planes at time t − (x − `origin_x`)/U, linear in
+/// time and bilinear in y and z, as other programs of the field read their planes. Outside the grid along y
+/// and z the wind of its edge blows; ask [`covers`](Self::covers) before the run.
 pub struct PrescribedWind {
     source: Source,
     clock: Clock,
@@ -27,8 +27,9 @@ enum Source {
 /// How planes are laid into the farm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Where the first plane stands at time zero (m along x). Upwind of it at that time stand the next planes.
-    /// OpenFAST's InflowWind has 0 for records that repeat, and half the width of the grid for those that do not.
+    /// Where the first plane stands at time zero (m along x). Upwind of it at that time stand the next
+    /// planes. OpenFAST's InflowWind has 0 for records that repeat, and half the width of the grid for those
+    /// that do not.
     pub origin_x: f64,
     /// Shift of the grid along y (m): where its middle comes to lie, given that it was at 0.
     pub shift_y: f64,
@@ -87,16 +88,16 @@ impl PrescribedWind {
     /// `planes`, of which no more are held than `placement` needs.
     ///
     /// # Errors
-    /// [`InflowError`] when the grid makes no sense, the planes in between take more memory than there is, or the first
-    /// ones cannot be had.
+    /// [`InflowError`] when the grid makes no sense, the planes in between take more memory than there is, or
+    /// the first ones cannot be had.
     pub fn over_planes(planes: Box<dyn Planes>, placement: Placement) -> Result<Self, InflowError> {
         let window = Window::new(planes, placement)?;
         Ok(Self { source: Source::Planes(window), clock: Clock::default() })
     }
 
-    /// Whether the wind is known all over the box between the corners `lowest` and `highest` (m, farm frame) for
-    /// `duration` (s) from the start. Below the grid's lowest row is no objection: the ground is there, and the row's wind
-    /// stands in.
+    /// Whether the wind is known all over the box between the corners `lowest` and `highest` (m, farm frame)
+    /// for `duration` (s) from the start. Below the grid's lowest row is no objection: the ground is there,
+    /// and the row's wind stands in.
     ///
     /// # Errors
     /// [`InflowError::Outside`] or [`InflowError::Ended`] says what is missing.

@@ -196,7 +196,8 @@ proptest! {
     /// However time is cut into steps, and whatever is held, the wind is that of a window opened afresh.
     #[test]
     fn does_not_depend_on_the_way_there(
-        steps in prop::collection::vec(0.001..3.0_f64, 1..40), x in -30.0..60.0_f64, y in -20.0..20.0_f64, z in 10.0..70.0_f64,
+        steps in prop::collection::vec(0.001..3.0_f64, 1..40), x in -30.0..60.0_f64, y in -20.0..20.0_f64,
+        z in 10.0..70.0_f64,
     ) {
         let mut walked = wind([-30.0, 60.0]);
         for step in steps {

@@ -93,8 +93,8 @@ impl MeanProfile {
     }
 }
 
-/// Mean wind u, v (m/s) of `speed` (m/s), `above_hub` (m) above the height at which it blows along x, where it veers by `veer`
-/// (rad/m): clockwise seen from above, upwards.
+/// Mean wind u, v (m/s) of `speed` (m/s), `above_hub` (m) above the height at which it blows along x, where
+/// it veers by `veer` (rad/m): clockwise seen from above, upwards.
 pub(crate) fn veered(speed: f64, veer: f64, above_hub: f64) -> [f64; 2] {
     let (sine, cosine) = (-veer * above_hub).sin_cos();
     [speed * cosine, speed * sine]

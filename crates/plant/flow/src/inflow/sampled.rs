@@ -4,13 +4,15 @@ use super::{InflowError, PlaneGrid, TurbulenceBox};
 use crate::Inflow;
 use basis::Vector3;
 
-/// `inflow` at x = 0 on the planes of `grid`, the first at time zero: a box that is carried along with the grid's speed
-/// and brings this wind, and the mean of u at each of its heights (m/s), lowest first, which the box does not hold.
+/// `inflow` at x = 0 on the planes of `grid`, the first at time zero: a box that is carried along with the
+/// grid's speed and brings this wind, and the mean of u at each of its heights (m/s), lowest first, which the
+/// box does not hold.
 ///
 /// The box repeats; a wind that ends otherwise than it began jumps there.
 ///
 /// # Errors
-/// [`InflowError::Setting`] for a grid that makes no sense, [`InflowError::Memory`] for one that the machine cannot hold.
+/// [`InflowError::Setting`] for a grid that makes no sense, [`InflowError::Memory`] for one that the machine
+/// cannot hold.
 pub fn sampled(
     inflow: &dyn Inflow,
     grid: &PlaneGrid,
@@ -36,7 +38,8 @@ pub fn sampled(
     let mut winds = vec![Vector3::ZERO; size];
     let mut mean_speeds = vec![0.0; grid.n_z];
     let per_value = 1.0 / (grid.n_steps * grid.n_y) as f64;
-    // Twice, so that what is rounded is the difference from the mean, and nothing is held in double precision.
+    // Twice, so that what is rounded is the difference from the mean, and nothing is held in double
+    // precision.
     for step in 0..grid.n_steps {
         inflow.sample(step as f64 * grid.interval, &positions, &mut winds);
         for (point, wind) in winds.iter().enumerate() {

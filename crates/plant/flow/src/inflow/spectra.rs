@@ -49,7 +49,8 @@ pub fn one_point(turbulence: &TurbulenceBox) -> OnePointSpectra {
 }
 
 /// Cross-spectrum of component `component` with itself at points `apart` (points along y, z), two-sided
-/// (m³/s²), at the wave numbers of [`one_point`], averaged over the box. Positive lags lead to the left and up.
+/// (m³/s²), at the wave numbers of [`one_point`], averaged over the box. Positive lags lead to the left and
+/// up.
 pub fn cross(turbulence: &TurbulenceBox, component: usize, apart: [usize; 2]) -> Vec<Complex64> {
     let [n_x, n_y, n_z] = turbulence.n_points();
     let n_waves = n_x.div_ceil(2) - 1;
@@ -68,8 +69,8 @@ pub fn cross(turbulence: &TurbulenceBox, component: usize, apart: [usize; 2]) ->
     spectrum
 }
 
-/// Fourier coefficients (m/s) of component `component` along x at the wave numbers of [`one_point`], for every line:
-/// n_z × n_y, y fastest.
+/// Fourier coefficients (m/s) of component `component` along x at the wave numbers of [`one_point`], for
+/// every line: n_z × n_y, y fastest.
 pub fn lines(turbulence: &TurbulenceBox, component: usize) -> Vec<Vec<Complex64>> {
     let [_, n_y, n_z] = turbulence.n_points();
     let mut lines = Lines::new(turbulence);

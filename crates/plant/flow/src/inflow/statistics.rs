@@ -31,8 +31,8 @@ pub fn statistics(turbulence: &TurbulenceBox) -> BoxStatistics {
     }
 }
 
-/// Standard deviations of u, v, w (m/s) along the line of points with indices `y`, `z`: those of the wind that a fixed
-/// place meets.
+/// Standard deviations of u, v, w (m/s) along the line of points with indices `y`, `z`: those of the wind
+/// that a fixed place meets.
 pub fn line_deviations(turbulence: &TurbulenceBox, y: usize, z: usize) -> [f64; 3] {
     let n_x = turbulence.n_points()[0];
     [0, 1, 2].map(|component| {
@@ -42,10 +42,11 @@ pub fn line_deviations(turbulence: &TurbulenceBox, y: usize, z: usize) -> [f64; 
     })
 }
 
-/// Integral length scale along x of component 0 to 2 (m): ∫ of the correlation coefficient up to its first zero.
+/// Integral length scale along x of component 0 to 2 (m): ∫ of the correlation coefficient up to its first
+/// zero.
 ///
-/// The correlation is that of the box less the mean of each line, which is what spectra at k₁ > 0 hold; zero for
-/// a component that is still.
+/// The correlation is that of the box less the mean of each line, which is what spectra at k₁ > 0 hold; zero
+/// for a component that is still.
 pub fn integral_scale(spectra: &OnePointSpectra, component: usize) -> f64 {
     let power = &spectra.power[component];
     let correlation = |distance: f64| -> f64 {

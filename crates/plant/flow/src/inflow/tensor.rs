@@ -6,8 +6,8 @@ use basis::{Matrix3, Vector3};
 
 /// Spectral tensor Φᵢⱼ(k) of turbulence in uniform shear, for αε^(2/3) = 1 (m^(4/3)/s²).
 ///
-/// Isotropic turbulence with von Karman's energy spectrum is sheared by the mean wind for the lifetime of each
-/// eddy; components 1, 2, 3 run along x downwind, y left, z up, the mean wind grows with z.
+/// Isotropic turbulence with von Karman's energy spectrum is sheared by the mean wind for the lifetime of
+/// each eddy; components 1, 2, 3 run along x downwind, y left, z up, the mean wind grows with z.
 /// Source: [Mann1994, eqs. 3.13-3.18]; [Mann1998, eqs. 10-13]. Limits: neutral, no blocking by the ground.
 #[derive(Clone, Debug)]
 pub struct SpectralTensor {

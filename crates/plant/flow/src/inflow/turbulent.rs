@@ -8,16 +8,16 @@ use std::sync::Arc;
 
 /// Turbulence carried past by Taylor's hypothesis: wind = mean profile + box at x − `x` of the origin − U t.
 ///
-/// U is the profile's speed at hub height, for all heights. The box repeats in x, y and z; time runs against its
-/// x. Interpolation: at points of the box in y and z the value itself, elsewhere linear in y and z; in x, that is
-/// in time, Catmull-Rom's cubic. Variance that it keeps, averaged over places between points: 100 % of waves of
-/// 16 points, 99 % of 8, 89 % of 4, 64 % of 2.7 and 49 % of 2 (a straight line: 97, 90, 67, 43, 33 %). Linear
-/// interpolation between points in y or z costs the straight line's share again in each: put the box's points on
-/// the flow's ([`aligned`](Self::aligned)).
+/// U is the profile's speed at hub height, for all heights. The box repeats in x, y and z; time runs against
+/// its x. Interpolation: at points of the box in y and z the value itself, elsewhere linear in y and z; in x,
+/// that is in time, Catmull-Rom's cubic. Variance that it keeps, averaged over places between points: 100 %
+/// of waves of 16 points, 99 % of 8, 89 % of 4, 64 % of 2.7 and 49 % of 2 (a straight line: 97, 90, 67, 43,
+/// 33 %). Linear interpolation between points in y or z costs the straight line's share again in each: put
+/// the box's points on the flow's ([`aligned`](Self::aligned)).
 ///
 /// Near the ground the vertical component is blocked: with [`blocked`](Self::blocked) it is multiplied by
-/// (z²/(z² + h²))^(1/6), zero at the ground, where its variance then grows as z^(2/3), one well above h. Streamwise
-/// and lateral components are left as they are.
+/// (z²/(z² + h²))^(1/6), zero at the ground, where its variance then grows as z^(2/3), one well above h.
+/// Streamwise and lateral components are left as they are.
 #[derive(Clone, Debug)]
 pub struct TurbulentInflow {
     turbulence: Arc<TurbulenceBox>,
@@ -37,10 +37,12 @@ pub const BLOCKING_HEIGHT: f64 = 0.52;
 const SAME: f64 = 1e-6;
 
 impl TurbulentInflow {
-    /// `turbulence` on top of `profile`; the box's first point stands at `origin` (m, farm frame) at time zero.
+    /// `turbulence` on top of `profile`; the box's first point stands at `origin` (m, farm frame) at time
+    /// zero.
     ///
     /// # Errors
-    /// [`InflowError::Setting`] when the profile's speed, with which the box is carried along, is not positive.
+    /// [`InflowError::Setting`] when the profile's speed, with which the box is carried along, is not
+    /// positive.
     pub fn new(
         turbulence: Arc<TurbulenceBox>,
         profile: MeanProfile,
@@ -51,8 +53,8 @@ impl TurbulentInflow {
         Ok(Self { turbulence, profile, origin, blocking_height, veer, hub_height })
     }
 
-    /// As [`new`](Self::new), with the box's points on the cell centres of a flow grid whose lowest corner is at
-    /// `corner` (m, farm frame) and whose cells have the box's spacing.
+    /// As [`new`](Self::new), with the box's points on the cell centres of a flow grid whose lowest corner is
+    /// at `corner` (m, farm frame) and whose cells have the box's spacing.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -65,16 +67,16 @@ impl TurbulentInflow {
         Self::new(turbulence, profile, centre)
     }
 
-    /// The same with the vertical component blocked by the ground below about `height` (m); 0 lifts the blocking.
-    /// [`BLOCKING_HEIGHT`] length scales is the height that theory gives.
+    /// The same with the vertical component blocked by the ground below about `height` (m); 0 lifts the
+    /// blocking. [`BLOCKING_HEIGHT`] length scales is the height that theory gives.
     pub fn blocked(mut self, height: f64) -> Self {
         self.blocking_height = height.max(0.0);
         self
     }
 
-    /// The same, its mean wind turned by `veer` (rad/m) per metre above `hub_height` (m): clockwise seen from above,
-    /// upwards, as [`DeterministicWind::veer`](super::DeterministicWind::veer). The fluctuations are not turned, and all
-    /// is carried along x as before.
+    /// The same, its mean wind turned by `veer` (rad/m) per metre above `hub_height` (m): clockwise seen from
+    /// above, upwards, as [`DeterministicWind::veer`](super::DeterministicWind::veer). The fluctuations are
+    /// not turned, and all is carried along x as before.
     pub fn veering(self, veer: f64, hub_height: f64) -> Self {
         Self { veer, hub_height, ..self }
     }
@@ -158,7 +160,8 @@ struct Rows {
     weight: f32,
 }
 
-/// Point at or before `place` (in spacings) on a grid that repeats after `n` points, and how far behind it (–).
+/// Point at or before `place` (in spacings) on a grid that repeats after `n` points, and how far behind it
+/// (–).
 #[inline(always)]
 fn place(place: f64, n: usize) -> (usize, f64) {
     let period = n as f64;
@@ -180,7 +183,8 @@ impl Inflow for TurbulentInflow {
         let [_, n_y, _] = self.turbulence.n_points();
         let per_point = 1.0 / self.turbulence.spacing()[1];
         let Some(first) = positions.first() else { return };
-        // A plane shares its x and its rows share their height: what belongs to them is kept from point to point.
+        // A plane shares its x and its rows share their height: what belongs to them is kept from point to
+        // point.
         let (mut x, mut planes) = (first.x, self.planes(first.x, time));
         let (mut z, mut rows) = (first.z, self.rows(first.z));
         for (position, velocity) in positions.iter().zip(velocities) {

@@ -161,7 +161,8 @@ proptest! {
     /// Many points at once are the points one by one, in any order.
     #[test]
     fn a_batch_is_its_points(
-        places in prop::collection::vec((0_usize..3, -200.0..200.0_f64, 0_usize..3), 1..30), time in 0.0..50.0_f64,
+        places in prop::collection::vec((0_usize..3, -200.0..200.0_f64, 0_usize..3), 1..30),
+        time in 0.0..50.0_f64,
     ) {
         let inflow = inflow().blocked(30.0);
         let positions: Vec<_> = places

@@ -1,10 +1,11 @@
 //! What happens in a cell during a step: the whole physics of the bulk.
 //!
-//! Second central moments relax with the viscosity of air plus that of Smagorinsky's model; their trace is set to
-//! equilibrium, third central moments to zero and higher ones to those of a Gaussian. All that is kept of the old
-//! populations are density, velocity and stress, which is what makes the scheme stable at the viscosity of real air
-//! (regularisation in the moving frame: Geier, Greiner, Korvink 2006, Phys. Rev. E 73, 066705; De Rosis, Huang,
-//! Coreixas 2019, Phys. Fluids 31, 117102; cumulants: Geier, Schönherr, Pasquali, Krafczyk 2015, Comput. Math. Appl. 70, 507).
+//! Second central moments relax with the viscosity of air plus that of Smagorinsky's model; their trace is
+//! set to equilibrium, third central moments to zero and higher ones to those of a Gaussian. All that is kept
+//! of the old populations are density, velocity and stress, which is what makes the scheme stable at the
+//! viscosity of real air (regularisation in the moving frame: Geier, Greiner, Korvink 2006, Phys. Rev. E 73,
+//! 066705; De Rosis, Huang, Coreixas 2019, Phys. Fluids 31, 117102; cumulants: Geier, Schönherr, Pasquali,
+//! Krafczyk 2015, Comput. Math. Appl. 70, 507).
 
 use super::simd::Simd;
 use super::stencil::Moments;
@@ -18,7 +19,8 @@ pub(crate) struct Relaxation<S> {
     pub(crate) subgrid: S,
 }
 
-/// 18 √2: Smagorinsky's closed form for the relaxation time, Hou, Sterling, Chen, Doolen (1996), Fields Inst. Comm. 6, 151.
+/// 18 √2: Smagorinsky's closed form for the relaxation time, Hou, Sterling, Chen, Doolen (1996), Fields Inst.
+/// Comm. 6, 151.
 pub(crate) const SUBGRID_FACTOR: f64 = 25.455_844_122_715_71;
 
 /// Rate at which the stress of a cell in state `before` relaxes.
@@ -37,7 +39,8 @@ pub(crate) fn relaxation_rate<S: Simd>(before: &Moments<S>, relaxation: &Relaxat
     two.divide(relaxation.time + squared.sqrt())
 }
 
-/// State after the collision of a cell in state `before`, its stress relaxed at `rate`, under `force` (density per step).
+/// State after the collision of a cell in state `before`, its stress relaxed at `rate`, under `force`
+/// (density per step).
 ///
 /// The force shifts the velocity that the outgoing populations are built around by F/ρ (exact difference:
 /// Kupershtokh, Medvedev, Karpov 2009, Comput. Math. Appl. 58, 965); the physical velocity lies half-way.
@@ -52,8 +55,8 @@ pub(crate) fn collide<S: Simd>(before: &Moments<S>, rate: S, force: Option<[S; 3
     let (dxx, dyy, dzz) = (sxx - t, syy - t, szz - t);
     let kept = S::splat(1.0) - rate;
 
-    // The lattice cannot tell c³ from c: without these terms the viscosity of normal strains would depend on the
-    // speed of the grid through the air (Geier et al. 2015, eqs. 43-48, with bulk rate one).
+    // The lattice cannot tell c³ from c: without these terms the viscosity of normal strains would depend on
+    // the speed of the grid through the air (Geier et al. 2015, eqs. 43-48, with bulk rate one).
     let hx = ux * ux * rate.mul_add(dxx, t);
     let hy = uy * uy * rate.mul_add(dyy, t);
     let hz = uz * uz * rate.mul_add(dzz, t);

@@ -1,4 +1,5 @@
-//! The engine that runs on the processor: populations in one array, updated in place by threads that share the rows.
+//! The engine that runs on the processor: populations in one array, updated in place by threads that share
+//! the rows.
 
 use super::collision::SUBGRID_FACTOR;
 use super::ends::RowEnds;
@@ -22,7 +23,8 @@ use basis::{PointForce, Vector3};
 use std::io::{Read, Result, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Fastest speed that the lattice carries, in cells per step: at Mach 0.7 the expansion in Mach has broken down.
+/// Fastest speed that the lattice carries, in cells per step: at Mach 0.7 the expansion in Mach has broken
+/// down.
 const FASTEST: f32 = 0.4;
 /// Largest departure of the density from one that it carries.
 const DENSEST: f32 = 0.5;

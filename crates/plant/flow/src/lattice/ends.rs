@@ -1,10 +1,11 @@
 //! What enters upstream and leaves downstream.
 //!
-//! A halo cell beyond each end of a row is given the populations that stream into the row. At the inlet they have
-//! the inflow's velocity and the density and stress of the first cell (non-equilibrium extrapolation: Guo, Zheng, Shi
-//! 2002, Phys. Fluids 14, 2007). At the outlet, density and velocity of the halo cell follow the characteristics that
-//! leave the box, and none enters but a weak pull to the undisturbed pressure (Poinsot, Lele 1992, J. Comput. Phys.
-//! 101, 104; in lattices: Izquierdo, Fueyo 2008, Phys. Rev. E 78, 046707).
+//! A halo cell beyond each end of a row is given the populations that stream into the row. At the inlet they
+//! have the inflow's velocity and the density and stress of the first cell (non-equilibrium extrapolation:
+//! Guo, Zheng, Shi 2002, Phys. Fluids 14, 2007). At the outlet, density and velocity of the halo cell follow
+//! the characteristics that leave the box, and none enters but a weak pull to the undisturbed pressure
+//! (Poinsot, Lele 1992, J. Comput. Phys. 101, 104; in lattices: Izquierdo, Fueyo 2008, Phys. Rev. E 78,
+//! 046707).
 
 use super::layout::write_direction;
 use super::settings::Ends;
@@ -12,7 +13,8 @@ use super::simd::{MAXIMUM_LANES, Simd};
 use super::stencil::{Moments, Stencil};
 use super::sweep::Step;
 
-/// State at the ends of one thread's rows, in lattice units; each array holds a value per row, padded to whole vectors.
+/// State at the ends of one thread's rows, in lattice units; each array holds a value per row, padded to
+/// whole vectors.
 pub(crate) enum RowEnds {
     /// The row's ends are each other's neighbours.
     Periodic,
@@ -133,7 +135,8 @@ unsafe fn gather<S: Simd, const Q: usize>(
     populations
 }
 
-/// Writes those of `populations` that go along x as `direction` to the halo cells at `x` (−1 is `usize::MAX`).
+/// Writes those of `populations` that go along x as `direction` to the halo cells at `x` (−1 is
+/// `usize::MAX`).
 #[inline(always)]
 unsafe fn scatter<S: Simd, L: Stencil<Q>, const Q: usize>(
     step: &Step<'_>,

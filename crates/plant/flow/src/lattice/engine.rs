@@ -1,7 +1,8 @@
 //! What holds the populations and moves them: the seam under [`Lattice`](super::Lattice).
 //!
-//! A lattice knows units, wind and what others ask of the air; an engine knows memory and the machine that it runs on. Today's
-//! is [`Cpu`](super::cpu::Cpu). One with memory of its own, on another device, implements the same few methods.
+//! A lattice knows units, wind and what others ask of the air; an engine knows memory and the machine that it
+//! runs on. Today's is [`Cpu`](super::cpu::Cpu). One with memory of its own, on another device, implements
+//! the same few methods.
 
 use super::forces::ForceBlock;
 use super::probe::RowState;
@@ -29,10 +30,12 @@ pub trait Engine: Send + Sync {
     /// Density less one, and the velocity components forces aside, of eight cells (x, y, z).
     fn read_cells(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4];
 
-    /// Hands `see` the force density on row number `row`, and perhaps on others, without what acts on every cell alike.
+    /// Hands `see` the force density on row number `row`, and perhaps on others, without what acts on every
+    /// cell alike.
     fn see_forces(&self, row: usize, see: &mut dyn FnMut(&[ForceBlock]));
 
-    /// Looks at every `stride`-th row from `first` for a cell that the lattice cannot carry on from; gives the cell and its speed.
+    /// Looks at every `stride`-th row from `first` for a cell that the lattice cannot carry on from; gives
+    /// the cell and its speed.
     fn look(&mut self, first: usize, stride: usize) -> Option<([usize; 3], f32)>;
 
     /// Writes all that time has changed but the steps made and the forces.

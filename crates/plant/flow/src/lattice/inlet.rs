@@ -7,7 +7,8 @@ use crate::Inflow;
 use basis::Vector3;
 use std::ops::Range;
 
-/// Steps between two times at which the inflow is sampled: wind crosses half a cell in them, so nothing that the grid resolves is lost.
+/// Steps between two times at which the inflow is sampled: wind crosses half a cell in them, so nothing that
+/// the grid resolves is lost.
 const STRIDE: u64 = 4;
 
 /// One thread's part of the inlet.

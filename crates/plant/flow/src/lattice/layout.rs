@@ -1,9 +1,10 @@
 //! Where a population lies in memory: slots, rows, padding, and what the sides do to addresses.
 //!
-//! One array holds slot after slot, each slot all cells, x fastest. Streaming is in place (AA pattern: Bailey,
-//! Myre, Walsh, Lilja, Saar 2009, ICPP, 550): an even step reads and writes the cell itself, an odd step its
-//! neighbours, and each address belongs to exactly one cell in either. A row's addresses are `Q` offsets, so that
-//! periodic and slip sides are nothing but other offsets: a mirrored direction is a mirrored slot.
+//! One array holds slot after slot, each slot all cells, x fastest. Streaming is in place (AA pattern:
+//! Bailey, Myre, Walsh, Lilja, Saar 2009, ICPP, 550): an even step reads and writes the cell itself, an odd
+//! step its neighbours, and each address belongs to exactly one cell in either. A row's addresses are `Q`
+//! offsets, so that periodic and slip sides are nothing but other offsets: a mirrored direction is a mirrored
+//! slot.
 //!
 //! | step | population f_q before the collision | population f_q after it |
 //! | --- | --- | --- |
@@ -14,7 +15,8 @@ use super::stencil::opposite;
 
 /// Values per cache line (–).
 pub(crate) const LINE: usize = 16;
-/// Values that each slot's start is shifted by against the page grid, so that nineteen streams do not fall into one cache set.
+/// Values that each slot's start is shifted by against the page grid, so that nineteen streams do not fall
+/// into one cache set.
 const SKEW: usize = 3 * LINE;
 /// Values per page (–).
 const PAGE: usize = 1024;
@@ -128,8 +130,8 @@ impl Layout {
         LINE + slot * self.slot_stride + z * self.plane_stride + y * self.row_stride
     }
 
-    /// The `Q` offsets that the populations of the row at (`y`, `z`) are read from and written to at x = 0; x is
-    /// added to all of them.
+    /// The `Q` offsets that the populations of the row at (`y`, `z`) are read from and written to at x = 0; x
+    /// is added to all of them.
     #[inline(always)]
     pub(crate) fn addresses<const Q: usize>(
         &self,
@@ -171,7 +173,8 @@ impl Layout {
     }
 }
 
-/// From `place` one step along `direction` on an axis of `n` rows: where it ends, and whether it was mirrored.
+/// From `place` one step along `direction` on an axis of `n` rows: where it ends, and whether it was
+/// mirrored.
 fn step(place: usize, direction: i8, n: usize, edge: Edge) -> (usize, bool) {
     match direction {
         1 if place + 1 == n => match edge {

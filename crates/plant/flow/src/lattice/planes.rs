@@ -24,9 +24,11 @@ impl FieldSource for Lattice {
 }
 
 impl Lattice {
-    /// The wind now on the plane that `axes` span at `position` (m) along the third axis, at the cells' centres.
+    /// The wind now on the plane that `axes` span at `position` (m) along the third axis, at the cells'
+    /// centres.
     ///
-    /// A position between two layers of cells is interpolated; beyond the outermost centres it is that layer's wind.
+    /// A position between two layers of cells is interpolated; beyond the outermost centres it is that
+    /// layer's wind.
     pub fn plane(&self, name: &str, axes: PlaneAxes, position: f64) -> Plane {
         let mut plane = self.empty_plane(name, axes, position);
         self.refresh(&mut plane);

@@ -77,7 +77,8 @@ impl Pool {
         shared.busy.store(self.threads.len(), Ordering::Relaxed);
         {
             let mut board = shared.board();
-            // SAFETY: only the lifetime changes; this function does not return before every thread is done with it.
+            // SAFETY: only the lifetime changes; this function does not return before every thread is done
+            // with it.
             let job = unsafe {
                 std::mem::transmute::<*const Job<'_>, *const Job<'static>>(std::ptr::from_ref(job))
             };

@@ -65,8 +65,8 @@ impl Lattice {
         self.scaling().to_si_pressure(interpolate(&excess, weight))
     }
 
-    /// On return `state` holds the row at (`y`, `z`) in lattice units; velocities are the physical ones, half-way
-    /// through the forces.
+    /// On return `state` holds the row at (`y`, `z`) in lattice units; velocities are the physical ones,
+    /// half-way through the forces.
     pub(super) fn read_row(&self, y: usize, z: usize, state: &mut RowState) {
         self.engine.read_row(self.row_at(y, z), state);
         let n = self.n_cells()[0];
@@ -97,7 +97,8 @@ impl Lattice {
         z * self.n_cells()[1] + y
     }
 
-    /// The cells around `position`: the lower ones, the upper ones, and how far it lies from the former to the latter (–).
+    /// The cells around `position`: the lower ones, the upper ones, and how far it lies from the former to
+    /// the latter (–).
     fn cell_cube(&self, position: Vector3) -> ([usize; 3], [usize; 3], [f64; 3]) {
         let periodic = [
             self.settings().ends == Ends::Periodic,

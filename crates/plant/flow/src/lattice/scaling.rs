@@ -18,7 +18,8 @@ pub struct Scaling {
 }
 
 impl Scaling {
-    /// Cells of edge `spacing` (m) from the corner `origin` (m), steps of `interval` (s), air of `air_density` (kg/m³).
+    /// Cells of edge `spacing` (m) from the corner `origin` (m), steps of `interval` (s), air of
+    /// `air_density` (kg/m³).
     pub fn new(origin: Vector3, spacing: f64, interval: f64, air_density: f64) -> Self {
         Self { origin, spacing, interval, air_density }
     }

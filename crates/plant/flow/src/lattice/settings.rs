@@ -49,8 +49,8 @@ pub struct LatticeSettings {
 
 /// Smagorinsky's constant in sheared flow away from walls.
 ///
-/// Deardorff (1970), J. Fluid Mech. 41, 453, found 0.10 for channel flow; free shear and wakes are run with 0.10 to
-/// 0.14, isotropic turbulence with 0.17 (Lilly 1967).
+/// Deardorff (1970), J. Fluid Mech. 41, 453, found 0.10 for channel flow; free shear and wakes are run with
+/// 0.10 to 0.14, isotropic turbulence with 0.17 (Lilly 1967).
 pub const DEFAULT_SMAGORINSKY: f64 = 0.12;
 
 impl LatticeSettings {

@@ -44,8 +44,9 @@ impl Backend {
 
 /// A vector of `f32`, one lane per cell.
 ///
-/// Every implementation is `#[inline(always)]`, so that a kernel generic over it compiles into the instructions
-/// of whichever `#[target_feature]` function it is inlined into; a closure in between would not be.
+/// Every implementation is `#[inline(always)]`, so that a kernel generic over it compiles into the
+/// instructions of whichever `#[target_feature]` function it is inlined into; a closure in between would not
+/// be.
 ///
 /// # Safety of use
 /// Values may only be made on a machine that has the back-end's instructions.

@@ -16,8 +16,8 @@ const LOOKS: u64 = 8;
 
 /// A box of air under lattice-Boltzmann large-eddy simulation.
 ///
-/// Populations, and what the boundaries remember, are its [`Engine`]'s. Time is the number of steps times the interval. The same
-/// settings, inflow and forces give the same bits on any number of threads.
+/// Populations, and what the boundaries remember, are its [`Engine`]'s. Time is the number of steps times the
+/// interval. The same settings, inflow and forces give the same bits on any number of threads.
 pub struct Lattice {
     settings: LatticeSettings,
     scaling: Scaling,
@@ -34,7 +34,8 @@ impl Lattice {
     /// Air that moves as `inflow` does at time zero, at every cell, on this machine's processor.
     ///
     /// # Errors
-    /// [`LatticeError`] when the settings break an assumption of the method or ask for more memory than there is.
+    /// [`LatticeError`] when the settings break an assumption of the method or ask for more memory than there
+    /// is.
     pub fn new(settings: LatticeSettings, inflow: Arc<dyn Inflow>) -> Result<Self, LatticeError> {
         settings.check()?;
         let engine = Box::new(Cpu::new(&settings)?);

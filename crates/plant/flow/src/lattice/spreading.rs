@@ -1,9 +1,10 @@
 //! From point forces to forces on cells: Gaussian weights that keep total force and moment.
 //!
-//! A point force is spread with the separable Gaussian of its smearing length ε, one factor per axis, over the cells
-//! whose centres lie within [`REACH`] ε. Cutting the tail, sampling at cell centres and a nearby wall all spoil sum and
-//! first moment of the weights, so each factor wᵢ = exp(−(xᵢ − x)²/ε²) becomes wᵢ (a + b (xᵢ − x)), with a and b such that
-//! Σ wᵢ = 1 and Σ wᵢ xᵢ = x. The products of such factors conserve force and moment exactly.
+//! A point force is spread with the separable Gaussian of its smearing length ε, one factor per axis, over
+//! the cells whose centres lie within [`REACH`] ε. Cutting the tail, sampling at cell centres and a nearby
+//! wall all spoil sum and first moment of the weights, so each factor wᵢ = exp(−(xᵢ − x)²/ε²) becomes wᵢ (a +
+//! b (xᵢ − x)), with a and b such that Σ wᵢ = 1 and Σ wᵢ xᵢ = x. The products of such factors conserve force
+//! and moment exactly.
 
 use super::forces::ForceBlock;
 use super::scaling::Scaling;
@@ -68,8 +69,8 @@ impl Spreader {
         }
     }
 
-    /// The same spreader, filling only cells on `levels` along z, with the values that they have without this: so
-    /// that threads share the work.
+    /// The same spreader, filling only cells on `levels` along z, with the values that they have without
+    /// this: so that threads share the work.
     pub fn on_levels(mut self, levels: Range<usize>) -> Self {
         self.levels = levels;
         self
@@ -77,9 +78,9 @@ impl Spreader {
 
     /// Boxes of cells, none overlapping another, that carry `forces` in lattice units.
     ///
-    /// Points whose reaches overlap share a box. Near a wall the weights stay inside the domain; a point outside the
-    /// domain by more than its reach carries nothing. The result depends on the order of `forces` only by rounding, and
-    /// the same `forces` give the same bits.
+    /// Points whose reaches overlap share a box. Near a wall the weights stay inside the domain; a point
+    /// outside the domain by more than its reach carries nothing. The result depends on the order of `forces`
+    /// only by rounding, and the same `forces` give the same bits.
     pub fn spread(&mut self, forces: &[PointForce]) -> &[ForceBlock] {
         self.reaches.clear();
         for point in forces {
@@ -103,7 +104,8 @@ impl Spreader {
         &self.blocks[..self.boxes.len()]
     }
 
-    /// Cells whose centres lie within [`REACH`] smearing lengths of `point`, and never fewer than the two around it.
+    /// Cells whose centres lie within [`REACH`] smearing lengths of `point`, and never fewer than the two
+    /// around it.
     fn reach(&self, point: &PointForce) -> CellBox {
         let centre = self.scaling.to_lattice_position(point.position);
         let radius = (REACH * self.scaling.to_lattice_length(point.smearing_length)).max(1.0);
@@ -182,9 +184,11 @@ impl Spreader {
     }
 }
 
-/// Writes into `weights` those of `n` cells, the first `offset` cells from the point, for a Gaussian `width` cells wide.
+/// Writes into `weights` those of `n` cells, the first `offset` cells from the point, for a Gaussian `width`
+/// cells wide.
 ///
-/// On return they sum to one and their first moment about the point is zero, unless fewer than two cells are reached.
+/// On return they sum to one and their first moment about the point is zero, unless fewer than two cells are
+/// reached.
 fn axis_weights(offset: f64, width: f64, n: usize, weights: &mut Vec<f64>) {
     weights.clear();
     let inverse_width = 1.0 / width;
@@ -282,7 +286,8 @@ mod tests {
             let expected: Vector3 = points.iter().map(|p| p.force).sum();
             let expected_moment: Vector3 = points.iter().map(|p| p.position.cross(p.force)).sum();
             let scale: f64 = points.iter().map(|p| p.force.length()).sum();
-            // f32 cells: a few units in the last place of the largest terms, times a lever of the domain's size.
+            // f32 cells: a few units in the last place of the largest terms, times a lever of the domain's
+            // size.
             prop_assert!((total - expected).length() < 3e-6 * scale);
             prop_assert!((moment - expected_moment).length() < 3e-6 * scale * 600.0);
         }

@@ -1,8 +1,8 @@
 //! The state written out and read back, bit for bit.
 //!
-//! Little-endian: magic, version, cells along x, y, z, populations a cell, steps made; forces of the last step
-//! (position, force, smearing length each); then what the engine writes, which on the processor is the outlet halo row by row, the
-//! filtered wind at the ground, all populations.
+//! Little-endian: magic, version, cells along x, y, z, populations a cell, steps made; forces of the last
+//! step (position, force, smearing length each); then what the engine writes, which on the processor is the
+//! outlet halo row by row, the filtered wind at the ground, all populations.
 //! Everything else follows from settings and inflow.
 
 use super::solver::Lattice;
@@ -15,10 +15,12 @@ const VERSION: u64 = 1;
 const MOST_FORCES: u64 = 1 << 24;
 
 impl Lattice {
-    /// Writes the state; a lattice of the same settings that [reads](Self::read_state) it goes on with the same bits.
+    /// Writes the state; a lattice of the same settings that [reads](Self::read_state) it goes on with the
+    /// same bits.
     ///
     /// # Errors
-    /// Those of `writer`, and [`ErrorKind::InvalidData`] when the field has diverged: such a state is no use to anyone.
+    /// Those of `writer`, and [`ErrorKind::InvalidData`] when the field has diverged: such a state is no use
+    /// to anyone.
     pub fn write_state(&mut self, writer: &mut dyn Write) -> Result<()> {
         self.check().map_err(|error| Error::new(ErrorKind::InvalidData, error))?;
         writer.write_all(&MAGIC)?;
@@ -40,8 +42,8 @@ impl Lattice {
     /// Reads a state that [`write_state`](Self::write_state) wrote from a lattice of the same settings.
     ///
     /// # Errors
-    /// Those of `reader`, and [`ErrorKind::InvalidData`] when it is no state or one of another grid. The field is
-    /// undefined after an error and must be read or built again.
+    /// Those of `reader`, and [`ErrorKind::InvalidData`] when it is no state or one of another grid. The
+    /// field is undefined after an error and must be read or built again.
     pub fn read_state(&mut self, reader: &mut dyn Read) -> Result<()> {
         let mut magic = [0; 8];
         reader.read_exact(&mut magic)?;

@@ -9,7 +9,8 @@ pub(crate) struct Moments<S> {
     pub(crate) density_excess: S,
     /// One over density.
     pub(crate) per_density: S,
-    /// Momentum per cell: kept beside the velocity so that a collision conserves it without a rounding to and fro.
+    /// Momentum per cell: kept beside the velocity so that a collision conserves it without a rounding to and
+    /// fro.
     pub(crate) momentum: [S; 3],
     /// Momentum over density.
     pub(crate) velocity: [S; 3],
@@ -36,7 +37,8 @@ impl<S: Simd> Moments<S> {
 
 /// A velocity set of `Q` directions.
 ///
-/// Populations are shifted: slot q holds f_q − w_q, which keeps seven digits for the departure from air at rest.
+/// Populations are shifted: slot q holds f_q − w_q, which keeps seven digits for the departure from air at
+/// rest.
 pub(crate) trait Stencil<const Q: usize> {
     /// Directions, cells per step; the opposite of an odd index is the next one.
     const DIRECTIONS: [[i8; 3]; Q];
@@ -44,7 +46,8 @@ pub(crate) trait Stencil<const Q: usize> {
     /// Density, velocity and stress of shifted populations.
     fn moments<S: Simd>(populations: &[S; Q]) -> Moments<S>;
 
-    /// Shifted populations with these moments, third central moments zero and higher ones those of a Gaussian.
+    /// Shifted populations with these moments, third central moments zero and higher ones those of a
+    /// Gaussian.
     fn populations<S: Simd>(moments: &Moments<S>) -> [S; Q];
 }
 
@@ -87,7 +90,8 @@ impl Stencil<19> for D3Q19 {
 
     #[inline(always)]
     fn moments<S: Simd>(f: &[S; 19]) -> Moments<S> {
-        // Symbols: s and d are sums and differences of opposite populations; m raw moments; the rest as in `Moments`.
+        // Symbols: s and d are sums and differences of opposite populations; m raw moments; the rest as in
+        // `Moments`.
         let (sx, dx) = (f[1] + f[2], f[1] - f[2]);
         let (sy, dy) = (f[3] + f[4], f[3] - f[4]);
         let (sz, dz) = (f[5] + f[6], f[5] - f[6]);
@@ -123,7 +127,8 @@ impl Stencil<19> for D3Q19 {
 
     #[inline(always)]
     fn populations<S: Simd>(moments: &Moments<S>) -> [S; 19] {
-        // Symbols: m_ab.. raw moments of the shifted populations, k_aa central ones; see docs of the collision.
+        // Symbols: m_ab.. raw moments of the shifted populations, k_aa central ones; see docs of the
+        // collision.
         let [jx, jy, jz] = moments.momentum;
         let [ux, uy, uz] = moments.velocity;
         let [sxx, syy, szz, sxy, sxz, syz] = moments.stress;
@@ -151,7 +156,8 @@ impl Stencil<19> for D3Q19 {
         let m_yyz = u2y.mul_add(syz, uz * full_yy);
         let m_xzz = u2z.mul_add(sxz, ux * full_zz);
         let m_yzz = u2z.mul_add(syz, uy * full_zz);
-        // Fourth: k_aabb = (k_aa k_bb + 2 k_ab²)/rho, then m_aabb = k_aabb + u_a² m_bb + u_b² k_aa + 4 u_a u_b k_ab.
+        // Fourth: k_aabb = (k_aa k_bb + 2 k_ab²)/rho, then m_aabb = k_aabb + u_a² m_bb + u_b² k_aa + 4 u_a
+        // u_b k_ab.
         let ninth = third * one_third;
         let (k_xx, k_yy) = (rho.mul_add(one_third, sxx), rho.mul_add(one_third, syy));
         let product_xy = (two * sxy).mul_add(sxy, sxx * syy) * per_density;

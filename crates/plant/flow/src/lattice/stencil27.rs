@@ -1,4 +1,5 @@
-//! Rest, faces, edges and corners of the cube: twice the cost of D3Q19, kept to judge it by (docs/validation/flow.md).
+//! Rest, faces, edges and corners of the cube: twice the cost of D3Q19, kept to judge it by
+//! (docs/validation/flow.md).
 
 #![expect(
     clippy::needless_range_loop,
@@ -35,7 +36,8 @@ impl Stencil<27> for D3Q27 {
 
     #[inline(always)]
     fn moments<S: Simd>(f: &[S; 27]) -> Moments<S> {
-        // Corners count as two edges each, in turn: what D3Q19 sums over edges is here summed over edges and corners.
+        // Corners count as two edges each, in turn: what D3Q19 sums over edges is here summed over edges and
+        // corners.
         let (s19, d19) = (f[19] + f[20], f[19] - f[20]);
         let (s21, d21) = (f[21] + f[22], f[21] - f[22]);
         let (s23, d23) = (f[23] + f[24], f[23] - f[24]);
@@ -119,8 +121,8 @@ const fn place(component: i8) -> usize {
 /// Raw moments, orders 0 to 2 along each axis, of shifted populations with a Gaussian's central moments.
 #[inline(always)]
 fn raw_moments<S: Simd>(moments: &Moments<S>) -> [[[S; 3]; 3]; 3] {
-    // Symbols: k central moments, a to c components of the velocity; cumulants beyond the second vanish, so odd
-    // central moments do, and even ones follow from the second (Isserlis).
+    // Symbols: k central moments, a to c components of the velocity; cumulants beyond the second vanish, so
+    // odd central moments do, and even ones follow from the second (Isserlis).
     let [jx, jy, jz] = moments.momentum;
     let [a, b, c] = moments.velocity;
     let [sxx, syy, szz, sxy, sxz, syz] = moments.stress;

@@ -2,8 +2,8 @@
 //!
 //! # Safety
 //! The sweep writes through a raw pointer that all threads share. It is sound because each address belongs to
-//! exactly one cell in a step of either parity (a test of [`Layout`] shows it), a halo value to exactly one row's
-//! end, and each row to exactly one thread.
+//! exactly one cell in a step of either parity (a test of [`Layout`] shows it), a halo value to exactly one
+//! row's end, and each row to exactly one thread.
 
 use super::collision::{Relaxation, collide, relaxation_rate};
 use super::ends::{self, RowEnds};
@@ -13,9 +13,9 @@ use super::simd::{MAXIMUM_LANES, Simd};
 use super::stencil::{Moments, Stencil};
 use std::ops::Range;
 
-/// How far ahead of a cell its populations are prefetched, in values: nineteen streams are more than a processor's own
-/// prefetching follows, and a miss is longer than the cells that it can look ahead to. Rows follow one another in
-/// memory, so that what is prefetched beyond a row's end is the next row's start.
+/// How far ahead of a cell its populations are prefetched, in values: nineteen streams are more than a
+/// processor's own prefetching follows, and a miss is longer than the cells that it can look ahead to. Rows
+/// follow one another in memory, so that what is prefetched beyond a row's end is the next row's start.
 const AHEAD: usize = 8 * LINE;
 
 /// What all rows of a step share, in lattice units.
@@ -43,7 +43,8 @@ pub(crate) struct Share {
     pub(crate) rows: Range<usize>,
     /// State at the rows' ends.
     pub(crate) ends: RowEnds,
-    /// Force density of the wall on the rows at the ground among `rows`: x and y components, `row_stride` values a row.
+    /// Force density of the wall on the rows at the ground among `rows`: x and y components, `row_stride`
+    /// values a row.
     pub(crate) wall: [Vec<f32>; 2],
     /// Force density on one row, padded to whole vectors.
     pub(crate) force: [Vec<f32>; 3],
@@ -99,7 +100,8 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
     }
 }
 
-/// On return `force` holds the force density on the cells of a row in the range that is given back, and perhaps around it.
+/// On return `force` holds the force density on the cells of a row in the range that is given back, and
+/// perhaps around it.
 ///
 /// It is the row at (`y`, `z`), number `number` of the thread's rows.
 #[inline(always)]
@@ -190,11 +192,12 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
     let times = step.relaxation_times.as_ptr();
     let force = [force[0].as_ptr(), force[1].as_ptr(), force[2].as_ptr()];
     let mut x = range.start;
-    // SAFETY: whole vectors of cells of the row; its padding makes the last one readable, and only cells of the row are written.
+    // SAFETY: whole vectors of cells of the row; its padding makes the last one readable, and only cells of
+    // the row are written.
     unsafe {
         if x + S::LANES <= range.end {
-            // The state of the next vector is found before this one is written back: the two share no address, and
-            // what one waits for (divisions, roots) the other fills.
+            // The state of the next vector is found before this one is written back: the two share no
+            // address, and what one waits for (divisions, roots) the other fills.
             let mut now = before::<S, L, Q, ODD>(&places, x, times, subgrid);
             while x + 2 * S::LANES <= range.end {
                 let next = before::<S, L, Q, ODD>(&places, x + S::LANES, times, subgrid);

@@ -1,10 +1,11 @@
 //! The ground's hold on the wind, from the logarithmic law.
 //!
-//! The stress at the wall goes with the velocity a little above it: τ = (κ / ln(h/z₀))² |⟨u⟩| u, where ⟨u⟩ is u
-//! filtered in time, so that the mean obeys the logarithmic law and the fluctuations go with the wind (Schumann 1975,
-//! J. Comput. Phys. 18, 376; Grötzbach 1987, Encyclopedia of Fluid Mechanics 6, 1337; filter in time instead of planes: Yang,
-//! Park, Moin 2017, Phys. Rev. Fluids 2, 104601). The stress acts as a force on the lowest cells, above a ground that
-//! air slips along; what the ground takes is what the air loses, to rounding.
+//! The stress at the wall goes with the velocity a little above it: τ = (κ / ln(h/z₀))² |⟨u⟩| u, where ⟨u⟩ is
+//! u filtered in time, so that the mean obeys the logarithmic law and the fluctuations go with the wind
+//! (Schumann 1975, J. Comput. Phys. 18, 376; Grötzbach 1987, Encyclopedia of Fluid Mechanics 6, 1337; filter
+//! in time instead of planes: Yang, Park, Moin 2017, Phys. Rev. Fluids 2, 104601). The stress acts as a force
+//! on the lowest cells, above a ground that air slips along; what the ground takes is what the air loses, to
+//! rounding.
 
 use super::engine::Rows;
 use super::layout::Layout;
@@ -16,7 +17,8 @@ use super::sweep::Share;
 /// Von Kármán's constant (–).
 pub const VON_KARMAN: f64 = 0.4;
 
-/// Cell above the ground whose wind sets the stress: the lowest one has no resolved turbulence yet (Kawai, Larsson 2012, Phys. Fluids 24, 015105).
+/// Cell above the ground whose wind sets the stress: the lowest one has no resolved turbulence yet (Kawai,
+/// Larsson 2012, Phys. Fluids 24, 015105).
 const MATCHING_CELL: usize = 1;
 
 /// The logarithmic law in lattice units.
@@ -30,7 +32,8 @@ pub(crate) struct Wall {
     weight: f32,
 }
 
-/// One thread's filtered velocities above its rows at the ground: x and y components, `row_stride` values a row.
+/// One thread's filtered velocities above its rows at the ground: x and y components, `row_stride` values a
+/// row.
 pub(crate) struct WallMemory {
     pub(crate) filtered: [Vec<f32>; 2],
     state: RowState,
@@ -62,7 +65,8 @@ impl Wall {
         })
     }
 
-    /// Takes the velocities above the ground in; on return `share` holds the force of the wall on its rows at the ground.
+    /// Takes the velocities above the ground in; on return `share` holds the force of the wall on its rows at
+    /// the ground.
     pub(crate) fn update(
         &self,
         rows: &impl Rows,

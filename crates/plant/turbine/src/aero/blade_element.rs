@@ -1,4 +1,5 @@
-//! Blade-element momentum theory in one annulus: the inflow angle at which blade force and change of momentum balance.
+//! Blade-element momentum theory in one annulus: the inflow angle at which blade force and change of momentum
+//! balance.
 //!
 //! Source: Ning, "A simple solution method for the blade element momentum equations with guaranteed
 //! convergence", Wind Energy 17, 2014: one residual in the inflow angle φ, bracketed, never diverging.
@@ -10,7 +11,8 @@ use super::SectionCoefficients;
 use std::f64::consts::{FRAC_PI_2, PI};
 pub use warm_start::{Factors, WarmStart, solve_near};
 
-/// Smallest inflow angle of the search (rad): there the drag of any section that has some outweighs the momentum.
+/// Smallest inflow angle of the search (rad): there the drag of any section that has some outweighs the
+/// momentum.
 const SMALLEST_ANGLE: f64 = 1e-15;
 /// Tolerance of the inflow angle (rad).
 const ANGLE_TOLERANCE: f64 = 1e-13;
@@ -54,10 +56,12 @@ pub struct Annulus {
     pub chord: f64,
     /// Twist plus pitch, positive to feather (rad).
     pub section_pitch: f64,
-    /// Local cone angle (rad) in the momentum balance: angle of the blade's line out of the plane across the shaft.
+    /// Local cone angle (rad) in the momentum balance: angle of the blade's line out of the plane across the
+    /// shaft.
     ///
-    /// It enters by its squared cosine: one cosine for the component of the blade force along the shaft, one for the component
-    /// of the induced velocity normal to the blade. Zero balances momentum normal to the blade instead, as most programs do.
+    /// It enters by its squared cosine: one cosine for the component of the blade force along the shaft, one
+    /// for the component of the induced velocity normal to the blade. Zero balances momentum normal to the
+    /// blade instead, as most programs do.
     pub cone_angle: f64,
 }
 
@@ -92,7 +96,8 @@ pub struct Inflow {
 }
 
 impl Inflow {
-    /// Force per metre of blade (N/m) in air of `air_density` (kg/m³) on `chord` (m): downwind, and along the rotation.
+    /// Force per metre of blade (N/m) in air of `air_density` (kg/m³) on `chord` (m): downwind, and along the
+    /// rotation.
     pub fn forces(&self, air_density: f64, chord: f64) -> [f64; 2] {
         let scale = 0.5 * air_density * self.relative_speed * self.relative_speed * chord;
         [scale * self.normal_coefficient, scale * self.tangential_coefficient]
@@ -100,7 +105,8 @@ impl Inflow {
 }
 
 /// Inflow of one annulus in `axial` wind (m/s, downwind) and `tangential` wind (m/s, against the
-/// rotation, ωr of a turning blade), both without induction; `section` gives coefficients at an angle of attack (rad).
+/// rotation, ωr of a turning blade), both without induction; `section` gives coefficients at an angle of
+/// attack (rad).
 ///
 /// Always returns a state in which the residual vanishes, for any sign of either wind, as long as the
 /// section has some drag: then the residual runs from −∞ at φ → 0 to ∞ at φ → 180°. Where momentum theory
@@ -120,7 +126,8 @@ pub fn solve(
     }
 }
 
-/// Prandtl's loss factor (–) where the relative wind meets the plane of rotation at an angle of that `sine` (–, positive).
+/// Prandtl's loss factor (–) where the relative wind meets the plane of rotation at an angle of that `sine`
+/// (–, positive).
 pub fn loss_factor(annulus: &Annulus, theory: Theory, sine: f64) -> f64 {
     let Annulus { radius, hub_radius, tip_radius, .. } = *annulus;
     let half_blades = 0.5 * annulus.n_blades as f64;
@@ -257,7 +264,8 @@ impl<'a, Section: Fn(f64) -> SectionCoefficients> Ring<'a, Section> {
     }
 }
 
-/// Axial induction (–) from the loading κ = a/(1 − a) of momentum theory; above a = 0.4 from Buhl's parabola, which meets it smoothly.
+/// Axial induction (–) from the loading κ = a/(1 − a) of momentum theory; above a = 0.4 from Buhl's parabola,
+/// which meets it smoothly.
 pub(super) fn axial_induction(k: f64, loss: f64) -> f64 {
     if k <= 2.0 / 3.0 {
         return k / (1.0 + k);

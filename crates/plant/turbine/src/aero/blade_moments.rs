@@ -1,9 +1,11 @@
-//! A reduced dynamic blade-element momentum model: from the wind at each blade to the moment at each blade root.
+//! A reduced dynamic blade-element momentum model: from the wind at each blade to the moment at each blade
+//! root.
 //!
-//! The measurement function of van Vondelen et al. (2025), Eq. 13, and Coquelet et al. (2024, Wind Energ. Sci. 9): winds,
-//! rotor speed and pitch in, out-of-plane moments out. Blades are stiff, each in a uniform wind of its own; sections respond
-//! at once and induction follows the chosen model. [`BladeMoments::moments`] does not change the wake, so that an estimator
-//! can evaluate neighbouring winds before [`BladeMoments::advance`] advances the wake with the estimated one.
+//! The measurement function of van Vondelen et al. (2025), Eq. 13, and Coquelet et al. (2024, Wind Energ.
+//! Sci. 9): winds, rotor speed and pitch in, out-of-plane moments out. Blades are stiff, each in a uniform
+//! wind of its own; sections respond at once and induction follows the chosen model.
+//! [`BladeMoments::moments`] does not change the wake, so that an estimator can evaluate neighbouring winds
+//! before [`BladeMoments::advance`] advances the wake with the estimated one.
 
 use super::Induction;
 use super::blade_element::Theory;
@@ -147,10 +149,11 @@ impl BladeMoments {
         })
     }
 
-    /// The [`BladeMoments::moments`] and their derivatives by their own blade's wind (N m/(m/s)), the wake held.
+    /// The [`BladeMoments::moments`] and their derivatives by their own blade's wind (N m/(m/s)), the wake
+    /// held.
     ///
-    /// With the wake held a blade's moment does not depend on the other blades' winds, so this is the whole Jacobian. The
-    /// polars are linear between their rows, so derivatives jump at the rows.
+    /// With the wake held a blade's moment does not depend on the other blades' winds, so this is the whole
+    /// Jacobian. The polars are linear between their rows, so derivatives jump at the rows.
     pub fn moments_with_slopes(
         &self,
         conditions: &Conditions,
@@ -173,9 +176,10 @@ impl BladeMoments {
 
     /// Induction at the blades from sectors fixed in the non-rotating frame.
     ///
-    /// `still` is a wake whose blade k represents the sector at azimuth 2π k/n, advanced with the wind and pitch there. On
-    /// return `met` holds the induction at each blade with blade 1 at `azimuth` (rad): the average, tilt and yaw components of
-    /// the sectors' induced velocities at that blade, tilt and yaw times `share` (–).
+    /// `still` is a wake whose blade k represents the sector at azimuth 2π k/n, advanced with the wind and
+    /// pitch there. On return `met` holds the induction at each blade with blade 1 at `azimuth` (rad): the
+    /// average, tilt and yaw components of the sectors' induced velocities at that blade, tilt and yaw times
+    /// `share` (–).
     pub fn meet(&self, still: &Wake, azimuth: f64, share: f64, met: &mut Wake) {
         let n_blades = self.n_blades;
         let n_parts = self.parts.len();

@@ -1,13 +1,14 @@
-//! Dynamic stall: unsteady lift and drag of a section, with the shed wake's delay in attached flow and lagged trailing-edge
-//! separation.
+//! Dynamic stall: unsteady lift and drag of a section, with the shed wake's delay in attached flow and lagged
+//! trailing-edge separation.
 //!
-//! Source: Hansen, Gaunaa, Madsen, "A Beddoes-Leishman type dynamic stall model in state-space and indicial formulations",
-//! Risø-R-1354, 2004 (four states per section; AeroDyn's `UAMod` 4), with the lift response of a flat plate after Jones,
-//! NACA report 681, 1940. Its parameters follow from the section's polar.
+//! Source: Hansen, Gaunaa, Madsen, "A Beddoes-Leishman type dynamic stall model in state-space and indicial
+//! formulations", Risø-R-1354, 2004 (four states per section; AeroDyn's `UAMod` 4), with the lift response of
+//! a flat plate after Jones, NACA report 681, 1940. Its parameters follow from the section's polar.
 //!
-//! Inputs are those of one section: angle of attack, relative speed, chord, rotation. A rotor in prescribed wind uses the
-//! model, and so can one in a flow that resolves its induction. That flow contains, smeared, part of the wake that the
-//! attached-flow delay models; [`Attached::Steady`] leaves this delay out and keeps that of separation.
+//! Inputs are those of one section: angle of attack, relative speed, chord, rotation. A rotor in prescribed
+//! wind uses the model, and so can one in a flow that resolves its induction. That flow contains, smeared,
+//! part of the wake that the attached-flow delay models; [`Attached::Steady`] leaves this delay out and keeps
+//! that of separation.
 
 use super::{Polar, SectionCoefficients};
 use basis::angle::wrap_to_half_turn;
@@ -20,7 +21,8 @@ const RATES: [f64; 2] = [0.0455, 0.3];
 /// Delay of the leading edge's pressure, and of the separation point, in half chords travelled (–).
 const PRESSURE_DELAY: f64 = 1.7;
 const SEPARATION_DELAY: f64 = 3.0;
-/// Angles of attack (rad) up to which the model holds fully, and beyond which the polar alone does; blended in between.
+/// Angles of attack (rad) up to which the model holds fully, and beyond which the polar alone does; blended
+/// in between.
 const FULL: f64 = 45.0 * PI / 180.0;
 const NONE: f64 = 60.0 * PI / 180.0;
 /// Range of angles from the zero-lift angle (rad) in which the slope of attached flow is searched.
@@ -29,7 +31,8 @@ const LINEAR: [f64; 2] = [1.5 * PI / 180.0, 8.0 * PI / 180.0];
 const ZERO_LIFT: f64 = 15.0 * PI / 180.0;
 /// Least slope of lift (1/rad) of an aerofoil; sections with less are cylinders.
 const LEAST_SLOPE: f64 = 1.0;
-/// Width around the zero-lift angle (rad) in which flow counts as attached: lift over its linear law is 0/0 there.
+/// Width around the zero-lift angle (rad) in which flow counts as attached: lift over its linear law is 0/0
+/// there.
 const ATTACHED_WIDTH: f64 = PI / 180.0;
 /// Least relative speed (m/s) that delays are computed with.
 const LEAST_SPEED: f64 = 0.01;
@@ -100,10 +103,11 @@ impl StallState {
 }
 
 impl DynamicStall {
-    /// Parameters from `polar`; None for a section that is no aerofoil, such as a cylinder, whose polar holds at once.
+    /// Parameters from `polar`; None for a section that is no aerofoil, such as a cylinder, whose polar holds
+    /// at once.
     ///
-    /// The zero-lift angle is where lift rises through zero nearest to 0°, within 15°; the slope is the steepest line
-    /// from there to the polar between 1.5° and 8° on either side.
+    /// The zero-lift angle is where lift rises through zero nearest to 0°, within 15°; the slope is the
+    /// steepest line from there to the polar between 1.5° and 8° on either side.
     pub fn new(polar: &Polar, attached: Attached) -> Option<Self> {
         let rows: Vec<(f64, SectionCoefficients)> = polar.rows().collect();
         let zero_lift_angle = rows
@@ -151,7 +155,8 @@ impl DynamicStall {
         }
     }
 
-    /// Coefficients of a section of `polar` in `stream`; on return `state` has been advanced by `interval` (s) to this instant.
+    /// Coefficients of a section of `polar` in `stream`; on return `state` has been advanced by `interval`
+    /// (s) to this instant.
     ///
     /// Exact for inputs held at the mean of the interval's ends, so that any interval is stable.
     pub fn advance(
@@ -211,8 +216,8 @@ impl DynamicStall {
         if share < 1.0 { fade(dynamic, polar.at(angle_of_attack), share) } else { dynamic }
     }
 
-    /// Coefficients at the geometric and the effective angle of attack (rad) of a section whose flow is attached to the share
-    /// `x4` (–), with `apparent_mass` as a lift coefficient (–).
+    /// Coefficients at the geometric and the effective angle of attack (rad) of a section whose flow is
+    /// attached to the share `x4` (–), with `apparent_mass` as a lift coefficient (–).
     fn separating(
         &self,
         [angle_of_attack, alpha_e]: [f64; 2],
@@ -250,7 +255,8 @@ impl DynamicStall {
         (2.0 * root - 1.0) * (2.0 * root - 1.0)
     }
 
-    /// (1 + √f)/2 of Kirchhoff's flow (–), between one half (separated) and one, from `lift` at `angle` (rad) and that of attached flow, `linear`.
+    /// (1 + √f)/2 of Kirchhoff's flow (–), between one half (separated) and one, from `lift` at `angle` (rad)
+    /// and that of attached flow, `linear`.
     fn separation_root(&self, lift: f64, linear: f64, angle: f64) -> f64 {
         if angle.abs() >= NONE {
             return 0.5;

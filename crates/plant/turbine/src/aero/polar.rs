@@ -4,7 +4,7 @@ use basis::angle::wrap_to_half_turn;
 use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
-/// Width of a bucket of the look-up (rad): a quarter of a degree, narrower than the spacing of published tables.
+/// Width of a bucket of the look-up (rad): a quarter of a degree, less than the spacing of published tables.
 const BUCKET: f64 = PI / 720.0;
 const N_BUCKETS: usize = 1440;
 /// How far a table may end from ±180° (rad); rounding in published tables, no more.
@@ -45,8 +45,8 @@ pub struct UnsteadyConstants {
     pub zero_lift_drag: f64,
     /// Moment coefficient without lift C_m0 (–).
     pub zero_lift_moment: f64,
-    /// Time constants T_f0 (separation), T_V0 (vortex decay), T_p (leading-edge pressure), T_VL (vortex passage),
-    /// in half chords travelled (–); absent where the source leaves them to the model's own values.
+    /// Time constants T_f0 (separation), T_V0 (vortex decay), T_p (leading-edge pressure), T_VL (vortex
+    /// passage), in half chords travelled (–); absent where the source leaves them to the model's own values.
     pub time_constants: Option<[f64; 4]>,
     /// Amplitudes A₁, A₂, A₅ of the indicial response (–); absent likewise.
     pub indicial_amplitudes: Option<[f64; 3]>,
@@ -141,7 +141,8 @@ pub struct Polar {
 }
 
 impl Polar {
-    /// A polar from columns of one length: angles of attack (rad, rising, −π to π), lift, drag and moment coefficients (–).
+    /// A polar from columns of one length: angles of attack (rad, rising, −π to π), lift, drag and moment
+    /// coefficients (–).
     ///
     /// Where the coefficients at −π and π differ, which is the same flow, both take the mean.
     ///
@@ -187,7 +188,8 @@ impl Polar {
         Self { name, reynolds_number: None, unsteady: None, knots, first_knots }
     }
 
-    /// The polar that lies between `inner` and `outer`, with a share of `share` (–, 0 to 1) of the latter; without constants of unsteady flow.
+    /// The polar that lies between `inner` and `outer`, with a share of `share` (–, 0 to 1) of the latter;
+    /// without constants of unsteady flow.
     ///
     /// It has a row wherever one of the two has one, so that it is exactly their blend at every angle.
     pub fn between(inner: &Self, outer: &Self, share: f64) -> Self {
@@ -223,8 +225,8 @@ impl Polar {
         }
     }
 
-    /// Slopes of the coefficients over the angle of attack (1/rad) at `angle_of_attack` (rad, any turn): those of the
-    /// straight line between the table's rows.
+    /// Slopes of the coefficients over the angle of attack (1/rad) at `angle_of_attack` (rad, any turn):
+    /// those of the straight line between the table's rows.
     pub fn slopes_at(&self, angle_of_attack: f64) -> SectionCoefficients {
         let (low, high, _) = self.around(angle_of_attack);
         SectionCoefficients {

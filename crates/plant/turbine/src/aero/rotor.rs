@@ -1,5 +1,5 @@
-//! Blade-element momentum aerodynamics of a flexible rotor in a prescribed wind: dynamic inflow, skewed wake, dynamic stall,
-//! tower.
+//! Blade-element momentum aerodynamics of a flexible rotor in a prescribed wind: dynamic inflow, skewed wake,
+//! dynamic stall, tower.
 
 use super::blade_element::Theory;
 use super::dynamic_stall::{self, Stream};
@@ -31,8 +31,9 @@ pub struct BemSettings {
 
 /// The blades of a rotor, all alike; parameters only.
 ///
-/// Sections see the flow normal to the local blade line, coned, prebent and bent; flow along it has no effect. Shaft tilt, yaw
-/// and motion of the tower enter through the components of the wind and the velocities of the elements.
+/// Sections see the flow normal to the local blade line, coned, prebent and bent; flow along it has no
+/// effect. Shaft tilt, yaw and motion of the tower enter through the components of the wind and the
+/// velocities of the elements.
 #[derive(Clone, Debug)]
 pub struct RotorAerodynamics {
     settings: BemSettings,
@@ -118,7 +119,8 @@ impl ElementFlow {
 }
 
 impl RotorAerodynamics {
-    /// The blades of `definition`, divided into `elements` as [`ActuatorLine::elements`](crate::actuator_line::ActuatorLine::elements) gives them.
+    /// The blades of `definition`, divided into `elements` as
+    /// [`ActuatorLine::elements`](crate::actuator_line::ActuatorLine::elements) gives them.
     ///
     /// The air has a density of `air_density` (kg/m³).
     pub fn new(
@@ -162,10 +164,12 @@ impl RotorAerodynamics {
         }
     }
 
-    /// Advances `state` by the `interval` (s) before this instant, and fills `loads` with the loads at this instant.
+    /// Advances `state` by the `interval` (s) before this instant, and fills `loads` with the loads at this
+    /// instant.
     ///
-    /// `winds` (m/s, farm frame) holds the wind at each element of `kinematics`. The first call starts from the steady state for
-    /// this wind and these kinematics. With an interval of 0 only parts without lag change.
+    /// `winds` (m/s, farm frame) holds the wind at each element of `kinematics`. The first call starts from
+    /// the steady state for this wind and these kinematics. With an interval of 0 only parts without lag
+    /// change.
     pub fn advance(
         &self,
         interval: f64,

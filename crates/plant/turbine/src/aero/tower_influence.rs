@@ -1,8 +1,8 @@
 //! Tower influence on the wind: potential flow ahead of the tower, tower shadow behind it.
 //!
-//! Source: Bak, Madsen, Johansen, "Influence from blade-tower interaction on fatigue loads and dynamics", EWEC 2001
-//! (potential flow about a cylinder, with the drag's part); Powles, "The effects of tower shadow on the dynamics of a
-//! horizontal-axis wind turbine", Wind Engineering 7, 1983 (wake). AeroDyn has both.
+//! Source: Bak, Madsen, Johansen, "Influence from blade-tower interaction on fatigue loads and dynamics",
+//! EWEC 2001 (potential flow about a cylinder, with the drag's part); Powles, "The effects of tower shadow on
+//! the dynamics of a horizontal-axis wind turbine", Wind Engineering 7, 1983 (wake). AeroDyn has both.
 
 use crate::definition::{Definition, TowerProfile};
 use basis::Vector3;
@@ -10,7 +10,8 @@ use std::f64::consts::PI;
 
 /// Distance of the potential flow's centre upwind of the axis, in tower radii (–).
 const OFFSET: f64 = 0.1;
-/// Distance (tower radii) beyond which the wind is not changed: there the influence is a thousandth of it at most.
+/// Distance (tower radii) beyond which the wind is not changed: there the influence is a thousandth of it at
+/// most.
 const REACH: f64 = 80.0;
 
 /// Which effects are active.
@@ -49,8 +50,8 @@ impl TowerInfluence {
 
     /// Wind at `position` (m) where it would be `wind` (m/s) without the tower.
     ///
-    /// At heights beside the tower only: above its top and below its foot the wind is as it was. On the tower's skin and
-    /// within it the wind is that at the skin.
+    /// At heights beside the tower only: above its top and below its foot the wind is as it was. On the
+    /// tower's skin and within it the wind is that at the skin.
     pub fn felt(&self, position: Vector3, wind: Vector3) -> Vector3 {
         let Some((radius, drag)) = self.section(position.z - self.foot.z) else {
             return wind;
@@ -69,7 +70,8 @@ impl TowerInfluence {
         wind + along * (speed * slowed) + across * (speed * turned)
     }
 
-    /// Change of the wind along and across itself, over its speed (–), `x` downwind and `y` across in tower radii (–).
+    /// Change of the wind along and across itself, over its speed (–), `x` downwind and `y` across in tower
+    /// radii (–).
     fn disturbance(&self, x: f64, y: f64, drag: f64) -> [f64; 2] {
         let mut change = [0.0; 2];
         if self.effects.potential != Potential::None {
@@ -167,7 +169,8 @@ mod tests {
             assert!((left.dot(along) - right.dot(along)).abs() < 1e-9);
             assert!((left.dot(across) + right.dot(across)).abs() < 1e-9);
         }
-        // Momentum behind it: the deficit's width times depth is the drag, Cd d over half the wind's square, to first order.
+        // Momentum behind it: the deficit's width times depth is the drag, Cd d over half the wind's square,
+        // to first order.
         let shadow = tower(0.1, Potential::None, true);
         let deficit: f64 = (-4000..4000)
             .map(|k| {

@@ -5,7 +5,8 @@ use super::*;
 /// One straight wing, as a one-bladed rotor of so large a radius that its trailing vortices are straight.
 fn wing(half_span: f64, n: usize, core: f64) -> Span {
     let middle = 1000.0 * half_span;
-    // Cosine spacing; control points midway in the angle, which makes the midpoint rule exact for the ellipse.
+    // Cosine spacing; control points midway in the angle, which makes the midpoint rule exact for the
+    // ellipse.
     let at = |angle: f64| middle - half_span * angle.cos();
     Span {
         borders: (0..=n).map(|i| at(PI * i as f64 / n as f64)).collect(),
@@ -19,7 +20,8 @@ fn ellipse(span: &Span, half_span: f64) -> Vec<f64> {
     span.centres.iter().map(|r| (1.0 - ((r - middle) / half_span).powi(2)).sqrt()).collect()
 }
 
-/// Correction of the downwash at each station, by direct integration of a helix so slow that it passes only once.
+/// Correction of the downwash at each station, by direct integration of a helix so slow that it passes only
+/// once.
 fn missing(span: &Span, circulation: &[f64], core: f64, smearing_length: f64) -> Vec<f64> {
     let n = circulation.len();
     let advance = 10.0 * smearing_length;

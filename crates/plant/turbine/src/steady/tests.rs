@@ -8,7 +8,8 @@ use std::f64::consts::PI;
 const RADIUS: f64 = 50.0;
 const HUB: f64 = 2.5;
 
-/// A rotor whose blades carry thin aerofoils with constant `drag`; chord (m) and twist (rad) by distance from the shaft (m).
+/// A rotor whose blades carry thin aerofoils with constant `drag`; chord (m) and twist (rad) by distance from
+/// the shaft (m).
 fn rotor(drag: f64, shape: impl Fn(f64) -> (f64, f64)) -> Definition {
     let angles: Vec<f64> = (-1800..=1800).map(|k| f64::from(k) * PI / 1800.0).collect();
     let lift: Vec<f64> = angles.iter().map(|angle| 2.0 * PI * angle.sin()).collect();
@@ -45,7 +46,8 @@ const NO_LOSS: Theory = Theory { tip_loss: false, hub_loss: false, drag_in_induc
 /// Angle of attack that the optimum rotor is laid out for (rad).
 const ATTACK: f64 = 0.1;
 
-/// Glauert's optimum rotor for `tip_speed_ratio`: Manwell, McGowan, Rogers, "Wind energy explained", 2nd ed., eq. 3.105-3.107.
+/// Glauert's optimum rotor for `tip_speed_ratio`: Manwell, McGowan, Rogers, "Wind energy explained", 2nd ed.,
+/// eq. 3.105-3.107.
 fn optimum(tip_speed_ratio: f64) -> impl Fn(f64) -> (f64, f64) {
     move |radius: f64| {
         let angle = 2.0 / 3.0 * (RADIUS / (tip_speed_ratio * radius)).atan();
@@ -54,7 +56,8 @@ fn optimum(tip_speed_ratio: f64) -> impl Fn(f64) -> (f64, f64) {
     }
 }
 
-/// Power and thrust coefficient of Glauert's optimum rotor with the hub cut out, ring by ring from the cubic of its induction.
+/// Power and thrust coefficient of Glauert's optimum rotor with the hub cut out, ring by ring from the cubic
+/// of its induction.
 fn glauert(tip_speed_ratio: f64) -> (f64, f64) {
     let n = 20_000;
     let (mut power, mut thrust) = (0.0, 0.0);
@@ -135,7 +138,8 @@ fn stations_and_equal_lengths_agree_where_stations_are_many() {
     let definition = rotor(0.008, optimum(7.0));
     let even = SteadyRotor::new(&definition, Theory::default()).coefficients(7.0, 0.0);
     let nodes = SteadyRotor::at_stations(&definition, Theory::default()).coefficients(7.0, 0.0);
-    // The trapezoidal rule leaves out half a station's load at the blunt tip: one of 200 stations is the bound.
+    // The trapezoidal rule leaves out half a station's load at the blunt tip: one of 200 stations is the
+    // bound.
     assert!((even.power / nodes.power - 1.0).abs() < 1.0 / 200.0, "{even:?} {nodes:?}");
     assert!((even.thrust / nodes.thrust - 1.0).abs() < 1.0 / 200.0);
     assert_eq!(steady(&definition, 7.0, 0.0), even);
@@ -147,7 +151,8 @@ fn tilt_and_cone_cost_what_their_cosines_say() {
     let power = |definition: &Definition| steady(definition, 7.0, 0.0).power;
     let mut tilted = flat.clone();
     tilted.rotor.shaft_tilt = 0.1;
-    // Wind along the shaft × cos: at the best tip-speed ratio power goes with its cube, to second order in the tilt.
+    // Wind along the shaft × cos: at the best tip-speed ratio power goes with its cube, to second order in
+    // the tilt.
     let expected = 0.1f64.cos().powi(3);
     assert!((power(&tilted) / power(&flat) - expected).abs() < 4e-3);
     let mut coned = flat.clone();

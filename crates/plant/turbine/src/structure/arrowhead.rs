@@ -1,4 +1,5 @@
-//! Arrowhead matrices of a rotor: symmetric, and blades couple only through the shared coordinates, which keeps solving cheap.
+//! Arrowhead matrices of a rotor: symmetric, and blades couple only through the shared coordinates, which
+//! keeps solving cheap.
 #![expect(
     clippy::needless_range_loop,
     reason = "rows and columns by index, as the equations have them"
@@ -7,7 +8,8 @@
 use super::coordinates::{Coordinates, Locks, N_MODES, N_SHARED};
 use basis::blades::MAXIMUM_BLADES;
 
-/// A symmetric arrowhead matrix over all coordinates: a block for each blade, coupled to the shared block only.
+/// A symmetric arrowhead matrix over all coordinates: a block for each blade, coupled to the shared block
+/// only.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ArrowheadMatrix {
     pub(super) shared: [[f64; N_SHARED]; N_SHARED],
@@ -36,10 +38,11 @@ impl ArrowheadMatrix {
         product
     }
 
-    /// Solution x of matrix × x = `right`; the matrix is positive definite over the coordinates that `locks` leaves free.
-    /// x is zero where locked.
+    /// Solution x of matrix × x = `right`; the matrix is positive definite over the coordinates that `locks`
+    /// leaves free. x is zero where locked.
     ///
-    /// Blades are eliminated one by one by Cholesky factors; then the Schur complement of the shared block is solved.
+    /// Blades are eliminated one by one by Cholesky factors; then the Schur complement of the shared block is
+    /// solved.
     pub(super) fn solve(&self, n_blades: usize, locks: &Locks, right: &Coordinates) -> Coordinates {
         let mut shared = self.shared;
         let mut x = *right;
@@ -58,7 +61,8 @@ impl ArrowheadMatrix {
                 }
             }
             let factor = cholesky(&block);
-            // Symbols: block = L Lᵀ; Y = L⁻¹ coupling, y = L⁻¹ right; the shared block loses Yᵀ Y, its right side Yᵀ y.
+            // Symbols: block = L Lᵀ; Y = L⁻¹ coupling, y = L⁻¹ right; the shared block loses Yᵀ Y, its right
+            // side Yᵀ y.
             for row in 0..N_MODES {
                 for before in 0..row {
                     let share = factor[row][before];

@@ -90,7 +90,8 @@ pub(super) struct Inertia<const N: usize> {
     pub(super) angular: [Vector3; N],
     /// ∫ ∂p/∂qᵢ · ∂p/∂qⱼ dm (kg).
     pub(super) modal: [[f64; N]; N],
-    /// Bias force and moment: inertial forces that do not depend on second derivatives of the coordinates, gravity included.
+    /// Bias force and moment: inertial forces that do not depend on second derivatives of the coordinates,
+    /// gravity included.
     pub(super) bias: Wrench,
     /// Bias force of each mode (N).
     pub(super) modal_bias: [f64; N],
@@ -111,10 +112,11 @@ impl<const N: usize> Inertia<N> {
 }
 
 impl<const N: usize> Beam<N> {
-    /// A beam of `length` (m) that begins `start` (m) along z from the origin, in `n_parts` equal parts of two mass points.
+    /// A beam of `length` (m) that begins `start` (m) along z from the origin, in `n_parts` equal parts of
+    /// two mass points.
     ///
-    /// Damping follows stiffness, C = √βᵢ Kᵢⱼ √βⱼ with βᵢ = 2 ζᵢ / ωᵢ and ωᵢ the frequency of the mode on the bare
-    /// beam at rest, which is how the reports of the reference turbines define their damping ratios.
+    /// Damping follows stiffness, C = √βᵢ Kᵢⱼ √βⱼ with βᵢ = 2 ζᵢ / ωᵢ and ωᵢ the frequency of the mode on the
+    /// bare beam at rest, which is how the reports of the reference turbines define their damping ratios.
     pub(super) fn new(
         start: f64,
         length: f64,
@@ -203,9 +205,11 @@ impl<const N: usize> Beam<N> {
         -0.5 * forces.iter().zip(q).map(|(force, q)| force * q).sum::<f64>()
     }
 
-    /// Calls `take(index, position, force)` for each mass point, free end first, with gravity less inertia as force (N).
+    /// Calls `take(index, position, force)` for each mass point, free end first, with gravity less inertia as
+    /// force (N).
     ///
-    /// `base_motion` and `accelerations` are complete: they include the second derivatives of the coordinates.
+    /// `base_motion` and `accelerations` are complete: they include the second derivatives of the
+    /// coordinates.
     pub(super) fn inertial_forces(
         &self,
         q: &[f64; N],

@@ -130,11 +130,11 @@ pub(super) fn index(table: &[Channel], name: &str) -> Option<usize> {
     find(name).or_else(|| find(&canonical(name)?))
 }
 
-/// The name under which the channel called `name` is written: `RootMyb1` for `RootMFlp1`; None where `name` is not an
-/// alias of a channel. Case does not matter.
+/// The name under which the channel called `name` is written: `RootMyb1` for `RootMFlp1`; None where `name`
+/// is not an alias of a channel. Case does not matter.
 ///
-/// The shaft's strain gauges (`LSSGagMys`) stand for the moments at the rotor apex. Gauges that OpenFAST's `ShftGagL`
-/// puts elsewhere measure another bending moment.
+/// The shaft's strain gauges (`LSSGagMys`) stand for the moments at the rotor apex. Gauges that OpenFAST's
+/// `ShftGagL` puts elsewhere measure another bending moment.
 pub fn canonical(name: &str) -> Option<String> {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let number = &name[stem.len()..];

@@ -16,12 +16,12 @@ pub(super) const TORSION: usize = 5;
 
 /// One value for each degree of freedom.
 ///
-/// Modal coordinates are displacements of the tip (m, for a blade without twist), angles are on the low-speed side (rad);
-/// velocities and accelerations use the same order, per second and per second squared.
+/// Modal coordinates are displacements of the tip (m, for a blade without twist), angles are on the low-speed
+/// side (rad); velocities and accelerations use the same order, per second and per second squared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Coordinates {
-    /// Tower fore-aft 1 and 2 (m, downwind), side-to-side 1 and 2 (m, to the left looking downwind), azimuth of the
-    /// generator (rad), rotor ahead of the generator (rad).
+    /// Tower fore-aft 1 and 2 (m, downwind), side-to-side 1 and 2 (m, to the left looking downwind), azimuth
+    /// of the generator (rad), rotor ahead of the generator (rad).
     pub shared: [f64; N_SHARED],
     /// Flapwise 1 and 2 (m, downwind), edgewise 1 (m, towards the trailing edge) of each blade.
     pub blades: [[f64; N_MODES]; MAXIMUM_BLADES],

@@ -1,4 +1,5 @@
-//! Kane's equations M(q) q̈ = f: every body's inertia and load, put on the coordinates through its partial velocities.
+//! Kane's equations M(q) q̈ = f: every body's inertia and load, put on the coordinates through its partial
+//! velocities.
 #![expect(
     clippy::needless_range_loop,
     reason = "rows and columns by index, as the equations have them"
@@ -18,7 +19,8 @@ use basis::blades::MAXIMUM_BLADES;
 pub(super) struct EquationsOfMotion {
     /// Mass matrix M (kg, kg m, kg m²).
     pub(super) mass: ArrowheadMatrix,
-    /// Generalised forces f (N, N m): loads, gravity, stiffness and damping, less the velocity-dependent inertial forces.
+    /// Generalised forces f (N, N m): loads, gravity, stiffness and damping, less the velocity-dependent
+    /// inertial forces.
     pub(super) force: Coordinates,
     pub(super) motion: Motion,
     pub(super) tower: Inertia<N_TOWER>,
@@ -33,7 +35,8 @@ pub(super) struct AxialInertia {
 }
 
 impl AxialInertia {
-    /// Moment (N m) that the body needs at the angular acceleration `acceleration` (rad/s²): d/dt of I (ω·a) a.
+    /// Moment (N m) that the body needs at the angular acceleration `acceleration` (rad/s²): d/dt of I (ω·a)
+    /// a.
     pub(super) fn required_moment(&self, acceleration: Vector3) -> Vector3 {
         let momentum = self.inertia * self.spin.dot(self.axis);
         // The part of the spin across the axis turns the axis itself.
@@ -121,7 +124,8 @@ impl Machine {
         equations
     }
 
-    /// Adds a blade: the six rigid-body motions of its frame, which the shared coordinates give, and its own modes.
+    /// Adds a blade: the six rigid-body motions of its frame, which the shared coordinates give, and its own
+    /// modes.
     fn add_blade(
         &self,
         blade: usize,
@@ -148,7 +152,8 @@ impl Machine {
             equations.force.blades[blade][mode] =
                 applied.modes[blade][mode] + restoring[mode] - inertia.modal_bias[mode];
         }
-        // Torsion turns the rotor exactly as the generator does: its column repeats, so the loop ends before it.
+        // Torsion turns the rotor exactly as the generator does: its column repeats, so the loop ends before
+        // it.
         let mut linear = [Vector3::ZERO; TORSION];
         let mut angular = [Vector3::ZERO; TORSION];
         for c in 0..TORSION {

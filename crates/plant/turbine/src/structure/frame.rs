@@ -1,12 +1,13 @@
-//! Bodies that move with the shared coordinates: position, attitude, partial velocities and remaining accelerations.
+//! Bodies that move with the shared coordinates: position, attitude, partial velocities and remaining
+//! accelerations.
 
 use super::coordinates::{Coordinates, N_SHARED};
 use basis::{Matrix3, Vector3};
 
 /// A frame fixed in a body, and how its origin moves.
 ///
-/// Velocity = Σ `linear`ᵢ q̇ᵢ plus prescribed motion, acceleration = Σ `linear`ᵢ q̈ᵢ + `acceleration_rest`; angles likewise.
-/// Farm frame throughout.
+/// Velocity = Σ `linear`ᵢ q̇ᵢ plus prescribed motion, acceleration = Σ `linear`ᵢ q̈ᵢ + `acceleration_rest`;
+/// angles likewise. Farm frame throughout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingFrame {
     /// Origin (m).
@@ -61,8 +62,9 @@ impl MovingFrame {
         Self { axes: self.axes * *own_from_new, ..*self }
     }
 
-    /// A body with the same origin that turns relative to this one about `axis` (farm frame) at `rate` (rad/s) and
-    /// `acceleration` (rad/s²). Both are prescribed, unless `coordinates` names the shared coordinates that make the rate.
+    /// A body with the same origin that turns relative to this one about `axis` (farm frame) at `rate`
+    /// (rad/s) and `acceleration` (rad/s²). Both are prescribed, unless `coordinates` names the shared
+    /// coordinates that make the rate.
     pub(super) fn turning(
         &self,
         axis: Vector3,

@@ -15,11 +15,13 @@ pub const N_GAUGES: usize = N_BLADE_PARTS - 1;
 /// Loads and deflections of one blade.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BladeLoads {
-    /// At the root, in the coned frame, which does not pitch: x downwind, y towards the trailing edge, z along the pitch axis.
+    /// At the root, in the coned frame, which does not pitch: x downwind, y towards the trailing edge, z
+    /// along the pitch axis.
     pub root: Wrench,
     /// The same in the pitched frame.
     pub pitched_root: Wrench,
-    /// Deflection of the tip in the coned frame (m): out of plane downwind, in plane towards the trailing edge, along the blade.
+    /// Deflection of the tip in the coned frame (m): out of plane downwind, in plane towards the trailing
+    /// edge, along the blade.
     pub tip_deflection: Vector3,
     /// Moments (N m) at 1/8 to 7/8 of the blade about the local principal axes: edgewise (x), flapwise (y).
     pub span_moments: [[f64; 2]; N_GAUGES],
@@ -155,7 +157,8 @@ impl Machine {
         (loads, outboard)
     }
 
-    /// Moments (N m) about the principal axes at the inner end of `part`, of all beyond it, `outboard` about the apex.
+    /// Moments (N m) about the principal axes at the inner end of `part`, of all beyond it, `outboard` about
+    /// the apex.
     fn principal_moments(&self, part: usize, q: &[f64; N_MODES], outboard: &Wrench) -> [f64; 2] {
         let place = &self.blade.borders[part];
         let (position, _) = place.at(q);

@@ -15,7 +15,8 @@ use std::f64::consts::TAU;
 pub(super) const N_BLADE_PARTS: usize = 8;
 /// Equal parts of the tower, two mass points in each.
 const N_TOWER_PARTS: usize = 6;
-/// Largest difference from one of the sum of a mode's coefficients (–); files round them to six or seven digits.
+/// Largest difference from one of the sum of a mode's coefficients (–); files round them to six or seven
+/// digits.
 const SHAPE_TOLERANCE: f64 = 1e-3;
 
 /// How a blade is pitched, prescribed.
@@ -80,12 +81,14 @@ pub(super) struct Motion {
     pub(super) shaft: MovingFrame,
     /// Hub at the rotor apex, axes of the shaft turned by the azimuth.
     pub(super) hub: MovingFrame,
-    /// Blades at the rotor apex, axes coned and pitched: downwind, towards the trailing edge, along the pitch axis.
+    /// Blades at the rotor apex, axes coned and pitched: downwind, towards the trailing edge, along the pitch
+    /// axis.
     pub(super) blades: [MovingFrame; MAXIMUM_BLADES],
 }
 
 impl Machine {
-    /// The turbine of `definition` with its foot's ground or sea level at `position` (m), nacelle turned by `yaw` (rad, about z).
+    /// The turbine of `definition` with its foot's ground or sea level at `position` (m), nacelle turned by
+    /// `yaw` (rad, about z).
     pub(super) fn new(
         definition: &Definition,
         position: Vector3,

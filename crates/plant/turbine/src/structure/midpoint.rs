@@ -1,17 +1,19 @@
 //! One step in time: the implicit midpoint rule.
 //!
 //! ```text
-//! M(q_m) a = f(q_m, v_m),   q_m = q + h v / 2 + h² a / 4,   v_m = v + h a / 2;   then q += h v + h² a / 2,   v += h a
+//! M(q_m) a = f(q_m, v_m),   q_m = q + h v / 2 + h² a / 4,   v_m = v + h a / 2
+//! then q += h v + h² a / 2,   v += h a
 //! ```
 //!
-//! It is symmetric in time and keeps quadratic invariants, so that a free vibration neither gains nor loses energy, whatever
-//! the step; it damps nothing by itself and is stable for any stiffness. That matters for the torsion of a direct-drive
-//! shaft, 30 to 90 Hz, which no explicit method survives at a step of 0.02 s and which needs no resolving here. Its period
-//! error is (ω h)² / 12: 0.05 % for a blade's first modes at 0.02 s. Stiffness and damping stand in the matrix of the
-//! solve. Everything else is evaluated at the middle extrapolated from the last two accelerations, and once more at the middle
-//! that this gives. After 1000 periods of the tower at 0.02 s a parked turbine's vibration has an energy error of 3e-5 with two
-//! evaluations, and of a tenth with one.
-//! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), II.1 and V.1.
+//! It is symmetric in time and keeps quadratic invariants, so that a free vibration neither gains nor loses
+//! energy, whatever the step; it damps nothing by itself and is stable for any stiffness. That matters for
+//! the torsion of a direct-drive shaft, 30 to 90 Hz, which no explicit method survives at a step of 0.02 s
+//! and which needs no resolving here. Its period error is (ω h)² / 12: 0.05 % for a blade's first modes at
+//! 0.02 s. Stiffness and damping stand in the matrix of the solve. Everything else is evaluated at the middle
+//! extrapolated from the last two accelerations, and once more at the middle that this gives. After 1000
+//! periods of the tower at 0.02 s a parked turbine's vibration has an energy error of 3e-5 with two
+//! evaluations, and of a tenth with one. Source: Hairer, Lubich, Wanner, Geometric Numerical Integration
+//! (2006), II.1 and V.1.
 #![expect(
     clippy::needless_range_loop,
     reason = "rows and columns by index, as the equations have them"
@@ -58,8 +60,8 @@ impl PhasePoint {
 }
 
 impl Machine {
-    /// `phase` after `interval` (s) under the loads `applied`; on return `equations` is that of the middle of the step, and the
-    /// middle itself is the second result.
+    /// `phase` after `interval` (s) under the loads `applied`; on return `equations` is that of the middle of
+    /// the step, and the middle itself is the second result.
     pub(super) fn step(
         &self,
         phase: &PhasePoint,

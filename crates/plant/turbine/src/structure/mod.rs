@@ -9,17 +9,18 @@
 //!         ───┴─── clamped
 //! ```
 //!
-//! Blades and tower are beams whose modes bend them along two principal axes; the axes twist along the blade, so that each
-//! mode moves out of plane and in plane. A point of a beam moves as p = p₀ + Σ φᵢ qᵢ − ½ Σ qᵢ Aᵢⱼ qⱼ ẑ, the last term the
-//! shortening due to bending: through it centrifugal force stiffens the blades and weight softens the tower. Positions
-//! are otherwise exact functions of the coordinates. Mass is lumped at Gaussian points (see `quadrature`). Kane's equations
-//! project inertia, gravity and applied loads on the coordinates through the partial velocities of these points. Internal
-//! loads are the sum of all forces outboard of a cut, inertia included.
+//! Blades and tower are beams whose modes bend them along two principal axes; the axes twist along the blade,
+//! so that each mode moves out of plane and in plane. A point of a beam moves as p = p₀ + Σ φᵢ qᵢ − ½ Σ qᵢ
+//! Aᵢⱼ qⱼ ẑ, the last term the shortening due to bending: through it centrifugal force stiffens the blades
+//! and weight softens the tower. Positions are otherwise exact functions of the coordinates. Mass is lumped
+//! at Gaussian points (see `quadrature`). Kane's equations project inertia, gravity and applied loads on the
+//! coordinates through the partial velocities of these points. Internal loads are the sum of all forces
+//! outboard of a cut, inertia included.
 //!
-//! Sources: Kane and Levinson, Dynamics (1985), ch. 6; Jonkman and Buhl, FAST User's Guide, NREL/EL-500-38230 (2005), for the
-//! degrees of freedom, mode shapes and channels.
-//! Limits: no torsion and no extension of blades, sections' own rotary inertia left out, mass on the pitch axis: prebend
-//! and sweep carry the aerodynamic forces, not the mass. Slopes are small rotations.
+//! Sources: Kane and Levinson, Dynamics (1985), ch. 6; Jonkman and Buhl, FAST User's Guide, NREL/EL-500-38230
+//! (2005), for the degrees of freedom, mode shapes and channels.
+//! Limits: no torsion and no extension of blades, sections' own rotary inertia left out, mass on the pitch
+//! axis: prebend and sweep carry the aerodynamic forces, not the mass. Slopes are small rotations.
 
 mod arrowhead;
 mod beam;
@@ -144,7 +145,8 @@ impl Structure {
     /// The structure of `definition`, undeflected.
     ///
     /// # Errors
-    /// When sections do not span blade or tower, have no mass or stiffness, or a mode shape is not one at the free end.
+    /// When sections do not span blade or tower, have no mass or stiffness, or a mode shape is not one at the
+    /// free end.
     pub fn new(
         definition: &Definition,
         settings: &StructureSettings<'_>,
@@ -173,7 +175,8 @@ impl Structure {
         Ok(Self { machine, stations, locks, yaw: settings.yaw, channels, state, equations })
     }
 
-    /// Locks exactly `degrees`: no acceleration from now on. A locked mode stops where it is; a locked generator keeps its speed.
+    /// Locks exactly `degrees`: no acceleration from now on. A locked mode stops where it is; a locked
+    /// generator keeps its speed.
     pub fn hold(&mut self, degrees: &[DegreeOfFreedom]) {
         self.locks = Locks::of(degrees);
         for (index, held) in self.locks.shared.into_iter().enumerate() {
@@ -201,7 +204,8 @@ impl Structure {
 
     /// On return `elements` holds the motion of each blade element `ahead` (s) after now, blade after blade.
     ///
-    /// Loads belong to the middle of their step: take `ahead` as half a step, and the `pitch` of that instant.
+    /// Loads belong to the middle of their step: take `ahead` as half a step, and the `pitch` of that
+    /// instant.
     ///
     /// # Panics
     /// When `elements` does not hold `n_blades × n_elements` values.
@@ -215,7 +219,8 @@ impl Structure {
         }
     }
 
-    /// On return `points` holds position (m) and velocity (m/s) of each point of the tower `ahead` (s) after now, farm frame.
+    /// On return `points` holds position (m) and velocity (m/s) of each point of the tower `ahead` (s) after
+    /// now, farm frame.
     pub fn observe_tower(&self, ahead: f64, points: &mut [(Vector3, Vector3)]) {
         let phase = self.state.phase().ahead(ahead);
         self.stations.observe_tower(&self.machine, &phase.q, &phase.v, points);
@@ -304,8 +309,8 @@ impl Structure {
         channels::index(&self.channels, name)
     }
 
-    /// On return `values` holds the channels in the middle of the last step, in SI units; times their scale they are in
-    /// OpenFAST's units.
+    /// On return `values` holds the channels in the middle of the last step, in SI units; times their scale
+    /// they are in OpenFAST's units.
     pub fn write_channels(&self, values: &mut [f64]) {
         channels::write(&self.state.loads, self.yaw, &self.state.pitch, values);
     }

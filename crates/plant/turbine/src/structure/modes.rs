@@ -22,7 +22,8 @@ const MAXIMUM_SWEEPS: usize = 30;
 pub struct NaturalMode {
     /// Frequency (Hz); 0 for a rigid-body motion.
     pub frequency: f64,
-    /// Share of each degree of freedom in the kinetic energy (–), in the order of [`DegreeOfFreedom::ALL`]; they sum to one.
+    /// Share of each degree of freedom in the kinetic energy (–), in the order of [`DegreeOfFreedom::ALL`];
+    /// they sum to one.
     pub shares: [f64; N_SHARED + N_MODES],
 }
 
@@ -37,9 +38,11 @@ impl NaturalMode {
 }
 
 impl Machine {
-    /// Modes about `q`, moving at `v`, lowest frequency first: M ẍ = ∂f/∂x x without damping and gyroscopic forces.
+    /// Modes about `q`, moving at `v`, lowest frequency first: M ẍ = ∂f/∂x x without damping and gyroscopic
+    /// forces.
     ///
-    /// The rotor speed in `v` stiffens the blades. Coupling through velocities is left out; it vanishes at standstill.
+    /// The rotor speed in `v` stiffens the blades. Coupling through velocities is left out; it vanishes at
+    /// standstill.
     pub(super) fn natural_modes(
         &self,
         q: &Coordinates,

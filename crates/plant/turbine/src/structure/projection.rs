@@ -1,4 +1,5 @@
-//! How the wind at a bent blade is projected: normal to the swept surface, and against the motion of its sections.
+//! How the wind at a bent blade is projected: normal to the swept surface, and against the motion of its
+//! sections.
 
 use crate::rotor::BladeFrame;
 use basis::{Matrix3, Vector3};
@@ -11,9 +12,10 @@ pub enum Projection {
     Swept,
     /// As AeroDyn 5.0's standard formulation (BEM_Mod 1) has it; only to compare with it.
     ///
-    /// It resolves the rotation of a section into angles about the blade's x, y and z axis, one after the other, and projects the
-    /// wind on the frame of the one about y. The angle about z, which goes to the section's pitch, follows the angle about x,
-    /// which that frame leaves out: sections face further into the wind by the product of the blade's slopes.
+    /// It resolves the rotation of a section into angles about the blade's x, y and z axis, one after the
+    /// other, and projects the wind on the frame of the one about y. The angle about z, which goes to the
+    /// section's pitch, follows the angle about x, which that frame leaves out: sections face further into
+    /// the wind by the product of the blade's slopes.
     Annular,
 }
 

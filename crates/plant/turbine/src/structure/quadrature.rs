@@ -6,9 +6,10 @@ pub(super) const GAUSS: [(f64, f64); 3] =
 
 /// Places (m) and masses (kg) of two points for each part of a beam between neighbouring `borders` (m).
 ///
-/// `density` holds places (m, rising) and mass per length (kg/m), linear in between. The points have the part's mass,
-/// first, second and third moment, so that ∫ density × f is exact for every cubic f in each part, whatever the density.
-/// Source: Gauss quadrature from moments; the points are roots of the quadratic orthogonal to all lines.
+/// `density` holds places (m, rising) and mass per length (kg/m), linear in between. The points have the
+/// part's mass, first, second and third moment, so that ∫ density × f is exact for every cubic f in each
+/// part, whatever the density. Source: Gauss quadrature from moments; the points are roots of the quadratic
+/// orthogonal to all lines.
 pub(super) fn mass_points(density: &[(f64, f64)], borders: &[f64]) -> Vec<(f64, f64)> {
     borders.windows(2).flat_map(|part| two_points(density, part[0], part[1])).collect()
 }

@@ -32,7 +32,8 @@ pub(super) struct PrincipalMode {
     pub(super) mode: Mode,
 }
 
-/// A material point of a beam with N modes: where it is for any modal coordinates q, in the frame of the clamped end.
+/// A material point of a beam with N modes: where it is for any modal coordinates q, in the frame of the
+/// clamped end.
 ///
 /// ```text
 /// p(q) = rest + Σ shapeᵢ qᵢ − ½ Σ qᵢ shorteningᵢⱼ qⱼ ẑ,      turn of the section θ(q) = Σ turnᵢ qᵢ
@@ -114,7 +115,8 @@ struct Row<const N: usize> {
 }
 
 impl<const N: usize> Shapes<N> {
-    /// Modes of a beam of `length` (m): the curvature of each lies in a principal axis, which `sections` turn along the beam.
+    /// Modes of a beam of `length` (m): the curvature of each lies in a principal axis, which `sections` turn
+    /// along the beam.
     ///
     /// Source: Jonkman, FAST user's guide and theory (NREL/EL-500-38230, 2005), twisted mode shapes.
     pub(super) fn new(length: f64, sections: &[Section], modes: &[PrincipalMode; N]) -> Self {
@@ -148,7 +150,8 @@ impl<const N: usize> Shapes<N> {
         Self { length, rows }
     }
 
-    /// The point of the beam's axis at `position` (m) from the clamped end, `start` (m) of it ahead of the frame's origin.
+    /// The point of the beam's axis at `position` (m) from the clamped end, `start` (m) of it ahead of the
+    /// frame's origin.
     pub(super) fn place(&self, position: f64, start: f64) -> Place<N> {
         let at = (position / self.length).clamp(0.0, 1.0) * N_INTERVALS as f64;
         let index = (at as usize).min(N_INTERVALS - 1);

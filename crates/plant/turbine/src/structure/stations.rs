@@ -57,7 +57,8 @@ struct Station {
     part: usize,
 }
 
-/// Resultants of applied loads: on each part of each blade about the rotor apex in the blade's axes, on the tower about its foot.
+/// Resultants of applied loads: on each part of each blade about the rotor apex in the blade's axes, on the
+/// tower about its foot.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LoadResultants {
     pub(super) parts: [[Wrench; N_BLADE_PARTS]; MAXIMUM_BLADES],
@@ -78,9 +79,11 @@ impl LoadResultants {
 }
 
 impl Stations {
-    /// Elements at `spans` (m from the rotor apex along the pitch axis), points of the tower at `heights` (m above ground).
+    /// Elements at `spans` (m from the rotor apex along the pitch axis), points of the tower at `heights` (m
+    /// above ground).
     ///
-    /// Elements lie on the line of aerodynamic centres, off the pitch axis by prebend and sweep, and turn with their section.
+    /// Elements lie on the line of aerodynamic centres, off the pitch axis by prebend and sweep, and turn
+    /// with their section.
     pub(super) fn new(
         definition: &Definition,
         tables: &ModeTables,
@@ -139,8 +142,9 @@ impl Stations {
                 let turn = station.place.turn(q);
                 let span = (frame.axes * (station.along + turn.cross(station.along))).normalize();
                 let position = frame.origin + frame.axes * position;
-                // To second order: where a blade bends in both directions, its sections also turn about it, by half the product of
-                // the slopes. That goes with gravity once a turn and so leaves a steady moment on the hub.
+                // To second order: where a blade bends in both directions, its sections also turn about it,
+                // by half the product of the slopes. That goes with gravity once a turn and so leaves a
+                // steady moment on the hub.
                 let first = turn.cross(station.across);
                 let facing = frame.axes * (station.across + first + 0.5 * turn.cross(first));
                 let swept = hub.axes.x_axis.cross(position - hub.origin);
@@ -206,7 +210,8 @@ impl Stations {
     }
 }
 
-/// Prebend (m), sweep (m) and slope of the prebend (–) at `span` (m) from the root, linear between `stations`.
+/// Prebend (m), sweep (m) and slope of the prebend (–) at `span` (m) from the root, linear between
+/// `stations`.
 fn line_at(stations: &[BladeStation], span: f64) -> (f64, f64, f64) {
     let next =
         stations.partition_point(|station| station.span <= span).clamp(1, stations.len() - 1);

@@ -1,4 +1,5 @@
-//! Aerodynamic loads on the blades: by actuator lines where the flow resolves the induction, by momentum theory where not.
+//! Aerodynamic loads on the blades: by actuator lines where the flow resolves the induction, by momentum
+//! theory where not.
 
 use super::separation::{Flow, Separation};
 use super::{Induction, N_ELEMENTS, TurbineSettings};
@@ -139,7 +140,8 @@ impl Aerodynamics {
         }
     }
 
-    /// Adds `share` (–) of the circulation (m²/s) that the last loads go with to each element's of `circulations`.
+    /// Adds `share` (–) of the circulation (m²/s) that the last loads go with to each element's of
+    /// `circulations`.
     pub(super) fn add_circulations(
         &self,
         line: &ActuatorLine,

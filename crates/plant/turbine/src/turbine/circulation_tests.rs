@@ -13,8 +13,8 @@ const INSTANT: f64 = 1e-3;
 /// The rotor turns by 1.3e-3 rad in an instant, and loads are those of its middle (–).
 const TOLERANCE: f64 = 2e-3;
 
-/// A rotor after an instant in an even wind, as it stood before, and the wind relative to each element as its section felt
-/// it (m/s).
+/// A rotor after an instant in an even wind, as it stood before, and the wind relative to each element as its
+/// section felt it (m/s).
 fn after_an_instant(induction: Induction) -> (Turbine, Turbine, Vec<Vector3>) {
     let mut turbine = built(false, induction);
     let before = turbine.clone();

@@ -1,7 +1,8 @@
 //! Dynamic stall of the sections of actuator lines: flow separates and reattaches with delay.
 //!
-//! The delay of lift in attached flow is left out ([`Attached::Steady`]): it models the wake that a section sheds, and a flow
-//! that resolves the induction contains the part of that wake farther away than the smearing length.
+//! The delay of lift in attached flow is left out ([`Attached::Steady`]): it models the wake that a section
+//! sheds, and a flow that resolves the induction contains the part of that wake farther away than the
+//! smearing length.
 
 use crate::actuator_line::{Element, Sections};
 use crate::aero::Polar;

@@ -22,7 +22,8 @@ pub struct TurbineSettings {
 /// Which model gives the rotor's induction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Induction {
-    /// The resolved flow: the winds given to the turbine contain it, and the flow receives the turbine's forces.
+    /// The resolved flow: the winds given to the turbine contain it, and the flow receives the turbine's
+    /// forces.
     ByFlow {
         /// Gaussian width of the forces (m).
         smearing_length: f64,

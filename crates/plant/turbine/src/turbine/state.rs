@@ -44,8 +44,8 @@ impl TurbineState {
         }
     }
 
-    /// Smearing correction of each blade element, axial and along the rotation (m/s), blade after blade; empty where momentum
-    /// theory gives the induction.
+    /// Smearing correction of each blade element, axial and along the rotation (m/s), blade after blade;
+    /// empty where momentum theory gives the induction.
     pub fn smearing_corrections(&self) -> &[[f64; 2]] {
         match &self.aerodynamics {
             AerodynamicState::Line(corrections)

@@ -127,7 +127,8 @@ fn the_air_feels_what_the_blades_feel() {
         turbine.forces().iter().map(|point| (point.position - hub).cross(point.force)).sum();
     assert!((total.dot(shaft) / -read.thrust - 1.0).abs() < 1e-12);
     assert!((moment.dot(shaft) / -read.aerodynamic_torque - 1.0).abs() < 1e-12);
-    // Power from the shaft is what the blades' motion takes from the air: Σ force on blade · velocity of blade.
+    // Power from the shaft is what the blades' motion takes from the air: Σ force on blade · velocity of
+    // blade.
     let work: f64 = turbine
         .forces()
         .iter()
@@ -206,7 +207,8 @@ fn a_restored_turbine_goes_on_with_the_same_bits() {
 fn dynamic_stall_along_the_line_rests_at_the_polars() {
     let run = |dynamic_stall: bool, amplitude: f64| {
         let mut turbine = built(false, by_flow(dynamic_stall)).without_bodies().at_held_speed();
-        // Along the shaft: the same on every blade, wherever it stands. Strong enough to separate half of the blade.
+        // Along the shaft: the same on every blade, wherever it stands. Strong enough to separate half of the
+        // blade.
         let wind = turbine.frame().shaft * 22.0;
         let mut thrusts = Vec::new();
         for step in 0..200 {

@@ -1,4 +1,5 @@
-//! Working memory of a turbine: what one interval needs at its points, and the forces on the air that it ends with.
+//! Working memory of a turbine: what one interval needs at its points, and the forces on the air that it ends
+//! with.
 
 use crate::actuator_line::Element;
 use crate::bodies::Body;
@@ -41,8 +42,9 @@ impl Workspace {
         }
     }
 
-    /// On return it holds the drag of the tower in `winds` (m/s) of `air_density` (kg/m³), and the forces of all `bodies` on
-    /// the air, smeared over `smearing_length` (m), are its only ones; gives the drag of the nacelle (N).
+    /// On return it holds the drag of the tower in `winds` (m/s) of `air_density` (kg/m³), and the forces of
+    /// all `bodies` on the air, smeared over `smearing_length` (m), are its only ones; gives the drag of the
+    /// nacelle (N).
     pub(super) fn drag_of_bodies(
         &mut self,
         bodies: &[Body],
@@ -64,8 +66,9 @@ impl Workspace {
         nacelle
     }
 
-    /// On return it holds the forces on the air of blades of `elements` too, where the winds were sampled: half the force of a step acts
-    /// before the instant and half after it, so that a blade's bound vortex does not induce a velocity on itself.
+    /// On return it holds the forces on the air of blades of `elements` too, where the winds were sampled:
+    /// half the force of a step acts before the instant and half after it, so that a blade's bound vortex
+    /// does not induce a velocity on itself.
     pub(super) fn push(&mut self, elements: &[Element], smearing_length: f64) {
         let Self { forces, stations, axes, sums, circulations, .. } = self;
         let n_bodies = forces.len();

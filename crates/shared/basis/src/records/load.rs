@@ -15,8 +15,8 @@ pub struct Load {
     pub kind: LoadKind,
     /// The figure, in [`unit`](Self::unit).
     pub value: f64,
-    /// The figure relative to the same turbine in the compared run, minus one (–); absent where nothing is compared, and of a
-    /// load that is zero there.
+    /// The figure relative to the same turbine in the compared run, minus one (–); absent where nothing is
+    /// compared, and of a load that is zero there.
     pub change: Option<Statistic>,
 }
 

@@ -17,7 +17,8 @@ pub struct Warning {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WarningKind {
-    /// The case or its turbines, as seen before the run: a coarse grid, too few blocks, a controller's file of another rotor.
+    /// The case or its turbines, as seen before the run: a coarse grid, too few blocks, a controller's file
+    /// of another rotor.
     Setup,
     /// A turbine did not pitch as far as it was set to, or a pitch limit held it back.
     PitchHeldBack,

@@ -18,7 +18,8 @@ fn gain_of_the_offset_places_the_poles() {
     assert!(matches!(dc_gain(2.2, 1.0), Err(PhaseLockedError::Damping { .. })));
 }
 
-/// In-phase, quadrature and offset of a generator at `centre` fed with a sine at `ratio` times that, as gain and phase.
+/// In-phase, quadrature and offset of a generator at `centre` fed with a sine at `ratio` times that, as gain
+/// and phase.
 fn measured(kind: Kind, centre: f64, ratio: f64) -> [Response; 3] {
     let mut generator = Generator::new(kind, SQRT_2).unwrap();
     let rate = ratio * centre;

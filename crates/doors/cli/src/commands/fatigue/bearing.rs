@@ -25,7 +25,8 @@ pub(super) struct Duty {
 /// Counts the pitching of the blade that `arguments` ask for.
 ///
 /// # Errors
-/// Files and channels that cannot be read, units that are missing or differ, and times that leave nothing to count.
+/// Files and channels that cannot be read, units that are missing or differ, and times that leave nothing to
+/// count.
 pub(super) fn count(arguments: &FatigueArguments) -> Result<Duty> {
     let slope = match arguments.slope[..] {
         [] => BEARING_SLOPE,
@@ -62,7 +63,8 @@ pub(super) fn count(arguments: &FatigueArguments) -> Result<Duty> {
     Ok(Duty { span, slope, columns, travel, loads })
 }
 
-/// Selects pitch, flapwise and edgewise moment of the blade, whose pitch own records call otherwise than OpenFAST does.
+/// Selects pitch, flapwise and edgewise moment of the blade, whose pitch own records call otherwise than
+/// OpenFAST does.
 fn select(table: &mut TableReader, arguments: &FatigueArguments) -> Result<[Column; 3]> {
     let blade = arguments.blade.map_or(1, NonZeroUsize::get);
     let prefix = arguments.turbine.as_ref().map_or(String::new(), |turbine| format!("{turbine}."));

@@ -60,7 +60,9 @@ const PERFECT: basis::keys::LeftOut = Otherwise("perfect");
 
 /// A table of one kind of instrument: figures in `$unit`, whose keys end in `$suffix`, up to `$most`.
 macro_rules! figures {
-    ($name:ident, $names:literal, $about:literal, $suffix:literal, $unit:literal, $most:expr, $slips:expr) => {
+    (
+        $name:ident, $names:literal, $about:literal, $suffix:literal, $unit:literal, $most:expr, $slips:expr
+    ) => {
         #[doc = concat!("The instruments ", $names, ".")]
         pub(in crate::case) static $name: Table = Table {
             heading: concat!("turbine.instruments: ", $names, " = { … }"),

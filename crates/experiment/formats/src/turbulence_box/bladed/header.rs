@@ -191,7 +191,8 @@ impl Header {
         })
     }
 
-    /// Makes sure that the numbers are a grid and fit the `found` bytes of the file; on return an odd last step counts.
+    /// Makes sure that the numbers are a grid and fit the `found` bytes of the file; on return an odd last
+    /// step counts.
     fn check(&mut self, numbers: &Numbers<'_>, found: u64) -> Result<(), FileError> {
         let again = "copy the file again or write it again";
         let counts = [self.n_y, self.n_z, self.n_steps];

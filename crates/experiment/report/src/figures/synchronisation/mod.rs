@@ -1,6 +1,7 @@
 //! Figures of phase synchronisation: offsets, phases, moments, and what becomes of the wake.
 //!
-//! All of them draw plain data: whoever reads the records fits curves, takes spectra and finds centre lines first.
+//! All of them draw plain data: whoever reads the records fits curves, takes spectra and finds centre lines
+//! first.
 
 mod deficits;
 mod marks;
@@ -15,7 +16,8 @@ use basis::records::{Plane, Statistic};
 /// What a study has to show of a turbine's phase synchronisation; what is empty is left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Synchronisation {
-    /// Whose it is: the turbine that joins a helix, and which helix where it joins several, such as `T2` or `T2 cw St 0.25`.
+    /// Whose it is: the turbine that joins a helix, and which helix where it joins several, such as `T2` or
+    /// `T2 cw St 0.25`.
     pub name: String,
     /// How well each run found the phases of the helix.
     pub phases: Vec<PhaseRow>,
@@ -59,8 +61,8 @@ pub struct PhaseNumbers {
     pub locking: f64,
     /// Coherence at the excitation's frequency (–); absent in short records.
     pub coherence: Option<f64>,
-    /// Phase of the estimate minus that of the truth at the excitation's frequency, from the cross-spectrum, and half width
-    /// of its 95 % interval (rad); absent in short records.
+    /// Phase of the estimate minus that of the truth at the excitation's frequency, from the cross-spectrum,
+    /// and half width of its 95 % interval (rad); absent in short records.
     pub phase_error: Option<[f64; 2]>,
     /// Mean estimated amplitude (m/s).
     pub amplitude: f64,

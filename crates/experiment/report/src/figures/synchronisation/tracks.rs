@@ -95,7 +95,8 @@ fn direction(angles: &[f64]) -> f64 {
     sine.atan2(cosine)
 }
 
-/// The angles (deg) within half a turn of `middle` (deg), cut where they leave it on one side and come back on the other.
+/// The angles (deg) within half a turn of `middle` (deg), cut where they leave it on one side and come back
+/// on the other.
 fn angles(line: &TrackLine, middle: f64) -> Vec<Vec<[f64; 2]>> {
     let stride = line.times.len().div_ceil(2 * N_BUCKETS).max(1);
     let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];

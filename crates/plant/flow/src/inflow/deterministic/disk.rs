@@ -6,11 +6,13 @@ use std::f64::consts::TAU;
 
 /// A disk, normal to x, inside which the wind has another speed; its centre runs on an ellipse.
 ///
-/// The centre starts at the top of the ellipse at time zero and goes round clockwise or counter-clockwise, looking
-/// downwind. Its frequency goes linearly from the first to the last of `frequencies` over `sweep`, then stays.
-/// Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU Delft 2024, §4-1-3: offsets 0.2 D and 0.1 D, St from 0.18 to 0.22 over 1500 s, 16 m/s outside and
-/// 8 m/s inside. It leaves open the radius, for which [`of_wake`](Self::of_wake) takes that of the rotor, and where the
-/// disk is at time zero; its wind stands on a grid of 13.8 m × 15.3 m, which smears the edge as `edge` does.
+/// The centre starts at the top of the ellipse at time zero and goes round clockwise or counter-clockwise,
+/// looking downwind. Its frequency goes linearly from the first to the last of `frequencies` over `sweep`,
+/// then stays. Source: van Veldhoven, "Closed-Loop Wake Meandering Control of Downstream Wind Turbines", TU
+/// Delft 2024, §4-1-3: offsets 0.2 D and 0.1 D, St from 0.18 to 0.22 over 1500 s, 16 m/s outside and 8 m/s
+/// inside. It leaves open the radius, for which [`of_wake`](Self::of_wake) takes that of the rotor, and where
+/// the disk is at time zero; its wind stands on a grid of 13.8 m × 15.3 m, which smears the edge as `edge`
+/// does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RotatingDisk {
     /// Middle of the ellipse along y and z (m), the hub.
@@ -32,8 +34,8 @@ pub struct RotatingDisk {
 }
 
 impl RotatingDisk {
-    /// The disk of the source behind a rotor of `diameter` (m) with its hub at `hub_height` (m) and y = 0, in the
-    /// ambient speed `ambient_speed` (m/s), which also makes frequencies of Strouhal numbers.
+    /// The disk of the source behind a rotor of `diameter` (m) with its hub at `hub_height` (m) and y = 0, in
+    /// the ambient speed `ambient_speed` (m/s), which also makes frequencies of Strouhal numbers.
     pub fn of_wake(diameter: f64, hub_height: f64, ambient_speed: f64, clockwise: bool) -> Self {
         Self {
             middle: [0.0, hub_height],

@@ -7,8 +7,8 @@ use rustfft::{Fft, FftPlanner};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Decay lengths of coherence half-way round the torus (–): what is left there, exp(−7), is where kinks in the
-/// periodic coherence, and with them negative eigenvalues, come from.
+/// Decay lengths of coherence half-way round the torus (–): what is left there, exp(−7), is where kinks in
+/// the periodic coherence, and with them negative eigenvalues, come from.
 const DECAY_LENGTHS: f64 = 7.0;
 /// Coherence of neighbours (–) below which waves are drawn independently.
 const INCOHERENT: f64 = 1e-4;
@@ -78,8 +78,8 @@ impl Coherent {
         Self { n_y, spacing: [spacing_y, spacing_z], waves }
     }
 
-    /// On return `plane` holds `wave` with `amplitude`, coherent across it; false, and nothing done, for waves too
-    /// short to be coherent.
+    /// On return `plane` holds `wave` with `amplitude`, coherent across it; false, and nothing done, for
+    /// waves too short to be coherent.
     pub(super) fn fill(
         &self,
         wave: usize,
@@ -114,8 +114,8 @@ impl Coherent {
             .fold(0.0, f64::max)
     }
 
-    /// On return `workspace.roots` are the roots of the eigenvalues over their sum, n_z × n_y of the torus, with the
-    /// share that was negative and is zero now as result; `modes` has the torus' size.
+    /// On return `workspace.roots` are the roots of the eigenvalues over their sum, n_z × n_y of the torus,
+    /// with the share that was negative and is zero now as result; `modes` has the torus' size.
     fn roots(&self, decay: f64, torus: &Torus, workspace: &mut Workspace) -> f64 {
         let Workspace { roots, modes, turned, scratch, .. } = workspace;
         let size = torus.n_y * torus.n_z;
@@ -154,8 +154,8 @@ impl Coherent {
 }
 
 impl Torus {
-    /// On return the first `n_columns` columns of `turned` (z fastest) hold the transform of `values` (y fastest),
-    /// which are overwritten.
+    /// On return the first `n_columns` columns of `turned` (z fastest) hold the transform of `values` (y
+    /// fastest), which are overwritten.
     fn transform(
         &self,
         values: &mut [Complex32],

@@ -18,8 +18,8 @@ pub(super) struct Window {
     arriving: Vec<[f32; 3]>,
     /// Planes that fit into the ring.
     capacity: usize,
-    /// Count of the oldest plane held, where that of the record's first is zero and the record, where it repeats, goes on
-    /// in both directions; and how many are held.
+    /// Count of the oldest plane held, where that of the record's first is zero and the record, where it
+    /// repeats, goes on in both directions; and how many are held.
     oldest: i64,
     n_held: usize,
     /// Place in the ring of the oldest.
@@ -179,7 +179,8 @@ impl Window {
     }
 }
 
-/// Point at or before `place` (in spacings), at most the last but one of `n`, and how far behind it (–), 0 to 1.
+/// Point at or before `place` (in spacings), at most the last but one of `n`, and how far behind it (–), 0 to
+/// 1.
 #[inline(always)]
 fn place(place: f64, n: usize) -> (usize, f32) {
     let last = n.saturating_sub(2);

@@ -5,7 +5,8 @@ use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Sub};
 
 macro_rules! vector {
-    ($(#[$doc:meta])* $name:ident, $register:ty, $lanes:expr, $load:ident, $store:ident, $splat:ident, $add:ident,
+    ($(#[$doc:meta])* $name:ident, $register:ty, $lanes:expr, $load:ident, $store:ident, $splat:ident,
+     $add:ident,
      $sub:ident, $mul:ident, $fmadd:ident, $fnmadd:ident, $div:ident, $sqrt:ident, $max:ident) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]

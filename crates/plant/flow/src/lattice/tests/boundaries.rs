@@ -28,8 +28,8 @@ fn departure(air: &Lattice, from: usize, to: usize, wind: f64) -> f64 {
 
 #[test]
 fn a_sound_pulse_leaves() {
-    // A velocity pulse at constant pressure splits in two halves, one up-, one downstream. At rest density the
-    // one that goes downstream arrives at the outlet at u + c; what comes back must be small.
+    // A velocity pulse at constant pressure splits in two halves, one up-, one downstream. At rest density
+    // the one that goes downstream arrives at the outlet at u + c; what comes back must be small.
     let n = 160;
     let pulse = move |_: f64, x: Vector3| {
         let bump = (-((x.x - 80.0) / 6.0).powi(2)).exp();
@@ -109,7 +109,8 @@ fn the_wind_that_enters_has_its_profile() {
     }
 }
 
-/// Layers of air that slide over each other, each along its own direction, are a steady flow without friction.
+/// Layers of air that slide over each other, each along its own direction, are a steady flow without
+/// friction.
 #[test]
 fn a_wind_that_veers_keeps_its_directions() {
     let wind = |z: f64| {

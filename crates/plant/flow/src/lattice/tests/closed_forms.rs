@@ -4,9 +4,11 @@ use super::*;
 use crate::{FlowSolver, WindField};
 use std::f64::consts::TAU;
 
-/// Viscosity (lattice units) that a wave of wave vector `wave` (rad per cell) decays with, from its amplitudes at two times.
+/// Viscosity (lattice units) that a wave of wave vector `wave` (rad per cell) decays with, from its
+/// amplitudes at two times.
 ///
-/// The wave lies in the component along `along`, is carried by the uniform wind `mean`, and decays as exp(−ν k² t).
+/// The wave lies in the component along `along`, is carried by the uniform wind `mean`, and decays as exp(−ν
+/// k² t).
 fn measured_viscosity(
     settings: LatticeSettings,
     wave: Vector3,

@@ -203,7 +203,8 @@ fn seen(air: &Lattice) -> Vec<u64> {
 fn an_engine_with_memory_of_its_own_gives_the_same_bits() {
     let [mut cpu, mut plain] = both();
     assert_eq!(seen(&cpu), seen(&plain));
-    // An odd number of steps, then an even one: the processor's engine keeps its populations differently after either.
+    // An odd number of steps, then an even one: the processor's engine keeps its populations differently
+    // after either.
     for n_steps in [1.0, 32.0, 8.0] {
         for air in [&mut cpu, &mut plain] {
             air.advance(n_steps, &pull()).expect("no divergence");

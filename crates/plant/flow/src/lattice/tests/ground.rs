@@ -12,7 +12,8 @@ fn logarithmic(z: f64) -> f64 {
     FRICTION_VELOCITY / VON_KARMAN * (z / ROUGHNESS_LENGTH).ln()
 }
 
-/// Half a channel with a rough floor, `n` cells across, driven by u*²/H, logarithmic with eddies at the start.
+/// Half a channel with a rough floor, `n` cells across, driven by u*²/H, logarithmic with eddies at the
+/// start.
 fn half_channel(n: [usize; 3]) -> Lattice {
     let spacing = HEIGHT / n[2] as f64;
     let top = logarithmic(HEIGHT);

@@ -98,7 +98,8 @@ fn back_ends_agree_to_rounding() {
             for (value, expected) in run(backend).as_flattened().iter().zip(portable.as_flattened())
             {
                 let difference = f64::from_bits(*value) - f64::from_bits(*expected);
-                // Single precision carries 10 m/s in steps of 1e-6; fifty steps of a gusty wind double it a few times.
+                // Single precision carries 10 m/s in steps of 1e-6; fifty steps of a gusty wind double it a
+                // few times.
                 assert!(difference.abs() < 1e-4, "{backend:?} is {difference} m/s off");
             }
         }

@@ -66,7 +66,8 @@ fn twenty_seven_directions() {
 
 #[test]
 fn twenty_seven_directions_hold_a_gaussian() {
-    // Sixth central moment of the populations against Isserlis' theorem, with the background of air at rest added.
+    // Sixth central moment of the populations against Isserlis' theorem, with the background of air at rest
+    // added.
     let given = state();
     let populations = D3Q27::populations(&given).map(first_lane);
     let weight = |e: [i8; 3]| [8.0, 2.0, 0.5, 0.125][e.iter().filter(|c| **c != 0).count()] / 27.0;

@@ -156,7 +156,8 @@ proptest! {
 
 #[test]
 fn a_coned_blade_slows_the_air_along_the_shaft() {
-    // Momentum along the shaft: force × cos(cone) = mass flow × 2 a U, wind normal to the blade U cos(cone) (1 − a).
+    // Momentum along the shaft: force × cos(cone) = mass flow × 2 a U, wind normal to the blade U cos(cone)
+    // (1 − a).
     let cone_angle = 0.15_f64;
     let ring = Annulus { cone_angle, ..annulus(30.0, 3.0, 0.03) };
     let (wind, rotation) = (9.0, 45.0);

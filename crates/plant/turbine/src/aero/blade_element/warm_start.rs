@@ -1,4 +1,5 @@
-//! Blade-element momentum theory from one time step to the next: one evaluation of the residual, at the last inflow angle.
+//! Blade-element momentum theory from one time step to the next: one evaluation of the residual, at the last
+//! inflow angle.
 
 use super::{Annulus, FRAC_PI_2, Ring, SMALLEST_ANGLE, SectionCoefficients, Theory, Trial};
 use serde::{Deserialize, Serialize};
@@ -13,7 +14,8 @@ const LEAST_SECANT: f64 = 1e-9;
 const MAXIMUM_LOOKS: usize = 6;
 /// Cosine of the angle (–) below which its tangent does not determine the induction.
 const LEAST_COSINE: f64 = 0.1;
-/// Largest tangential induction of a warm start (–); beyond it, in unusual winds, the search starts anew each time.
+/// Largest tangential induction of a warm start (–); beyond it, in unusual winds, the search starts anew each
+/// time.
 const LARGEST_SWIRL: f64 = 1.0;
 /// Uses of a slope before it is computed anew (–).
 const SLOPE_LIFE: u8 = 16;
@@ -38,11 +40,12 @@ pub struct Factors {
 
 /// Induction of one annulus like [`solve`](super::solve), starting from where it was last time.
 ///
-/// A step of the inflow angle below 2e-3 rad uses a slope of the residual from the last sixteen calls; the error of this
-/// slope, some percent of the step, is corrected by the next call. So a constant wind gives the induction of `solve`, and a
-/// wind that changes from step to step gives it to about 1e-5 rad. Larger steps take further evaluations. Without a solution
-/// near the last angle `solve`'s bracketed search finds one: there is always a result, whatever `warm_start` holds. Of two
-/// solutions, as sections in stall have, it keeps the one near the last angle.
+/// A step of the inflow angle below 2e-3 rad uses a slope of the residual from the last sixteen calls; the
+/// error of this slope, some percent of the step, is corrected by the next call. So a constant wind gives the
+/// induction of `solve`, and a wind that changes from step to step gives it to about 1e-5 rad. Larger steps
+/// take further evaluations. Without a solution near the last angle `solve`'s bracketed search finds one:
+/// there is always a result, whatever `warm_start` holds. Of two solutions, as sections in stall have, it
+/// keeps the one near the last angle.
 pub fn solve_near(
     annulus: &Annulus,
     axial: f64,
@@ -63,7 +66,8 @@ pub fn solve_near(
     })
 }
 
-/// Induction of `ring` where its residual vanishes near `warm_start`, which on return holds that angle; None where it does not.
+/// Induction of `ring` where its residual vanishes near `warm_start`, which on return holds that angle; None
+/// where it does not.
 fn nearby<Section: Fn(f64) -> SectionCoefficients>(
     ring: &Ring<'_, Section>,
     warm_start: &mut WarmStart,
@@ -96,7 +100,8 @@ fn nearby<Section: Fn(f64) -> SectionCoefficients>(
     None
 }
 
-/// Induction a small `step` of the angle (rad) from `trial`: the swirl is held, and the new angle gives the axial induction.
+/// Induction a small `step` of the angle (rad) from `trial`: the swirl is held, and the new angle gives the
+/// axial induction.
 fn beside<Section>(ring: &Ring<'_, Section>, trial: &Trial, step: f64) -> Option<Factors> {
     let tangential = trial.tangential_induction;
     if tangential.abs() > LARGEST_SWIRL {

@@ -44,7 +44,8 @@ fn a_steady_flow_has_the_polars_coefficients() {
     }
 }
 
-/// First harmonic, cosine and sine part over the amplitude of `motion`, of lift over 2π at reduced frequency `k`.
+/// First harmonic, cosine and sine part over the amplitude of `motion`, of lift over 2π at reduced frequency
+/// `k`.
 fn harmonic(k: f64, motion: impl Fn(f64, f64) -> (f64, f64)) -> [f64; 2] {
     let polar = plate();
     let stall = DynamicStall::new(&polar, Attached::Delayed).unwrap();
@@ -66,7 +67,8 @@ fn harmonic(k: f64, motion: impl Fn(f64, f64) -> (f64, f64)) -> [f64; 2] {
     parts
 }
 
-/// Real part of Theodorsen's function and minus its imaginary part, by reduced frequency: NACA report 496, 1935, table.
+/// Real part of Theodorsen's function and minus its imaginary part, by reduced frequency: NACA report 496,
+/// 1935, table.
 const THEODORSEN: [(f64, f64, f64); 5] = [
     (0.05, 0.9090, 0.1306),
     (0.1, 0.8319, 0.1723),
@@ -96,7 +98,8 @@ fn a_plate_pitching_about_its_quarter_chord_follows_theodorsen() {
         let [cosine, sine] = harmonic(k, |phase, frequency| {
             (amplitude * phase.cos(), -amplitude * frequency * phase.sin())
         });
-        // Theodorsen: C(k) (θ + θ̇ b/U) + θ̇ b/2U, with b/U θ̇ = −k θ₀ sin; the term with θ̈, k²/4, is not the model's.
+        // Theodorsen: C(k) (θ + θ̇ b/U) + θ̇ b/2U, with b/U θ̇ = −k θ₀ sin; the term with θ̈, k²/4, is not
+        // the model's.
         let expected_cosine = real + k * imaginary;
         let expected_sine = imaginary - k * real - 0.5 * k;
         let scale = amplitude * real.hypot(imaginary);
@@ -139,7 +142,8 @@ fn without_the_wakes_delay_attached_lift_is_the_polars_at_once() {
 proptest! {
     #[test]
     fn any_flow_gives_bounded_coefficients(
-        angles in prop::collection::vec(-7.0..7.0_f64, 30), speeds in prop::collection::vec(0.0..120.0_f64, 30),
+        angles in prop::collection::vec(-7.0..7.0_f64, 30),
+        speeds in prop::collection::vec(0.0..120.0_f64, 30),
         intervals in prop::collection::vec(0.0..2.0_f64, 30), rotation in -1.0..1.0_f64,
     ) {
         let polar = aerofoil();
@@ -149,7 +153,8 @@ proptest! {
             let stream = Stream { angle_of_attack, speed, chord: CHORD, rotation: rotation * speed / CHORD };
             let got = stall.advance(interval, &stream, &polar, &mut state);
             prop_assert!(got.lift.is_finite() && got.drag.is_finite() && got.moment.is_finite());
-            // Lift stays below what attached flow would reach at the model's largest angle, apparent mass included.
+            // Lift stays below what attached flow would reach at the model's largest angle, apparent mass
+            // included.
             prop_assert!(got.lift.abs() < 2.0 * PI * (NONE - SAMPLE_ZERO_LIFT) + PI, "{got:?}");
             prop_assert!((0.0..=1.0).contains(&state.attachment()));
         }

@@ -1,8 +1,9 @@
-//! Induction of a rotor in a prescribed wind: induced velocity at each blade element by momentum theory, quasi-steady or with
-//! dynamic inflow.
+//! Induction of a rotor in a prescribed wind: induced velocity at each blade element by momentum theory,
+//! quasi-steady or with dynamic inflow.
 //!
-//! Every element of every blade has an annulus of its own, as if all blades did what this one does: a blade that pitches
-//! alone, or meets a gust alone, has its own induction. Lags rotate with the blade; they are not fixed in space.
+//! Every element of every blade has an annulus of its own, as if all blades did what this one does: a blade
+//! that pitches alone, or meets a gust alone, has its own induction. Lags rotate with the blade; they are not
+//! fixed in space.
 
 pub mod skew;
 pub mod snel_schepers;
@@ -16,8 +17,8 @@ pub use skew::SkewedWake;
 pub use snel_schepers::SnelSchepers;
 pub use two_constant::{Decay, Lagged, SlowConstant, TwoConstant};
 
-/// Largest induced velocity over the sum of the wind's components (–); in the propeller state momentum theory has no bound of
-/// its own.
+/// Largest induced velocity over the sum of the wind's components (–); in the propeller state momentum theory
+/// has no bound of its own.
 const LARGEST_SHARE: f64 = 1.5;
 
 /// Model of the wake's induction at the blades.
@@ -98,8 +99,9 @@ impl Induction {
         induced
     }
 
-    /// Advances `induced` by `interval` (s), to the instant at which the wind without induction is `onset` at a blade in
-    /// `annulus`, which is `ring`'s at that instant, with sections of `polar`. Only the two-constant model uses `decay`.
+    /// Advances `induced` by `interval` (s), to the instant at which the wind without induction is `onset` at
+    /// a blade in `annulus`, which is `ring`'s at that instant, with sections of `polar`. Only the
+    /// two-constant model uses `decay`.
     pub fn advance(
         &self,
         interval: f64,

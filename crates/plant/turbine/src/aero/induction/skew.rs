@@ -1,8 +1,9 @@
 //! Skewed wake: more induction on the downwind side of the rotor, less on the upwind side.
 //!
-//! Source: Pitt and Peters, "Theoretical prediction of dynamic-inflow derivatives", Vertica 5, 1981; with the wake's
-//! angle χ = (1 + 0.6 a) γ of Burton et al., "Wind energy handbook", 2nd ed., eq. 3.110, and the factor 15π/32, as AeroDyn
-//! uses it: Moriarty, Hansen, "AeroDyn theory manual", NREL/TP-500-36881, 2005, eq. 23.
+//! Source: Pitt and Peters, "Theoretical prediction of dynamic-inflow derivatives", Vertica 5, 1981; with the
+//! wake's angle χ = (1 + 0.6 a) γ of Burton et al., "Wind energy handbook", 2nd ed., eq. 3.110, and the
+//! factor 15π/32, as AeroDyn uses it: Moriarty, Hansen, "AeroDyn theory manual", NREL/TP-500-36881, 2005, eq.
+//! 23.
 
 use basis::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -18,7 +19,8 @@ pub struct SkewedWake {
 }
 
 impl SkewedWake {
-    /// Wake of a rotor of `rotor_radius` (m) about the unit vector `shaft`, downwind, in `mean_wind` (m/s), with a mean axial induction of `mean_induction` (–).
+    /// Wake of a rotor of `rotor_radius` (m) about the unit vector `shaft`, downwind, in `mean_wind` (m/s),
+    /// with a mean axial induction of `mean_induction` (–).
     pub fn new(mean_wind: Vector3, shaft: Vector3, mean_induction: f64, rotor_radius: f64) -> Self {
         let axial = mean_wind.dot(shaft);
         let in_plane = mean_wind - shaft * axial;

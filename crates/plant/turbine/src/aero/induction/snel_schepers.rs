@@ -1,12 +1,15 @@
-//! Dynamic inflow after Snel and Schepers: the induced velocity of each annulus follows the balance of thrust and momentum.
+//! Dynamic inflow after Snel and Schepers: the induced velocity of each annulus follows the balance of thrust
+//! and momentum.
 //!
-//! 4 R f_a u̇ + 4 u (V − u) = thrust of the ring / (½ρ · its area), u the induced velocity, V the wind, R the rotor
-//! radius. The function f_a of radius comes from a wake of vortex rings on a cylinder; it makes tips faster than roots.
+//! 4 R f_a u̇ + 4 u (V − u) = thrust of the ring / (½ρ · its area), u the induced velocity, V the wind, R the
+//! rotor radius. The function f_a of radius comes from a wake of vortex rings on a cylinder; it makes tips
+//! faster than roots.
 //!
-//! Source: Snel and Schepers, "Joint investigation of dynamic inflow effects and implementation of an engineering method",
-//! ECN-C--94-107, 1995 (the differential-equation model of ECN); Schepers, "Engineering models in wind energy
-//! aerodynamics", thesis, Delft, 2012. Beyond that: Prandtl's loss F divides the thrust, as in the steady theory, and
-//! Buhl's parabola stands for 4 u (V − u) beyond u = 0.4 V, so that the steady state is that of blade-element momentum.
+//! Source: Snel and Schepers, "Joint investigation of dynamic inflow effects and implementation of an
+//! engineering method", ECN-C--94-107, 1995 (the differential-equation model of ECN); Schepers, "Engineering
+//! models in wind energy aerodynamics", thesis, Delft, 2012. Beyond that: Prandtl's loss F divides the
+//! thrust, as in the steady theory, and Buhl's parabola stands for 4 u (V − u) beyond u = 0.4 V, so that the
+//! steady state is that of blade-element momentum.
 
 use crate::actuator_line::Onset;
 use crate::aero::Polar;
@@ -35,14 +38,16 @@ impl Default for SnelSchepers {
 
 /// The function f_a at `share` (–) of the rotor radius, between 0 and 1: one on the axis, zero at the edge.
 ///
-/// 2π over ∫ (1 − x cos φ) / (1 + x² − 2x cos φ)^1.5 dφ around the turn, here in its closed form with complete elliptic integrals.
+/// 2π over ∫ (1 − x cos φ) / (1 + x² − 2x cos φ)^1.5 dφ around the turn, here in its closed form with
+/// complete elliptic integrals.
 pub fn radial_factor(share: f64) -> f64 {
     let x = share.clamp(0.0, 1.0 - 1e-9);
     let (first, second) = complete_elliptic(4.0 * x / ((1.0 + x) * (1.0 + x)));
     PI / (first / (1.0 + x) + second / (1.0 - x))
 }
 
-/// Complete elliptic integrals of the first and second kind (–) at `parameter` m = k² (–, below 1), by the arithmetic-geometric mean.
+/// Complete elliptic integrals of the first and second kind (–) at `parameter` m = k² (–, below 1), by the
+/// arithmetic-geometric mean.
 fn complete_elliptic(parameter: f64) -> (f64, f64) {
     let (mut a, mut b, mut c) = (1.0, (1.0 - parameter).sqrt(), parameter.sqrt());
     let (mut sum, mut weight) = (0.5 * c * c, 0.5);
@@ -55,10 +60,12 @@ fn complete_elliptic(parameter: f64) -> (f64, f64) {
     (first, first * (1.0 - sum))
 }
 
-/// Advances the `induced` velocities, axial against the wind and tangential along the swirl (m/s), by `interval` (s).
+/// Advances the `induced` velocities, axial against the wind and tangential along the swirl (m/s), by
+/// `interval` (s).
 ///
-/// `onset` is the wind without induction at a blade of `annulus`, whose section has `polar`; `inertia` is R f_a (m) times
-/// the model's time factor. Any interval is stable: the balance is linearised and its decay taken to fourth order.
+/// `onset` is the wind without induction at a blade of `annulus`, whose section has `polar`; `inertia` is R
+/// f_a (m) times the model's time factor. Any interval is stable: the balance is linearised and its decay
+/// taken to fourth order.
 pub(super) fn advance(
     interval: f64,
     onset: Onset,
@@ -139,7 +146,8 @@ mod tests {
     fn momentum_is_the_steady_theorys() {
         for loss in [0.2, 0.7, 1.0] {
             for loading in [-0.2, 0.0, 0.3, 0.6, 0.7, 1.5, 8.0] {
-                // Where blades load the ring with κ, momentum theory says a, and then 4 F κ (1 − a)² of thrust.
+                // Where blades load the ring with κ, momentum theory says a, and then 4 F κ (1 − a)² of
+                // thrust.
                 let a = axial_induction(loading, loss);
                 let (got, slope) = momentum(10.0, 10.0 * a, loss);
                 let expected = 100.0 * loading * (1.0 - a).powi(2);

@@ -1,8 +1,10 @@
-//! Dynamic inflow with two time constants: induced velocity follows its steady value through a lead and two lags.
+//! Dynamic inflow with two time constants: induced velocity follows its steady value through a lead and two
+//! lags.
 //!
 //! Source: Øye's model as described by Snel and Schepers, "Joint investigation of dynamic inflow effects and
-//! implementation of an engineering method", ECN-C--94-107, 1995, and by Hansen, "Aerodynamics of wind turbines", 2nd ed.,
-//! 2008, eq. 9.21 to 9.25. AeroDyn's dynamic blade-element momentum is the same model (its DBEMT).
+//! implementation of an engineering method", ECN-C--94-107, 1995, and by Hansen, "Aerodynamics of wind
+//! turbines", 2nd ed., 2008, eq. 9.21 to 9.25. AeroDyn's dynamic blade-element momentum is the same model
+//! (its DBEMT).
 
 use lti::lag::kept;
 use serde::{Deserialize, Serialize};
@@ -12,7 +14,8 @@ const LARGEST_INDUCTION: f64 = 0.5;
 /// Least wind through the rotor used for the slow constant (m/s).
 const LEAST_WIND: f64 = 0.1;
 
-/// The model: W + (τ₁ + τ₂) Ẇ + τ₁ τ₂ Ẅ = W_qs + k τ₁ Ẇ_qs, W the induced velocity and W_qs that of momentum theory.
+/// The model: W + (τ₁ + τ₂) Ẇ + τ₁ τ₂ Ẅ = W_qs + k τ₁ Ẇ_qs, W the induced velocity and W_qs that of momentum
+/// theory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoConstant {
     /// The slow time constant τ₁.

@@ -24,7 +24,8 @@ fn shake(structure: &mut Structure, rotor_speed: f64) {
     structure.restore(state);
 }
 
-/// Largest change of the energy of a free motion over `duration` (s), as a share of the energy of the motion at its beginning.
+/// Largest change of the energy of a free motion over `duration` (s), as a share of the energy of the motion
+/// at its beginning.
 fn energy_error(structure: &mut Structure, duration: f64) -> f64 {
     let before = structure.energy();
     let mut worst = 0.0_f64;
@@ -106,7 +107,8 @@ fn energy_grows_by_the_work_of_the_loads() {
         pitch: 0.0,
     };
     let (mut elements, mut points) = (vec![blank; 12], vec![(Vector3::ZERO, Vector3::ZERO); 2]);
-    // Forces are constant in the farm frame: their work is force × way, the torque's is torque × turned angle.
+    // Forces are constant in the farm frame: their work is force × way, the torque's is torque × turned
+    // angle.
     let mut potential = |structure: &Structure| {
         structure.observe(0.0, &PITCH, &mut elements);
         structure.observe_tower(0.0, &mut points);
@@ -134,7 +136,8 @@ fn energy_grows_by_the_work_of_the_loads() {
 
 #[test]
 fn moments_on_elements_work_through_the_turn_of_the_section() {
-    // A couple of two forces on elements either side of a third is a moment on that one, if they all turn alike.
+    // A couple of two forces on elements either side of a third is a moment on that one, if they all turn
+    // alike.
     let mut definition = plain();
     definition.blade_structure.flap_modes[0].coefficients = [1.0, 0.0, 0.0, 0.0, 0.0];
     (definition.rotor.shaft_tilt, definition.rotor.precone) = (0.0, 0.0);

@@ -38,7 +38,8 @@ fn close(found: f64, expected: f64, tolerance: f64, what: &str) {
 
 #[test]
 fn nrel_5mw_has_the_frequencies_of_its_report() {
-    // Jonkman et al., NREL/TP-500-38060 (2009), table 9-1, FAST, parked: tower, drive train, then flapwise and edgewise.
+    // Jonkman et al., NREL/TP-500-38060 (2009), table 9-1, FAST, parked: tower, drive train, then flapwise
+    // and edgewise.
     let parked: Vec<DegreeOfFreedom> = DegreeOfFreedom::ALL
         .into_iter()
         .filter(|degree| *degree != DegreeOfFreedom::Generator)
@@ -65,8 +66,8 @@ fn nrel_5mw_has_the_frequencies_of_its_report() {
 
 #[test]
 fn iea_15mw_rings_like_openfast() {
-    // Spectral peaks of OpenFAST 5.0 runs from an impulsive start, 6.45 rpm: side-to-side 0.2374 Hz, edgewise 0.765 Hz and,
-    // all blades against the free shaft, 1.765 Hz.
+    // Spectral peaks of OpenFAST 5.0 runs from an impulsive start, 6.45 rpm: side-to-side 0.2374 Hz, edgewise
+    // 0.765 Hz and, all blades against the free shaft, 1.765 Hz.
     let definition = published(IEA_15);
     let found = frequencies(&definition, &DegreeOfFreedom::ALL, 0.6753);
     close(of(&found, DegreeOfFreedom::TowerSideToSide1)[0], 0.2374, 0.02, "tower side-to-side 1");
@@ -77,7 +78,8 @@ fn iea_15mw_rings_like_openfast() {
 
 #[test]
 fn single_blades_have_the_frequencies_of_their_beams() {
-    // Finite-element cantilevers of the same distributed mass, stiffness and twist, 200 elements: own computation.
+    // Finite-element cantilevers of the same distributed mass, stiffness and twist, 200 elements: own
+    // computation.
     for (text, flap, edge, second) in [
         (NREL_5, 0.6775, 1.0863, 1.9535),
         (IEA_15, 0.5387, 0.7279, 1.6032),

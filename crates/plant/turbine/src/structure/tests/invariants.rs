@@ -61,7 +61,8 @@ fn any_blade_may_be_the_first() {
 
 #[test]
 fn a_mirrored_turbine_moves_in_the_mirror() {
-    // Untwisted, unpitched blades: turning the other way is the mirror image across y, blades 2 and 3 exchanged.
+    // Untwisted, unpitched blades: turning the other way is the mirror image across y, blades 2 and 3
+    // exchanged.
     let definition = plain();
     let pitch = [Pitch::default(); 3];
     let mut one =
@@ -122,7 +123,8 @@ fn degrees_of_freedom_that_are_held_stay() {
 
 #[test]
 fn a_stiff_shaft_is_no_trouble_at_the_longest_step() {
-    // 90 Hz against a step of 0.02 s, hit by a step of torque: bounded, and the mean twist is torque over stiffness.
+    // 90 Hz against a step of 0.02 s, hit by a step of torque: bounded, and the mean twist is torque over
+    // stiffness.
     let definition = published(IEA_22);
     let mut structure =
         structure(&definition, &StructureSettings { gravity: 0.0, ..StructureSettings::AT_REST });

@@ -9,7 +9,8 @@ use basis::Vector3;
 
 const STEP: f64 = 2e-3;
 
-/// Mass (kg) and position (m) of every mass point: first those of each blade, then hub and nacelle, then the rest.
+/// Mass (kg) and position (m) of every mass point: first those of each blade, then hub and nacelle, then the
+/// rest.
 fn points(structure: &Structure, pitch: &[Pitch]) -> Vec<(f64, Vector3)> {
     let machine = &structure.machine;
     let (q, v) = (&structure.state().coordinates, &structure.state().velocities);
@@ -34,7 +35,8 @@ fn points(structure: &Structure, pitch: &[Pitch]) -> Vec<(f64, Vector3)> {
     points
 }
 
-/// What gravity and inertia of `range` of the points do about `centre`, from their positions at three instants.
+/// What gravity and inertia of `range` of the points do about `centre`, from their positions at three
+/// instants.
 fn wrench(
     history: &[Vec<(f64, Vector3)>],
     range: std::ops::Range<usize>,

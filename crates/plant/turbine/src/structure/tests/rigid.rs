@@ -12,7 +12,8 @@ use basis::Vector3;
 const SPEED: f64 = 1.7;
 const STEP: f64 = 0.02;
 
-/// `definition` with everything held, its rotor turning at [`SPEED`], after `n_steps` steps; and the azimuth of the loads.
+/// `definition` with everything held, its rotor turning at [`SPEED`], after `n_steps` steps; and the azimuth
+/// of the loads.
 fn spun(definition: &Definition, gravity: f64, n_steps: usize) -> (Structure, f64) {
     let settings = StructureSettings {
         gravity,
@@ -28,7 +29,8 @@ fn spun(definition: &Definition, gravity: f64, n_steps: usize) -> (Structure, f6
     (structure, azimuth)
 }
 
-/// ∫ mass over the blade, times the distance from the apex and the root to the powers given (kg m^(a+b)); even blade.
+/// ∫ mass over the blade, times the distance from the apex and the root to the powers given (kg m^(a+b));
+/// even blade.
 fn moment_of_mass(definition: &Definition, apex_power: i32, root_power: i32) -> f64 {
     let n = 4000;
     let length = definition.blade_length();
@@ -110,7 +112,8 @@ fn everything_weighs_on_the_foot() {
     let loads = still.loads();
     near(loads.yaw_bearing.force.z, -top * g, top * g, "YawBrFzp");
     near(loads.tower_base.force.z, -all * g, all * g, "TwrBsFzt");
-    // The rotor's centre of mass lies ahead of the apex by what the cone takes, and all of it upwind of the tower.
+    // The rotor's centre of mass lies ahead of the apex by what the cone takes, and all of it upwind of the
+    // tower.
     let cone = 3.0 * moment_of_mass(&definition, 1, 0) * definition.rotor.precone.sin();
     let ahead = rotor_mass * definition.rotor.overhang + cone;
     let lever =
@@ -134,7 +137,8 @@ fn a_nodding_tower_feels_the_gyroscope() {
     let pitch = [Pitch::default(); 3];
     let equations = structure.machine.equations_of_motion(&phase.q, &phase.v, &pitch, &none);
     let loads = structure.machine.loads(&phase, &equations, &none);
-    // Nodding at θ̇ about y turns the angular momentum J Ω of the rotor; the rotor answers with J Ω θ̇ about z.
+    // Nodding at θ̇ about y turns the angular momentum J Ω of the rotor; the rotor answers with J Ω θ̇ about
+    // z.
     let nodding = equations.motion.top.spin.y;
     assert!(nodding > 0.005);
     let expected = definition.rotor_inertia() * SPEED * nodding;

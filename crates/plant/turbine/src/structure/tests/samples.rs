@@ -99,7 +99,8 @@ pub(super) fn published(text: &str) -> Definition {
     }
 }
 
-/// Three even, untwisted blades of 40 m on an even tower of 78 m: tilted, coned, prebent. Its shapes are parabolas and steeper.
+/// Three even, untwisted blades of 40 m on an even tower of 78 m: tilted, coned, prebent. Its shapes are
+/// parabolas and steeper.
 pub(super) fn plain() -> Definition {
     let mode = |coefficients| Mode { coefficients, damping_ratio: 0.01 };
     let first = mode([1.5, -0.5, 0.0, 0.0, 0.0]);

@@ -16,8 +16,8 @@ fn flat() -> Definition {
     definition
 }
 
-/// Elements of blade 1 of [`flat`], upright, pitched by `pitch` (rad) and bent by `q`: flapwise 1 and 2, edgewise 1 (m). Their
-/// positions count from the hub.
+/// Elements of blade 1 of [`flat`], upright, pitched by `pitch` (rad) and bent by `q`: flapwise 1 and 2,
+/// edgewise 1 (m). Their positions count from the hub.
 fn bent(pitch: f64, q: [f64; 3]) -> Vec<ElementMotion> {
     let settings =
         StructureSettings { spans: &[8.0, 20.0, 33.0, 41.0], ..StructureSettings::AT_REST };
@@ -54,8 +54,8 @@ fn a_straight_blade_is_turned_by_its_pitch() {
     }
 }
 
-/// A blade that bends in one plane, without torsion, turns each section about the axis across that plane and not about itself:
-/// by the smallest rotation that carries the straight blade over into the bent one.
+/// A blade that bends in one plane, without torsion, turns each section about the axis across that plane and
+/// not about itself: by the smallest rotation that carries the straight blade over into the bent one.
 #[test]
 fn sections_of_a_bent_blade_turn_as_little_as_they_can() {
     for (flap, edge) in [(6.0, 1.0), (6.0, -1.0), (-3.0, 1.5), (5.0, 0.0), (0.0, 1.5)] {
@@ -69,7 +69,8 @@ fn sections_of_a_bent_blade_turn_as_little_as_they_can() {
             // What is left is of third order in the slopes.
             let slope = axis.length();
             assert!(miss < 0.6 * slope.powi(3) + 1e-12, "{flap} {edge}: {miss} {slope}");
-            // Half the product of the slopes, less what the swept surface turns where the blade lies beside its radius.
+            // Half the product of the slopes, less what the swept surface turns where the blade lies beside
+            // its radius.
             let beside = element.position.y / element.position.z;
             let expected = span.x * (0.5 * span.y - beside);
             assert!((element.pitch - expected).abs() < 0.6 * slope.powi(3) + 1e-12, "{element:?}");
