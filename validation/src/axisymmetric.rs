@@ -4,7 +4,7 @@
 //! differs from surface to surface is vorticity behind the disc:
 //!
 //! ```text
-//! ∂²ψ/∂x² + r ∂/∂r (1/r ∂ψ/∂r) = r² dH/dψ,  u = 1/r ∂ψ/∂r,  H = −Δp/ρ of the disc where the surface passes it
+//! ∂²ψ/∂x² + r ∂/∂r (1/r ∂ψ/∂r) = r² dH/dψ,  u = 1/r ∂ψ/∂r,  H = −Δp/ρ of the disc where the surface meets it
 //! ```
 //!
 //! Rings feel one another through the pressure and the widening wake, where momentum theory takes each for

@@ -92,7 +92,7 @@ impl Meandering {
     /// Takes in `measurements` and adds the command of each blade to `pitch` (rad).
     ///
     /// Begins without a step, and fades out over a period whenever the loop loses the lock that it
-    /// [needs](Settings::needs_lock).
+    /// [needs](MeanderingControlSettings::needs_lock).
     pub fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
         let interval = measurements.interval;
         let moments = to_fixed_frame(measurements.azimuth, &measurements.flap_moments);

@@ -48,7 +48,7 @@ pub(super) fn replay(
 /// Source: van Vondelen et al. (2025), Algorithm 1.
 ///
 /// # Errors
-/// As [`phase`].
+/// As [`phase`](super::phase).
 pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
     let mut records = Records::read(question)?;
     let first = records.turbines[0];
