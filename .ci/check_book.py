@@ -68,7 +68,9 @@ def run(page, folder, program):
 def words(*pages):
     """Everything in backticks on `pages`."""
     text = "".join((DOCS / page).read_text(encoding="utf-8") for page in pages)
-    return set(re.findall(r"`([^`\n]+)`", text))
+    found = set(re.findall(r"`([^`\n]+)`", text))
+    # A field stands there with its path, such as `turbines[].control.kind`.
+    return found | {part for name in found for part in re.split(r"\[\]\.|\.", name)}
 
 
 def channel(column):
