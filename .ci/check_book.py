@@ -70,7 +70,7 @@ def words(*pages):
     text = "".join((DOCS / page).read_text(encoding="utf-8") for page in pages)
     found = set(re.findall(r"`([^`\n]+)`", text))
     # A field stands there with its path, such as `turbines[].control.kind`.
-    return found | {part for name in found for part in re.split(r"\[\]\.|\.", name)}
+    return found | {part for name in found for part in re.split(r"\[\]\.?|\.", name)}
 
 
 def channel(column):
