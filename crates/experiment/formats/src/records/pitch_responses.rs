@@ -1,4 +1,4 @@
-//! Pitch responses identified before the runs of a study: `DIR/records.json`, so that a resumed study need
+//! Pitch responses identified before the runs of a study: `DIR/probes.json`, so that a resumed study need
 //! not identify them again.
 
 use crate::{FileError, atomic};
