@@ -174,6 +174,22 @@ pub struct Pitching {
     pub is_steady: bool,
 }
 
+impl Pitching {
+    /// What `values` with the usual keys describe where the phase follows from time alone.
+    pub(crate) fn open_loop(values: &Values, motion: Motion, sense: Option<Sense>) -> Self {
+        Self {
+            motion,
+            amplitude: values.angle("amplitude_deg"),
+            strouhal: values.number("strouhal"),
+            sense,
+            phase_offset: None,
+            start: values.number("start"),
+            stop: values.optional_number("stop"),
+            is_steady: true,
+        }
+    }
+}
+
 /// A pitch-response identification before the runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Identification {

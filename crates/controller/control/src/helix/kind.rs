@@ -75,15 +75,6 @@ impl ControllerKind for HelixKind {
 
     fn pitching(&self, control: &Control) -> Option<Pitching> {
         let values = control.values();
-        Some(Pitching {
-            motion: Motion::Cyclic,
-            amplitude: values.angle("amplitude_deg"),
-            strouhal: values.number("strouhal"),
-            sense: Some(sense(values)),
-            phase_offset: None,
-            start: values.number("start"),
-            stop: values.optional_number("stop"),
-            is_steady: true,
-        })
+        Some(Pitching::open_loop(values, Motion::Cyclic, Some(sense(values))))
     }
 }

@@ -57,16 +57,6 @@ impl ControllerKind for PulseKind {
     }
 
     fn pitching(&self, control: &Control) -> Option<Pitching> {
-        let values = control.values();
-        Some(Pitching {
-            motion: Motion::Collective,
-            amplitude: values.angle("amplitude_deg"),
-            strouhal: values.number("strouhal"),
-            sense: None,
-            phase_offset: None,
-            start: values.number("start"),
-            stop: values.optional_number("stop"),
-            is_steady: true,
-        })
+        Some(Pitching::open_loop(control.values(), Motion::Collective, None))
     }
 }
