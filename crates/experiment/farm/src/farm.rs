@@ -130,8 +130,10 @@ impl<Flow: FlowSolver + Sync> Farm<Flow> {
             None => self.machines.iter_mut().for_each(|machine| machine.advance(interval, flow)),
         }
         for (index, machine) in self.machines.iter().enumerate() {
-            let forces = machine.turbine.forces().iter();
-            self.forces.extend(forces.map(|force| force.of_turbine(index)));
+            // Copied as a block, then signed: a turbine does not know its place in the farm.
+            let first = self.forces.len();
+            self.forces.extend_from_slice(machine.turbine.forces());
+            self.forces[first..].iter_mut().for_each(|force| force.turbine = index);
         }
         self.flow.advance(self.interval, &self.forces)?;
         self.step += 1;

@@ -40,9 +40,4 @@ impl PointForce {
     pub fn of_body(position: Vector3, force: Vector3, smearing_length: f64) -> Self {
         Self { position, force, smearing_length, turbine: 0, bound: None }
     }
-
-    /// The same force, from machine number `turbine` of the farm.
-    pub fn of_turbine(self, turbine: usize) -> Self {
-        Self { turbine, ..self }
-    }
 }

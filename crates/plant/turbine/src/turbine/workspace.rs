@@ -72,9 +72,14 @@ impl Workspace {
     pub(super) fn push(&mut self, elements: &[Element], smearing_length: f64) {
         let Self { forces, stations, axes, sums, circulations, .. } = self;
         let n_bodies = forces.len();
-        for (index, ((axes, sum), position)) in axes.iter().zip(&*sums).zip(&*stations).enumerate()
-        {
-            let (blade, station) = (index / elements.len(), index % elements.len());
+        let points = axes.iter().zip(&*sums).zip(&*stations).zip(&*circulations);
+        // Blade after blade, each from root to tip.
+        let mut place = (0, 0);
+        for (((axes, sum), position), circulation) in points {
+            let (blade, station) = place;
+            let element = &elements[station];
+            place =
+                if station + 1 == elements.len() { (blade + 1, 0) } else { (blade, station + 1) };
             let force = axes.normal * sum[0] + axes.tangent * sum[1];
             forces.push(PointForce {
                 position: *position,
@@ -84,8 +89,8 @@ impl Workspace {
                 bound: Some(BoundVortex {
                     blade,
                     station,
-                    circulation: circulations[index],
-                    along: axes.span * elements[station].width,
+                    circulation: *circulation,
+                    along: axes.span * element.width,
                 }),
             });
         }

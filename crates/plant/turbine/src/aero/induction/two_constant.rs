@@ -79,9 +79,9 @@ impl Decay {
     /// Over `interval` (s), at `share` (–) of the rotor radius, with a slow time constant of `slow` (s).
     pub fn new(interval: f64, slow: f64, share: f64) -> Self {
         let fast = fast_constant(slow, share);
-        let decay = |constant: f64| kept(interval, constant);
-        let passed = slow / (slow - fast) * (decay(slow) - decay(fast));
-        Self { slow: decay(slow), fast: decay(fast), passed }
+        let (slow_kept, fast_kept) = (kept(interval, slow), kept(interval, fast));
+        let passed = slow / (slow - fast) * (slow_kept - fast_kept);
+        Self { slow: slow_kept, fast: fast_kept, passed }
     }
 }
 
