@@ -49,7 +49,7 @@ pub(super) static ROOT: Table = Table {
 /// `[wind]`.
 pub(super) static WIND: Table = Table {
     heading: "[wind]",
-    about: "The wind that comes in: a mean profile with Mann's turbulence on it, the same for every run.",
+    about: "The wind that comes in: a mean profile with turbulence on it (Mann's, Kaimal's, recorded planes, or none), the same for every run.",
     keys: &[
         key("speed", above(0.0, 40.0), "m/s", Required, "Mean speed at hub height of the first turbine.")
             .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }, Slip { unit: "cm/s", factor: 0.01 }]),
@@ -193,7 +193,7 @@ pub(super) static TURBINE: Table = Table {
             Holds::Pair(Range { low: -500.0, open: false, high: 500.0 }),
             "D",
             Required,
-            "Foot of the tower, x downwind and y to the left looking downwind, in diameters of the first turbine. At least 1 D from every other turbine.",
+            "Foot of the tower, x downwind and y to the left looking downwind, in diameters of the first turbine. From every other turbine at least the mean of both diameters.",
         ),
         key(
             "structure",
