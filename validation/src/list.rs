@@ -255,7 +255,7 @@ pub const ELSEWHERE: &[Elsewhere] = &[
     Elsewhere {
         name: "synchronised-helix",
         about: "a helix that the second turbine joins with a phase offset, three turbines, beside published large-eddy figures",
-        repeat: "wakemix run cases/synchronised-helix.toml",
+        repeat: "wakemix run cases/synchronised-helix.toml --run bl-helix --run offset-090 --run offset-270 --set run.offset-090.control.T2.azimuth_offset_deg=0 --set run.offset-270.control.T2.azimuth_offset_deg=0 --set wind.seed=1",
         page: "synchronised-helix",
         recorded: include_str!("../recorded/synchronised-helix.toml"),
     },
