@@ -18,7 +18,8 @@ pub(super) struct Workspace {
     pub(super) loads: Vec<ElementLoad>,
     /// Sums over the steps of an interval: force on each element along normal and tangent (N).
     pub(super) sums: Vec<[f64; 2]>,
-    /// Mean circulation of each element over the steps of an interval (m²/s).
+    /// Mean circulation of each element over the steps of an interval (m²/s); empty where the forces come
+    /// without bound vortices.
     pub(super) circulations: Vec<f64>,
     /// Forces on the tower's points (N).
     pub(super) tower: Vec<Vector3>,
@@ -81,10 +82,10 @@ impl Workspace {
                 force: -force,
                 smearing_length,
                 turbine: 0,
-                bound: Some(BoundVortex {
+                bound: circulations.get(index).map(|&circulation| BoundVortex {
                     blade,
                     station,
-                    circulation: circulations[index],
+                    circulation,
                     along: axes.span * elements[station].width,
                 }),
             });
