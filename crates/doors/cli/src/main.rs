@@ -44,6 +44,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    wakemix::study::outputs::announce();
     let arguments = Arguments::parse();
     let done = match arguments.command {
         Command::Run(run) => return commands::run::run(&run),

@@ -1,4 +1,5 @@
-//! The page docs/reference/command-line.md, made from what the commands say of themselves, is up to date.
+//! Pages that are made from what commands and kinds say of themselves are up to date: command line and case
+//! file.
 
 use crate::Arguments;
 use clap::builder::StyledStr;
@@ -100,17 +101,28 @@ fn line(help: Option<&StyledStr>) -> String {
     words.split("\n\n").map(sentence).collect::<Vec<_>>().join(". ")
 }
 
-#[test]
-fn the_page_of_the_command_line_is_current() {
-    let path =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../docs/reference/command-line.md");
-    let made = page();
+/// Compares the committed file at `path` with what is `made` now; WAKEMIX_UPDATE=1 writes it instead.
+fn is_current(path: &str, made: &str) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..").join(path);
     if std::env::var_os("WAKEMIX_UPDATE").is_some() {
-        fs::write(&path, &made).unwrap();
+        fs::write(&file, made).unwrap();
     }
-    let committed = fs::read_to_string(&path).unwrap_or_default();
+    let committed = fs::read_to_string(&file).unwrap_or_default();
     assert!(
         committed == made,
-        "docs/reference/command-line.md is not current: run WAKEMIX_UPDATE=1 cargo test -p wakemix-cli"
+        "{path} is not current: run WAKEMIX_UPDATE=1 cargo test -p wakemix-cli"
     );
+}
+
+#[test]
+fn the_page_of_the_command_line_is_current() {
+    is_current("docs/reference/command-line.md", &page());
+}
+
+#[test]
+fn page_and_schema_of_the_case_file_are_current() {
+    // The program's own outputs are known to it, and not to the room that reads case files.
+    wakemix::study::outputs::announce();
+    is_current("docs/case-file.md", &wakemix::formats::case::reference());
+    is_current("docs/case.schema.json", &wakemix::formats::case::schema());
 }

@@ -4,7 +4,7 @@ use crate::air::Air;
 use crate::case::TowerInfluence as AskedInfluence;
 use crate::case::{Case, Control, DynamicInflow, Ground, Placement, Run, Sides};
 use crate::plan::{Footprint, Plan};
-use crate::solvers::Smearing;
+use crate::solvers::{Smearing, Solver};
 use crate::{Farm, Machine};
 use basis::Vector3;
 use control::baseline::Constants;
@@ -105,11 +105,12 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
     );
     settings.air_density = case.wind.air_density;
     settings.kinematic_viscosity = case.wind.kinematic_viscosity;
-    settings.sides = match case.flow.sides {
+    let domain = case.flow.domain();
+    settings.sides = match domain.sides {
         Sides::Periodic => lattice::Sides::Periodic,
         Sides::Slip => lattice::Sides::Slip,
     };
-    match case.flow.ground {
+    match domain.ground {
         Ground::Slip => settings.ground = lattice::Ground::Slip,
         Ground::Rough { roughness_length } => {
             settings.ground = lattice::Ground::WallStress { roughness_length };
@@ -202,6 +203,7 @@ pub fn farm(
         let tower = tower_influence(model, placement, foot);
         let settings = turbine_settings(case, plan, model, placement, tower);
         let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)?;
+        let turbine = in_air_of(solver, turbine);
         let control = controller(&run.control[index], model, case, plan)?;
         let seed = sensing::seed_of_turbine(case.wind.seed, index);
         let mut sensing = Sensing::new(placement.instruments, seed)?;
@@ -215,6 +217,11 @@ pub fn farm(
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     Ok(Farm::new(machines, air, plan.interval, case.flow.threads.unwrap_or(cores))?)
+}
+
+/// `turbine` with as much of its forces as the air of `solver` asks for.
+pub(crate) fn in_air_of(solver: Solver, turbine: Turbine) -> Turbine {
+    if solver.uses_bound_vortices { turbine } else { turbine.without_bound_vortices() }
 }
 
 /// The tower of a turbine of `model`, with its foot at `foot` (m), as its blades feel it; none where

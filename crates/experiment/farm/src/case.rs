@@ -1,10 +1,13 @@
 //! One study as plain data: what the case file says, in SI units.
 
+pub use crate::domain::{Domain, Ground, Sides};
+pub use crate::outputs::Requested;
 pub use crate::solvers::Solver;
 pub use control::{Control, Sense};
 pub use flow::inflow::deterministic::Change;
 pub use sensing::{Instrument, Instruments, Lag, Mounted};
 
+use basis::keys::Values;
 use serde::{Deserialize, Serialize};
 
 /// A study: one wind, one row of turbines, several runs to compare.
@@ -127,24 +130,13 @@ pub enum TurbulenceModel {
 }
 
 /// The flow solver.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Flow {
     /// What moves the air.
     pub solver: Solver,
-    /// Cells per diameter of the first turbine (–).
-    pub cells_per_diameter: f64,
-    /// Domain upstream of the first turbine (diameters of the first turbine).
-    pub upstream_diameters: f64,
-    /// Domain downstream of the last turbine (diameters).
-    pub downstream_diameters: f64,
-    /// Domain width (diameters), plus the lateral spread of the layout.
-    pub width_diameters: f64,
-    /// Domain height (diameters).
-    pub height_diameters: f64,
-    /// What the air meets at the ground.
-    pub ground: Ground,
-    /// What it meets at the sides.
-    pub sides: Sides,
+    /// What the keys of `[flow]` hold that the solver's kind [declares](crate::solvers::SolverKind::keys);
+    /// in the units of the file.
+    pub values: Values,
     /// Step of air and turbines (s); when absent chosen from the tip speed and the Mach number for the
     /// lattice, and [`PRESCRIBED_STEP`](crate::plan::PRESCRIBED_STEP) for prescribed wind.
     pub step: Option<f64>,
@@ -152,25 +144,11 @@ pub struct Flow {
     pub threads: Option<usize>,
 }
 
-/// The ground.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Ground {
-    /// Air slips along it.
-    Slip,
-    /// Wall stress after the logarithmic law.
-    Rough {
-        /// Roughness length z₀ (m).
-        roughness_length: f64,
-    },
-}
-
-/// The lateral boundaries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Sides {
-    /// What leaves on one side enters on the other.
-    Periodic,
-    /// Air slips along them.
-    Slip,
+impl Flow {
+    /// What they say of the box of cells, for solvers that have its [keys](crate::domain::KEYS).
+    pub fn domain(&self) -> Domain {
+        Domain::of(&self.values)
+    }
 }
 
 /// Time of every run.
@@ -299,7 +277,7 @@ pub fn helix_upstream(
 }
 
 /// What is kept of a run, beside series and summary.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// Time between rows of the series (s); when absent every step of a lattice and
     /// [`PRESCRIBED_ROW`](crate::plan::PRESCRIBED_ROW) of prescribed wind.
@@ -319,4 +297,6 @@ pub struct Output {
     pub volume_interval: Option<f64>,
     /// Checkpoint every so many seconds of wall time (s).
     pub checkpoint_interval: f64,
+    /// Further outputs, each with a name of its own.
+    pub further: Vec<Requested>,
 }

@@ -3,7 +3,9 @@
 pub mod air;
 pub mod assemble;
 pub mod case;
+pub mod domain;
 pub mod farm;
+pub mod outputs;
 pub mod pitch_response;
 pub mod plan;
 pub mod self_check;

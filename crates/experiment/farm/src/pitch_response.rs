@@ -239,6 +239,7 @@ fn pitching(
     let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)
         .map_err(AssemblyError::from)?
         .without_bodies();
+    let turbine = assemble::in_air_of(alone.flow.solver, turbine);
     let baseline = assemble::controller(&Control::baseline(), model, &alone, plan)?;
     let controller = helix.on_top_of(baseline);
     let tunnel = Tunnel::for_identification(plan.spacing, plan.interval);

@@ -131,8 +131,9 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
 pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
     let Layout { machines, positions } = layout;
     let diameter = layout.diameter();
-    let spacing = diameter / case.flow.cells_per_diameter;
-    check_resolution(machines, spacing, case.flow.cells_per_diameter)?;
+    let cells_per_diameter = case.flow.domain().cells_per_diameter;
+    let spacing = diameter / cells_per_diameter;
+    check_resolution(machines, spacing, cells_per_diameter)?;
 
     let (origin, n_cells) = domain(case, positions, diameter, spacing);
     let plan_without_step = |interval: f64| {
@@ -282,7 +283,7 @@ fn domain(
 ) -> (Vector3, [usize; 3]) {
     let low = positions.iter().copied().reduce(Vector3::min).unwrap_or_default();
     let high = positions.iter().copied().reduce(Vector3::max).unwrap_or_default();
-    let flow = &case.flow;
+    let flow = case.flow.domain();
     let cells = |length: f64| (length / spacing).round().max(1.0) as usize;
     let length = high.x - low.x + (flow.upstream_diameters + flow.downstream_diameters) * diameter;
     let width = high.y - low.y + flow.width_diameters * diameter;

@@ -205,7 +205,8 @@ fn bare_rotor(model: &Model, wind: &Wind, tunnel: &Tunnel) -> Result<Turbine, St
             pitch: model.constants.fine_pitch,
         },
     )?;
-    Ok(rotor.without_bodies().at_held_speed())
+    // A lattice feels forces alone.
+    Ok(rotor.without_bodies().without_bound_vortices().at_held_speed())
 }
 
 /// Power (W) and thrust (N) of blade-element momentum in a channel of which the rotor takes `area_ratio` (–).

@@ -74,6 +74,12 @@ impl FileError {
         let (problem, fix) = (problem.into(), fix.into());
         Self::Content { what, path: path.to_owned(), problem, fix }
     }
+
+    /// No run can go on from the checkpoint at `path`, because of `problem`.
+    pub(crate) fn checkpoint(path: &Path, problem: CheckpointProblem) -> Self {
+        let fix = problem.fix();
+        Self::Checkpoint { path: path.to_owned(), problem, fix }
+    }
 }
 
 fn fix_of(kind: ErrorKind, path: &Path) -> String {

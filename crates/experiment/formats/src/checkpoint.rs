@@ -5,96 +5,28 @@
 //! name and bytes. The end is a name length of `u32::MAX` and the number of sections (u32). The first section
 //! says which run of which case it is.
 
+mod problem;
+
+pub use problem::CheckpointProblem;
+
 use crate::FileError;
 use crate::atomic::AtomicFile;
 use crate::case;
 use crc32fast::Hasher;
+use problem::VERSION;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use thiserror::Error;
 
 const MAGIC: [u8; 8] = *b"wmcheckp";
-const VERSION: u32 = 3;
 const WHAT: &str = "the checkpoint";
 const IDENTITY: &str = "identity";
 /// Bytes of a chunk (–), and of the buffers.
 const CHUNK: usize = 1 << 20;
-const LONGEST_NAME: u32 = 64;
+const LONGEST_NAME: u32 = 96;
 const END: u32 = u32::MAX;
-const FRESH: &str = "start the run afresh, without --resume";
-
-/// What is wrong with a checkpoint.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum CheckpointProblem {
-    /// Some other file.
-    #[error("it is no checkpoint")]
-    NoCheckpoint,
-    /// Written by a program that writes them otherwise.
-    #[error("its layout has version {found}, this program knows version {VERSION}")]
-    OtherVersion {
-        /// Version found.
-        found: u32,
-    },
-    /// Of another run.
-    #[error("it belongs to run `{found}`, not to run `{expected}`")]
-    OtherRun {
-        /// Run found.
-        found: String,
-        /// Run given.
-        expected: String,
-    },
-    /// Of another case, or of this one before it was changed.
-    #[error("the case has changed since it was written")]
-    OtherCase,
-    /// Its end is missing.
-    #[error("it is cut off after {bytes} bytes")]
-    CutOff {
-        /// Bytes that are there.
-        bytes: u64,
-    },
-    /// Its bytes are not those written.
-    #[error("its section `{section}` is damaged")]
-    Damaged {
-        /// Section.
-        section: String,
-    },
-    /// It lacks a section.
-    #[error("it has no section `{section}`")]
-    Missing {
-        /// Section.
-        section: String,
-    },
-    /// A section is sound but holds something else.
-    #[error("its section `{section}` does not hold what this program expects: {reason}")]
-    Unfitting {
-        /// Section.
-        section: String,
-        /// Why.
-        reason: String,
-    },
-}
-
-impl CheckpointProblem {
-    fn fix(&self) -> &'static str {
-        match self {
-            Self::OtherVersion { .. } => {
-                "go on with the version of the program that wrote it, or start the run afresh, without --resume"
-            }
-            Self::OtherCase => {
-                "undo the change to go on, or start the run afresh, without --resume; threads, checkpoint interval and other runs may change"
-            }
-            _ => FRESH,
-        }
-    }
-
-    fn at(self, path: &Path) -> FileError {
-        let fix = self.fix();
-        FileError::Checkpoint { path: path.to_owned(), problem: self, fix }
-    }
-}
 
 /// Which run of which case a checkpoint belongs to.
 #[derive(Serialize, Deserialize)]
@@ -248,7 +180,7 @@ impl CheckpointReader {
         } else {
             None
         };
-        problem.map_or(Ok(reader), |problem| Err(problem.at(path)))
+        problem.map_or(Ok(reader), |problem| Err(FileError::checkpoint(path, problem)))
     }
 
     /// On return every section is known and the end is there.
@@ -260,7 +192,7 @@ impl CheckpointReader {
             Err(error) if error.kind() != ErrorKind::UnexpectedEof => {
                 return Err(FileError::system("read", WHAT, &self.path, error));
             }
-            _ => return Err(CheckpointProblem::NoCheckpoint.at(&self.path)),
+            _ => return Err(FileError::checkpoint(&self.path, CheckpointProblem::NoCheckpoint)),
         }
         let problem = match self.index_sections(length) {
             Ok(None) => return Ok(()),
@@ -268,7 +200,7 @@ impl CheckpointReader {
             Err(error) if error.kind() == ErrorKind::UnexpectedEof => cut_off,
             Err(error) => return Err(FileError::system("read", WHAT, &self.path, error)),
         };
-        Err(problem.at(&self.path))
+        Err(FileError::checkpoint(&self.path, problem))
     }
 
     fn index_sections(&mut self, length: u64) -> io::Result<Option<CheckpointProblem>> {
@@ -324,7 +256,8 @@ impl CheckpointReader {
             Ok((_, left)) => format!("{} bytes are left over", left.len()),
             Err(error) => error.to_string(),
         };
-        Err(CheckpointProblem::Unfitting { section: name.to_owned(), reason }.at(&self.path))
+        let problem = CheckpointProblem::Unfitting { section: name.to_owned(), reason };
+        Err(FileError::checkpoint(&self.path, problem))
     }
 
     /// Hands the bytes of the section `name` to `read`.
@@ -340,7 +273,8 @@ impl CheckpointReader {
         let section = || name.to_owned();
         let place = self.sections.iter().find(|(section, _)| section == name);
         let Some(&(_, place)) = place else {
-            return Err(CheckpointProblem::Missing { section: section() }.at(&self.path));
+            let problem = CheckpointProblem::Missing { section: section() };
+            return Err(FileError::checkpoint(&self.path, problem));
         };
         let failed = |source| FileError::system("read", WHAT, &self.path, source);
         self.file.seek(SeekFrom::Start(place)).map_err(failed)?;
@@ -353,13 +287,14 @@ impl CheckpointReader {
             let found = chunks.crc.clone().finalize();
             Ok(read_u32(chunks.file)? == found)
         });
+        let refused = |problem| FileError::checkpoint(&self.path, problem);
         match (sound, taken) {
             (Ok(true), Ok(())) => Ok(()),
             (Ok(true), Err(error)) => {
                 let reason = error.to_string();
-                Err(CheckpointProblem::Unfitting { section: section(), reason }.at(&self.path))
+                Err(refused(CheckpointProblem::Unfitting { section: section(), reason }))
             }
-            (Ok(false), _) => Err(CheckpointProblem::Damaged { section: section() }.at(&self.path)),
+            (Ok(false), _) => Err(refused(CheckpointProblem::Damaged { section: section() })),
             (Err(source), _) => Err(FileError::system("read", WHAT, &self.path, source)),
         }
     }

@@ -95,6 +95,17 @@ pub enum StudyError {
         /// Names in the case.
         known: Vec<String>,
     },
+    /// A case asks for an output of a kind that nobody writes.
+    #[error("the output `{name}` is of kind `{kind}`, which has keys and nothing that writes it")]
+    #[diagnostic(help(
+        "add a study::outputs::OutputKind to farm::outputs::OUTPUTS, no other kind"
+    ))]
+    NotWritten {
+        /// Name of the output.
+        name: String,
+        /// Its kind.
+        kind: &'static str,
+    },
     /// The output folder holds something that would be overwritten.
     #[error("{} already holds results", directory.display())]
     #[diagnostic(help(

@@ -18,6 +18,7 @@ mod azimuth_offset;
 mod channels;
 mod columns;
 mod cost;
+mod entry;
 mod error;
 mod gains;
 mod in_memory;

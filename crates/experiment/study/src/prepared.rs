@@ -39,35 +39,19 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Reads the case at `path` with `overrides`, loads its turbines and lays out its domain.
+    /// The first stage of the case of `file`, its turbines from library or files.
     ///
     /// # Errors
-    /// [`StudyError`] for a case, a turbine or a layout that cannot be used.
-    pub fn read(path: &Path, overrides: &[String]) -> Result<Self, StudyError> {
-        Self::of_file(&formats::case::read(path, overrides)?)
+    /// Those of [`read`](Self::read).
+    pub(crate) fn of_file(file: &CaseFile) -> Result<Self, StudyError> {
+        Self::of_machines(file, models::load(file)?)
     }
 
-    /// The same of a `case` that stands in no file; files that it names are relative to the current folder.
+    /// The same with `machines` as its turbines.
     ///
     /// # Errors
-    /// Those of [`read`](Self::read); they point at the case as [`formats::case::write()`] writes it.
-    pub fn of(case: Case) -> Result<Self, StudyError> {
-        Self::of_file(&CaseFile::of(case)?)
-    }
-
-    /// The same of a `case` whose turbines are `models`, by the names of
-    /// [`Placement::machine`](farm::case::Placement::machine), rather than those of library or files.
-    ///
-    /// # Errors
-    /// Those of [`of`](Self::of); [`StudyError::Plan`] names a model that is not there.
-    pub fn with_models(case: Case, models: BTreeMap<String, Model>) -> Result<Self, StudyError> {
-        let file = CaseFile::of(case)?;
-        let machines = Machines { models, ..Machines::default() };
-        Self::new(&file, machines).map_err(|error| pointed_at(&file, error))
-    }
-
-    fn of_file(file: &CaseFile) -> Result<Self, StudyError> {
-        let machines = models::load(file)?;
+    /// Those of [`with_models`](Self::with_models).
+    pub(crate) fn of_machines(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
         Self::new(file, machines).map_err(|error| pointed_at(file, error))
     }
 

@@ -4,7 +4,7 @@ mod checkpoint;
 
 use crate::StudyError;
 use crate::observer::{Observer, Progress};
-use crate::outputs::{Outputs, Scene, Writers};
+use crate::outputs::{Outputs, Stage, Writers};
 use crate::ready::Ready;
 use basis::records::Cost;
 use checkpoint::Before;
@@ -37,8 +37,8 @@ pub(crate) struct Job<'a> {
 
 impl<'a> Job<'a> {
     /// What the outputs see of `farm`.
-    fn scene(&self, farm: &'a Farm<Air>) -> Scene<'a> {
-        Scene { setup: &self.ready.prepared, run: self.run, folder: self.folder, farm }
+    fn stage(&self, farm: &'a Farm<Air>) -> Stage<'a> {
+        Stage { setup: &self.ready.prepared, run: self.run, folder: self.folder, farm }
     }
 }
 
@@ -59,7 +59,7 @@ pub(crate) enum Ending {
 struct Simulation<'a> {
     job: &'a Job<'a>,
     farm: Farm<Air>,
-    outputs: Writers,
+    outputs: Writers<'a>,
     started: Instant,
     before: Before,
 }
@@ -111,16 +111,21 @@ impl<'a> Simulation<'a> {
             Some(reader) => checkpoint::read(reader, farm)?,
             None => (farm, Before::default()),
         };
-        let outputs = Writers::begin(outputs.kinds(), &job.scene(&farm), stored.as_mut())?;
+        let outputs = Writers::begin(
+            outputs.kinds(),
+            &ready.prepared.case,
+            &job.stage(&farm),
+            stored.as_mut(),
+        )?;
         Ok(Self { job, farm, outputs, started, before })
     }
 
     fn step(&mut self) -> Result<(), StudyError> {
-        self.outputs.before_step(&self.job.scene(&self.farm));
+        self.outputs.before_step(&self.job.stage(&self.farm));
         if let Err(error) = self.farm.advance(&mut self.outputs) {
             return Err(self.diverged(error));
         }
-        self.outputs.write(&self.job.scene(&self.farm))
+        self.outputs.write(&self.job.stage(&self.farm))
     }
 
     /// On return the checkpoint on disk holds this very instant.
@@ -177,7 +182,7 @@ impl<'a> Simulation<'a> {
     }
 
     fn finish(mut self) -> Result<Ending, StudyError> {
-        self.outputs.finish(&self.job.scene(&self.farm))?;
+        self.outputs.finish(&self.job.stage(&self.farm))?;
         let (plan, made) = (&self.job.ready.prepared.plan, self.made());
         let cost = cost(plan, &self.farm, made.wall_time, made.peak_memory);
         let clipped_shares = clipped_shares(&self.farm);

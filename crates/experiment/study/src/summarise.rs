@@ -321,11 +321,19 @@ fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, Study
         roughness_length,
         seed: case.wind.seed,
         rotor_diameter: setup.plan.diameter,
-        cells_per_diameter: (setup.plan.cells() > 0).then_some(case.flow.cells_per_diameter),
+        cells_per_diameter: cells_per_diameter(setup),
         interval: setup.plan.interval,
         spin_up: case.time.spin_up,
         duration: case.time.duration,
     })
+}
+
+/// Cells per diameter of the first turbine (–), as the case says or else as they were laid out; none where
+/// there are no cells.
+fn cells_per_diameter(setup: &Prepared) -> Option<f64> {
+    let plan = &setup.plan;
+    let given = setup.case.flow.values.optional_number("cells_per_diameter");
+    (plan.cells() > 0).then(|| given.unwrap_or(plan.diameter / plan.spacing))
 }
 
 #[cfg(test)]

@@ -47,11 +47,10 @@ fn of_domain(case: &Case, plan: &Plan) -> Vec<String> {
             100.0 * gain
         ));
     }
-    let lattice = case.flow.solver == Solver::LATTICE;
-    if lattice && case.flow.cells_per_diameter < CELLS_TO_WARN {
+    let cells = case.flow.domain().cells_per_diameter;
+    if case.flow.solver == Solver::LATTICE && cells < CELLS_TO_WARN {
         warnings.push(format!(
-            "{:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results",
-            case.flow.cells_per_diameter
+            "{cells:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results"
         ));
     }
     warnings

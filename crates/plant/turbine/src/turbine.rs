@@ -127,6 +127,13 @@ impl Turbine {
         self
     }
 
+    /// The same turbine in air that asks for no bound vortices: its forces come without them, and nothing is
+    /// spent on circulation.
+    pub fn without_bound_vortices(mut self) -> Self {
+        self.workspace.circulations = Vec::new();
+        self
+    }
+
     /// The same turbine, its blade elements projected as `projection` says.
     pub fn projecting(mut self, projection: Projection) -> Self {
         self.structure.project(projection);

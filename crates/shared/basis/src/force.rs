@@ -13,7 +13,8 @@ pub struct PointForce {
     pub smearing_length: f64,
     /// Turbine that it comes from: its place among the farm's machines, 0 for a turbine on its own (–).
     pub turbine: usize,
-    /// The bound vortex behind it; none for a body without circulation, such as a tower or a nacelle.
+    /// The bound vortex behind it; none for a body without circulation, such as a tower or a nacelle, and in
+    /// air that does not ask for bound vortices.
     pub bound: Option<BoundVortex>,
 }
 

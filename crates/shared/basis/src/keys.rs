@@ -67,6 +67,10 @@ pub enum Holds {
     Control,
     /// A table for each further sensor, by the sensor's name.
     Sensors,
+    /// A table whose keys are those of what moves the air, and some more.
+    Flow,
+    /// A table for each further output, by the output's name.
+    Outputs,
 }
 
 /// Numbers from `low` to `high`, `high` included, `low` only when not `open`.
@@ -150,6 +154,14 @@ impl Holds {
             (Self::Pair(range), Value::Numbers(numbers)) => {
                 numbers.len() == 2 && numbers.iter().all(|number| range.contains(*number))
             }
+            (Self::Turbines, Value::Names(_)) => true,
+            (Self::Ground(_), Value::Text(word)) => word == "slip",
+            (Self::Ground(table) | Self::Table(table), Value::Table(values)) => {
+                let knows = |name: &str| table.keys.iter().find(|key| key.name == name);
+                values
+                    .iter()
+                    .all(|(name, value)| knows(name).is_some_and(|k| k.holds.accepts(value)))
+            }
             _ => false,
         }
     }
@@ -162,8 +174,15 @@ impl Key {
         let value = match self.holds {
             Holds::Number(_) => Value::Number(text.parse().ok()?),
             Holds::Whole { .. } => Value::Whole(text.parse().ok()?),
-            Holds::Choice(_) | Holds::Text | Holds::Name | Holds::Model => {
+            Holds::Choice(_) | Holds::Text | Holds::Name | Holds::Model | Holds::Ground(_) => {
                 Value::Text(text.trim_matches('"').to_owned())
+            }
+            Holds::Numbers(_) | Holds::Pair(_) => {
+                let numbers = items_of(text).map(str::parse).collect::<Result<_, _>>();
+                Value::Numbers(numbers.ok()?)
+            }
+            Holds::Turbines => {
+                Value::Names(items_of(text).map(|name| name.trim_matches('"').to_owned()).collect())
             }
             _ => return None,
         };
@@ -177,6 +196,11 @@ impl Key {
     }
 }
 
+/// The items of a list as it would stand in the file, such as `[2.0, 4.0]`.
+fn items_of(list: &str) -> impl Iterator<Item = &str> {
+    list.trim_matches(['[', ']']).split(',').map(str::trim).filter(|item| !item.is_empty())
+}
+
 /// What one key of a table holds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
@@ -188,6 +212,10 @@ pub enum Value {
     Text(String),
     /// Several numbers, in the key's unit.
     Numbers(Vec<f64>),
+    /// Several names.
+    Names(Vec<String>),
+    /// What the keys of a table hold.
+    Table(Values),
 }
 
 impl From<f64> for Value {
@@ -214,11 +242,27 @@ impl From<Vec<f64>> for Value {
     }
 }
 
+impl From<Values> for Value {
+    fn from(values: Values) -> Self {
+        Self::Table(values)
+    }
+}
+
 /// What the keys of one table hold, those that are given or have a default; in the units of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Values(Vec<(&'static str, Value)>);
 
 impl Values {
+    /// Nothing.
+    pub const fn none() -> Self {
+        Self(Vec::new())
+    }
+
+    /// The defaults of `keys`, of those that have one.
+    pub fn defaults(keys: &[Key]) -> Self {
+        Self(keys.iter().filter_map(Key::default).collect())
+    }
+
     /// Puts `value` under `key`, in the place of what was there.
     pub fn set(&mut self, key: &'static str, value: impl Into<Value>) {
         let value = value.into();
@@ -250,7 +294,7 @@ impl Values {
         match self.get(key)? {
             Value::Number(number) => Some(*number),
             Value::Whole(number) => Some(*number as f64),
-            Value::Text(_) | Value::Numbers(_) => None,
+            _ => None,
         }
     }
 
@@ -269,6 +313,30 @@ impl Values {
         match self.get(key) {
             Some(Value::Text(text)) => text,
             _ => "",
+        }
+    }
+
+    /// The numbers under `key`, in the key's unit; none when there are none.
+    pub fn numbers(&self, key: &str) -> &[f64] {
+        match self.get(key) {
+            Some(Value::Numbers(numbers)) => numbers,
+            _ => &[],
+        }
+    }
+
+    /// The names under `key`; none when there are none.
+    pub fn names(&self, key: &str) -> &[String] {
+        match self.get(key) {
+            Some(Value::Names(names)) => names,
+            _ => &[],
+        }
+    }
+
+    /// The table under `key`.
+    pub fn table(&self, key: &str) -> Option<&Values> {
+        match self.get(key) {
+            Some(Value::Table(values)) => Some(values),
+            _ => None,
         }
     }
 
@@ -296,3 +364,6 @@ pub struct Objection {
     /// How to fix it.
     pub fix: String,
 }
+
+#[cfg(test)]
+mod tests;

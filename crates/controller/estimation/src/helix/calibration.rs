@@ -8,8 +8,9 @@
 //! The paper identifies an azimuth offset for the same end (van Vondelen et al., 2025, §2.4) and names
 //! calibration against experiments as a remedy for its biases (§4.2).
 
-use super::estimator::{HelixEstimator, HelixSettings};
+use super::estimator::HelixEstimator;
 use super::options::Options;
+use super::settings::HelixSettings;
 use crate::{EstimationError, Estimator};
 use basis::{Measurements, Sense};
 use lti::Complex64;

@@ -8,11 +8,11 @@
 use super::belief::MEAN_WIND;
 use super::clock::{Clock, Use};
 use super::estimate::{HelixEstimate, Status};
-use super::estimator::{HelixSettings, check};
 use super::filter::{Filter, FilterState, Instant};
 use super::flap::Bend;
 use super::options::{Options, Rotor as RotorOptions, Wake, positive};
 use super::rotor::{Expected, Rotor, RotorKinematics};
+use super::settings::{HelixSettings, check};
 use super::wave::Form;
 use crate::{EstimationError, Estimator};
 use basis::mbc::to_blades;

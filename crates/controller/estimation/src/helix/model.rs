@@ -1,8 +1,8 @@
 //! The measurement function by itself, to compute blade moments for a known wind.
 
-use super::estimator::{HelixSettings, check};
 use super::options::Options;
 use super::rotor::{Memory, Rotor, RotorKinematics, RotorModelState};
+use super::settings::{HelixSettings, check};
 use crate::EstimationError;
 use basis::{FixedFrame, PerBlade};
 use std::sync::Arc;

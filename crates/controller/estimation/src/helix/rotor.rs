@@ -1,8 +1,8 @@
 //! The measurement function: from the wind in the fixed frame to the moments at the blade roots.
 
-use super::estimator::HelixSettings;
 use super::flap::{Bend, Flap};
 use super::options::{self, Options};
+use super::settings::HelixSettings;
 use super::weight::Weight;
 use basis::mbc::{to_blades, to_fixed_frame};
 use basis::{FixedFrame, Measurements, PerBlade, Sense};

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::case::{
-    Control, DynamicInflow, Flow, Ground, Instruments, Output, Placement, Run, Shear, Sides,
-    Solver, Time, TowerInfluence, TurbulenceModel, Wind,
+    Control, DynamicInflow, Flow, Instruments, Output, Placement, Run, Shear, Solver, Time,
+    TowerInfluence, TurbulenceModel, Wind,
 };
 
 fn case(positions: &[[f64; 2]]) -> Case {
@@ -38,13 +38,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         },
         flow: Flow {
             solver: Solver::LATTICE,
-            cells_per_diameter: 16.0,
-            upstream_diameters: 3.0,
-            downstream_diameters: 4.0,
-            width_diameters: 6.0,
-            height_diameters: 4.0,
-            ground: Ground::Slip,
-            sides: Sides::Periodic,
+            values: basis::keys::Values::default(),
             step: None,
             threads: None,
         },
@@ -64,6 +58,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             crosswind_diameters: Vec::new(),
             volume_interval: None,
             checkpoint_interval: 60.0,
+            further: Vec::new(),
         },
     }
 }
@@ -104,7 +99,7 @@ fn what_does_not_fit_is_named_with_its_fix() {
     assert!(overlapping.contains("T1 and T2 overlap"), "{overlapping}");
 
     let mut low = case(&[[0.0, 0.0]]);
-    low.flow.height_diameters = 1.0;
+    low.flow.values.set("height_diameters", 1.0);
     let outside = error(&low);
     assert!(
         outside.contains("z = 30 to 270 m") && outside.contains("height_diameters"),
@@ -112,7 +107,7 @@ fn what_does_not_fit_is_named_with_its_fix() {
     );
 
     let mut coarse = case(&[[0.0, 0.0]]);
-    coarse.flow.cells_per_diameter = 6.0;
+    coarse.flow.values.set("cells_per_diameter", 6.0);
     assert!(error(&coarse).contains("at least 8"), "{}", error(&coarse));
 
     let mut long = case(&[[0.0, 0.0]]);

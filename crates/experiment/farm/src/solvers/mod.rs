@@ -1,12 +1,12 @@
 //! What may move the air of a farm: a descriptor for each kind of flow solver, and the one list of them.
 //!
-//! A new kind is a file beside this one with its [`SolverKind`], and a line in [`ALL`]. Everyone else asks
-//! the descriptor.
+//! A new kind is a file beside this one with its [`SolverKind`], and a line in [`SOLVERS`]. Everyone else
+//! asks the descriptor.
 
 mod lattice;
 mod prescribed;
 
-pub use lattice::{GROUND, LATTICE};
+pub use lattice::LATTICE;
 pub use prescribed::{PLANES, PRESCRIBED, TURBULENCE, UNIFORM};
 
 use crate::air::Air;
@@ -14,28 +14,19 @@ use crate::case::{Case, Flow, Wind};
 use crate::plan::{Layout, Plan, PlanError};
 use crate::self_check::Tunnel;
 use crate::wind::Site;
-use basis::keys::Key;
+use basis::keys::{self, Key, Values};
+use basis::registry::{Named, Registry};
 use flow::Inflow;
 use flow::inflow::{InflowError, Planes};
 use flow::lattice::LatticeError;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// All kinds, the one that holds without a choice first.
-pub const ALL: &[&SolverKind] = &[&LATTICE, &UNIFORM, &TURBULENCE, &PLANES];
-
-/// Their names, in the order of [`ALL`]: words of `flow.solver`.
-pub static NAMES: [&str; ALL.len()] = {
-    let mut names = [""; ALL.len()];
-    let mut index = 0;
-    while index < ALL.len() {
-        names[index] = ALL[index].name;
-        index += 1;
-    }
-    names
-};
+/// The kinds of flow solvers. A new kind is a file beside this one and a line here; a program built on
+/// wakemix [adds](Registry::add) its own.
+pub static SOLVERS: Registry<SolverKind> =
+    Registry::new(&[&LATTICE, &UNIFORM, &TURBULENCE, &PLANES]);
 
 /// Everything that belongs to one kind of flow solver.
 ///
@@ -45,8 +36,11 @@ pub struct SolverKind {
     pub name: &'static str,
     /// What it does, in a sentence without a full stop.
     pub about: &'static str,
-    /// Keys of `[flow]` that it alone uses.
+    /// Keys of `[flow]` that it uses, beside those of all kinds; what they hold is [`Flow::values`]. Other
+    /// kinds may have keys of the same names.
     pub keys: &'static [Key],
+    /// What about the values of these keys cannot be, beyond what the keys say one by one.
+    pub check: fn(&Values) -> Vec<keys::Objection>,
     /// Which wind it takes in.
     pub wind: WindSource,
     /// Whether the wind that it gives contains the rotors' induction; otherwise turbines make their own by
@@ -54,6 +48,8 @@ pub struct SolverKind {
     pub resolves_induction: bool,
     /// How it wants forces spread, and interpolates the wind, where it resolves induction.
     pub smearing: fn(&Plan) -> Smearing,
+    /// Whether it asks for the bound vortices of blades, not for their forces alone.
+    pub uses_bound_vortices: bool,
     /// Whether rotors are checked in it, each alone, before a study.
     pub needs_self_check: bool,
     /// What of the case's wind and domain it cannot take.
@@ -69,6 +65,12 @@ pub struct SolverKind {
     /// What a step of that air costs (cell updates; 1 where there are no cells) about a rotor of a diameter
     /// (m).
     pub updates_alone: fn(&Tunnel, f64) -> f64,
+}
+
+impl Named for SolverKind {
+    fn name(&self) -> &'static str {
+        self.name
+    }
 }
 
 /// Which wind a kind of solver takes in.
@@ -162,7 +164,7 @@ pub enum SolverError {
 pub struct Solver(pub &'static SolverKind);
 
 impl Solver {
-    /// [`LATTICE`].
+    /// [`LATTICE`], which holds without a choice.
     pub const LATTICE: Self = Self(&LATTICE);
     /// [`UNIFORM`].
     pub const UNIFORM: Self = Self(&UNIFORM);
@@ -171,15 +173,15 @@ impl Solver {
     /// [`PLANES`].
     pub const PLANES: Self = Self(&PLANES);
 
-    /// The kind called `name` in [`ALL`].
+    /// The kind called `name` in [`SOLVERS`].
     pub fn named(name: &str) -> Option<Self> {
-        ALL.iter().copied().find(|kind| kind.name == name).map(Self)
+        SOLVERS.find(name).map(Self)
     }
 }
 
 impl Default for Solver {
     fn default() -> Self {
-        Self(ALL[0])
+        Self::LATTICE
     }
 }
 
@@ -205,23 +207,10 @@ impl fmt::Debug for Solver {
     }
 }
 
-impl Serialize for Solver {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name)
-    }
-}
-
-impl<'de> Deserialize<'de> for Solver {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        let unknown = || serde::de::Error::custom(format!("there is no flow solver `{name}`"));
-        Self::named(&name).ok_or_else(unknown)
-    }
-}
-
 /// Names of the kinds that leave induction to the turbines, for a sentence: `flow.solver = "a", "b" or "c"`.
 pub fn without_induction() -> String {
-    let names: Vec<String> = ALL
+    let names: Vec<String> = SOLVERS
+        .all()
         .iter()
         .filter(|kind| !kind.resolves_induction)
         .map(|kind| format!("\"{}\"", kind.name))
@@ -239,12 +228,12 @@ mod tests {
 
     #[test]
     fn kinds_and_their_keys_have_names_of_their_own() {
-        let names: BTreeSet<&str> = NAMES.into_iter().collect();
-        assert_eq!(names.len(), ALL.len());
-        let keys = || ALL.iter().copied().flat_map(|kind| kind.keys).map(|key| key.name);
-        assert_eq!(keys().collect::<BTreeSet<_>>().len(), keys().count());
-        for &kind in ALL {
+        let names: BTreeSet<&str> = SOLVERS.all().iter().map(|kind| kind.name).collect();
+        assert_eq!(names.len(), SOLVERS.all().len());
+        for kind in SOLVERS.all() {
             assert_eq!(Solver::named(kind.name), Some(Solver(kind)));
+            let keys: BTreeSet<&str> = kind.keys.iter().map(|key| key.name).collect();
+            assert_eq!(keys.len(), kind.keys.len());
             assert!(!kind.about.is_empty() && !kind.about.ends_with('.'), "{}", kind.name);
         }
         assert_eq!(Solver::named("vortex"), None);

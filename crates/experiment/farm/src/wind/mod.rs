@@ -69,10 +69,10 @@ pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
 /// Why the profile that blows into `case` is not the one that its rough ground keeps, with the fix; none
 /// where it is, and where no air meets a rough ground.
 pub fn off_balance(case: &Case) -> Option<String> {
-    let Ground::Rough { roughness_length: ground } = case.flow.ground else { return None };
     if case.flow.solver.wind != WindSource::AtInlet {
         return None;
     }
+    let Ground::Rough { roughness_length: ground } = case.flow.domain().ground else { return None };
     let blows_in = match case.wind.shear {
         Shear::LogLaw { roughness_length } if roughness_length == ground => return None,
         Shear::LogLaw { roughness_length } => {

@@ -1,21 +1,23 @@
 //! From checked tables to a [`Case`], and the checks that need more than one key.
 
-use super::document::{Entry, Node, Sources, Value};
+use super::document::{Entry, Node, Value};
 use super::error::{Problem, ProblemKind};
+use super::findings::Findings;
 use super::instruments::instruments_of;
 use super::keys;
 use super::kinds;
 use super::momentum::{dynamic_inflow_of, tower_influence_of};
-use super::section::{Findings, Section, list};
-use super::spelling::nearest;
+use super::section::Section;
+use super::solver::flow_of;
+use super::sources::Sources;
+use super::spelling::{list, nearest};
 use super::wind::{check_together, wind_of};
 use basis::keys::Table;
 use control::{CONTROLLERS, ControllerKind, Place};
 use farm::case::{
-    Case, Control, Flow, Ground, Mounted, Output, Placement, Run, Sides, Solver, Time,
-    helix_upstream,
+    Case, Control, Mounted, Output, Placement, Requested, Run, Solver, Time, helix_upstream,
 };
-use farm::solvers::GROUND;
+use farm::outputs::{OUTPUTS, OutputKeys};
 use sensing::{SENSORS, SensorKind};
 
 /// The case that `entries` describe.
@@ -27,7 +29,7 @@ pub(super) fn check(
     length: usize,
     sources: &Sources,
 ) -> Result<Case, Vec<Problem>> {
-    let findings = Findings::new(sources);
+    let findings = Findings::new(entries, sources);
     let case = {
         // What is missing at the top is reported at the end of the file, where it can be added.
         let end = length.saturating_sub(1)..length;
@@ -42,14 +44,14 @@ fn case_of(root: &Section) -> Case {
     let description = root.optional_text("description");
     let wind_section = root.section_or_missing("wind", &keys::WIND);
     let wind = wind_of(&wind_section);
-    let flow = flow_of(&root.section("flow", &keys::FLOW));
+    let flow = flow_of(root);
     let time = time_of(&root.section_or_missing("time", &keys::TIME));
     if let Some(section) = &wind_section {
         check_together(section, &wind, &flow, time.duration);
     }
     let turbines = turbines_of(root, flow.solver);
     let runs = runs_of(root, &turbines, time);
-    let output = output_of(&root.section("output", &keys::OUTPUT), &turbines);
+    let output = output_of(&root.section("output", &keys::OUTPUT), &turbines, flow.solver);
     Case { name, description, wind, flow, time, turbines, runs, output }
 }
 
@@ -59,37 +61,6 @@ impl<'a> Section<'a> {
         let is_table = matches!(self.entry(key)?.node.value, Value::Table(_));
         let section = self.section(key, table);
         is_table.then_some(section)
-    }
-}
-
-fn flow_of(section: &Section) -> Flow {
-    let solver = Solver::named(section.choice("solver")).unwrap_or_default();
-    Flow {
-        solver,
-        cells_per_diameter: section.number("cells_per_diameter"),
-        upstream_diameters: section.number("upstream_diameters"),
-        downstream_diameters: section.number("downstream_diameters"),
-        width_diameters: section.number("width_diameters"),
-        height_diameters: section.number("height_diameters"),
-        ground: ground_of(section),
-        sides: if section.choice("sides") == "slip" { Sides::Slip } else { Sides::Periodic },
-        step: section.optional_number("step"),
-        threads: section.optional_whole("threads").and_then(|count| usize::try_from(count).ok()),
-    }
-}
-
-fn ground_of(section: &Section) -> Ground {
-    match section.entry("ground").map(|entry| &entry.node) {
-        None => Ground::Slip,
-        Some(Node { value: Value::Text(text), .. }) if text == "slip" => Ground::Slip,
-        Some(Node { value: Value::Table(_), .. }) => {
-            let rough = section.section("ground", &GROUND);
-            Ground::Rough { roughness_length: rough.number("roughness_length") }
-        }
-        Some(node) => {
-            section.wrong_type("ground", node, "\"slip\" or { roughness_length = 0.001 }");
-            Ground::Slip
-        }
     }
 }
 
@@ -146,30 +117,31 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
 
 /// The further sensors of a turbine, by their names.
 fn sensors_of(turbine: &Section) -> Vec<Mounted> {
-    let Some(entry) = turbine.entry("sensors") else { return Vec::new() };
-    let Value::Table(entries) = &entry.node.value else {
-        turbine.wrong_type("sensors", &entry.node, "tables, such as sensors.NAME = { kind = … }");
-        return Vec::new();
-    };
-    let mut sensors = Vec::with_capacity(entries.len());
-    for entry in entries {
-        let path = format!("{}.{}", turbine.key_path("sensors"), entry.key);
-        let Value::Table(inner) = &entry.node.value else {
-            let expected = "a table, such as { kind = … }".to_owned();
-            let found = entry.node.kind().to_owned();
-            let kind = ProblemKind::WrongType { key: path, expected, found };
-            turbine.findings().note(entry.node.span.clone(), kind, None);
-            continue;
-        };
-        let table = |kind: &(dyn SensorKind + 'static)| kind.table();
-        let (at, findings) = ((entry.node.span.clone(), path), turbine.findings());
-        let what = "which kind of sensor it is";
-        let Some(read) = kinds::read(&SENSORS, table, what, inner, at, findings) else { continue };
+    let table = |kind: &(dyn SensorKind + 'static)| kind.table();
+    let read = kinds::named(turbine, "sensors", &SENSORS, table, "which kind of sensor it is");
+    let mounted = read.into_iter().map(|(name, read)| {
         read.note(read.kind.check(&read.values));
-        let (name, kind) = (entry.key.clone(), read.kind);
-        sensors.push(Mounted { name, kind, values: read.values });
-    }
-    sensors
+        Mounted { name, kind: read.kind, values: read.values }
+    });
+    mounted.collect()
+}
+
+/// The further outputs, by their names; notes those that the air of `solver` cannot feed.
+fn further_of(output: &Section, solver: Solver) -> Vec<Requested> {
+    let table = |kind: &(dyn OutputKeys + 'static)| kind.table();
+    let read = kinds::named(output, "further", &OUTPUTS, table, "which kind of output it is");
+    let requested = read.into_iter().map(|(name, read)| {
+        read.note(read.kind.check(&read.values));
+        if !read.kind.takes(solver.resolves_induction) {
+            let flow = if solver.resolves_induction { "prescribed wind" } else { "resolved flow" };
+            let why = format!("`{}`: `{}` is made of {flow}", read.path(), read.kind.name());
+            let kind = ProblemKind::NotWithSolver { solver: solver.name, why };
+            let fix = "leave it out, or take another flow.solver".to_owned();
+            output.findings().note(read.place_of("kind"), kind, Some(fix));
+        }
+        Requested { name, kind: read.kind, values: read.values }
+    });
+    requested.collect()
 }
 
 fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
@@ -238,7 +210,7 @@ fn controls_of(run: &Section, turbines: &[Placement], time: Time) -> Vec<Control
     for (entry, index) in entries {
         let path = format!("{}.{}", run.key_path("control"), entry.key);
         let Some(index) = index else {
-            note_unknown_turbine(run, path, &entry.key, entry.key_span.clone(), turbines);
+            run.findings().is_turbine(path, &entry.key, &entry.key_span);
             continue;
         };
         match &entry.node.value {
@@ -280,38 +252,15 @@ fn control_of(
 }
 
 /// Places in `turbines` of those that the list `key` names.
-fn turbines_named(section: &Section, key: &str, turbines: &[Placement]) -> Vec<usize> {
-    let names = section.names(key);
-    names
-        .into_iter()
-        .filter_map(|(name, span)| {
-            let index = turbines.iter().position(|turbine| turbine.name == name);
-            if index.is_none() {
-                note_unknown_turbine(section, section.key_path(key), &name, span, turbines);
-            }
-            index
-        })
-        .collect()
+fn places_of(section: &Section, key: &str, turbines: &[Placement]) -> Vec<usize> {
+    let place = |name: &String| turbines.iter().position(|turbine| turbine.name == *name);
+    section.turbines(key).iter().filter_map(place).collect()
 }
 
-fn note_unknown_turbine(
-    section: &Section,
-    key: String,
-    name: &str,
-    span: std::ops::Range<usize>,
-    turbines: &[Placement],
-) {
-    let names = || turbines.iter().map(|turbine| turbine.name.as_str());
-    let known = list(names());
-    let kind = ProblemKind::UnknownName { key, what: "turbine", name: name.to_owned(), known };
-    let fix = nearest(name, names()).map(|name| format!("did you mean `{name}`?"));
-    section.findings().note(span, kind, fix);
-}
-
-fn output_of(section: &Section, turbines: &[Placement]) -> Output {
+fn output_of(section: &Section, turbines: &[Placement], solver: Solver) -> Output {
     Output {
-        lines_at: turbines_named(section, "lines_at", turbines),
-        inflow_at: turbines_named(section, "inflow_at", turbines),
+        lines_at: places_of(section, "lines_at", turbines),
+        inflow_at: places_of(section, "inflow_at", turbines),
         helix_phases: section
             .optional_whole("helix_phases")
             .and_then(|count| usize::try_from(count).ok()),
@@ -320,6 +269,7 @@ fn output_of(section: &Section, turbines: &[Placement]) -> Output {
         crosswind_diameters: section.numbers("crosswind_diameters"),
         volume_interval: section.optional_number("volume_interval"),
         checkpoint_interval: section.number("checkpoint_interval"),
+        further: further_of(section, solver),
     }
 }
 

@@ -1,6 +1,6 @@
 //! What is wrong with a case file: where, what, and the fix.
 
-use super::document::Sources;
+use super::sources::Sources;
 use crate::FileError;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::fmt::{Display, Write};

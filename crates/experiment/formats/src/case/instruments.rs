@@ -3,7 +3,7 @@
 use super::error::ProblemKind;
 use super::keys::{ACCELERATION, ANGLE, INSTRUMENTS, MOMENT, POWER, SPEED};
 use super::section::Section;
-use super::write::shortest;
+use super::text::shortest;
 use basis::keys::Table;
 use farm::case::{Instrument, Instruments, Lag};
 use std::f64::consts::{PI, TAU};

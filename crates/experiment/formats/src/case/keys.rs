@@ -1,16 +1,17 @@
 //! The one table of keys: what the reader accepts, what the reference prints, what the schema says.
 
 mod event;
+mod flow;
 mod instruments;
 
 pub(super) use event::{EVENTS, STEP};
+pub(super) use flow::{COMMON as FLOW_COMMON, flow};
 pub(super) use instruments::{
     ACCELERATION, ANGLE, INSTRUMENT_KINDS, INSTRUMENTS, MOMENT, POWER, SPEED,
 };
 
 use basis::keys::LeftOut::{Otherwise, Required, Value};
-use basis::keys::{Holds, Key, Range, Slip, Table, above, from, key};
-use farm::solvers;
+use basis::keys::{Holds, Range, Slip, Table, above, from, key};
 
 /// The whole file.
 pub(super) static ROOT: Table = Table {
@@ -26,7 +27,7 @@ pub(super) static ROOT: Table = Table {
             "What it is for, in one line; the report shows it.",
         ),
         key("wind", Holds::Table(&WIND), "", Required, "The wind that comes in."),
-        key("flow", Holds::Table(&FLOW), "", Otherwise("all defaults"), "The flow solver."),
+        key("flow", Holds::Flow, "", Otherwise("all defaults"), "The flow solver."),
         key("time", Holds::Table(&TIME), "", Required, "How long every run lasts."),
         key(
             "turbine",
@@ -74,71 +75,6 @@ pub(super) static WIND: Table = Table {
 
 /// Greatest seed: TOML's integers are signed.
 const SEED_MOST: u64 = i64::MAX as u64;
-
-/// `[flow]`: what moves the air, what the kinds of flow solver need, what all need.
-pub(super) static FLOW: Table = Table {
-    heading: "[flow]",
-    about: "The flow solver. The domain is sized from the layout; lengths are in diameters of the first turbine.",
-    keys: &FLOW_KEYS,
-};
-
-const SOLVER_KEY: Key = key(
-    "solver",
-    Holds::Choice(&solvers::NAMES),
-    "",
-    Value("\"lattice\""),
-    "What moves the air. The page docs/case-file.md says under `flow.solver` what each does and which keys it alone uses.",
-);
-
-const COMMON_KEYS: [Key; 2] = [
-    key(
-        "step",
-        above(0.0, 10.0),
-        "s",
-        Otherwise("chosen from tip speed and wind speed; 0.02 s in prescribed wind"),
-        "Step of the air, which is the control interval too.",
-    )
-    .mistaken(&[Slip { unit: "ms", factor: 0.001 }]),
-    key(
-        "threads",
-        Holds::Whole { least: 1, most: 1024 },
-        "–",
-        Otherwise("all cores"),
-        "Threads. The result does not depend on it.",
-    ),
-];
-
-/// Keys of `[flow]` (–).
-const N_FLOW_KEYS: usize = {
-    let mut n = 1 + COMMON_KEYS.len();
-    let mut kind = 0;
-    while kind < solvers::ALL.len() {
-        n += solvers::ALL[kind].keys.len();
-        kind += 1;
-    }
-    n
-};
-
-static FLOW_KEYS: [Key; N_FLOW_KEYS] = {
-    let mut keys = [SOLVER_KEY; N_FLOW_KEYS];
-    let mut n = 1;
-    let mut kind = 0;
-    while kind < solvers::ALL.len() {
-        let own = solvers::ALL[kind].keys;
-        let mut index = 0;
-        while index < own.len() {
-            keys[n] = own[index];
-            (n, index) = (n + 1, index + 1);
-        }
-        kind += 1;
-    }
-    let mut index = 0;
-    while index < COMMON_KEYS.len() {
-        keys[n] = COMMON_KEYS[index];
-        (n, index) = (n + 1, index + 1);
-    }
-    keys
-};
 
 /// `[time]`.
 pub(super) static TIME: Table = Table {
@@ -336,6 +272,13 @@ pub(super) static OUTPUT: Table = Table {
             "s",
             Value("300"),
             "Checkpoint every so many seconds of wall time.",
+        ),
+        key(
+            "further",
+            Holds::Outputs,
+            "",
+            Otherwise("none"),
+            "Further outputs, each with a name of its own: `further.NAME = { kind = … }`. None comes with the program yet; programs built on it add theirs.",
         ),
     ],
 };

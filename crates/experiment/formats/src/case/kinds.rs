@@ -1,12 +1,14 @@
-//! Tables whose key `kind` says which keys they have: controllers and sensors, each with its own table of
-//! keys.
+//! Tables whose key `kind` says which keys they have: controllers, sensors and further outputs, each with its
+//! own table of keys.
 
 use super::document::{Entry, Value as Written, find};
 use super::error::ProblemKind;
-use super::section::{Findings, Section};
+use super::findings::Findings;
+use super::section::{Section, is_name};
 use super::spelling::nearest;
-use super::write::quoted;
-use basis::keys::{Holds, Objection, Table, Value, Values};
+use super::text::quoted;
+use super::values::{assignments, values_of};
+use basis::keys::{Objection, Table, Values};
 use basis::registry::{Named, Registry};
 use std::ops::Range;
 
@@ -33,7 +35,7 @@ pub(super) fn read<'a, K: Named + ?Sized>(
     let kind = kind_of(registry, what, entries, (&span, &path), findings)?;
     let own: Vec<Entry> = entries.iter().filter(|entry| entry.key != "kind").cloned().collect();
     let section = Section::open(table_of(kind), &own, span.clone(), path.clone(), findings);
-    let values = values_of(&section, table_of(kind));
+    let values = values_of(&section, table_of(kind).keys);
     Some(Kinded { kind, values, path, entries, span, findings })
 }
 
@@ -69,59 +71,60 @@ fn kind_of<K: Named + ?Sized>(
     kind
 }
 
-/// What the keys of `table` hold in `section`, defaults included, in the order of the table.
-fn values_of(section: &Section, table: &Table) -> Values {
-    let mut values = Values::default();
-    for key in table.keys {
-        let read = match key.holds {
-            Holds::Number(_) => section.optional_number(key.name).map(Value::Number),
-            Holds::Whole { .. } => section.optional_whole(key.name).map(Value::Whole),
-            Holds::Choice(_) if section.has(key.name) => {
-                Some(Value::Text(section.choice(key.name).to_owned()))
-            }
-            Holds::Choice(_) => {
-                section.entry(key.name);
-                None
-            }
-            Holds::Pair(_) => {
-                section.entry(key.name).map(|_| Value::Numbers(section.pair(key.name).to_vec()))
-            }
-            Holds::Numbers(_) => {
-                section.entry(key.name).map(|_| Value::Numbers(section.numbers(key.name)))
-            }
-            _ => section.optional_text(key.name).map(Value::Text),
-        };
-        values.extend(read.map(|value| (key.name, value)).or_else(|| key.default()));
-    }
-    values
-}
-
 impl<K: ?Sized> Kinded<'_, K> {
+    /// Dotted path of the table.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// Place of what stands under `key`, of the table where there is no such key.
+    pub(super) fn place_of(&self, key: &str) -> Range<usize> {
+        find(self.entries, key).map_or(self.span.clone(), |entry| entry.node.span.clone())
+    }
+
     /// Notes `objections`, each at its key.
     pub(super) fn note(&self, objections: Vec<Objection>) {
-        for Objection { key, message, label, fix } in objections {
-            let entry = find(self.entries, key.unwrap_or("kind"));
-            let span = entry.map_or(self.span.clone(), |entry| entry.node.span.clone());
-            let message = match key {
-                Some(key) => format!("`{}.{key}` {message}", self.path),
-                None => message,
-            };
-            self.findings.note(span, ProblemKind::Objection { message, label }, Some(fix));
-        }
+        let place_of = |key: Option<&str>| self.place_of(key.unwrap_or("kind"));
+        self.findings.object(&self.path, place_of, objections);
     }
+}
+
+/// Reads the tables under `key` of `section`, each with a name of its own and of one of the kinds of
+/// `registry`; the rest is as for [`read`].
+pub(super) fn named<'a, K: Named + ?Sized>(
+    section: &Section<'a>,
+    key: &str,
+    registry: &Registry<K>,
+    table_of: impl Fn(&K) -> &'static Table,
+    what: &str,
+) -> Vec<(String, Kinded<'a, K>)> {
+    let Some(entry) = section.entry(key) else { return Vec::new() };
+    let Written::Table(entries) = &entry.node.value else {
+        let expected = format!("tables, such as {key}.NAME = {{ kind = … }}");
+        section.wrong_type(key, &entry.node, &expected);
+        return Vec::new();
+    };
+    let findings = section.findings();
+    let read_one = |entry: &'a Entry| {
+        let (name, span) = (entry.key.clone(), entry.node.span.clone());
+        let path = format!("{}.{name}", section.key_path(key));
+        if !is_name(&name) {
+            let kind = ProblemKind::BadName { key: path.clone(), name: name.clone() };
+            findings.note(entry.key_span.clone(), kind, Some("give it another name".to_owned()));
+        }
+        let Written::Table(inner) = &entry.node.value else {
+            let expected = "a table, such as { kind = … }".to_owned();
+            let found = entry.node.kind().to_owned();
+            findings.note(span, ProblemKind::WrongType { key: path, expected, found }, None);
+            return None;
+        };
+        Some((name, read(registry, &table_of, what, inner, (span, path), findings)?))
+    };
+    entries.iter().filter_map(read_one).collect()
 }
 
 /// `{ kind = "KIND", key = value, … }`: what reads back as `values`.
 pub(super) fn text(kind: &str, values: &Values) -> String {
-    let mut text = format!("{{ kind = {}", quoted(kind));
-    for (key, value) in values.iter() {
-        let value = match value {
-            Value::Number(number) => format!("{number:?}"),
-            Value::Whole(number) => number.to_string(),
-            Value::Text(word) => quoted(word),
-            Value::Numbers(numbers) => format!("{numbers:?}"),
-        };
-        text += &format!(", {key} = {value}");
-    }
-    text + " }"
+    let keys: String = assignments(values).map(|key| format!(", {key}")).collect();
+    format!("{{ kind = {}{keys} }}", quoted(kind))
 }

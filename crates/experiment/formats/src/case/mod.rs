@@ -6,6 +6,7 @@
 mod check;
 mod document;
 mod error;
+mod findings;
 mod instruments;
 mod keys;
 mod kinds;
@@ -13,7 +14,11 @@ mod momentum;
 mod objection;
 mod reference;
 mod section;
+mod solver;
+mod sources;
 mod spelling;
+mod text;
+mod values;
 mod wind;
 mod write;
 

@@ -1,11 +1,14 @@
 //! The table of keys as a page for people and as a schema for editors.
 
 use super::keys::{
-    EVENTS, FLOW, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND,
+    EVENTS, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND, flow,
 };
 use basis::keys::{Holds, Key, LeftOut, Table};
 use control::CONTROLLERS;
-use farm::solvers::{self, GROUND};
+use farm::case::Solver;
+use farm::domain::GROUND;
+use farm::outputs::OUTPUTS;
+use farm::solvers::SOLVERS;
 use sensing::SENSORS;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -13,7 +16,7 @@ use std::fmt::Write;
 /// What the page says around the tables of keys.
 const PREFACE: &str = include_str!("preface.md");
 /// What the page says above the table of flow solvers.
-const SOLVERS: &str = "What moves the air. Where induction is not resolved, each turbine makes its own by blade-element momentum, and leaves no wake.";
+const WHAT_SOLVERS_DO: &str = "What moves the air. Where induction is not resolved, each turbine makes its own by blade-element momentum, and leaves no wake.";
 
 /// The page docs/case-file.md: how a case file is read, and every key with unit, range and default.
 pub fn reference() -> String {
@@ -22,7 +25,7 @@ pub fn reference() -> String {
     let wind = [&ROOT, &WIND].into_iter().chain(events);
     let turbines = [&TIME, &TURBINE, &INSTRUMENTS].into_iter().chain(INSTRUMENT_KINDS);
     // Writing to a string cannot fail.
-    for table in wind.chain([&FLOW]) {
+    for table in wind.chain([flow(Solver::default())]) {
         let _ = write_table(&mut page, table, None);
     }
     let _ = write_solvers(&mut page);
@@ -41,18 +44,22 @@ pub fn reference() -> String {
         );
     }
     let _ = write_table(&mut page, &OUTPUT, None);
+    for kind in OUTPUTS.all() {
+        let about = "Which kind of output it is.";
+        let _ = write_table(&mut page, kind.table(), Some((kind.name(), about)));
+    }
     page
 }
 
 /// Writes what each kind of flow solver does.
 fn write_solvers(page: &mut String) -> std::fmt::Result {
-    writeln!(page, "\n## `flow.solver`\n\n{SOLVERS}\n")?;
+    writeln!(page, "\n## `flow.solver`\n\n{WHAT_SOLVERS_DO}\n")?;
     writeln!(
         page,
         "| solver | what it does | resolves induction | keys of `[flow]` that it alone uses |"
     )?;
     writeln!(page, "| --- | --- | --- | --- |")?;
-    for kind in solvers::ALL {
+    for kind in SOLVERS.all() {
         let induction = if kind.resolves_induction { "yes" } else { "no" };
         let keys: Vec<String> = kind.keys.iter().map(|key| format!("`{}`", key.name)).collect();
         let keys = if keys.is_empty() { "none".to_owned() } else { keys.join(", ") };
@@ -95,11 +102,11 @@ fn holds(key: &Key) -> String {
         Holds::Turbines => "list of turbines' names".to_owned(),
         Holds::Numbers(range) => format!("list, each {} to {}", range.low, range.high),
         Holds::Ground(_) => "`\"slip\"` or a table".into(),
-        Holds::Table(_) => "table".into(),
+        Holds::Table(_) | Holds::Flow => "table".into(),
         Holds::Tables(_) => "one table or more".into(),
         Holds::Event => "a table".into(),
         Holds::Control => "tables by turbine".into(),
-        Holds::Sensors => "tables by name".into(),
+        Holds::Sensors | Holds::Outputs => "tables by name".into(),
     }
 }
 
@@ -153,6 +160,7 @@ fn schema_of_key(key: &Key) -> Value {
             json!({ "anyOf": [{ "const": "slip" }, Value::Object(schema_of(table))] })
         }
         Holds::Table(table) => Value::Object(schema_of(table)),
+        Holds::Flow => Value::Object(schema_of(flow(Solver::default()))),
         Holds::Tables(table) => {
             json!({ "type": "array", "minItems": 1, "items": Value::Object(schema_of(table)) })
         }
@@ -163,6 +171,10 @@ fn schema_of_key(key: &Key) -> Value {
         }
         Holds::Sensors => {
             let all = SENSORS.all();
+            tables_of_kinds(all.iter().map(|kind| (kind.name(), kind.table())))
+        }
+        Holds::Outputs => {
+            let all = OUTPUTS.all();
             tables_of_kinds(all.iter().map(|kind| (kind.name(), kind.table())))
         }
     };

@@ -1,33 +1,11 @@
 //! One table of the file, read key by key against the table of keys.
 
-use super::document::{Entry, Node, Sources, Value, find};
-use super::error::{Problem, ProblemKind};
-use super::spelling::nearest;
+use super::document::{Entry, Node, Value, find};
+use super::error::ProblemKind;
+use super::findings::Findings;
+use super::spelling::{list, nearest};
 use basis::keys::{Holds, Key, LeftOut, Range, Table};
-use std::cell::RefCell;
 use std::ops;
-
-/// What was found wrong so far.
-pub(super) struct Findings<'a> {
-    sources: &'a Sources,
-    problems: RefCell<Vec<Problem>>,
-}
-
-impl<'a> Findings<'a> {
-    pub(super) fn new(sources: &'a Sources) -> Self {
-        Self { sources, problems: RefCell::new(Vec::new()) }
-    }
-
-    /// Notes a problem at `span`, with the fix where one is known.
-    pub(super) fn note(&self, span: ops::Range<usize>, kind: ProblemKind, fix: Option<String>) {
-        let problem = Problem::new(self.sources, span, kind).with_fix(fix);
-        self.problems.borrow_mut().push(problem);
-    }
-
-    pub(super) fn into_problems(self) -> Vec<Problem> {
-        self.problems.into_inner()
-    }
-}
 
 /// Tables under one heading at most (–): what the turbines do in the runs takes memory by the product of
 /// both.
@@ -276,7 +254,7 @@ impl<'a> Section<'a> {
     }
 
     /// Any count of names, each with its place.
-    pub(super) fn names(&self, key: &str) -> Vec<(String, ops::Range<usize>)> {
+    fn names(&self, key: &str) -> Vec<(String, ops::Range<usize>)> {
         let expected = "a list of names, such as [\"T2\"]";
         let Some(entry) = self.entry(key) else { return Vec::new() };
         let Value::List(items) = &entry.node.value else {
@@ -293,6 +271,14 @@ impl<'a> Section<'a> {
                 }
             })
             .collect()
+    }
+
+    /// Any count of names of turbines of the layout; notes others.
+    pub(super) fn turbines(&self, key: &str) -> Vec<String> {
+        let known = |(name, span): &(String, ops::Range<usize>)| {
+            self.findings.is_turbine(self.key_path(key), name, span)
+        };
+        self.names(key).into_iter().filter(known).map(|(name, _)| name).collect()
     }
 
     /// Notes that the value of `key` is no `expected`.
@@ -376,11 +362,6 @@ fn tidied(text: &str) -> String {
         .take(64)
         .collect();
     if name.is_empty() { "a-name".to_owned() } else { name }
-}
-
-/// `a, b, c`, each in backticks.
-pub(super) fn list<'n>(names: impl Iterator<Item = &'n str>) -> String {
-    names.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 fn quoted(words: &[&str]) -> String {

@@ -1,4 +1,4 @@
-//! Which known name a misspelt one may have meant.
+//! Names in sentences: lists of them, and which known one a misspelt one may have meant.
 
 /// The name that `misspelt` may have meant, when one is near enough: a third of its letters wrong at most.
 pub(crate) fn nearest<'n>(misspelt: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
@@ -11,6 +11,11 @@ pub(crate) fn nearest<'n>(misspelt: &str, names: impl Iterator<Item = &'n str>) 
         .filter(|(edits, name)| 3 * edits <= misspelt.chars().count().max(name.chars().count()))
         .min_by_key(|(edits, _)| *edits)
         .map(|(_, name)| name)
+}
+
+/// `a, b, c`, each in backticks.
+pub(super) fn list<'n>(names: impl Iterator<Item = &'n str>) -> String {
+    names.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 /// Insertions, deletions, replacements and swaps of neighbours from `a` to `b` (Damerau's distance,

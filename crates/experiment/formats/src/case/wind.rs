@@ -4,7 +4,7 @@ use super::document::{Entry, Node, Value};
 use super::error::ProblemKind;
 use super::keys::{self, EVENTS};
 use super::section::Section;
-use super::write::{degrees, quoted};
+use super::text::{degrees, quoted};
 use farm::case::{Change, CirclingDisk, Flow, Sense, Shear, TurbulenceModel, Wind, WindEvent};
 use farm::solvers::{Fault, Objection};
 use std::fmt::Write;

@@ -3,8 +3,10 @@
 use super::instruments::instruments_text;
 use super::kinds;
 use super::momentum::momentum_text;
+use super::solver::write_flow;
+use super::text::quoted;
 use super::wind::write_wind;
-use farm::case::{Case, Flow, Ground, Output, Placement, Run, Sides};
+use farm::case::{Case, Output, Placement, Run};
 use std::fmt::Write;
 
 /// The case file that reads back as `case`, with every default written out.
@@ -31,30 +33,6 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
         write_run(text, run, &case.turbines)?;
     }
     write_output(text, &case.output, &case.turbines)
-}
-
-fn write_flow(text: &mut String, flow: &Flow) -> std::fmt::Result {
-    writeln!(text, "\n[flow]\nsolver = \"{}\"", flow.solver.name)?;
-    writeln!(text, "cells_per_diameter = {:?}", flow.cells_per_diameter)?;
-    writeln!(text, "upstream_diameters = {:?}", flow.upstream_diameters)?;
-    writeln!(text, "downstream_diameters = {:?}", flow.downstream_diameters)?;
-    writeln!(text, "width_diameters = {:?}", flow.width_diameters)?;
-    writeln!(text, "height_diameters = {:?}", flow.height_diameters)?;
-    match flow.ground {
-        Ground::Slip => writeln!(text, "ground = \"slip\"")?,
-        Ground::Rough { roughness_length } => {
-            writeln!(text, "ground = {{ roughness_length = {roughness_length:?} }}")?;
-        }
-    }
-    let sides = if flow.sides == Sides::Slip { "slip" } else { "periodic" };
-    writeln!(text, "sides = \"{sides}\"")?;
-    if let Some(step) = flow.step {
-        writeln!(text, "step = {step:?}")?;
-    }
-    if let Some(threads) = flow.threads {
-        writeln!(text, "threads = {threads}")?;
-    }
-    Ok(())
 }
 
 fn write_turbine(text: &mut String, turbine: &Placement) -> std::fmt::Result {
@@ -113,24 +91,10 @@ fn write_output(text: &mut String, output: &Output, turbines: &[Placement]) -> s
     if let Some(interval) = output.volume_interval {
         writeln!(text, "volume_interval = {interval:?}")?;
     }
-    writeln!(text, "checkpoint_interval = {:?}", output.checkpoint_interval)
-}
-
-/// The degrees with the fewest digits that give `angle` (rad) back, bit for bit where any do.
-pub(super) fn degrees(angle: f64) -> f64 {
-    shortest(angle, angle.to_degrees(), f64::to_radians)
-}
-
-/// The number near `exact` with the fewest digits that `back` makes `value` of again, bit for bit where any
-/// does.
-pub(super) fn shortest(value: f64, exact: f64, back: impl Fn(f64) -> f64) -> f64 {
-    (0..17)
-        .filter_map(|digits| format!("{exact:.digits$e}").parse::<f64>().ok())
-        .chain([exact, exact.next_up(), exact.next_down()])
-        .find(|number| back(*number) == value)
-        .unwrap_or(exact)
-}
-
-pub(super) fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
+    writeln!(text, "checkpoint_interval = {:?}", output.checkpoint_interval)?;
+    for further in &output.further {
+        let table = kinds::text(further.kind.name(), &further.values);
+        writeln!(text, "further.{} = {table}", further.name)?;
+    }
+    Ok(())
 }

@@ -5,7 +5,7 @@ use crate::case;
 use crate::checkpoint::{CheckpointReader, CheckpointWriter};
 use crate::records::{self, Manifest, RunFolder, SeriesWriter, read_study};
 use basis::records::{Plane, PlaneAxes, examples};
-use farm::case::{Case, Flow, Output, Time, Wind};
+use farm::case::{Case, Time, Wind};
 use std::fs;
 use std::path::Path;
 
@@ -72,11 +72,11 @@ fn checkpoint(state: impl Fn(&mut CheckpointWriter)) -> Vec<u8> {
 }
 
 /// Numbers, texts, lists and choices to keep.
-type Parts = (Wind, Flow, Time, Output);
+type Parts = (Wind, Time, String, Vec<f64>);
 
 fn parts() -> Parts {
-    let Case { wind, flow, time, output, .. } = case::parse("quickstart.toml", CASE, &[]).unwrap();
-    (wind, flow, time, output)
+    let Case { wind, time, name, output, .. } = case::parse("quickstart.toml", CASE, &[]).unwrap();
+    (wind, time, name, output.crosswind_diameters)
 }
 
 fn go_on(path: &Path) -> Result<(), Refusal> {

@@ -2,7 +2,7 @@
 
 use super::{LISTED_TIMES, NAME_LENGTH, PLAIN, REGULAR_TIMES, SHORT_NAME, WHAT};
 use crate::FileError;
-use crate::table::{Column, Head, Rows};
+use crate::table::head::{Column, Head};
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -46,7 +46,7 @@ impl Values {
 ///
 /// # Errors
 /// [`FileError`].
-pub(crate) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
+pub(crate) fn open(path: &Path) -> Result<(Head, BinaryRows), FileError> {
     let refused = |source| FileError::system("read", WHAT, path, source);
     let file = File::open(path).map_err(refused)?;
     let length = file.metadata().map_err(refused)?.len();
@@ -104,10 +104,7 @@ pub(crate) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
     });
     let head = Head { description, columns: columns.collect(), time: 0 };
     let (file, row) = (fields.file, vec![0; row]);
-    Ok((
-        head,
-        Rows::Binary(BinaryRows { file, n_rows: n_rows as u64, n_read: 0, clock, values, row }),
-    ))
+    Ok((head, BinaryRows { file, n_rows: n_rows as u64, n_read: 0, clock, values, row }))
 }
 
 impl BinaryRows {

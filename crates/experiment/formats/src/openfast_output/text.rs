@@ -1,9 +1,9 @@
 //! OpenFAST's text output: some lines about the run, names from `Time` on, units, rows.
 
 use crate::FileError;
+use crate::table::head::{Column, Head};
 use crate::table::names::find_time;
 use crate::table::text::{Separator, TextRows, words};
-use crate::table::{Column, Head, Rows};
 use std::path::Path;
 
 const WHAT: &str = "OpenFAST's text output";
@@ -14,7 +14,7 @@ const LONGEST_HEAD: u64 = 100;
 ///
 /// # Errors
 /// [`FileError`].
-pub(crate) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
+pub(crate) fn open(path: &Path) -> Result<(Head, TextRows), FileError> {
     let refusal = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
     let mut rows = TextRows::open(path)?;
     let mut description: Vec<String> = Vec::new();
@@ -52,7 +52,7 @@ pub(crate) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
         .map(|(name, unit)| Column { name, unit: unit.trim_matches(['(', ')']).to_owned() })
         .collect();
     let time = find_time(&columns).map_err(|(problem, fix)| refusal(problem, &fix))?;
-    Ok((Head { description: description.join("; "), columns, time }, Rows::Text(rows)))
+    Ok((Head { description: description.join("; "), columns, time }, rows))
 }
 
 /// The words of a line of names or units.

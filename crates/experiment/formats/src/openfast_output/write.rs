@@ -3,7 +3,7 @@
 use super::{NAME_LENGTH, PLAIN, SHORT_NAME, WHAT};
 use crate::FileError;
 use crate::atomic::AtomicFile;
-use crate::table::Column;
+use crate::table::head::Column;
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! CSV: names in the first line, one row a line.
 
+use super::head::{Column, Head, WHAT};
 use super::names::find_time;
 use super::text::{Separator, TextRows, number, words};
-use super::{Column, Head, Rows, WHAT};
 use crate::FileError;
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`FileError`].
-pub(super) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
+pub(super) fn open(path: &Path) -> Result<(Head, TextRows), FileError> {
     let refusal = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
     let mut rows = TextRows::open(path)?;
     let (names, separator) = loop {
@@ -53,7 +53,7 @@ pub(super) fn open(path: &Path) -> Result<(Head, Rows), FileError> {
         }
     }
     let time = find_time(&columns).map_err(|(problem, fix)| refusal(problem, &fix))?;
-    Ok((Head { description: String::new(), columns, time }, Rows::Text(rows)))
+    Ok((Head { description: String::new(), columns, time }, rows))
 }
 
 fn separator(line: &[u8]) -> Separator {

@@ -5,24 +5,17 @@
 //! time and those channels; what was not selected is neither parsed nor checked.
 
 mod csv;
+pub(crate) mod head;
 pub(crate) mod names;
 pub(crate) mod text;
 
+pub use head::Column;
+
 use crate::{FileError, openfast_output};
+use head::{Head, WHAT};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use text::TextRows;
-
-pub(crate) const WHAT: &str = "a table of channels over time";
-
-/// One column: what it is and its unit.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Column {
-    /// Name, as in `RootMyc1`.
-    pub name: String,
-    /// Unit without parentheses, as in `kN-m`; empty where the file says none.
-    pub unit: String,
-}
 
 /// A table being read.
 #[derive(Debug)]
@@ -35,19 +28,8 @@ pub struct TableReader {
     rows: Rows,
 }
 
-/// What stands above the rows.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Head {
-    /// Where the table comes from, in words; empty where the file does not say.
-    pub(crate) description: String,
-    /// All columns, time among them.
-    pub(crate) columns: Vec<Column>,
-    /// Which column is time.
-    pub(crate) time: usize,
-}
-
 #[derive(Debug)]
-pub(crate) enum Rows {
+enum Rows {
     Binary(openfast_output::BinaryRows),
     Text(TextRows),
 }
@@ -63,9 +45,18 @@ impl TableReader {
         let path = if path.is_dir() { path.join("series.csv") } else { path.to_owned() };
         let extension = path.extension().and_then(OsStr::to_str).map(str::to_lowercase);
         let (head, rows) = match extension.as_deref() {
-            Some("outb") => openfast_output::open_binary(&path)?,
-            Some("out") => openfast_output::open_text(&path)?,
-            _ => csv::open(&path)?,
+            Some("outb") => {
+                let (head, rows) = openfast_output::open_binary(&path)?;
+                (head, Rows::Binary(rows))
+            }
+            Some("out") => {
+                let (head, rows) = openfast_output::open_text(&path)?;
+                (head, Rows::Text(rows))
+            }
+            _ => {
+                let (head, rows) = csv::open(&path)?;
+                (head, Rows::Text(rows))
+            }
         };
         let wanted = vec![head.time];
         Ok(Self { path, head, wanted, latest_time: f64::NEG_INFINITY, rows })

@@ -1,6 +1,6 @@
 //! Which column a name means.
 
-use super::Column;
+use super::head::Column;
 use crate::case::nearest;
 use turbine::structure::canonical;
 

@@ -1,6 +1,6 @@
 //! Rows of numbers in text.
 
-use super::{Column, WHAT};
+use super::head::{Column, WHAT};
 use crate::FileError;
 use std::fs::File;
 use std::io::{BufRead, BufReader};

@@ -1,17 +1,18 @@
 //! Planes of the wind at instants of the analysed time: `planes/NAME-0000.nc`.
 
-use super::output::{FedBy, Output, OutputKind, Scene};
+use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use super::slices::{self, POINT_BYTES, Slice};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
+use basis::keys::Values;
 use farm::case::Run;
 use formats::records::write_instant_plane;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "instantaneous planes",
-    keys: &["plane_interval"],
+    keys: Keys::OfOutput(&["plane_interval"]),
     fed_by: FedBy::ResolvedFlow,
     disk,
     begin,
@@ -21,7 +22,7 @@ fn schedule(setup: &Prepared) -> Option<Schedule> {
     setup.case.output.plane_interval.map(|interval| Schedule::analysed(&setup.plan, interval))
 }
 
-fn disk(setup: &Prepared, _run: &Run) -> u64 {
+fn disk(setup: &Prepared, _run: &Run, _: &Values) -> u64 {
     let n_times = schedule(setup).map_or(0, |schedule| schedule.count(setup.plan.n_steps));
     n_times * slices::n_points(setup) * POINT_BYTES
 }

@@ -1,6 +1,6 @@
 //! Planes of the wind at the run's last instant, which the report shows: `planes/NAME-last.nc`.
 
-use super::output::{FedBy, Output, OutputKind, Scene};
+use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::Stored;
 use super::slices::{self, POINT_BYTES};
@@ -9,9 +9,9 @@ use formats::records::write_last_plane;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "last planes",
-    keys: &[],
+    keys: Keys::OfOutput(&[]),
     fed_by: FedBy::ResolvedFlow,
-    disk: |setup, _| slices::n_points(setup) * POINT_BYTES,
+    disk: |setup, _, _| slices::n_points(setup) * POINT_BYTES,
     begin,
 };
 

@@ -1,6 +1,6 @@
 //! Planes of the wind averaged over the analysed time: `planes/NAME-mean.nc`.
 
-use super::output::{FedBy, Output, OutputKind, Scene};
+use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
@@ -25,9 +25,9 @@ pub(crate) fn schedule(setup: &Prepared) -> Schedule {
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "mean planes",
-    keys: &["crosswind_diameters"],
+    keys: Keys::OfOutput(&["crosswind_diameters"]),
     fed_by: FedBy::ResolvedFlow,
-    disk: |setup, _| slices::n_points(setup) * (POINT_BYTES + SUM_BYTES),
+    disk: |setup, _, _| slices::n_points(setup) * (POINT_BYTES + SUM_BYTES),
     begin,
 };
 

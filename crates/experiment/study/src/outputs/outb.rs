@@ -1,6 +1,6 @@
 //! What OpenFAST's users expect of a turbine in prescribed wind: one `.outb` file.
 
-use super::output::{FedBy, Output, OutputKind, Scene};
+use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::Stored;
 use super::series;
@@ -26,9 +26,9 @@ const VALUE_BYTES: u64 = size_of::<i16>() as u64;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "outb",
-    keys: &[],
+    keys: Keys::OfOutput(&[]),
     fed_by: FedBy::PrescribedWind,
-    disk: |setup, run| series::n_values(setup, run) * VALUE_BYTES,
+    disk: |setup, run, _| series::n_values(setup, run) * VALUE_BYTES,
     begin,
 };
 

@@ -1,20 +1,21 @@
 //! The plane at hub height averaged by the phase of the first helix: `planes/hub-height-phase-010.nc`.
 
 use super::mean_planes::AVERAGING_INTERVAL;
-use super::output::{FedBy, Output, OutputKind, Scene};
+use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use analysis::wake::PhaseAverage;
+use basis::keys::Values;
 use control::excitation_rate;
 use farm::case::Run;
 use formats::records::write_phase_plane;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "phase planes",
-    keys: &["helix_phases"],
+    keys: Keys::OfOutput(&["helix_phases"]),
     fed_by: FedBy::ResolvedFlow,
     disk,
     begin,
@@ -28,7 +29,7 @@ fn requested(setup: &Prepared, run: &Run) -> Option<(usize, f64)> {
     Some((n_phases, rate))
 }
 
-fn disk(setup: &Prepared, run: &Run) -> u64 {
+fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
     let n_phases = requested(setup, run).map_or(0, |(n_phases, _)| n_phases as u64);
     n_phases * slices::n_points_at_hub_height(setup) * (POINT_BYTES + SUM_BYTES)
 }

@@ -1,12 +1,13 @@
 //! The series: one row a control instant or every few of them, all turbines, `series.csv`.
 
 use super::lines::{self, WindLines};
-use super::output::{FedBy, Output, OutputKind, Scene};
+use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use crate::channels::Row;
 use crate::error::StudyError;
 use crate::prepared::Prepared;
+use basis::keys::Values;
 use basis::{Commands, Truth, Vector3};
 use farm::case::Run;
 use farm::{Air, Farm, Recorder};
@@ -29,7 +30,7 @@ const VALUE_BYTES: u64 = 19;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "series",
-    keys: &["interval", "lines_at"],
+    keys: Keys::OfOutput(&["interval", "lines_at"]),
     fed_by: FedBy::AnyFlow,
     disk,
     begin,
@@ -49,7 +50,7 @@ pub(super) fn n_values(setup: &Prepared, run: &Run) -> u64 {
     n_channels * schedule(setup).count(setup.plan.n_steps)
 }
 
-fn disk(setup: &Prepared, run: &Run) -> u64 {
+fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
     n_values(setup, run) * VALUE_BYTES
 }
 
@@ -124,7 +125,7 @@ impl Recorder for Rows {
 }
 
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
-    let Scene { setup, run, folder, farm } = *scene;
+    let Scene { setup, run, folder, farm, .. } = *scene;
     let rows = Rows::new(setup, run, farm);
     let writer = match stored {
         // So many bytes of it are sure.

@@ -1,11 +1,12 @@
 //! Volumes of the wind at instants of the analysed time: `volumes/velocity-0000.vti`.
 
-use super::output::{FedBy, Output, OutputKind, Scene};
+use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use super::slices::POINT_BYTES;
 use crate::error::StudyError;
 use crate::prepared::Prepared;
+use basis::keys::Values;
 use farm::case::Run;
 use formats::records::write_volume;
 
@@ -14,7 +15,7 @@ const STRIDE: usize = 2;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "volumes",
-    keys: &["volume_interval"],
+    keys: Keys::OfOutput(&["volume_interval"]),
     fed_by: FedBy::ResolvedFlow,
     disk,
     begin,
@@ -24,7 +25,7 @@ fn schedule(setup: &Prepared) -> Option<Schedule> {
     setup.case.output.volume_interval.map(|interval| Schedule::analysed(&setup.plan, interval))
 }
 
-fn disk(setup: &Prepared, _run: &Run) -> u64 {
+fn disk(setup: &Prepared, _run: &Run, _: &Values) -> u64 {
     let n_times = schedule(setup).map_or(0, |schedule| schedule.count(setup.plan.n_steps));
     let n_points: usize = setup.plan.n_cells.iter().map(|n| n.div_ceil(STRIDE)).product();
     n_times * n_points as u64 * POINT_BYTES

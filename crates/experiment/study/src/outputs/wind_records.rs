@@ -1,12 +1,13 @@
 //! The wind over the rotor of a turbine that is not there, as a full field that turbines elsewhere can stand
 //! in.
 
-use super::output::{FedBy, Output, OutputKind, Scene};
+use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use basis::Vector3;
+use basis::keys::Values;
 use farm::case::Run;
 use flow::WindField;
 use flow::inflow::PlaneGrid;
@@ -21,7 +22,7 @@ const POINT_BYTES: u64 = 3 * (size_of::<f32>() + size_of::<i16>()) as u64;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "wind records",
-    keys: &["inflow_at"],
+    keys: Keys::OfOutput(&["inflow_at"]),
     // The grid is as fine as the cells.
     fed_by: FedBy::ResolvedFlow,
     disk,
@@ -65,7 +66,7 @@ fn grid(setup: &Prepared, index: usize) -> PlaneGrid {
     }
 }
 
-fn disk(setup: &Prepared, run: &Run) -> u64 {
+fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
     let grids = places(setup, run).map(|index| grid(setup, index));
     let n_points: usize = grids.map(|grid| grid.n_y * grid.n_z).sum();
     schedule(setup).count(setup.plan.n_steps) * n_points as u64 * POINT_BYTES

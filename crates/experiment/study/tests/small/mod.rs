@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::outputs::{FedBy, Output, OutputKind, Scene, Schedule};
+use study::outputs::{FedBy, Keys, Output, OutputKind, Scene, Schedule};
 use study::{Options, Outcome, Silent, StudyError};
 use tempfile::TempDir;
 
@@ -132,9 +132,9 @@ pub(crate) static STOP: AtomicBool = AtomicBool::new(false);
 /// Leaves nothing, and asks for an end when half of a run is made.
 pub(crate) static HALFWAY: OutputKind = OutputKind {
     name: "halfway",
-    keys: &[],
+    keys: Keys::OfOutput(&[]),
     fed_by: FedBy::AnyFlow,
-    disk: |_, _| 0,
+    disk: |_, _, _| 0,
     begin: |_, _| Ok(Some(Box::new(Halfway))),
 };
 

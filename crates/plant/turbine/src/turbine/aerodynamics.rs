@@ -141,7 +141,7 @@ impl Aerodynamics {
     }
 
     /// Adds `share` (–) of the circulation (m²/s) that the last loads go with to each element's of
-    /// `circulations`.
+    /// `circulations`; where these are none, nothing is to be done.
     pub(super) fn add_circulations(
         &self,
         line: &ActuatorLine,

@@ -108,3 +108,29 @@ fn circulation_is_the_mean_over_the_steps_of_an_interval() {
         assert!((mean / first - 1.0).abs() < 0.1, "{mean} {first}");
     }
 }
+
+#[test]
+fn without_bound_vortices_all_else_is_the_same() {
+    let momentum = Induction::ByMomentum(rotor::BemSettings {
+        induction: crate::aero::Induction::QuasiSteady,
+        theory: Theory::default(),
+        skewed_wake: false,
+        dynamic_stall: true,
+        tower: None,
+    });
+    for induction in [by_flow(true), momentum] {
+        let mut with = built(true, induction);
+        let mut without = with.clone().without_bound_vortices();
+        let winds = vec![Vector3::X * 9.0; with.stations().len()];
+        for _ in 0..20 {
+            with.advance(0.2, &winds, &commands(0.02));
+            without.advance(0.2, &winds, &commands(0.02));
+        }
+        assert_eq!(with.state(), without.state());
+        assert!(with.forces().iter().any(|force| force.bound.is_some()));
+        for (force, bare) in with.forces().iter().zip(without.forces()) {
+            assert_eq!(PointForce { bound: None, ..*force }, *bare);
+        }
+        assert_eq!(with.forces().len(), without.forces().len());
+    }
+}

@@ -18,7 +18,8 @@ pub(super) struct Workspace {
     pub(super) loads: Vec<ElementLoad>,
     /// Sums over the steps of an interval: force on each element along normal and tangent (N).
     pub(super) sums: Vec<[f64; 2]>,
-    /// Mean circulation of each element over the steps of an interval (m²/s).
+    /// Mean circulation of each element over the steps of an interval (m²/s); empty where the forces come
+    /// without bound vortices.
     pub(super) circulations: Vec<f64>,
     /// Forces on the tower's points (N).
     pub(super) tower: Vec<Vector3>,
@@ -72,27 +73,16 @@ impl Workspace {
     pub(super) fn push(&mut self, elements: &[Element], smearing_length: f64) {
         let Self { forces, stations, axes, sums, circulations, .. } = self;
         let n_bodies = forces.len();
-        let points = axes.iter().zip(&*sums).zip(&*stations).zip(&*circulations);
-        // Blade after blade, each from root to tip.
-        let mut place = (0, 0);
-        for (((axes, sum), position), circulation) in points {
-            let (blade, station) = place;
-            let element = &elements[station];
-            place =
-                if station + 1 == elements.len() { (blade + 1, 0) } else { (blade, station + 1) };
+        for (index, ((axes, sum), position)) in axes.iter().zip(&*sums).zip(&*stations).enumerate()
+        {
             let force = axes.normal * sum[0] + axes.tangent * sum[1];
-            forces.push(PointForce {
-                position: *position,
-                force: -force,
-                smearing_length,
-                turbine: 0,
-                bound: Some(BoundVortex {
-                    blade,
-                    station,
-                    circulation: *circulation,
-                    along: axes.span * element.width,
-                }),
+            let bound = circulations.get(index).map(|&circulation| {
+                let (blade, station) = (index / elements.len(), index % elements.len());
+                let along = axes.span * elements[station].width;
+                BoundVortex { blade, station, circulation, along }
             });
+            let position = *position;
+            forces.push(PointForce { position, force: -force, smearing_length, turbine: 0, bound });
         }
         forces.rotate_left(n_bodies);
     }

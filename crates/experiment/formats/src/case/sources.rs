@@ -1,0 +1,36 @@
+//! The texts of a case, file and overrides: where a problem stands.
+
+use miette::NamedSource;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The case file and the overrides, laid end to end, so that one number tells file and place.
+#[derive(Debug)]
+pub(super) struct Sources {
+    parts: Vec<(usize, Arc<NamedSource<String>>)>,
+    end: usize,
+}
+
+impl Sources {
+    pub(super) fn new() -> Self {
+        Self { parts: Vec::new(), end: 0 }
+    }
+
+    /// Adds a text; gives the place of its first byte.
+    pub(super) fn add(&mut self, name: &str, text: &str) -> usize {
+        let start = self.end;
+        self.parts.push((start, Arc::new(NamedSource::new(name, text.to_owned()))));
+        // One byte apart, so that the end of one text is not the start of the next.
+        self.end = start + text.len() + 1;
+        start
+    }
+
+    /// The text that holds `span`, and the span in it.
+    pub(super) fn locate(&self, span: Range<usize>) -> (Arc<NamedSource<String>>, Range<usize>) {
+        let part = self.parts.iter().rev().find(|(start, _)| *start <= span.start);
+        let (start, source) = part.unwrap_or(&self.parts[0]);
+        let length = source.inner().len();
+        let within = |place: usize| place.saturating_sub(*start).min(length);
+        (Arc::clone(source), within(span.start)..within(span.end))
+    }
+}
