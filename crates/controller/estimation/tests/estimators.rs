@@ -82,13 +82,13 @@ impl Known {
         Self { name, sense, rate, amplitude, noisy: noise > 0.0, record, wind, load }
     }
 
-    /// Errors of the estimate `believed` (rad) at `time` (s).
-    fn errors(&self, believed: &Oscillation, time: f64) -> [f64; 2] {
-        let truth = match believed.quantity {
+    /// Errors of the estimate `estimate` (rad) at `time` (s).
+    fn errors(&self, estimate: &Oscillation, time: f64) -> [f64; 2] {
+        let truth = match estimate.quantity {
             Quantity::Wind => self.wind,
             Quantity::Load => self.load,
         };
-        [0, 1].map(|axis| wrap_to_half_turn(believed.phases[axis] - truth[axis] - self.rate * time))
+        [0, 1].map(|axis| wrap_to_half_turn(estimate.phases[axis] - truth[axis] - self.rate * time))
     }
 }
 
@@ -153,7 +153,7 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 /// Estimate of `estimator` after `read`; all its numbers are finite, and nothing is allocated for it.
-fn believed<E: Estimator>(estimator: &mut E, read: &Measurements) -> Oscillation {
+fn checked_estimate<E: Estimator>(estimator: &mut E, read: &Measurements) -> Oscillation {
     let before = COUNT.with(Cell::get);
     let oscillation: Oscillation = estimator.update(read).into();
     assert_eq!(COUNT.with(Cell::get), before, "an update allocates");
@@ -186,12 +186,12 @@ fn finds<E: Estimator>(promise: &Promise, known: &Known, estimator: &mut E) {
     let from = promise.settled * TAU / known.rate;
     let (mut errors, mut rates) = ([Vec::new(), Vec::new()], Vec::new());
     for read in &known.record {
-        let believed = believed(estimator, read);
+        let estimate = checked_estimate(estimator, read);
         if read.time >= from {
-            let error = known.errors(&believed, read.time);
+            let error = known.errors(&estimate, read.time);
             errors.iter_mut().zip(error).for_each(|(errors, error)| errors.push(error));
-            rates.push(believed.rate / known.rate - 1.0);
-            assert!(believed.trust > TRUSTED, "{}: {}", known.name, believed.trust);
+            rates.push(estimate.rate / known.rate - 1.0);
+            assert!(estimate.trust > TRUSTED, "{}: {}", known.name, estimate.trust);
         }
     }
     let [phase, rate] = promise.on(known);
@@ -214,12 +214,12 @@ fn bridges<E: Estimator>(promise: &Promise, known: &Known, estimator: &mut E) {
             57 => read.azimuth = f64::INFINITY,
             _ => {}
         }
-        let believed = believed(estimator, &read);
+        let estimate = checked_estimate(estimator, &read);
         if silent {
-            assert!(believed.held, "{}: not held at {}", known.name, read.time);
+            assert!(estimate.held, "{}: not held at {}", known.name, read.time);
         }
         if read.time >= again {
-            let error = known.errors(&believed, read.time);
+            let error = known.errors(&estimate, read.time);
             errors.iter_mut().zip(error).for_each(|(errors, error)| errors.push(error));
         }
     }
@@ -255,9 +255,9 @@ fn trusts_no_noise<E: Estimator>(mut estimator: E) {
     let (mut world, mut dice, mut trust) = (World::new(CCW, 1.0), Dice(9), Vec::new());
     world.amplitudes = [0.0; 2];
     for step in 0..(6.0 * PERIOD / INTERVAL) as usize {
-        let believed = believed(&mut estimator, &world.read(step, &mut model, &mut dice));
+        let estimate = checked_estimate(&mut estimator, &world.read(step, &mut model, &mut dice));
         if step as f64 * INTERVAL > 3.0 * PERIOD {
-            trust.push(believed.trust);
+            trust.push(estimate.trust);
         }
     }
     let mean = trust.iter().sum::<f64>() / trust.len() as f64;
@@ -285,7 +285,7 @@ fn survives<E: Estimator>(blank: &E::State, estimator: &mut E) {
                 6 => read.time = value,
                 _ => read.interval = value,
             }
-            believed(&mut **estimator, &read);
+            checked_estimate(&mut **estimator, &read);
         }
         Ok(())
     });

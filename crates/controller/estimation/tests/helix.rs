@@ -172,7 +172,7 @@ fn eddies_leave_the_phase_within_ten_degrees_and_are_known_to() {
         },
     );
     let errors = errors(&record, CONVERGED);
-    let believed = |index: usize| {
+    let estimate = |index: usize| {
         let late = record.iter().filter(|(time, ..)| *time >= CONVERGED);
         let deviation: Vec<f64> =
             late.map(|(.., e)| [e.tilt, e.yaw][index].phase_variance.sqrt().to_degrees()).collect();
@@ -181,7 +181,7 @@ fn eddies_leave_the_phase_within_ten_degrees_and_are_known_to() {
     for (index, errors) in errors.iter().enumerate() {
         assert!(rms(errors) < 10.0, "{}", rms(errors));
         // The filter's own deviation tells the error within a factor of two.
-        assert!((0.5..2.0).contains(&(rms(errors) / believed(index))), "{}", believed(index));
+        assert!((0.5..2.0).contains(&(rms(errors) / estimate(index))), "{}", estimate(index));
     }
     // Shear is found as what lasts.
     let tilts: Vec<f64> =

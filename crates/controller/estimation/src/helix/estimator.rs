@@ -1,12 +1,12 @@
 //! The extended Kalman filter with the rotor's blade-element model as measurement function.
 
-use super::belief::{MEAN_WIND, N_STATES, Vector};
 use super::clock::{Clock, Use};
 use super::estimate::{HelixEstimate, Status};
 use super::filter::{Filter, FilterState, Instant, Readings};
 use super::flap::Bend;
 use super::options::{Jacobian, Options, positive};
 use super::rotor::{self, Rotor, RotorKinematics};
+use super::state_estimate::{MEAN_WIND, N_STATES, Vector};
 use crate::{EstimationError, Estimator};
 use basis::{Measurements, PerBlade, Sense};
 use serde::{Deserialize, Serialize};
@@ -111,7 +111,7 @@ impl HelixEstimator {
         let Self { rotor, memory, state, .. } = self;
         let wind = rotor.settle(mean_moment, kinematics, &mut state.rotor, memory);
         state.filter = self.filter.blank();
-        state.filter.belief = self.filter.start(wind);
+        state.filter.estimate = self.filter.start(wind);
         true
     }
 
@@ -133,7 +133,7 @@ impl HelixEstimator {
         let Self { filter, rotor, memory, state, .. } = self;
         filter.predict(interval, &mut state.filter);
         let pitch_wind = rotor.wind_equivalent_of_pitch(&kinematics);
-        let (wind, wind_slopes) = filter.wind(&state.filter.belief.mean, angle, pitch_wind);
+        let (wind, wind_slopes) = filter.wind(&state.filter.estimate.mean, angle, pitch_wind);
         let expected = rotor.advance(interval, wind, &kinematics, &mut state.rotor, memory);
         let slopes = match filter.options.jacobian {
             Jacobian::Analytic => Filter::blade_slopes(kinematics.azimuth, &expected, &wind_slopes),
@@ -146,10 +146,10 @@ impl HelixEstimator {
             let Self { filter, state, .. } = self;
             filter.correct(&now, &expected, &slopes, readings, &mut state.filter)
         };
-        if !self.state.filter.belief.is_finite() {
+        if !self.state.filter.estimate.is_finite() {
             let wind = if wind.average.is_finite() { wind.average } else { 0.5 * rotor::WINDS[1] };
             self.state.filter = self.filter.blank();
-            self.state.filter.belief = self.filter.start(wind);
+            self.state.filter.estimate = self.filter.start(wind);
             return Status::Restarted;
         }
         match n_used {
@@ -168,7 +168,7 @@ impl HelixEstimator {
         kinematics: &RotorKinematics,
         bend: &Bend,
     ) -> PerBlade<Vector> {
-        let mean = &self.state.filter.belief.mean;
+        let mean = &self.state.filter.estimate.mean;
         let pitch_wind = self.rotor.wind_equivalent_of_pitch(kinematics);
         let mut slopes = PerBlade::splat(self.rotor.n_blades(), [0.0; N_STATES]);
         for index in 0..N_STATES {
@@ -245,6 +245,6 @@ pub(super) fn check(
 impl HelixEstimator {
     /// Estimated mean wind (m/s); zero before the first measurement.
     pub fn mean_wind(&self) -> f64 {
-        self.state.filter.belief.mean[MEAN_WIND]
+        self.state.filter.estimate.mean[MEAN_WIND]
     }
 }

@@ -7,7 +7,6 @@
 //! filter estimates the wind for which they equal the measured ones. Pitch is an input of the model, so the
 //! rotor may pitch in any way meanwhile.
 
-mod belief;
 mod calibration;
 mod clock;
 mod estimate;
@@ -18,6 +17,7 @@ mod linear;
 mod model;
 mod options;
 mod rotor;
+mod state_estimate;
 mod trust;
 pub mod tuning;
 mod wave;
