@@ -138,27 +138,27 @@ fn loops(kind: Kind) -> TwoAxisLoop {
 
 fn judge<E: Estimator>(known: &Known, estimator: &mut E) -> Outcome {
     let started = Instant::now();
-    let beliefs: Vec<Oscillation> =
+    let estimates: Vec<Oscillation> =
         known.record.iter().map(|read| estimator.update(read).into()).collect();
     let cost = 1e6 * started.elapsed().as_secs_f64() / known.record.len() as f64;
     let (mut squares, mut sum, mut rate, mut trust, mut held) = ([0.0; 2], 0.0, 0.0, 0.0, 0.0);
     let (mut n, mut settling) = (0.0, 0.0);
-    for (read, believed) in known.record.iter().zip(&beliefs) {
-        let truth = match believed.quantity {
+    for (read, estimate) in known.record.iter().zip(&estimates) {
+        let truth = match estimate.quantity {
             Quantity::Wind => known.wind,
             Quantity::Load => known.load,
         };
         let angle = known.rate * read.time;
-        let errors = [0, 1].map(|axis| degrees(believed.phases[axis] - truth[axis] - angle));
+        let errors = [0, 1].map(|axis| degrees(estimate.phases[axis] - truth[axis] - angle));
         if errors.iter().any(|error| error.abs() > SETTLED) {
             settling = read.time;
         }
         if read.time >= JUDGED {
             squares.iter_mut().zip(errors).for_each(|(square, error)| *square += error * error);
             sum += 0.5 * (errors[0] + errors[1]);
-            rate += (believed.rate / known.rate - 1.0).powi(2);
-            trust += believed.trust;
-            held += f64::from(u8::from(believed.held));
+            rate += (estimate.rate / known.rate - 1.0).powi(2);
+            trust += estimate.trust;
+            held += f64::from(u8::from(estimate.held));
             n += 1.0;
         }
     }

@@ -30,7 +30,7 @@ pub enum AssemblyError {
     Control(#[from] ControlError),
     /// Nobody found the azimuth offset of a turbine's individual pitch control.
     #[error(
-        "the azimuth offset of its individual pitch control was neither given nor found before; give `azimuth_offset_deg` in `individual_pitch` of its turbine file's [controller]"
+        "the azimuth offset of its individual pitch control was neither given nor identified before the run; give `azimuth_offset_deg` in `individual_pitch` of its turbine file's [controller]"
     )]
     NoIndividualPitchOffset,
     /// A turbine's instruments cannot be.
@@ -122,7 +122,7 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
 /// What runs on a turbine of `model` under `control`, at time steps of `plan`.
 ///
 /// # Errors
-/// [`AssemblyError::Control`] for what cannot be controlled so, [`AssemblyError::NoIndividualPitchOffset`]
+/// [`AssemblyError::Control`] for a controller that cannot be built, [`AssemblyError::NoIndividualPitchOffset`]
 /// when individual pitch control cannot know where its pitch acts.
 pub fn controller(
     control: &Control,

@@ -40,16 +40,16 @@ pub const IDENTIFICATION_AMPLITUDE: f64 = std::f64::consts::PI / 180.0;
 #[derive(Debug, Error)]
 pub enum CalibrationError {
     /// The receiver of its progress stopped it.
-    #[error("the calibration was broken off")]
+    #[error("the calibration was interrupted")]
     BrokenOff,
     /// The turbine cannot be put together.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
-    /// The air cannot be set up.
-    #[error("the air of the calibration cannot be set up")]
+    /// The flow cannot be set up.
+    #[error("the flow of the calibration cannot be set up")]
     Solver(#[from] SolverError),
     /// The air did not stay finite.
-    #[error("the air of the calibration diverged")]
+    #[error("the flow of the calibration diverged")]
     Flow(#[from] FlowError),
     /// The record tells nothing.
     #[error("the phase estimator cannot be calibrated")]

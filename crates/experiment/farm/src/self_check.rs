@@ -102,7 +102,7 @@ impl Tunnel {
     /// The steady speed of `wind` in the tunnel, a rotor of `diameter` (m) at its origin.
     ///
     /// # Errors
-    /// [`lattice::LatticeError`] when the air cannot be set up.
+    /// [`lattice::LatticeError`] when the flow cannot be set up.
     pub fn air(
         &self,
         wind: &Wind,
@@ -130,7 +130,7 @@ impl Tunnel {
 /// rotor state ([`turbine::blockage`]).
 ///
 /// # Errors
-/// [`SelfCheckError`] when the air cannot be set up or does not stay finite.
+/// [`SelfCheckError`] when the flow cannot be set up or does not stay finite.
 pub fn self_check(
     model: &Model,
     wind: &Wind,
@@ -236,15 +236,15 @@ fn expectation(
 #[derive(Debug, Error)]
 pub enum SelfCheckError {
     /// The receiver of its progress stopped it.
-    #[error("the self-check was broken off")]
+    #[error("the self-check was interrupted")]
     BrokenOff,
-    /// The air cannot be set up.
-    #[error("the air of the self-check cannot be set up")]
+    /// The flow cannot be set up.
+    #[error("the flow of the self-check cannot be set up")]
     Settings(#[from] lattice::LatticeError),
     /// The turbine has no structure.
     #[error(transparent)]
     Structure(#[from] StructureError),
     /// The air did not stay finite.
-    #[error("the air of the self-check diverged")]
+    #[error("the flow of the self-check diverged")]
     Flow(#[from] FlowError),
 }

@@ -44,7 +44,7 @@ pub enum FileError {
         fix: String,
     },
     /// A run cannot go on from this checkpoint.
-    #[error("cannot go on from the checkpoint {}: {problem}", path.display())]
+    #[error("cannot resume from the checkpoint {}: {problem}", path.display())]
     #[diagnostic(code(wakemix::checkpoint))]
     Checkpoint {
         /// The file.
@@ -80,7 +80,7 @@ fn fix_of(kind: ErrorKind, path: &Path) -> String {
     let folder = path.parent().unwrap_or(path).display();
     match kind {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => format!(
-            "the disk or quota of {folder} is full: free some space or choose another folder (-o DIR), then go on with --resume"
+            "the disk or quota of {folder} is full: free some space or choose another folder (-o DIR), then resume with --resume"
         ),
         ErrorKind::PermissionDenied => {
             format!("check the permissions of {folder}, or choose another folder (-o DIR)")

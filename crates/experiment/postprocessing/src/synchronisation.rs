@@ -214,7 +214,7 @@ name = "T2"
 model = "iea-15mw"
 position_diameters = [5.0, 0.0]
 [[run]]
-name = "watching"
+name = "monitoring"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
 control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }
 [[run]]

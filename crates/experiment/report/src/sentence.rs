@@ -23,7 +23,7 @@ pub(crate) fn confidence(study: &Study) -> String {
     };
     match gain.half_width_95 {
         Some(width) if width >= gain.mean.abs() => {
-            "The interval includes zero: a study of this length does not settle whether there is a \
+            "The interval includes zero: a study of this length does not show whether there is a \
              gain."
                 .to_owned()
         }
@@ -117,7 +117,7 @@ fn power_sentence(run: &RunRecords) -> String {
 pub(crate) fn words_of(excitation: &Excitation) -> String {
     let amplitude = number(excitation.pitch.commanded_amplitude_deg, 1);
     if let Some(offset) = excitation.in_step_at() {
-        return format!("a helix of {amplitude}° in step at {offset}");
+        return format!("a synchronised helix of {amplitude}° at {offset}");
     }
     match excitation.kind {
         Kind::CounterClockwise => format!("a counter-clockwise helix of {amplitude}°"),
@@ -162,7 +162,8 @@ pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<Stri
                 Kind::Pulse => "pulse",
                 Kind::Other => excitation.turbine.control.description.as_str(),
             };
-            let in_step = excitation.in_step_at().map(|offset| format!(" in step at {offset}"));
+            let in_step =
+                excitation.in_step_at().map(|offset| format!(" synchronised at {offset}"));
             format!(
                 "{kind}{} on {}, {}° target, {}° delivered, St{SPACE}{}",
                 in_step.unwrap_or_default(),

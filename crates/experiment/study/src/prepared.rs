@@ -111,7 +111,7 @@ fn pointed_at(file: &CaseFile, error: StudyError) -> StudyError {
             StudyError::Case(objection(file, &error.key(), error.to_string()))
         }
         StudyError::Control { run, turbine, source } => {
-            let mut message = format!("{turbine} cannot be controlled so: {source}");
+            let mut message = format!("the controller of {turbine} cannot be built: {source}");
             let mut cause = source.source();
             while let Some(deeper) = cause {
                 message += &format!(": {deeper}");

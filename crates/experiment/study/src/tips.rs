@@ -51,7 +51,7 @@ impl Outrun {
     pub(crate) fn warning(&self, run: &str, name: &str) -> String {
         format!(
             "{run}: the tip of {name} outran the sound on the lattice {:.1} % of the time, first at {:.0} s; at {:.0} s it moved at {:.1} m/s, \
-             {:.3} cells a step, {LATTICE_SOUND_SPEED:.3} are the most; its power is then too low: take flow.step = {:.4} or less",
+             {:.3} cells a step, the maximum is {LATTICE_SOUND_SPEED:.3}; its power is then too low: use flow.step = {:.4} or less",
             100.0 * self.share,
             self.first,
             self.fastest_at,

@@ -45,7 +45,7 @@ pub struct DeliveredPitch {
     pub clipped_share: f64,
 }
 
-/// What pitching did to blade 1: how far its actuator went, and what its bearing carried meanwhile.
+/// What pitching did to blade 1: how far its actuator went, and the load on its bearing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PitchDuty {
     /// Sum of all motion, whichever way (deg).
@@ -83,7 +83,7 @@ impl PitchDuty {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PitchResponse {
-    /// In the belief of what finds the helix.
+    /// In the estimator's model of the turbine's own pitch.
     Estimator {
         /// Factor on tilt and yaw of the pitch (–).
         gain: f64,

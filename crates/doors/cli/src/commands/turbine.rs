@@ -29,7 +29,7 @@ pub(crate) enum TurbineCommand {
     /// Convert an OpenFAST deck (.fst) or a windIO file (.yaml) into a turbine file
     ///
     /// windIO files lack mode shapes, damping, generator inertia and controller gains: what is to be
-    /// completed by hand is listed, and the exit code is 2 until the file is whole.
+    /// completed by hand is listed, and the exit code is 2 until the file is complete.
     Import {
         /// Main file of the deck, or the windIO file
         file: PathBuf,

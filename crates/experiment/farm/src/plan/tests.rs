@@ -138,7 +138,7 @@ fn what_does_not_fit_is_named_with_its_fix() {
     veering.wind.veer = 0.1_f64.to_radians();
     let turned = error(&veering);
     assert!(turned.contains("by 81° within the domain, which is 960 m high"), "{turned}");
-    assert!(turned.contains("60° are the most; at most 0.0740, or lower"), "{turned}");
+    assert!(turned.contains("the maximum is 60°; use at most 0.0740, or lower"), "{turned}");
     veering.wind.veer = 0.07_f64.to_radians();
     assert!(plan(&veering, &footprints()).is_ok());
 

@@ -153,25 +153,25 @@ name = "baseline"
             (
                 "tower_influence = \"potential\"",
                 "lattice",
-                "small.toml:15: `turbine.T1.tower_influence` is of no use here: in flow.solver = \"lattice\" the tower's drag acts on the air itself; leave it out, or take flow.solver = \"uniform\"",
+                "small.toml:15: `turbine.T1.tower_influence` has no effect here: in flow.solver = \"lattice\" the tower's drag acts on the air itself; leave it out, or take flow.solver = \"uniform\"",
             ),
             ("tower_influence = \"potental\"", "uniform", "did you mean \"potential\"?"),
             (
                 "dynamic_inflow = \"two-constant\"",
                 "lattice",
-                "small.toml:15: `turbine.T1.dynamic_inflow` is of no use here: the air of flow.solver = \"lattice\" has the rotor's wake in it; leave it out, or take flow.solver = \"uniform\"",
+                "small.toml:15: `turbine.T1.dynamic_inflow` has no effect here: the air of flow.solver = \"lattice\" has the rotor's wake in it; leave it out, or take flow.solver = \"uniform\"",
             ),
-            ("slow_constant = 12.6", "lattice", "`turbine.T1.slow_constant` is of no use here"),
+            ("slow_constant = 12.6", "lattice", "`turbine.T1.slow_constant` has no effect here"),
             (
                 "dynamic_inflow = \"none\"\nslow_constant = 12.6",
                 "turbulence",
-                "small.toml:16: `turbine.T1.slow_constant` is of no use here: it goes with dynamic_inflow = \"two-constant\", not \"none\"; leave it out",
+                "small.toml:16: `turbine.T1.slow_constant` has no effect here: it goes with dynamic_inflow = \"two-constant\", not \"none\"; leave it out",
             ),
             ("slow_constant = 0", "uniform", "0 < slow_constant <= 1000 s"),
             (
                 "dynamic_inflow = \"oye\"",
                 "uniform",
-                "`turbine.T1.dynamic_inflow` = \"oye\" does not exist; what exists is \"two-constant\", \"snel-schepers\", \"none\"",
+                "`turbine.T1.dynamic_inflow` = \"oye\" is unknown; expected one of \"two-constant\", \"snel-schepers\", \"none\"",
             ),
         ];
         for (keys, solver, expected) in cases {

@@ -253,7 +253,7 @@ fn a_table_that_does_not_fit_is_refused_with_its_line() {
         ("0.41  0.46  0.43\n", "", "line 11, power coefficient: expected 2 rows"),
         ("0.41  0.46  0.43", "0.41  0.46", "line 12, power coefficient: expected 3 numbers"),
         ("0.75  0.80", "0.75  much", "line 17, coefficients: expected a number, found \"much\""),
-        ("-1.0   0.0", "-1.0  -1.0", "line 3, pitch angles: expected numbers that rise"),
+        ("-1.0   0.0", "-1.0  -1.0", "line 3, pitch angles: expected increasing numbers"),
         ("# TSR vector", "# ratios", "tip-speed ratios: expected a line"),
         ("0.70  0.72", "0.70  nan", "line 16, coefficients: expected a number"),
     ] {

@@ -230,7 +230,7 @@ impl Place<'_> {
             if !(here > before || here == before && !strictly) {
                 return Err(self.error(
                     &[Step::Key(group), Step::Key(key), Step::Row(row)],
-                    format!("a first column that rises, more than {before}"),
+                    format!("a first column that increases, more than {before}"),
                     here.to_string(),
                     "sort the rows by their first column",
                 ));

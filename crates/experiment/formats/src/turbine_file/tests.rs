@@ -92,7 +92,7 @@ fn a_polar_must_turn_fully_and_rise() {
     let text = nrel();
     let row = text.lines().find(|line| line.contains("[ -175.0000")).unwrap();
     let message = error_of(row, &row.replace("-175.0", "-185.0")).to_string();
-    assert!(message.contains("table[2]") && message.contains("must rise"), "{message}");
+    assert!(message.contains("table[2]") && message.contains("must increase"), "{message}");
 }
 
 #[test]

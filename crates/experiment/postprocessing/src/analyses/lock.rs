@@ -8,14 +8,14 @@ use serde_json::json;
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
     name: "lock",
-    about: "How well a phase-locked loop would follow the slow swing of a turbine's blade moments in the records of a run, whatever its control",
+    about: "How well a phase-locked loop would follow the slow oscillation of a turbine's blade moments in the records of a run, whatever its control",
     of: Of::Run("Folder of a run, such as runs/meandering/baseline"),
     settings: &[
         Setting {
             name: "turbine",
             value: "NAME",
             takes: Takes::Text,
-            about: "Turbine whose blades are listened to; each that is there when left out",
+            about: "Turbine whose blade moments are used; each that is there when left out",
         },
         Setting {
             name: "strouhal-low",
@@ -33,7 +33,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
             name: "sense",
             value: "WAY",
             takes: Takes::Choice(&[("cw", "Clockwise"), ("ccw", "Counter-clockwise")]),
-            about: "Way the loads circle, looking downwind; the turbine's own, or cw, when left out",
+            about: "Sense in which the loads rotate, looking downwind; the turbine's own, or cw, when left out",
         },
         Setting {
             name: "from",

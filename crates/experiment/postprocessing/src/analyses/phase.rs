@@ -165,7 +165,7 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
         "trust": answer.trust,
         "tilt": axis(&answer.tilt),
         "yaw": axis(&answer.yaw),
-        "hindsight": answer.zero_phase.map(|axes| axes.map(|found| json!({
+        "zero_phase": answer.zero_phase.map(|axes| axes.map(|found| json!({
             "spread_deg": found.spread.to_degrees(),
             "bias_deg": found.bias.to_degrees(),
         }))),

@@ -105,7 +105,7 @@ pub(crate) fn responses(study: &Study) -> Vec<Value> {
                         number(after, 2)
                     );
                     let gain = format!("× {}", number(gain, 3));
-                    let on = "belief of the phase estimator";
+                    let on = "model of the phase estimator";
                     add(on, gain, azimuth_offset, String::new(), remark);
                 }
                 Some(PitchResponse::Loads { azimuth_offset, delay, gain }) => {

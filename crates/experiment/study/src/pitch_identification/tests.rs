@@ -74,7 +74,7 @@ fn noise_that_is_given_is_another_calibration_and_none_leaves_no_trace() {
     let given = key(", measurement_noise_mnm = 0.5");
     assert_ne!(given, usual);
     assert_ne!(key(", measurement_noise_mnm = 0.6"), given);
-    assert_ne!(key(", wandering_amplitude = 0.5"), given);
+    assert_ne!(key(", process_noise_amplitude = 0.5"), given);
 }
 
 #[test]
@@ -88,10 +88,10 @@ fn what_is_given_is_not_sought_and_a_turbine_that_watches_needs_nothing() {
     assert!(asks(", estimator = \"published\"", &[]));
     assert!(!asks(", estimator = \"published\", azimuth_offset_deg = 10", &[]));
     for keys in ["", ", estimator = \"published\""] {
-        let watching = setup(keys, &["run.joined.control.T2.amplitude_deg=0"]);
-        let control = &watching.case.runs[0].control[1];
+        let monitoring = setup(keys, &["run.joined.control.T2.amplitude_deg=0"]);
+        let control = &monitoring.case.runs[0].control[1];
         assert!(control.kind().identification(control).is_none());
-        assert_eq!(sync_of(&watching).azimuth_offset, Some(0.0));
+        assert_eq!(sync_of(&monitoring).azimuth_offset, Some(0.0));
         assert_eq!(control.kind().pitch_response(control), None);
     }
     let [found, none, ten] = ["", ", azimuth_offset_deg = 0", ", azimuth_offset_deg = 10"].map(key);
@@ -193,11 +193,11 @@ fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
         given.estimator_options(setup.case.flow.solver.resolves_induction)
     };
     let usual = options("");
-    let given = options(", measurement_noise_mnm = 0.5, wandering_amplitude = 3e-3");
+    let given = options(", measurement_noise_mnm = 0.5, process_noise_amplitude = 3e-3");
     assert_eq!(given.noise.measurement, Measurement::Moment(5e5));
     assert_eq!((given.noise.amplitude, given.noise.phase), (3e-3, usual.noise.phase));
     assert_eq!(Options { noise: usual.noise, ..given }, usual);
-    let published = options(", estimator = \"published\", wandering_phase = 3e-4");
+    let published = options(", estimator = \"published\", process_noise_phase = 3e-4");
     let own = Options::published().noise;
     assert_eq!((published.noise.phase, published.noise.amplitude), (3e-4, own.amplitude));
     assert_eq!(published.noise.measurement, own.measurement);
