@@ -66,7 +66,7 @@ fn compare() -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// Most memory that `run` holds from its start to its end (bytes); none where the system does not tell.
+/// Most memory that `run` holds from its start to its end (bytes); none where the system does not report it.
 fn most_of(run: &mut Command) -> Result<Option<u64>, String> {
     let mut child = run.spawn().map_err(|error| error.to_string())?;
     let mut most = None;

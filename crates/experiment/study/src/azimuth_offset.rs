@@ -76,7 +76,7 @@ pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyEr
 mod tests {
     use super::*;
 
-    /// A rotor alike in all directions: some offset decouples tilt from yaw, and it belongs to the machine, not
+    /// An isotropic rotor: some offset decouples tilt from yaw, and it belongs to the machine, not
     /// to the identification.
     #[test]
     fn the_offset_parts_the_axes_and_hardly_depends_on_the_frequency() {

@@ -33,7 +33,7 @@ pub struct Options {
     pub overrides: Vec<String>,
     /// Go on with what is there.
     pub resume: bool,
-    /// Put new results in the place of old ones.
+    /// Replace old results.
     pub overwrite: bool,
     /// Say what it would cost, and stop.
     pub dry_run: bool,

@@ -72,7 +72,7 @@ fn check_reference(values: &Values) -> Vec<Objection> {
 }
 
 fn check_decoupling(values: &Values) -> Vec<Objection> {
-    let fix = "azimuth_offset_deg, delay and moment_per_degree_mnm go together; leave all three out to have them found before the runs";
+    let fix = "azimuth_offset_deg, delay and moment_per_degree_mnm go together; leave all three out to have them identified before the runs";
     let is_given = DECOUPLING.iter().any(|key| values.has(key));
     let absent = DECOUPLING.into_iter().filter(|key| is_given && !values.has(key));
     absent.map(|key| missing(key, fix)).collect()

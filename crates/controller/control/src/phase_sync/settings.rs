@@ -46,7 +46,7 @@ pub(super) static TABLE: Table = Table {
             PHASE_RANGE,
             "deg",
             Otherwise(
-                "found before the runs, by a helix of a degree in either sense in prescribed wind",
+                "identified before the runs, by a helix of a degree in either sense in prescribed wind",
             ),
             "Azimuth offset ψ of the inverse multi-blade transformation, with which tilt pitch changes the tilt moment alone; 0 with `amplitude_deg = 0`. At one frequency the blades pitch with it as with none and an `offset_deg` greater (`ccw`) or less (`cw`) by ψ.",
         ),

@@ -35,10 +35,10 @@ pub(crate) struct RunArguments {
     /// Override a key of the case, as in `--set wind.speed=8` (may be repeated)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
-    /// Take up where an interrupted or killed run stopped; the result has the same bits
+    /// Resume an interrupted or killed run; the result has the same bits
     #[arg(long)]
     resume: bool,
-    /// Put new results in the place of old ones
+    /// Replace old results
     #[arg(long, conflicts_with = "resume")]
     overwrite: bool,
     /// Print what the study would cost, and stop

@@ -57,7 +57,7 @@ pub(crate) enum TurbineCommand {
         #[arg(long, value_name = "A:B:N", default_value = "0", allow_hyphen_values = true)]
         pitch: Range,
     },
-    /// Find the azimuth offset that makes tilt and yaw pitch answer each for itself, over wind speed, as CSV
+    /// Find the azimuth offset that decouples tilt from yaw, over wind speed, as CSV
     Offset {
         /// Name of the library, or path of a turbine file
         name: String,

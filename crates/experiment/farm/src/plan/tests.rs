@@ -129,7 +129,7 @@ fn what_does_not_fit_is_named_with_its_fix() {
     rough.wind.shear = Shear::LogLaw { roughness_length: 16.0 };
     assert!(error(&rough).contains("wind.roughness_length = 16 m is too much for a hub at 150 m"));
     rough.flow.solver = Solver::UNIFORM;
-    assert!(error(&rough).contains("15.0 m, a tenth of it, is the most"), "{}", error(&rough));
+    assert!(error(&rough).contains("15.0 m, a tenth of it, is the maximum"), "{}", error(&rough));
     rough.wind.shear = Shear::LogLaw { roughness_length: 15.0 };
     assert!(plan(&rough, &footprints()).is_ok());
 

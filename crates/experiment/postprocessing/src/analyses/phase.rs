@@ -8,7 +8,7 @@ use serde_json::json;
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
     name: "phase",
-    about: "How well a turbine finds the phase of the helix that meets it, against the true wind of a run without it",
+    about: "How well a turbine estimates the phase of the incoming helix, against the true wind of a run without it",
     of: Of::Run("Folder of a run, such as runs/synchronised-helix/offset-150"),
     settings: SETTINGS,
     run,
@@ -20,7 +20,7 @@ pub(super) const SETTINGS: &[Setting] = &[
         name: "turbine",
         value: "NAME",
         takes: Takes::Text,
-        about: "Turbine that the helix meets; when left out each that looks for one, for `tune` the first of them",
+        about: "Turbine that estimates the phase; when left out each that does, for `tune` the first of them",
     },
     Setting {
         name: "truth",
@@ -32,7 +32,7 @@ pub(super) const SETTINGS: &[Setting] = &[
         name: "estimator",
         value: "NAME",
         takes: Takes::Choice(&[
-            ("robust", "With states for what its model lacks"),
+            ("robust", "With states for model errors"),
             ("published", "The four states of van Vondelen et al. (2025)"),
         ]),
         about: "Run this estimator over the records, instead of reading the run's own estimate",
