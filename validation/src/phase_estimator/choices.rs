@@ -6,7 +6,9 @@ use super::{AIM, Machine, OWN, ROTOR_SPEED, SPEED, robust, row, setting, tell, t
 use crate::Row;
 use basis::Sense;
 use estimation::EstimationError;
-use estimation::helix::{Adaptation, Form, LinearEstimator, OperatingPoint, Options, Rotor, Wake};
+use estimation::helix::{
+    Adaptation, Form, HelixOptions, LinearEstimator, OperatingPoint, Rotor, Wake,
+};
 
 /// Each choice of the robust form against what it replaces, turbulence 6 %, own pitch.
 ///
@@ -17,23 +19,26 @@ use estimation::helix::{Adaptation, Form, LinearEstimator, OperatingPoint, Optio
 pub(super) fn options(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
     let base = robust();
     let of_the_wave = base.adaptation.map(|adaptation| Adaptation { wave: true, ..adaptation });
-    let wake = |wake| Options { rotor: Rotor { wake, ..base.rotor }, ..base };
+    let wake = |wake| HelixOptions { rotor: Rotor { wake, ..base.rotor }, ..base };
     let whole = [
         ("as it is", base),
-        ("without adaptation", Options { adaptation: None, ..base }),
-        ("adapting the wave's process noise too", Options { adaptation: of_the_wave, ..base }),
-        ("tilt and yaw apart", Options { roundness: 0.0, ..base }),
-        ("with an excitation rate of its own", Options { rate: Some(1e-9), ..base }),
-        ("every fifth instant", Options { update_every: 5, ..base }),
+        ("without adaptation", HelixOptions { adaptation: None, ..base }),
+        ("adapting the wave's process noise too", HelixOptions { adaptation: of_the_wave, ..base }),
+        ("tilt and yaw apart", HelixOptions { roundness: 0.0, ..base }),
+        ("with an excitation rate of its own", HelixOptions { rate: Some(1e-9), ..base }),
+        ("every fifth instant", HelixOptions { update_every: 5, ..base }),
     ];
     let parted = [
-        ("without lasting tilt and yaw", Options { bias: None, ..base }),
-        ("without eddies", Options { eddies: None, ..base }),
-        ("amplitude and phase for each axis", Options { form: Form::SeparateAmplitudes, ..base }),
-        ("learning its own pitch", Options { response: Some(0.03), ..base }),
-        ("blades stiff", Options { rotor: Rotor { flexible: false, ..base.rotor }, ..base }),
+        ("without lasting tilt and yaw", HelixOptions { bias: None, ..base }),
+        ("without eddies", HelixOptions { eddies: None, ..base }),
+        (
+            "amplitude and phase for each axis",
+            HelixOptions { form: Form::SeparateAmplitudes, ..base },
+        ),
+        ("learning its own pitch", HelixOptions { response: Some(0.03), ..base }),
+        ("blades stiff", HelixOptions { rotor: Rotor { flexible: false, ..base.rotor }, ..base }),
         ("wake at once", wake(Wake::Static)),
-        ("wake in the air", Options::default()),
+        ("wake in the air", HelixOptions::default()),
     ];
     let ccw = Sense::CounterClockwise;
     let mut estimators = Vec::new();

@@ -5,8 +5,10 @@ mod machine;
 use basis::angle::wrap_to_half_turn;
 use basis::mbc::to_fixed_frame;
 use basis::{Measurements, Sense};
-use estimation::helix::{HelixEstimator, Options};
-use estimation::phase_locked::{Kind, Leader, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings};
+use estimation::helix::{HelixEstimator, HelixOptions};
+use estimation::phase_locked::{
+    GeneratorKind, Leader, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings,
+};
 use estimation::{Estimator, Oscillation, Quantity};
 use machine::*;
 use proptest::prelude::*;
@@ -64,7 +66,7 @@ impl Known {
     /// Moments of a helix of `amplitude` (m/s) at `factor` (–) of the usual rate, the rotor pitching by `own`
     /// (rad).
     fn new(sense: Sense, factor: f64, amplitude: f64, noise: f64, own: f64) -> Self {
-        let (definition, options) = (definition(), Options::default());
+        let (definition, options) = (definition(), HelixOptions::default());
         let rate = factor * TAU / PERIOD;
         let mut world = World::new(sense, 1.0);
         (world.rate, world.amplitudes, world.own) = (rate, [amplitude; 2], (own, 2.5));
@@ -251,7 +253,7 @@ fn resumes<E: Estimator>(known: &Known, make: &impl Fn(f64, Sense) -> E) {
 
 /// Without an oscillation there is no confidence.
 fn trusts_no_noise<E: Estimator>(mut estimator: E) {
-    let mut model = model(&definition(), CCW, &Options::default());
+    let mut model = model(&definition(), CCW, &HelixOptions::default());
     let (mut world, mut dice, mut trust) = (World::new(CCW, 1.0), Dice(9), Vec::new());
     world.amplitudes = [0.0; 2];
     for step in 0..(6.0 * PERIOD / INTERVAL) as usize {
@@ -292,7 +294,7 @@ fn survives<E: Estimator>(blank: &E::State, estimator: &mut E) {
     outcome.expect("numbers");
 }
 
-fn filter(options: Options, factor: f64) -> impl Fn(f64, Sense) -> HelixEstimator {
+fn filter(options: HelixOptions, factor: f64) -> impl Fn(f64, Sense) -> HelixEstimator {
     let definition = definition();
     move |rate, sense| {
         let setting = estimation::helix::HelixSettings { rate: factor * rate, ..setting(sense) };
@@ -300,7 +302,7 @@ fn filter(options: Options, factor: f64) -> impl Fn(f64, Sense) -> HelixEstimato
     }
 }
 
-fn phase_locked(kind: Kind) -> impl Fn(f64, Sense) -> TwoAxisLoop {
+fn phase_locked(kind: GeneratorKind) -> impl Fn(f64, Sense) -> TwoAxisLoop {
     move |_, sense| {
         let rates = [0.6, 1.2].map(|factor| factor * TAU / PERIOD);
         let signal = PhaseLockedSettings { generator: kind, ..PhaseLockedSettings::between(rates) };
@@ -312,19 +314,20 @@ fn phase_locked(kind: Kind) -> impl Fn(f64, Sense) -> TwoAxisLoop {
 #[test]
 fn the_filter_in_its_robust_form() {
     let promise = Promise { settled: 3.0, phase: [2.0, 0.5], rate: [1e-12; 2] };
-    judge(&promise, filter(Options::default(), 1.0));
+    judge(&promise, filter(HelixOptions::default(), 1.0));
 }
 
 #[test]
 fn the_filter_in_its_published_form_on_the_same_rotor() {
-    let options = Options { rotor: Options::default().rotor, ..Options::published() };
+    let options =
+        HelixOptions { rotor: HelixOptions::default().rotor, ..HelixOptions::published() };
     let promise = Promise { settled: 3.0, phase: [4.0, 0.5], rate: [1e-12; 2] };
     judge(&promise, filter(options, 1.0));
 }
 
 #[test]
 fn the_filter_that_seeks_the_rate() {
-    let options = Options { rate: Some(1e-10), ..Options::default() };
+    let options = HelixOptions { rate: Some(1e-10), ..HelixOptions::default() };
     let promise = Promise { settled: 6.0, phase: [4.0, 2.0], rate: [0.01, 0.005] };
     judge(&promise, filter(options, 0.98));
 }
@@ -332,12 +335,12 @@ fn the_filter_that_seeks_the_rate() {
 #[test]
 fn the_loops_with_the_mixed_generator() {
     let promise = Promise { settled: 6.0, phase: [4.0, 2.0], rate: [0.02, 0.005] };
-    judge(&promise, phase_locked(Kind::Mixed));
+    judge(&promise, phase_locked(GeneratorKind::Mixed));
 }
 
 #[test]
 fn the_loops_with_the_extended_generator() {
-    let kind = Kind::extended(SQRT_2, 1.0).expect("a damping with a dc gain");
+    let kind = GeneratorKind::extended(SQRT_2, 1.0).expect("a damping with a dc gain");
     let promise = Promise { settled: 6.0, phase: [4.0, 2.0], rate: [0.02, 0.005] };
     judge(&promise, phase_locked(kind));
 }

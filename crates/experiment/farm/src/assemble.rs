@@ -43,14 +43,14 @@ pub enum AssemblyError {
 
 /// A turbine model with the constants of its controller.
 #[derive(Clone, Debug)]
-pub struct Model {
+pub struct TurbineModel {
     /// The machine.
     pub definition: Arc<Definition>,
     /// Torque and collective pitch.
     pub constants: Constants,
 }
 
-impl Model {
+impl TurbineModel {
     /// What the layout needs to know, in a mean wind of `wind_speed` (m/s).
     pub fn footprint(&self, wind_speed: f64) -> Footprint {
         Footprint {
@@ -126,7 +126,7 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
 /// when individual pitch control cannot know where its pitch acts.
 pub fn controller(
     control: &Control,
-    model: &Model,
+    model: &TurbineModel,
     case: &Case,
     plan: &Plan,
 ) -> Result<Box<dyn Controller>, AssemblyError> {
@@ -138,7 +138,7 @@ pub fn controller(
 
 /// What a controller of a turbine of `model` is built for, at time steps of `plan`; Strouhal numbers are
 /// taken with the case's wind speed and the first turbine's diameter.
-pub fn site<'a>(model: &'a Model, case: &Case, plan: &Plan) -> Site<'a> {
+pub fn site<'a>(model: &'a TurbineModel, case: &Case, plan: &Plan) -> Site<'a> {
     Site {
         constants: &model.constants,
         rotor: &model.definition,
@@ -155,7 +155,7 @@ pub fn site<'a>(model: &'a Model, case: &Case, plan: &Plan) -> Site<'a> {
 pub(crate) fn turbine_settings(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     placement: &Placement,
     tower: Option<TowerInfluence>,
 ) -> turbine::TurbineSettings {
@@ -183,7 +183,7 @@ pub fn farm(
     case: &Case,
     run: &Run,
     plan: &Plan,
-    models: &[Model],
+    models: &[TurbineModel],
     air: Air,
 ) -> Result<Farm<Air>, AssemblyError> {
     let solver = case.flow.solver;
@@ -218,7 +218,11 @@ pub fn farm(
 
 /// The tower of a turbine of `model`, with its foot at `foot` (m), as its blades feel it; none where
 /// `placement` asks for none.
-fn tower_influence(model: &Model, placement: &Placement, foot: Vector3) -> Option<TowerInfluence> {
+fn tower_influence(
+    model: &TurbineModel,
+    placement: &Placement,
+    foot: Vector3,
+) -> Option<TowerInfluence> {
     let (potential, shadow) = match placement.tower_influence {
         AskedInfluence::None => return None,
         AskedInfluence::Potential => (Potential::Cylinder, false),

@@ -2,7 +2,7 @@
 //! says?
 
 use crate::Progress;
-use crate::assemble::{Model, SMEARING_CELLS};
+use crate::assemble::{SMEARING_CELLS, TurbineModel};
 use crate::case::Wind;
 use basis::{Commands, PerBlade, Vector3};
 use flow::inflow::MeanProfile;
@@ -132,7 +132,7 @@ impl Tunnel {
 /// # Errors
 /// [`SelfCheckError`] when the flow cannot be set up or does not stay finite.
 pub fn self_check(
-    model: &Model,
+    model: &TurbineModel,
     wind: &Wind,
     tunnel: &Tunnel,
     threads: Option<usize>,
@@ -187,7 +187,11 @@ pub fn self_check(
 
 /// The rotor of `model` at the origin of `tunnel`, stiff, with no tower or nacelle in the wind, at held
 /// speed.
-fn bare_rotor(model: &Model, wind: &Wind, tunnel: &Tunnel) -> Result<Turbine, StructureError> {
+fn bare_rotor(
+    model: &TurbineModel,
+    wind: &Wind,
+    tunnel: &Tunnel,
+) -> Result<Turbine, StructureError> {
     let definition = &model.definition;
     let rotor = Turbine::new(
         Arc::clone(definition),

@@ -1,7 +1,7 @@
 //! What the numbers say, in plain sentences, and the conditions under which they hold.
 
 use crate::RunRecords;
-use crate::study::{Excitation, Kind, Study, gain_of};
+use crate::study::{Excitation, ExcitationKind, Study, gain_of};
 use crate::words::{self, SPACE, number, percent};
 use basis::records::{Statistic, TurbineSummary};
 
@@ -120,10 +120,10 @@ pub(crate) fn words_of(excitation: &Excitation) -> String {
         return format!("a synchronised helix of {amplitude}° at {offset}");
     }
     match excitation.kind {
-        Kind::CounterClockwise => format!("a counter-clockwise helix of {amplitude}°"),
-        Kind::Clockwise => format!("a clockwise helix of {amplitude}°"),
-        Kind::Pulse => format!("a pulse of {amplitude}°"),
-        Kind::Other => format!("“{}”", excitation.turbine.control.description),
+        ExcitationKind::CounterClockwise => format!("a counter-clockwise helix of {amplitude}°"),
+        ExcitationKind::Clockwise => format!("a clockwise helix of {amplitude}°"),
+        ExcitationKind::Pulse => format!("a pulse of {amplitude}°"),
+        ExcitationKind::Other => format!("“{}”", excitation.turbine.control.description),
     }
 }
 
@@ -157,10 +157,10 @@ pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<Stri
         .iter()
         .map(|excitation| {
             let kind = match excitation.kind {
-                Kind::CounterClockwise => "ccw helix",
-                Kind::Clockwise => "cw helix",
-                Kind::Pulse => "pulse",
-                Kind::Other => excitation.turbine.control.description.as_str(),
+                ExcitationKind::CounterClockwise => "ccw helix",
+                ExcitationKind::Clockwise => "cw helix",
+                ExcitationKind::Pulse => "pulse",
+                ExcitationKind::Other => excitation.turbine.control.description.as_str(),
             };
             let in_step =
                 excitation.in_step_at().map(|offset| format!(" synchronised at {offset}"));

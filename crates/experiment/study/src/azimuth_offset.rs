@@ -7,7 +7,7 @@ use crate::prepared::Prepared;
 use control::excitation_rate;
 use control::meandering::Decoupling;
 use control::meandering::relative_gain;
-use farm::assemble::Model;
+use farm::assemble::TurbineModel;
 use farm::pitch_response::answers;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -59,7 +59,7 @@ pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyEr
         question.wind_speed, question.model, structure, question.strouhal
     );
     let case = formats::case::parse("the question", &text, &[])?;
-    let model = Model { definition: Arc::new(file.definition), constants: file.controller };
+    let model = TurbineModel { definition: Arc::new(file.definition), constants: file.controller };
     let model = model.without_individual_pitch();
     let loaded = BTreeMap::from([(question.model.clone(), model)]);
     let Prepared { case, plan, models, .. } = Prepared::with_models(case, loaded)?;

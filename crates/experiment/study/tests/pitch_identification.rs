@@ -8,7 +8,7 @@ use small::{NREL_5MW, written};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Estimate, IdentificationProgress, Observer, Options, Outcome};
+use study::{Estimate, IdentificationProgress, Observer, Outcome, StudyOptions};
 
 fn case() -> String {
     let runs = r#"[[run]]
@@ -50,9 +50,9 @@ impl Observer for Reports {
     }
 }
 
-fn options(folder: &Path, resume: bool, overrides: &[&str]) -> Options {
+fn options(folder: &Path, resume: bool, overrides: &[&str]) -> StudyOptions {
     let overrides = overrides.iter().map(|&text| text.to_owned()).collect();
-    Options { overrides, resume, ..small::options(folder) }
+    StudyOptions { overrides, resume, ..small::options(folder) }
 }
 
 fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Reports, Vec<Option<PitchResponse>>) {

@@ -5,7 +5,7 @@ mod small;
 
 use small::{options, written};
 use std::sync::atomic::AtomicBool;
-use study::{Estimate, Observer, Options, Outcome, StudyError};
+use study::{Estimate, Observer, Outcome, StudyError, StudyOptions};
 
 const LATTICE: &str = r#"
 name = "lattice"
@@ -73,7 +73,7 @@ impl Observer for Reports {
 /// What a dry run of `case` comes to, and what it tells.
 fn dry(case: &str) -> (Result<Outcome, StudyError>, Reports) {
     let folder = written(case);
-    let options = Options { dry_run: true, ..options(folder.path()) };
+    let options = StudyOptions { dry_run: true, ..options(folder.path()) };
     let mut reports = Reports::default();
     (study::run(&options, &AtomicBool::new(false), &mut reports), reports)
 }

@@ -22,7 +22,7 @@ static WAKES: SolverKind = SolverKind {
     about: "prescribed wind with a wake behind each rotor that follows its thrust",
     begin: |start: Start| -> std::result::Result<Air, SolverError> {
         let Start { site, inflow, .. } = start;
-        let disc = |(model, foot): (&assemble::Model, &Vector3)| Disc {
+        let disc = |(model, foot): (&assemble::TurbineModel, &Vector3)| Disc {
             hub: *foot + Vector3::Z * model.definition.rotor.hub_height,
             radius: model.definition.rotor_radius(),
             deficit: 0.0,

@@ -7,7 +7,7 @@ use basis::Sense;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Table, above, from, key};
 use basis::records::PitchResponse;
-use estimation::helix::{Calibration, HelixSettings, Measurement, Options, Wake};
+use estimation::helix::{Calibration, HelixOptions, HelixSettings, Measurement, Wake};
 
 pub(super) static TABLE: Table = Table {
     heading: "control.T2 = { kind = \"phase-sync\", … }",
@@ -165,7 +165,7 @@ impl PhaseSyncSettings {
     }
 
     /// Choices of its estimator with its own noise, before calibration.
-    pub fn estimator_options(&self, flow_resolves_induction: bool) -> Options {
+    pub fn estimator_options(&self, flow_resolves_induction: bool) -> HelixOptions {
         self.noise.apply(self.estimator.options(flow_resolves_induction))
     }
 
@@ -188,7 +188,7 @@ pub struct PhaseNoise {
 
 impl PhaseNoise {
     /// `options` with this noise.
-    pub fn apply(&self, options: Options) -> Options {
+    pub fn apply(&self, options: HelixOptions) -> HelixOptions {
         let mut options = options;
         let noise = &mut options.noise;
         noise.measurement = self.measurement.map_or(noise.measurement, Measurement::Moment);
@@ -209,17 +209,17 @@ pub enum PhaseEstimator {
 
 impl PhaseEstimator {
     /// Its choices, before calibration, with the noise that it comes with.
-    pub fn options(self, flow_resolves_induction: bool) -> Options {
+    pub fn options(self, flow_resolves_induction: bool) -> HelixOptions {
         match self {
             Self::Robust if !flow_resolves_induction => {
                 // Momentum theory keeps the wake's delay with the blade, a resolved flow where the blade has
                 // passed.
-                let mut options = Options::default();
+                let mut options = HelixOptions::default();
                 options.rotor.wake = Wake::WithBlades { time_factor: 1.0 };
                 options
             }
-            Self::Robust => Options::default(),
-            Self::Published => Options::published(),
+            Self::Robust => HelixOptions::default(),
+            Self::Published => HelixOptions::published(),
         }
     }
 }

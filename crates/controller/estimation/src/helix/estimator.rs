@@ -4,7 +4,7 @@ use super::clock::{Clock, Use};
 use super::estimate::{HelixEstimate, Status};
 use super::filter::{Filter, FilterState, Instant, Readings};
 use super::flap::Bend;
-use super::options::{Jacobian, Options, positive};
+use super::options::{HelixOptions, Jacobian, positive};
 use super::rotor::{self, Rotor, RotorKinematics};
 use super::state_estimate::{MEAN_WIND, N_STATES, Vector};
 use crate::{EstimationError, Estimator};
@@ -39,7 +39,7 @@ impl HelixSettings {
 /// Estimates mean wind, amplitude and phases of a helix from the moments at the blade roots, while its own
 /// rotor pitches.
 ///
-/// The filter of van Vondelen et al. (2025), Eqs. 8-21; [`Options`] hold what they leave open. Parameters
+/// The filter of van Vondelen et al. (2025), Eqs. 8-21; [`HelixOptions`] hold what they leave open. Parameters
 /// come from the case; [`HelixEstimator::state`] is the whole state.
 #[derive(Clone, Debug)]
 pub struct HelixEstimator {
@@ -70,7 +70,7 @@ impl HelixEstimator {
     pub fn new(
         definition: &Arc<Definition>,
         settings: &HelixSettings,
-        options: Options,
+        options: HelixOptions,
     ) -> Result<Self, EstimationError> {
         check(definition, settings, &options)?;
         let filter = Filter {
@@ -92,7 +92,7 @@ impl HelixEstimator {
     }
 
     /// Its options.
-    pub fn options(&self) -> &Options {
+    pub fn options(&self) -> &HelixOptions {
         &self.filter.options
     }
 
@@ -223,7 +223,7 @@ impl Estimator for HelixEstimator {
 pub(super) fn check(
     definition: &Definition,
     settings: &HelixSettings,
-    options: &Options,
+    options: &HelixOptions,
 ) -> Result<(), EstimationError> {
     let HelixSettings { rate, interval, air_density, n_elements, .. } = *settings;
     options.check()?;

@@ -1,6 +1,6 @@
 //! The Kalman filter proper: prediction of the states, correction by the moments, adaptation of the noise.
 
-use super::options::{Adaptation, Measurement, Options};
+use super::options::{Adaptation, HelixOptions, Measurement};
 use super::rotor::{Expected, WINDS};
 use super::state_estimate::{
     BIAS, MEAN_WIND, N_STATES, PASSING, RATE, RESPONSE, StateEstimate, Vector, WAVE,
@@ -27,7 +27,7 @@ const INITIAL_PHASE: f64 = 1.8;
 /// Parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Filter {
-    pub(super) options: Options,
+    pub(super) options: HelixOptions,
     pub(super) sense: Sense,
     /// Excitation rate (rad/s).
     pub(super) rate: f64,
@@ -93,7 +93,7 @@ impl Filter {
 
     /// The initial state when only the mean `wind` (m/s) is known.
     pub(super) fn start(&self, wind: f64) -> StateEstimate {
-        let Options { form, noise, bias, rate, .. } = self.options;
+        let HelixOptions { form, noise, bias, rate, .. } = self.options;
         let mut estimate = StateEstimate::zero();
         let mut variances = [0.0; N_STATES];
         estimate.mean[MEAN_WIND] = wind;
@@ -126,7 +126,7 @@ impl Filter {
 
     /// Prediction over `interval` (s).
     pub(super) fn predict(&self, interval: f64, state: &mut FilterState) {
-        let Options { form, noise, bias, eddies, rate, .. } = self.options;
+        let HelixOptions { form, noise, bias, eddies, rate, .. } = self.options;
         let mut incoming = [0.0; N_STATES];
         if rate.is_some() {
             self.turn(interval, &mut state.estimate);

@@ -10,7 +10,7 @@ use super::estimate::{HelixEstimate, Status};
 use super::estimator::{HelixSettings, check};
 use super::filter::{Filter, FilterState, Instant};
 use super::flap::Bend;
-use super::options::{Options, Rotor as RotorOptions, Wake, positive};
+use super::options::{HelixOptions, Rotor as RotorOptions, Wake, positive};
 use super::rotor::{Expected, Rotor, RotorKinematics};
 use super::state_estimate::MEAN_WIND;
 use super::wave::Form;
@@ -68,10 +68,10 @@ impl LinearEstimator {
         definition: &Arc<Definition>,
         settings: &HelixSettings,
         point: OperatingPoint,
-        options: Options,
+        options: HelixOptions,
     ) -> Result<Self, EstimationError> {
         let rotor = RotorOptions { wake: Wake::Static, flexible: false, ..options.rotor };
-        let options = Options {
+        let options = HelixOptions {
             form: Form::Quadrature,
             rotor,
             bias: None,

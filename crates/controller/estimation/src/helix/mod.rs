@@ -28,6 +28,6 @@ pub use estimate::{HelixEstimate, Status};
 pub use estimator::{HelixEstimator, HelixEstimatorState, HelixSettings};
 pub use linear::{LinearEstimator, LinearEstimatorState, OperatingPoint};
 pub use model::MeasurementModel;
-pub use options::{Adaptation, Eddies, Jacobian, Measurement, Noise, Options, Rotor, Wake};
+pub use options::{Adaptation, Eddies, HelixOptions, Jacobian, Measurement, Noise, Rotor, Wake};
 pub use trust::Trust;
 pub use wave::{Axis, Form};

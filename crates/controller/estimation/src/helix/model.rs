@@ -1,7 +1,7 @@
 //! The measurement function by itself, to compute blade moments for a known wind.
 
 use super::estimator::{HelixSettings, check};
-use super::options::Options;
+use super::options::HelixOptions;
 use super::rotor::{Memory, Rotor, RotorKinematics, RotorModelState};
 use crate::EstimationError;
 use basis::{FixedFrame, PerBlade};
@@ -25,7 +25,7 @@ impl MeasurementModel {
     pub fn new(
         definition: &Arc<Definition>,
         settings: &HelixSettings,
-        options: &Options,
+        options: &HelixOptions,
     ) -> Result<Self, EstimationError> {
         check(definition, settings, options)?;
         let rotor = Rotor::new(definition, settings, options);

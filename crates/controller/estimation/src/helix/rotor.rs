@@ -2,7 +2,7 @@
 
 use super::estimator::HelixSettings;
 use super::flap::{Bend, Flap};
-use super::options::{self, Options};
+use super::options::{self, HelixOptions};
 use super::weight::Weight;
 use basis::mbc::{to_blades, to_fixed_frame};
 use basis::{FixedFrame, Measurements, PerBlade, Sense};
@@ -81,7 +81,7 @@ impl Rotor {
     pub(super) fn new(
         definition: &Arc<Definition>,
         settings: &HelixSettings,
-        options: &Options,
+        options: &HelixOptions,
     ) -> Self {
         let HelixSettings { n_elements, air_density, .. } = *settings;
         let radius = definition.rotor_radius();

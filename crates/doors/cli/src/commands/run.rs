@@ -15,7 +15,7 @@ use wakemix::farm::pitch_response::CalibrationError;
 use wakemix::farm::self_check::{SelfCheck, SelfCheckError, TOLERANCE};
 use wakemix::postprocessing;
 use wakemix::study::{
-    self, Estimate, IdentificationProgress, Observer, Options, Outcome, Progress, StudyError,
+    self, Estimate, IdentificationProgress, Observer, Outcome, Progress, StudyError, StudyOptions,
 };
 
 /// Longest time left that is shown (s): a year.
@@ -63,7 +63,7 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
     if let Err(error) = installed {
         eprintln!("warning: Ctrl-C will not write a checkpoint: {error}");
     }
-    let options = Options {
+    let options = StudyOptions {
         case: arguments.case.clone(),
         output: arguments.output.clone(),
         runs: arguments.runs.clone(),

@@ -221,7 +221,7 @@ fn figures_that_no_controller_can_have_are_refused_by_their_own_keys() {
     for (from, to, place, expected) in [
         ("1100.               ! VS_MaxTq", "900. ! VS_MaxTq", "line 41, VS_MaxTq", "50000 to"),
         ("-30.                ! VS_KP", "30. ! VS_KP", "VS_KP", "torque_proportional zero or more"),
-        ("0.05 0.1 0.2        ! PC", "0.05 0.2 0.1 ! PC", "PC_GS_angles", "rises"),
+        ("0.05 0.1 0.2        ! PC", "0.05 0.2 0.1 ! PC", "PC_GS_angles", "increases"),
         ("0.25                ! F_VS", "0.0 ! F_VS", "F_VSRefSpdCornerFreq", "above zero"),
         ("0.1                 ! FA_HPF", "0.0 ! FA_HPF", "FA_HPFCornerFreq", "above zero"),
     ] {

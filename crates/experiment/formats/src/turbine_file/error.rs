@@ -207,7 +207,7 @@ impl Place<'_> {
         Err(self.error(path, "zero or more", value.to_string(), "check figure and unit"))
     }
 
-    /// Nothing when the first `column` of a table rises, from row to row where `strictly`, and has `least`
+    /// Nothing when the first `column` of a table increases, from row to row where `strictly`, and has `least`
     /// rows or more.
     pub(super) fn rising(
         &self,

@@ -60,7 +60,7 @@ fn errors_name_file_line_key_and_fix() {
             "90.00 m, from tower",
         ),
         ("precone_deg = 2.5", "precone_deg = 250.0", "line 14, rotor.precone_deg", "-30 to 30°"),
-        ("4.1,  3.854", "1.1,  3.854", "line 25, blade.stations[3]", "rises, more than 1.3667"),
+        ("4.1,  3.854", "1.1,  3.854", "line 25, blade.stations[3]", "increases, more than 1.3667"),
         ("1.3667,  3.542", "1.3667, -3.542", "line 24, blade.stations[2]", "above zero"),
         ("\"DU40_A17\"", "\"DU41\"", "line 27, blade.stations[5]", "the name of a polar"),
         (

@@ -1,6 +1,6 @@
 //! `phase`: how well a turbine finds the phase of the helix that meets it.
 
-use super::{Analysis, Answer, Of, Request, Setting, Takes};
+use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes};
 use crate::{PhaseAnswer, PhaseAxis, PhaseQuestion, PostprocessingError, phases};
 use control::phase_sync::PhaseEstimator;
 use serde_json::json;
@@ -15,20 +15,20 @@ pub(super) const ANALYSIS: Analysis = Analysis {
 };
 
 /// What can be set of it, and of `tune`.
-pub(super) const SETTINGS: &[Setting] = &[
-    Setting {
+pub(super) const SETTINGS: &[AnalysisSetting] = &[
+    AnalysisSetting {
         name: "turbine",
         value: "NAME",
         takes: Takes::Text,
         about: "Turbine that estimates the phase; when left out each that does, for `tune` the first of them",
     },
-    Setting {
+    AnalysisSetting {
         name: "truth",
         value: "RUN",
         takes: Takes::Text,
         about: "Folder of a run without that turbine, with the wind along lines at its place; one beside RUN when left out",
     },
-    Setting {
+    AnalysisSetting {
         name: "estimator",
         value: "NAME",
         takes: Takes::Choice(&[
@@ -37,7 +37,7 @@ pub(super) const SETTINGS: &[Setting] = &[
         ]),
         about: "Run this estimator over the records, instead of reading the run's own estimate",
     },
-    Setting {
+    AnalysisSetting {
         name: "from",
         value: "T",
         takes: Takes::Number,

@@ -83,11 +83,11 @@ fn json(tuned: &Tuned) -> serde_json::Value {
 mod tests {
     use super::*;
     use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
-    use estimation::helix::Options;
+    use estimation::helix::HelixOptions;
 
     /// The noise of T2 in a case whose control holds `estimator` and the last line of what is printed for
     /// `options`.
-    fn pasted(options: Options, estimator: &str) -> PhaseNoise {
+    fn pasted(options: HelixOptions, estimator: &str) -> PhaseNoise {
         let text = super::text(&Tuned { options, scale: 1.0, error: 0.2 });
         let (head, keys) = text.trim_end().rsplit_once('\n').expect("lines");
         assert!(head.ends_with(&format!("estimator = \"{estimator}\":")), "{text}");
@@ -116,20 +116,20 @@ control.T2 = {{ kind = "phase-sync", offset_deg = 90, amplitude_deg = 4, sense =
 
     #[test]
     fn what_tuning_tells_can_be_pasted_into_a_case() {
-        let with_noise = |mut options: Options| {
+        let with_noise = |mut options: HelixOptions| {
             options.noise.measurement = Measurement::Moment(314_159.0);
             options.noise.amplitude = 7.654_32e-6;
             options.noise.phase = 2.5e-4;
             options
         };
-        let robust = pasted(with_noise(Options::default()), "robust");
+        let robust = pasted(with_noise(HelixOptions::default()), "robust");
         let measurement = robust.measurement.expect("a number");
         assert!((measurement - 314_200.0).abs() < 1e-3, "{measurement}");
         assert_eq!(
             (robust.process_noise_amplitude, robust.process_noise_phase),
             (Some(7.654e-6), None)
         );
-        let published = pasted(with_noise(Options::published()), "published");
+        let published = pasted(with_noise(HelixOptions::published()), "published");
         assert_eq!(published.process_noise_phase, Some(2.5e-4));
     }
 }

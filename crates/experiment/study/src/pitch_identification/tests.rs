@@ -3,7 +3,7 @@
 use super::*;
 use crate::{OffsetQuestion, Silent, azimuth_offset};
 use control::phase_sync::PhaseSyncSettings;
-use estimation::helix::{Measurement, Options};
+use estimation::helix::{HelixOptions, Measurement};
 use farm::pitch_response::OwnPitch;
 use formats::records::{read_pitch_responses, write_pitch_responses};
 
@@ -186,7 +186,7 @@ fn a_resumed_study_is_told_the_same_to_the_last_bit() {
 
 #[test]
 fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
-    let options = |keys: &str| -> Options {
+    let options = |keys: &str| -> HelixOptions {
         let setup = setup(&format!("{keys}, azimuth_offset_deg = 0"), &[]);
         let control = &setup.case.runs[0].control[1];
         let given = PhaseSyncSettings::of(control).expect("phase-sync");
@@ -196,9 +196,9 @@ fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
     let given = options(", measurement_noise_mnm = 0.5, process_noise_amplitude = 3e-3");
     assert_eq!(given.noise.measurement, Measurement::Moment(5e5));
     assert_eq!((given.noise.amplitude, given.noise.phase), (3e-3, usual.noise.phase));
-    assert_eq!(Options { noise: usual.noise, ..given }, usual);
+    assert_eq!(HelixOptions { noise: usual.noise, ..given }, usual);
     let published = options(", estimator = \"published\", process_noise_phase = 3e-4");
-    let own = Options::published().noise;
+    let own = HelixOptions::published().noise;
     assert_eq!((published.noise.phase, published.noise.amplitude), (3e-4, own.amplitude));
     assert_eq!(published.noise.measurement, own.measurement);
 }
