@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_process_held_is_seen_and_a_failure_told() {
+    fn what_a_process_held_is_seen_and_a_failure_reported() {
         // What this process holds is not what the other does.
         let held = std::hint::black_box(vec![1_u8; 64 << 20]);
         let seen = most_of(Command::new("sleep").arg("0.05")).unwrap();

@@ -14,8 +14,8 @@ use estimation::helix::{
 ///
 /// A choice that changes noise, correlation, rate or interval alone leaves the filter's model of rotor and
 /// wind whole, and has the form's own aim. One that takes a part of either away, or lets the filter learn it,
-/// has none: 4° of own pitch do to the moments what 3 to 4 m/s of tilt and yaw do, of which the fifth that
-/// such a part is worth outweighs a helix of 0.7 m/s.
+/// has none: 4° of own pitch change the moments as much as 3 to 4 m/s of tilt and yaw in the wind. A part of
+/// the model stands for a fifth of that, which is as much as a helix of 0.7 m/s.
 pub(super) fn options(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
     let base = robust();
     let of_the_wave = base.adaptation.map(|adaptation| Adaptation { wave: true, ..adaptation });

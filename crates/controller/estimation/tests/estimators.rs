@@ -326,7 +326,7 @@ fn the_filter_in_its_published_form_on_the_same_rotor() {
 }
 
 #[test]
-fn the_filter_that_seeks_the_rate() {
+fn the_filter_that_estimates_the_rate() {
     let options = HelixOptions { rate: Some(1e-10), ..HelixOptions::default() };
     let promise = Promise { settled: 6.0, phase: [4.0, 2.0], rate: [0.01, 0.005] };
     judge(&promise, filter(options, 0.98));

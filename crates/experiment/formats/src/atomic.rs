@@ -303,7 +303,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_full_disk_is_told_as_such() {
+    fn a_full_disk_is_reported_as_such() {
         // /dev/full refuses every byte as a full disk does.
         let file = File::options().write(true).open("/dev/full").unwrap();
         let folder = tempfile::tempdir().unwrap();

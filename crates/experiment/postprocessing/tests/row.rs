@@ -31,7 +31,7 @@ fn both(output: &Path) -> PhaseAnswers {
 }
 
 #[test]
-fn every_turbine_that_seeks_a_helix_is_answered_for() {
+fn every_turbine_that_estimates_a_phase_has_an_answer() {
     let folder = written(&case());
     let output = folder.path().join("out");
     let (_, report) = postprocessing::report(&done(&options(folder.path()))).expect("a report");

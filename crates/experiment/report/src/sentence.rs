@@ -116,7 +116,7 @@ fn power_sentence(run: &RunRecords) -> String {
 /// "a counter-clockwise helix of 4.0°".
 pub(crate) fn words_of(excitation: &Excitation) -> String {
     let amplitude = number(excitation.pitch.commanded_amplitude_deg, 1);
-    if let Some(offset) = excitation.in_step_at() {
+    if let Some(offset) = excitation.synchronised_at() {
         return format!("a synchronised helix of {amplitude}° at {offset}");
     }
     match excitation.kind {
@@ -162,11 +162,11 @@ pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<Stri
                 ExcitationKind::Pulse => "pulse",
                 ExcitationKind::Other => excitation.turbine.control.description.as_str(),
             };
-            let in_step =
-                excitation.in_step_at().map(|offset| format!(" synchronised at {offset}"));
+            let synchronised =
+                excitation.synchronised_at().map(|offset| format!(" synchronised at {offset}"));
             format!(
                 "{kind}{} on {}, {}° target, {}° delivered, St{SPACE}{}",
-                in_step.unwrap_or_default(),
+                synchronised.unwrap_or_default(),
                 excitation.turbine.name,
                 number(excitation.pitch.commanded_amplitude_deg, 1),
                 number(excitation.pitch.delivered_amplitude_deg, 1),

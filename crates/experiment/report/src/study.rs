@@ -32,7 +32,7 @@ pub(crate) struct Excitation<'a> {
 
 impl Excitation<'_> {
     /// The phase offset in words, "90°", where it is synchronised with an incoming helix.
-    pub(crate) fn in_step_at(&self) -> Option<String> {
+    pub(crate) fn synchronised_at(&self) -> Option<String> {
         let offset = self.turbine.control.excitation?.phase_offset_deg?;
         Some(format!("{offset:.0}°"))
     }

@@ -47,7 +47,7 @@ fn the_page_says_what_the_numbers_say_and_under_which_conditions() {
 }
 
 #[test]
-fn a_turbine_in_step_is_said_to_be_and_what_both_runs_do_goes_without_saying() {
+fn a_synchronised_turbine_is_named_and_what_both_runs_do_is_left_out() {
     let mut study = synthetic::two_runs();
     let helix = study.runs[1].summary.turbines[0].clone();
     study.runs[0].summary.turbines[0].control = helix.control;

@@ -99,7 +99,7 @@ fn a_turbine_runs_under_the_constants_of_its_file_alone() {
 }
 
 #[test]
-fn what_the_file_lacks_or_does_not_fit_is_told() {
+fn what_the_file_lacks_or_does_not_fit_is_reported() {
     let folder = written(&DISCON.replace("table.txt", "none.txt").replace("63.0 ", "80.0 "));
     let given = setup(folder.path()).expect("a sound case").warnings;
     for expected in ["control/none.txt", "a rotor of 80.0 m radius"] {

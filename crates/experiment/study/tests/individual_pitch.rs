@@ -81,7 +81,7 @@ fn offsets(summaries: &[Summary]) -> Vec<Option<f64>> {
 }
 
 #[test]
-fn what_is_left_out_is_found_once_told_and_taken_again_with_the_same_bits() {
+fn what_is_left_out_is_identified_once_reported_and_taken_again_with_the_same_bits() {
     let folder = folder("");
     let (first, summaries) = run(folder.path(), false, &[]);
     // Once for two turbines alike and both runs.
@@ -107,7 +107,7 @@ fn what_is_left_out_is_found_once_told_and_taken_again_with_the_same_bits() {
 }
 
 #[test]
-fn what_is_given_is_not_sought() {
+fn what_is_given_is_not_identified() {
     let folder = folder("azimuth_offset_deg = 20.0, ");
     let (reports, summaries) = run(folder.path(), false, &[]);
     assert_eq!((reports.n_identifications, reports.found.len()), (0, 0));

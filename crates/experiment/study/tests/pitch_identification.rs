@@ -106,7 +106,7 @@ impl Observer for Impatient<'_> {
 }
 
 #[test]
-fn an_identification_stops_when_asked() {
+fn an_identification_stops_on_request() {
     let folder = written(&case());
     let stop = AtomicBool::new(false);
     let options = options(folder.path(), false, &[]);

@@ -123,7 +123,7 @@ name = "baseline"
     }
 
     #[test]
-    fn a_tower_is_not_felt_unless_asked_for() {
+    fn a_tower_has_no_influence_by_default() {
         assert_eq!(read("").tower_influence, TowerInfluence::None);
         for (word, influence) in TOWER_INFLUENCES {
             assert_eq!(read(&format!("tower_influence = \"{word}\"")).tower_influence, influence);
@@ -135,7 +135,7 @@ name = "baseline"
     }
 
     #[test]
-    fn induction_follows_with_two_constants_unless_asked_otherwise() {
+    fn induction_follows_with_two_constants_by_default() {
         let of = |keys: &str| read(keys).dynamic_inflow;
         let usual = DynamicInflow::TwoConstant { slow_constant: None };
         assert_eq!((of(""), DynamicInflow::default()), (usual, usual));
@@ -148,7 +148,7 @@ name = "baseline"
     }
 
     #[test]
-    fn what_cannot_be_is_told_with_its_line() {
+    fn what_cannot_be_is_reported_with_its_line() {
         let cases = [
             (
                 "tower_influence = \"potential\"",

@@ -128,7 +128,7 @@ fn noise_of_a_phase_estimator_is_its_own_unless_given() {
 }
 
 #[test]
-fn the_azimuth_offset_of_a_turbine_in_step_is_found_unless_given() {
+fn the_azimuth_offset_of_a_synchronised_turbine_is_identified_unless_given() {
     assert_eq!(phase_sync("").azimuth_offset, None);
     assert_eq!(phase_sync(", azimuth_offset_deg = 0").azimuth_offset, Some(0.0));
     assert_eq!(phase_sync(", azimuth_offset_deg = 17").azimuth_offset, Some(17f64.to_radians()));

@@ -137,7 +137,7 @@ fn events_with_a_place_stand_at_the_first_turbine() {
 }
 
 #[test]
-fn what_cannot_be_is_told_with_its_line() {
+fn what_cannot_be_is_reported_with_its_line() {
     let step = "event = { kind = \"step\", start = 100.0, speed = 12.0 }";
     let cases = [
         ("event = 3", "uniform", "windy.toml:6: `wind.event` must be a table, such as"),

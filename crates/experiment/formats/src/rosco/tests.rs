@@ -116,7 +116,7 @@ fn refusal(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn figures_arrive_on_the_low_speed_side() {
+fn figures_are_read_on_the_low_speed_side() {
     let constants = constants(DISCON);
     assert!((constants.rated_rotor_speed - 80.0 / 50.0).abs() < 1e-12);
     assert!((constants.rated_torque - 5e4).abs() < 1e-6);

@@ -30,7 +30,7 @@ fn written_and_read_again_a_turbine_is_the_same() {
 }
 
 #[test]
-fn figures_arrive_in_si() {
+fn figures_are_read_in_si() {
     let TurbineFile { definition, controller, .. } = parse("mine.toml", nrel()).unwrap();
     assert!((definition.rotor.precone - 2.5f64.to_radians()).abs() < 1e-12);
     assert!((definition.rated_power - 5e6).abs() < 1e-3);

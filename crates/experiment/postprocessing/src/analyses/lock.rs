@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_loop_is_told_in_one_line() {
+    fn a_loop_is_reported_in_one_line() {
         let answer = LockAnswer {
             turbine: "T2".into(),
             sense: Sense::CounterClockwise,

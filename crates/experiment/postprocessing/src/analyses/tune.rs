@@ -115,7 +115,7 @@ control.T2 = {{ kind = "phase-sync", offset_deg = 90, amplitude_deg = 4, sense =
     }
 
     #[test]
-    fn what_tuning_tells_can_be_pasted_into_a_case() {
+    fn what_tuning_prints_can_be_pasted_into_a_case() {
         let with_noise = |mut options: HelixOptions| {
             options.noise.measurement = Measurement::Moment(314_159.0);
             options.noise.amplitude = 7.654_32e-6;

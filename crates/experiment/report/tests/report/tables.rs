@@ -101,7 +101,7 @@ fn what_a_controller_of_any_kind_found_stands_in_a_table() {
 }
 
 #[test]
-fn the_offset_of_the_pitch_and_that_of_the_belief_have_their_rows() {
+fn the_offset_of_the_pitch_and_that_of_the_estimator_have_their_rows() {
     let mut study = synthetic::two_runs();
     let turned = "<td>blades, by the inverse multi-blade transformation</td><td class=\"n\"></td>";
     let estimator = "<td>model of the phase estimator</td><td class=\"n\">× 1.040</td>";

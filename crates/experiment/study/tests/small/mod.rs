@@ -19,7 +19,7 @@ pub(crate) const NREL_5MW: &str = r#"model = "nrel-5mw""#;
 /// A disk of slow air that circles in the wind of [`case`], whose waves a turbine takes for a helix.
 pub(crate) const DISK: &str = r#"event = { kind = "rotating-disk", speed = 6.0, strouhal = 0.25 }
 "#;
-/// Control that listens for a helix and does nothing.
+/// Control that estimates the phase of a helix and does nothing.
 pub(crate) const MONITORING: &str =
     r#"{ kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }"#;
 /// Control of a turbine that is not there.

@@ -182,7 +182,7 @@ fn errors_name_file_line_key_and_fix() {
 }
 
 #[test]
-fn everything_wrong_is_told_at_once_from_top_to_bottom() {
+fn everything_wrong_is_reported_at_once_from_top_to_bottom() {
     let text = SMALL.replace("speed = 9", "speed = 900").replace("[5.0, 0.0]", "[0.0]");
     let error = parse("small.toml", &text, &[]).unwrap_err();
     let lines: Vec<usize> = error.problems().iter().map(Problem::line).collect();
@@ -207,7 +207,7 @@ fn a_drawn_error_points_at_the_value() {
 
 /// Found by fuzzing: what draws errors gave up on columns that 16 bits do not count.
 #[test]
-fn a_problem_on_an_endless_line_is_told_without_a_drawing() {
+fn a_problem_on_an_endless_line_is_reported_without_a_drawing() {
     let endless = format!("speed = 900{}# and on\n", " ".repeat(70_000));
     for text in [SMALL.replace("speed = 9\n", &endless), SMALL.replace("speed = 9", &endless)] {
         let error = parse("small.toml", &text, &[]).unwrap_err();
@@ -237,7 +237,7 @@ fn errors_of_overrides_name_the_override() {
 }
 
 #[test]
-fn a_file_that_is_not_there_or_not_text_is_told() {
+fn a_file_that_is_not_there_or_not_text_is_reported() {
     let error = read(Path::new("cases/no-such.toml"), &[]).unwrap_err();
     assert!(error.to_string().contains("cannot read the case file cases/no-such.toml"), "{error}");
     let folder = tempfile::tempdir().unwrap();
