@@ -7,7 +7,7 @@ use basis::angle::wrap_to_turn;
 use basis::mbc::to_blades;
 use basis::{FixedFrame, Measurements, Sense};
 use estimation::Estimator;
-use estimation::helix::{HelixEstimator, HelixSettings, Jacobian, MeasurementModel, Options};
+use estimation::helix::{HelixEstimator, HelixOptions, HelixSettings, Jacobian, MeasurementModel};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -23,14 +23,14 @@ fn main() {
     let definition = Arc::new(file.definition);
     let differences = Jacobian::CentralDifferences { step: 1e-5 };
     let cases = [
-        ("robust", Options::default(), HelixSettings::N_ELEMENTS),
-        ("robust, 32 elements", Options::default(), 32),
+        ("robust", HelixOptions::default(), HelixSettings::N_ELEMENTS),
+        ("robust, 32 elements", HelixOptions::default(), 32),
         (
             "robust, by differences",
-            Options { jacobian: differences, ..Options::default() },
+            HelixOptions { jacobian: differences, ..HelixOptions::default() },
             HelixSettings::N_ELEMENTS,
         ),
-        ("published", Options::published(), HelixSettings::N_ELEMENTS),
+        ("published", HelixOptions::published(), HelixSettings::N_ELEMENTS),
     ];
     println!("microseconds an update, best of {n_repeats}");
     for (name, options, n_elements) in cases {
@@ -63,7 +63,7 @@ fn main() {
 fn record(
     definition: &Arc<turbine::Definition>,
     setting: &HelixSettings,
-    options: &Options,
+    options: &HelixOptions,
 ) -> Vec<Measurements<'static>> {
     let mut model = MeasurementModel::new(definition, setting, options)
         .expect("the bench's own setting can be used");

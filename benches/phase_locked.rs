@@ -6,7 +6,7 @@
 use basis::{Measurements, PerBlade, Sense};
 use estimation::Estimator;
 use estimation::phase_locked::{
-    Kind, Leader, PhaseLockedLoop, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings,
+    GeneratorKind, Leader, PhaseLockedLoop, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings,
 };
 use std::f64::consts::SQRT_2;
 use std::hint::black_box;
@@ -21,11 +21,12 @@ fn main() {
         std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(300);
     println!("nanoseconds an update on one core, best of {n_repeats}");
     println!("{:<10} {:>12} {:>12}", "generator", "one signal", "two axes");
-    let extended = match Kind::extended(SQRT_2, 1.0) {
+    let extended = match GeneratorKind::extended(SQRT_2, 1.0) {
         Ok(kind) => kind,
         Err(error) => panic!("the bench's own settings: {error}"),
     };
-    for (name, generator) in [("SOGI", Kind::Second), ("ESOGI", extended), ("MSTOGI", Kind::Mixed)]
+    for (name, generator) in
+        [("SOGI", GeneratorKind::Second), ("ESOGI", extended), ("MSTOGI", GeneratorKind::Mixed)]
     {
         let signal =
             PhaseLockedSettings { generator, ..PhaseLockedSettings::between([0.03, 0.09]) };

@@ -50,8 +50,8 @@ def counted(program, folder, time, load, bins=None):
     command = [program, "fatigue", path, "--channel", "load", "--slope", slopes, "--json"]
     if bins is not None:
         command += ["--bins", str(bins)]
-    told = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
-    channel = told["channels"][0]
+    found = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+    channel = found["channels"][0]
     loads = [entry["damage_equivalent_load"] for entry in channel["loads"]]
     return np.array(loads + [channel["n_cycles"], channel["largest_range"]])
 

@@ -4,7 +4,7 @@
 use crate::Row;
 use crate::axisymmetric::{self, Flow};
 use crate::row::Tolerance::Within;
-use farm::assemble::Model;
+use farm::assemble::TurbineModel;
 use farm::case::{Shear, TurbulenceModel, Wind};
 use farm::self_check::{Tunnel, self_check};
 use std::f64::consts::PI;
@@ -85,7 +85,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
         definition.blade.iter_mut().for_each(|station| station.prebend = 0.0);
     }
     let shape = if flat { " flat" } else { "" };
-    let model = Model { definition: Arc::new(definition), constants: file.controller };
+    let model = TurbineModel { definition: Arc::new(definition), constants: file.controller };
     let spacing = model.definition.rotor_diameter() / cells_per_diameter;
     let tunnel = Tunnel {
         upstream: UPSTREAM,
@@ -148,7 +148,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
 
 /// Coefficients of `model` at its least pitch in the axisymmetric flow of the tunnel, its tilt as
 /// blade-element momentum has it.
-fn in_axisymmetric_flow(model: &Model, tip_speed_ratio: f64) -> Coefficients {
+fn in_axisymmetric_flow(model: &TurbineModel, tip_speed_ratio: f64) -> Coefficients {
     let pitch = model.constants.fine_pitch;
     // A round duct as wide as the square tunnel is, in radii.
     let wall = 2.0 * WIDTH / PI.sqrt();

@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn met_short_worse_and_vanished_rows_are_told_apart() {
+    fn met_short_worse_and_vanished_rows_are_distinguished() {
         let claim = |what: &str, measured: f64| row(what, measured, 1.0, Within(0.1));
         let then =
             [claim("met", 1.05), claim("short", 1.5), claim("worse", 1.05), claim("gone", 2.0)];

@@ -98,7 +98,7 @@ fn array_gains(summaries: &[Summary]) -> Vec<Row> {
     rows
 }
 
-/// What of the excitation arrived at the blades.
+/// Excitation that the actuators delivered.
 fn delivered(summaries: &[Summary]) -> Vec<Row> {
     let mut rows = Vec::new();
     for run in ["ccw-4", "cw-4", "pulse-4"] {

@@ -66,7 +66,7 @@ fn compare() -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// Most memory that `run` holds from its start to its end (bytes); none where the system does not tell.
+/// Most memory that `run` holds from its start to its end (bytes); none where the system does not report it.
 fn most_of(run: &mut Command) -> Result<Option<u64>, String> {
     let mut child = run.spawn().map_err(|error| error.to_string())?;
     let mut most = None;
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_process_held_is_seen_and_a_failure_told() {
+    fn what_a_process_held_is_seen_and_a_failure_reported() {
         // What this process holds is not what the other does.
         let held = std::hint::black_box(vec![1_u8; 64 << 20]);
         let seen = most_of(Command::new("sleep").arg("0.05")).unwrap();

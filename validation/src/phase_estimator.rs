@@ -19,7 +19,8 @@ use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::{FixedFrame, Measurements, PerBlade, Sense, Vector3};
 use estimation::helix::{
-    HelixEstimate, HelixEstimator, HelixSettings, MeasurementModel, Options, Rotor, Wake, calibrate,
+    HelixEstimate, HelixEstimator, HelixOptions, HelixSettings, MeasurementModel, Rotor, Wake,
+    calibrate,
 };
 use estimation::{EstimationError, Estimator};
 use flow::Inflow;
@@ -58,7 +59,7 @@ impl Machine {
         &self,
         model: &Arc<Definition>,
         sense: Sense,
-        options: Options,
+        options: HelixOptions,
     ) -> Result<HelixEstimator, EstimationError> {
         HelixEstimator::new(model, &setting(sense), options)
     }
@@ -123,16 +124,16 @@ fn setting(sense: Sense) -> HelixSettings {
 }
 
 /// The robust form with the wake that a turbine in prescribed wind has.
-fn robust() -> Options {
-    let options = Options::default();
+fn robust() -> HelixOptions {
+    let options = HelixOptions::default();
     let wake = Wake::WithBlades { time_factor: 1.0 };
-    Options { rotor: Rotor { wake, ..options.rotor }, ..options }
+    HelixOptions { rotor: Rotor { wake, ..options.rotor }, ..options }
 }
 
 /// The published form with the same wake and bending blades.
-fn published_on_bending_blades() -> Options {
-    let options = Options::published();
-    Options { rotor: Rotor { flexible: true, ..options.rotor }, ..options }
+fn published_on_bending_blades() -> HelixOptions {
+    let options = HelixOptions::published();
+    HelixOptions { rotor: Rotor { flexible: true, ..options.rotor }, ..options }
 }
 
 fn trial(wind: HelixWind, own: f64, instruments: Instruments, duration: f64) -> Trial {
@@ -220,7 +221,7 @@ fn own_model(
     ahead: f64,
     seed: u64,
 ) -> Result<Errors, EstimationError> {
-    let options = Options::default();
+    let options = HelixOptions::default();
     let finer = HelixSettings { n_elements: 32, ..setting(sense) };
     let mut model = MeasurementModel::new(&machine.definition, &finer, &options)?;
     let mut estimator = machine.estimator(&machine.definition, sense, options)?;
@@ -278,7 +279,7 @@ fn turbulence(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationEr
     for (intensity, sense, own) in cases {
         let forms = [
             ("robust", robust()),
-            ("published", Options::published()),
+            ("published", HelixOptions::published()),
             ("published, blades bend", published_on_bending_blades()),
         ];
         let mut estimators = Vec::new();

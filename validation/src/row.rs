@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_accepted_is_told_from_what_is_not() {
+    fn what_is_accepted_is_distinguished_from_what_is_not() {
         use Tolerance::{AtLeast, AtMost, Within};
         assert_eq!(Within(0.5).beyond(1.5, 1.0), 0.0);
         assert_eq!(Within(0.5).beyond(0.25, 1.0), 0.25);

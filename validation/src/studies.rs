@@ -7,7 +7,7 @@ use basis::records::Summary;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::AtomicBool;
-use study::{Observer, Options, Outcome};
+use study::{Observer, Outcome, StudyOptions};
 
 /// Where the expected values come from.
 const SOURCE: &str = "–";
@@ -40,12 +40,12 @@ pub(crate) fn summaries(
     overrides: Vec<String>,
 ) -> Result<(Vec<Summary>, PathBuf), String> {
     let output = Path::new("runs").join(format!("validate-{name}"));
-    let options = Options {
+    let options = StudyOptions {
         case: path.to_owned(),
         output: Some(output.clone()),
         overrides,
         resume: true,
-        ..Options::default()
+        ..StudyOptions::default()
     };
     let mut observer = Lines { last: String::new() };
     match study::run(&options, &AtomicBool::new(false), &mut observer) {

@@ -204,7 +204,7 @@ fn a_dependency_that_nothing_uses_is_found() {
 }
 
 #[test]
-fn dependencies_of_the_product_and_of_tests_are_told_apart() {
+fn dependencies_of_the_product_and_of_tests_are_distinguished() {
     let for_tests = "//! Air.\n#[cfg(test)]\nmod tests {\n    use basis::Vector3;\n}\n";
     assert_found("plant/flow/src/lib.rs", for_tests, "`basis` in [dependencies] is used by no");
     let manifest = "[dependencies]\nflow.workspace = true\n[dev-dependencies]\nproptest = \"1\"\n";

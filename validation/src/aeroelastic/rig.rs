@@ -2,7 +2,7 @@
 
 use basis::Vector3;
 use control::{Baseline, Excitation, Helix, Sense};
-use farm::assemble::Model;
+use farm::assemble::TurbineModel;
 use farm::case::Solver;
 use farm::farm::Recorder;
 use farm::{Air, Farm, Machine};
@@ -181,7 +181,8 @@ fn machine(conditions: &Conditions<'_>) -> Machine {
     let file =
         formats::library::load(conditions.model).expect("the library's own turbines are readable");
     let definition = Arc::new(file.definition);
-    let mut model = Model { definition: Arc::clone(&definition), constants: file.controller };
+    let mut model =
+        TurbineModel { definition: Arc::clone(&definition), constants: file.controller };
     if conditions.speed == Speed::Tracked {
         model = model.equipped(Solver::UNIFORM, AIR_DENSITY).into_owned();
     }

@@ -11,7 +11,7 @@ use turbine::aero::tower_influence::{Effects, Potential};
 /// Where the expected values come from.
 const SOURCE: &str = "OpenFAST 5.0.0, TwrPotent 1 and TwrShadow 1";
 
-/// Harmonics of the rotor's speed that are told apart: as many as two rows a second, which the reference
+/// Harmonics of the rotor's speed that are resolved: as many as two rows a second, which the reference
 /// kept, hold.
 const N_HARMONICS: usize = 9;
 const N_PARTS: usize = 1 + 2 * N_HARMONICS;

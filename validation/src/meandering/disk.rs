@@ -122,15 +122,16 @@ impl Bench {
         let (mut loads, mut baseline) = (Vec::new(), Record::new(disk));
         let mut machine = rig.clone();
         for _ in 0..n_steps(END) {
-            let mut belief = follower.estimate();
-            let reading = machine.advance(|_, measurements| belief = follower.update(measurements));
+            let mut estimate = follower.estimate();
+            let reading =
+                machine.advance(|_, measurements| estimate = follower.update(measurements));
             if reading.time >= JUDGED {
-                sums[0] += belief.tilt.amplitude;
-                sums[1] += belief.yaw.amplitude;
-                unlocked += f64::from(u8::from(!belief.locked));
+                sums[0] += estimate.tilt.amplitude;
+                sums[1] += estimate.yaw.amplitude;
+                unlocked += f64::from(u8::from(!estimate.locked));
                 n += 1.0;
                 let true_rate = TAU * disk.frequency(reading.time);
-                off_rate = off_rate.max((belief.rate / true_rate - 1.0).abs());
+                off_rate = off_rate.max((estimate.rate / true_rate - 1.0).abs());
                 baseline.take(&reading);
             }
             loads.push(reading.loads);

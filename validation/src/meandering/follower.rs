@@ -3,7 +3,8 @@
 use super::spring_mass::{SpringMass, answer};
 use control::meandering::Followed;
 use estimation::phase_locked::{
-    Estimate, Kind, LoopSettings, Order, PhaseLockedError, PhaseLockedLoop, PhaseLockedSettings,
+    Estimate, GeneratorKind, LoopSettings, Order, PhaseLockedError, PhaseLockedLoop,
+    PhaseLockedSettings,
 };
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2, TAU};
 
@@ -63,7 +64,7 @@ pub(super) struct Instant {
 /// = √2.
 ///
 /// The source gives ξ and k, and ω_n only as less than ω₀.
-pub(super) fn settings(kind: Kind) -> PhaseLockedSettings {
+pub(super) fn settings(kind: GeneratorKind) -> PhaseLockedSettings {
     let rates = [rate_of(0.14), rate_of(0.33)];
     let follower = LoopSettings {
         order: Order::QuasiTwo,
@@ -97,7 +98,7 @@ impl Action {
 /// turn the phase by 17 to 128°.
 pub(super) fn run(
     case: &Case,
-    kind: Kind,
+    kind: GeneratorKind,
     controlled: bool,
 ) -> Result<Vec<Instant>, PhaseLockedError> {
     let mut follower = PhaseLockedLoop::new(&settings(kind), INTERVAL)?;

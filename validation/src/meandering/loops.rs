@@ -4,7 +4,7 @@ use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::angle::wrap_to_half_turn;
 use estimation::phase_locked::{
-    Gains, Generator, Kind, Order, PhaseLockedLoop, PhaseLockedSettings, transfer,
+    Gains, Generator, GeneratorKind, Order, PhaseLockedLoop, PhaseLockedSettings, transfer,
 };
 use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2, TAU};
 
@@ -23,12 +23,12 @@ pub fn loops() -> Vec<Row> {
 }
 
 /// The three generators of damping √2, each with its name.
-pub(super) fn kinds() -> [(&'static str, Kind); 3] {
-    let extended = Kind::extended(SQRT_2, 1.0).expect("damping √2 has a dc gain");
-    [("SOGI", Kind::Second), ("ESOGI", extended), ("MSTOGI", Kind::Mixed)]
+pub(super) fn kinds() -> [(&'static str, GeneratorKind); 3] {
+    let extended = GeneratorKind::extended(SQRT_2, 1.0).expect("damping √2 has a dc gain");
+    [("SOGI", GeneratorKind::Second), ("ESOGI", extended), ("MSTOGI", GeneratorKind::Mixed)]
 }
 
-fn follower(kind: Kind, order: Order) -> (PhaseLockedSettings, PhaseLockedLoop) {
+fn follower(kind: GeneratorKind, order: Order) -> (PhaseLockedSettings, PhaseLockedLoop) {
     let mut settings =
         PhaseLockedSettings { generator: kind, ..PhaseLockedSettings::between(RATES) };
     settings.follower.order = order;
@@ -213,7 +213,7 @@ fn transfers() -> Vec<Row> {
 
 /// In-phase, quadrature and offset of a generator at `centre` (rad/s) per sine at `ratio` times that, as
 /// cosine and sine part.
-fn response(kind: Kind, centre: f64, ratio: f64) -> [[f64; 2]; 3] {
+fn response(kind: GeneratorKind, centre: f64, ratio: f64) -> [[f64; 2]; 3] {
     let mut generator = Generator::new(kind, SQRT_2).expect("a sound generator");
     let n_period = (TAU / (ratio * centre * INTERVAL)).round();
     let interval = TAU / (ratio * centre) / n_period;

@@ -6,34 +6,39 @@ use super::{AIM, Machine, OWN, ROTOR_SPEED, SPEED, robust, row, setting, tell, t
 use crate::Row;
 use basis::Sense;
 use estimation::EstimationError;
-use estimation::helix::{Adaptation, Form, LinearEstimator, OperatingPoint, Options, Rotor, Wake};
+use estimation::helix::{
+    Adaptation, Form, HelixOptions, LinearEstimator, OperatingPoint, Rotor, Wake,
+};
 
 /// Each choice of the robust form against what it replaces, turbulence 6 %, own pitch.
 ///
 /// A choice that changes noise, correlation, rate or interval alone leaves the filter's model of rotor and
 /// wind whole, and has the form's own aim. One that takes a part of either away, or lets the filter learn it,
-/// has none: 4° of own pitch do to the moments what 3 to 4 m/s of tilt and yaw do, of which the fifth that
-/// such a part is worth outweighs a helix of 0.7 m/s.
+/// has none: 4° of own pitch change the moments as much as 3 to 4 m/s of tilt and yaw in the wind. A part of
+/// the model stands for a fifth of that, which is as much as a helix of 0.7 m/s.
 pub(super) fn options(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
     let base = robust();
     let of_the_wave = base.adaptation.map(|adaptation| Adaptation { wave: true, ..adaptation });
-    let wake = |wake| Options { rotor: Rotor { wake, ..base.rotor }, ..base };
+    let wake = |wake| HelixOptions { rotor: Rotor { wake, ..base.rotor }, ..base };
     let whole = [
         ("as it is", base),
-        ("without adaptation", Options { adaptation: None, ..base }),
-        ("adapting the wave's process noise too", Options { adaptation: of_the_wave, ..base }),
-        ("tilt and yaw apart", Options { roundness: 0.0, ..base }),
-        ("with an excitation rate of its own", Options { rate: Some(1e-9), ..base }),
-        ("every fifth instant", Options { update_every: 5, ..base }),
+        ("without adaptation", HelixOptions { adaptation: None, ..base }),
+        ("adapting the wave's process noise too", HelixOptions { adaptation: of_the_wave, ..base }),
+        ("tilt and yaw apart", HelixOptions { roundness: 0.0, ..base }),
+        ("with an excitation rate of its own", HelixOptions { rate: Some(1e-9), ..base }),
+        ("every fifth instant", HelixOptions { update_every: 5, ..base }),
     ];
     let parted = [
-        ("without lasting tilt and yaw", Options { bias: None, ..base }),
-        ("without eddies", Options { eddies: None, ..base }),
-        ("amplitude and phase for each axis", Options { form: Form::SeparateAmplitudes, ..base }),
-        ("learning its own pitch", Options { response: Some(0.03), ..base }),
-        ("blades stiff", Options { rotor: Rotor { flexible: false, ..base.rotor }, ..base }),
+        ("without lasting tilt and yaw", HelixOptions { bias: None, ..base }),
+        ("without eddies", HelixOptions { eddies: None, ..base }),
+        (
+            "amplitude and phase for each axis",
+            HelixOptions { form: Form::SeparateAmplitudes, ..base },
+        ),
+        ("learning its own pitch", HelixOptions { response: Some(0.03), ..base }),
+        ("blades stiff", HelixOptions { rotor: Rotor { flexible: false, ..base.rotor }, ..base }),
         ("wake at once", wake(Wake::Static)),
-        ("wake in the air", Options::default()),
+        ("wake in the air", HelixOptions::default()),
     ];
     let ccw = Sense::CounterClockwise;
     let mut estimators = Vec::new();

@@ -1,4 +1,4 @@
-//! An aeroelastic turbine in a known wind, and estimators that listen to it.
+//! An aeroelastic turbine in a known wind, and estimators that run on it.
 
 use super::wind::{HelixWind, degrees, pitch};
 use basis::{Measurements, PerBlade, Vector3};
@@ -15,7 +15,7 @@ use turbine::{Definition, Induction, Turbine, aero};
 pub(super) const INTERVAL: f64 = 0.1;
 /// Density of the air (kg/m³).
 pub(super) const AIR_DENSITY: f64 = 1.225;
-/// Time at which estimators begin to listen (s): blades and tower have come to rest from their start.
+/// Time at which estimators begin (s): blades and tower have come to rest from their start.
 const FIRST_READING: f64 = 20.0;
 /// Time at which the rotor's own pitch begins (s).
 const OWN_START: f64 = 200.0;
@@ -107,7 +107,7 @@ impl Errors {
     }
 }
 
-/// Runs the turbine and lets `estimators` listen; gives the errors of each.
+/// Runs the turbine and runs `estimators`; gives the errors of each.
 pub(super) fn run<E: Estimator<Estimate = HelixEstimate>>(
     definition: &Arc<Definition>,
     constants: &control::baseline::Constants,
@@ -124,7 +124,7 @@ pub(super) fn run<E: Estimator<Estimate = HelixEstimate>>(
     errors.into_iter().map(Errors::finish).collect()
 }
 
-/// Runs the turbine and lets `estimators` listen; `seen` receives time (s), place in `estimators` and
+/// Runs the turbine and runs `estimators`; `seen` receives time (s), place in `estimators` and
 /// estimate.
 pub(super) fn follow<E: Estimator<Estimate = HelixEstimate>>(
     definition: &Arc<Definition>,

@@ -13,8 +13,10 @@ use super::{
 use crate::Row;
 use basis::mbc::to_fixed_frame;
 use basis::{FixedFrame, Measurements, PerBlade, Sense};
-use estimation::helix::{HelixEstimator, HelixSettings, MeasurementModel, Options};
-use estimation::phase_locked::{Kind, Leader, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings};
+use estimation::helix::{HelixEstimator, HelixOptions, HelixSettings, MeasurementModel};
+use estimation::phase_locked::{
+    GeneratorKind, Leader, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings,
+};
 use estimation::{EstimationError, Estimator, Oscillation, Quantity};
 use rig::INTERVAL;
 use std::f64::consts::{SQRT_2, TAU};
@@ -80,14 +82,14 @@ fn side_by_side(machine: &Machine) -> Result<Vec<Row>, EstimationError> {
     for (index, known) in records(machine)?.iter().enumerate() {
         // On the turbine in prescribed wind the wake stays with the blades, on its own model it is the
         // model's.
-        let options = if known.aim == AIMS[2] { robust() } else { Options::default() };
-        let sought = Options { rate: Some(1e-9), ..options };
+        let options = if known.aim == AIMS[2] { robust() } else { HelixOptions::default() };
+        let sought = HelixOptions { rate: Some(1e-9), ..options };
         let mut outcomes = vec![
             ("filter", judge(known, &mut filter(machine, options)?)),
             ("filter that estimates the rate", judge(known, &mut filter(machine, sought)?)),
         ];
-        let extended = Kind::extended(SQRT_2, 1.0).expect("damping √2 has a dc gain");
-        for (name, kind) in [("loops, MSTOGI", Kind::Mixed), ("loops, ESOGI", extended)] {
+        let extended = GeneratorKind::extended(SQRT_2, 1.0).expect("damping √2 has a dc gain");
+        for (name, kind) in [("loops, MSTOGI", GeneratorKind::Mixed), ("loops, ESOGI", extended)] {
             outcomes.push((name, judge(known, &mut loops(kind))));
         }
         for (place, (name, outcome)) in outcomes.iter().enumerate() {
@@ -124,12 +126,12 @@ impl Outcome {
 }
 
 /// Setting of the filter: the usual rate.
-fn filter(machine: &Machine, options: Options) -> Result<HelixEstimator, EstimationError> {
+fn filter(machine: &Machine, options: HelixOptions) -> Result<HelixEstimator, EstimationError> {
     machine.estimator(&machine.definition, SENSE, options)
 }
 
 /// Settings of the loops: St 0.15 to 0.3, the helix at 0.25.
-fn loops(kind: Kind) -> TwoAxisLoop {
+fn loops(kind: GeneratorKind) -> TwoAxisLoop {
     let rates = [0.6, 1.2].map(|factor| factor * TAU / PERIOD);
     let signal = PhaseLockedSettings { generator: kind, ..PhaseLockedSettings::between(rates) };
     let settings = TwoAxisSettings { signal, sense: SENSE, leader: Leader::Both };
@@ -138,27 +140,27 @@ fn loops(kind: Kind) -> TwoAxisLoop {
 
 fn judge<E: Estimator>(known: &Known, estimator: &mut E) -> Outcome {
     let started = Instant::now();
-    let beliefs: Vec<Oscillation> =
+    let estimates: Vec<Oscillation> =
         known.record.iter().map(|read| estimator.update(read).into()).collect();
     let cost = 1e6 * started.elapsed().as_secs_f64() / known.record.len() as f64;
     let (mut squares, mut sum, mut rate, mut trust, mut held) = ([0.0; 2], 0.0, 0.0, 0.0, 0.0);
     let (mut n, mut settling) = (0.0, 0.0);
-    for (read, believed) in known.record.iter().zip(&beliefs) {
-        let truth = match believed.quantity {
+    for (read, estimate) in known.record.iter().zip(&estimates) {
+        let truth = match estimate.quantity {
             Quantity::Wind => known.wind,
             Quantity::Load => known.load,
         };
         let angle = known.rate * read.time;
-        let errors = [0, 1].map(|axis| degrees(believed.phases[axis] - truth[axis] - angle));
+        let errors = [0, 1].map(|axis| degrees(estimate.phases[axis] - truth[axis] - angle));
         if errors.iter().any(|error| error.abs() > SETTLED) {
             settling = read.time;
         }
         if read.time >= JUDGED {
             squares.iter_mut().zip(errors).for_each(|(square, error)| *square += error * error);
             sum += 0.5 * (errors[0] + errors[1]);
-            rate += (believed.rate / known.rate - 1.0).powi(2);
-            trust += believed.trust;
-            held += f64::from(u8::from(believed.held));
+            rate += (estimate.rate / known.rate - 1.0).powi(2);
+            trust += estimate.trust;
+            held += f64::from(u8::from(estimate.held));
             n += 1.0;
         }
     }
@@ -206,7 +208,8 @@ fn own_model(
     let mut calm = machine.gradient(SENSE, 0.0);
     calm.rate = rate;
     let made = |instruments| {
-        let mut model = MeasurementModel::new(&machine.definition, &finer, &Options::default())?;
+        let mut model =
+            MeasurementModel::new(&machine.definition, &finer, &HelixOptions::default())?;
         let (mut noise, mut shown) = (Noise(5), PerBlade::splat(3, 0.0));
         let instant = |step: usize| {
             let time = step as f64 * INTERVAL;

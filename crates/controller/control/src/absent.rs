@@ -13,7 +13,7 @@ pub static ABSENT: Absent = Absent;
 
 static TABLE: Table = Table {
     heading: "control.T1 = { kind = \"absent\" }",
-    about: "The turbine is not there in this run: the wake of the others, undisturbed.",
+    about: "The turbine is left out of this run: the wake of the others, undisturbed.",
     keys: &[],
 };
 

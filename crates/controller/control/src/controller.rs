@@ -63,7 +63,7 @@ pub trait Controller: Send {
 
 /// Bytes that are no state of this controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("the stored state is not one of this controller")]
+#[error("the stored state does not belong to this controller")]
 pub struct ForeignState;
 
 /// `state` as bytes, for [`Controller::save`].

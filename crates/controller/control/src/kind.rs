@@ -32,7 +32,7 @@ pub trait ControllerKind: Named + Sync {
     /// What runs on the turbine at `site` under `control`.
     ///
     /// # Errors
-    /// [`ControlError`] for what cannot be controlled so.
+    /// [`ControlError`] for a controller that cannot be built.
     fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError>;
 
     /// Whether the turbine is there at all.
@@ -212,14 +212,16 @@ pub enum ControlError {
     #[error("the meandering cannot be followed")]
     Meandering(#[from] MeanderingError),
     /// How pitch acts on the loads is not known.
-    #[error("how pitch acts on the loads was neither given nor found before")]
+    #[error("how pitch acts on the loads was neither given nor identified before the run")]
     NotDecoupled,
     /// The azimuth offset of a turbine that joins a helix is not known.
-    #[error("the azimuth offset with which it pitches was neither given nor found before")]
+    #[error(
+        "the azimuth offset with which it pitches was neither given nor identified before the run"
+    )]
     NoAzimuthOffset,
     /// An excitation that fades out before it has faded in.
     #[error(
-        "stop = {stop} s comes before the excitation is whole: it starts at {start} s and fades in over one period of {period:.1} s; stop at {earliest} s or later, or leave `stop` out"
+        "stop = {stop} s comes before the excitation has its full amplitude: it starts at {start} s and fades in over one period of {period:.1} s; stop at {earliest} s or later, or leave `stop` out"
     )]
     StopsTooEarly {
         /// Given stop (s).
@@ -357,7 +359,7 @@ impl Control {
     /// What runs on the turbine at `site`.
     ///
     /// # Errors
-    /// [`ControlError`] for what cannot be controlled so.
+    /// [`ControlError`] for a controller that cannot be built.
     pub fn build(&self, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
         self.kind.build(self, site)
     }

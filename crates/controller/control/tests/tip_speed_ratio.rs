@@ -15,7 +15,7 @@ use rotor::{
 };
 
 /// Runs `baseline` for `n_steps`; after each the measurements and the estimated wind speed (m/s).
-fn watch(
+fn simulate(
     baseline: &mut Baseline,
     rotor: &mut Rotor,
     n_steps: usize,
@@ -45,8 +45,9 @@ fn the_estimate_is_unbiased_and_the_set_points_are_held() {
             let wind_speed = 0.5 * f64::from(half);
             let mut baseline = Baseline::new(constants.clone());
             let n_steps = (400.0 / interval) as usize;
-            let run =
-                watch(&mut baseline, &mut started(interval, wind_speed), n_steps, |_| wind_speed);
+            let run = simulate(&mut baseline, &mut started(interval, wind_speed), n_steps, |_| {
+                wind_speed
+            });
             let tail = &run[n_steps - (60.0 / interval) as usize..];
             let (estimate, _) = spread(tail.iter().map(|(_, estimate)| *estimate));
             let off = estimate / wind_speed - 1.0;
@@ -79,7 +80,7 @@ fn the_estimate_follows_a_gust() {
         let mut rotor = started(0.1, calm);
         rotor.truth.pitch = PerBlade::splat(3, pitch);
         let mut baseline = Baseline::new(tracking_constants());
-        let run = watch(&mut baseline, &mut rotor, 4500, wind);
+        let run = simulate(&mut baseline, &mut rotor, 4500, wind);
         let within = &run[2950..4200];
         let (bias, _) = spread(within.iter().map(|(m, estimate)| estimate - wind(m.time)));
         assert!(bias.abs() < 0.02 * calm, "{calm} m/s: {bias}");
@@ -190,7 +191,7 @@ proptest! {
         let mut baseline = Baseline::new(constants.clone());
         let n_steps = (240.0 / interval) as usize;
         let gusts = |time: f64| winds[((time / 30.0) as usize).min(winds.len() - 1)];
-        let run = watch(&mut baseline, &mut started(interval, winds[0]), n_steps, gusts);
+        let run = simulate(&mut baseline, &mut started(interval, winds[0]), n_steps, gusts);
         for pair in run.windows(2) {
             let [(before, _), (after, estimate)] = [pair[0], pair[1]];
             prop_assert!((0.0..=constants.maximum_torque).contains(&after.generator_torque));

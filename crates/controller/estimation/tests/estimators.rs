@@ -5,8 +5,10 @@ mod machine;
 use basis::angle::wrap_to_half_turn;
 use basis::mbc::to_fixed_frame;
 use basis::{Measurements, Sense};
-use estimation::helix::{HelixEstimator, Options};
-use estimation::phase_locked::{Kind, Leader, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings};
+use estimation::helix::{HelixEstimator, HelixOptions};
+use estimation::phase_locked::{
+    GeneratorKind, Leader, PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings,
+};
 use estimation::{Estimator, Oscillation, Quantity};
 use machine::*;
 use proptest::prelude::*;
@@ -64,7 +66,7 @@ impl Known {
     /// Moments of a helix of `amplitude` (m/s) at `factor` (–) of the usual rate, the rotor pitching by `own`
     /// (rad).
     fn new(sense: Sense, factor: f64, amplitude: f64, noise: f64, own: f64) -> Self {
-        let (definition, options) = (definition(), Options::default());
+        let (definition, options) = (definition(), HelixOptions::default());
         let rate = factor * TAU / PERIOD;
         let mut world = World::new(sense, 1.0);
         (world.rate, world.amplitudes, world.own) = (rate, [amplitude; 2], (own, 2.5));
@@ -82,13 +84,13 @@ impl Known {
         Self { name, sense, rate, amplitude, noisy: noise > 0.0, record, wind, load }
     }
 
-    /// Errors of the estimate `believed` (rad) at `time` (s).
-    fn errors(&self, believed: &Oscillation, time: f64) -> [f64; 2] {
-        let truth = match believed.quantity {
+    /// Errors of the estimate `estimate` (rad) at `time` (s).
+    fn errors(&self, estimate: &Oscillation, time: f64) -> [f64; 2] {
+        let truth = match estimate.quantity {
             Quantity::Wind => self.wind,
             Quantity::Load => self.load,
         };
-        [0, 1].map(|axis| wrap_to_half_turn(believed.phases[axis] - truth[axis] - self.rate * time))
+        [0, 1].map(|axis| wrap_to_half_turn(estimate.phases[axis] - truth[axis] - self.rate * time))
     }
 }
 
@@ -153,7 +155,7 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 /// Estimate of `estimator` after `read`; all its numbers are finite, and nothing is allocated for it.
-fn believed<E: Estimator>(estimator: &mut E, read: &Measurements) -> Oscillation {
+fn checked_estimate<E: Estimator>(estimator: &mut E, read: &Measurements) -> Oscillation {
     let before = COUNT.with(Cell::get);
     let oscillation: Oscillation = estimator.update(read).into();
     assert_eq!(COUNT.with(Cell::get), before, "an update allocates");
@@ -186,12 +188,12 @@ fn finds<E: Estimator>(promise: &Promise, known: &Known, estimator: &mut E) {
     let from = promise.settled * TAU / known.rate;
     let (mut errors, mut rates) = ([Vec::new(), Vec::new()], Vec::new());
     for read in &known.record {
-        let believed = believed(estimator, read);
+        let estimate = checked_estimate(estimator, read);
         if read.time >= from {
-            let error = known.errors(&believed, read.time);
+            let error = known.errors(&estimate, read.time);
             errors.iter_mut().zip(error).for_each(|(errors, error)| errors.push(error));
-            rates.push(believed.rate / known.rate - 1.0);
-            assert!(believed.trust > TRUSTED, "{}: {}", known.name, believed.trust);
+            rates.push(estimate.rate / known.rate - 1.0);
+            assert!(estimate.trust > TRUSTED, "{}: {}", known.name, estimate.trust);
         }
     }
     let [phase, rate] = promise.on(known);
@@ -214,12 +216,12 @@ fn bridges<E: Estimator>(promise: &Promise, known: &Known, estimator: &mut E) {
             57 => read.azimuth = f64::INFINITY,
             _ => {}
         }
-        let believed = believed(estimator, &read);
+        let estimate = checked_estimate(estimator, &read);
         if silent {
-            assert!(believed.held, "{}: not held at {}", known.name, read.time);
+            assert!(estimate.held, "{}: not held at {}", known.name, read.time);
         }
         if read.time >= again {
-            let error = known.errors(&believed, read.time);
+            let error = known.errors(&estimate, read.time);
             errors.iter_mut().zip(error).for_each(|(errors, error)| errors.push(error));
         }
     }
@@ -251,13 +253,13 @@ fn resumes<E: Estimator>(known: &Known, make: &impl Fn(f64, Sense) -> E) {
 
 /// Without an oscillation there is no confidence.
 fn trusts_no_noise<E: Estimator>(mut estimator: E) {
-    let mut model = model(&definition(), CCW, &Options::default());
+    let mut model = model(&definition(), CCW, &HelixOptions::default());
     let (mut world, mut dice, mut trust) = (World::new(CCW, 1.0), Dice(9), Vec::new());
     world.amplitudes = [0.0; 2];
     for step in 0..(6.0 * PERIOD / INTERVAL) as usize {
-        let believed = believed(&mut estimator, &world.read(step, &mut model, &mut dice));
+        let estimate = checked_estimate(&mut estimator, &world.read(step, &mut model, &mut dice));
         if step as f64 * INTERVAL > 3.0 * PERIOD {
-            trust.push(believed.trust);
+            trust.push(estimate.trust);
         }
     }
     let mean = trust.iter().sum::<f64>() / trust.len() as f64;
@@ -285,14 +287,14 @@ fn survives<E: Estimator>(blank: &E::State, estimator: &mut E) {
                 6 => read.time = value,
                 _ => read.interval = value,
             }
-            believed(&mut **estimator, &read);
+            checked_estimate(&mut **estimator, &read);
         }
         Ok(())
     });
     outcome.expect("numbers");
 }
 
-fn filter(options: Options, factor: f64) -> impl Fn(f64, Sense) -> HelixEstimator {
+fn filter(options: HelixOptions, factor: f64) -> impl Fn(f64, Sense) -> HelixEstimator {
     let definition = definition();
     move |rate, sense| {
         let setting = estimation::helix::HelixSettings { rate: factor * rate, ..setting(sense) };
@@ -300,7 +302,7 @@ fn filter(options: Options, factor: f64) -> impl Fn(f64, Sense) -> HelixEstimato
     }
 }
 
-fn phase_locked(kind: Kind) -> impl Fn(f64, Sense) -> TwoAxisLoop {
+fn phase_locked(kind: GeneratorKind) -> impl Fn(f64, Sense) -> TwoAxisLoop {
     move |_, sense| {
         let rates = [0.6, 1.2].map(|factor| factor * TAU / PERIOD);
         let signal = PhaseLockedSettings { generator: kind, ..PhaseLockedSettings::between(rates) };
@@ -312,19 +314,20 @@ fn phase_locked(kind: Kind) -> impl Fn(f64, Sense) -> TwoAxisLoop {
 #[test]
 fn the_filter_in_its_robust_form() {
     let promise = Promise { settled: 3.0, phase: [2.0, 0.5], rate: [1e-12; 2] };
-    judge(&promise, filter(Options::default(), 1.0));
+    judge(&promise, filter(HelixOptions::default(), 1.0));
 }
 
 #[test]
 fn the_filter_in_its_published_form_on_the_same_rotor() {
-    let options = Options { rotor: Options::default().rotor, ..Options::published() };
+    let options =
+        HelixOptions { rotor: HelixOptions::default().rotor, ..HelixOptions::published() };
     let promise = Promise { settled: 3.0, phase: [4.0, 0.5], rate: [1e-12; 2] };
     judge(&promise, filter(options, 1.0));
 }
 
 #[test]
-fn the_filter_that_seeks_the_rate() {
-    let options = Options { rate: Some(1e-10), ..Options::default() };
+fn the_filter_that_estimates_the_rate() {
+    let options = HelixOptions { rate: Some(1e-10), ..HelixOptions::default() };
     let promise = Promise { settled: 6.0, phase: [4.0, 2.0], rate: [0.01, 0.005] };
     judge(&promise, filter(options, 0.98));
 }
@@ -332,12 +335,12 @@ fn the_filter_that_seeks_the_rate() {
 #[test]
 fn the_loops_with_the_mixed_generator() {
     let promise = Promise { settled: 6.0, phase: [4.0, 2.0], rate: [0.02, 0.005] };
-    judge(&promise, phase_locked(Kind::Mixed));
+    judge(&promise, phase_locked(GeneratorKind::Mixed));
 }
 
 #[test]
 fn the_loops_with_the_extended_generator() {
-    let kind = Kind::extended(SQRT_2, 1.0).expect("a damping with a dc gain");
+    let kind = GeneratorKind::extended(SQRT_2, 1.0).expect("a damping with a dc gain");
     let promise = Promise { settled: 6.0, phase: [4.0, 2.0], rate: [0.02, 0.005] };
     judge(&promise, phase_locked(kind));
 }

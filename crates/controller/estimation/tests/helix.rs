@@ -16,7 +16,7 @@ const CONVERGED: f64 = 3.0 * PERIOD;
 /// Runs `duration` (s) in a world that `change` may change at each step; gives each instant's world and
 /// estimate.
 fn run(
-    options: Options,
+    options: HelixOptions,
     world: World,
     duration: f64,
     mut change: impl FnMut(f64, &mut World, &mut Dice),
@@ -64,7 +64,7 @@ fn finds_any_phase_within_two_degrees_after_three_periods_while_its_own_rotor_pi
             let phase = TAU * f64::from(k) / 12.0;
             let mut world = World::new(sense, phase);
             world.own = (0.07, phase + 2.5 * f64::from(k));
-            let errors = errors(&run(Options::default(), world, 550.0, still), CONVERGED);
+            let errors = errors(&run(HelixOptions::default(), world, 550.0, still), CONVERGED);
             for errors in &errors {
                 assert!(rms(errors) < 2.0, "{sense} {k}: {}", rms(errors));
                 biases.push(mean(errors));
@@ -76,12 +76,12 @@ fn finds_any_phase_within_two_degrees_after_three_periods_while_its_own_rotor_pi
 
 #[test]
 fn the_published_form_and_separate_amplitudes_find_the_phase_too() {
-    let separate = Options {
+    let separate = HelixOptions {
         form: Form::SeparateAmplitudes,
-        noise: Options::published().noise,
-        ..Options::published()
+        noise: HelixOptions::published().noise,
+        ..HelixOptions::published()
     };
-    for options in [Options::published(), separate] {
+    for options in [HelixOptions::published(), separate] {
         for sense in SENSES {
             let mut world = World::new(sense, 1.0);
             world.own = (0.07, 3.0);
@@ -97,8 +97,8 @@ fn the_published_form_and_separate_amplitudes_find_the_phase_too() {
 fn innovations_and_errors_keep_within_their_chi_square_bounds() {
     let density = 2e-4;
     let eddies = Eddies { deviation: 0.3, time_constant: 0.5 };
-    let base = Options::default();
-    let options = Options {
+    let base = HelixOptions::default();
+    let options = HelixOptions {
         noise: Noise { amplitude: density, mean_wind: 1e-3, ..base.noise },
         eddies: Some(eddies),
         adaptation: None,
@@ -160,7 +160,7 @@ fn innovations_and_errors_keep_within_their_chi_square_bounds() {
 fn eddies_leave_the_phase_within_ten_degrees_and_are_known_to() {
     let mut passing = [0.0; 2];
     let record = run(
-        Options::default(),
+        HelixOptions::default(),
         World::new(Sense::CounterClockwise, 2.0),
         2000.0,
         |_, world, noise| {
@@ -172,7 +172,7 @@ fn eddies_leave_the_phase_within_ten_degrees_and_are_known_to() {
         },
     );
     let errors = errors(&record, CONVERGED);
-    let believed = |index: usize| {
+    let estimate = |index: usize| {
         let late = record.iter().filter(|(time, ..)| *time >= CONVERGED);
         let deviation: Vec<f64> =
             late.map(|(.., e)| [e.tilt, e.yaw][index].phase_variance.sqrt().to_degrees()).collect();
@@ -181,7 +181,7 @@ fn eddies_leave_the_phase_within_ten_degrees_and_are_known_to() {
     for (index, errors) in errors.iter().enumerate() {
         assert!(rms(errors) < 10.0, "{}", rms(errors));
         // The filter's own deviation tells the error within a factor of two.
-        assert!((0.5..2.0).contains(&(rms(errors) / believed(index))), "{}", believed(index));
+        assert!((0.5..2.0).contains(&(rms(errors) / estimate(index))), "{}", estimate(index));
     }
     // Shear is found as what lasts.
     let tilts: Vec<f64> =
@@ -192,7 +192,7 @@ fn eddies_leave_the_phase_within_ten_degrees_and_are_known_to() {
 #[test]
 fn goes_on_through_dropouts_and_says_so() {
     let definition = definition();
-    let options = Options::default();
+    let options = HelixOptions::default();
     let mut model = model(&definition, Sense::Clockwise, &options);
     let mut estimator =
         HelixEstimator::new(&definition, &setting(Sense::Clockwise), options).unwrap();
@@ -231,7 +231,7 @@ fn goes_on_through_dropouts_and_says_so() {
 #[test]
 fn a_step_of_the_wind_does_not_turn_the_phase() {
     let record = run(
-        Options::default(),
+        HelixOptions::default(),
         World::new(Sense::CounterClockwise, 1.0),
         600.0,
         |time, world, _| {
@@ -249,7 +249,7 @@ fn a_step_of_the_wind_does_not_turn_the_phase() {
 fn trust_goes_with_the_helix_and_comes_back() {
     let mut passing = [0.0; 2];
     let record = run(
-        Options::default(),
+        HelixOptions::default(),
         World::new(Sense::CounterClockwise, 1.0),
         2000.0,
         |time, world, noise| {
@@ -273,7 +273,8 @@ fn trust_goes_with_the_helix_and_comes_back() {
 #[test]
 fn chain_rule_and_differences_give_the_same_filter() {
     let world = World::new(Sense::CounterClockwise, 5.0);
-    let by = |jacobian| run(Options { jacobian, ..Options::default() }, world, 60.0, still);
+    let by =
+        |jacobian| run(HelixOptions { jacobian, ..HelixOptions::default() }, world, 60.0, still);
     let (exact, tried) = (by(Jacobian::Analytic), by(Jacobian::CentralDifferences { step: 1e-5 }));
     for ((.., exact), (.., tried)) in exact.iter().zip(&tried) {
         assert!((exact.mean_wind - tried.mean_wind).abs() < 1e-3);
@@ -288,7 +289,7 @@ fn chain_rule_and_differences_give_the_same_filter() {
 fn a_rate_that_is_not_the_nominal_one_is_found() {
     let mut world = World::new(Sense::CounterClockwise, 1.0);
     world.rate *= 1.02;
-    let options = Options { rate: Some(1e-10), ..Options::default() };
+    let options = HelixOptions { rate: Some(1e-10), ..HelixOptions::default() };
     let record = run(options, world, 1500.0, still);
     let last = record.last().unwrap().2;
     assert!((last.rate / world.rate - 1.0).abs() < 2e-3, "{}", last.rate / world.rate);
@@ -302,11 +303,11 @@ fn a_rate_that_is_not_the_nominal_one_is_found() {
 #[test]
 fn the_linear_filter_serves_at_its_point_alone() {
     let (definition, sense) = (definition(), Sense::CounterClockwise);
-    let still = Options {
-        rotor: Rotor { wake: Wake::Static, flexible: false, ..Options::default().rotor },
-        ..Options::default()
+    let still = HelixOptions {
+        rotor: Rotor { wake: Wake::Static, flexible: false, ..HelixOptions::default().rotor },
+        ..HelixOptions::default()
     };
-    let errors = |truth: Options, own: f64| {
+    let errors = |truth: HelixOptions, own: f64| {
         let mut model = model(&definition, sense, &truth);
         let point = OperatingPoint { wind: 9.0, rotor_speed: ROTOR_SPEED, pitch: 0.0 };
         let mut linear = LinearEstimator::new(&definition, &setting(sense), point, truth).unwrap();
@@ -328,6 +329,6 @@ fn the_linear_filter_serves_at_its_point_alone() {
     };
     let [linear, _] = errors(still, 0.0);
     assert!(linear < 5.0, "{linear}");
-    let [linear, extended] = errors(Options::default(), 0.07);
+    let [linear, extended] = errors(HelixOptions::default(), 0.07);
     assert!(extended < 2.0 && linear > 4.0 * extended, "{linear} {extended}");
 }

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 #[test]
 fn tuning_finds_the_noise_and_a_scale_that_serves() {
     let definition = definition();
-    let options = Options::published();
+    let options = HelixOptions::published();
     let sense = Sense::CounterClockwise;
     let mut model = model(&definition, sense, &options);
     let (mut world, mut dice) = (World::new(sense, 1.0), Dice(11));
@@ -48,7 +48,7 @@ fn tuning_finds_the_noise_and_a_scale_that_serves() {
 #[test]
 fn the_usual_elements_are_enough() {
     let definition = definition();
-    let options = Options::default();
+    let options = HelixOptions::default();
     let reading = |n_elements: usize| {
         let setting = HelixSettings { n_elements, ..setting(Sense::CounterClockwise) };
         let mut model = MeasurementModel::new(&definition, &setting, &options).unwrap();
@@ -64,7 +64,7 @@ fn the_usual_elements_are_enough() {
 #[test]
 fn a_resumed_estimator_goes_on_with_the_same_bits() {
     let definition = definition();
-    let options = Options::default();
+    let options = HelixOptions::default();
     let mut model = model(&definition, Sense::Clockwise, &options);
     let world = World { own: (0.05, 1.0), ..World::new(Sense::Clockwise, 2.0) };
     let mut noise = Dice(5);
@@ -86,23 +86,23 @@ fn a_resumed_estimator_goes_on_with_the_same_bits() {
 fn what_cannot_work_is_said_at_once() {
     let definition = definition();
     let good = setting(Sense::Clockwise);
-    let error = |setting: HelixSettings, options: Options| {
+    let error = |setting: HelixSettings, options: HelixOptions| {
         HelixEstimator::new(&definition, &setting, options).unwrap_err()
     };
-    let options = Options::default();
+    let options = HelixOptions::default();
     let slow = error(HelixSettings { interval: 4.0, ..good }, options);
     assert!(matches!(slow, EstimationError::AboveNyquist { .. }), "{slow}");
     let fast = error(HelixSettings { rate: 20.0, ..good }, options);
     assert!(matches!(fast, EstimationError::AboveNyquist { .. }), "{fast}");
-    let rare = error(good, Options { update_every: 30, ..options });
+    let rare = error(good, HelixOptions { update_every: 30, ..options });
     assert!(matches!(rare, EstimationError::AboveNyquist { .. }), "{rare}");
     let noise = Noise { amplitude: -1e-4, ..options.noise };
-    let negative = error(good, Options { noise, ..options });
+    let negative = error(good, HelixOptions { noise, ..options });
     assert!(negative.to_string().contains("not positive definite"), "{negative}");
     let noise = Noise { measurement: Measurement::Moment(0.0), ..options.noise };
-    let silent = error(good, Options { noise, ..options });
+    let silent = error(good, HelixOptions { noise, ..options });
     assert!(matches!(silent, EstimationError::NotPositiveDefinite { name: "measurement", .. }));
-    let round = error(good, Options { roundness: 1.0, ..options });
+    let round = error(good, HelixOptions { roundness: 1.0, ..options });
     assert!(matches!(round, EstimationError::NotPositiveDefinite { name: "process", .. }));
     let none = error(HelixSettings { rate: f64::NAN, ..good }, options);
     assert!(matches!(none, EstimationError::Setting { .. }), "{none}");
@@ -120,7 +120,7 @@ proptest! {
         odd in prop::collection::vec((0..8_usize, any::<f64>()), 30),
     ) {
         let definition = definition();
-        let options = Options::default();
+        let options = HelixOptions::default();
         let mut model = model(&definition, Sense::Clockwise, &options);
         let mut estimator = HelixEstimator::new(&definition, &setting(Sense::Clockwise), options).unwrap();
         let (world, mut noise) = (World::new(Sense::Clockwise, 2.0), Dice(9));

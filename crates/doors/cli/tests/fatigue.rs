@@ -106,7 +106,7 @@ fn bad_input_ends_with_code_2_and_a_fix() {
 }
 
 #[test]
-fn the_count_ends_where_it_is_asked_to() {
+fn the_count_ends_at_the_given_time() {
     let folder = tempfile::tempdir().unwrap();
     // What stands behind the asked time need not be sound.
     fs::write(folder.path().join("waves.csv"), waves(60) + "60.1,1,NaN\n").unwrap();
@@ -191,7 +191,7 @@ fn the_bearing_of_a_turbine_in_the_records_of_a_run() {
 }
 
 #[test]
-fn a_bearing_that_cannot_be_counted_is_told_with_a_fix() {
+fn a_bearing_that_cannot_be_counted_is_refused_with_a_fix() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("waves.csv"), waves(2)).unwrap();
     fs::write(folder.path().join("swing.csv"), pitching("", "BldPitch1_deg", 1.0)).unwrap();

@@ -7,7 +7,7 @@ use std::process::Command;
 const WINDIO: &str = include_str!("../../../experiment/formats/src/windio/small.yaml");
 
 #[test]
-fn a_file_without_all_figures_is_written_and_told_to_be_incomplete() {
+fn a_file_without_all_figures_is_written_and_reported_as_incomplete() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.yaml"), WINDIO).unwrap();
     let wakemix = |arguments: &[&str]| {

@@ -72,7 +72,7 @@ fn turbulence_is_not_sampled() {
 }
 
 #[test]
-fn a_box_has_the_profile_that_was_asked_for_beside_it() {
+fn a_box_has_the_given_profile_beside_it() {
     let folder = tempfile::tempdir().unwrap();
     let generate = |profile: &[&str]| {
         let size = ["--size", "16x8x4", "--spacing", "10", "--hub-height", "90"];

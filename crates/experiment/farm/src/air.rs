@@ -13,7 +13,7 @@ pub trait FarmFlow: FlowSolver + Send + Sync {
     /// with the same bits.
     ///
     /// # Errors
-    /// Those of `writer`, and [`ErrorKind::InvalidData`] when the flow is no longer worth keeping.
+    /// Those of `writer`, and [`ErrorKind::InvalidData`] when the flow is no longer valid.
     fn write_state(&mut self, writer: &mut dyn Write) -> Result<()>;
 
     /// Goes on from what [`write_state`](Self::write_state) wrote.

@@ -30,7 +30,7 @@ pub enum AssemblyError {
     Control(#[from] ControlError),
     /// Nobody found the azimuth offset of a turbine's individual pitch control.
     #[error(
-        "the azimuth offset of its individual pitch control was neither given nor found before; give `azimuth_offset_deg` in `individual_pitch` of its turbine file's [controller]"
+        "the azimuth offset of its individual pitch control was neither given nor identified before the run; give `azimuth_offset_deg` in `individual_pitch` of its turbine file's [controller]"
     )]
     NoIndividualPitchOffset,
     /// A turbine's instruments cannot be.
@@ -43,14 +43,14 @@ pub enum AssemblyError {
 
 /// A turbine model with the constants of its controller.
 #[derive(Clone, Debug)]
-pub struct Model {
+pub struct TurbineModel {
     /// The machine.
     pub definition: Arc<Definition>,
     /// Torque and collective pitch.
     pub constants: Constants,
 }
 
-impl Model {
+impl TurbineModel {
     /// What the layout needs to know, in a mean wind of `wind_speed` (m/s).
     pub fn footprint(&self, wind_speed: f64) -> Footprint {
         Footprint {
@@ -124,11 +124,11 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
 /// What runs on a turbine of `model` under `control`, at time steps of `plan`.
 ///
 /// # Errors
-/// [`AssemblyError::Control`] for what cannot be controlled so, [`AssemblyError::NoIndividualPitchOffset`]
+/// [`AssemblyError::Control`] for a controller that cannot be built, [`AssemblyError::NoIndividualPitchOffset`]
 /// when individual pitch control cannot know where its pitch acts.
 pub fn controller(
     control: &Control,
-    model: &Model,
+    model: &TurbineModel,
     case: &Case,
     plan: &Plan,
 ) -> Result<Box<dyn Controller>, AssemblyError> {
@@ -140,7 +140,7 @@ pub fn controller(
 
 /// What a controller of a turbine of `model` is built for, at time steps of `plan`; Strouhal numbers are
 /// taken with the case's wind speed and the first turbine's diameter.
-pub fn site<'a>(model: &'a Model, case: &Case, plan: &Plan) -> Site<'a> {
+pub fn site<'a>(model: &'a TurbineModel, case: &Case, plan: &Plan) -> Site<'a> {
     Site {
         constants: &model.constants,
         rotor: &model.definition,
@@ -157,7 +157,7 @@ pub fn site<'a>(model: &'a Model, case: &Case, plan: &Plan) -> Site<'a> {
 pub(crate) fn turbine_settings(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     placement: &Placement,
     tower: Option<TowerInfluence>,
 ) -> turbine::TurbineSettings {
@@ -185,7 +185,7 @@ pub fn farm(
     case: &Case,
     run: &Run,
     plan: &Plan,
-    models: &[Model],
+    models: &[TurbineModel],
     air: Air,
 ) -> Result<Farm<Air>, AssemblyError> {
     let solver = case.flow.solver;
@@ -226,7 +226,11 @@ pub(crate) fn in_air_of(solver: Solver, turbine: Turbine) -> Turbine {
 
 /// The tower of a turbine of `model`, with its foot at `foot` (m), as its blades feel it; none where
 /// `placement` asks for none.
-fn tower_influence(model: &Model, placement: &Placement, foot: Vector3) -> Option<TowerInfluence> {
+fn tower_influence(
+    model: &TurbineModel,
+    placement: &Placement,
+    foot: Vector3,
+) -> Option<TowerInfluence> {
     let (potential, shadow) = match placement.tower_influence {
         AskedInfluence::None => return None,
         AskedInfluence::Potential => (Potential::Cylinder, false),

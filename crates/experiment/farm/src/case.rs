@@ -116,7 +116,7 @@ pub struct CirclingDisk {
     pub strouhal: [f64; 2],
     /// Duration of the sweep (s).
     pub sweep: f64,
-    /// Way it goes round, looking downwind.
+    /// Sense of rotation, looking downwind.
     pub sense: Sense,
 }
 

@@ -10,7 +10,7 @@ pub static KEYS: [Key; 7] = [
         from(8.0, 200.0),
         "–",
         Value("16"),
-        "Cells across the first rotor: the one figure that trades time for detail. Time grows with its fourth power.",
+        "Cells across the first rotor: the one number that trades time for detail. Time grows with its fourth power.",
     ),
     key(
         "upstream_diameters",

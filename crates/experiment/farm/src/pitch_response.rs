@@ -9,7 +9,7 @@ pub use prescribed::{
     INDIVIDUAL_PITCH_STROUHAL, individual_pitch_offset, individual_pitch_offset_cost,
 };
 
-use crate::assemble::{self, AssemblyError, Model};
+use crate::assemble::{self, AssemblyError, TurbineModel};
 use crate::case::{Case, Control, Sense};
 use crate::farm::Recorder;
 use crate::plan::Plan;
@@ -40,16 +40,16 @@ pub const IDENTIFICATION_AMPLITUDE: f64 = std::f64::consts::PI / 180.0;
 #[derive(Debug, Error)]
 pub enum CalibrationError {
     /// The receiver of its progress stopped it.
-    #[error("the calibration was broken off")]
+    #[error("the calibration was interrupted")]
     BrokenOff,
     /// The turbine cannot be put together.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
-    /// The air cannot be set up.
-    #[error("the air of the calibration cannot be set up")]
+    /// The flow cannot be set up.
+    #[error("the flow of the calibration cannot be set up")]
     Solver(#[from] SolverError),
     /// The air did not stay finite.
-    #[error("the air of the calibration diverged")]
+    #[error("the flow of the calibration diverged")]
     Flow(#[from] FlowError),
     /// The record tells nothing.
     #[error("the phase estimator cannot be calibrated")]
@@ -70,7 +70,7 @@ pub struct IdentificationCost {
 pub fn decoupling_cost(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     strouhal: [f64; 2],
 ) -> IdentificationCost {
     let rate = excitation_rate(middle(strouhal), case.wind.speed, plan.diameter);
@@ -93,7 +93,7 @@ struct Course {
 
 impl Course {
     /// In a wind of `wind_speed` (m/s), with `n_periods` (–) of a pitch of `rate` (rad/s) after the settling.
-    fn new(wind_speed: f64, plan: &Plan, model: &Model, rate: f64, n_periods: f64) -> Self {
+    fn new(wind_speed: f64, plan: &Plan, model: &TurbineModel, rate: f64, n_periods: f64) -> Self {
         let tunnel = Tunnel::for_identification(plan.spacing, plan.interval);
         let diameter = model.definition.rotor_diameter();
         let settling = (tunnel.settling * diameter / wind_speed).max(TAU / rate);
@@ -108,7 +108,13 @@ impl Course {
     }
 
     /// Of `n_trials` of them.
-    fn cost(self, case: &Case, plan: &Plan, model: &Model, n_trials: u64) -> IdentificationCost {
+    fn cost(
+        self,
+        case: &Case,
+        plan: &Plan,
+        model: &TurbineModel,
+        n_trials: u64,
+    ) -> IdentificationCost {
         let tunnel = Tunnel::for_identification(plan.spacing, plan.interval);
         let diameter = model.definition.rotor_diameter();
         let updates = (case.flow.solver.updates_alone)(&tunnel, diameter);
@@ -130,7 +136,7 @@ impl Course {
 pub fn decoupling(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     index: usize,
     strouhal: [f64; 2],
     progress: Progress,
@@ -151,7 +157,7 @@ pub fn decoupling(
 pub fn answers(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     index: usize,
     wind_speed: f64,
     rate: f64,
@@ -219,7 +225,7 @@ struct Pitching {
 fn pitching(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     index: usize,
     pitch: &Pitching,
     progress: Progress,

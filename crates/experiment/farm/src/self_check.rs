@@ -2,7 +2,7 @@
 //! says?
 
 use crate::Progress;
-use crate::assemble::{Model, SMEARING_CELLS};
+use crate::assemble::{SMEARING_CELLS, TurbineModel};
 use crate::case::Wind;
 use basis::{Commands, PerBlade, Vector3};
 use flow::inflow::MeanProfile;
@@ -102,7 +102,7 @@ impl Tunnel {
     /// The steady speed of `wind` in the tunnel, a rotor of `diameter` (m) at its origin.
     ///
     /// # Errors
-    /// [`lattice::LatticeError`] when the air cannot be set up.
+    /// [`lattice::LatticeError`] when the flow cannot be set up.
     pub fn air(
         &self,
         wind: &Wind,
@@ -130,9 +130,9 @@ impl Tunnel {
 /// rotor state ([`turbine::blockage`]).
 ///
 /// # Errors
-/// [`SelfCheckError`] when the air cannot be set up or does not stay finite.
+/// [`SelfCheckError`] when the flow cannot be set up or does not stay finite.
 pub fn self_check(
-    model: &Model,
+    model: &TurbineModel,
     wind: &Wind,
     tunnel: &Tunnel,
     threads: Option<usize>,
@@ -187,7 +187,11 @@ pub fn self_check(
 
 /// The rotor of `model` at the origin of `tunnel`, stiff, with no tower or nacelle in the wind, at held
 /// speed.
-fn bare_rotor(model: &Model, wind: &Wind, tunnel: &Tunnel) -> Result<Turbine, StructureError> {
+fn bare_rotor(
+    model: &TurbineModel,
+    wind: &Wind,
+    tunnel: &Tunnel,
+) -> Result<Turbine, StructureError> {
     let definition = &model.definition;
     let rotor = Turbine::new(
         Arc::clone(definition),
@@ -237,15 +241,15 @@ fn expectation(
 #[derive(Debug, Error)]
 pub enum SelfCheckError {
     /// The receiver of its progress stopped it.
-    #[error("the self-check was broken off")]
+    #[error("the self-check was interrupted")]
     BrokenOff,
-    /// The air cannot be set up.
-    #[error("the air of the self-check cannot be set up")]
+    /// The flow cannot be set up.
+    #[error("the flow of the self-check cannot be set up")]
     Settings(#[from] lattice::LatticeError),
     /// The turbine has no structure.
     #[error(transparent)]
     Structure(#[from] StructureError),
     /// The air did not stay finite.
-    #[error("the air of the self-check diverged")]
+    #[error("the flow of the self-check diverged")]
     Flow(#[from] FlowError),
 }

@@ -1,7 +1,7 @@
 //! What a controller must know of its rotor to track the tip-speed ratio: coefficients by blade-element
 //! momentum.
 
-use crate::assemble::Model;
+use crate::assemble::TurbineModel;
 use crate::case::Solver;
 use control::baseline::{CoefficientTable, TorqueControl};
 use std::borrow::Cow;
@@ -35,7 +35,7 @@ pub fn coefficient_table(definition: &Definition) -> CoefficientTable {
         .expect("the axes above rise, and every coefficient is a number")
 }
 
-impl Model {
+impl TurbineModel {
     /// The same with what its controller needs to estimate the wind in air of `air_density` (kg/m³): it then
     /// tracks the tip-speed ratio, unless the turbine's file asks for k ω². Takes a fraction of a second.
     pub fn with_estimator(self, air_density: f64) -> Self {

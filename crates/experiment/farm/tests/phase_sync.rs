@@ -9,7 +9,7 @@ use basis::{FixedFrame, Measurements, PerBlade, Sense};
 use control::phase_sync::{SyncSettings, TRUST};
 use control::{Excitation, PhaseSync};
 use estimation::HelixEstimator;
-use estimation::helix::Options;
+use estimation::helix::HelixOptions;
 use machine::{Dice, INTERVAL, PERIOD, ROTOR_SPEED, definition, model, setting};
 use std::f64::consts::{PI, TAU};
 
@@ -36,8 +36,8 @@ fn sync(sense: Sense, offset: f64) -> PhaseSync {
         start: START,
         trust: Some(TRUST),
     };
-    let estimator =
-        HelixEstimator::new(&definition(), &setting(sense), Options::default()).expect("a rotor");
+    let estimator = HelixEstimator::new(&definition(), &setting(sense), HelixOptions::default())
+        .expect("a rotor");
     PhaseSync::new(settings, estimator)
 }
 
@@ -56,7 +56,7 @@ impl Loop {
         Self {
             sync: sync(sense, offset),
             sense,
-            model: model(&definition(), sense, &Options::default()),
+            model: model(&definition(), sense, &HelixOptions::default()),
             dice: Dice(7),
             pitch: PerBlade::splat(3, 0.0),
             step: 0,

@@ -6,7 +6,7 @@ mod machine;
 use control::baseline::{
     Constants, PitchGains, SetPointSmoothing, TorqueControl, TorqueGains, WIND_SPEED_FILTER_CORNER,
 };
-use farm::assemble::Model;
+use farm::assemble::TurbineModel;
 use farm::case::Solver;
 use farm::tracking::coefficient_table;
 use machine::definition;
@@ -17,7 +17,7 @@ use turbine::steady::SteadyRotor;
 const SOLVERS: [Solver; 4] = [Solver::LATTICE, Solver::UNIFORM, Solver::TURBULENCE, Solver::PLANES];
 const AIR_DENSITY: f64 = 1.1;
 
-fn model(torque_control: Option<TorqueControl>) -> Model {
+fn model(torque_control: Option<TorqueControl>) -> TurbineModel {
     let gains = PitchGains { pitch: 0.0, proportional: 0.5, integral: 0.05 };
     let constants = Constants {
         rotor_radius: 120.0,
@@ -52,7 +52,7 @@ fn model(torque_control: Option<TorqueControl>) -> Model {
         tower_damping: None,
         individual_pitch: None,
     };
-    Model { definition: definition(), constants }
+    TurbineModel { definition: definition(), constants }
 }
 
 /// At its entries the table holds blade-element momentum, between them it stays near it where rotors run.

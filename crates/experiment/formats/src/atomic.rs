@@ -44,7 +44,7 @@ pub enum FileError {
         fix: String,
     },
     /// A run cannot go on from this checkpoint.
-    #[error("cannot go on from the checkpoint {}: {problem}", path.display())]
+    #[error("cannot resume from the checkpoint {}: {problem}", path.display())]
     #[diagnostic(code(wakemix::checkpoint))]
     Checkpoint {
         /// The file.
@@ -86,7 +86,7 @@ fn fix_of(kind: ErrorKind, path: &Path) -> String {
     let folder = path.parent().unwrap_or(path).display();
     match kind {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => format!(
-            "the disk or quota of {folder} is full: free some space or choose another folder (-o DIR), then go on with --resume"
+            "the disk or quota of {folder} is full: free some space or choose another folder (-o DIR), then resume with --resume"
         ),
         ErrorKind::PermissionDenied => {
             format!("check the permissions of {folder}, or choose another folder (-o DIR)")
@@ -309,7 +309,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_full_disk_is_told_as_such() {
+    fn a_full_disk_is_reported_as_such() {
         // /dev/full refuses every byte as a full disk does.
         let file = File::options().write(true).open("/dev/full").unwrap();
         let folder = tempfile::tempdir().unwrap();

@@ -2,12 +2,12 @@
 
 use std::fs;
 
-/// Memory (bytes) that can be had without swapping; none where the system does not tell.
+/// Memory (bytes) that can be had without swapping; none where the system does not report it.
 pub fn free_memory() -> Option<u64> {
     amount(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// Most memory (bytes) that this process has held at once; none where the system does not tell.
+/// Most memory (bytes) that this process has held at once; none where the system does not report it.
 pub fn peak_memory() -> Option<u64> {
     peak_of("self")
 }

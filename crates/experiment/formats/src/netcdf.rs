@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn another_file_is_told() {
+    fn another_file_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plane.nc");
         std::fs::write(&path, b"not NetCDF").unwrap();

@@ -26,7 +26,7 @@ pub enum PostprocessingError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] FileError),
-    /// An estimator or a loop cannot be set up.
+    /// An estimator or a loop cannot be built.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
     /// The records cannot be analysed.
@@ -39,7 +39,7 @@ pub enum PostprocessingError {
     /// The report cannot be made.
     #[error("the report cannot be made")]
     Report(#[from] ReportError),
-    /// No turbine of a run, or not the requested one, looks for a helix.
+    /// No turbine of a run, or not the requested one, estimates the phase of a helix.
     #[error("{}", nobody(run, requested))]
     #[diagnostic(help("its turbines are {}; name one with --turbine", turbines.join(", ")))]
     NobodySeeks {
@@ -50,9 +50,9 @@ pub enum PostprocessingError {
         /// Turbines of the case.
         turbines: Vec<String>,
     },
-    /// No helix comes from upstream.
+    /// No turbine upstream pitches a helix.
     #[error(
-        "no helix comes from upstream of {turbine} in run {run}: there is no phase to be found"
+        "no turbine upstream of {turbine} pitches a helix in run {run}: there is no phase to estimate"
     )]
     NoHelix {
         /// Run.
@@ -83,6 +83,6 @@ pub enum PostprocessingError {
 fn nobody(run: &str, requested: &Option<String>) -> String {
     match requested {
         Some(name) => format!("run {run} has no turbine called `{name}`"),
-        None => format!("no turbine of run {run} looks for a helix"),
+        None => format!("no turbine of run {run} estimates the phase of a helix"),
     }
 }

@@ -123,7 +123,7 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, PostprocessingErro
     answer(question, &records.query(first)?)
 }
 
-/// What [`phase`] answers for the turbine that `question` names, for each that looks for a helix where it
+/// What [`phase`] answers for the turbine that `question` names, for each that estimates the phase of a helix where it
 /// names none.
 ///
 /// # Errors

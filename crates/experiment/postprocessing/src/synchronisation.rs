@@ -214,7 +214,7 @@ name = "T2"
 model = "iea-15mw"
 position_diameters = [5.0, 0.0]
 [[run]]
-name = "watching"
+name = "monitoring"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
 control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }
 [[run]]
@@ -246,7 +246,7 @@ control.T2 = { kind = "phase-sync", offset_deg = 150.0, amplitude_deg = 4.0 }
     }
 
     #[test]
-    fn each_turbine_and_each_helix_that_it_joins_is_told_apart() {
+    fn each_turbine_and_each_helix_that_it_joins_is_kept_apart() {
         let joined = |name: &str, places: &[usize], offsets: &[f64]| {
             (name.to_owned(), places.to_vec(), offsets.to_vec())
         };

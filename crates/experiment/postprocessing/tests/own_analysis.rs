@@ -5,7 +5,7 @@
 mod small;
 
 use formats::records::{RunFolder, read_series};
-use postprocessing::analyses::{Answer, Of, Request, Setting, Takes};
+use postprocessing::analyses::{AnalysisSetting, Answer, Of, Request, Takes};
 use postprocessing::{ANALYSES, Analysis, PostprocessingError};
 use serde_json::json;
 use small::{NREL_5MW, done, options, written};
@@ -15,7 +15,7 @@ const ENERGY: Analysis = Analysis {
     name: "energy",
     about: "Energy that a turbine made over the whole run",
     of: Of::Run("Folder of a run"),
-    settings: &[Setting {
+    settings: &[AnalysisSetting {
         name: "turbine",
         value: "NAME",
         takes: Takes::Text,

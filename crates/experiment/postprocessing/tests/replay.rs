@@ -26,18 +26,18 @@ lines_at = ["T2"]
 }
 
 #[test]
-fn a_replay_believes_what_the_run_did() {
-    assert_believed("");
+fn a_replay_estimates_what_the_run_did() {
+    assert_same_phases("");
 }
 
 /// Noise that differs from the estimator's own makes phases differ by far more than what is allowed.
 #[test]
-fn a_replay_believes_in_the_noise_that_the_run_was_given() {
-    assert_believed(", measurement_noise_mnm = 0.6, wandering_amplitude = 3e-3");
+fn a_replay_assumes_the_noise_that_the_run_was_given() {
+    assert_same_phases(", measurement_noise_mnm = 0.6, process_noise_amplitude = 3e-3");
 }
 
 /// The case with `keys` in the control of T2: its run, and a replay of it, find the same phases.
-fn assert_believed(keys: &str) {
+fn assert_same_phases(keys: &str) {
     let folder = written(&case(keys));
     let library = formats::library::text("nrel-5mw").expect("a turbine of the library");
     fs::write(folder.path().join("own.toml"), library).expect("a file");
@@ -51,9 +51,9 @@ fn assert_believed(keys: &str) {
             PhaseQuestion { run: output.join("joined"), estimator, ..PhaseQuestion::default() };
         postprocessing::phase(&question).expect("a sound record")
     };
-    let (believed, replayed) = (ask(None), ask(Some(PhaseEstimator::Robust)));
-    assert!(believed.times.len() > 100, "{} instants", believed.times.len());
-    let phases = believed.tilt.phase.iter().zip(&replayed.tilt.phase);
+    let (recorded, replayed) = (ask(None), ask(Some(PhaseEstimator::Robust)));
+    assert!(recorded.times.len() > 100, "{} instants", recorded.times.len());
+    let phases = recorded.tilt.phase.iter().zip(&replayed.tilt.phase);
     let apart = phases.map(|(a, b)| wrap_to_half_turn(a - b));
     let farthest = apart.fold(0.0_f64, |farthest, apart| farthest.max(apart.abs()));
     assert!(farthest < 1e-6, "{farthest} rad");

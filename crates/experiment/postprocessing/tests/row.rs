@@ -6,15 +6,15 @@ mod small;
 
 use basis::angle::wrap_to_half_turn;
 use postprocessing::{PhaseAnswers, PhaseQuestion, PostprocessingError};
-use small::{ABSENT, DISK, NREL_5MW, WATCHING, behind_helix, done, options, written};
+use small::{ABSENT, DISK, MONITORING, NREL_5MW, behind_helix, done, options, written};
 use std::fs;
 use std::path::Path;
 
 /// All turbines stand in the path of one disk of slow air, whose waves T2 and T3 take for a helix.
 fn case() -> String {
     let runs = [
-        behind_helix("both", &[WATCHING, WATCHING]),
-        behind_helix("without-t3", &[WATCHING, ABSENT]),
+        behind_helix("both", &[MONITORING, MONITORING]),
+        behind_helix("without-t3", &[MONITORING, ABSENT]),
         behind_helix("alone", &[ABSENT, ABSENT]),
     ];
     let kept = r#"[output]
@@ -31,7 +31,7 @@ fn both(output: &Path) -> PhaseAnswers {
 }
 
 #[test]
-fn every_turbine_that_seeks_a_helix_is_answered_for() {
+fn every_turbine_that_estimates_a_phase_has_an_answer() {
     let folder = written(&case());
     let output = folder.path().join("out");
     let (_, report) = postprocessing::report(&done(&options(folder.path()))).expect("a report");

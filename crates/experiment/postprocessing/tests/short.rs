@@ -3,12 +3,12 @@
 #[path = "../../study/tests/small/mod.rs"]
 mod small;
 
-use small::{NREL_5MW, WATCHING, behind_helix, case, done, options, written};
+use small::{MONITORING, NREL_5MW, behind_helix, case, done, options, written};
 use std::fs;
 
 #[test]
 fn a_run_shorter_than_a_period_of_the_helix_gets_its_report() {
-    let run = behind_helix("watching", &[WATCHING]);
+    let run = behind_helix("monitoring", &[MONITORING]);
     let folder = written(&case("short", "", [10.0, 40.0], &[NREL_5MW; 2], &run));
     let (_, report) = postprocessing::report(&done(&options(folder.path()))).expect("a report");
     assert!(fs::metadata(&report).is_ok_and(|found| found.len() > 0), "{}", report.display());

@@ -87,7 +87,7 @@ pub enum ReportError {
         source: png::EncodingError,
     },
     /// The page could not be put together.
-    #[error("cannot put the page together")]
+    #[error("cannot assemble the page")]
     Page(#[from] minijinja::Error),
 }
 

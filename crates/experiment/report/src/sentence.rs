@@ -1,7 +1,7 @@
 //! What the numbers say, in plain sentences, and the conditions under which they hold.
 
 use crate::RunRecords;
-use crate::study::{Excitation, Kind, Study, gain_of};
+use crate::study::{Excitation, ExcitationKind, Study, gain_of};
 use crate::words::{self, SPACE, number, percent};
 use basis::records::{Statistic, TurbineSummary};
 
@@ -23,7 +23,7 @@ pub(crate) fn confidence(study: &Study) -> String {
     };
     match gain.half_width_95 {
         Some(width) if width >= gain.mean.abs() => {
-            "The interval includes zero: a study of this length does not settle whether there is a \
+            "The interval includes zero: a study of this length does not show whether there is a \
              gain."
                 .to_owned()
         }
@@ -116,14 +116,14 @@ fn power_sentence(run: &RunRecords) -> String {
 /// "a counter-clockwise helix of 4.0°".
 pub(crate) fn words_of(excitation: &Excitation) -> String {
     let amplitude = number(excitation.pitch.commanded_amplitude_deg, 1);
-    if let Some(offset) = excitation.in_step_at() {
-        return format!("a helix of {amplitude}° in step at {offset}");
+    if let Some(offset) = excitation.synchronised_at() {
+        return format!("a synchronised helix of {amplitude}° at {offset}");
     }
     match excitation.kind {
-        Kind::CounterClockwise => format!("a counter-clockwise helix of {amplitude}°"),
-        Kind::Clockwise => format!("a clockwise helix of {amplitude}°"),
-        Kind::Pulse => format!("a pulse of {amplitude}°"),
-        Kind::Other => format!("“{}”", excitation.turbine.control.description),
+        ExcitationKind::CounterClockwise => format!("a counter-clockwise helix of {amplitude}°"),
+        ExcitationKind::Clockwise => format!("a clockwise helix of {amplitude}°"),
+        ExcitationKind::Pulse => format!("a pulse of {amplitude}°"),
+        ExcitationKind::Other => format!("“{}”", excitation.turbine.control.description),
     }
 }
 
@@ -157,15 +157,16 @@ pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<Stri
         .iter()
         .map(|excitation| {
             let kind = match excitation.kind {
-                Kind::CounterClockwise => "ccw helix",
-                Kind::Clockwise => "cw helix",
-                Kind::Pulse => "pulse",
-                Kind::Other => excitation.turbine.control.description.as_str(),
+                ExcitationKind::CounterClockwise => "ccw helix",
+                ExcitationKind::Clockwise => "cw helix",
+                ExcitationKind::Pulse => "pulse",
+                ExcitationKind::Other => excitation.turbine.control.description.as_str(),
             };
-            let in_step = excitation.in_step_at().map(|offset| format!(" in step at {offset}"));
+            let synchronised =
+                excitation.synchronised_at().map(|offset| format!(" synchronised at {offset}"));
             format!(
                 "{kind}{} on {}, {}° target, {}° delivered, St{SPACE}{}",
-                in_step.unwrap_or_default(),
+                synchronised.unwrap_or_default(),
                 excitation.turbine.name,
                 number(excitation.pitch.commanded_amplitude_deg, 1),
                 number(excitation.pitch.delivered_amplitude_deg, 1),

@@ -6,7 +6,7 @@ use basis::records::{DeliveredPitch, Plane, PlaneAxes, TurbineSummary};
 
 /// How a turbine was excited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum ExcitationKind {
     /// Helix, blades pitch at rotor minus excitation frequency.
     Clockwise,
     /// Helix, blades pitch at rotor plus excitation frequency.
@@ -23,7 +23,7 @@ pub(crate) struct Excitation<'a> {
     /// The turbine.
     pub(crate) turbine: &'a TurbineSummary,
     /// How it was excited.
-    pub(crate) kind: Kind,
+    pub(crate) kind: ExcitationKind,
     /// What the actuators delivered.
     pub(crate) pitch: DeliveredPitch,
     /// f D / U with the target wind speed and the first turbine's diameter (–).
@@ -31,8 +31,8 @@ pub(crate) struct Excitation<'a> {
 }
 
 impl Excitation<'_> {
-    /// The phase offset in words, "90°", where it is in step with a helix that comes in.
-    pub(crate) fn in_step_at(&self) -> Option<String> {
+    /// The phase offset in words, "90°", where it is synchronised with an incoming helix.
+    pub(crate) fn synchronised_at(&self) -> Option<String> {
         let offset = self.turbine.control.excitation?.phase_offset_deg?;
         Some(format!("{offset:.0}°"))
     }
@@ -232,12 +232,12 @@ pub(crate) fn gain_of(run: &RunRecords) -> Option<f64> {
 }
 
 /// How `turbine` was set to be excited.
-fn kind_of(turbine: &TurbineSummary) -> Kind {
+fn kind_of(turbine: &TurbineSummary) -> ExcitationKind {
     match turbine.control.excitation.map(|set| set.sense) {
-        Some(Some(Sense::CounterClockwise)) => Kind::CounterClockwise,
-        Some(Some(Sense::Clockwise)) => Kind::Clockwise,
-        Some(None) => Kind::Pulse,
-        None => Kind::Other,
+        Some(Some(Sense::CounterClockwise)) => ExcitationKind::CounterClockwise,
+        Some(Some(Sense::Clockwise)) => ExcitationKind::Clockwise,
+        Some(None) => ExcitationKind::Pulse,
+        None => ExcitationKind::Other,
     }
 }
 

@@ -47,7 +47,7 @@ fn the_page_says_what_the_numbers_say_and_under_which_conditions() {
 }
 
 #[test]
-fn a_turbine_in_step_is_said_to_be_and_what_both_runs_do_goes_without_saying() {
+fn a_synchronised_turbine_is_named_and_what_both_runs_do_is_left_out() {
     let mut study = synthetic::two_runs();
     let helix = study.runs[1].summary.turbines[0].clone();
     study.runs[0].summary.turbines[0].control = helix.control;
@@ -62,8 +62,8 @@ fn a_turbine_in_step_is_said_to_be_and_what_both_runs_do_goes_without_saying() {
     summary.turbines[1].delivered_pitch = helix.delivered_pitch;
     let page = page(&study);
     for expected in [
-        "A helix of 4.0° in step at 90° on T2 gave T2 14.2 % more: +5.3 % ± 1.2 % for the two together.",
-        "ccw helix in step at 90° on T2, 4.0° target, 3.9° delivered",
+        "A synchronised helix of 4.0° at 90° on T2 gave T2 14.2 % more: +5.3 % ± 1.2 % for the two together.",
+        "ccw helix synchronised at 90° on T2, 4.0° target, 3.9° delivered",
     ] {
         assert!(page.contains(expected), "`{expected}` is missing");
     }

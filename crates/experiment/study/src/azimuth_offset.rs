@@ -7,7 +7,7 @@ use crate::prepared::Prepared;
 use control::excitation_rate;
 use control::meandering::Decoupling;
 use control::meandering::relative_gain;
-use farm::assemble::Model;
+use farm::assemble::TurbineModel;
 use farm::pitch_response::answers;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -59,7 +59,7 @@ pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyEr
         question.wind_speed, question.model, structure, question.strouhal
     );
     let case = formats::case::parse("the question", &text, &[])?;
-    let model = Model { definition: Arc::new(file.definition), constants: file.controller };
+    let model = TurbineModel { definition: Arc::new(file.definition), constants: file.controller };
     let model = model.without_individual_pitch();
     let loaded = BTreeMap::from([(question.model.clone(), model)]);
     let Prepared { case, plan, models, .. } = Prepared::with_models(case, loaded)?;
@@ -76,7 +76,7 @@ pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyEr
 mod tests {
     use super::*;
 
-    /// A rotor alike in all directions: some offset parts tilt from yaw, and it belongs to the machine, not
+    /// An isotropic rotor: some offset decouples tilt from yaw, and it belongs to the machine, not
     /// to the identification.
     #[test]
     fn the_offset_parts_the_axes_and_hardly_depends_on_the_frequency() {

@@ -40,7 +40,7 @@ impl Prepared {
     }
 }
 
-/// Whether this machine's free memory carries `estimate`; passes where the system does not tell.
+/// Whether this machine's free memory carries `estimate`; passes where the system does not report it.
 ///
 /// # Errors
 /// [`StudyError::Memory`].

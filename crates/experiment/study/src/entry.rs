@@ -5,7 +5,7 @@ use crate::StudyError;
 use crate::models::Machines;
 use crate::outputs::announce;
 use crate::prepared::Prepared;
-use farm::assemble::Model;
+use farm::assemble::TurbineModel;
 use farm::case::Case;
 use formats::case::CaseFile;
 use std::collections::BTreeMap;
@@ -35,7 +35,10 @@ impl Prepared {
     ///
     /// # Errors
     /// Those of [`of`](Self::of); [`StudyError::Plan`] names a model that is not there.
-    pub fn with_models(case: Case, models: BTreeMap<String, Model>) -> Result<Self, StudyError> {
+    pub fn with_models(
+        case: Case,
+        models: BTreeMap<String, TurbineModel>,
+    ) -> Result<Self, StudyError> {
         announce();
         let file = CaseFile::of(case)?;
         let machines = Machines { models, ..Machines::default() };

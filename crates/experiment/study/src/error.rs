@@ -33,11 +33,11 @@ pub enum StudyError {
     /// The layout does not fit.
     #[error("the case cannot be run as it stands")]
     Plan(#[from] PlanError),
-    /// The air cannot be set up.
-    #[error("the air cannot be set up")]
+    /// The flow cannot be set up.
+    #[error("the flow cannot be set up")]
     Settings(#[from] LatticeError),
-    /// The air of a flow solver that is not the program's own cannot be set up.
-    #[error("the air cannot be set up")]
+    /// The flow of a solver that is not the program's own cannot be set up.
+    #[error("the flow cannot be set up")]
     Solver(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// The turbulence cannot be made.
     #[error("the turbulence cannot be made")]
@@ -52,7 +52,7 @@ pub enum StudyError {
     #[error("the checkpoint does not fit the run's sensors")]
     ForeignSensor(#[from] sensing::ForeignState),
     /// A turbine's controller cannot be made.
-    #[error("run {run}: {turbine} cannot be controlled so")]
+    #[error("run {run}: the controller of {turbine} cannot be built")]
     Control {
         /// Run.
         run: String,
@@ -109,7 +109,7 @@ pub enum StudyError {
     /// The output folder holds something that would be overwritten.
     #[error("{} already holds results", directory.display())]
     #[diagnostic(help(
-        "use --resume to go on with them, --overwrite to lose them, or another folder with -o"
+        "use --resume to continue them, --overwrite to replace them, or another folder with -o"
     ))]
     OutputExists {
         /// The folder.
@@ -127,7 +127,7 @@ pub enum StudyError {
         directory: PathBuf,
     },
     /// A rotor of one or two blades shall pitch them cyclically.
-    #[error("run {run}: {turbine} has {n_blades} blades; tilt and yaw take three or more")]
+    #[error("run {run}: {turbine} has {n_blades} blades; tilt and yaw need three or more")]
     #[diagnostic(help(
         "let it pitch collectively, control.{turbine} = {{ kind = \"pulse\", ... }}, or give it another model"
     ))]

@@ -45,4 +45,4 @@ pub use outputs::Outputs;
 pub use prepared::Prepared;
 pub use ready::Ready;
 pub use self_check::SelfChecked;
-pub use study::{Options, Outcome, run, run_with};
+pub use study::{Outcome, StudyOptions, run, run_with};

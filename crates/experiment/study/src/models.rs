@@ -1,7 +1,7 @@
 //! The turbines of a case: each kind of machine once, with the controller that the case gives it.
 
 use crate::StudyError;
-use farm::assemble::Model;
+use farm::assemble::TurbineModel;
 use farm::case::{Case, Placement};
 use farm::plan::Footprint;
 use formats::case::{CaseFile, objection};
@@ -20,7 +20,7 @@ const RADIUS_TO_WARN: f64 = 0.05;
 #[derive(Default)]
 pub(crate) struct Machines {
     /// By the name of the machine, [`Placement::machine`].
-    pub(crate) models: BTreeMap<String, Model>,
+    pub(crate) models: BTreeMap<String, TurbineModel>,
     /// Text of each turbine model's file by the model's name, and of each controller's input file and its
     /// table by the names that [`text_names`] gives.
     pub(crate) texts: BTreeMap<String, String>,
@@ -31,16 +31,18 @@ pub(crate) struct Machines {
 impl Machines {
     /// What the layout needs to know of each, in a mean wind of `wind_speed` (m/s).
     pub(crate) fn footprints(&self, wind_speed: f64) -> BTreeMap<String, Footprint> {
-        let of = |(name, model): (&String, &Model)| (name.clone(), model.footprint(wind_speed));
+        let of =
+            |(name, model): (&String, &TurbineModel)| (name.clone(), model.footprint(wind_speed));
         self.models.iter().map(of).collect()
     }
 
     /// The model of each turbine of `case`, in its order, equipped for its wind; all kinds are there.
-    pub(crate) fn equipped(&self, case: &Case) -> Vec<Model> {
+    pub(crate) fn equipped(&self, case: &Case) -> Vec<TurbineModel> {
         // Once a kind, not once a turbine and run: a table of coefficients takes a fraction of a second.
-        let equip =
-            |model: &Model| model.equipped(case.flow.solver, case.wind.air_density).into_owned();
-        let equipped: BTreeMap<&String, Model> =
+        let equip = |model: &TurbineModel| {
+            model.equipped(case.flow.solver, case.wind.air_density).into_owned()
+        };
+        let equipped: BTreeMap<&String, TurbineModel> =
             self.models.iter().map(|(name, model)| (name, equip(model))).collect();
         case.turbines.iter().map(|placement| equipped[&placement.machine()].clone()).collect()
     }
@@ -68,7 +70,7 @@ pub(crate) fn load(file: &CaseFile) -> Result<Machines, StudyError> {
             machines.texts.insert(table_name, discon.table_text);
             constants = discon.constants;
         }
-        let model = Model { definition: Arc::new(turbine.definition), constants };
+        let model = TurbineModel { definition: Arc::new(turbine.definition), constants };
         machines.models.insert(placement.machine(), model);
     }
     Ok(machines)

@@ -4,7 +4,7 @@
 use crate::StudyError;
 use crate::models::{self, Machines};
 use crate::warnings;
-use farm::assemble::{Model, controller};
+use farm::assemble::{TurbineModel, controller};
 use farm::case::Case;
 use farm::wind::{self, Site};
 use farm::{Plan, plan};
@@ -24,7 +24,7 @@ pub struct Prepared {
     /// The case as run, overrides included (TOML).
     pub case_text: String,
     /// One per turbine, in the case's order.
-    pub models: Vec<Model>,
+    pub models: Vec<TurbineModel>,
     /// Text of each turbine model's file, and of each controller's own input file with its table; none of
     /// models that were given as values.
     pub turbine_texts: BTreeMap<String, String>,
@@ -95,7 +95,7 @@ fn pointed_at(file: &CaseFile, error: StudyError) -> StudyError {
             StudyError::Case(objection(file, &error.key(), error.to_string()))
         }
         StudyError::Control { run, turbine, source } => {
-            let mut message = format!("{turbine} cannot be controlled so: {source}");
+            let mut message = format!("the controller of {turbine} cannot be built: {source}");
             let mut cause = source.source();
             while let Some(deeper) = cause {
                 message += &format!(": {deeper}");
@@ -110,7 +110,7 @@ fn pointed_at(file: &CaseFile, error: StudyError) -> StudyError {
 
 /// Whether every rotor that shall pitch by tilt and yaw has the blades for it, and every controller can be
 /// made: known now, not when its run begins after hours of others.
-fn check_control(case: &Case, plan: &Plan, models: &[Model]) -> Result<(), StudyError> {
+fn check_control(case: &Case, plan: &Plan, models: &[TurbineModel]) -> Result<(), StudyError> {
     for run in &case.runs {
         for ((control, placement), model) in run.control.iter().zip(&case.turbines).zip(models) {
             let n_blades = model.definition.n_blades;

@@ -3,7 +3,7 @@
 use crate::StudyError;
 use crate::observer::Observer;
 use crate::prepared::Prepared;
-use farm::assemble::Model;
+use farm::assemble::TurbineModel;
 use farm::self_check::{SelfCheck, SelfCheckError, Tunnel, self_check};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -58,7 +58,7 @@ impl Prepared {
     /// One model alone in a tunnel with the study's cells and step.
     fn check(
         &self,
-        model: &Model,
+        model: &TurbineModel,
         stop: &AtomicBool,
         observer: &mut dyn Observer,
     ) -> Result<SelfCheck, SelfCheckError> {

@@ -131,7 +131,7 @@ impl<'a> Simulation<'a> {
     /// On return the checkpoint on disk holds this very instant.
     ///
     /// # Errors
-    /// [`StudyError::Diverged`] for air that no longer is worth keeping, [`StudyError::File`].
+    /// [`StudyError::Diverged`] for air that is no longer valid, [`StudyError::File`].
     fn checkpoint(&mut self) -> Result<(), StudyError> {
         if let Err(error) = self.farm.flow_mut().check() {
             return Err(self.diverged(error));

@@ -22,7 +22,7 @@ use std::sync::atomic::AtomicBool;
 
 /// What to run, and where the results go.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Options {
+pub struct StudyOptions {
     /// Case file.
     pub case: PathBuf,
     /// Folder for the results; `runs/NAME-OF-THE-CASE` when absent.
@@ -33,7 +33,7 @@ pub struct Options {
     pub overrides: Vec<String>,
     /// Go on with what is there.
     pub resume: bool,
-    /// Put new results in the place of old ones.
+    /// Replace old results.
     pub overwrite: bool,
     /// Say what it would cost, and stop.
     pub dry_run: bool,
@@ -63,7 +63,7 @@ pub enum Outcome {
 /// # Errors
 /// [`StudyError`]; files of runs that were complete before stay whole.
 pub fn run(
-    options: &Options,
+    options: &StudyOptions,
     stop: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Result<Outcome, StudyError> {
@@ -75,7 +75,7 @@ pub fn run(
 /// # Errors
 /// As [`run`].
 pub fn run_with(
-    options: &Options,
+    options: &StudyOptions,
     outputs: &Outputs,
     stop: &AtomicBool,
     observer: &mut dyn Observer,
@@ -134,7 +134,7 @@ impl<'a> Study<'a> {
     /// # Errors
     /// [`StudyError::UnknownRun`], [`StudyError::OutputExists`], [`StudyError::OtherCase`].
     fn open(
-        options: &Options,
+        options: &StudyOptions,
         outputs: &'a Outputs,
         prepared: &Prepared,
     ) -> Result<Self, StudyError> {

@@ -51,7 +51,7 @@ impl Outrun {
     pub(crate) fn warning(&self, run: &str, name: &str) -> String {
         format!(
             "{run}: the tip of {name} outran the sound on the lattice {:.1} % of the time, first at {:.0} s; at {:.0} s it moved at {:.1} m/s, \
-             {:.3} cells a step, {LATTICE_SOUND_SPEED:.3} are the most; its power is then too low: take flow.step = {:.4} or less",
+             {:.3} cells a step, the maximum is {LATTICE_SOUND_SPEED:.3}; its power is then too low: use flow.step = {:.4} or less",
             100.0 * self.share,
             self.first,
             self.fastest_at,
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_and_the_fastest_instant_are_told_with_the_step_that_mends_it() {
+    fn the_first_and_the_fastest_instant_are_reported_with_a_step_that_is_short_enough() {
         // 84, 87.6, 90 and 72 m/s.
         let found = outrun(&[0.7, 0.73, 0.75, 0.6]).expect("two of four instants");
         assert_eq!((found.first, found.fastest_at, found.share), (400.0, 500.0, 0.5));
@@ -94,6 +94,6 @@ mod tests {
         assert!(
             message.contains("50.0 % of the time, first at 400 s; at 500 s it moved at 90.0 m/s")
         );
-        assert!(message.ends_with("take flow.step = 0.0962 or less"), "{message}");
+        assert!(message.ends_with("use flow.step = 0.0962 or less"), "{message}");
     }
 }

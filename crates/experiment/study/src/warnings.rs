@@ -69,7 +69,7 @@ fn of_places(case: &Case) -> Vec<String> {
     }
     for name in occupied(&case.output.lines_at) {
         warnings.push(format!(
-            "no run tells the true wind at {name}, as it stands there in every run: add one with control.{name} = {{ kind = \"absent\" }}"
+            "no run has the true wind at {name}, as it stands there in every run: add one with control.{name} = {{ kind = \"absent\" }}"
         ));
     }
     warnings

@@ -5,7 +5,7 @@ mod small;
 use small::{NREL_5MW, options};
 use std::fs;
 use std::path::Path;
-use study::{Options, Outcome, Prepared, StudyError};
+use study::{Outcome, Prepared, StudyError, StudyOptions};
 use tempfile::TempDir;
 
 fn case() -> String {
@@ -99,7 +99,7 @@ fn a_turbine_runs_under_the_constants_of_its_file_alone() {
 }
 
 #[test]
-fn what_the_file_lacks_or_does_not_fit_is_told() {
+fn what_the_file_lacks_or_does_not_fit_is_reported() {
     let folder = written(&DISCON.replace("table.txt", "none.txt").replace("63.0 ", "80.0 "));
     let given = setup(folder.path()).expect("a sound case").warnings;
     for expected in ["control/none.txt", "a rotor of 80.0 m radius"] {
@@ -122,7 +122,7 @@ fn what_the_file_lacks_or_does_not_fit_is_told() {
 fn other_texts_of_file_or_table_are_noticed() {
     let folder = written(DISCON);
     let output = folder.path().join("out");
-    let go = |resume| small::run(&Options { resume, ..options(folder.path()) });
+    let go = |resume| small::run(&StudyOptions { resume, ..options(folder.path()) });
     let first = go(false);
     assert!(matches!(first, Ok(Outcome::Done { .. })), "{first:?}");
     let manifest = fs::read_to_string(output.join("baseline/manifest.json")).expect("a manifest");

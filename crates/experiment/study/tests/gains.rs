@@ -6,7 +6,7 @@ use small::{NREL_5MW, written};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use study::{Observer, Options, Outcome, StudyError};
+use study::{Observer, Outcome, StudyError, StudyOptions};
 
 fn case() -> String {
     let runs = r#"[[run]]
@@ -28,9 +28,9 @@ impl Observer for Warned {
     }
 }
 
-fn options(folder: &Path, runs: &[&str]) -> Options {
+fn options(folder: &Path, runs: &[&str]) -> StudyOptions {
     let runs = runs.iter().map(|&run| run.to_owned()).collect();
-    Options { runs, ..small::options(folder) }
+    StudyOptions { runs, ..small::options(folder) }
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn a_run_made_before_what_it_compares_with_gets_its_gains_later() {
     assert_eq!(summaries[0].array_power_gain, None);
     assert!(first.0.iter().any(|warning| warning.contains("--run baseline")), "{:?}", first.0);
 
-    let again = Options { resume: true, ..options(folder.path(), &[]) };
+    let again = StudyOptions { resume: true, ..options(folder.path(), &[]) };
     let outcome = small::run(&again);
     let Ok(Outcome::Done { summaries, .. }) = outcome else { panic!("{outcome:?}") };
     let pulse = summaries.iter().find(|summary| summary.run == "pulse").expect("its summary");
@@ -60,7 +60,7 @@ fn another_wind_is_no_comparison() {
     let outcome = small::run(&options(folder.path(), &[]));
     assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{outcome:?}");
     let before = fs::read(folder.path().join("out/pulse/summary.json")).expect("a summary");
-    let other = Options {
+    let other = StudyOptions {
         overwrite: true,
         overrides: vec!["wind.speed=7".to_owned()],
         ..options(folder.path(), &["pulse"])

@@ -5,7 +5,7 @@ mod small;
 
 use basis::records::{PitchResponse, Summary};
 use control::baseline::IndividualPitch;
-use farm::assemble::{AssemblyError, Model, controller};
+use farm::assemble::{AssemblyError, TurbineModel, controller};
 use farm::case::Control;
 use farm::plan::PRESCRIBED_STEP;
 use small::written;
@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use study::{
-    Estimate, IdentificationProgress, Observer, OffsetQuestion, Options, Outcome, Prepared,
+    Estimate, IdentificationProgress, Observer, OffsetQuestion, Outcome, Prepared, StudyOptions,
     azimuth_offset,
 };
 use tempfile::TempDir;
@@ -66,7 +66,7 @@ impl Observer for Reports {
 
 fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Reports, Vec<Summary>) {
     let overrides = overrides.iter().map(|&text| text.to_owned()).collect();
-    let options = Options { overrides, resume, ..small::options(folder) };
+    let options = StudyOptions { overrides, resume, ..small::options(folder) };
     let mut reports = Reports::default();
     let outcome =
         study::run(&options, &AtomicBool::new(false), &mut reports).expect("a sound case");
@@ -81,7 +81,7 @@ fn offsets(summaries: &[Summary]) -> Vec<Option<f64>> {
 }
 
 #[test]
-fn what_is_left_out_is_found_once_told_and_taken_again_with_the_same_bits() {
+fn what_is_left_out_is_identified_once_reported_and_taken_again_with_the_same_bits() {
     let folder = folder("");
     let (first, summaries) = run(folder.path(), false, &[]);
     // Once for two turbines alike and both runs.
@@ -107,7 +107,7 @@ fn what_is_left_out_is_found_once_told_and_taken_again_with_the_same_bits() {
 }
 
 #[test]
-fn what_is_given_is_not_sought() {
+fn what_is_given_is_not_identified() {
     let folder = folder("azimuth_offset_deg = 20.0, ");
     let (reports, summaries) = run(folder.path(), false, &[]);
     assert_eq!((reports.n_identifications, reports.found.len()), (0, 0));
@@ -141,7 +141,8 @@ fn control_without_its_offset_is_not_put_together() {
     let folder = folder("");
     let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
     let mut model = setup.models[0].clone();
-    let built = |model: &Model| controller(&Control::baseline(), model, &setup.case, &setup.plan);
+    let built =
+        |model: &TurbineModel| controller(&Control::baseline(), model, &setup.case, &setup.plan);
     let Err(error) = built(&model) else { panic!("nobody found the offset") };
     assert!(matches!(error, AssemblyError::NoIndividualPitchOffset), "{error:?}");
     assert!(error.to_string().contains("azimuth_offset_deg"), "{error}");

@@ -5,7 +5,7 @@
 mod small;
 
 use basis::{Commands, Truth, Vector3};
-use farm::assemble::{self, Model};
+use farm::assemble::{self, TurbineModel};
 use farm::case::Case;
 use farm::{Air, Farm, Plan, Recorder};
 use flow::WindField;
@@ -16,7 +16,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Observer, Options, Outcome, Progress, Silent};
+use study::{Observer, Outcome, Progress, Silent, StudyOptions};
 
 const CASE: &str = r#"
 name = "instruments"
@@ -55,12 +55,12 @@ const SPEED_NOISE: f64 = 0.05;
 const MOMENT_NOISE: f64 = 2.0;
 
 /// The case with `overrides`, laid out, with its turbines.
-fn case(overrides: &[String]) -> (Case, Plan, Vec<Model>) {
+fn case(overrides: &[String]) -> (Case, Plan, Vec<TurbineModel>) {
     let (case, plan, model) = laid_out(CASE, overrides, "iea-15mw");
     (case, plan, vec![model.clone(), model])
 }
 
-fn farm_of((case, plan, models): &(Case, Plan, Vec<Model>)) -> Farm<Air> {
+fn farm_of((case, plan, models): &(Case, Plan, Vec<TurbineModel>)) -> Farm<Air> {
     let air = if !case.flow.solver.resolves_induction {
         uniform_air(case)
     } else {
@@ -217,9 +217,9 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
         "run.sync.control.T2={ kind = \"meandering\", factor = 1.5, amplitude_deg = 2, azimuth_offset_deg = 0, delay = 0, moment_per_degree_mnm = 4 }",
     ]
     .map(str::to_owned);
-    let series = |name: &str, observer: &mut dyn FnMut(&AtomicBool, &Options) -> Outcome| {
+    let series = |name: &str, observer: &mut dyn FnMut(&AtomicBool, &StudyOptions) -> Outcome| {
         let output = folder.path().join(name);
-        let options = Options {
+        let options = StudyOptions {
             output: Some(output.clone()),
             overrides: overrides.to_vec(),
             resume: true,
@@ -228,7 +228,7 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
         while !matches!(observer(&AtomicBool::new(false), &options), Outcome::Done { .. }) {}
         read(&output)
     };
-    let run = |stop: &AtomicBool, options: &Options, observer: &mut dyn Observer| {
+    let run = |stop: &AtomicBool, options: &StudyOptions, observer: &mut dyn Observer| {
         study::run(options, stop, observer).expect("the study runs")
     };
     let whole = series("whole", &mut |stop, options| run(stop, options, &mut Silent));

@@ -5,7 +5,7 @@ mod small;
 use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::{Path, PathBuf};
-use study::{Options, Outcome, Outputs, Prepared, Silent};
+use study::{Outcome, Outputs, Prepared, Silent, StudyOptions};
 
 const CASE: &str = r#"
 name = "small"
@@ -42,8 +42,8 @@ helix_phases = 4
 crosswind_diameters = [1.0]
 "#;
 
-fn options(folder: &Path, output: &str) -> Options {
-    Options { output: Some(folder.join(output)), ..small::options(folder) }
+fn options(folder: &Path, output: &str) -> StudyOptions {
+    StudyOptions { output: Some(folder.join(output)), ..small::options(folder) }
 }
 
 /// Everything that a run left but what tells of the machine and the hour, by its place in the run's folder.

@@ -107,7 +107,7 @@ const STEP: f64 = 0.05;
 /// When it rises (s).
 const STEP_AT: f64 = 5.0;
 /// Time that is recorded afterwards (s).
-const WATCHED: f64 = 120.0;
+const OBSERVED: f64 = 120.0;
 
 /// Thrust (N) of the turbine of the case with `overrides`, instant after instant, at held rotor speed in a
 /// wind along its shaft, the same on every blade wherever it stands; its pitch steps meanwhile.
@@ -118,7 +118,7 @@ fn thrusts(overrides: &[&str]) -> Vec<f64> {
     let wind = turbine.frame().shaft * 9.0;
     let winds = vec![wind; turbine.stations().len()];
     let mut thrusts = Vec::new();
-    for step in 0..((STEP_AT + WATCHED) / interval) as usize {
+    for step in 0..((STEP_AT + OBSERVED) / interval) as usize {
         let pitch = if step as f64 * interval < STEP_AT { 0.0 } else { STEP };
         let pitch = PerBlade::splat(turbine.definition().n_blades, pitch);
         turbine.advance(interval, &winds, &Commands { pitch, generator_torque: 0.0 });

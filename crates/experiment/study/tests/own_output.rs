@@ -13,7 +13,7 @@ use small::{HALFWAY, NREL_5MW, STOP, written};
 use std::fs;
 use std::path::Path;
 use study::outputs::{FedBy, Keys, Output, OutputKind, OwnKeys, Scene, Schedule, Section, Stored};
-use study::{Options, Outcome, Outputs, Silent, StudyError};
+use study::{Outcome, Outputs, Silent, StudyError, StudyOptions};
 
 /// The largest power that any turbine has had, in `largest-power.txt`.
 static LARGEST_POWER: OutputKind = OutputKind {
@@ -128,12 +128,12 @@ interval = 0.2
     small::case("own", event, [10.0, 80.0], &[NREL_5MW], run)
 }
 
-fn options(folder: &Path, output: &str) -> Options {
-    Options { output: Some(folder.join(output)), ..small::options(folder) }
+fn options(folder: &Path, output: &str) -> StudyOptions {
+    StudyOptions { output: Some(folder.join(output)), ..small::options(folder) }
 }
 
 /// What becomes of a study with `outputs` that may be stopped.
-fn run(options: &Options, outputs: &Outputs) -> Result<Outcome, StudyError> {
+fn run(options: &StudyOptions, outputs: &Outputs) -> Result<Outcome, StudyError> {
     STOP.store(false, std::sync::atomic::Ordering::Relaxed);
     study::run_with(options, outputs, &STOP, &mut Silent)
 }

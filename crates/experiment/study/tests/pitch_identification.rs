@@ -8,11 +8,11 @@ use small::{NREL_5MW, written};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use study::{Estimate, IdentificationProgress, Observer, Options, Outcome};
+use study::{Estimate, IdentificationProgress, Observer, Outcome, StudyOptions};
 
 fn case() -> String {
     let runs = r#"[[run]]
-name = "watch"
+name = "monitor"
 control.T1 = { kind = "meandering", factor = 1.0, amplitude_deg = 0.0 }
 [[run]]
 name = "amplify"
@@ -21,7 +21,7 @@ control.T1 = { kind = "meandering", factor = 1.5, amplitude_deg = 2.0 }
 name = "attenuate"
 control.T1 = { kind = "meandering", factor = 0.5, amplitude_deg = 2.0 }
 "#;
-    small::case("probed", "shear_exponent = 0.0\n", [10.0, 60.0], &[NREL_5MW], runs)
+    small::case("identified", "shear_exponent = 0.0\n", [10.0, 60.0], &[NREL_5MW], runs)
 }
 
 /// What was reported.
@@ -50,9 +50,9 @@ impl Observer for Reports {
     }
 }
 
-fn options(folder: &Path, resume: bool, overrides: &[&str]) -> Options {
+fn options(folder: &Path, resume: bool, overrides: &[&str]) -> StudyOptions {
     let overrides = overrides.iter().map(|&text| text.to_owned()).collect();
-    Options { overrides, resume, ..small::options(folder) }
+    StudyOptions { overrides, resume, ..small::options(folder) }
 }
 
 fn run(folder: &Path, resume: bool, overrides: &[&str]) -> (Reports, Vec<Option<PitchResponse>>) {
@@ -89,7 +89,7 @@ fn a_resumed_study_takes_what_was_identified() {
     // Another wind is another identification.
     fs::remove_dir_all(folder.path().join("out/attenuate")).expect("a run");
     fs::remove_dir_all(folder.path().join("out/amplify")).expect("a run");
-    fs::remove_dir_all(folder.path().join("out/watch")).expect("a run");
+    fs::remove_dir_all(folder.path().join("out/monitor")).expect("a run");
     let (third, _) = run(folder.path(), true, &["wind.speed=8.0"]);
     assert_eq!((third.n_identifications, third.found.len()), (1, 1));
     assert!(!third.found[0].1 && third.found[0].0 != response);
@@ -106,13 +106,13 @@ impl Observer for Impatient<'_> {
 }
 
 #[test]
-fn an_identification_stops_when_asked() {
+fn an_identification_stops_on_request() {
     let folder = written(&case());
     let stop = AtomicBool::new(false);
     let options = options(folder.path(), false, &[]);
     let outcome = study::run(&options, &stop, &mut Impatient(&stop)).expect("a sound case");
     assert!(matches!(outcome, Outcome::Interrupted { .. }), "{outcome:?}");
-    assert!(!folder.path().join("out/watch").exists(), "a run began after the end was asked for");
+    assert!(!folder.path().join("out/monitor").exists(), "a run began after the end was asked for");
     let (resumed, responses) = run(folder.path(), true, &[]);
     assert_eq!((resumed.n_identifications, responses.len()), (1, 3));
 }

@@ -5,7 +5,7 @@ mod small;
 
 use small::{options, written};
 use std::sync::atomic::AtomicBool;
-use study::{Estimate, Observer, Options, Outcome, StudyError};
+use study::{Estimate, Observer, Outcome, StudyError, StudyOptions};
 
 const LATTICE: &str = r#"
 name = "lattice"
@@ -48,7 +48,7 @@ name = "T2"
 model = "nrel-5mw"
 position_diameters = [5.0, 0.0]
 [[run]]
-name = "watching"
+name = "monitoring"
 control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 4.0, strouhal = 0.25 }
 control.T2 = { kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }
 "#;
@@ -73,7 +73,7 @@ impl Observer for Reports {
 /// What a dry run of `case` comes to, and what it tells.
 fn dry(case: &str) -> (Result<Outcome, StudyError>, Reports) {
     let folder = written(case);
-    let options = Options { dry_run: true, ..options(folder.path()) };
+    let options = StudyOptions { dry_run: true, ..options(folder.path()) };
     let mut reports = Reports::default();
     (study::run(&options, &AtomicBool::new(false), &mut reports), reports)
 }
@@ -89,14 +89,14 @@ fn what_does_not_fit_is_pointed_at_in_the_file() {
             "\"turbulence\"",
             "\"turbulence\"\nstep = 8.0",
             24,
-            "T2 cannot be controlled so",
+            "the controller of T2 cannot be built",
         ),
         (
             PRESCRIBED,
             "strouhal = 0.25 }",
             "strouhal = 0.25, stop = 40 }",
             22,
-            "T1 cannot be controlled so: stop = 40 s comes before the excitation is whole",
+            "the controller of T1 cannot be built: stop = 40 s comes before the excitation has its full amplitude",
         ),
         (
             PRESCRIBED,

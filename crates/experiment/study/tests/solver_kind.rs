@@ -54,7 +54,7 @@ static WAKES: SolverKind = SolverKind {
         let Start { site, inflow, .. } = start;
         let values = &site.case.flow.values;
         let width = values.number("width_diameters");
-        let disc = |(model, foot): (&assemble::Model, &Vector3)| Disc {
+        let disc = |(model, foot): (&assemble::TurbineModel, &Vector3)| Disc {
             hub: *foot + Vector3::Z * model.definition.rotor.hub_height,
             radius: width * model.definition.rotor_radius(),
             deficit: 0.0,

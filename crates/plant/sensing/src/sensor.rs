@@ -40,7 +40,7 @@ pub trait Sensor: Send {
 
 /// Bytes that are no state of this sensor.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("the stored state of sensor `{sensor}` is not one of such a sensor")]
+#[error("the stored state of sensor `{sensor}` does not belong to such a sensor")]
 pub struct ForeignState {
     /// Name of the sensor.
     pub sensor: String,

@@ -27,6 +27,8 @@ pub struct Key {
     pub about: &'static str,
     /// Units that people mistake for the right one, with the factor to the right one.
     pub slips: &'static [Slip],
+    /// Its names in earlier versions, which are refused with its name of today.
+    pub former_names: &'static [&'static str],
 }
 
 /// What a key may hold.
@@ -136,7 +138,7 @@ pub const fn key(
     left_out: LeftOut,
     about: &'static str,
 ) -> Key {
-    Key { name, holds, unit, left_out, about, slips: &[] }
+    Key { name, holds, unit, left_out, about, slips: &[], former_names: &[] }
 }
 
 impl Holds {
@@ -192,6 +194,12 @@ impl Key {
     /// The same key, with the units that people mistake for its own.
     pub const fn mistaken(mut self, slips: &'static [Slip]) -> Self {
         self.slips = slips;
+        self
+    }
+
+    /// The same key, with its names in earlier versions.
+    pub const fn formerly(mut self, names: &'static [&'static str]) -> Self {
+        self.former_names = names;
         self
     }
 }

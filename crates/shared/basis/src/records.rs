@@ -45,7 +45,7 @@ pub struct DeliveredPitch {
     pub clipped_share: f64,
 }
 
-/// What pitching did to blade 1: how far its actuator went, and what its bearing carried meanwhile.
+/// What pitching did to blade 1: how far its actuator went, and the load on its bearing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PitchDuty {
     /// Sum of all motion, whichever way (deg).
@@ -83,7 +83,7 @@ impl PitchDuty {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PitchResponse {
-    /// In the belief of what finds the helix.
+    /// In the estimator's model of the turbine's own pitch.
     Estimator {
         /// Factor on tilt and yaw of the pitch (–).
         gain: f64,
@@ -173,7 +173,7 @@ pub struct TurbineSummary {
     pub meandering: Option<MeanderingSummary>,
     /// Standard deviations and damage-equivalent loads of its moments, by channel.
     pub loads: Vec<Load>,
-    /// What pitching did to blade 1; absent where the series does not hold its root moments.
+    /// Travel and bearing load of blade 1's pitch; absent where the series does not hold its root moments.
     pub pitch_duty: Option<PitchDuty>,
 }
 
@@ -206,7 +206,7 @@ pub struct Cost {
     pub memory: u64,
     /// Most that the program's process held at once until the run's numbers were made, runs before it in the
     /// same process included (bytes); of a run that was resumed the most of any of its processes. Absent
-    /// where the system does not tell.
+    /// where the system does not report it.
     pub peak_memory: Option<u64>,
 }
 

@@ -18,8 +18,8 @@ pub struct CoefficientTable {
 /// Why figures are no table of coefficients.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum CoefficientTableError {
-    /// Too few rows or columns, or they do not rise.
-    #[error("{axis}: two or more numbers that rise are needed, entry {entry} breaks that")]
+    /// Too few rows or columns, or they do not increase.
+    #[error("{axis}: two or more increasing numbers are needed, entry {entry} does not increase")]
     Axis {
         /// "tip-speed ratios" or "pitch angles".
         axis: &'static str,
@@ -256,7 +256,7 @@ mod tests {
         let refused = |result: Result<CoefficientTable, String>| result.expect_err("refused");
         assert!(
             refused(new(&[1.0, 3.0, 2.0], 6, 0.1))
-                .contains("ratios: two or more numbers that rise are needed, entry 3")
+                .contains("ratios: two or more increasing numbers are needed, entry 3")
         );
         assert!(refused(new(&[1.0], 2, 0.1)).contains("entry 1"));
         assert!(refused(new(&[1.0, 2.0, 3.0], 5, 0.1)).contains("6 are needed, 5 are there"));

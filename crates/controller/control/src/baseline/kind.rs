@@ -13,7 +13,7 @@ pub static BASELINE: BaselineKind = BaselineKind;
 
 static TABLE: Table = Table {
     heading: "control.T1 = { kind = \"baseline\" }",
-    about: "Most power below rated, rated power above.",
+    about: "Maximum power below rated, rated power above.",
     keys: &[],
 };
 

@@ -52,16 +52,17 @@ fn check_strouhal(values: &Values) -> Option<Objection> {
     })
 }
 
-/// What is missing for the reference, and what is of no use for it.
+/// What is missing for the reference, and what does not apply to it.
 fn check_reference(values: &Values) -> Vec<Objection> {
     let word = values.word("reference");
     let mut objections = Vec::new();
     for (key, needed) in REFERENCES {
         if values.has(key) && word != needed {
-            let message =
-                format!("is of no use here: it goes with reference = \"{needed}\", not \"{word}\"");
+            let message = format!(
+                "has no effect here: it goes with reference = \"{needed}\", not \"{word}\""
+            );
             let fix = "leave it out".to_owned();
-            objections.push(Objection { key: Some(key), message, label: "of no use", fix });
+            objections.push(Objection { key: Some(key), message, label: "no effect", fix });
         } else if !values.has(key) && word == "given" && needed == "given" {
             let fix = "reference = \"given\" needs the amplitudes of tilt and yaw moment in the baseline, in MN m";
             objections.push(missing(key, fix));
@@ -71,7 +72,7 @@ fn check_reference(values: &Values) -> Vec<Objection> {
 }
 
 fn check_decoupling(values: &Values) -> Vec<Objection> {
-    let fix = "azimuth_offset_deg, delay and moment_per_degree_mnm go together; leave all three out to have them found before the runs";
+    let fix = "azimuth_offset_deg, delay and moment_per_degree_mnm go together; leave all three out to have them identified before the runs";
     let is_given = DECOUPLING.iter().any(|key| values.has(key));
     let absent = DECOUPLING.into_iter().filter(|key| is_given && !values.has(key));
     absent.map(|key| missing(key, fix)).collect()

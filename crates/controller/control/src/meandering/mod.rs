@@ -167,15 +167,15 @@ impl Meandering {
     /// The load on each axis, the wake's part and what pitch adds together; below zero where pitch adds more
     /// than it should.
     fn loads(&self, estimate: &TwoAxisEstimate) -> [Axis; 2] {
-        let believed = [estimate.tilt, estimate.yaw];
+        let estimated = [estimate.tilt, estimate.yaw];
         if self.settings.followed == Followed::Load {
-            return believed;
+            return estimated;
         }
         let added = [&self.tilt, &self.yaw];
         std::array::from_fn(|index| Axis {
-            amplitude: believed[index].amplitude + self.authority * added[index].added_amplitude(),
-            offset: believed[index].offset + self.authority * added[index].added_offset(),
-            phase: believed[index].phase,
+            amplitude: estimated[index].amplitude + self.authority * added[index].added_amplitude(),
+            offset: estimated[index].offset + self.authority * added[index].added_offset(),
+            phase: estimated[index].phase,
         })
     }
 

@@ -42,7 +42,7 @@ pub(super) fn outcome(
     let acts = given.amplitude != 0.0 && given.fallback;
     let warning = || {
         format!(
-            " was locked to the wake's motion {:.0} % of the time, and pitched nothing of its own meanwhile",
+            " was locked to the wake's motion {:.0} % of the time, and added no pitch without lock",
             100.0 * found.locked_share
         )
     };

@@ -10,14 +10,14 @@ use basis::records::PitchResponse;
 
 pub(super) static TABLE: Table = Table {
     heading: "control.T2 = { kind = \"meandering\", … }",
-    about: "Cyclic pitch in phase with the meandering of the wake that comes from upstream, found in the tilt and yaw moments of the blades by a phase-locked loop (`docs/phase-locked-loops.md`): it amplifies their slow oscillation, or attenuates it.",
+    about: "Cyclic pitch in phase with the meandering of the wake from upstream, whose phase a phase-locked loop estimates from the tilt and yaw moments of the blades (`docs/phase-locked-loops.md`): it amplifies their slow oscillation, or attenuates it.",
     keys: &[
         key(
             "factor",
             from(0.0, 10.0),
             "–",
             Required,
-            "Target amplitude of the oscillation over that of the baseline, α: above 1 amplifies and mixes the wake, below 1 attenuates and spares the turbine.",
+            "Target amplitude of the oscillation over that of the baseline, α: above 1 amplifies and mixes the wake, below 1 attenuates and lowers the turbine's loads.",
         ),
         key(
             "amplitude_deg",
@@ -45,7 +45,7 @@ pub(super) static TABLE: Table = Table {
             Holds::Choice(&["cw", "ccw"]),
             "",
             Value("\"cw\""),
-            "Way the load circles, looking downwind: the yaw moment a quarter period after the tilt moment (`cw`) or before it (`ccw`).",
+            "Sense in which the load rotates, looking downwind: the yaw moment a quarter period after the tilt moment (`cw`) or before it (`ccw`).",
         ),
         key(
             "leader",
@@ -59,7 +59,7 @@ pub(super) static TABLE: Table = Table {
             Holds::Choice(&["wake", "load"]),
             "",
             Value("\"wake\""),
-            "`wake`: the loads less what the pitch adds to them, each axis with its own phase. `load`: the loads as they are, as published; below a factor of about 0.5 the loop answers to its own pitch.",
+            "`wake`: the loads less what the pitch adds to them, each axis with its own phase. `load`: the loads as they are, as published; below a factor of about 0.5 the loop responds to its own pitch.",
         ),
         key(
             "reference",
@@ -94,7 +94,7 @@ pub(super) static TABLE: Table = Table {
             above(0.0, 1.0),
             "1/s",
             Value("0.01"),
-            "Amplitude added per second and amplitude missing.",
+            "Amplitude added per second, per amplitude that is lacking.",
         ),
         key(
             "fallback",
@@ -114,21 +114,21 @@ pub(super) static TABLE: Table = Table {
             "azimuth_offset_deg",
             PHASE_RANGE,
             "deg",
-            Otherwise("found before the runs, by a helix of a degree in either sense"),
-            "Azimuth offset of the inverse multi-blade transformation, with which tilt pitch answers in the tilt moment alone; with `delay` and `moment_per_degree_mnm`.",
+            Otherwise("identified before the runs, by a helix of a degree in either sense"),
+            "Azimuth offset of the inverse multi-blade transformation, with which tilt pitch changes the tilt moment alone; with `delay` and `moment_per_degree_mnm`.",
         ),
         key(
             "delay",
             from(-100.0, 100.0),
             "s",
-            Otherwise("found with `azimuth_offset_deg`"),
+            Otherwise("identified with `azimuth_offset_deg`"),
             "Time by which the moments lag behind cyclic pitch.",
         ),
         key(
             "moment_per_degree_mnm",
             above(0.0, 1e4),
             "MN m",
-            Otherwise("found with `azimuth_offset_deg`"),
+            Otherwise("identified with `azimuth_offset_deg`"),
             "Tilt or yaw moment lost per degree of cyclic pitch.",
         ),
         START,

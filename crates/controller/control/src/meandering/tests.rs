@@ -96,7 +96,7 @@ fn settled(rotor: &mut Rotor, settings: MeanderingControlSettings) -> ([f64; 2],
 }
 
 #[test]
-fn the_factor_asked_for_is_reached_on_both_axes() {
+fn the_target_factor_is_reached_on_both_axes() {
     for sense in [Sense::Clockwise, Sense::CounterClockwise] {
         for factor in [1.25, 0.75, 0.35, 2.0] {
             let mut rotor = Rotor::new(sense, 1, 0.0);
@@ -146,7 +146,7 @@ fn a_load_can_be_taken_away_whole_when_the_wake_is_followed() {
 
 /// A loop held to rates above the load's own never locks.
 #[test]
-fn without_a_lock_it_waits_or_pitches_as_asked() {
+fn without_a_lock_it_waits_or_pitches_as_set() {
     for needs_lock in [true, false] {
         let mut given = settings(Sense::Clockwise, 2.0);
         given.needs_lock = needs_lock;
@@ -165,7 +165,7 @@ fn without_a_lock_it_waits_or_pitches_as_asked() {
 }
 
 #[test]
-fn offsets_are_taken_away_where_asked() {
+fn offsets_are_removed_where_set() {
     let sense = Sense::CounterClockwise;
     let mut given = settings(sense, 0.75);
     given.maximum_offset = 0.05;
@@ -310,14 +310,14 @@ fn what_cannot_be_built_says_why() {
 
 /// Gains that nothing is pitched by are no matter.
 #[test]
-fn a_loop_that_watches_may_have_any_gain() {
+fn a_loop_that_monitors_may_have_any_gain() {
     let mut given = settings(Sense::Clockwise, 1.25);
     (given.bandwidth, given.decoupling.delay, given.maximum_amplitude) = (0.5, 4.0, 0.0);
     assert!(Meandering::new(given, INTERVAL).is_ok());
 }
 
 #[test]
-fn watching_leaves_every_bit_of_the_pitch() {
+fn monitoring_leaves_every_bit_of_the_pitch() {
     let sense = Sense::Clockwise;
     let mut given = settings(sense, 1.5);
     given.maximum_amplitude = 0.0;

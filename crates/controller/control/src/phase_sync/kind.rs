@@ -22,7 +22,7 @@ const SHARE: &str = "sync_share";
 /// Share of the time without a trusted phase beyond which a reader must know (–).
 const FADED_SHARE: f64 = 0.02;
 
-/// The helix in step with the one that comes from upstream.
+/// A helix synchronised with the one from upstream.
 pub struct PhaseSyncKind;
 
 /// The kind.
@@ -59,10 +59,10 @@ impl ControllerKind for PhaseSyncKind {
             objections.push(Objection {
                 key: None,
                 message: format!(
-                    "{turbine} shall join a helix, but no turbine upstream of it has one in this run"
+                    "{turbine} is to join a helix, but no turbine upstream of it pitches one in this run"
                 ),
                 label: "joins what?",
-                fix: "give a turbine upstream a helix, or say which helix it is: sense = \"ccw\", strouhal = 0.25"
+                fix: "give a turbine upstream a helix, or set which helix it is: sense = \"ccw\", strouhal = 0.25"
                     .to_owned(),
             });
         }
@@ -70,11 +70,11 @@ impl ControllerKind for PhaseSyncKind {
             // Nothing is pitched, with whatever offset.
             values.set("azimuth_offset_deg", 0.0);
         }
-        if values.word("estimator") != "published" && values.has("wandering_phase") {
+        if values.word("estimator") != "published" && values.has("process_noise_phase") {
             objections.push(Objection {
-                key: Some("wandering_phase"),
-                message: "is of no use here: it goes with estimator = \"published\"; the states of \"robust\" are sine and cosine components, which wander as wandering_amplitude says".to_owned(),
-                label: "of no use",
+                key: Some("process_noise_phase"),
+                message: "has no effect here: it goes with estimator = \"published\"; the states of \"robust\" are sine and cosine components, whose process noise is process_noise_amplitude".to_owned(),
+                label: "no effect",
                 fix: "leave it out".to_owned(),
             });
         }
@@ -152,12 +152,12 @@ impl ControllerKind for PhaseSyncKind {
             name: "faded-share".to_owned(),
             value: Some(faded),
             unit: "–".to_owned(),
-            about: "share of the time in which the phase was not trusted and baseline ran"
+            about: "share of the time in which the phase estimate was not trusted and baseline ran"
                 .to_owned(),
         };
         let warning = || {
             format!(
-                " could not trust the phase that it found {:.0} % of the time, and ran baseline meanwhile",
+                " did not trust its phase estimate {:.0} % of the time, and ran baseline then",
                 100.0 * faded
             )
         };

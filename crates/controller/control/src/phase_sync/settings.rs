@@ -7,11 +7,11 @@ use basis::Sense;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Table, above, from, key};
 use basis::records::PitchResponse;
-use estimation::helix::{Calibration, HelixSettings, Measurement, Options, Wake};
+use estimation::helix::{Calibration, HelixOptions, HelixSettings, Measurement, Wake};
 
 pub(super) static TABLE: Table = Table {
     heading: "control.T2 = { kind = \"phase-sync\", … }",
-    about: "The helix in step with the one that comes from upstream: its phase is found in the blade loads, and the pitch follows it with an offset.",
+    about: "A helix synchronised with the one from upstream: the phase is estimated from the blade loads, and the pitch follows it with an offset.",
     keys: &[
         key(
             "offset_deg",
@@ -32,7 +32,7 @@ pub(super) static TABLE: Table = Table {
             Holds::Choice(&["cw", "ccw"]),
             "",
             Otherwise("that of the nearest turbine upstream with a helix"),
-            "Which way the helix winds that it joins.",
+            "Sense of the helix that it joins.",
         ),
         key(
             "strouhal",
@@ -46,16 +46,16 @@ pub(super) static TABLE: Table = Table {
             PHASE_RANGE,
             "deg",
             Otherwise(
-                "found before the runs, by a helix of a degree in either sense in prescribed wind",
+                "identified before the runs, by a helix of a degree in either sense in prescribed wind",
             ),
-            "Azimuth offset ψ of the inverse multi-blade transformation, with which tilt pitch answers in the tilt moment alone; 0 with `amplitude_deg = 0`. At one frequency the blades pitch with it as with none and an `offset_deg` greater (`ccw`) or less (`cw`) by ψ.",
+            "Azimuth offset ψ of the inverse multi-blade transformation, with which tilt pitch changes the tilt moment alone; 0 with `amplitude_deg = 0`. At one frequency the blades pitch with it as with none and an `offset_deg` greater (`ccw`) or less (`cw`) by ψ.",
         ),
         key(
             "estimator",
             Holds::Choice(&["robust", "published"]),
             "",
             Value("\"robust\""),
-            "`robust`: extended Kalman filter with states for shear, eddies and what else its model lacks. `published`: the four states of van Vondelen et al. (2025).",
+            "`robust`: extended Kalman filter with states for shear, eddies and other model errors. `published`: the four states of van Vondelen et al. (2025).",
         ),
         key(
             "fallback",
@@ -72,19 +72,21 @@ pub(super) static TABLE: Table = Table {
             "Standard deviation of the noise in a blade's moment that the estimator assumes. `wakemix analyse tune` finds it, and the wave's process noise intensity, on the records of a run.",
         ),
         key(
-            "wandering_amplitude",
+            "process_noise_amplitude",
             above(0.0, 1e6),
             "m²/s³",
             Otherwise("8e-4; 1e-4 with `estimator = \"published\"`"),
             "Process noise intensity of the helix's amplitude in the estimator, a variance per time, (m/s)²/s; with `robust` of each of its sine and cosine components.",
-        ),
+        )
+        .formerly(&["wandering_amplitude"]),
         key(
-            "wandering_phase",
+            "process_noise_phase",
             above(0.0, 1e6),
             "rad²/s",
             Otherwise("1e-4; only with `estimator = \"published\"`"),
             "Process noise intensity of each phase in the estimator, a variance per time.",
-        ),
+        )
+        .formerly(&["wandering_phase"]),
         START,
     ],
 };
@@ -95,7 +97,7 @@ const MEGA: f64 = 1e6;
 /// Settings of a turbine that joins the helix that comes from upstream.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseSyncSettings {
-    /// Which way the helix winds that it joins.
+    /// Sense of the helix that it joins.
     pub sense: Sense,
     /// Pitch amplitude (rad); 0 is the baseline that only estimates.
     pub amplitude: f64,
@@ -144,8 +146,8 @@ impl PhaseSyncSettings {
             fallback: values.word("fallback") != "none",
             noise: PhaseNoise {
                 measurement: values.optional_number("measurement_noise_mnm").map(|n| n * MEGA),
-                wandering_amplitude: values.optional_number("wandering_amplitude"),
-                wandering_phase: values.optional_number("wandering_phase"),
+                process_noise_amplitude: values.optional_number("process_noise_amplitude"),
+                process_noise_phase: values.optional_number("process_noise_phase"),
             },
             calibration: control.response.as_ref().and_then(calibration_of),
         })
@@ -163,7 +165,7 @@ impl PhaseSyncSettings {
     }
 
     /// Choices of its estimator with its own noise, before calibration.
-    pub fn estimator_options(&self, flow_resolves_induction: bool) -> Options {
+    pub fn estimator_options(&self, flow_resolves_induction: bool) -> HelixOptions {
         self.noise.apply(self.estimator.options(flow_resolves_induction))
     }
 
@@ -173,25 +175,25 @@ impl PhaseSyncSettings {
     }
 }
 
-/// Noise that a phase estimator takes for granted; what is absent stays as the estimator has it.
+/// Noise that a phase estimator assumes; what is absent stays as the estimator has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhaseNoise {
     /// Standard deviation of one blade's moment (N m).
     pub measurement: Option<f64>,
     /// Process noise intensity of amplitudes, or of sine and cosine components ((m/s)²/s).
-    pub wandering_amplitude: Option<f64>,
+    pub process_noise_amplitude: Option<f64>,
     /// Process noise intensity of phases (rad²/s).
-    pub wandering_phase: Option<f64>,
+    pub process_noise_phase: Option<f64>,
 }
 
 impl PhaseNoise {
     /// `options` with this noise.
-    pub fn apply(&self, options: Options) -> Options {
+    pub fn apply(&self, options: HelixOptions) -> HelixOptions {
         let mut options = options;
         let noise = &mut options.noise;
         noise.measurement = self.measurement.map_or(noise.measurement, Measurement::Moment);
-        noise.amplitude = self.wandering_amplitude.unwrap_or(noise.amplitude);
-        noise.phase = self.wandering_phase.unwrap_or(noise.phase);
+        noise.amplitude = self.process_noise_amplitude.unwrap_or(noise.amplitude);
+        noise.phase = self.process_noise_phase.unwrap_or(noise.phase);
         options
     }
 }
@@ -207,17 +209,17 @@ pub enum PhaseEstimator {
 
 impl PhaseEstimator {
     /// Its choices, before calibration, with the noise that it comes with.
-    pub fn options(self, flow_resolves_induction: bool) -> Options {
+    pub fn options(self, flow_resolves_induction: bool) -> HelixOptions {
         match self {
             Self::Robust if !flow_resolves_induction => {
                 // Momentum theory keeps the wake's delay with the blade, a resolved flow where the blade has
                 // passed.
-                let mut options = Options::default();
+                let mut options = HelixOptions::default();
                 options.rotor.wake = Wake::WithBlades { time_factor: 1.0 };
                 options
             }
-            Self::Robust => Options::default(),
-            Self::Published => Options::published(),
+            Self::Robust => HelixOptions::default(),
+            Self::Published => HelixOptions::published(),
         }
     }
 }

@@ -9,7 +9,7 @@
 //! calibration against experiments as a remedy for its biases (§4.2).
 
 use super::estimator::HelixEstimator;
-use super::options::Options;
+use super::options::HelixOptions;
 use super::settings::HelixSettings;
 use crate::{EstimationError, Estimator};
 use basis::{Measurements, Sense};
@@ -39,7 +39,7 @@ pub struct Calibration {
 
 impl Calibration {
     /// `options` with this calibration.
-    pub fn apply(&self, options: Options) -> Options {
+    pub fn apply(&self, options: HelixOptions) -> HelixOptions {
         let mut options = options;
         options.rotor.pitch_gain = self.gain;
         options.rotor.pitch_azimuth_offset = self.azimuth_offset;
@@ -57,7 +57,7 @@ impl Calibration {
 pub fn calibrate(
     definition: &Arc<Definition>,
     settings: &HelixSettings,
-    options: Options,
+    options: HelixOptions,
     record: &[Measurements],
     settling: f64,
 ) -> Result<Calibration, EstimationError> {
@@ -111,7 +111,7 @@ pub fn calibrate(
 
 /// `options` with a complex `factor` on the pitch's phasor: turning tilt and yaw by an azimuth takes it from
 /// a ccw helix's phase and adds it to a cw one's.
-fn with_factor(options: Options, sense: Sense, factor: Complex64) -> Options {
+fn with_factor(options: HelixOptions, sense: Sense, factor: Complex64) -> HelixOptions {
     let turned = factor.arg();
     let mut options = options;
     options.rotor.pitch_gain = factor.norm();

@@ -1,7 +1,7 @@
 //! Estimate of the helix in the wind.
 
-use super::belief::{BIAS, MEAN_WIND, PASSING, RATE};
 use super::filter::{Filter, FilterState};
+use super::state_estimate::{BIAS, MEAN_WIND, PASSING, RATE};
 use super::trust::Trust;
 use super::wave::{Axis, UNKNOWN_PHASE};
 use crate::{Oscillation, Quantity};
@@ -60,13 +60,13 @@ pub enum Status {
 impl HelixEstimate {
     /// From `state` at `angle` (rad) of the excitation.
     pub(super) fn of(filter: &Filter, state: &FilterState, angle: f64, status: Status) -> Self {
-        let belief = &state.belief;
-        let [tilt, yaw] = filter.axes(belief);
-        let (wind, _) = filter.wind(&belief.mean, angle, [0.0; 2]);
+        let estimate = &state.estimate;
+        let [tilt, yaw] = filter.axes(estimate);
+        let (wind, _) = filter.wind(&estimate.mean, angle, [0.0; 2]);
         let other = FixedFrame {
             average: 0.0,
-            tilt: belief.mean[BIAS] + belief.mean[PASSING],
-            yaw: belief.mean[BIAS + 1] + belief.mean[PASSING + 1],
+            tilt: estimate.mean[BIAS] + estimate.mean[PASSING],
+            yaw: estimate.mean[BIAS + 1] + estimate.mean[PASSING + 1],
         };
         let trust = if status == Status::Waiting {
             Trust::default()
@@ -81,8 +81,8 @@ impl HelixEstimate {
             state.monitor.trust(variance(&tilt).max(variance(&yaw)))
         };
         Self {
-            mean_wind: belief.mean[MEAN_WIND],
-            mean_wind_variance: belief.covariance[MEAN_WIND][MEAN_WIND],
+            mean_wind: estimate.mean[MEAN_WIND],
+            mean_wind_variance: estimate.covariance[MEAN_WIND][MEAN_WIND],
             tilt,
             yaw,
             helix: FixedFrame {
@@ -94,7 +94,7 @@ impl HelixEstimate {
             instantaneous: state.instantaneous,
             sense: filter.sense,
             angle: wrap_to_turn(angle),
-            rate: filter.rate + belief.mean[RATE],
+            rate: filter.rate + estimate.mean[RATE],
             innovation: state.monitor.innovation(),
             trust,
             status,

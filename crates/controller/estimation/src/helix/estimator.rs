@@ -1,13 +1,13 @@
 //! The extended Kalman filter with the rotor's blade-element model as measurement function.
 
-use super::belief::{MEAN_WIND, N_STATES, Vector};
 use super::clock::{Clock, Use};
 use super::estimate::{HelixEstimate, Status};
 use super::filter::{Filter, FilterState, Instant, Readings};
 use super::flap::Bend;
-use super::options::{Jacobian, Options};
+use super::options::{HelixOptions, Jacobian};
 use super::rotor::{self, Rotor, RotorKinematics};
 use super::settings::{HelixSettings, check};
+use super::state_estimate::{MEAN_WIND, N_STATES, Vector};
 use crate::{EstimationError, Estimator};
 use basis::{Measurements, PerBlade};
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ use turbine::Definition;
 /// Estimates mean wind, amplitude and phases of a helix from the moments at the blade roots, while its own
 /// rotor pitches.
 ///
-/// The filter of van Vondelen et al. (2025), Eqs. 8-21; [`Options`] hold what they leave open. Parameters
+/// The filter of van Vondelen et al. (2025), Eqs. 8-21; [`HelixOptions`] hold what they leave open. Parameters
 /// come from the case; [`HelixEstimator::state`] is the whole state.
 #[derive(Clone, Debug)]
 pub struct HelixEstimator {
@@ -48,7 +48,7 @@ impl HelixEstimator {
     pub fn new(
         definition: &Arc<Definition>,
         settings: &HelixSettings,
-        options: Options,
+        options: HelixOptions,
     ) -> Result<Self, EstimationError> {
         check(definition, settings, &options)?;
         let filter = Filter {
@@ -70,7 +70,7 @@ impl HelixEstimator {
     }
 
     /// Its options.
-    pub fn options(&self) -> &Options {
+    pub fn options(&self) -> &HelixOptions {
         &self.filter.options
     }
 
@@ -89,7 +89,7 @@ impl HelixEstimator {
         let Self { rotor, memory, state, .. } = self;
         let wind = rotor.settle(mean_moment, kinematics, &mut state.rotor, memory);
         state.filter = self.filter.blank();
-        state.filter.belief = self.filter.start(wind);
+        state.filter.estimate = self.filter.start(wind);
         true
     }
 
@@ -111,7 +111,7 @@ impl HelixEstimator {
         let Self { filter, rotor, memory, state, .. } = self;
         filter.predict(interval, &mut state.filter);
         let pitch_wind = rotor.wind_equivalent_of_pitch(&kinematics);
-        let (wind, wind_slopes) = filter.wind(&state.filter.belief.mean, angle, pitch_wind);
+        let (wind, wind_slopes) = filter.wind(&state.filter.estimate.mean, angle, pitch_wind);
         let expected = rotor.advance(interval, wind, &kinematics, &mut state.rotor, memory);
         let slopes = match filter.options.jacobian {
             Jacobian::Analytic => Filter::blade_slopes(kinematics.azimuth, &expected, &wind_slopes),
@@ -124,10 +124,10 @@ impl HelixEstimator {
             let Self { filter, state, .. } = self;
             filter.correct(&now, &expected, &slopes, readings, &mut state.filter)
         };
-        if !self.state.filter.belief.is_finite() {
+        if !self.state.filter.estimate.is_finite() {
             let wind = if wind.average.is_finite() { wind.average } else { 0.5 * rotor::WINDS[1] };
             self.state.filter = self.filter.blank();
-            self.state.filter.belief = self.filter.start(wind);
+            self.state.filter.estimate = self.filter.start(wind);
             return Status::Restarted;
         }
         match n_used {
@@ -146,7 +146,7 @@ impl HelixEstimator {
         kinematics: &RotorKinematics,
         bend: &Bend,
     ) -> PerBlade<Vector> {
-        let mean = &self.state.filter.belief.mean;
+        let mean = &self.state.filter.estimate.mean;
         let pitch_wind = self.rotor.wind_equivalent_of_pitch(kinematics);
         let mut slopes = PerBlade::splat(self.rotor.n_blades(), [0.0; N_STATES]);
         for index in 0..N_STATES {
@@ -201,6 +201,6 @@ impl Estimator for HelixEstimator {
 impl HelixEstimator {
     /// Estimated mean wind (m/s); zero before the first measurement.
     pub fn mean_wind(&self) -> f64 {
-        self.state.filter.belief.mean[MEAN_WIND]
+        self.state.filter.estimate.mean[MEAN_WIND]
     }
 }

@@ -1,8 +1,10 @@
 //! The Kalman filter proper: prediction of the states, correction by the moments, adaptation of the noise.
 
-use super::belief::{BIAS, Belief, MEAN_WIND, N_STATES, PASSING, RATE, RESPONSE, Vector, WAVE};
-use super::options::{Adaptation, Measurement, Options};
+use super::options::{Adaptation, HelixOptions, Measurement};
 use super::rotor::{Expected, WINDS};
+use super::state_estimate::{
+    BIAS, MEAN_WIND, N_STATES, PASSING, RATE, RESPONSE, StateEstimate, Vector, WAVE,
+};
 use super::trust::TrustMonitor;
 use super::wave::Axis;
 use basis::angle::wrap_to_half_turn;
@@ -25,7 +27,7 @@ const INITIAL_PHASE: f64 = 1.8;
 /// Parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Filter {
-    pub(super) options: Options,
+    pub(super) options: HelixOptions,
     pub(super) sense: Sense,
     /// Excitation rate (rad/s).
     pub(super) rate: f64,
@@ -36,7 +38,7 @@ pub(super) struct Filter {
 /// State of the filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct FilterState {
-    pub(super) belief: Belief,
+    pub(super) estimate: StateEstimate,
     pub(super) monitor: TrustMonitor,
     /// Adapted variance of the moments over that of the options (–).
     measurement: f64,
@@ -79,7 +81,7 @@ pub(super) type Readings = PerBlade<Option<f64>>;
 impl Filter {
     pub(super) fn blank(&self) -> FilterState {
         FilterState {
-            belief: Belief::zero(),
+            estimate: StateEstimate::zero(),
             monitor: TrustMonitor::default(),
             measurement: 1.0,
             eddies: self.options.eddies.map_or(0.0, |eddies| eddies.deviation.powi(2)),
@@ -90,11 +92,11 @@ impl Filter {
     }
 
     /// The initial state when only the mean `wind` (m/s) is known.
-    pub(super) fn start(&self, wind: f64) -> Belief {
-        let Options { form, noise, bias, rate, .. } = self.options;
-        let mut belief = Belief::zero();
+    pub(super) fn start(&self, wind: f64) -> StateEstimate {
+        let HelixOptions { form, noise, bias, rate, .. } = self.options;
+        let mut estimate = StateEstimate::zero();
         let mut variances = [0.0; N_STATES];
-        belief.mean[MEAN_WIND] = wind;
+        estimate.mean[MEAN_WIND] = wind;
         variances[MEAN_WIND] = INITIAL_WIND.powi(2);
         let amplitude = noise.initial_amplitude;
         for index in (0..4).filter(|index| form.is_used(*index)) {
@@ -102,7 +104,7 @@ impl Filter {
             variances[WAVE + index] = if phase { INITIAL_PHASE } else { amplitude }.powi(2);
             // A phase has no slope where there is no amplitude to begin with.
             if !phase && form.is_phase(1) {
-                belief.mean[WAVE + index] = amplitude;
+                estimate.mean[WAVE + index] = amplitude;
             }
         }
         if bias.is_some() {
@@ -118,16 +120,16 @@ impl Filter {
             variances[RATE] = (INITIAL_RATE * self.rate).powi(2);
         }
         let pairs = self.pairs(|index| variances[WAVE + index]);
-        belief.spread(&variances, &pairs);
-        belief
+        estimate.spread(&variances, &pairs);
+        estimate
     }
 
     /// Prediction over `interval` (s).
     pub(super) fn predict(&self, interval: f64, state: &mut FilterState) {
-        let Options { form, noise, bias, eddies, rate, .. } = self.options;
+        let HelixOptions { form, noise, bias, eddies, rate, .. } = self.options;
         let mut incoming = [0.0; N_STATES];
         if rate.is_some() {
-            self.turn(interval, &mut state.belief);
+            self.turn(interval, &mut state.estimate);
         }
         incoming[MEAN_WIND] = noise.mean_wind * interval;
         // The process noise of the wave scales with the variance of the eddies, so that the filter keeps its
@@ -141,19 +143,19 @@ impl Filter {
         incoming[BIAS..BIAS + 2].fill(bias.unwrap_or(0.0) * interval);
         incoming[RATE] = rate.unwrap_or(0.0) * interval;
         if let Some(eddies) = eddies {
-            let wind = state.belief.mean[MEAN_WIND].max(WINDS[0]);
+            let wind = state.estimate.mean[MEAN_WIND].max(WINDS[0]);
             let kept = (-interval * wind / (eddies.time_constant * self.diameter)).exp();
             for index in [PASSING, PASSING + 1] {
-                state.belief.mean[index] *= kept;
+                state.estimate.mean[index] *= kept;
                 for other in 0..N_STATES {
-                    state.belief.covariance[index][other] *= kept;
-                    state.belief.covariance[other][index] *= kept;
+                    state.estimate.covariance[index][other] *= kept;
+                    state.estimate.covariance[other][index] *= kept;
                 }
                 incoming[index] = state.eddies * (1.0 - kept * kept);
             }
         }
         let pairs = self.pairs(|index| incoming[WAVE + index]);
-        state.belief.spread(&incoming, &pairs);
+        state.estimate.spread(&incoming, &pairs);
     }
 
     /// The fixed frame's wind (m/s) at `angle` (rad) of the excitation where the states are `mean`, and its
@@ -207,33 +209,33 @@ impl Filter {
         }
         .max(f64::MIN_POSITIVE);
         let variance = nominal * state.measurement;
-        let before = state.belief.mean;
+        let before = state.estimate.mean;
         let (mut n_used, mut square, mut left) = (0, 0.0, 0.0);
         for blade in 0..n_blades {
             let Some(reading) = readings[blade] else { continue };
             let slopes = &slopes[blade];
             let moved: f64 =
-                (0..N_STATES).map(|k| slopes[k] * (state.belief.mean[k] - before[k])).sum();
+                (0..N_STATES).map(|k| slopes[k] * (state.estimate.mean[k] - before[k])).sum();
             let innovation = reading - expected.moments[blade] - moved;
-            let spread = state.belief.variance_along(slopes);
+            let spread = state.estimate.variance_along(slopes);
             let total = spread + variance;
             let distance = innovation.abs() / total.sqrt();
             let inflation = (distance / HUBER_LIMIT).max(1.0);
             let inflated = inflation * total - spread;
-            state.belief.correct(slopes, innovation, inflated);
+            state.estimate.correct(slopes, innovation, inflated);
             n_used += 1;
             square += (distance * distance).min(1e6);
             // Posterior residual plus the remaining uncertainty of the state: an estimate of the measurement
             // noise.
             let residual = (innovation * inflated / (inflation * total)).abs();
             let limit = HUBER_LIMIT * variance.sqrt();
-            left += (residual.min(limit).powi(2) + state.belief.variance_along(slopes)) / nominal;
+            left += (residual.min(limit).powi(2) + state.estimate.variance_along(slopes)) / nominal;
         }
         if n_used == 0 {
             return 0;
         }
-        self.options.form.tidy(&mut state.belief);
-        state.belief.mean[MEAN_WIND] = state.belief.mean[MEAN_WIND].clamp(WINDS[0], WINDS[1]);
+        self.options.form.tidy(&mut state.estimate);
+        state.estimate.mean[MEAN_WIND] = state.estimate.mean[MEAN_WIND].clamp(WINDS[0], WINDS[1]);
         if n_used == n_blades {
             self.record_instantaneous_wind(now, expected, readings, state);
         }
@@ -269,8 +271,8 @@ impl Filter {
         slopes
     }
 
-    pub(super) fn axes(&self, belief: &Belief) -> [Axis; 2] {
-        self.options.form.axes(belief)
+    pub(super) fn axes(&self, estimate: &StateEstimate) -> [Axis; 2] {
+        self.options.form.axes(estimate)
     }
 
     /// Records the instantaneous wind: the predicted one plus the innovation of the moments in terms of wind.
@@ -295,7 +297,7 @@ impl Filter {
             tilt: now.wind.tilt + over.tilt,
             yaw: now.wind.yaw + over.yaw,
         };
-        let mean = &state.belief.mean;
+        let mean = &state.estimate.mean;
         let (pitch_wind, missed) = (now.pitch_wind, &mean[RESPONSE..RESPONSE + 2]);
         let passing = FixedFrame {
             tilt: state.instantaneous.tilt - mean[BIAS] - missed[0] * pitch_wind[0]
@@ -326,7 +328,7 @@ impl Filter {
         let bound = adaptation.bound * adaptation.bound;
         state.measurement += share * (left - state.measurement);
         state.measurement = state.measurement.clamp(1.0 / bound, bound);
-        let Belief { mean, covariance } = &state.belief;
+        let StateEstimate { mean, covariance } = &state.estimate;
         if let Some(eddies) = self.options.eddies {
             // Expected square of the eddies' states: square of the mean plus variance.
             let square = |k: usize| mean[k] * mean[k] + covariance[k][k];
@@ -362,14 +364,14 @@ impl Filter {
     }
 
     /// Turns the wave ahead for `interval` (s) by the difference of its rate from the nominal one.
-    fn turn(&self, interval: f64, belief: &mut Belief) {
+    fn turn(&self, interval: f64, estimate: &mut StateEstimate) {
         let form = self.options.form;
-        let angle = belief.mean[RATE] * interval;
+        let angle = estimate.mean[RATE] * interval;
         let mut transition = [[0.0; N_STATES]; N_STATES];
         for (index, row) in transition.iter_mut().enumerate() {
             row[index] = 1.0;
         }
-        form.turn(&mut belief.mean[WAVE..WAVE + 4], angle);
+        form.turn(&mut estimate.mean[WAVE..WAVE + 4], angle);
         if form.is_phase(1) {
             transition[WAVE + 1][RATE] = interval;
             transition[WAVE + 2][RATE] = interval;
@@ -380,11 +382,11 @@ impl Filter {
                 transition[first][first + 1] = -sine;
                 transition[first + 1][first] = sine;
                 transition[first + 1][first + 1] = cosine;
-                transition[first][RATE] = -belief.mean[first + 1] * interval;
-                transition[first + 1][RATE] = belief.mean[first] * interval;
+                transition[first][RATE] = -estimate.mean[first + 1] * interval;
+                transition[first + 1][RATE] = estimate.mean[first] * interval;
             }
         }
-        belief.carry(&transition);
+        estimate.carry(&transition);
     }
 }
 

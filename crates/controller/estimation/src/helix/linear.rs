@@ -5,14 +5,14 @@
 //! oscillator, which here stands still as sine and cosine components against the excitation. Kept for
 //! comparison.
 
-use super::belief::MEAN_WIND;
 use super::clock::{Clock, Use};
 use super::estimate::{HelixEstimate, Status};
 use super::filter::{Filter, FilterState, Instant};
 use super::flap::Bend;
-use super::options::{Options, Rotor as RotorOptions, Wake, positive};
+use super::options::{HelixOptions, Rotor as RotorOptions, Wake, positive};
 use super::rotor::{Expected, Rotor, RotorKinematics};
 use super::settings::{HelixSettings, check};
+use super::state_estimate::MEAN_WIND;
 use super::wave::Form;
 use crate::{EstimationError, Estimator};
 use basis::mbc::to_blades;
@@ -68,10 +68,10 @@ impl LinearEstimator {
         definition: &Arc<Definition>,
         settings: &HelixSettings,
         point: OperatingPoint,
-        options: Options,
+        options: HelixOptions,
     ) -> Result<Self, EstimationError> {
         let rotor = RotorOptions { wake: Wake::Static, flexible: false, ..options.rotor };
-        let options = Options {
+        let options = HelixOptions {
             form: Form::Quadrature,
             rotor,
             bias: None,
@@ -148,7 +148,7 @@ impl Estimator for LinearEstimator {
         let LinearEstimatorState { filter: state, status, .. } = &mut self.state;
         if *status == Status::Waiting {
             if let Use::Seen(..) = look {
-                state.belief = self.filter.start(self.point.wind);
+                state.estimate = self.filter.start(self.point.wind);
                 *status = Status::Tracking;
             }
         } else {
@@ -160,7 +160,8 @@ impl Estimator for LinearEstimator {
                 }
                 Use::Seen(interval, readings) => {
                     self.filter.predict(interval, state);
-                    let (wind, wind_slopes) = self.filter.wind(&state.belief.mean, angle, [0.0; 2]);
+                    let (wind, wind_slopes) =
+                        self.filter.wind(&state.estimate.mean, angle, [0.0; 2]);
                     let azimuth = measurements.azimuth;
                     let expected = self.expected(wind, measurements);
                     let slopes = Filter::blade_slopes(azimuth, &expected, &wind_slopes);
@@ -175,9 +176,9 @@ impl Estimator for LinearEstimator {
                 }
             }
         }
-        if !self.state.filter.belief.is_finite() {
+        if !self.state.filter.estimate.is_finite() {
             self.state.filter = self.filter.blank();
-            self.state.filter.belief = self.filter.start(self.point.wind);
+            self.state.filter.estimate = self.filter.start(self.point.wind);
             self.state.status = Status::Restarted;
         }
         let angle = if angle.is_finite() { angle } else { 0.0 };
@@ -196,7 +197,7 @@ impl Estimator for LinearEstimator {
 impl LinearEstimator {
     /// Estimated mean wind (m/s); zero before the first measurement.
     pub fn mean_wind(&self) -> f64 {
-        self.state.filter.belief.mean[MEAN_WIND]
+        self.state.filter.estimate.mean[MEAN_WIND]
     }
 }
 

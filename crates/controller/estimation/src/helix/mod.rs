@@ -7,7 +7,6 @@
 //! filter estimates the wind for which they equal the measured ones. Pitch is an input of the model, so the
 //! rotor may pitch in any way meanwhile.
 
-mod belief;
 mod calibration;
 mod clock;
 mod estimate;
@@ -19,6 +18,7 @@ mod model;
 mod options;
 mod rotor;
 mod settings;
+mod state_estimate;
 mod trust;
 pub mod tuning;
 mod wave;
@@ -29,7 +29,7 @@ pub use estimate::{HelixEstimate, Status};
 pub use estimator::{HelixEstimator, HelixEstimatorState};
 pub use linear::{LinearEstimator, LinearEstimatorState, OperatingPoint};
 pub use model::MeasurementModel;
-pub use options::{Adaptation, Eddies, Jacobian, Measurement, Noise, Options, Rotor, Wake};
+pub use options::{Adaptation, Eddies, HelixOptions, Jacobian, Measurement, Noise, Rotor, Wake};
 pub use settings::HelixSettings;
 pub use trust::Trust;
 pub use wave::{Axis, Form};

@@ -1,6 +1,6 @@
 //! The measurement function by itself, to compute blade moments for a known wind.
 
-use super::options::Options;
+use super::options::HelixOptions;
 use super::rotor::{Memory, Rotor, RotorKinematics, RotorModelState};
 use super::settings::{HelixSettings, check};
 use crate::EstimationError;
@@ -25,7 +25,7 @@ impl MeasurementModel {
     pub fn new(
         definition: &Arc<Definition>,
         settings: &HelixSettings,
-        options: &Options,
+        options: &HelixOptions,
     ) -> Result<Self, EstimationError> {
         check(definition, settings, options)?;
         let rotor = Rotor::new(definition, settings, options);

@@ -4,9 +4,9 @@ use super::wave::Form;
 use crate::EstimationError;
 use serde::{Deserialize, Serialize};
 
-/// Options; [`Options::default`] is the robust form, [`Options::published`] that of the authors.
+/// Options; [`HelixOptions::default`] is the robust form, [`HelixOptions::published`] that of the authors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Options {
+pub struct HelixOptions {
     /// States of the wave.
     pub form: Form,
     /// Rotor model of the filter.
@@ -139,7 +139,7 @@ pub enum Jacobian {
     },
 }
 
-impl Default for Options {
+impl Default for HelixOptions {
     fn default() -> Self {
         Self {
             form: Form::Quadrature,
@@ -170,7 +170,7 @@ impl Default for Options {
     }
 }
 
-impl Options {
+impl HelixOptions {
     /// The form of van Vondelen et al. (2025): mean wind, one amplitude, two phases; a wake with delay; fixed
     /// noise; slopes by central differences.
     ///

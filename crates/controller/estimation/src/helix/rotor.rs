@@ -1,7 +1,7 @@
 //! The measurement function: from the wind in the fixed frame to the moments at the blade roots.
 
 use super::flap::{Bend, Flap};
-use super::options::{self, Options};
+use super::options::{self, HelixOptions};
 use super::settings::HelixSettings;
 use super::weight::Weight;
 use basis::mbc::{to_blades, to_fixed_frame};
@@ -81,7 +81,7 @@ impl Rotor {
     pub(super) fn new(
         definition: &Arc<Definition>,
         settings: &HelixSettings,
-        options: &Options,
+        options: &HelixOptions,
     ) -> Self {
         let HelixSettings { n_elements, air_density, .. } = *settings;
         let radius = definition.rotor_radius();

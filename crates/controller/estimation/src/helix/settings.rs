@@ -1,6 +1,6 @@
 //! What an estimator is told of the helix that it looks for, and of its turbine.
 
-use super::options::{Options, positive};
+use super::options::{HelixOptions, positive};
 use crate::EstimationError;
 use basis::Sense;
 use serde::{Deserialize, Serialize};
@@ -36,7 +36,7 @@ impl HelixSettings {
 pub(super) fn check(
     definition: &Definition,
     settings: &HelixSettings,
-    options: &Options,
+    options: &HelixOptions,
 ) -> Result<(), EstimationError> {
     let HelixSettings { rate, interval, air_density, n_elements, .. } = *settings;
     options.check()?;

@@ -5,7 +5,7 @@
 //! derivative of the filtered true wave, and a factor on the latter found by trial against the truth. Pure
 //! functions on slices.
 
-use super::options::{Measurement, Options, positive};
+use super::options::{HelixOptions, Measurement, positive};
 use super::{HelixEstimate, HelixEstimator, HelixSettings};
 use crate::{EstimationError, Estimator};
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
@@ -33,7 +33,7 @@ pub struct ProcessNoise {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuned {
     /// Options with the best noise.
-    pub options: Options,
+    pub options: HelixOptions,
     /// Best factor on the process noise intensity of the wave (–).
     pub scale: f64,
     /// Root-mean-square phase error of tilt and yaw together with these options (rad).
@@ -277,7 +277,7 @@ pub fn best_scale(range: [f64; 2], mut cost: impl FnMut(f64) -> f64) -> (f64, f6
 pub fn tune(
     definition: &Arc<Definition>,
     settings: &HelixSettings,
-    options: Options,
+    options: HelixOptions,
     record: &[Measurements],
     truth: [&[f64]; 2],
 ) -> Result<Tuned, EstimationError> {

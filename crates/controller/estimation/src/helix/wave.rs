@@ -1,6 +1,6 @@
 //! The helix in the wind, as tilt and yaw of the fixed frame.
 
-use super::belief::{Belief, WAVE};
+use super::state_estimate::{StateEstimate, WAVE};
 use basis::Sense;
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use serde::{Deserialize, Serialize};
@@ -106,7 +106,7 @@ impl Form {
     }
 
     /// On return amplitudes are positive and phases in [−π, π), and the wave is the same.
-    pub(super) fn tidy(self, belief: &mut Belief) {
+    pub(super) fn tidy(self, estimate: &mut StateEstimate) {
         if self == Self::Quadrature {
             return;
         }
@@ -115,20 +115,20 @@ impl Form {
             _ => &[(0, &[1]), (3, &[2])],
         };
         for (amplitude, phases) in turned {
-            if belief.mean[WAVE + amplitude] < 0.0 {
-                belief.turn_sign(WAVE + amplitude);
-                phases.iter().for_each(|phase| belief.mean[WAVE + phase] += PI);
+            if estimate.mean[WAVE + amplitude] < 0.0 {
+                estimate.turn_sign(WAVE + amplitude);
+                phases.iter().for_each(|phase| estimate.mean[WAVE + phase] += PI);
             }
         }
         for phase in [1, 2] {
-            belief.mean[WAVE + phase] = wrap_to_half_turn(belief.mean[WAVE + phase]);
+            estimate.mean[WAVE + phase] = wrap_to_half_turn(estimate.mean[WAVE + phase]);
         }
     }
 
-    /// Tilt and yaw axis of `belief`.
-    pub(super) fn axes(self, belief: &Belief) -> [Axis; 2] {
-        let variance = |index: usize| belief.covariance[WAVE + index][WAVE + index];
-        let state = |index: usize| belief.mean[WAVE + index];
+    /// Tilt and yaw axis of `estimate`.
+    pub(super) fn axes(self, estimate: &StateEstimate) -> [Axis; 2] {
+        let variance = |index: usize| estimate.covariance[WAVE + index][WAVE + index];
+        let state = |index: usize| estimate.mean[WAVE + index];
         let polar = |amplitude: usize, phase: usize| Axis {
             amplitude: state(amplitude),
             amplitude_variance: variance(amplitude),
@@ -142,7 +142,7 @@ impl Form {
                 // sine component a = A cos φ, cosine component b = A sin φ.
                 let (a, b) = (state(first), state(first + 1));
                 let (aa, bb) = (variance(first), variance(first + 1));
-                let ab = belief.covariance[WAVE + first][WAVE + first + 1];
+                let ab = estimate.covariance[WAVE + first][WAVE + first + 1];
                 let square = a * a + b * b;
                 let along = a * a * aa + 2.0 * a * b * ab + b * b * bb;
                 let across = b * b * aa - 2.0 * a * b * ab + a * a * bb;
@@ -215,9 +215,9 @@ mod tests {
                 let later = form.swing(Sense::CounterClockwise, &wave, angle + 0.7);
                 let swung = form.swing(Sense::CounterClockwise, &turned, angle).yaw;
                 prop_assert!((swung - later.yaw).abs() < 1e-12);
-                let mut belief = Belief::zero();
-                belief.mean[WAVE..WAVE + 4].copy_from_slice(&wave);
-                for axis in form.axes(&belief) {
+                let mut estimate = StateEstimate::zero();
+                estimate.mean[WAVE..WAVE + 4].copy_from_slice(&wave);
+                for axis in form.axes(&estimate) {
                     prop_assert!((axis.amplitude - amplitude).abs() < 1e-12);
                     prop_assert!(wrap_to_half_turn(axis.phase - phase).abs() < 1e-12);
                 }
@@ -246,14 +246,14 @@ mod tests {
     #[test]
     fn a_negative_amplitude_is_half_a_turn() {
         for form in [Form::SharedAmplitude, Form::SeparateAmplitudes] {
-            let mut belief = Belief::zero();
+            let mut estimate = StateEstimate::zero();
             let wave = states(form, -0.8, 3.0);
-            belief.mean[WAVE..WAVE + 4].copy_from_slice(&wave);
-            form.tidy(&mut belief);
-            let [tilt, yaw] = form.axes(&belief);
+            estimate.mean[WAVE..WAVE + 4].copy_from_slice(&wave);
+            form.tidy(&mut estimate);
+            let [tilt, yaw] = form.axes(&estimate);
             assert!((tilt.amplitude - 0.8).abs() < 1e-15 && (yaw.amplitude - 0.8).abs() < 1e-15);
             assert!(wrap_to_half_turn(tilt.phase - 3.0 - PI).abs() < 1e-12);
-            let after = form.swing(Sense::Clockwise, &belief.mean[WAVE..], 0.4);
+            let after = form.swing(Sense::Clockwise, &estimate.mean[WAVE..], 0.4);
             let before = form.swing(Sense::Clockwise, &wave, 0.4);
             assert!((after.tilt - before.tilt).abs() < 1e-12);
             assert!((after.yaw - before.yaw).abs() < 1e-12);

@@ -1,6 +1,6 @@
 //! Stability of a loop that controls an amplitude, measured by a generator, to a reference.
 //!
-//! For a slow change of amplitude a generator is a lag τ (see [`Kind::lag`](super::Kind::lag) over the rate).
+//! For a slow change of amplitude a generator is a lag τ (see [`GeneratorKind::lag`](super::GeneratorKind::lag) over the rate).
 //! With proportional and integral action P and I, and a delay T from the control action to the signal,
 //!
 //! ```text
@@ -150,7 +150,7 @@ impl Crossings {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Kind;
+    use super::super::GeneratorKind;
     use super::*;
     use std::f64::consts::SQRT_2;
 
@@ -169,7 +169,7 @@ mod tests {
         [low, low * (lag * low * cosine + sine)]
     }
 
-    fn signal(generator: Kind) -> PhaseLockedSettings {
+    fn signal(generator: GeneratorKind) -> PhaseLockedSettings {
         PhaseLockedSettings { generator, ..PhaseLockedSettings::between([RATE, 1.01 * RATE]) }
     }
 
@@ -177,7 +177,11 @@ mod tests {
     /// borders within 3 % of the closed form, the frequency of the pole that crosses within 5 % of ν.
     #[test]
     fn the_border_is_that_of_the_closed_form_where_the_delay_is_long() {
-        for kind in [Kind::Second, Kind::extended(SQRT_2, 1.0).unwrap(), Kind::Mixed] {
+        for kind in [
+            GeneratorKind::Second,
+            GeneratorKind::extended(SQRT_2, 1.0).unwrap(),
+            GeneratorKind::Mixed,
+        ] {
             let [turning, largest] = border(kind.lag(SQRT_2), 20.0, 0.0).map(|by| by * RATE);
             let with = |share: f64| AmplitudeLoop {
                 integral: share * largest,
@@ -208,16 +212,16 @@ mod tests {
             delay: 0.0,
             is_taken_off: false,
         };
-        let refused = at_once.check(&signal(Kind::Second));
+        let refused = at_once.check(&signal(GeneratorKind::Second));
         let Err(PhaseLockedError::AmplitudeUnstable { largest, .. }) = refused else {
             panic!("{refused:?}")
         };
         assert!((0.5 * RATE..2.0 * RATE).contains(&largest), "{largest}");
         assert_eq!(
-            AmplitudeLoop { integral: largest, ..at_once }.check(&signal(Kind::Second)),
+            AmplitudeLoop { integral: largest, ..at_once }.check(&signal(GeneratorKind::Second)),
             Ok(())
         );
-        assert_eq!(at_once.check(&signal(Kind::Mixed)), Ok(()));
+        assert_eq!(at_once.check(&signal(GeneratorKind::Mixed)), Ok(()));
     }
 
     /// Subtracted before the generator, the control action acts at once: stable for proportional action below
@@ -226,7 +230,7 @@ mod tests {
     fn a_subtracted_control_action_is_stable_up_to_a_proportional_action_of_one() {
         let with = |proportional: f64| {
             AmplitudeLoop { integral: 0.1 * RATE, proportional, delay: 0.0, is_taken_off: true }
-                .check(&signal(Kind::Mixed))
+                .check(&signal(GeneratorKind::Mixed))
         };
         assert_eq!(with(0.9), Ok(()));
         assert!(matches!(with(1.1), Err(PhaseLockedError::AmplitudeUnstable { .. })));

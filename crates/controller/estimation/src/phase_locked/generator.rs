@@ -37,7 +37,7 @@ pub(super) fn is_usable(sample: f64) -> bool {
 
 /// Structure of the generator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Kind {
+pub enum GeneratorKind {
     /// Second-order generalised integrator (SOGI): does not estimate the offset, which disturbs its
     /// quadrature signal.
     Second,
@@ -51,7 +51,7 @@ pub enum Kind {
     Mixed,
 }
 
-impl Kind {
+impl GeneratorKind {
     /// The extended generator whose real pole decays `pole_ratio` (–) times as fast as its pair, see
     /// [`dc_gain`].
     ///
@@ -112,7 +112,7 @@ pub fn dc_gain(damping: f64, pole_ratio: f64) -> Result<f64, PhaseLockedError> {
 /// A generator with its state; serialises whole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Generator {
-    kind: Kind,
+    kind: GeneratorKind,
     damping: f64,
     /// x₁, x₂, x₃ in the unit of the samples.
     state: [f64; 3],
@@ -126,11 +126,11 @@ impl Generator {
     /// # Errors
     /// [`PhaseLockedError::Damping`] unless 0 < k < 2, beyond which a real pole slows it down;
     /// [`PhaseLockedError::DcGain`] unless that is positive.
-    pub fn new(kind: Kind, damping: f64) -> Result<Self, PhaseLockedError> {
+    pub fn new(kind: GeneratorKind, damping: f64) -> Result<Self, PhaseLockedError> {
         if !(damping > 0.0 && damping < 2.0) {
             return Err(PhaseLockedError::Damping { damping, most: 2.0 });
         }
-        if let Kind::Extended { dc_gain } = kind
+        if let GeneratorKind::Extended { dc_gain } = kind
             && !(dc_gain > 0.0 && dc_gain.is_finite())
         {
             return Err(PhaseLockedError::DcGain { dc_gain });
@@ -155,18 +155,18 @@ impl Generator {
         let [x1, x2, x3] = self.state;
         let (k, a, input) = (self.damping, (0.5 * turned).tan(), last + sample);
         self.state = match self.kind {
-            Kind::Second | Kind::Mixed => {
+            GeneratorKind::Second | GeneratorKind::Mixed => {
                 let new =
                     (x1 * (1.0 - a * (k + a)) + a * (k * input - 2.0 * x2)) / (1.0 + a * (k + a));
                 let both = x1 + new;
-                let third = if self.kind == Kind::Mixed {
+                let third = if self.kind == GeneratorKind::Mixed {
                     (x3 * (1.0 - a) + a * k * (input - both)) / (1.0 + a)
                 } else {
                     0.0
                 };
                 [new, x2 + a * both, third]
             }
-            Kind::Extended { dc_gain } => {
+            GeneratorKind::Extended { dc_gain } => {
                 // Sums over the step's two ends: of x₁, then of the error u − x₁ − x₃.
                 let loose = a * k / (1.0 + a * dc_gain);
                 let both =
@@ -183,7 +183,7 @@ impl Generator {
         let (sine, cosine) = turned.sin_cos();
         let [x1, x2, x3] = self.state;
         // The mixed generator's x₂ swings about k times the offset, which x₃ holds.
-        let middle = if self.kind == Kind::Mixed { x3 } else { 0.0 };
+        let middle = if self.kind == GeneratorKind::Mixed { x3 } else { 0.0 };
         let swing = x2 - middle;
         self.state = [cosine * x1 - sine * swing, middle + sine * x1 + cosine * swing, x3];
         if self.last.is_some() {
@@ -199,17 +199,17 @@ impl Generator {
     /// The same a quarter period later, −A cos θ (unit of the samples).
     pub fn quadrature(&self) -> f64 {
         match self.kind {
-            Kind::Second | Kind::Extended { .. } => self.state[1],
-            Kind::Mixed => self.state[1] - self.state[2],
+            GeneratorKind::Second | GeneratorKind::Extended { .. } => self.state[1],
+            GeneratorKind::Mixed => self.state[1] - self.state[2],
         }
     }
 
     /// Offset b (unit of the samples); zero from the second-order generator, which does not estimate it.
     pub fn offset(&self) -> f64 {
         match self.kind {
-            Kind::Second => 0.0,
-            Kind::Extended { .. } => self.state[2],
-            Kind::Mixed => self.state[2] / self.damping,
+            GeneratorKind::Second => 0.0,
+            GeneratorKind::Extended { .. } => self.state[2],
+            GeneratorKind::Mixed => self.state[2] / self.damping,
         }
     }
 
@@ -225,9 +225,9 @@ impl Generator {
 
     fn settled_on(&self, constant: f64) -> [f64; 3] {
         match self.kind {
-            Kind::Second => [0.0; 3],
-            Kind::Extended { .. } => [0.0, 0.0, constant],
-            Kind::Mixed => [0.0, self.damping * constant, self.damping * constant],
+            GeneratorKind::Second => [0.0; 3],
+            GeneratorKind::Extended { .. } => [0.0, 0.0, constant],
+            GeneratorKind::Mixed => [0.0, self.damping * constant, self.damping * constant],
         }
     }
 }

@@ -28,7 +28,7 @@ mod transfer;
 mod two_axis;
 
 pub use amplitude::AmplitudeLoop;
-pub use generator::{Generator, Kind, dc_gain};
+pub use generator::{Generator, GeneratorKind, dc_gain};
 pub use oscillator::{Gains, LoopSettings, Order, Oscillator, Pole};
 pub use record::{FEWEST_PERIODS, follow};
 pub use single::{Estimate, PhaseLockedLoop, PhaseLockedSettings};

@@ -1,7 +1,7 @@
 //! Phase-locked loop for one signal: generator, loop filter, oscillator and lock detection.
 
 use super::PhaseLockedError;
-use super::generator::{Generator, Kind};
+use super::generator::{Generator, GeneratorKind};
 use super::lock::Lock;
 use super::oscillator::{LONGEST_TURN, LoopSettings, Oscillator, Pole};
 use super::stability::growth;
@@ -12,7 +12,7 @@ use std::f64::consts::SQRT_2;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PhaseLockedSettings {
     /// Generator of the two quadrature signals.
-    pub generator: Kind,
+    pub generator: GeneratorKind,
     /// Damping k of the generator (–), √2 as a rule.
     pub damping: f64,
     /// Loop filter and oscillator.
@@ -24,7 +24,7 @@ impl PhaseLockedSettings {
     /// [`LoopSettings::between`].
     pub fn between(rates: [f64; 2]) -> Self {
         let follower = LoopSettings::between(rates);
-        Self { generator: Kind::Mixed, damping: SQRT_2, follower }
+        Self { generator: GeneratorKind::Mixed, damping: SQRT_2, follower }
     }
 
     /// The generator, if all settings are valid at `interval` (s).

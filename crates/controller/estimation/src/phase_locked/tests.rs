@@ -13,11 +13,11 @@ const INTERVAL: f64 = 0.1;
 const BAND: [f64; 2] = [TAU * 0.15 * 9.0 / 240.0, TAU * 0.3 * 10.5 / 240.0];
 const RATES: [f64; 2] = [0.6 * BAND[0], 1.3 * BAND[1]];
 
-fn kinds() -> [Kind; 3] {
-    [Kind::Second, Kind::extended(SQRT_2, 1.0).unwrap(), Kind::Mixed]
+fn kinds() -> [GeneratorKind; 3] {
+    [GeneratorKind::Second, GeneratorKind::extended(SQRT_2, 1.0).unwrap(), GeneratorKind::Mixed]
 }
 
-fn settings(generator: Kind) -> PhaseLockedSettings {
+fn settings(generator: GeneratorKind) -> PhaseLockedSettings {
     PhaseLockedSettings { generator, ..PhaseLockedSettings::between(RATES) }
 }
 
@@ -50,7 +50,7 @@ fn a_tone_is_followed_exactly_and_its_offset_taken_off() {
 #[test]
 fn the_second_order_generator_is_disturbed_by_an_offset() {
     let mut worst = 0.0_f64;
-    let mut follower = PhaseLockedLoop::new(&settings(Kind::Second), INTERVAL).unwrap();
+    let mut follower = PhaseLockedLoop::new(&settings(GeneratorKind::Second), INTERVAL).unwrap();
     for step in 0..20_000 {
         let estimate =
             follower.update(INTERVAL, 1.0 + 2.0 * (0.05 * INTERVAL * f64::from(step)).sin());
@@ -63,7 +63,7 @@ fn the_second_order_generator_is_disturbed_by_an_offset() {
 
 /// Phase error (rad) after a ramp from one end of the band to the other over `duration` (s).
 fn error_on_a_ramp(order: Order, duration: f64) -> f64 {
-    let mut settings = settings(Kind::Mixed);
+    let mut settings = settings(GeneratorKind::Mixed);
     settings.follower.order = order;
     let mut follower = PhaseLockedLoop::new(&settings, INTERVAL).unwrap();
     let growth = (BAND[1] - BAND[0]) / duration;
@@ -82,8 +82,9 @@ fn only_type_two_lags_behind_a_ramp() {
     let duration = 8000.0;
     let growth = (BAND[1] - BAND[0]) / duration;
     // Eq. 2-27 without the amplitude, which the half tangent takes off.
-    let lag =
-        growth / Gains::new(Order::Two, settings(Kind::Mixed).follower.natural_rate, 1.0).integral;
+    let lag = growth
+        / Gains::new(Order::Two, settings(GeneratorKind::Mixed).follower.natural_rate, 1.0)
+            .integral;
     let two = error_on_a_ramp(Order::Two, duration);
     assert!((two / lag - 1.0).abs() < 0.01, "{two} and {lag}");
     assert!(error_on_a_ramp(Order::QuasiTwo, duration).abs() < 1e-3 * lag);
@@ -94,7 +95,7 @@ fn only_type_two_lags_behind_a_ramp() {
 fn the_two_axes_keep_their_own_amplitudes_offsets_and_phases() {
     for sense in [Sense::Clockwise, Sense::CounterClockwise] {
         for leader in [Leader::Tilt, Leader::Yaw, Leader::Both] {
-            let signal = settings(Kind::Mixed);
+            let signal = settings(GeneratorKind::Mixed);
             let mut follower =
                 TwoAxisLoop::new(&TwoAxisSettings { signal, sense, leader }, INTERVAL).unwrap();
             let mut phase = 0.0;
@@ -117,7 +118,7 @@ fn the_two_axes_keep_their_own_amplitudes_offsets_and_phases() {
 #[test]
 fn samples_that_are_no_numbers_are_bridged_and_flagged() {
     for kind in kinds() {
-        let offset = if kind == Kind::Second { 0.0 } else { 3.0 };
+        let offset = if kind == GeneratorKind::Second { 0.0 } else { 3.0 };
         let mut follower = PhaseLockedLoop::new(&settings(kind), INTERVAL).unwrap();
         for step in 0..24_000 {
             let phase = 0.05 * INTERVAL * f64::from(step);
@@ -165,7 +166,7 @@ fn scattered_gaps_do_not_cost_the_lock() {
 
 #[test]
 fn noise_alone_does_not_lock() {
-    let mut follower = PhaseLockedLoop::new(&settings(Kind::Mixed), INTERVAL).unwrap();
+    let mut follower = PhaseLockedLoop::new(&settings(GeneratorKind::Mixed), INTERVAL).unwrap();
     let mut state = 1_u64;
     for _ in 0..30_000 {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -177,7 +178,7 @@ fn noise_alone_does_not_lock() {
 #[test]
 fn what_cannot_be_built_says_why() {
     let build = |change: fn(&mut PhaseLockedSettings)| {
-        let mut settings = settings(Kind::Mixed);
+        let mut settings = settings(GeneratorKind::Mixed);
         change(&mut settings);
         PhaseLockedLoop::new(&settings, INTERVAL).unwrap_err()
     };
@@ -192,12 +193,13 @@ fn what_cannot_be_built_says_why() {
         build(|s| s.follower.damping_ratio = 0.0),
         PhaseLockedError::LoopSetting { .. }
     ));
-    let seldom = PhaseLockedLoop::new(&settings(Kind::Mixed), 30.0).unwrap_err();
+    let seldom = PhaseLockedLoop::new(&settings(GeneratorKind::Mixed), 30.0).unwrap_err();
     assert!(matches!(seldom, PhaseLockedError::Interval { .. }));
-    let few = follow(&[1.0; 50], INTERVAL, &settings(Kind::Mixed)).unwrap_err();
+    let few = follow(&[1.0; 50], INTERVAL, &settings(GeneratorKind::Mixed)).unwrap_err();
     assert!(matches!(few, PhaseLockedError::TooShort { .. }), "{few}");
     for value in [5.0, f64::NAN] {
-        let still = follow(&[value; 20_000], INTERVAL, &settings(Kind::Mixed)).unwrap_err();
+        let still =
+            follow(&[value; 20_000], INTERVAL, &settings(GeneratorKind::Mixed)).unwrap_err();
         assert!(matches!(still, PhaseLockedError::Constant { .. }), "{still}");
     }
 }
@@ -216,7 +218,7 @@ fn the_slowest_pole_crosses_where_routh_says() {
 }
 
 /// Whether a loop of `natural_rate` (rad/s) that starts one sample off a tone comes closer to it.
-fn comes_closer(kind: Kind, natural_rate: f64, rate: f64) -> bool {
+fn comes_closer(kind: GeneratorKind, natural_rate: f64, rate: f64) -> bool {
     let mut settings = settings(kind);
     settings.follower.rates = [0.5 * rate, 1.5 * rate];
     settings.follower.natural_rate = natural_rate;
@@ -243,7 +245,7 @@ fn comes_closer(kind: Kind, natural_rate: f64, rate: f64) -> bool {
 }
 
 /// A generator that has followed sin θ up to θ = 0, its centre turning by `turned` (rad) a sample.
-fn settled_on_a_tone(kind: Kind, turned: f64) -> Generator {
+fn settled_on_a_tone(kind: GeneratorKind, turned: f64) -> Generator {
     let mut generator = Generator::new(kind, SQRT_2).unwrap();
     for step in -400 * 30..=0 {
         generator.update(turned, (turned * f64::from(step)).sin());
@@ -265,7 +267,8 @@ fn the_whole_loop_is_stable_where_it_can_be_built() {
             let built = PhaseLockedLoop::new(&settings, INTERVAL).is_ok();
             let closer = comes_closer(kind, share * limit, rate);
             assert_eq!(built, closer, "{kind:?} at {share}");
-            let expected = share < if matches!(kind, Kind::Extended { .. }) { 0.4 } else { 0.6 };
+            let expected =
+                share < if matches!(kind, GeneratorKind::Extended { .. }) { 0.4 } else { 0.6 };
             assert_eq!(built, expected, "{kind:?} at {share}");
         }
     }
@@ -273,7 +276,7 @@ fn the_whole_loop_is_stable_where_it_can_be_built() {
 
 #[test]
 fn a_state_survives_being_written_and_read() {
-    let mut follower = PhaseLockedLoop::new(&settings(Kind::Mixed), INTERVAL).unwrap();
+    let mut follower = PhaseLockedLoop::new(&settings(GeneratorKind::Mixed), INTERVAL).unwrap();
     let sample = |step: i32| 3.0 + 2.0 * (0.05 * INTERVAL * f64::from(step)).sin();
     for step in 0..5000 {
         follower.update(INTERVAL, sample(step));
@@ -291,7 +294,8 @@ fn the_loop_locks_from_any_phase() {
     for part in 0..16 {
         let first = TAU * f64::from(part) / 16.0 + PI;
         for rate in [BAND[0], BAND[1]] {
-            let mut follower = PhaseLockedLoop::new(&settings(Kind::Mixed), INTERVAL).unwrap();
+            let mut follower =
+                PhaseLockedLoop::new(&settings(GeneratorKind::Mixed), INTERVAL).unwrap();
             let mut phase = 0.0;
             for step in 0..40_000 {
                 phase = first + rate * INTERVAL * f64::from(step);

@@ -1,6 +1,6 @@
 //! Frequency responses of the generators, in closed form.
 
-use super::generator::Kind;
+use super::generator::GeneratorKind;
 use lti::Complex64;
 
 /// Gain and phase at one frequency.
@@ -27,19 +27,19 @@ pub struct Transfer {
 ///
 /// Source: van Veldhoven (2024), Eqs. 2-7, 2-11, 2-15 with, in which s² + k ω̂ + ω̂² is to be
 /// read with k ω̂ s. The mixed generator's offset is v_dc / k, so that a constant passes with gain one.
-pub fn transfer(kind: Kind, damping: f64, ratio: f64) -> Transfer {
+pub fn transfer(kind: GeneratorKind, damping: f64, ratio: f64) -> Transfer {
     let k = damping;
     let s = Complex64::new(0.0, ratio);
     let square = s * s;
     let second = square + k * s + 1.0;
     let [in_phase, quadrature, offset] = match kind {
-        Kind::Second => [(k * s) / second, k / second, Complex64::default()],
-        Kind::Extended { dc_gain } => {
+        GeneratorKind::Second => [(k * s) / second, k / second, Complex64::default()],
+        GeneratorKind::Extended { dc_gain } => {
             let third = square * s + (k + dc_gain) * square + s + dc_gain;
             let notch = dc_gain * (square + 1.0);
             [(k * square) / third, (k * s) / third, notch / third]
         }
-        Kind::Mixed => {
+        GeneratorKind::Mixed => {
             let third = (s + 1.0) * second;
             [(k * s) / second, (k * s * (1.0 - s)) / third, (square + 1.0) / third]
         }

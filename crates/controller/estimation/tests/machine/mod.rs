@@ -5,7 +5,7 @@
 use basis::angle::wrap_to_turn;
 use basis::mbc::to_blades;
 use basis::{FixedFrame, Measurements, Sense};
-use estimation::helix::{HelixSettings, MeasurementModel, Options};
+use estimation::helix::{HelixOptions, HelixSettings, MeasurementModel};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 use turbine::definition::*;
@@ -186,7 +186,7 @@ impl World {
 pub(crate) fn model(
     definition: &Arc<Definition>,
     sense: Sense,
-    options: &Options,
+    options: &HelixOptions,
 ) -> MeasurementModel {
     let setting = HelixSettings { n_elements: 24, ..setting(sense) };
     MeasurementModel::new(definition, &setting, options).unwrap()

@@ -58,7 +58,7 @@ proptest! {
             prop_assert!((truth.yaw.wind[index] - wind).abs() < 1e-6 * amplitudes.1);
             prop_assert_eq!(truth.index_at(time), Some(index));
         }
-        // Within the part that is called trusted the ends are worth less than a twentieth.
+        // Within the part that is called trusted the ends have less than a twentieth of the weight.
         for index in truth.trusted.clone() {
             prop_assert!(wrap_to_half_turn(truth.tilt.phase[index] - tilt).abs() < 0.05);
         }

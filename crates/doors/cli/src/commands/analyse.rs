@@ -5,7 +5,7 @@ use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
 use miette::{IntoDiagnostic, Result};
 use std::path::PathBuf;
-use wakemix::postprocessing::analyses::{ANALYSES, Analysis, Of, Request, Setting, Takes};
+use wakemix::postprocessing::analyses::{ANALYSES, Analysis, AnalysisSetting, Of, Request, Takes};
 
 /// Name of the argument with the folders.
 const FOLDERS: &str = "folders";
@@ -61,7 +61,7 @@ fn offered(analysis: &Analysis) -> Command {
 }
 
 /// `setting` as an argument.
-fn argument(setting: &Setting) -> Arg {
+fn argument(setting: &AnalysisSetting) -> Arg {
     let argument =
         Arg::new(setting.name).long(setting.name).value_name(setting.value).help(setting.about);
     match setting.takes {
@@ -123,7 +123,12 @@ mod tests {
         name: "own",
         about: "What nobody else asks",
         of: Of::Run("Folder of a run"),
-        settings: &[Setting { name: "times", value: "N", takes: Takes::Number, about: "Factor" }],
+        settings: &[AnalysisSetting {
+            name: "times",
+            value: "N",
+            takes: Takes::Number,
+            about: "Factor",
+        }],
         run: |request| -> std::result::Result<Answer, PostprocessingError> {
             Ok(Answer { text: format!("{:?}\n", request.number("times")), ..Answer::default() })
         },

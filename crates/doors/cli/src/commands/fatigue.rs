@@ -38,7 +38,7 @@ pub(crate) struct FatigueArguments {
         value_parser = slope
     )]
     slope: Vec<f64>,
-    /// Load of a blade's pitch bearing all round its ring, from pitch and root moments (BldPitch1, RootMyb1,
+    /// Load of a blade's pitch bearing around its ring, from pitch and root moments (BldPitch1, RootMyb1,
     /// RootMxb1), instead of channels
     #[arg(long)]
     bearing: bool,

@@ -15,7 +15,7 @@ use wakemix::farm::pitch_response::CalibrationError;
 use wakemix::farm::self_check::{SelfCheck, SelfCheckError, TOLERANCE};
 use wakemix::postprocessing;
 use wakemix::study::{
-    self, Estimate, IdentificationProgress, Observer, Options, Outcome, Progress, StudyError,
+    self, Estimate, IdentificationProgress, Observer, Outcome, Progress, StudyError, StudyOptions,
 };
 
 /// Longest time left that is shown (s): a year.
@@ -35,10 +35,10 @@ pub(crate) struct RunArguments {
     /// Override a key of the case, as in `--set wind.speed=8` (may be repeated)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
-    /// Take up where an interrupted or killed run stopped; the result has the same bits
+    /// Resume an interrupted or killed run; the result has the same bits
     #[arg(long)]
     resume: bool,
-    /// Put new results in the place of old ones
+    /// Replace old results
     #[arg(long, conflicts_with = "resume")]
     overwrite: bool,
     /// Print what the study would cost, and stop
@@ -58,12 +58,12 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
         if flag.swap(true, Ordering::SeqCst) {
             std::process::exit(i32::from(INTERRUPTED));
         }
-        eprintln!("\nstopping at the next step; once more to stop at once");
+        eprintln!("\nstopping after this step; press Ctrl-C again to stop now");
     });
     if let Err(error) = installed {
-        eprintln!("warning: Ctrl-C will not leave a fresh checkpoint: {error}");
+        eprintln!("warning: Ctrl-C will not write a checkpoint: {error}");
     }
-    let options = Options {
+    let options = StudyOptions {
         case: arguments.case.clone(),
         output: arguments.output.clone(),
         runs: arguments.runs.clone(),
@@ -80,7 +80,7 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
         Ok(Outcome::Estimated) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted { directory }) => {
             eprintln!(
-                "interrupted; go on with: wakemix run {} -o {}{} --resume",
+                "interrupted; resume with: wakemix run {} -o {}{} --resume",
                 shell_word(&arguments.case.display().to_string()),
                 shell_word(&directory.display().to_string()),
                 repeated(arguments)
@@ -160,18 +160,18 @@ fn words_of(turbine: &str, response: &PitchResponse) -> String {
         PitchResponse::Estimator { gain, azimuth_offset, before, after, transformation_offset } => {
             let pitches = transformation_offset.map(|offset| turned(offset) + "; ");
             format!(
-                "{}{turbine}'s estimator takes its own pitch times {gain:.3}, {:+.1}° on; of it {before:.2} m/s were taken for wind, {after:.2} m/s still are",
+                "{}{turbine}'s estimator scales the effect of its own pitch by {gain:.3} and turns it by {:+.1}°; helix found without one: {before:.2} m/s before, {after:.2} m/s after",
                 pitches.unwrap_or_default(),
                 azimuth_offset.to_degrees(),
             )
         }
         PitchResponse::Transformation { azimuth_offset } => turned(azimuth_offset),
         PitchResponse::IndividualPitch { azimuth_offset } => format!(
-            "{turbine}'s individual pitch control works with an azimuth offset of {:+.1}°",
+            "{turbine}'s individual pitch control uses an azimuth offset of {:+.1}°",
             azimuth_offset.to_degrees(),
         ),
         PitchResponse::Loads { azimuth_offset, delay, gain } => format!(
-            "{turbine} loses {:.2} MN m per degree of cyclic pitch, {:+.1}° of azimuth and {delay:.2} s after it",
+            "a degree of cyclic pitch lowers the moments of {turbine} by {:.2} MN m, with an azimuth offset of {:+.1}° and a delay of {delay:.2} s",
             1e-6 * gain * 1f64.to_radians(),
             azimuth_offset.to_degrees(),
         ),
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn the_offset_of_the_pitch_and_that_of_the_belief_are_told_apart() {
+    fn the_offset_of_the_pitch_and_that_of_the_estimator_are_kept_apart() {
         let of = |transformation_offset| PitchResponse::Estimator {
             gain: 1.04,
             azimuth_offset: (-0.5f64).to_radians(),
@@ -355,15 +355,16 @@ mod tests {
             transformation_offset,
         };
         let words = words_of("T2", &of(Some(35.2f64.to_radians())));
-        let belief = "T2's estimator takes its own pitch times 1.040, -0.5° on; ";
+        let estimator =
+            "T2's estimator scales the effect of its own pitch by 1.040 and turns it by -0.5°; ";
         let pitches = "T2 pitches with an azimuth offset of +35.2°";
-        assert!(words.starts_with(&format!("{pitches}; {belief}")), "{words}");
+        assert!(words.starts_with(&format!("{pitches}; {estimator}")), "{words}");
         // Records of before do not tell.
-        assert!(words_of("T2", &of(None)).starts_with(belief));
+        assert!(words_of("T2", &of(None)).starts_with(estimator));
         let alone = PitchResponse::Transformation { azimuth_offset: 35.2f64.to_radians() };
         assert_eq!(words_of("T2", &alone), pitches);
         let control = PitchResponse::IndividualPitch { azimuth_offset: 0.5f64.to_radians() };
-        let words = "T2's individual pitch control works with an azimuth offset of +0.5°";
+        let words = "T2's individual pitch control uses an azimuth offset of +0.5°";
         assert_eq!(words_of("T2", &control), words);
     }
 }

@@ -29,7 +29,7 @@ pub(crate) enum TurbineCommand {
     /// Convert an OpenFAST deck (.fst) or a windIO file (.yaml) into a turbine file
     ///
     /// windIO files lack mode shapes, damping, generator inertia and controller gains: what is to be
-    /// completed by hand is listed, and the exit code is 2 until the file is whole.
+    /// completed by hand is listed, and the exit code is 2 until the file is complete.
     Import {
         /// Main file of the deck, or the windIO file
         file: PathBuf,
@@ -57,7 +57,7 @@ pub(crate) enum TurbineCommand {
         #[arg(long, value_name = "A:B:N", default_value = "0", allow_hyphen_values = true)]
         pitch: Range,
     },
-    /// Find the azimuth offset that makes tilt and yaw pitch answer each for itself, over wind speed, as CSV
+    /// Find the azimuth offset that decouples tilt from yaw, over wind speed, as CSV
     Offset {
         /// Name of the library, or path of a turbine file
         name: String,

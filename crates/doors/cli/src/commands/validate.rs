@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
     };
     if wanted.is_empty() {
         return if arguments.json || arguments.record {
-            refused("nothing is named\nhint: name validations, or take --quick")
+            refused("no validation is named\nhint: name validations, or use --quick")
         } else {
             print::list();
             ExitCode::SUCCESS
@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
     let code = code_of(&done);
     if code != 0 {
         eprintln!(
-            "not all is as recorded\nhint: fix what got worse; renew a record with --record where a change is meant"
+            "not all is as recorded\nhint: fix what got worse; where a change is meant, renew the record with --record"
         );
     }
     ExitCode::from(code)

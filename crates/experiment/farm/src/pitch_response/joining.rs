@@ -4,7 +4,7 @@
 use super::prescribed::{found_offset, offset_cost};
 use super::{CalibrationError, Course, IdentificationCost, Pitching, WAKE_SPEED, pitching};
 use crate::Progress;
-use crate::assemble::{self, Model};
+use crate::assemble::{self, TurbineModel};
 use crate::case::Case;
 use crate::plan::Plan;
 use basis::Truth;
@@ -29,7 +29,7 @@ pub struct OwnPitch {
 pub fn own_pitch_cost(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     sync: &PhaseSyncSettings,
 ) -> IdentificationCost {
     let [offset, calibration] = costs(case, plan, model, sync);
@@ -49,7 +49,7 @@ fn conditions(case: &Case, plan: &Plan, sync: &PhaseSyncSettings) -> (f64, f64) 
 fn costs(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     sync: &PhaseSyncSettings,
 ) -> [IdentificationCost; 2] {
     let (wind_speed, rate) = conditions(case, plan, sync);
@@ -72,7 +72,7 @@ fn costs(
 pub fn own_pitch(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     index: usize,
     sync: &PhaseSyncSettings,
     progress: Progress,
@@ -107,7 +107,7 @@ pub fn own_pitch(
 fn calibration(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     index: usize,
     sync: &PhaseSyncSettings,
     azimuth_offset: f64,

@@ -3,7 +3,7 @@
 
 use super::{COUNTED, CalibrationError, Course, IdentificationCost, answers};
 use crate::Progress;
-use crate::assemble::Model;
+use crate::assemble::TurbineModel;
 use crate::case::{Case, Solver};
 use crate::plan::{Plan, without_air};
 use control::excitation_rate;
@@ -20,7 +20,11 @@ pub const INDIVIDUAL_PITCH_STROUHAL: f64 = 0.1;
 const UPDATES_OF_A_STEP: f64 = 1e4;
 
 /// Cost of [`individual_pitch_offset`].
-pub fn individual_pitch_offset_cost(case: &Case, plan: &Plan, model: &Model) -> IdentificationCost {
+pub fn individual_pitch_offset_cost(
+    case: &Case,
+    plan: &Plan,
+    model: &TurbineModel,
+) -> IdentificationCost {
     offset_cost(case, plan, model, case.wind.speed, individual_pitch_rate(case, model))
 }
 
@@ -33,7 +37,7 @@ pub fn individual_pitch_offset_cost(case: &Case, plan: &Plan, model: &Model) -> 
 pub fn individual_pitch_offset(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     index: usize,
     progress: Progress,
 ) -> Result<f64, CalibrationError> {
@@ -44,7 +48,7 @@ pub fn individual_pitch_offset(
 }
 
 /// Rate of the helices that identify a turbine of `model` for its individual pitch control (rad/s).
-fn individual_pitch_rate(case: &Case, model: &Model) -> f64 {
+fn individual_pitch_rate(case: &Case, model: &TurbineModel) -> f64 {
     let diameter = model.definition.rotor_diameter();
     excitation_rate(INDIVIDUAL_PITCH_STROUHAL, case.wind.speed, diameter)
 }
@@ -55,7 +59,7 @@ fn individual_pitch_rate(case: &Case, model: &Model) -> f64 {
 pub(super) fn found_offset(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     index: usize,
     wind_speed: f64,
     rate: f64,
@@ -71,7 +75,7 @@ pub(super) fn found_offset(
 pub(super) fn offset_cost(
     case: &Case,
     plan: &Plan,
-    model: &Model,
+    model: &TurbineModel,
     wind_speed: f64,
     rate: f64,
 ) -> IdentificationCost {

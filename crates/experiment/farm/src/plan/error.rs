@@ -42,7 +42,7 @@ pub enum PlanError {
     },
     /// The grid is too coarse.
     #[error(
-        "turbine {name} has only {cells:.1} cells across its rotor, {MINIMUM_CELLS_PER_DIAMETER} are the least; raise flow.cells_per_diameter to at least {needed:.0}"
+        "turbine {name} has only {cells:.1} cells across its rotor, at least {MINIMUM_CELLS_PER_DIAMETER} are needed; raise flow.cells_per_diameter to at least {needed:.0}"
     )]
     TooCoarse {
         /// Turbine.
@@ -54,7 +54,7 @@ pub enum PlanError {
     },
     /// A tip crosses more than a cell a step.
     #[error(
-        "flow.step = {step} s is too long: the tip of {name} moves {cells:.2} cells a step at {tip_speed:.0} m/s; at most {longest:.4} s, or leave the key out"
+        "flow.step = {step} s is too long: the tip of {name} moves {cells:.2} cells a step at {tip_speed:.0} m/s; use at most {longest:.4} s, or leave the key out"
     )]
     TipOutruns {
         /// Turbine.
@@ -70,7 +70,7 @@ pub enum PlanError {
     },
     /// The free stream moves too many cells a step.
     #[error(
-        "flow.step = {step} s is too long: the wind moves {cells:.2} cells a step, {MAXIMUM_LATTICE_SPEED} are the most; at most {longest:.4} s, or leave the key out"
+        "flow.step = {step} s is too long: the wind moves {cells:.2} cells a step, the maximum is {MAXIMUM_LATTICE_SPEED}; use at most {longest:.4} s, or leave the key out"
     )]
     TooFast {
         /// Step given (s).
@@ -82,7 +82,7 @@ pub enum PlanError {
     },
     /// The wind's profile is calm up to the rotor.
     #[error(
-        "wind.roughness_length = {roughness_length} m is too much for a hub at {hub_height:.0} m: {highest:.1} m, a tenth of it, is the most; 0.0002 is calm sea, 0.03 farmland, 1 a town"
+        "wind.roughness_length = {roughness_length} m is too much for a hub at {hub_height:.0} m: {highest:.1} m, a tenth of it, is the maximum; 0.0002 is calm sea, 0.03 farmland, 1 a town"
     )]
     TooRough {
         /// Roughness length given (m).
@@ -94,7 +94,7 @@ pub enum PlanError {
     },
     /// The wind turns so far with height that part of the inlet lets none in.
     #[error(
-        "wind.veer_deg_per_m turns the wind by {turn_deg:.0}° within the domain, which is {top:.0} m high, {most_deg:.0}° are the most; at most {greatest_deg:.4}, or lower flow.height_diameters"
+        "wind.veer_deg_per_m turns the wind by {turn_deg:.0}° within the domain, which is {top:.0} m high, the maximum is {most_deg:.0}°; use at most {greatest_deg:.4}, or lower flow.height_diameters"
     )]
     VeersTooFar {
         /// Farthest direction from that at hub height (deg).
@@ -121,7 +121,7 @@ pub enum PlanError {
         high: f64,
     },
     /// A turbine without its model.
-    #[error("turbine {name} asks for the model `{model}`, which was not loaded")]
+    #[error("turbine {name} has the model `{model}`, which was not loaded")]
     UnknownModel {
         /// Turbine.
         name: String,

@@ -124,7 +124,7 @@ fn what_does_not_fit_is_named_with_its_fix() {
     rough.wind.shear = Shear::LogLaw { roughness_length: 16.0 };
     assert!(error(&rough).contains("wind.roughness_length = 16 m is too much for a hub at 150 m"));
     rough.flow.solver = Solver::UNIFORM;
-    assert!(error(&rough).contains("15.0 m, a tenth of it, is the most"), "{}", error(&rough));
+    assert!(error(&rough).contains("15.0 m, a tenth of it, is the maximum"), "{}", error(&rough));
     rough.wind.shear = Shear::LogLaw { roughness_length: 15.0 };
     assert!(plan(&rough, &footprints()).is_ok());
 
@@ -133,7 +133,7 @@ fn what_does_not_fit_is_named_with_its_fix() {
     veering.wind.veer = 0.1_f64.to_radians();
     let turned = error(&veering);
     assert!(turned.contains("by 81° within the domain, which is 960 m high"), "{turned}");
-    assert!(turned.contains("60° are the most; at most 0.0740, or lower"), "{turned}");
+    assert!(turned.contains("the maximum is 60°; use at most 0.0740, or lower"), "{turned}");
     veering.wind.veer = 0.07_f64.to_radians();
     assert!(plan(&veering, &footprints()).is_ok());
 

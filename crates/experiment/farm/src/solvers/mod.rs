@@ -131,7 +131,7 @@ pub struct Objection {
 /// What is wrong with a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It is given and of no use, with the reason.
+    /// It is given and has no effect, with the reason.
     NoUse(&'static str),
     /// Its value is not for this solver, with the reason.
     Refused(&'static str),
@@ -139,13 +139,13 @@ pub enum Fault {
     Missing(&'static str),
 }
 
-/// Why no air could be set up.
+/// Why no flow could be set up.
 #[derive(Debug, thiserror::Error)]
 pub enum SolverError {
     /// A lattice cannot be set up.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
-    /// Its wind cannot be had.
+    /// Its wind cannot be read.
     #[error(transparent)]
     Inflow(#[from] InflowError),
     /// [`WindSource::Planes`] without planes in [`Start::planes`].

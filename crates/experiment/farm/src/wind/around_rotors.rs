@@ -1,7 +1,7 @@
 //! Wind that is prescribed where the rotors stand: even, made turbulent, or read plane by plane.
 
 use super::{Site, Turbulence, profile};
-use crate::assemble::Model;
+use crate::assemble::TurbineModel;
 use crate::case::TurbulenceModel;
 use crate::solvers::WindSource;
 use basis::Vector3;
@@ -176,7 +176,7 @@ fn over_rotors(site: &Site, planes: Box<dyn Planes>) -> Result<PrescribedWind, I
 /// Corners of the box around all rotors (m).
 fn around_rotors(site: &Site) -> [Vector3; 2] {
     let reach = |sign: f64| {
-        move |(model, foot): (&Model, &Vector3)| {
+        move |(model, foot): (&TurbineModel, &Vector3)| {
             let definition = &model.definition;
             let radius = definition.rotor_radius();
             let hub = *foot + Vector3::Z * definition.rotor.hub_height;

@@ -7,7 +7,7 @@ mod at_inlet;
 pub use around_rotors::prescribed;
 pub use at_inlet::entering;
 
-use crate::assemble::Model;
+use crate::assemble::TurbineModel;
 use crate::case::{Case, Ground, Shear, WindEvent};
 use crate::plan::Plan;
 use crate::solvers::WindSource;
@@ -24,7 +24,7 @@ pub struct Site<'a> {
     /// Its domain and steps.
     pub plan: &'a Plan,
     /// One for each turbine of the case, in its order.
-    pub models: &'a [Model],
+    pub models: &'a [TurbineModel],
 }
 
 /// Turbulence that a case will have made.

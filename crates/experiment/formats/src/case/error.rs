@@ -180,7 +180,7 @@ pub enum ProblemKind {
         range: String,
     },
     /// None of the words that may stand here.
-    #[error("`{key}` = \"{value}\" does not exist; what exists is {known}")]
+    #[error("`{key}` = \"{value}\" is unknown; expected one of {known}")]
     UnknownChoice {
         /// The key, dotted.
         key: String,
@@ -202,7 +202,7 @@ pub enum ProblemKind {
         known: String,
     },
     /// A name that cannot name a folder, a channel or a key.
-    #[error("`{key}` = \"{name}\" is not a name: 1 to 64 letters, digits, `-` and `_` make one")]
+    #[error("`{key}` = \"{name}\" is not a valid name: use 1 to 64 letters, digits, `-` and `_`")]
     BadName {
         /// The key, dotted.
         key: String,
@@ -210,7 +210,7 @@ pub enum ProblemKind {
         name: String,
     },
     /// A name given twice.
-    #[error("the {what} name `{name}` is taken already")]
+    #[error("the {what} name `{name}` is used twice")]
     Duplicate {
         /// `turbine` or `run`.
         what: &'static str,
@@ -219,7 +219,7 @@ pub enum ProblemKind {
     },
     /// Turbines in each other's way.
     #[error(
-        "turbines {first} and {second} overlap: they stand {distance:.2} diameters apart, 1 is the least"
+        "turbines {first} and {second} overlap: they stand {distance:.2} diameters apart, at least 1 is needed"
     )]
     Overlap {
         /// One turbine.
@@ -258,7 +258,7 @@ pub enum ProblemKind {
         label: &'static str,
     },
     /// A key that another key's value leaves without use.
-    #[error("`{key}` is of no use here: {why}")]
+    #[error("`{key}` has no effect here: {why}")]
     NoUse {
         /// The key, dotted.
         key: String,
@@ -335,12 +335,12 @@ impl ProblemKind {
             Self::UnknownChoice { .. } => "no such choice",
             Self::UnknownName { what, .. } => return format!("no such {what}"),
             Self::BadName { .. } => "not a name",
-            Self::Duplicate { .. } => "taken already",
+            Self::Duplicate { .. } => "used twice",
             Self::Overlap { .. } => "too close",
             Self::NothingAnalysed { .. } => "too short",
             Self::StartsTooLate { .. } => "too late",
             Self::Objection { label, .. } => label,
-            Self::NoUse { .. } => "of no use",
+            Self::NoUse { .. } => "no effect",
             Self::ComparedWithItself { .. } => "itself",
             Self::ComparedWithLater { .. } => "comes later",
             Self::NobodyThere { .. } => "nobody there",

@@ -221,7 +221,7 @@ name = "baseline"
             ("pitch = { time_constant = 0 }", "0 < time_constant <= 1000 s"),
             (
                 "pitch = { time_constant = 1, frequency_hz = 2 }",
-                "`turbine.T1.instruments.pitch.frequency_hz` is of no use here: a lag is of first order or of second, not both; leave `time_constant` or `frequency_hz` out",
+                "`turbine.T1.instruments.pitch.frequency_hz` has no effect here: a lag is of first order or of second, not both; leave `time_constant` or `frequency_hz` out",
             ),
             (
                 "pitch = { damping_ratio = 1 }",

@@ -57,7 +57,7 @@ pub(super) static WIND: Table = Table {
         key("turbulence_intensity", from(0.0, 0.5), "–", Required, "Standard deviation of the streamwise component over `speed`, at hub height; 0 switches the turbulence off.")
             .mistaken(&[Slip { unit: "percent", factor: 0.01 }]),
         key("shear_exponent", from(-0.5, 1.0), "–", Value("0.1"), "Power-law exponent of the mean profile."),
-        key("roughness_length", above(0.0, 5.0), "m", Otherwise("a power law with `shear_exponent`"), "In place of `shear_exponent`: the mean profile is the logarithmic law, `speed` · ln(z/z₀) / ln(z_hub/z₀) with this roughness length z₀, calm at z₀ and below; at most a tenth of the hub height. A rough `flow.ground` keeps such a profile when it has the same z₀."),
+        key("roughness_length", above(0.0, 5.0), "m", Otherwise("a power law with `shear_exponent`"), "In place of `shear_exponent`: the mean profile is the logarithmic law, `speed` · ln(z/z₀) / ln(z_hub/z₀) with this roughness length z₀, zero at z₀ and below; at most a tenth of the hub height. A rough `flow.ground` keeps such a profile when it has the same z₀."),
         key("length_scale", above(0.0, 1000.0), "m", Value("33.6"), "Length scale of Mann's tensor. The default is 0.8 Λ₁ of IEC 61400-1 with Λ₁ = 42 m, for hubs at 60 m and higher."),
         key("anisotropy", from(0.0, 10.0), "–", Value("3.9"), "Anisotropy Γ of Mann's tensor; 0 is isotropic. The default is that of IEC 61400-1."),
         key("seed", Holds::Whole { least: 0, most: SEED_MOST }, "–", Value("1"), "Seed of the turbulence; another seed is another hour of the same climate."),
@@ -86,7 +86,7 @@ pub(super) static TIME: Table = Table {
             from(0.0, 1e6),
             "s",
             Required,
-            "Time at the start that is not analysed: wakes develop and wash through the row.",
+            "Time at the start that is not analysed: wakes develop and pass the row.",
         ),
         key(
             "duration",

@@ -123,7 +123,7 @@ name = "baseline"
     }
 
     #[test]
-    fn a_tower_is_not_felt_unless_asked_for() {
+    fn a_tower_has_no_influence_by_default() {
         assert_eq!(read("").tower_influence, TowerInfluence::None);
         for (word, influence) in TOWER_INFLUENCES {
             assert_eq!(read(&format!("tower_influence = \"{word}\"")).tower_influence, influence);
@@ -135,7 +135,7 @@ name = "baseline"
     }
 
     #[test]
-    fn induction_follows_with_two_constants_unless_asked_otherwise() {
+    fn induction_follows_with_two_constants_by_default() {
         let of = |keys: &str| read(keys).dynamic_inflow;
         let usual = DynamicInflow::TwoConstant { slow_constant: None };
         assert_eq!((of(""), DynamicInflow::default()), (usual, usual));
@@ -148,30 +148,30 @@ name = "baseline"
     }
 
     #[test]
-    fn what_cannot_be_is_told_with_its_line() {
+    fn what_cannot_be_is_reported_with_its_line() {
         let cases = [
             (
                 "tower_influence = \"potential\"",
                 "lattice",
-                "small.toml:15: `turbine.T1.tower_influence` is of no use here: in flow.solver = \"lattice\" the tower's drag acts on the air itself; leave it out, or take flow.solver = \"uniform\"",
+                "small.toml:15: `turbine.T1.tower_influence` has no effect here: in flow.solver = \"lattice\" the tower's drag acts on the air itself; leave it out, or take flow.solver = \"uniform\"",
             ),
             ("tower_influence = \"potental\"", "uniform", "did you mean \"potential\"?"),
             (
                 "dynamic_inflow = \"two-constant\"",
                 "lattice",
-                "small.toml:15: `turbine.T1.dynamic_inflow` is of no use here: the air of flow.solver = \"lattice\" has the rotor's wake in it; leave it out, or take flow.solver = \"uniform\"",
+                "small.toml:15: `turbine.T1.dynamic_inflow` has no effect here: the air of flow.solver = \"lattice\" has the rotor's wake in it; leave it out, or take flow.solver = \"uniform\"",
             ),
-            ("slow_constant = 12.6", "lattice", "`turbine.T1.slow_constant` is of no use here"),
+            ("slow_constant = 12.6", "lattice", "`turbine.T1.slow_constant` has no effect here"),
             (
                 "dynamic_inflow = \"none\"\nslow_constant = 12.6",
                 "turbulence",
-                "small.toml:16: `turbine.T1.slow_constant` is of no use here: it goes with dynamic_inflow = \"two-constant\", not \"none\"; leave it out",
+                "small.toml:16: `turbine.T1.slow_constant` has no effect here: it goes with dynamic_inflow = \"two-constant\", not \"none\"; leave it out",
             ),
             ("slow_constant = 0", "uniform", "0 < slow_constant <= 1000 s"),
             (
                 "dynamic_inflow = \"oye\"",
                 "uniform",
-                "`turbine.T1.dynamic_inflow` = \"oye\" does not exist; what exists is \"two-constant\", \"snel-schepers\", \"none\"",
+                "`turbine.T1.dynamic_inflow` = \"oye\" is unknown; expected one of \"two-constant\", \"snel-schepers\", \"none\"",
             ),
         ];
         for (keys, solver, expected) in cases {

@@ -16,7 +16,7 @@ use std::fmt::Write;
 /// What the page says around the tables of keys.
 const PREFACE: &str = include_str!("preface.md");
 /// What the page says above the table of flow solvers.
-const WHAT_SOLVERS_DO: &str = "What moves the air. Where induction is not resolved, each turbine makes its own by blade-element momentum, and leaves no wake.";
+const WHAT_SOLVERS_DO: &str = "The flow solver. Where induction is not resolved, each turbine makes its own by blade-element momentum, and leaves no wake.";
 
 /// The page docs/case-file.md: how a case file is read, and every key with unit, range and default.
 pub fn reference() -> String {

@@ -41,6 +41,9 @@ impl<'a> Section<'a> {
     }
 
     fn suggest(&self, misspelt: &str) -> String {
+        if let Some(key) = self.table.keys.iter().find(|key| key.former_names.contains(&misspelt)) {
+            return format!("it is called `{}` now", key.name);
+        }
         let names = || self.table.keys.iter().map(|key| key.name);
         match nearest(misspelt, names()) {
             Some(name) => format!("did you mean `{name}`?"),

@@ -1,4 +1,4 @@
-//! What the case file's users write is read, written back and told apart; their errors are told in `errors`.
+//! What the case file's users write is read, written back and compared; `errors` has what is refused.
 
 mod errors;
 
@@ -119,29 +119,29 @@ fn phase_sync(keys: &str) -> PhaseSyncSettings {
 #[test]
 fn noise_of_a_phase_estimator_is_its_own_unless_given() {
     assert_eq!(phase_sync("").noise, PhaseNoise::default());
-    let robust = phase_sync(", measurement_noise_mnm = 0.3141, wandering_amplitude = 2.5e-4");
+    let robust = phase_sync(", measurement_noise_mnm = 0.3141, process_noise_amplitude = 2.5e-4");
     assert_eq!(robust.noise.measurement, Some(0.3141 * 1e6));
-    assert_eq!(robust.noise.wandering_amplitude, Some(2.5e-4));
-    assert_eq!(robust.noise.wandering_phase, None);
-    let published = phase_sync(", estimator = \"published\", wandering_phase = 3e-4");
-    let expected = PhaseNoise { wandering_phase: Some(3e-4), ..PhaseNoise::default() };
+    assert_eq!(robust.noise.process_noise_amplitude, Some(2.5e-4));
+    assert_eq!(robust.noise.process_noise_phase, None);
+    let published = phase_sync(", estimator = \"published\", process_noise_phase = 3e-4");
+    let expected = PhaseNoise { process_noise_phase: Some(3e-4), ..PhaseNoise::default() };
     assert_eq!(published.noise, expected);
 }
 
 #[test]
-fn the_azimuth_offset_of_a_turbine_in_step_is_found_unless_given() {
+fn the_azimuth_offset_of_a_synchronised_turbine_is_identified_unless_given() {
     assert_eq!(phase_sync("").azimuth_offset, None);
     assert_eq!(phase_sync(", azimuth_offset_deg = 0").azimuth_offset, Some(0.0));
     assert_eq!(phase_sync(", azimuth_offset_deg = 17").azimuth_offset, Some(17f64.to_radians()));
     // What only monitors pitches nothing; its records are those of a turbine that was given none.
-    let watching = |keys: &str| {
+    let monitoring = |keys: &str| {
         let control = "kind = \"phase-sync\", offset_deg = 90, amplitude_deg = 0";
         small(&[&format!("run.helix.control.T2={{ {control}{keys} }}")]).unwrap()
     };
-    let case = watching("");
+    let case = monitoring("");
     let sync = PhaseSyncSettings::of(&case.runs[1].control[1]).expect("phase-sync");
     assert_eq!(sync.azimuth_offset, Some(0.0));
-    assert_eq!(case, watching(", azimuth_offset_deg = 0"));
+    assert_eq!(case, monitoring(", azimuth_offset_deg = 0"));
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
     // An open helix is turned by nothing that it does not ask for.
     let case = small(&[]).unwrap();

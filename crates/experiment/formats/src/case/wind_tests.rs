@@ -137,14 +137,14 @@ fn events_with_a_place_stand_at_the_first_turbine() {
 }
 
 #[test]
-fn what_cannot_be_is_told_with_its_line() {
+fn what_cannot_be_is_reported_with_its_line() {
     let step = "event = { kind = \"step\", start = 100.0, speed = 12.0 }";
     let cases = [
         ("event = 3", "uniform", "windy.toml:6: `wind.event` must be a table, such as"),
         (
             "event = { kind = \"stepp\" }",
             "uniform",
-            "windy.toml:6: `wind.event.kind` = \"stepp\" does not exist; what exists is \"step\", \"ramp\"",
+            "windy.toml:6: `wind.event.kind` = \"stepp\" is unknown; expected one of \"step\", \"ramp\"",
         ),
         ("event = { start = 3 }", "uniform", "`wind.event.kind` is missing"),
         (
@@ -175,33 +175,33 @@ fn what_cannot_be_is_told_with_its_line() {
         (
             "roughness_length = 0.06",
             "uniform",
-            "windy.toml:5: `wind.shear_exponent` is of no use here: the profile is logarithmic with wind.roughness_length; leave one of the two out",
+            "windy.toml:5: `wind.shear_exponent` has no effect here: the profile is logarithmic with wind.roughness_length; leave one of the two out",
         ),
         (
             "roughness_length = 0.06",
             "planes",
-            "windy.toml:6: `wind.roughness_length` is of no use here: flow.solver = \"planes\" takes the wind as the file has it",
+            "windy.toml:6: `wind.roughness_length` has no effect here: flow.solver = \"planes\" takes the wind as the file has it",
         ),
         ("roughness_length = 0", "uniform", "0 < roughness_length <= 5 m"),
         ("veer_deg_per_m = 5", "uniform", "did you mean 0.05 deg/m? 5 deg per 100 m would be that"),
         (
             "veer_deg_per_m = 0.05",
             "planes",
-            "windy.toml:6: `wind.veer_deg_per_m` is of no use here: flow.solver = \"planes\" takes the wind as the file has it; leave it out",
+            "windy.toml:6: `wind.veer_deg_per_m` has no effect here: flow.solver = \"planes\" takes the wind as the file has it; leave it out",
         ),
         (
             step,
             "lattice",
-            "windy.toml:6: `wind.event` is of no use here: the air of flow.solver = \"lattice\"",
+            "windy.toml:6: `wind.event` has no effect here: the air of flow.solver = \"lattice\"",
         ),
-        (step, "turbulence", "`wind.event` is of no use here"),
+        (step, "turbulence", "`wind.event` has no effect here"),
         (
             "planes = \"field.bts\"",
             "lattice",
-            "windy.toml:6: `wind.planes` is of no use here: flow.solver = \"lattice\" reads no wind from a file; leave it out, or take flow.solver = \"planes\"",
+            "windy.toml:6: `wind.planes` has no effect here: flow.solver = \"lattice\" reads no wind from a file; leave it out, or take flow.solver = \"planes\"",
         ),
-        ("planes = \"field.bts\"", "uniform", "`wind.planes` is of no use here"),
-        ("planes = \"field.bts\"", "turbulence", "`wind.planes` is of no use here"),
+        ("planes = \"field.bts\"", "uniform", "`wind.planes` has no effect here"),
+        ("planes = \"field.bts\"", "turbulence", "`wind.planes` has no effect here"),
     ];
     for (keys, solver, expected) in cases {
         let text = text(keys).replace("\"uniform\"", &format!("\"{solver}\""));
@@ -211,7 +211,7 @@ fn what_cannot_be_is_told_with_its_line() {
     for (text, other) in [(text(""), "roughness_length"), (logarithmic("0.06"), "shear_exponent")] {
         let message = parse("windy.toml", &text, &[format!("wind.{other}=0.1")]);
         let message = message.unwrap_err().to_lines();
-        assert!(message.contains("`wind.shear_exponent` is of no use here"), "{other}: {message}");
+        assert!(message.contains("`wind.shear_exponent` has no effect here"), "{other}: {message}");
         assert!(
             message.contains("where --set gives one, the other must go from the file"),
             "{message}"

@@ -10,7 +10,7 @@ const FRESH: &str = "start the run afresh, without --resume";
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum CheckpointProblem {
     /// Some other file.
-    #[error("it is no checkpoint")]
+    #[error("it is not a checkpoint")]
     NoCheckpoint,
     /// Written by a program that writes them otherwise.
     #[error("its layout has version {found}, this program knows version {VERSION}")]
@@ -62,7 +62,7 @@ impl CheckpointProblem {
     pub(crate) fn fix(&self) -> &'static str {
         match self {
             Self::OtherVersion { .. } => {
-                "go on with the version of the program that wrote it, or start the run afresh, without --resume"
+                "resume with the version of the program that wrote it, or start the run anew, without --resume"
             }
             Self::OtherCase => {
                 "undo the change to go on, or start the run afresh, without --resume; threads, checkpoint interval and other runs may change"

@@ -59,7 +59,7 @@ fn sections_are_found_in_any_order_and_missing_ones_named() {
 }
 
 #[test]
-fn another_run_case_version_or_file_is_told() {
+fn another_run_case_version_or_file_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint");
     write(&path, &[1.0], &[]);

@@ -119,7 +119,7 @@ fn what_is_not_finished_leaves_nothing() {
 }
 
 #[test]
-fn what_the_format_cannot_hold_is_told() {
+fn what_the_format_cannot_hold_is_reported() {
     let (_folder, path) = place();
     let message = |layout, encoding| complaint(OutbWriter::create(&path, layout, encoding));
     assert!(message(layout(&[]), Encoding::Exact).contains("no channel"));
@@ -134,7 +134,7 @@ fn what_the_format_cannot_hold_is_told() {
 }
 
 #[test]
-fn damaged_files_are_told_with_place_and_fix() {
+fn damaged_files_are_reported_with_place_and_fix() {
     let whole = by_hand(2);
     let changed = |place: usize, bytes: &[u8]| {
         let mut damaged = whole.clone();

@@ -43,7 +43,7 @@ pub(crate) fn open(path: &Path) -> Result<(Head, TextRows), FileError> {
         }
     }
     if units.len() != names.len() {
-        // A unit that cannot be told from its neighbours says nothing.
+        // A unit without a separator of its own is unknown.
         units = vec![String::new(); names.len()];
     }
     let columns: Vec<Column> = names

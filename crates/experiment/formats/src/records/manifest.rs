@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn the_processor_is_read_where_it_is_told() {
+    fn the_processor_is_read_where_the_system_reports_it() {
         let text = "processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\nflags\t: x\n";
         assert_eq!(processor_of(text).as_deref(), Some("Some CPU @ 2 GHz"));
         assert_eq!(processor_of("BogoMIPS : 5\n"), None);

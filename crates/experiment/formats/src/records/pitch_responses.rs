@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_turbine_in_step_was_told_comes_back_and_older_records_read() {
+    fn what_a_synchronised_turbine_was_given_comes_back_and_older_records_read() {
         let study = tempfile::tempdir().unwrap();
         let estimator = |transformation_offset| PitchResponse::Estimator {
             gain: 1.04,

@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_series_that_does_not_fit_the_checkpoint_is_told() {
+    fn a_series_that_does_not_fit_the_checkpoint_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("series.csv");
         let mut writer = SeriesWriter::create(&path, &names()).unwrap();

@@ -135,7 +135,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn a_broken_row_is_told_with_its_line() {
+    fn a_broken_row_is_reported_with_its_line() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("series.csv");
         let cases = [
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_nobody_wants_is_skipped_but_a_short_row_is_told() {
+    fn a_number_that_nobody_wants_is_skipped_but_a_short_row_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("series.csv");
         fs::write(&path, "a,b\n1,two\n").unwrap();

@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn incomplete_runs_and_mixed_cases_are_told() {
+    fn incomplete_runs_and_mixed_cases_are_reported() {
         let study = tempfile::tempdir().unwrap();
         leave(study.path(), 0, CASE);
         let folder = leave(study.path(), 1, CASE);
@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_without_runs_is_told() {
+    fn a_folder_without_runs_is_reported() {
         let study = tempfile::tempdir().unwrap();
         let error = read_study(study.path()).unwrap_err().to_string();
         assert!(error.contains("does not hold a study: there is no run in it"), "{error}");
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_summary_is_told_with_its_line() {
+    fn a_broken_summary_is_reported_with_its_line() {
         let study = tempfile::tempdir().unwrap();
         let folder = leave(study.path(), 0, CASE);
         fs::write(folder.summary_path(), "{\n  \"schema_version\": \"one\"\n}").unwrap();

@@ -68,7 +68,7 @@ pub fn parse_coefficients(file: &str, text: &str) -> Result<CoefficientTable, Tu
             }
             _ => (ratio_line, "tip-speed ratios"),
         };
-        error(file, line, key, "numbers that rise", &cause.to_string())
+        error(file, line, key, "increasing numbers", &cause.to_string())
     })
 }
 

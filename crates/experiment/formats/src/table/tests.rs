@@ -49,7 +49,7 @@ fn ways_of_writing_a_table_read_the_same() {
 }
 
 #[test]
-fn units_are_told_from_names() {
+fn units_are_distinguished_from_names() {
     let (_folder, path) = written("a.csv", "Time_[s],RootMyc1_[kN-m],Cp,[odd]\n0,1,2,3\n");
     let table = TableReader::open(&path).unwrap();
     let channels: Vec<(&str, &str)> =
@@ -104,7 +104,7 @@ fn openfast_s_text_is_a_table() {
 }
 
 #[test]
-fn a_name_that_is_not_there_is_told_with_what_may_be_meant() {
+fn a_name_that_is_not_there_is_reported_with_what_may_be_meant() {
     let names = "time,RootMyc1,RootMyc2,RootMyc3,TwrBsMyt_kN-m";
     let (_folder, path) = written("a.csv", &format!("{names}\n0,1,2,3,4\n"));
     let message = |name: &str| complaint(rows(&path, &[name]));
@@ -143,7 +143,7 @@ fn openfast_s_other_names_find_the_channel_that_is_written() {
 }
 
 #[test]
-fn bad_tables_are_told_with_line_and_fix() {
+fn bad_tables_are_reported_with_line_and_fix() {
     let cases = [
         ("a.csv", "", "it has no line of names"),
         ("a.csv", "0,1,2\n1,2,3\n", "line 1 has numbers where names are needed"),

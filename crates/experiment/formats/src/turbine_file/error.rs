@@ -207,7 +207,7 @@ impl Place<'_> {
         Err(self.error(path, "zero or more", value.to_string(), "check figure and unit"))
     }
 
-    /// Nothing when the first `column` of a table rises, from row to row where `strictly`, and has `least`
+    /// Nothing when the first `column` of a table increases, from row to row where `strictly`, and has `least`
     /// rows or more.
     pub(super) fn rising(
         &self,
@@ -230,7 +230,7 @@ impl Place<'_> {
             if !(here > before || here == before && !strictly) {
                 return Err(self.error(
                     &[Step::Key(group), Step::Key(key), Step::Row(row)],
-                    format!("a first column that rises, more than {before}"),
+                    format!("a first column that increases, more than {before}"),
                     here.to_string(),
                     "sort the rows by their first column",
                 ));

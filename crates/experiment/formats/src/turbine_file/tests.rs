@@ -30,7 +30,7 @@ fn written_and_read_again_a_turbine_is_the_same() {
 }
 
 #[test]
-fn figures_arrive_in_si() {
+fn figures_are_read_in_si() {
     let TurbineFile { definition, controller, .. } = parse("mine.toml", nrel()).unwrap();
     assert!((definition.rotor.precone - 2.5f64.to_radians()).abs() < 1e-12);
     assert!((definition.rated_power - 5e6).abs() < 1e-3);
@@ -60,7 +60,7 @@ fn errors_name_file_line_key_and_fix() {
             "90.00 m, from tower",
         ),
         ("precone_deg = 2.5", "precone_deg = 250.0", "line 14, rotor.precone_deg", "-30 to 30°"),
-        ("4.1,  3.854", "1.1,  3.854", "line 25, blade.stations[3]", "rises, more than 1.3667"),
+        ("4.1,  3.854", "1.1,  3.854", "line 25, blade.stations[3]", "increases, more than 1.3667"),
         ("1.3667,  3.542", "1.3667, -3.542", "line 24, blade.stations[2]", "above zero"),
         ("\"DU40_A17\"", "\"DU41\"", "line 27, blade.stations[5]", "the name of a polar"),
         (
@@ -92,7 +92,7 @@ fn a_polar_must_turn_fully_and_rise() {
     let text = nrel();
     let row = text.lines().find(|line| line.contains("[ -175.0000")).unwrap();
     let message = error_of(row, &row.replace("-175.0", "-185.0")).to_string();
-    assert!(message.contains("table[2]") && message.contains("must rise"), "{message}");
+    assert!(message.contains("table[2]") && message.contains("must increase"), "{message}");
 }
 
 #[test]

@@ -187,7 +187,7 @@ fn headers_that_do_not_fit_are_refused() {
 }
 
 #[test]
-fn unknown_endings_and_missing_files_are_told() {
+fn unknown_endings_and_missing_files_are_reported() {
     assert!(check_name(Path::new("box.bts")).is_ok() && check_name(Path::new("box")).is_err());
     assert!(complaint(&PathBuf::from("box.mat")).0.contains(".toml nor in .bts"));
     assert!(complaint(&PathBuf::from("nowhere/box.bts")).0.contains("nowhere/box.bts"));

@@ -15,7 +15,7 @@ fn import_text(text: &str) -> Result<Document, TurbineFileError> {
 }
 
 #[test]
-fn what_the_file_holds_arrives() {
+fn what_the_file_holds_is_read() {
     let document = import_text(FILE).unwrap();
     assert_eq!(
         (document.name.as_str(), document.title.as_str()),

@@ -1,6 +1,6 @@
 //! `gains`: gains of one case in several winds, and all of them together.
 
-use super::{Analysis, Answer, Of, Request, Setting, Takes, with_interval};
+use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes, with_interval};
 use crate::{GainsAnswer, GainsQuestion, PartGains, PostprocessingError, gains_over_seeds};
 use serde_json::json;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     name: "gains",
     about: "Gains of one case in several winds, from studies that differ in wind.seed, each and all together with a 95 % interval",
     of: Of::Studies("Folders of two studies or more of one case that differ in wind.seed"),
-    settings: &[Setting {
+    settings: &[AnalysisSetting {
         name: "run",
         value: "NAME",
         takes: Takes::Texts,

@@ -1,6 +1,6 @@
 //! `lock`: how well a meandering loop would lock to the loads of a turbine in records.
 
-use super::{Analysis, Answer, Of, Request, Setting, Takes};
+use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes};
 use crate::{LockAnswer, LockQuestion, PostprocessingError, lock};
 use basis::Sense;
 use serde_json::json;
@@ -8,34 +8,34 @@ use serde_json::json;
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
     name: "lock",
-    about: "How well a phase-locked loop would follow the slow swing of a turbine's blade moments in the records of a run, whatever its control",
+    about: "How well a phase-locked loop would follow the slow oscillation of a turbine's blade moments in the records of a run, whatever its control",
     of: Of::Run("Folder of a run, such as runs/meandering/baseline"),
     settings: &[
-        Setting {
+        AnalysisSetting {
             name: "turbine",
             value: "NAME",
             takes: Takes::Text,
-            about: "Turbine whose blades are listened to; each that is there when left out",
+            about: "Turbine whose blade moments are used; each that is there when left out",
         },
-        Setting {
+        AnalysisSetting {
             name: "strouhal-low",
             value: "ST",
             takes: Takes::Number,
             about: "Lowest Strouhal number that is followed; the turbine's own, or 0.15, when left out",
         },
-        Setting {
+        AnalysisSetting {
             name: "strouhal-high",
             value: "ST",
             takes: Takes::Number,
             about: "Highest Strouhal number that is followed; the turbine's own, or 0.3, when left out",
         },
-        Setting {
+        AnalysisSetting {
             name: "sense",
             value: "WAY",
             takes: Takes::Choice(&[("cw", "Clockwise"), ("ccw", "Counter-clockwise")]),
-            about: "Way the loads circle, looking downwind; the turbine's own, or cw, when left out",
+            about: "Sense in which the loads rotate, looking downwind; the turbine's own, or cw, when left out",
         },
-        Setting {
+        AnalysisSetting {
             name: "from",
             value: "T",
             takes: Takes::Number,
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_loop_is_told_in_one_line() {
+    fn a_loop_is_reported_in_one_line() {
         let answer = LockAnswer {
             turbine: "T2".into(),
             sense: Sense::CounterClockwise,

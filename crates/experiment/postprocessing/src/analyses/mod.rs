@@ -27,7 +27,7 @@ pub struct Analysis {
     /// The records that it is about.
     pub of: Of,
     /// What else can be set.
-    pub settings: &'static [Setting],
+    pub settings: &'static [AnalysisSetting],
     /// Makes the answer.
     pub run: fn(&Request) -> Result<Answer, PostprocessingError>,
 }
@@ -43,7 +43,7 @@ pub enum Of {
 
 /// Something that can be set of an analysis, and may be left out.
 #[derive(Clone, Copy, Debug)]
-pub struct Setting {
+pub struct AnalysisSetting {
     /// Name on the command line, after `--`.
     pub name: &'static str,
     /// What stands for its value in the help, such as `NAME`.

@@ -1,6 +1,6 @@
 //! `phase`: how well a turbine finds the phase of the helix that meets it.
 
-use super::{Analysis, Answer, Of, Request, Setting, Takes};
+use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes};
 use crate::{PhaseAnswer, PhaseAxis, PhaseQuestion, PostprocessingError, phases};
 use control::phase_sync::PhaseEstimator;
 use serde_json::json;
@@ -8,36 +8,36 @@ use serde_json::json;
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
     name: "phase",
-    about: "How well a turbine finds the phase of the helix that meets it, against the true wind of a run without it",
+    about: "How well a turbine estimates the phase of the incoming helix, against the true wind of a run without it",
     of: Of::Run("Folder of a run, such as runs/synchronised-helix/offset-150"),
     settings: SETTINGS,
     run,
 };
 
 /// What can be set of it, and of `tune`.
-pub(super) const SETTINGS: &[Setting] = &[
-    Setting {
+pub(super) const SETTINGS: &[AnalysisSetting] = &[
+    AnalysisSetting {
         name: "turbine",
         value: "NAME",
         takes: Takes::Text,
-        about: "Turbine that the helix meets; when left out each that looks for one, for `tune` the first of them",
+        about: "Turbine that estimates the phase; when left out each that does, for `tune` the first of them",
     },
-    Setting {
+    AnalysisSetting {
         name: "truth",
         value: "RUN",
         takes: Takes::Text,
         about: "Folder of a run without that turbine, with the wind along lines at its place; one beside RUN when left out",
     },
-    Setting {
+    AnalysisSetting {
         name: "estimator",
         value: "NAME",
         takes: Takes::Choice(&[
-            ("robust", "With states for what its model lacks"),
+            ("robust", "With states for model errors"),
             ("published", "The four states of van Vondelen et al. (2025)"),
         ]),
         about: "Run this estimator over the records, instead of reading the run's own estimate",
     },
-    Setting {
+    AnalysisSetting {
         name: "from",
         value: "T",
         takes: Takes::Number,
@@ -165,7 +165,7 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
         "trust": answer.trust,
         "tilt": axis(&answer.tilt),
         "yaw": axis(&answer.yaw),
-        "hindsight": answer.zero_phase.map(|axes| axes.map(|found| json!({
+        "zero_phase": answer.zero_phase.map(|axes| axes.map(|found| json!({
             "spread_deg": found.spread.to_degrees(),
             "bias_deg": found.bias.to_degrees(),
         }))),

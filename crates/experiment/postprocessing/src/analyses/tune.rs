@@ -36,9 +36,9 @@ fn case_keys(tuned: &Tuned) -> String {
     if let Measurement::Moment(deviation) = noise.measurement {
         keys.push(("measurement_noise_mnm", 1e-6 * deviation));
     }
-    keys.push(("wandering_amplitude", noise.amplitude));
+    keys.push(("process_noise_amplitude", noise.amplitude));
     if tuned.options.form != Form::Quadrature {
-        keys.push(("wandering_phase", noise.phase));
+        keys.push(("process_noise_phase", noise.phase));
     }
     let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
     let keys: Vec<String> =
@@ -70,9 +70,9 @@ fn json(tuned: &Tuned) -> serde_json::Value {
     json!({
         "measurement_deviation": deviation,
         "measurement_unit": unit,
-        "amplitude_wandering_m2_s3": noise.amplitude,
-        "phase_wandering_rad2_s": noise.phase,
-        "mean_wind_wandering_m2_s3": noise.mean_wind,
+        "process_noise_amplitude_m2_s3": noise.amplitude,
+        "process_noise_phase_rad2_s": noise.phase,
+        "process_noise_mean_wind_m2_s3": noise.mean_wind,
         "scale": tuned.scale,
         "phase_error_deg": tuned.error.to_degrees(),
         "case_keys": case_keys(tuned),
@@ -83,11 +83,11 @@ fn json(tuned: &Tuned) -> serde_json::Value {
 mod tests {
     use super::*;
     use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
-    use estimation::helix::Options;
+    use estimation::helix::HelixOptions;
 
     /// The noise of T2 in a case whose control holds `estimator` and the last line of what is printed for
     /// `options`.
-    fn pasted(options: Options, estimator: &str) -> PhaseNoise {
+    fn pasted(options: HelixOptions, estimator: &str) -> PhaseNoise {
         let text = super::text(&Tuned { options, scale: 1.0, error: 0.2 });
         let (head, keys) = text.trim_end().rsplit_once('\n').expect("lines");
         assert!(head.ends_with(&format!("estimator = \"{estimator}\":")), "{text}");
@@ -115,18 +115,21 @@ control.T2 = {{ kind = "phase-sync", offset_deg = 90, amplitude_deg = 4, sense =
     }
 
     #[test]
-    fn what_tuning_tells_can_be_pasted_into_a_case() {
-        let with_noise = |mut options: Options| {
+    fn what_tuning_prints_can_be_pasted_into_a_case() {
+        let with_noise = |mut options: HelixOptions| {
             options.noise.measurement = Measurement::Moment(314_159.0);
             options.noise.amplitude = 7.654_32e-6;
             options.noise.phase = 2.5e-4;
             options
         };
-        let robust = pasted(with_noise(Options::default()), "robust");
+        let robust = pasted(with_noise(HelixOptions::default()), "robust");
         let measurement = robust.measurement.expect("a number");
         assert!((measurement - 314_200.0).abs() < 1e-3, "{measurement}");
-        assert_eq!((robust.wandering_amplitude, robust.wandering_phase), (Some(7.654e-6), None));
-        let published = pasted(with_noise(Options::published()), "published");
-        assert_eq!(published.wandering_phase, Some(2.5e-4));
+        assert_eq!(
+            (robust.process_noise_amplitude, robust.process_noise_phase),
+            (Some(7.654e-6), None)
+        );
+        let published = pasted(with_noise(HelixOptions::published()), "published");
+        assert_eq!(published.process_noise_phase, Some(2.5e-4));
     }
 }

@@ -8,7 +8,7 @@ use basis::{Measurements, PerBlade};
 use control::ControlError;
 use control::phase_sync::PhaseEstimator;
 use estimation::helix::tuning::{self, Tuned};
-use estimation::helix::{HelixSettings, Options};
+use estimation::helix::{HelixOptions, HelixSettings};
 use estimation::{EstimationError, HelixEstimator};
 use farm::assemble::AssemblyError;
 
@@ -74,7 +74,7 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
 }
 
 /// Choices of `estimator`, calibrated as in the run, with the noise that it was given there.
-fn options(query: &Query<'_>, estimator: PhaseEstimator) -> Options {
+fn options(query: &Query<'_>, estimator: PhaseEstimator) -> HelixOptions {
     let options = estimator.options(query.case.flow.solver.resolves_induction);
     let calibration = query.calibration.filter(|_| estimator == PhaseEstimator::Robust);
     let options = calibration.map_or(options, |found| found.apply(options));

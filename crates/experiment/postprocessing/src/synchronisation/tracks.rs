@@ -81,14 +81,14 @@ fn estimate(study: &Synchronised, run: &Joined, name: &str) -> Option<TrackFigur
 /// Runs that signals are shown of: the monitoring one first, then offsets a quarter turn apart where there
 /// are.
 fn shown<'a>(study: &'a Synchronised) -> Vec<&'a Joined> {
-    let watching = study.runs.iter().filter(|run| run.offset().is_none());
+    let monitoring = study.runs.iter().filter(|run| run.offset().is_none());
     let quarter = |run: &&Joined| {
         run.offset().is_some_and(|offset| {
             let quarters = offset.to_degrees() / 90.0;
             (quarters - quarters.round()).abs() < 1e-6
         })
     };
-    watching.chain(study.runs.iter().filter(quarter)).take(MOST_CASES).collect()
+    monitoring.chain(study.runs.iter().filter(quarter)).take(MOST_CASES).collect()
 }
 
 /// Estimated wind, pitch and moment of the tilt axis around the excitation.
@@ -129,8 +129,8 @@ fn answer(study: &Synchronised, name: &str) -> Result<Option<TrackFigure>, Postp
     }
     Ok((!rows[0].lines.is_empty()).then(|| TrackFigure {
         name: "answer-to-pitch".into(),
-        title: format!("What {name} makes of the helix that meets it: tilt, around the excitation"),
-        caption: "Pitch in step with the wind (offset 0) takes load off where it blows, against it (180°) adds load.".into(),
+        title: format!("Response of {name} to the incoming helix: tilt, around the excitation frequency"),
+        caption: "Pitch in phase with the wind (offset 0°) lowers the load; in opposite phase (180°) it adds load.".into(),
         rows,
         mark: None,
     }))

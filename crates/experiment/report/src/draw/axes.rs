@@ -2,7 +2,7 @@
 
 use super::colour::Ink;
 use super::font::Face;
-use super::{Look, Role, Setting, Shape, polyline, rectangle, segment, text};
+use super::{Look, Role, Shape, TextStyle, polyline, rectangle, segment, text};
 use crate::words;
 
 /// Size of tick labels.
@@ -146,7 +146,7 @@ impl Frame {
             }
             let label =
                 if self.y.logarithmic { power(tick) } else { words::number(tick, decimals) };
-            let setting = Setting::plain(Ink::Muted, SMALL).anchored(1.0);
+            let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
             shapes.push(text([left - 7.0, y + 4.0], label, setting));
         }
     }
@@ -161,7 +161,7 @@ impl Frame {
             let [x, _] = self.point([tick, self.y.low]);
             shapes.push(segment([x, base], [x, base + 4.0], Look::line(Ink::Axis, 1.0)));
             if labelled {
-                let setting = Setting::plain(Ink::Muted, SMALL).anchored(0.5);
+                let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(0.5);
                 shapes.push(text([x, base + 17.0], words::number(tick, decimals), setting));
             }
         }
@@ -170,20 +170,20 @@ impl Frame {
     /// A title above the frame at its left.
     pub(crate) fn title(&self, content: &str, shapes: &mut Vec<Shape>) {
         let [left, top, ..] = self.area;
-        shapes.push(text([left, top - 9.0], content, Setting::plain(Ink::Text, LARGE).bold()));
+        shapes.push(text([left, top - 9.0], content, TextStyle::plain(Ink::Text, LARGE).bold()));
     }
 
     /// The label of the horizontal axis.
     pub(crate) fn x_label(&self, content: &str, shapes: &mut Vec<Shape>) {
         let [left, top, width, height] = self.area;
-        let setting = Setting::plain(Ink::Muted, MEDIUM).anchored(0.5);
+        let setting = TextStyle::plain(Ink::Muted, MEDIUM).anchored(0.5);
         shapes.push(text([left + 0.5 * width, top + height + 36.0], content, setting));
     }
 
     /// The label of the vertical axis, reading upwards, `distance` left of the frame.
     pub(crate) fn y_label(&self, content: &str, distance: f64, shapes: &mut Vec<Shape>) {
         let [left, top, _, height] = self.area;
-        let setting = Setting::plain(Ink::Muted, MEDIUM).anchored(0.5).upwards();
+        let setting = TextStyle::plain(Ink::Muted, MEDIUM).anchored(0.5).upwards();
         shapes.push(text([left - distance, top + 0.5 * height], content, setting));
     }
 
@@ -224,7 +224,7 @@ pub(crate) fn legend(
             (x, y) = (left, y + LINE);
         }
         let look = Look::line(Ink::Run(run), 3.0).dashed(super::colour::run_dash(run));
-        let setting = Setting::plain(Ink::Text, MEDIUM);
+        let setting = TextStyle::plain(Ink::Text, MEDIUM);
         let sample = segment([x, y - 4.0], [x + 24.0, y - 4.0], look);
         let label = text([x + 32.0, y], name, setting);
         shapes.push(Shape::Group { role: role(run), clip: None, shapes: vec![sample, label] });

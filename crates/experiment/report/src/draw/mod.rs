@@ -55,7 +55,7 @@ pub(crate) enum Shape {
         /// What it says.
         content: String,
         /// How it is set.
-        setting: Setting,
+        setting: TextStyle,
     },
     /// A coloured field that fills a rectangle.
     Field {
@@ -127,7 +127,7 @@ impl Look {
 
 /// How a text is set.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Setting {
+pub(crate) struct TextStyle {
     /// Its colour.
     pub(crate) ink: Ink,
     /// Size of the letters.
@@ -140,7 +140,7 @@ pub(crate) struct Setting {
     pub(crate) upwards: bool,
 }
 
-impl Setting {
+impl TextStyle {
     /// Plain text of `size`, anchored at its start.
     pub(crate) fn plain(ink: Ink, size: f64) -> Self {
         Self { ink, size, bold: false, anchor: 0.0, upwards: false }
@@ -180,6 +180,6 @@ pub(crate) fn rectangle([left, top, width, height]: [f64; 4], look: Look) -> Sha
 }
 
 /// A line of text.
-pub(crate) fn text(position: [f64; 2], content: impl Into<String>, setting: Setting) -> Shape {
+pub(crate) fn text(position: [f64; 2], content: impl Into<String>, setting: TextStyle) -> Shape {
     Shape::Text { position, content: content.into(), setting }
 }

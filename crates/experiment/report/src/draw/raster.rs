@@ -2,7 +2,7 @@
 
 use super::colour::{self, Ink};
 use super::font::Face;
-use super::{Figure, Look, Setting, Shape};
+use super::{Figure, Look, Shape, TextStyle};
 use skrifa::outline::OutlinePen;
 use tiny_skia::{
     Color, FillRule, FilterQuality, LineCap, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap,
@@ -146,7 +146,7 @@ impl Painter {
         }
     }
 
-    fn text(&mut self, [x, y]: [f64; 2], content: &str, setting: &Setting) {
+    fn text(&mut self, [x, y]: [f64; 2], content: &str, setting: &TextStyle) {
         let face = &self.faces[usize::from(setting.bold)];
         let start = -setting.anchor * face.width(content, setting.size);
         let mut pen = Pen { builder: PathBuilder::new(), start: 0.0 };

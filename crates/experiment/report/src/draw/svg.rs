@@ -2,7 +2,7 @@
 
 use super::colour::{Ink, hex};
 use super::field::base64;
-use super::{Figure, Look, Role, Setting, Shape};
+use super::{Figure, Look, Role, Shape, TextStyle};
 use std::fmt::Write;
 
 /// The figure as a file of its own.
@@ -78,7 +78,7 @@ impl Writer<'_> {
         let _ = write!(self.text, "{}\" {}/>", if closed { "Z" } else { "" }, looks(look));
     }
 
-    fn line(&mut self, [x, y]: [f64; 2], content: &str, setting: &Setting) {
+    fn line(&mut self, [x, y]: [f64; 2], content: &str, setting: &TextStyle) {
         let anchor = match setting.anchor {
             a if a < 0.25 => "",
             a if a < 0.75 => " text-anchor=\"middle\"",

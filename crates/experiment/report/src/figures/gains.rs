@@ -4,8 +4,8 @@ use super::WIDTH;
 use crate::draw::axes::{Frame, MEDIUM, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::font::Face;
-use crate::draw::{Figure, Look, Role, Setting, Shape, rectangle, segment, text};
-use crate::study::{Kind, Study};
+use crate::draw::{Figure, Look, Role, Shape, TextStyle, rectangle, segment, text};
+use crate::study::{ExcitationKind, Study};
 use crate::words;
 use basis::records::Statistic;
 
@@ -69,7 +69,7 @@ fn bands(groups: &[Group], mut y: f64, shapes: &mut Vec<Shape>) {
             let area = [8.0, y, WIDTH - 16.0, group_height];
             shapes.push(rectangle(area, Look::fill(Ink::Band)));
         }
-        let setting = Setting::plain(Ink::Text, MEDIUM).bold();
+        let setting = TextStyle::plain(Ink::Text, MEDIUM).bold();
         shapes.push(text([20.0, y + 7.0 + 0.5 * ROW + 4.0], name.as_str(), setting));
         y += group_height;
     }
@@ -83,7 +83,7 @@ fn ruler(frame: &Frame, shapes: &mut Vec<Shape>) {
         let bottom = frame.area[1] + frame.area[3];
         let ink = if tick == 0.0 { Ink::Axis } else { Ink::Grid };
         shapes.push(segment([x, frame.area[1]], [x, bottom], Look::line(ink, 1.0)));
-        let setting = Setting::plain(Ink::Muted, SMALL).anchored(0.5);
+        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(0.5);
         shapes.push(text([x, bottom + 17.0], words::number(tick, decimals), setting));
     }
     frame.x_label("power gain over the compared run (%)", shapes);
@@ -123,7 +123,7 @@ fn whisker((colour, name, gain): &Row, frame: &Frame, name_end: f64, y: f64) -> 
     let x = |share: f64| frame.point([100.0 * share, 0.0])[0];
     let look = Look::line(Ink::Run(*colour), 2.0);
     let mut shapes = Vec::new();
-    let setting = Setting::plain(Ink::Text, MEDIUM).anchored(1.0);
+    let setting = TextStyle::plain(Ink::Text, MEDIUM).anchored(1.0);
     shapes.push(text([name_end, y + 4.0], *name, setting));
     if let Some(half) = gain.half_width_95 {
         let (from, to) = (x(gain.mean - half), x(gain.mean + half));
@@ -137,7 +137,7 @@ fn whisker((colour, name, gain): &Row, frame: &Frame, name_end: f64, y: f64) -> 
         Some(_) => words::gain(gain),
         None => words::signed_percent(gain.mean),
     };
-    let setting = Setting::plain(Ink::Text, MEDIUM).anchored(1.0);
+    let setting = TextStyle::plain(Ink::Text, MEDIUM).anchored(1.0);
     shapes.push(text([WIDTH - 22.0, y + 4.0], label, setting));
     Shape::Group { role: Role::Run(*colour), clip: None, shapes }
 }
@@ -202,10 +202,10 @@ pub(crate) fn gain_over_amplitude(study: &Study) -> Option<Figure> {
 }
 
 fn lines_over_amplitude(study: &Study) -> Vec<Line> {
-    const KINDS: [(Kind, &str); 3] = [
-        (Kind::CounterClockwise, "counter-clockwise helix"),
-        (Kind::Clockwise, "clockwise helix"),
-        (Kind::Pulse, "pulse"),
+    const KINDS: [(ExcitationKind, &str); 3] = [
+        (ExcitationKind::CounterClockwise, "counter-clockwise helix"),
+        (ExcitationKind::Clockwise, "clockwise helix"),
+        (ExcitationKind::Pulse, "pulse"),
     ];
     let mut lines = Vec::new();
     for (kind, name) in KINDS {

@@ -10,7 +10,7 @@ pub(crate) mod synchronisation;
 
 use crate::draw::colour::Ink;
 use crate::draw::font::Face;
-use crate::draw::{Figure, Setting, text};
+use crate::draw::{Figure, TextStyle, text};
 use crate::sentence;
 use crate::study::Study;
 use synchronisation::Synchronisation;
@@ -91,7 +91,7 @@ fn sign(figure: &mut Figure, conditions: &str) {
         }
     }
     lines.push(line);
-    let setting = Setting::plain(Ink::Muted, SIZE);
+    let setting = TextStyle::plain(Ink::Muted, SIZE);
     for line in lines {
         figure.height += LINE;
         figure.shapes.push(text([16.0, figure.height - 4.0], line, setting));

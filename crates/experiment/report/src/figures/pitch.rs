@@ -4,7 +4,7 @@ use super::{TIME, WIDTH};
 use crate::RunRecords;
 use crate::draw::axes::{Frame, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
-use crate::draw::{Figure, Look, Role, Setting, Shape, segment, text};
+use crate::draw::{Figure, Look, Role, Shape, TextStyle, segment, text};
 use crate::study::Study;
 use crate::trace::{peaks, thinned};
 use analysis::spectra::amplitude;
@@ -171,7 +171,7 @@ fn spectra(rows: &[&Excited], area: [f64; 4], shapes: &mut Vec<Shape>) {
         let look = Look::line(Ink::Axis, 1.0).dashed(Some([4.0, 3.0]));
         shapes.push(segment([x, area[1] - 4.0], [x, base], look));
         // Labels stand apart even where the excitation is slow.
-        let setting = Setting::plain(Ink::Muted, SMALL).anchored([1.0, 0.5, 0.0][index]);
+        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored([1.0, 0.5, 0.0][index]);
         let shift = [6.0, 0.0, -6.0][index];
         let lift = if index == 1 { 20.0 } else { 8.0 };
         shapes.push(text([x + shift, area[1] - lift], name, setting));

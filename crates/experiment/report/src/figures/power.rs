@@ -3,7 +3,7 @@
 use super::{TIME, WIDTH};
 use crate::draw::axes::{Frame, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
-use crate::draw::{Figure, Look, Role, Setting, Shape, segment, text};
+use crate::draw::{Figure, Look, Role, Shape, TextStyle, segment, text};
 use crate::study::Study;
 use crate::trace::{envelope, moving_mean, thinned};
 use basis::records::Statistic;
@@ -148,7 +148,7 @@ fn panel(
         frame.band(0.0, conditions.spin_up.min(end), shapes);
         if is_last {
             let [x, _] = frame.point([0.5 * conditions.spin_up, scale.low]);
-            let setting = Setting::plain(Ink::Muted, 11.5).anchored(0.5);
+            let setting = TextStyle::plain(Ink::Muted, 11.5).anchored(0.5);
             shapes.push(text([x, area[1] + area[3] - 8.0], "spin-up", setting));
         }
     }

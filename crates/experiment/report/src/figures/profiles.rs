@@ -3,7 +3,7 @@
 use super::WIDTH;
 use crate::draw::axes::{Frame, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
-use crate::draw::{Figure, Look, Role, Setting, Shape, segment, text};
+use crate::draw::{Figure, Look, Role, Shape, TextStyle, segment, text};
 use crate::study::{Study, plane, sample};
 use crate::words::{SPACE, number};
 use basis::records::{Plane, PlaneAxes};
@@ -188,7 +188,7 @@ fn rotors(study: &Study, frame: &Frame, shapes: &mut Vec<Shape>) {
         let [x, _] = frame.point([place.position[0], frame.y.low]);
         let look = Look::line(Ink::Axis, 1.0).dashed(Some([4.0, 3.0]));
         shapes.push(segment([x, top], [x, top + height], look));
-        let setting = Setting::plain(Ink::Muted, 11.5);
+        let setting = TextStyle::plain(Ink::Muted, 11.5);
         shapes.push(text([x + 4.0, top + 12.0], place.name.as_str(), setting));
     }
 }

@@ -5,7 +5,7 @@ use crate::RunRecords;
 use crate::draw::axes::{Frame, LARGE, MEDIUM, SMALL, Scale};
 use crate::draw::colour::{Ink, Map};
 use crate::draw::field::Picture;
-use crate::draw::{Figure, Look, Setting, Shape, rectangle, segment, text};
+use crate::draw::{Figure, Look, Shape, TextStyle, rectangle, segment, text};
 use crate::study::{Study, sample};
 use crate::words::{SPACE, number};
 use basis::records::{Plane, PlaneAxes};
@@ -103,7 +103,7 @@ impl Sheet<'_> {
         let look = Look::fill(Ink::Run(panel.colour));
         shapes.push(Shape::Circle { center: [left + 5.0, top - 13.5], radius: 4.5, look });
         let size = if self.n_columns > 2 { MEDIUM } else { LARGE };
-        let setting = Setting::plain(Ink::Text, size).bold();
+        let setting = TextStyle::plain(Ink::Text, size).bold();
         shapes.push(text([left + 16.0, top - 9.0], panel.title.as_str(), setting));
         let clip = Some(frame.area);
         let shapes_on_field = self.rotors(panel, frame);
@@ -160,10 +160,10 @@ pub(super) fn colour_bar(
     for tick in ticks {
         let [_, y] = frame.point([1.0, tick]);
         shapes.push(segment([right, y], [right + 4.0, y], Look::line(Ink::Axis, 1.0)));
-        let setting = Setting::plain(Ink::Muted, SMALL);
+        let setting = TextStyle::plain(Ink::Muted, SMALL);
         shapes.push(text([right + 7.0, y + 4.0], number(tick, decimals), setting));
     }
-    shapes.push(text([area[0] - 4.0, area[1] - 10.0], title, Setting::plain(Ink::Muted, MEDIUM)));
+    shapes.push(text([area[0] - 4.0, area[1] - 10.0], title, TextStyle::plain(Ink::Muted, MEDIUM)));
 }
 
 /// Tick labels left of a field, without grid lines across it.
@@ -173,7 +173,7 @@ fn rows(frame: &Frame, shapes: &mut Vec<Shape>) {
     for tick in ticks {
         let [_, y] = frame.point([frame.x.low, tick]);
         shapes.push(segment([left - 4.0, y], [left, y], Look::line(Ink::Axis, 1.0)));
-        let setting = Setting::plain(Ink::Muted, SMALL).anchored(1.0);
+        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
         shapes.push(text([left - 7.0, y + 4.0], number(tick, decimals), setting));
     }
 }

@@ -1,6 +1,6 @@
 //! The tables of what controllers did, found and were given, as rows of ready text.
 
-use crate::study::{Kind, Study};
+use crate::study::{ExcitationKind, Study};
 use crate::words::{SPACE, number, percent, three_figures};
 use basis::records::{MeanderingAxis, PitchResponse};
 use minijinja::{Value, context};
@@ -42,10 +42,10 @@ pub(crate) fn excitations(study: &Study) -> Vec<Value> {
         for excitation in study.excitations(run) {
             let pitch = &excitation.pitch;
             let kind = match excitation.kind {
-                Kind::CounterClockwise => "helix, counter-clockwise".to_owned(),
-                Kind::Clockwise => "helix, clockwise".to_owned(),
-                Kind::Pulse => "pulse".to_owned(),
-                Kind::Other => excitation.turbine.control.description.clone(),
+                ExcitationKind::CounterClockwise => "helix, counter-clockwise".to_owned(),
+                ExcitationKind::Clockwise => "helix, clockwise".to_owned(),
+                ExcitationKind::Pulse => "pulse".to_owned(),
+                ExcitationKind::Other => excitation.turbine.control.description.clone(),
             };
             rows.push(context! {
                 run => run.summary.run.clone(),
@@ -105,7 +105,7 @@ pub(crate) fn responses(study: &Study) -> Vec<Value> {
                         number(after, 2)
                     );
                     let gain = format!("× {}", number(gain, 3));
-                    let on = "belief of the phase estimator";
+                    let on = "model of the phase estimator";
                     add(on, gain, azimuth_offset, String::new(), remark);
                 }
                 Some(PitchResponse::Loads { azimuth_offset, delay, gain }) => {

@@ -101,10 +101,10 @@ fn what_a_controller_of_any_kind_found_stands_in_a_table() {
 }
 
 #[test]
-fn the_offset_of_the_pitch_and_that_of_the_belief_have_their_rows() {
+fn the_offset_of_the_pitch_and_that_of_the_estimator_have_their_rows() {
     let mut study = synthetic::two_runs();
     let turned = "<td>blades, by the inverse multi-blade transformation</td><td class=\"n\"></td>";
-    let belief = "<td>belief of the phase estimator</td><td class=\"n\">× 1.040</td>";
+    let estimator = "<td>model of the phase estimator</td><td class=\"n\">× 1.040</td>";
     assert!(!page(&study).contains(turned));
     study.runs[1].summary.turbines[1].pitch_response = Some(PitchResponse::Estimator {
         gain: 1.04,
@@ -114,7 +114,7 @@ fn the_offset_of_the_pitch_and_that_of_the_belief_have_their_rows() {
         transformation_offset: Some(35.2f64.to_radians()),
     });
     let both = page(&study);
-    for (on, offset) in [(turned, "35.2"), (belief, "0.5")] {
+    for (on, offset) in [(turned, "35.2"), (estimator, "0.5")] {
         let row = format!("{on}<td class=\"n\">{offset}</td><td class=\"n\"></td>");
         assert_eq!(both.matches(&row).count(), 1, "{on}");
     }
@@ -122,7 +122,7 @@ fn the_offset_of_the_pitch_and_that_of_the_belief_have_their_rows() {
     study.runs[1].summary.turbines[1].pitch_response =
         Some(PitchResponse::Transformation { azimuth_offset: 35.2f64.to_radians() });
     let alone = page(&study);
-    assert!(alone.contains(turned) && !alone.contains(belief));
+    assert!(alone.contains(turned) && !alone.contains(estimator));
     let damped = "<td>blades, under individual pitch control</td><td class=\"n\"></td><td class=\"n\">12.3</td>";
     assert!(!alone.contains(damped));
     study.runs[1].summary.turbines[1].individual_pitch_offset = Some(12.3f64.to_radians());

@@ -3,7 +3,7 @@
 use super::*;
 use crate::{OffsetQuestion, Silent, azimuth_offset};
 use control::phase_sync::PhaseSyncSettings;
-use estimation::helix::{Measurement, Options};
+use estimation::helix::{HelixOptions, Measurement};
 use farm::pitch_response::OwnPitch;
 use formats::records::{read_pitch_responses, write_pitch_responses};
 
@@ -55,7 +55,7 @@ fn sync_of(setup: &Prepared) -> PhaseSyncSettings {
 }
 
 /// Pitch response given to T2 of `setup`, and the progress of its identification.
-fn told_of(setup: &Prepared) -> (OwnPitch, Vec<f64>) {
+fn identified_for(setup: &Prepared) -> (OwnPitch, Vec<f64>) {
     let (case, plan, model) = (&setup.case, &setup.plan, &setup.models[1]);
     let mut shares = Vec::new();
     let mut reported = |share: f64| {
@@ -74,11 +74,11 @@ fn noise_that_is_given_is_another_calibration_and_none_leaves_no_trace() {
     let given = key(", measurement_noise_mnm = 0.5");
     assert_ne!(given, usual);
     assert_ne!(key(", measurement_noise_mnm = 0.6"), given);
-    assert_ne!(key(", wandering_amplitude = 0.5"), given);
+    assert_ne!(key(", process_noise_amplitude = 0.5"), given);
 }
 
 #[test]
-fn what_is_given_is_not_sought_and_a_turbine_that_watches_needs_nothing() {
+fn what_is_given_is_not_identified_and_a_turbine_that_monitors_needs_nothing() {
     let asks = |keys: &str, overrides: &[&str]| {
         let setup = setup(keys, overrides);
         let control = &setup.case.runs[0].control[1];
@@ -88,10 +88,10 @@ fn what_is_given_is_not_sought_and_a_turbine_that_watches_needs_nothing() {
     assert!(asks(", estimator = \"published\"", &[]));
     assert!(!asks(", estimator = \"published\", azimuth_offset_deg = 10", &[]));
     for keys in ["", ", estimator = \"published\""] {
-        let watching = setup(keys, &["run.joined.control.T2.amplitude_deg=0"]);
-        let control = &watching.case.runs[0].control[1];
+        let monitoring = setup(keys, &["run.joined.control.T2.amplitude_deg=0"]);
+        let control = &monitoring.case.runs[0].control[1];
         assert!(control.kind().identification(control).is_none());
-        assert_eq!(sync_of(&watching).azimuth_offset, Some(0.0));
+        assert_eq!(sync_of(&monitoring).azimuth_offset, Some(0.0));
         assert_eq!(control.kind().pitch_response(control), None);
     }
     let [found, none, ten] = ["", ", azimuth_offset_deg = 0", ", azimuth_offset_deg = 10"].map(key);
@@ -111,7 +111,7 @@ fn the_offset_is_the_turbines_whatever_moves_the_air() {
     let alone = azimuth_offset(&question).expect("a sound turbine").decoupling.azimuth_offset;
     let published = ", estimator = \"published\"";
     let prescribed = setup(published, &["turbine.T2.structure=rigid", "flow.step=0.02"]);
-    let (found, _) = told_of(&prescribed);
+    let (found, _) = identified_for(&prescribed);
     assert!((found.azimuth_offset - alone).abs() < 1e-3, "{found:?}, alone {alone}");
     assert_eq!(found.calibration, None);
 
@@ -123,7 +123,7 @@ fn the_offset_is_the_turbines_whatever_moves_the_air() {
         "flow.step=0.05",
     ];
     let resolved = setup(published, &resolved);
-    let (found, _) = told_of(&resolved);
+    let (found, _) = identified_for(&resolved);
     // Torque is controlled otherwise in resolved flow, so that the rotor turns a little slower or faster.
     assert!((found.azimuth_offset - alone).abs() < 5f64.to_radians(), "{found:?}, alone {alone}");
     // Its steps are those of prescribed wind, not the lattice's.
@@ -136,7 +136,7 @@ fn the_offset_is_the_turbines_whatever_moves_the_air() {
 
 #[test]
 fn both_parts_of_an_identification_move_its_progress() {
-    let (found, shares) = told_of(&setup("", &["turbine.T2.structure=rigid"]));
+    let (found, shares) = identified_for(&setup("", &["turbine.T2.structure=rigid"]));
     assert!(found.calibration.is_some());
     assert!(shares.windows(2).all(|pair| pair[0] < pair[1]), "{shares:?}");
     let [first, last] = [shares[0], shares[shares.len() - 1]];
@@ -144,7 +144,7 @@ fn both_parts_of_an_identification_move_its_progress() {
 }
 
 #[test]
-fn a_resumed_study_is_told_the_same_to_the_last_bit() {
+fn a_resumed_study_is_given_the_same_to_the_last_bit() {
     let folder = tempfile::tempdir().expect("a folder");
     // How many identifications were made, and how T2 was set to join the helix.
     let reported = |keys: &str, resume: bool| {
@@ -185,20 +185,20 @@ fn a_resumed_study_is_told_the_same_to_the_last_bit() {
 }
 
 #[test]
-fn the_estimator_of_a_run_believes_in_the_noise_that_is_given() {
-    let options = |keys: &str| -> Options {
+fn the_estimator_of_a_run_assumes_the_noise_that_is_given() {
+    let options = |keys: &str| -> HelixOptions {
         let setup = setup(&format!("{keys}, azimuth_offset_deg = 0"), &[]);
         let control = &setup.case.runs[0].control[1];
         let given = PhaseSyncSettings::of(control).expect("phase-sync");
         given.estimator_options(setup.case.flow.solver.resolves_induction)
     };
     let usual = options("");
-    let given = options(", measurement_noise_mnm = 0.5, wandering_amplitude = 3e-3");
+    let given = options(", measurement_noise_mnm = 0.5, process_noise_amplitude = 3e-3");
     assert_eq!(given.noise.measurement, Measurement::Moment(5e5));
     assert_eq!((given.noise.amplitude, given.noise.phase), (3e-3, usual.noise.phase));
-    assert_eq!(Options { noise: usual.noise, ..given }, usual);
-    let published = options(", estimator = \"published\", wandering_phase = 3e-4");
-    let own = Options::published().noise;
+    assert_eq!(HelixOptions { noise: usual.noise, ..given }, usual);
+    let published = options(", estimator = \"published\", process_noise_phase = 3e-4");
+    let own = HelixOptions::published().noise;
     assert_eq!((published.noise.phase, published.noise.amplitude), (3e-4, own.amplitude));
     assert_eq!(published.noise.measurement, own.measurement);
 }

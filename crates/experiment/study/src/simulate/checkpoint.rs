@@ -20,7 +20,7 @@ pub(super) struct Before {
     pub(super) step: u64,
     /// Wall time (s).
     pub(super) wall_time: f64,
-    /// Most memory that a process has held at once (bytes); none where the system does not tell.
+    /// Most memory that a process has held at once (bytes); none where the system does not report it.
     pub(super) peak_memory: Option<u64>,
 }
 

@@ -1,7 +1,7 @@
 //! Small studies for trials: cases in wind that is the same everywhere, in folders that go away.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
-use farm::assemble::Model;
+use farm::assemble::TurbineModel;
 use farm::case::Case;
 use farm::{Air, Plan};
 use flow::inflow::{MeanProfile, PrescribedWind};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study::outputs::{FedBy, Keys, Output, OutputKind, Scene, Schedule};
-use study::{Options, Outcome, Silent, StudyError};
+use study::{Outcome, Silent, StudyError, StudyOptions};
 use tempfile::TempDir;
 
 /// What a turbine of [`case`] is.
@@ -19,8 +19,8 @@ pub(crate) const NREL_5MW: &str = r#"model = "nrel-5mw""#;
 /// A disk of slow air that circles in the wind of [`case`], whose waves a turbine takes for a helix.
 pub(crate) const DISK: &str = r#"event = { kind = "rotating-disk", speed = 6.0, strouhal = 0.25 }
 "#;
-/// Control that listens for a helix and does nothing.
-pub(crate) const WATCHING: &str =
+/// Control that estimates the phase of a helix and does nothing.
+pub(crate) const MONITORING: &str =
     r#"{ kind = "phase-sync", offset_deg = 0.0, amplitude_deg = 0.0 }"#;
 /// Control of a turbine that is not there.
 pub(crate) const ABSENT: &str = r#"{ kind = "absent" }"#;
@@ -86,21 +86,21 @@ pub(crate) fn written(case: &str) -> TempDir {
 }
 
 /// The study of the case in `folder`, with its results in `out` beside it.
-pub(crate) fn options(folder: &Path) -> Options {
-    Options {
+pub(crate) fn options(folder: &Path) -> StudyOptions {
+    StudyOptions {
         case: folder.join("case.toml"),
         output: Some(folder.join("out")),
-        ..Options::default()
+        ..StudyOptions::default()
     }
 }
 
 /// What becomes of a study that is left alone.
-pub(crate) fn run(options: &Options) -> Result<Outcome, StudyError> {
+pub(crate) fn run(options: &StudyOptions) -> Result<Outcome, StudyError> {
     study::run(options, &AtomicBool::new(false), &mut Silent)
 }
 
 /// Runs a study to its end; gives the folder of its records.
-pub(crate) fn done(options: &Options) -> PathBuf {
+pub(crate) fn done(options: &StudyOptions) -> PathBuf {
     match run(options) {
         Ok(Outcome::Done { directory, .. }) => directory,
         outcome => panic!("{outcome:?}"),
@@ -109,11 +109,16 @@ pub(crate) fn done(options: &Options) -> PathBuf {
 
 /// The case in `text` with `overrides`, laid out, and the turbine of the library called `model` that stands
 /// in it.
-pub(crate) fn laid_out(text: &str, overrides: &[String], model: &str) -> (Case, Plan, Model) {
+pub(crate) fn laid_out(
+    text: &str,
+    overrides: &[String],
+    model: &str,
+) -> (Case, Plan, TurbineModel) {
     let case = formats::case::parse("case.toml", text, overrides)
         .unwrap_or_else(|error| panic!("{}", error.to_lines()));
     let file = formats::library::load(model).expect("a turbine of the library");
-    let machine = Model { definition: Arc::new(file.definition), constants: file.controller };
+    let machine =
+        TurbineModel { definition: Arc::new(file.definition), constants: file.controller };
     let machine = machine.equipped(case.flow.solver, case.wind.air_density).into_owned();
     let footprints = BTreeMap::from([(model.to_owned(), machine.footprint(case.wind.speed))]);
     let plan = farm::plan(&case, &footprints).expect("the layout fits");

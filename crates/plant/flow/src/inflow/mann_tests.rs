@@ -21,7 +21,7 @@ fn make(settings: &MannSettings) -> TurbulenceBox {
 }
 
 #[test]
-fn has_the_asked_deviation_and_no_mean() {
+fn has_the_target_deviation_and_no_mean() {
     let turbulence = make(&settings());
     assert!((turbulence.standard_deviations()[0] / 0.5 - 1.0).abs() < 1e-6);
     assert!(turbulence.means().iter().all(|mean| mean.abs() < 1e-6));
@@ -88,7 +88,7 @@ fn a_finer_grid_keeps_the_large_eddies() {
     assert!(product / (coarse_square * fine_square).sqrt() > 0.97);
 }
 
-/// Sheared eddies lean with the wind: air higher up is ahead.
+/// Sheared eddies are tilted by the wind: air higher up is ahead.
 #[test]
 fn eddies_lean_downwind_with_height() {
     let turbulence =

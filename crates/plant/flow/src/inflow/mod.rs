@@ -63,7 +63,7 @@ pub enum InflowError {
         found: usize,
     },
     /// A box that the machine cannot hold.
-    #[error("a box of {n_x} × {n_y} × {n_z} points needs {memory} bytes, which cannot be had; make it coarser or shorter", n_x = n_points[0], n_y = n_points[1], n_z = n_points[2])]
+    #[error("a box of {n_x} × {n_y} × {n_z} points needs {memory} bytes of memory, which are not available; make it coarser or shorter", n_x = n_points[0], n_y = n_points[1], n_z = n_points[2])]
     Memory {
         /// Points along x, y, z.
         n_points: [usize; 3],
@@ -85,7 +85,7 @@ pub enum InflowError {
     },
     /// A record of wind that is over.
     #[error(
-        "the wind's record of {length:.1} s does not repeat, and the run asks for its {time:.1} s; make a longer record, or one that repeats"
+        "the wind's record of {length:.1} s does not repeat, and the run needs it at {time:.1} s; make a longer record, or one that repeats"
     )]
     Ended {
         /// Length of the record (s).
@@ -94,7 +94,7 @@ pub enum InflowError {
         time: f64,
     },
     /// A plane of wind that its source could not give.
-    #[error("plane {step} of the wind cannot be had: {problem}")]
+    #[error("plane {step} of the wind cannot be read: {problem}")]
     Plane {
         /// Its place in order of arrival, from 0.
         step: usize,

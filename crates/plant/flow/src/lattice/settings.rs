@@ -222,7 +222,7 @@ pub enum LatticeError {
         value: f64,
     },
     /// Too few cells along an axis.
-    #[error("{n_cells} cells along {axis} are too few, {needed} are the least")]
+    #[error("{n_cells} cells along {axis} are too few, at least {needed} are needed")]
     TooFewCells {
         /// Axis.
         axis: &'static str,
@@ -233,7 +233,7 @@ pub enum LatticeError {
     },
     /// The wind moves too far in a step.
     #[error(
-        "at {speed} m/s the wind moves {lattice_speed:.3} cells a step, {FASTEST_REFERENCE} are the most; use a step of at most {longest:.4} s"
+        "at {speed} m/s the wind moves {lattice_speed:.3} cells a step, the maximum is {FASTEST_REFERENCE}; use a step of at most {longest:.4} s"
     )]
     TooFast {
         /// Reference speed (m/s).
@@ -245,7 +245,7 @@ pub enum LatticeError {
     },
     /// The air is too viscous for the step.
     #[error(
-        "the viscosity is {viscosity:.3} cells² a step, {MOST_VISCOUS} are the most; use a step of at most {longest:.4} s"
+        "the viscosity is {viscosity:.3} cells² a step, the maximum is {MOST_VISCOUS}; use a step of at most {longest:.4} s"
     )]
     TooViscous {
         /// Cells² per step (–).

@@ -73,9 +73,9 @@ pub enum PolarError {
         /// Moment coefficients (–).
         n_moment: usize,
     },
-    /// Angles that do not rise.
+    /// Angles that do not increase.
     #[error(
-        "polar \"{name}\": angles of attack must rise from row to row, but row {row} holds {angle_deg}° after {before_deg}°"
+        "polar \"{name}\": angles of attack must increase from row to row, but row {row} holds {angle_deg}° after {before_deg}°"
     )]
     NotRising {
         /// Polar.

@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StructureError {
     /// Fewer than two sections, or sections that do not follow each other.
-    #[error("{member}: {n_sections} structural sections do not rise from 0 to {length} m")]
+    #[error("{member}: {n_sections} structural sections do not increase from 0 to {length} m")]
     Sections {
         /// Blade or tower.
         member: &'static str,

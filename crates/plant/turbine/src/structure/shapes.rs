@@ -294,7 +294,7 @@ mod tests {
         let modes = [PrincipalMode { axis: 0, mode: PARABOLA }];
         let place = Shapes::new(10.0, &sections(0.0), &modes).place(10.0, 0.0);
         let ahead = place.offset_by(Vector3::new(-2.0, 0.0, 0.0));
-        // The tip leans downwind about +y; what sticks out upwind rises.
+        // The tip turns downwind about +y; what is upwind of the axis rises.
         let (position, _) = ahead.at(&[0.1]);
         assert!(position.z > place.at(&[0.1]).0.z);
     }

@@ -1,4 +1,4 @@
-//! What a reader of a summary must know before he believes its numbers.
+//! What a reader of a summary must know before using its numbers.
 
 use serde::{Deserialize, Serialize};
 

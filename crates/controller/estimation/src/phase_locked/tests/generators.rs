@@ -20,7 +20,7 @@ fn gain_of_the_offset_places_the_poles() {
 
 /// In-phase, quadrature and offset of a generator at `centre` fed with a sine at `ratio` times that, as gain
 /// and phase.
-fn measured(kind: Kind, centre: f64, ratio: f64) -> [Response; 3] {
+fn measured(kind: GeneratorKind, centre: f64, ratio: f64) -> [Response; 3] {
     let mut generator = Generator::new(kind, SQRT_2).unwrap();
     let rate = ratio * centre;
     let n_period = (TAU / (rate * INTERVAL)).round();
@@ -86,9 +86,9 @@ proptest! {
         kind in 0_usize..3, damping in 0.3..1.9_f64, seed in 0.0..100.0_f64, swing in 0.0..2.8_f64,
     ) {
         let kind = match kind {
-            1 => Kind::Extended { dc_gain: 0.22 },
-            0 => Kind::Second,
-            _ => Kind::Mixed,
+            1 => GeneratorKind::Extended { dc_gain: 0.22 },
+            0 => GeneratorKind::Second,
+            _ => GeneratorKind::Mixed,
         };
         let mut one = Generator::new(kind, damping).unwrap();
         let mut other = one;

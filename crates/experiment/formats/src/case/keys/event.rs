@@ -108,7 +108,7 @@ static DIRECTION_CHANGE: Table = Table {
 /// `kind = "coherent-gust"`.
 static COHERENT_GUST: Table = Table {
     heading: "wind.event = { kind = \"coherent-gust\" }",
-    about: "Extreme coherent gust with direction change of IEC 61400-1 edition 3, eqs. 22 and 24; the wind stays as it has become.",
+    about: "Extreme coherent gust with direction change of IEC 61400-1 edition 3, eqs. 22 and 24; the wind keeps its final speed and direction.",
     keys: &[
         KIND,
         START,
@@ -210,7 +210,7 @@ static ROTATING_DISK: Table = Table {
             Holds::Choice(&["cw", "ccw"]),
             "",
             Value("\"cw\""),
-            "Way it goes round, looking downwind.",
+            "Sense of rotation, looking downwind.",
         ),
     ],
 };

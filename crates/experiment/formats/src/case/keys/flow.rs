@@ -13,7 +13,7 @@ pub(in crate::case) static COMMON: [Key; 2] = [
         above(0.0, 10.0),
         "s",
         Otherwise("chosen from tip speed and wind speed; 0.02 s in prescribed wind"),
-        "Step of the air, which is the control interval too.",
+        "Time step of the flow, which is the control interval too.",
     )
     .mistaken(&[Slip { unit: "ms", factor: 0.001 }]),
     key(
@@ -54,7 +54,7 @@ fn keys_of(solver: Solver, kinds: &[&SolverKind]) -> Vec<Key> {
         Holds::Choice(names),
         "",
         Value("\"lattice\""),
-        "What moves the air. The page docs/case-file.md says under `flow.solver` what each does and which keys it alone uses.",
+        "The flow solver. The page docs/case-file.md says under `flow.solver` what each does and which keys it alone uses.",
     )];
     let own = |name: &str| solver.keys.iter().find(|key| key.name == name);
     let of_kinds = kinds.iter().flat_map(|kind| kind.keys).chain(solver.keys);

@@ -68,12 +68,12 @@ macro_rules! figures {
             heading: concat!("turbine.instruments: ", $names, " = { … }"),
             about: $about,
             keys: &[
-                key(concat!("noise", $suffix), from(0.0, $most), $unit, Value("0"), "Standard deviation of the white noise in each reading, one a control interval.").mistaken($slips),
-                key(concat!("bias", $suffix), from(-$most, $most), $unit, Value("0"), "What it shows too much.").mistaken($slips),
-                key(concat!("resolution", $suffix), from(0.0, $most), $unit, Value("0"), "Distance of the values that it can show; 0 shows all.").mistaken($slips),
+                key(concat!("noise", $suffix), from(0.0, $most), $unit, Value("0"), "Standard deviation of the white noise in each reading, one per control interval.").mistaken($slips),
+                key(concat!("bias", $suffix), from(-$most, $most), $unit, Value("0"), "Bias: mean error of the reading.").mistaken($slips),
+                key(concat!("resolution", $suffix), from(0.0, $most), $unit, Value("0"), "Resolution: step between the values that it can show; 0 is continuous.").mistaken($slips),
                 key("dropout", from(0.0, 0.99), "–", Value("0"), "Share of the readings that fail and repeat the one before.").mistaken(PERCENT),
-                key("time_constant", above(0.0, 1e3), "s", Otherwise("no lag of first order"), "Time constant of a lag of first order.").mistaken(MILLI),
-                key("frequency_hz", above(0.0, 1e4), "Hz", Otherwise("no lag of second order"), "Natural frequency of a lag of second order, instead of one of first."),
+                key("time_constant", above(0.0, 1e3), "s", Otherwise("no first-order lag"), "Time constant of a first-order lag.").mistaken(MILLI),
+                key("frequency_hz", above(0.0, 1e4), "Hz", Otherwise("no second-order lag"), "Natural frequency of a second-order lag, instead of a first-order one."),
                 key("damping_ratio", from(0.0, 10.0), "–", Otherwise("0.7 with `frequency_hz`"), "Its damping ratio."),
             ],
         };

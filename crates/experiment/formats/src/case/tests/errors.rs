@@ -1,4 +1,4 @@
-//! What is wrong with a case file is told where it stands, and how to fix it.
+//! Errors in a case file name the place and the fix.
 
 use super::{SMALL, small};
 use crate::case::{Problem, parse, read};
@@ -42,14 +42,14 @@ fn errors_name_file_line_key_and_fix() {
         (
             "[5.0, 0.0]",
             "[0.5, 0.0]",
-            "small.toml:16: turbines T1 and T2 overlap: they stand 0.50 diameters apart, 1 is the least; move one",
+            "small.toml:16: turbines T1 and T2 overlap: they stand 0.50 diameters apart, at least 1 is needed; move one",
         ),
         ("[5.0, 0.0]", "[1200, 0.0]", "`turbine.T2.position_diameters` = 1200 is out of range"),
-        ("\"T2\"", "\"T1\"", "small.toml:14: the turbine name `T1` is taken already"),
+        ("\"T2\"", "\"T1\"", "small.toml:14: the turbine name `T1` is used twice"),
         (
             "\"T2\"",
             "\"T 2\"",
-            "`turbine.T 2.name` = \"T 2\" is not a name: 1 to 64 letters, digits, `-` and `_` make one; try \"T-2\"",
+            "`turbine.T 2.name` = \"T 2\" is not a valid name: use 1 to 64 letters, digits, `-` and `_`; try \"T-2\"",
         ),
         (
             "control.T1",
@@ -76,17 +76,27 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense",
             "\"phase-lock\", sense",
-            "`run.helix.control.T1.kind` = \"phase-lock\" does not exist; what exists is \"baseline\", \"helix\", \"pulse\", \"phase-sync\", \"meandering\", \"absent\"",
+            "`run.helix.control.T1.kind` = \"phase-lock\" is unknown; expected one of \"baseline\", \"helix\", \"pulse\", \"phase-sync\", \"meandering\", \"absent\"",
         ),
         (
             "\"helix\", sense = \"ccw\"",
             "\"phase-sync\", offset_deg = 90",
-            "T1 shall join a helix, but no turbine upstream of it has one in this run; give a turbine upstream a helix",
+            "T1 is to join a helix, but no turbine upstream of it pitches one in this run; give a turbine upstream a helix",
+        ),
+        (
+            "\"helix\", sense",
+            "\"phase-sync\", offset_deg = 90, process_noise_phase = 1e-4, sense",
+            "`run.helix.control.T1.process_noise_phase` has no effect here: it goes with estimator = \"published\"",
+        ),
+        (
+            "\"helix\", sense",
+            "\"phase-sync\", offset_deg = 90, wandering_amplitude = 1e-4, sense",
+            "there is no key `run.helix.control.T1.wandering_amplitude`; it is called `process_noise_amplitude` now",
         ),
         (
             "\"helix\", sense",
             "\"phase-sync\", offset_deg = 90, wandering_phase = 1e-4, sense",
-            "`run.helix.control.T1.wandering_phase` is of no use here: it goes with estimator = \"published\"",
+            "there is no key `run.helix.control.T1.wandering_phase`; it is called `process_noise_phase` now",
         ),
         (
             "\"helix\", sense",
@@ -106,7 +116,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
             "\"meandering\", factor = 1.5, amplitude_deg = 4.0, learning_time = 60",
-            "`run.helix.control.T1.learning_time` is of no use here: it goes with reference = \"learned\", not \"observed\"; leave it out",
+            "`run.helix.control.T1.learning_time` has no effect here: it goes with reference = \"learned\", not \"observed\"; leave it out",
         ),
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
@@ -131,7 +141,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"ccw\"",
             "\"acw\"",
-            "`run.helix.control.T1.sense` = \"acw\" does not exist; what exists is \"cw\", \"ccw\"; one of",
+            "`run.helix.control.T1.sense` = \"acw\" is unknown; expected one of \"cw\", \"ccw\"; one of",
         ),
         ("\"helix\", sense", "\"helx\", sense", "did you mean \"helix\"?"),
         (
@@ -142,7 +152,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "[time]",
             "[flow]\nsolver = \"vortex\"\n[time]",
-            "`flow.solver` = \"vortex\" does not exist; what exists is \"lattice\"",
+            "`flow.solver` = \"vortex\" is unknown; expected one of \"lattice\"",
         ),
         ("[time]", "[flow]\ncells_per_diameter = 6\n[time]", "8 <= cells_per_diameter <= 200"),
         (
@@ -160,7 +170,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "[[run]]\nname = \"baseline\"",
             "[[run]]\nname = \"HELIX\"",
-            "the run name `helix` is taken already",
+            "the run name `helix` is used twice",
         ),
         ("speed = 9", "speed 9", "small.toml:4: this is not TOML"),
         ("speed = 9", "speed = 9\nspeed = 8", "small.toml:5: this is not TOML: duplicate key"),
@@ -172,7 +182,7 @@ fn errors_name_file_line_key_and_fix() {
 }
 
 #[test]
-fn everything_wrong_is_told_at_once_from_top_to_bottom() {
+fn everything_wrong_is_reported_at_once_from_top_to_bottom() {
     let text = SMALL.replace("speed = 9", "speed = 900").replace("[5.0, 0.0]", "[0.0]");
     let error = parse("small.toml", &text, &[]).unwrap_err();
     let lines: Vec<usize> = error.problems().iter().map(Problem::line).collect();
@@ -197,7 +207,7 @@ fn a_drawn_error_points_at_the_value() {
 
 /// Found by fuzzing: what draws errors gave up on columns that 16 bits do not count.
 #[test]
-fn a_problem_on_an_endless_line_is_told_without_a_drawing() {
+fn a_problem_on_an_endless_line_is_reported_without_a_drawing() {
     let endless = format!("speed = 900{}# and on\n", " ".repeat(70_000));
     for text in [SMALL.replace("speed = 9\n", &endless), SMALL.replace("speed = 9", &endless)] {
         let error = parse("small.toml", &text, &[]).unwrap_err();
@@ -227,7 +237,7 @@ fn errors_of_overrides_name_the_override() {
 }
 
 #[test]
-fn a_file_that_is_not_there_or_not_text_is_told() {
+fn a_file_that_is_not_there_or_not_text_is_reported() {
     let error = read(Path::new("cases/no-such.toml"), &[]).unwrap_err();
     assert!(error.to_string().contains("cannot read the case file cases/no-such.toml"), "{error}");
     let folder = tempfile::tempdir().unwrap();

@@ -2,7 +2,7 @@
 
 use crate::draw::axes::{Frame, SMALL};
 use crate::draw::colour::{Ink, run_dash};
-use crate::draw::{Look, Setting, Shape, segment, text};
+use crate::draw::{Look, Shape, TextStyle, segment, text};
 use crate::words::{SPACE, number};
 
 /// A degree as a reader sees it.
@@ -16,7 +16,7 @@ pub(super) fn degree_columns(frame: &Frame, step: f64, shapes: &mut Vec<Shape>) 
     for degrees in multiples(step, frame.x.low, frame.x.high) {
         let [x, _] = frame.point([degrees, frame.y.low]);
         shapes.push(segment([x, base], [x, base + 4.0], Look::line(Ink::Axis, 1.0)));
-        let setting = Setting::plain(Ink::Muted, SMALL).anchored(0.5);
+        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(0.5);
         shapes.push(text([x, base + 17.0], number(degrees, 0), setting));
     }
 }
@@ -27,7 +27,7 @@ pub(super) fn degree_rows(frame: &Frame, step: f64, shapes: &mut Vec<Shape>) {
     for degrees in multiples(step, frame.y.low, frame.y.high) {
         let [_, y] = frame.point([frame.x.low, degrees]);
         shapes.push(segment([left, y], [left + width, y], Look::line(Ink::Grid, 1.0)));
-        let setting = Setting::plain(Ink::Muted, SMALL).anchored(1.0);
+        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
         shapes.push(text([left - 7.0, y + 4.0], number(degrees, 0), setting));
     }
 }
@@ -50,7 +50,7 @@ pub(super) fn upright(frame: &Frame, value: f64, label: &str, shapes: &mut Vec<S
         // On the side where there is room.
         let right = x < left + 0.75 * width;
         let (place, anchor) = if right { (x + 5.0, 0.0) } else { (x - 5.0, 1.0) };
-        let setting = Setting::plain(Ink::Muted, SMALL).anchored(anchor);
+        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(anchor);
         shapes.push(text([place, top + 13.0], label, setting));
     }
 }

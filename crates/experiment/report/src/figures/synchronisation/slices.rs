@@ -5,7 +5,7 @@ use super::{SliceFigure, SlicePanel};
 use crate::draw::axes::{Frame, MEDIUM, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, Map};
 use crate::draw::field::Picture;
-use crate::draw::{Figure, Look, Role, Setting, Shape, polyline, segment, text};
+use crate::draw::{Figure, Look, Role, Shape, TextStyle, polyline, segment, text};
 use crate::figures::WIDTH;
 use crate::figures::sheet::colour_bar;
 use crate::study::sample;
@@ -49,7 +49,7 @@ pub(super) fn slices(figure: &SliceFigure) -> Option<Figure> {
         centres(figure, [LEFT, top, width, LINES], scale, &mut shapes);
         top += LINES + 40.0;
     }
-    let setting = Setting::plain(Ink::Muted, MEDIUM).anchored(0.5);
+    let setting = TextStyle::plain(Ink::Muted, MEDIUM).anchored(0.5);
     shapes.push(text([LEFT + 0.5 * width, top - 2.0], "x/D", setting));
     Some(Figure {
         name: "phase-averaged-wake".to_owned(),
@@ -136,7 +136,7 @@ fn field(
     shapes.push(Shape::Field { area: frame.area, picture });
     let look = Look::fill(Ink::Run(panel.colour));
     shapes.push(Shape::Circle { center: [left + 5.0, top - 13.5], radius: 4.5, look });
-    let setting = Setting::plain(Ink::Text, MEDIUM).bold();
+    let setting = TextStyle::plain(Ink::Text, MEDIUM).bold();
     shapes.push(text([left + 16.0, top - 9.0], panel.title.as_str(), setting));
     let mut inner = Vec::new();
     for [x, y] in &figure.rotors {
@@ -171,7 +171,7 @@ fn heights(frame: &Frame, shapes: &mut Vec<Shape>) {
     for tick in ticks {
         let [_, y] = frame.point([frame.x.low, tick]);
         shapes.push(segment([left - 4.0, y], [left, y], Look::line(Ink::Axis, 1.0)));
-        let setting = Setting::plain(Ink::Muted, SMALL).anchored(1.0);
+        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
         shapes.push(text([left - 7.0, y + 4.0], number(tick, decimals), setting));
     }
 }

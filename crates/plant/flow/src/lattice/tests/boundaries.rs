@@ -74,7 +74,7 @@ fn a_vortex_leaves() {
 }
 
 #[test]
-fn gusts_arrive_as_they_were_asked_for() {
+fn gusts_pass_as_prescribed() {
     // A transverse gust is carried by the wind unchanged: at x it is what entered x/U before.
     let gust = |time: f64, x: f64| 0.005 * (0.02 * (x - SPEED * time)).sin();
     let mut air = duct([100, 1, 1], move |time, x| Vector3::new(SPEED, gust(time, x.x), 0.0));

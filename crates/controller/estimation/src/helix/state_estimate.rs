@@ -22,12 +22,12 @@ pub(super) type Vector = [f64; N_STATES];
 
 /// Mean and covariance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Belief {
+pub(super) struct StateEstimate {
     pub(super) mean: Vector,
     pub(super) covariance: [Vector; N_STATES],
 }
 
-impl Belief {
+impl StateEstimate {
     /// Zero mean and covariance.
     pub(super) fn zero() -> Self {
         Self { mean: [0.0; N_STATES], covariance: [[0.0; N_STATES]; N_STATES] }
@@ -131,15 +131,15 @@ mod tests {
     use proptest::prelude::*;
 
     /// A covariance from any square root.
-    fn belief(root: &[f64]) -> Belief {
-        let mut belief = Belief::zero();
+    fn estimate(root: &[f64]) -> StateEstimate {
+        let mut estimate = StateEstimate::zero();
         for a in 0..N_STATES {
             for b in 0..N_STATES {
-                belief.covariance[a][b] =
+                estimate.covariance[a][b] =
                     (0..N_STATES).map(|k| root[a * N_STATES + k] * root[b * N_STATES + k]).sum();
             }
         }
-        belief
+        estimate
     }
 
     proptest! {
@@ -152,7 +152,7 @@ mod tests {
             direction in prop::array::uniform12(-1.0..1.0_f64),
             innovation in -3.0..3.0_f64, variance in 1e-3..10.0_f64,
         ) {
-            let before = belief(&root);
+            let before = estimate(&root);
             let mut after = before.clone();
             after.correct(&slopes, innovation, variance);
             let along = before.along(&slopes);
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn carrying_by_the_identity_changes_nothing_and_by_a_factor_its_square() {
         let root: Vec<f64> = (0..144).map(|k| (f64::from(k) * 1.7).sin()).collect();
-        let before = belief(&root);
+        let before = estimate(&root);
         let mut after = before.clone();
         let mut transition = [[0.0; N_STATES]; N_STATES];
         (0..N_STATES).for_each(|k| transition[k][k] = 1.0);
