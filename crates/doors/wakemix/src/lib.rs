@@ -52,7 +52,7 @@
 //! | step a farm by hand | [`study::Ready::farm`], [`farm::Farm::advance`] |
 //! | take down what you want of each step | [`farm::Recorder`] |
 //! | control turbines yourself | [`control::Controller`] |
-//! | write an output of your own | [`study::outputs::Output`], [`study::run_with`] |
+//! | write an output of your own | [`study::outputs::Output`], [`farm::outputs::OUTPUTS`] |
 //! | ask for the wind anywhere | [`flow::WindField::sample`] on [`farm::Farm::flow`] |
 //! | load a turbine | [`formats::library::load`] |
 //! | make its steady curve | [`turbine::steady::SteadyRotor`] |

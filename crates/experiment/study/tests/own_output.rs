@@ -4,8 +4,9 @@ mod small;
 
 use basis::keys::LeftOut::Value as Otherwise;
 use basis::keys::{Holds, Objection, Table, from, key};
+use basis::registry::Named;
 use basis::{Commands, Truth};
-use farm::outputs::OUTPUTS;
+use farm::outputs::{OUTPUTS, OutputKeys};
 use formats::FileError;
 use formats::checkpoint::CheckpointProblem;
 use formats::records::read_series;
@@ -281,4 +282,34 @@ fn keys_of_an_output_are_checked_like_all_others_and_stand_in_the_reference() {
     // A case without any is written as it always was.
     let plain = formats::case::write(&parse(&self::case()).expect("a sound case"));
     assert!(!plain.contains("further"), "{plain}");
+}
+
+#[test]
+fn an_output_that_nobody_writes_is_refused_by_name() {
+    struct KeysAlone;
+
+    impl Named for KeysAlone {
+        fn name(&self) -> &'static str {
+            "keys-alone"
+        }
+    }
+
+    impl OutputKeys for KeysAlone {
+        fn table(&self) -> &'static Table {
+            &Table {
+                heading: "output.further.NAME = { kind = \"keys-alone\" }",
+                about: "",
+                keys: &[],
+            }
+        }
+    }
+
+    OUTPUTS.add(&KeysAlone).expect("no kind is called so yet");
+    let folder = written(&(case() + "further.lost = { kind = \"keys-alone\" }\n"));
+    match run(&options(folder.path(), "out"), &Outputs::standard()) {
+        Err(StudyError::NotWritten { name, kind }) => {
+            assert_eq!((name.as_str(), kind), ("lost", "keys-alone"));
+        }
+        outcome => panic!("{outcome:?}"),
+    }
 }
