@@ -219,7 +219,7 @@ fn tracking_speed(wind_speed: f64, shift: f64, constants: &Constants) -> f64 {
     (optimal.min(most) - shift.max(0.0)).max(constants.minimum_rotor_speed)
 }
 
-/// `value` between `low` and `high`; unlike `clamp` it cannot panic, and a value that is no number becomes
+/// `value` between `low` and `high`; unlike `clamp` it cannot panic, and a value that is not a number becomes
 /// `low`.
 fn bounded(value: f64, low: f64, high: f64) -> f64 {
     value.max(low).min(high)

@@ -82,7 +82,7 @@ pub enum EstimationError {
         /// Samples of the record.
         expected: usize,
     },
-    /// A sample that is no number, or an instant that does not fit.
+    /// A sample that is not a number, or an instant that does not fit.
     #[error("sample {index} of {name} is {value}: {expected}")]
     Sample {
         /// Column.

@@ -199,7 +199,7 @@ fn a_bearing_that_cannot_be_counted_is_refused_with_a_fix() {
     let mixed = pitching("", "BldPitch1_deg", 1.0).replacen("RootMxb1_kN-m", "RootMxb1_N-m", 1);
     fs::write(folder.path().join("mixed.csv"), mixed).unwrap();
     let cases: [(&[&str], &str); 7] = [
-        (&["waves.csv"], "neither \"pitch_1\" nor \"BldPitch1\" means one of its channels"),
+        (&["waves.csv"], "neither \"pitch_1\" nor \"BldPitch1\" is one of its channels"),
         (&["swing.csv", "--turbine", "T1"], "--turbine T1"),
         (&["swing.csv", "--blade", "2"], "has no pitch of blade 2"),
         (&["bare.csv"], "with the unit behind its name, such as BldPitch1_deg"),

@@ -124,8 +124,8 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
 /// What runs on a turbine of `model` under `control`, at time steps of `plan`.
 ///
 /// # Errors
-/// [`AssemblyError::Control`] for a controller that cannot be built, [`AssemblyError::NoIndividualPitchOffset`]
-/// when individual pitch control cannot know where its pitch acts.
+/// [`AssemblyError::Control`] for a controller that cannot be built,
+/// [`AssemblyError::NoIndividualPitchOffset`] when individual pitch control cannot know where its pitch acts.
 pub fn controller(
     control: &Control,
     model: &TurbineModel,

@@ -17,7 +17,7 @@ pub struct Case {
     pub name: String,
     /// What it is for, in one line.
     pub description: Option<String>,
-    /// The wind that comes in.
+    /// The incoming wind.
     pub wind: Wind,
     /// The flow solver.
     pub flow: Flow,
@@ -31,7 +31,7 @@ pub struct Case {
     pub output: Output,
 }
 
-/// The wind that comes in.
+/// The incoming wind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wind {
     /// Mean speed at hub height of the first turbine (m/s).

@@ -123,8 +123,8 @@ pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, PostprocessingErro
     answer(question, &records.query(first)?)
 }
 
-/// What [`phase`] answers for the turbine that `question` names, for each that estimates the phase of a helix where it
-/// names none.
+/// What [`phase`] answers for the turbine that `question` names, for each that estimates the phase of a helix
+/// where it names none.
 ///
 /// # Errors
 /// As [`phase`]; [`PostprocessingError::NoTruth`] only where no turbine has an answer.

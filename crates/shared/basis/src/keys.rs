@@ -12,6 +12,13 @@ pub struct Table {
     pub keys: &'static [Key],
 }
 
+impl Table {
+    /// The name of today of the key that was called `name` in earlier versions.
+    pub fn renamed(&self, name: &str) -> Option<&'static str> {
+        self.keys.iter().find(|key| key.former_names.contains(&name)).map(|key| key.name)
+    }
+}
+
 /// One key.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {

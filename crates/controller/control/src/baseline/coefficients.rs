@@ -36,7 +36,7 @@ pub enum CoefficientTableError {
         /// Coefficients given (–).
         found: usize,
     },
-    /// A coefficient that is no number.
+    /// A coefficient that is not a number.
     #[error("{coefficient} coefficient {entry} is not a number")]
     NotFinite {
         /// "power" or "thrust".
@@ -60,7 +60,7 @@ impl CoefficientTable {
     ///
     /// # Errors
     /// [`CoefficientTableError`] when an axis has fewer than two entries or does not rise, or when there are
-    /// more or fewer coefficients than places for them, or one is no number.
+    /// more or fewer coefficients than places for them, or one is not a number.
     pub fn new(
         tip_speed_ratios: Vec<f64>,
         pitches: Vec<f64>,

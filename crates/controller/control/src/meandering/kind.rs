@@ -59,7 +59,7 @@ fn check_reference(values: &Values) -> Vec<Objection> {
     for (key, needed) in REFERENCES {
         if values.has(key) && word != needed {
             let message = format!(
-                "has no effect here: it goes with reference = \"{needed}\", not \"{word}\""
+                "has no effect here: it applies only with reference = \"{needed}\", not \"{word}\""
             );
             let fix = "leave it out".to_owned();
             objections.push(Objection { key: Some(key), message, label: "no effect", fix });

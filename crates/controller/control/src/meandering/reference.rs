@@ -33,8 +33,8 @@ pub(super) struct Baseline {
 }
 
 impl Baseline {
-    /// Takes in the estimates of the axes, locked, `interval` (s) after the last: `added` (N m) is what the pitch adds
-    /// in phase with the command, `ahead` (rad) the lead of each axis over its command.
+    /// Takes in the estimates of the axes, locked, `interval` (s) after the last: `added` (N m) is what the
+    /// pitch adds in phase with the command, `ahead` (rad) the lead of each axis over its command.
     pub(super) fn update(
         &mut self,
         interval: f64,

@@ -73,7 +73,7 @@ impl ControllerKind for PhaseSyncKind {
         if values.word("estimator") != "published" && values.has("process_noise_phase") {
             objections.push(Objection {
                 key: Some("process_noise_phase"),
-                message: "has no effect here: it goes with estimator = \"published\"; the states of \"robust\" are sine and cosine components, whose process noise is process_noise_amplitude".to_owned(),
+                message: "has no effect here: it applies only with estimator = \"published\"; the states of \"robust\" are sine and cosine components, whose process noise is process_noise_amplitude".to_owned(),
                 label: "no effect",
                 fix: "leave it out".to_owned(),
             });

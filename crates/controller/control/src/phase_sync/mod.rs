@@ -173,7 +173,7 @@ impl PhaseSync {
             (self.trusted, self.share) = (true, 1.0);
             return;
         };
-        // A trust that is no number is none.
+        // A trust that is not a number is none.
         self.trusted = trust > if self.trusted { low } else { high };
         let step = interval * self.settings.rate / TAU;
         let target = if self.trusted { 1.0 } else { 0.0 };

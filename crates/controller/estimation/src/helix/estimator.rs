@@ -17,8 +17,8 @@ use turbine::Definition;
 /// Estimates mean wind, amplitude and phases of a helix from the moments at the blade roots, while its own
 /// rotor pitches.
 ///
-/// The filter of van Vondelen et al. (2025), Eqs. 8-21; [`HelixOptions`] hold what they leave open. Parameters
-/// come from the case; [`HelixEstimator::state`] is the whole state.
+/// The filter of van Vondelen et al. (2025), Eqs. 8-21; [`HelixOptions`] hold what they leave open.
+/// Parameters come from the case; [`HelixEstimator::state`] is the whole state.
 #[derive(Clone, Debug)]
 pub struct HelixEstimator {
     filter: Filter,

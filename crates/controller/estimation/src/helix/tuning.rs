@@ -72,7 +72,7 @@ pub fn check_record(record: &[Measurements], interval: f64) -> Result<(), Estima
 ///
 /// # Errors
 /// [`EstimationError`] for a record shorter than two periods of the corner, a corner above the Nyquist rate,
-/// or a sample that is no number.
+/// or a sample that is not a number.
 pub fn high_passed_variance(
     signal: &[f64],
     interval: f64,
@@ -111,7 +111,7 @@ pub fn high_passed_variance(
 ///
 /// # Errors
 /// [`EstimationError`] for a record shorter than three periods, a rate above the Nyquist rate, or a sample
-/// that is no number.
+/// that is not a number.
 pub fn wave(
     signal: &[f64],
     start: f64,

@@ -1,7 +1,8 @@
 //! Stability of a loop that controls an amplitude, measured by a generator, to a reference.
 //!
-//! For a slow change of amplitude a generator is a lag τ (see [`GeneratorKind::lag`](super::GeneratorKind::lag) over the rate).
-//! With proportional and integral action P and I, and a delay T from the control action to the signal,
+//! For a slow change of amplitude a generator is a lag τ (see
+//! [`GeneratorKind::lag`](super::GeneratorKind::lag) over the rate). With proportional and integral action P
+//! and I, and a delay T from the control action to the signal,
 //!
 //! ```text
 //! s (1 + τ s) + (P s + I) e^(−s T) = 0

@@ -68,7 +68,7 @@ pub fn uniform_interval(times: &[f64]) -> Result<f64, AnalysisError> {
         return Err(AnalysisError::TooShort { n_samples: times.len(), needed: 2 });
     };
     let interval = (last - first) / (times.len() - 1) as f64;
-    // A step that is no number is uneven too.
+    // A step that is not a number is uneven too.
     let even = |step: f64| (step - interval).abs() <= 1e-3 * interval;
     match times.windows(2).position(|pair| !even(pair[1] - pair[0])) {
         None => Ok(interval),

@@ -328,7 +328,7 @@ fn six_digits(value: f64) -> String {
 fn slope(text: &str) -> Result<f64, String> {
     let slope = text.trim().parse().ok().filter(|slope: &f64| slope.is_finite() && *slope >= 1.0);
     slope.ok_or_else(|| {
-        format!("\"{text}\" is no slope: give a number of at least 1, such as 4 or 10")
+        format!("\"{text}\" is not a slope: give a number of at least 1, such as 4 or 10")
     })
 }
 

@@ -190,7 +190,7 @@ impl Plan {
         if !(0.0..=1.0).contains(&ti) {
             return Err(miette!(
                 help = "give a fraction: --ti 0.06 is 6 %",
-                "--ti {ti} is no turbulence intensity"
+                "--ti {ti} is not a turbulence intensity"
             ));
         }
         let finite =
@@ -218,7 +218,7 @@ impl Plan {
         if lowest_height.is_nan() || lowest_height < 0.0 {
             return Err(miette!(
                 help =
-                    "take fewer points along z, a smaller spacing, a higher hub or --lowest-height",
+                    "use fewer points along z, a smaller spacing, a higher hub or --lowest-height",
                 "the lowest points would be at {lowest_height:.1} m, under the ground"
             ));
         }
@@ -310,7 +310,7 @@ fn profile(arguments: &GenerateArguments) -> miette::Result<MeanProfile> {
 fn points(text: &str) -> Result<[usize; 3], String> {
     let values: Vec<usize> = text
         .split('x')
-        .map(|part| part.trim().parse().map_err(|_| format!("`{part}` is no number of points")))
+        .map(|part| part.trim().parse().map_err(|_| format!("`{part}` is not a number of points")))
         .collect::<Result<_, _>>()?;
     values.try_into().map_err(|_| "three numbers such as 1024x96x64 are needed".to_owned())
 }
@@ -318,7 +318,9 @@ fn points(text: &str) -> Result<[usize; 3], String> {
 fn distances(text: &str) -> Result<[f64; 3], String> {
     let values: Vec<f64> = text
         .split('x')
-        .map(|part| part.trim().parse().map_err(|_| format!("`{part}` is no distance in metres")))
+        .map(|part| {
+            part.trim().parse().map_err(|_| format!("`{part}` is not a distance in metres"))
+        })
         .collect::<Result<_, _>>()?;
     match values[..] {
         [one] => Ok([one; 3]),

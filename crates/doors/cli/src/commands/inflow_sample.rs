@@ -45,9 +45,8 @@ pub(crate) fn run(arguments: &SampleArguments) -> miette::Result<()> {
     let setup = Prepared::read(&arguments.case, &arguments.overrides)?;
     if setup.case.flow.solver != Solver::UNIFORM {
         return Err(miette!(
-            help =
-                "take --set flow.solver=uniform; turbulence is made by `wakemix inflow generate`",
-            "{}: only the wind of flow.solver = \"uniform\" is known without turbulence",
+            help = "use --set flow.solver=uniform; turbulence is made by `wakemix inflow generate`",
+            "{}: only the wind of flow.solver = \"uniform\" can be sampled",
             arguments.case.display()
         ));
     }

@@ -292,7 +292,7 @@ fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Resu
         turbine_file::read(output)?;
         return Ok(());
     }
-    eprintln!("{} does not hold what a turbine needs besides:", file.display());
+    eprintln!("{} lacks these groups and keys:", file.display());
     for key in &written.missing {
         eprintln!("  {key}");
     }
@@ -300,7 +300,7 @@ fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Resu
     Err(miette!(
         help = format!(
             "each has a commented line or heading in {place}: write the figures there, with their source, until `wakemix turbine show {place}` \
-             describes the turbine; the OpenFAST deck (.fst) of the same turbine, imported instead, mostly holds them all"
+             describes the turbine; the OpenFAST deck (.fst) of the same turbine, imported instead, usually has them all"
         ),
         "{place} cannot be run yet: {} groups and keys are missing",
         written.missing.len()

@@ -14,7 +14,7 @@ const CELL_BYTES: u64 = 80;
 /// Lattice-Boltzmann large-eddy simulation, which feels the turbines.
 pub static LATTICE: SolverKind = SolverKind {
     name: "lattice",
-    about: "lattice Boltzmann large-eddy simulation with actuator lines; turbines feel each other's wakes",
+    about: "lattice Boltzmann large-eddy simulation with actuator lines; turbines are in each other's wakes",
     keys: &domain::KEYS,
     check: |_| Vec::new(),
     wind: WindSource::AtInlet,
@@ -48,7 +48,7 @@ fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
     let mut object = |key, fault, fix| objections.push(Objection { key, fault, fix });
     if wind.planes.is_some() {
         let why = "flow.solver = \"lattice\" reads no wind from a file";
-        object("planes", Fault::NoUse(why), "leave it out, or take flow.solver = \"planes\"");
+        object("planes", Fault::NoUse(why), "leave it out, or use flow.solver = \"planes\"");
     }
     if wind.turbulence_model == TurbulenceModel::Kaimal {
         let why = "Kaimal's turbulence has divergence, which the lattice would turn into sound";
@@ -57,12 +57,12 @@ fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
     }
     if wind.veer != 0.0 && flow.domain().sides == Sides::Slip {
         let why = "a wind that veers blows through sides along which the air is to slip";
-        let fix = "leave it out, or take flow.sides = \"periodic\"";
+        let fix = "leave it out, or use flow.sides = \"periodic\"";
         object("veer_deg_per_m", Fault::NoUse(why), fix);
     }
     if wind.event.is_some() {
         let why = "the air of flow.solver = \"lattice\" would answer it with sound";
-        object("event", Fault::NoUse(why), "leave it out, or take flow.solver = \"uniform\"");
+        object("event", Fault::NoUse(why), "leave it out, or use flow.solver = \"uniform\"");
     }
     objections
 }

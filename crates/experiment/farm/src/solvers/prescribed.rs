@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// What kinds share in which the wind is prescribed; a base for others.
 pub const PRESCRIBED: SolverKind = SolverKind {
     name: "prescribed",
-    about: "wind that does not feel the turbines",
+    about: "wind that the turbines do not change",
     keys: &[],
     check: |_| Vec::new(),
     wind: WindSource::Deterministic,
@@ -100,11 +100,11 @@ fn planes_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
 }
 
 fn no_file(why: &'static str) -> Objection {
-    let fix = "leave it out, or take flow.solver = \"planes\"";
+    let fix = "leave it out, or use flow.solver = \"planes\"";
     Objection { key: "planes", fault: Fault::NoUse(why), fix }
 }
 
 fn no_event(why: &'static str) -> Objection {
-    let fix = "leave it out, or take flow.solver = \"uniform\"";
+    let fix = "leave it out, or use flow.solver = \"uniform\"";
     Objection { key: "event", fault: Fault::NoUse(why), fix }
 }

@@ -310,7 +310,7 @@ impl ProblemKind {
                     .to_owned()
             }
             Self::WrongType { expected, .. } => format!("write {expected} there"),
-            Self::OutOfRange { range, .. } => format!("take a value of the range, {range}"),
+            Self::OutOfRange { range, .. } => format!("use a value in the range, {range}"),
             Self::UnknownName { known, .. } => format!("name one of {known}"),
             Self::StartsTooLate { .. } => {
                 "begin earlier, or raise `time.duration`, which counts from the start of the run"

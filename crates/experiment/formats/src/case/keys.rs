@@ -26,7 +26,7 @@ pub(super) static ROOT: Table = Table {
             Otherwise("no description"),
             "What it is for, in one line; the report shows it.",
         ),
-        key("wind", Holds::Table(&WIND), "", Required, "The wind that comes in."),
+        key("wind", Holds::Table(&WIND), "", Required, "The incoming wind."),
         key("flow", Holds::Flow, "", Otherwise("all defaults"), "The flow solver."),
         key("time", Holds::Table(&TIME), "", Required, "How long every run lasts."),
         key(
@@ -50,7 +50,7 @@ pub(super) static ROOT: Table = Table {
 /// `[wind]`.
 pub(super) static WIND: Table = Table {
     heading: "[wind]",
-    about: "The wind that comes in: a mean profile with turbulence on it (Mann's, Kaimal's, recorded planes, or none), the same for every run.",
+    about: "The incoming wind: a mean profile with turbulence on it (Mann's, Kaimal's, recorded planes, or none), the same for every run.",
     keys: &[
         key("speed", above(0.0, 40.0), "m/s", Required, "Mean speed at hub height of the first turbine.")
             .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }, Slip { unit: "cm/s", factor: 0.01 }]),

@@ -26,7 +26,7 @@ pub(super) fn dynamic_inflow_of(turbine: &Section, solver: Solver) -> DynamicInf
     let word = turbine.choice("dynamic_inflow");
     let slow_constant = turbine.optional_number("slow_constant");
     if !solver.resolves_induction && word != "two-constant" && slow_constant.is_some() {
-        let why = format!("it goes with dynamic_inflow = \"two-constant\", not \"{word}\"");
+        let why = format!("it applies only with dynamic_inflow = \"two-constant\", not \"{word}\"");
         note_no_use(turbine, "slow_constant", &why, "leave it out");
     }
     match word {
@@ -52,7 +52,7 @@ pub(super) fn tower_influence_of(turbine: &Section, solver: Solver) -> TowerInfl
 
 /// How to fix a key that goes with prescribed wind.
 fn other_solver() -> String {
-    format!("leave it out, or take flow.solver = {}", without_induction())
+    format!("leave it out, or use flow.solver = {}", without_induction())
 }
 
 fn note_no_use(turbine: &Section, key: &str, why: &str, fix: &str) {
@@ -153,19 +153,19 @@ name = "baseline"
             (
                 "tower_influence = \"potential\"",
                 "lattice",
-                "small.toml:15: `turbine.T1.tower_influence` has no effect here: in flow.solver = \"lattice\" the tower's drag acts on the air itself; leave it out, or take flow.solver = \"uniform\"",
+                "small.toml:15: `turbine.T1.tower_influence` has no effect here: in flow.solver = \"lattice\" the tower's drag acts on the air itself; leave it out, or use flow.solver = \"uniform\"",
             ),
             ("tower_influence = \"potental\"", "uniform", "did you mean \"potential\"?"),
             (
                 "dynamic_inflow = \"two-constant\"",
                 "lattice",
-                "small.toml:15: `turbine.T1.dynamic_inflow` has no effect here: the air of flow.solver = \"lattice\" has the rotor's wake in it; leave it out, or take flow.solver = \"uniform\"",
+                "small.toml:15: `turbine.T1.dynamic_inflow` has no effect here: the air of flow.solver = \"lattice\" has the rotor's wake in it; leave it out, or use flow.solver = \"uniform\"",
             ),
             ("slow_constant = 12.6", "lattice", "`turbine.T1.slow_constant` has no effect here"),
             (
                 "dynamic_inflow = \"none\"\nslow_constant = 12.6",
                 "turbulence",
-                "small.toml:16: `turbine.T1.slow_constant` has no effect here: it goes with dynamic_inflow = \"two-constant\", not \"none\"; leave it out",
+                "small.toml:16: `turbine.T1.slow_constant` has no effect here: it applies only with dynamic_inflow = \"two-constant\", not \"none\"; leave it out",
             ),
             ("slow_constant = 0", "uniform", "0 < slow_constant <= 1000 s"),
             (

@@ -11,8 +11,7 @@ use std::ops;
 /// both.
 const MOST_TABLES: usize = 1000;
 
-/// One table of the file. Reading notes what is wrong and goes on with a value that passes every further
-/// check.
+/// One table of the file. Reading notes what is wrong and goes on with a value that passes every check.
 pub(super) struct Section<'a> {
     table: &'static Table,
     entries: &'a [Entry],
@@ -41,13 +40,11 @@ impl<'a> Section<'a> {
     }
 
     fn suggest(&self, misspelt: &str) -> String {
-        if let Some(key) = self.table.keys.iter().find(|key| key.former_names.contains(&misspelt)) {
-            return format!("it is called `{}` now", key.name);
-        }
         let names = || self.table.keys.iter().map(|key| key.name);
-        match nearest(misspelt, names()) {
-            Some(name) => format!("did you mean `{name}`?"),
-            None => format!("{} knows {}", self.table.heading, list(names())),
+        match (self.table.renamed(misspelt), nearest(misspelt, names())) {
+            (Some(name), _) => format!("it is called `{name}` now"),
+            (_, Some(name)) => format!("did you mean `{name}`?"),
+            _ => format!("{} knows {}", self.table.heading, list(names())),
         }
     }
 
@@ -84,7 +81,7 @@ impl<'a> Section<'a> {
             let value = format!("{} tables", items.len());
             let range = format!("at most {MOST_TABLES}");
             let kind = ProblemKind::OutOfRange { key: self.key_path(key), value, range };
-            let fix = "make several case files of it";
+            let fix = "split it into several case files";
             self.findings.note(entry.node.span.clone(), kind, Some(fix.into()));
             return Vec::new();
         }

@@ -198,7 +198,7 @@ fn what_cannot_be_is_reported_with_its_line() {
         (
             "planes = \"field.bts\"",
             "lattice",
-            "windy.toml:6: `wind.planes` has no effect here: flow.solver = \"lattice\" reads no wind from a file; leave it out, or take flow.solver = \"planes\"",
+            "windy.toml:6: `wind.planes` has no effect here: flow.solver = \"lattice\" reads no wind from a file; leave it out, or use flow.solver = \"planes\"",
         ),
         ("planes = \"field.bts\"", "uniform", "`wind.planes` has no effect here"),
         ("planes = \"field.bts\"", "turbulence", "`wind.planes` has no effect here"),

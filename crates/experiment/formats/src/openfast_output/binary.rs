@@ -95,7 +95,7 @@ pub(crate) fn open(path: &Path) -> Result<(Head, BinaryRows), FileError> {
         }
     };
     if !is_clock {
-        let problem = format!("its header gives no time: {first} and {second}");
+        let problem = format!("its header has no valid time: {first} and {second}");
         return Err(FileError::content(WHAT, path, problem, COPY));
     }
     let columns = names.into_iter().zip(units).map(|(name, unit)| {

@@ -154,7 +154,7 @@ fn damaged_files_are_reported_with_place_and_fix() {
         (changed(2, &[0; 4]), "byte 2: its header counts 0 channels"),
         (changed(6, &(-3_i32).to_le_bytes()), "byte 6: its header counts -3 rows"),
         (changed(2, &[255, 255, 255, 127]), "within the scales of its header"),
-        (changed(18, &0.0_f64.to_le_bytes()), "its header gives no time: 0.5 and 0"),
+        (changed(18, &0.0_f64.to_le_bytes()), "its header has no valid time: 0.5 and 0"),
         (changed(26, &f32::NAN.to_le_bytes()), "row 1 (0.5 s): GenSpeed is NaN"),
     ];
     let (_folder, path) = place();

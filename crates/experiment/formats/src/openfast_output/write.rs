@@ -96,7 +96,7 @@ impl OutbWriter {
                 let name = &self.layout.channels[index].name;
                 let time = self.layout.start + self.layout.interval * f64::from(self.n_rows);
                 let problem = format!("at {time} s {name} is {value}");
-                let fix = "find out why the simulation gave no sound number there";
+                let fix = "find out why the simulation gave no finite number there";
                 return Err(FileError::content(WHAT, &self.path, problem, fix));
             }
             *range = (range.0.min(*value), range.1.max(*value));
@@ -201,7 +201,7 @@ fn check(path: &Path, layout: &Layout, encoding: Encoding) -> Result<(), FileErr
     }
     let (start, interval) = (layout.start, layout.interval);
     if !(start.is_finite() && interval.is_finite() && interval > 0.0) {
-        let problem = format!("rows every {interval} s from {start} s on give no time");
+        let problem = format!("rows every {interval} s from {start} s on are not a time");
         return refusal(problem, "give a start and a positive interval in seconds");
     }
     let longest = match encoding {

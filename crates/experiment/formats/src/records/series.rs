@@ -54,7 +54,7 @@ impl SeriesWriter {
         let mut file = File::options().read(true).write(true).open(&part).map_err(failed)?;
         let length = file.metadata().map_err(failed)?.len();
         if length < n_bytes || n_bytes == 0 {
-            let problem = format!("it has {length} bytes, the checkpoint knows {n_bytes}");
+            let problem = format!("it has {length} bytes, the checkpoint has {n_bytes}");
             return Err(FileError::content(WHAT, &part, problem, FIX));
         }
         let mut header = String::new();
@@ -208,7 +208,7 @@ mod tests {
         writer.write(&row(1)).unwrap();
         let n_bytes = writer.flush().unwrap();
         let error = SeriesWriter::resume(&path, n_bytes + 10).unwrap_err();
-        assert!(error.to_string().contains("the checkpoint knows"), "{error}");
+        assert!(error.to_string().contains("the checkpoint has"), "{error}");
         let error = SeriesWriter::resume(&path, n_bytes - 3).unwrap_err();
         assert!(error.to_string().contains("no row ends at byte"), "{error}");
         let error = SeriesWriter::resume(&folder.path().join("other.csv"), 5).unwrap_err();

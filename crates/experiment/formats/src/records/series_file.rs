@@ -84,9 +84,9 @@ impl SeriesFile {
                 n_values = index + 1;
                 let Some(place) = *place else { continue };
                 let name = || &names[index];
-                let value = value
-                    .parse()
-                    .map_err(|_| refusal(format!("`{value}` in column {} is no number", name())))?;
+                let value = value.parse().map_err(|_| {
+                    refusal(format!("`{value}` in column {} is not a number", name()))
+                })?;
                 series.columns[place].push(value);
             }
             if n_values != names.len() {
@@ -141,7 +141,7 @@ mod tests {
         let cases = [
             ("a,b\n1,2\n3\n", "line 3: 1 values, the header has 2"),
             ("a,b\n1,2,3\n", "line 2: more than 2 values"),
-            ("a,b\n1,two\n", "line 2: `two` in column b is no number"),
+            ("a,b\n1,two\n", "line 2: `two` in column b is not a number"),
         ];
         for (text, expected) in cases {
             fs::write(&path, text).unwrap();

@@ -119,7 +119,7 @@ fn no_run(path: &Path, incomplete: &[String]) -> FileError {
     let problem = match incomplete {
         [] => "there is no run in it".to_owned(),
         names => {
-            format!("no run in it is complete; under way or interrupted: {}", names.join(", "))
+            format!("no run in it is complete; running or interrupted: {}", names.join(", "))
         }
     };
     let fix = "name the folder that `wakemix run CASE -o DIR` wrote, or complete it with --resume";

@@ -107,7 +107,7 @@ impl TableReader {
     /// Reads the next row into `row`: time (s), then the selected channels. False at the end of the table.
     ///
     /// # Errors
-    /// [`FileError`] with the place: a row cut short, what is no number or not finite, time that runs
+    /// [`FileError`] with the place: a row cut short, what is not a number or not finite, time that runs
     /// backwards.
     ///
     /// # Panics

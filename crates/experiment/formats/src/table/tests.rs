@@ -151,13 +151,13 @@ fn bad_tables_are_reported_with_line_and_fix() {
         ("a.csv", "time_ms,a\n1,2\n", "its time \"time_ms\" is in \"ms\""),
         ("a.csv", "time,a\n0,1\n1\n", "line 3: 1 values under 2 names: the row is cut short"),
         ("a.csv", "time,a\n0,1,2\n", "line 2: 3 values under 2 names"),
-        ("a.csv", "time,a\n0,one\n", "line 2: `one` in a is no number"),
+        ("a.csv", "time,a\n0,one\n", "line 2: `one` in a is not a number"),
         ("a.csv", "time,a\n0,1\n0.5,NaN\n", "line 3 (0.5 s): a is NaN, not a finite number"),
         ("a.csv", "time,a\n0,1\n-1,2\n", "line 3: time goes back from 0 s to -1 s"),
         ("a.csv", "time,a\ninf,1\n", "line 2: time is inf, not a finite number"),
         ("a.csv", "\u{4}\0\u{a}\0", "its first line is no text | name OpenFAST's binary output"),
         ("a.out", "one\ntwo\n", "none of its first 100 lines begins with Time"),
-        ("a.out", "Time a\n(s) (m)\n0.0 ****\n", "line 3: `****` in a is no number"),
+        ("a.out", "Time a\n(s) (m)\n0.0 ****\n", "line 3: `****` in a is not a number"),
         ("a.out", "Time a\n(s) (m)\n0.0 1.0\n0.1\n", "line 4: 1 values under 2 names"),
     ];
     for (name, text, expected) in cases {

@@ -112,7 +112,7 @@ impl TextRows {
             let field = &self.line[self.fields[*column].clone()];
             *value = number(field).ok_or_else(|| {
                 let text = String::from_utf8_lossy(&field[..field.len().min(40)]);
-                self.refusal(path, format!("`{text}` in {} is no number", columns[*column].name))
+                self.refusal(path, format!("`{text}` in {} is not a number", columns[*column].name))
             })?;
         }
         Ok(true)

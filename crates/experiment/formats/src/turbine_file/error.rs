@@ -207,8 +207,8 @@ impl Place<'_> {
         Err(self.error(path, "zero or more", value.to_string(), "check figure and unit"))
     }
 
-    /// Nothing when the first `column` of a table increases, from row to row where `strictly`, and has `least`
-    /// rows or more.
+    /// Nothing when the first `column` of a table increases, from row to row where `strictly`, and has
+    /// `least` rows or more.
     pub(super) fn rising(
         &self,
         group: &str,

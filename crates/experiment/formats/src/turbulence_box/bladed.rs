@@ -92,7 +92,7 @@ fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
     // Deviations, of which the integers are thousandths, and the mean are winds too.
     let fastest = scales.iter().map(|scale| scale * PER_DEVIATION).fold(speed, f64::max);
     if fastest > f64::from(FASTEST) {
-        let problem = format!("speed {speed} m/s and intensities {intensities:?} % are no wind");
+        let problem = format!("speed {speed} m/s and intensities {intensities:?} % are not a wind");
         return Err(FileError::content(WHAT, path, problem, "make the file again"));
     }
     let packing = Packing {

@@ -170,13 +170,13 @@ fn read_header(path: &Path) -> Result<Header, FileError> {
     let n_values = n_points.iter().try_fold(4_usize, |bytes, n| bytes.checked_mul(*n));
     if n_values.is_none_or(|bytes| bytes == 0) {
         return wrong(
-            format!("box.n_points = {n_points:?} is no box"),
+            format!("box.n_points = {n_points:?} is not a size"),
             "give the points along x, y, z",
         );
     }
     if !spacing.iter().all(|spacing| spacing.is_finite() && *spacing > 0.0) {
         return wrong(
-            format!("box.spacing = {spacing:?} is no distance"),
+            format!("box.spacing = {spacing:?} is not a distance"),
             "give metres along x, y, z",
         );
     }
@@ -370,7 +370,7 @@ fn not_wind(path: &Path, four: [u8; 4], byte: usize, [x, y, z]: [usize; 3]) -> F
         )
     } else {
         (
-            format!("{place} is {value} m/s, which is no wind"),
+            format!("{place} is {value} m/s, which is not a wind speed"),
             "make the box again; a box with a gap cannot be used",
         )
     };

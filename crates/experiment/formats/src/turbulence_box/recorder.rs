@@ -50,7 +50,7 @@ impl WindRecorder {
         let mut file = File::options().write(true).open(&part).map_err(failed)?;
         let length = file.metadata().map_err(failed)?.len();
         if length < n_bytes || !n_bytes.is_multiple_of(12 * n_points as u64) {
-            let problem = format!("it has {length} bytes, the checkpoint knows {n_bytes}");
+            let problem = format!("it has {length} bytes, the checkpoint has {n_bytes}");
             return Err(FileError::content(WHAT, &part, problem, FIX));
         }
         file.set_len(n_bytes).map_err(failed)?;
@@ -115,7 +115,7 @@ impl WindRecorder {
             FileError::content(WHAT, &self.part, problem, fix)
         };
         if n_steps < 2 {
-            return Err(wrong(format!("{n_steps} planes make no record")));
+            return Err(wrong(format!("{n_steps} planes are too few for a record")));
         }
         let row = ((hub_height - grid.first[1]) / grid.spacing[1]).round().max(0.0) as usize;
         let hub = row.min(grid.n_z - 1) * grid.n_y + grid.n_y / 2;
@@ -229,7 +229,7 @@ mod tests {
         let mut recorder = WindRecorder::create(&path, 12).unwrap();
         recorder.write(&plane(0)).unwrap();
         let error = recorder.finish(&GRID, 150.0, "").unwrap_err().to_string();
-        assert!(error.contains("1 planes make no record"), "{error}");
+        assert!(error.contains("1 planes are too few for a record"), "{error}");
         let mut calm = plane(1);
         calm[3][2] = f32::NAN;
         recorder.write(&calm).unwrap();

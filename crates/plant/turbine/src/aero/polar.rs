@@ -99,7 +99,7 @@ pub enum PolarError {
         /// Last angle (deg).
         last_deg: f64,
     },
-    /// A coefficient that is no number, or drag that pushes.
+    /// A coefficient that is not a number, or drag that pushes.
     #[error("polar \"{name}\", row {row} ({angle_deg}°): {what}")]
     Value {
         /// Polar.

@@ -73,7 +73,7 @@ fn select(table: &mut TableReader, arguments: &FatigueArguments) -> Result<[Colu
         let [own, openfast] = &pitches;
         return Err(miette!(
             help = "records of a run need --turbine, such as --turbine T1; OpenFAST has BldPitch1 where its OutList asks for it",
-            "{} has no pitch of blade {blade}: neither \"{own}\" nor \"{openfast}\" means one of its channels",
+            "{} has no pitch of blade {blade}: neither \"{own}\" nor \"{openfast}\" is one of its channels",
             table.path().display()
         ));
     };

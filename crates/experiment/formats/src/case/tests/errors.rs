@@ -86,7 +86,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense",
             "\"phase-sync\", offset_deg = 90, process_noise_phase = 1e-4, sense",
-            "`run.helix.control.T1.process_noise_phase` has no effect here: it goes with estimator = \"published\"",
+            "`run.helix.control.T1.process_noise_phase` has no effect here: it applies only with estimator = \"published\"",
         ),
         (
             "\"helix\", sense",
@@ -116,7 +116,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",
             "\"meandering\", factor = 1.5, amplitude_deg = 4.0, learning_time = 60",
-            "`run.helix.control.T1.learning_time` has no effect here: it goes with reference = \"learned\", not \"observed\"; leave it out",
+            "`run.helix.control.T1.learning_time` has no effect here: it applies only with reference = \"learned\", not \"observed\"; leave it out",
         ),
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",

@@ -213,7 +213,7 @@ impl Header {
             return numbers.wrong(format!("the intensities are {percents:?} %"), again);
         }
         if self.middle_height.is_some_and(|height| !height.is_finite()) {
-            return numbers.wrong("the reference height is no number".into(), again);
+            return numbers.wrong("the reference height is not a number".into(), again);
         }
         let per_step = 6 * self.n_y as u128 * self.n_z as u128;
         let needed = u128::from(self.start) + per_step * self.n_steps as u128;

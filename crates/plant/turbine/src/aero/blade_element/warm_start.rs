@@ -80,7 +80,7 @@ fn nearby<Section: Fn(f64) -> SectionCoefficients>(
     for _ in 0..MAXIMUM_LOOKS {
         let step = -trial.residual / slope;
         let next = angle + step;
-        // A residual that is no number ends here too.
+        // A residual that is not a number ends here too.
         if !(step.abs() < LARGEST_STEP && (SMALLEST_ANGLE..FRAC_PI_2).contains(&next)) {
             return None;
         }

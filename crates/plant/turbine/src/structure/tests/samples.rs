@@ -211,7 +211,7 @@ fn mode(value: &Value) -> Mode {
     }
 }
 
-/// Rows of a table, what is no number left out.
+/// Rows of a table, what is not a number left out.
 fn rows(value: &Value) -> Vec<Vec<f64>> {
     let row =
         |row: &Value| row.as_array().unwrap().iter().filter(|v| !v.is_str()).map(float).collect();
