@@ -20,8 +20,8 @@ const PUBLISHED_SOURCE: &str = "NREL/TP-500-38060 (2009), figs. 9-1 and 9-2";
 
 /// Accepted distance of means from the reference (–).
 const TOLERANCE: f64 = 0.02;
-/// Accepted distance of a change by the helix, or by the tower, from the reference's, over that change (–): no
-/// change at all is never accepted.
+/// Accepted distance of a change by the helix, or by the tower, from the reference's, over that change (–):
+/// no change at all is never accepted.
 const CHANGE_SHARE: f64 = 0.15;
 
 /// A steady state of the reference: under a controller that tracks the tip-speed ratio, from a table of its

@@ -128,8 +128,8 @@ fn in_turbulence(seed: u64) -> Run {
 }
 
 /// The claim that the mean of `measured`, one value a record of ours (MN m), is within what is `accepted` of
-/// the `reference`'s (MN m), the share `aim` of it (–) or what was frozen; none where nothing is claimed. Mean
-/// and scatter are printed.
+/// the `reference`'s (MN m), the share `aim` of it (–) or what was frozen; none where nothing is claimed.
+/// Mean and scatter are printed.
 fn beside(
     what: &str,
     measured: &[f64],

@@ -1,9 +1,9 @@
-//! How far figures of turbulence may lie from their expectations, frozen: a tolerance that follows the scatter
-//! of what is measured is the wider the worse that scatters.
+//! How far figures of turbulence may lie from their expectations, frozen: a tolerance that follows the
+//! scatter of what is measured is the wider the worse that scatters.
 //!
-//! Each is what `validation/recorded` had on 2026-11-22, when tolerances were still made of that day's boxes:
-//! four standard errors of the mean over ten seeds, or for a single record of another program four standard
-//! deviations, and an allowance for what a finite box cannot hold (2 % of Mann's figures).
+//! Each is what `validation/recorded` had on 2026-11-22, when tolerances were still made of that day's
+//! boxes: four standard errors of the mean over ten seeds, or for a single record of another program four
+//! standard deviations, and an allowance for what a finite box cannot hold (2 % of Mann's figures).
 
 use crate::Row;
 use crate::row::Tolerance::Within;
