@@ -5,24 +5,17 @@ use crate::record::{Record, RecordedRow, Verdict};
 use crate::row::{Row, Tolerance};
 use serde::Serialize;
 
-/// Share of a recorded shortfall by which it may grow: a case gives the same bits on one kind of processor,
-/// and another rounds in another order, which a turbulent flow makes visible. A tenth of a shortfall is no
-/// new finding.
-const GROWTH: f64 = 0.1;
-/// The same for shortfalls next to nothing: share of the tolerance, or of the limit.
-const LEAST_GROWTH: f64 = 0.01;
-
 /// What a row is beside its record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Finding {
     /// Met as recorded, or as short as recorded.
     AsRecorded,
-    /// Recorded as met and short now, or shorter than recorded.
+    /// Recorded as met and short now, shorter than recorded, or short to the other side.
     Worse,
     /// Recorded as short and met now: the record is to be renewed.
     ShortfallGone,
-    /// Expected value or tolerance are others than the recorded ones.
+    /// Expected value, tolerance or unit are others than the recorded ones.
     ClaimChanged,
     /// The record knows nothing of it.
     NotRecorded,
@@ -44,6 +37,33 @@ impl Finding {
     }
 }
 
+/// What kind of figure was measured, of which data in JSON show nothing where it is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Figure {
+    /// A finite number.
+    Finite,
+    /// Infinite, above all numbers.
+    PlusInfinite,
+    /// Infinite, below all numbers.
+    MinusInfinite,
+    /// Not a number.
+    NotANumber,
+    /// The row was not measured.
+    NotMeasured,
+}
+
+impl Figure {
+    fn of(measured: f64) -> Self {
+        match measured {
+            _ if measured.is_nan() => Self::NotANumber,
+            f64::INFINITY => Self::PlusInfinite,
+            f64::NEG_INFINITY => Self::MinusInfinite,
+            _ => Self::Finite,
+        }
+    }
+}
+
 /// A row beside its record, as data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judgement {
@@ -53,6 +73,8 @@ pub struct Judgement {
     pub claim: String,
     /// Measured value, in `unit`; none where nothing was measured.
     pub measured: Option<f64>,
+    /// What kind of figure that is.
+    pub figure: Figure,
     /// Expected value or limit, in `unit`.
     pub expected: f64,
     /// What is accepted around `expected`.
@@ -83,6 +105,7 @@ pub fn judge(rows: &[Row], record: &Record) -> Vec<Judgement> {
             id,
             claim: row.what.clone(),
             measured: Some(row.measured),
+            figure: Figure::of(row.measured),
             expected: row.expected,
             tolerance: row.tolerance,
             unit: row.unit.to_owned(),
@@ -90,7 +113,8 @@ pub fn judge(rows: &[Row], record: &Record) -> Vec<Judgement> {
             verdict: if row.passes() { Verdict::Met } else { Verdict::Short },
             recorded_verdict: recorded.map(|recorded| recorded.verdict),
             recorded: recorded.and_then(|recorded| recorded.measured),
-            finding: recorded.map_or(Finding::NotRecorded, |recorded| beside(row, recorded)),
+            finding: recorded
+                .map_or(Finding::NotRecorded, |recorded| beside(row, recorded, record)),
         });
     }
     for recorded in &record.rows {
@@ -106,20 +130,14 @@ pub fn holds(judgements: &[Judgement]) -> bool {
     judgements.iter().all(|judgement| judgement.finding == Finding::AsRecorded)
 }
 
-fn beside(row: &Row, recorded: &RecordedRow) -> Finding {
+fn beside(row: &Row, recorded: &RecordedRow, record: &Record) -> Finding {
     if !recorded.claims_as(row) {
         return Finding::ClaimChanged;
     }
     match (recorded.verdict, row.passes()) {
-        (Verdict::Met, true) => Finding::AsRecorded,
-        (Verdict::Met, false) => Finding::Worse,
         (Verdict::Short, true) => Finding::ShortfallGone,
-        (Verdict::Short, false) => {
-            let then = recorded.shortfall();
-            let room = (GROWTH * then).max(LEAST_GROWTH * row.tolerance.scale(row.expected));
-            let now = row.tolerance.beyond(row.measured, row.expected);
-            if now > then + room { Finding::Worse } else { Finding::AsRecorded }
-        }
+        _ if record.is_worse(row, recorded) => Finding::Worse,
+        _ => Finding::AsRecorded,
     }
 }
 
@@ -128,6 +146,7 @@ fn missing(recorded: &RecordedRow) -> Judgement {
         id: recorded.id.clone(),
         claim: recorded.claim.clone(),
         measured: None,
+        figure: Figure::NotMeasured,
         expected: recorded.expected,
         tolerance: recorded.tolerance,
         unit: recorded.unit.clone(),
@@ -142,15 +161,15 @@ fn missing(recorded: &RecordedRow) -> Judgement {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::Tolerance::{AtMost, Within};
+    use crate::record::Worse;
+    use crate::row::Tolerance::{AtLeast, AtMost, Within};
 
     fn row(what: &str, measured: f64, expected: f64, tolerance: Tolerance) -> Row {
         Row { what: what.to_owned(), measured, expected, tolerance, unit: "%", source: "made up" }
     }
 
     fn recorded(rows: &[Row]) -> Record {
-        let empty = Record { date: String::new(), conditions: String::new(), rows: Vec::new() };
-        empty.renewed(rows, "2026-11-22", "made up").unwrap()
+        Record::default().renewed(rows, "2026-11-22", "made up", Worse::Refused).unwrap()
     }
 
     fn findings(then: &[Row], now: &[Row]) -> Vec<Finding> {
@@ -204,5 +223,83 @@ mod tests {
         assert_eq!(findings(&then[..1], &tighter), [Finding::ClaimChanged]);
         let twice = [then[1].clone(), then[1].clone()];
         assert_eq!(findings(&then[1..], &twice), [Finding::AsRecorded, Finding::NotRecorded]);
+    }
+
+    #[test]
+    fn a_shortfall_to_the_other_side_is_worse() {
+        let then = [row("short", 1.5, 1.0, Within(0.1))];
+        for (measured, finding) in [
+            (1.5, Finding::AsRecorded),
+            (0.5, Finding::Worse),
+            (0.85, Finding::Worse),
+            (0.95, Finding::ShortfallGone),
+        ] {
+            assert_eq!(findings(&then, &[row("short", measured, 1.0, Within(0.1))]), [finding]);
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_worse_whatever_was_recorded() {
+        let infinite = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+        for tolerance in [Within(0.1), AtMost, AtLeast] {
+            for then in [1.0, 1.5, 0.5] {
+                let then = row("claim", then, 1.0, tolerance);
+                for measured in infinite {
+                    let now = row("claim", measured, 1.0, tolerance);
+                    assert!(!now.passes());
+                    assert_eq!(findings(std::slice::from_ref(&then), &[now]), [Finding::Worse]);
+                }
+            }
+            // A record that holds such a figure, by hand, lets nothing pass beside it.
+            let mut record = recorded(&[row("claim", 1.0, 1.0, tolerance)]);
+            for measured in infinite {
+                (record.rows[0].measured, record.rows[0].verdict) =
+                    (Some(measured), Verdict::Short);
+                let judged = judge(&[row("claim", measured, 1.0, tolerance)], &record);
+                assert_eq!(judged[0].finding, Finding::Worse);
+            }
+        }
+    }
+
+    #[test]
+    fn a_figure_from_a_notebook_is_right_to_half_its_last_digit() {
+        let claim = |measured: f64| row("share", measured, 1.0, Within(0.02));
+        for (rounded, measured, finding) in [
+            // 1.03 for 1.0349: the shortfall of 0.01 is one of 0.0149.
+            (true, 1.0349, Finding::AsRecorded),
+            (false, 1.0349, Finding::Worse),
+            (true, 1.0365, Finding::Worse),
+            (true, 0.9651, Finding::Worse),
+        ] {
+            let record = Record { rounded, ..recorded(&[claim(1.03)]) };
+            assert_eq!(judge(&[claim(measured)], &record)[0].finding, finding, "{measured}");
+        }
+        // Met is met: the digits that were left out make no room there.
+        let record = Record { rounded: true, ..recorded(&[claim(1.019)]) };
+        assert_eq!(judge(&[claim(1.021)], &record)[0].finding, Finding::Worse);
+    }
+
+    #[test]
+    fn a_claim_in_another_unit_is_another_claim() {
+        let then = [row("lift", 1.0, 1.0, Within(0.1))];
+        let now = Row { unit: "kN", ..then[0].clone() };
+        assert_eq!(findings(&then, &[now]), [Finding::ClaimChanged]);
+        // As much more as rounding never is.
+        let wider = row("lift", 1.0, 1.0, Within(0.1005));
+        assert_eq!(findings(&then, &[wider]), [Finding::ClaimChanged]);
+    }
+
+    #[test]
+    fn data_tell_what_kind_of_figure_was_measured() {
+        let then = [row("one", 1.0, 1.0, AtMost), row("lost", 1.0, 1.0, AtMost)];
+        for (measured, figure) in [
+            (1.0, Figure::Finite),
+            (f64::INFINITY, Figure::PlusInfinite),
+            (f64::NEG_INFINITY, Figure::MinusInfinite),
+            (f64::NAN, Figure::NotANumber),
+        ] {
+            let judged = judge(&[row("one", measured, 1.0, AtMost)], &recorded(&then));
+            assert_eq!([judged[0].figure, judged[1].figure], [figure, Figure::NotMeasured]);
+        }
     }
 }

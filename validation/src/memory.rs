@@ -71,7 +71,7 @@ fn most_of(run: &mut Command) -> Result<Option<u64>, String> {
     let mut child = run.spawn().map_err(|error| error.to_string())?;
     let mut most = None;
     let status = loop {
-        most = most.max(machine::peak_memory_of(child.id()));
+        most = machine::peak_memory_of(child.id()).max(most);
         match child.try_wait().map_err(|error| error.to_string())? {
             Some(status) => break status,
             None => sleep(LOOK_INTERVAL),

@@ -4,7 +4,7 @@
 use crate::record::{Record, RecordError, RecordedRow, Verdict};
 use crate::row::Tolerance;
 use crate::{ELSEWHERE, VALIDATIONS};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -27,6 +27,8 @@ pub struct Entry {
     about: &'static str,
     repeat: String,
     cost: String,
+    /// Whether no command sets it beside its record.
+    by_hand: bool,
     page: &'static str,
     record: Record,
 }
@@ -43,6 +45,7 @@ pub fn entries(root: &Path) -> Result<Vec<Entry>, RecordError> {
             about: validation.about,
             repeat: format!("wakemix validate {}", validation.name),
             cost: format!("{} min", validation.cost),
+            by_hand: false,
             page: validation.page,
             record: Record::read(root, validation.name)?,
         });
@@ -53,6 +56,7 @@ pub fn entries(root: &Path) -> Result<Vec<Entry>, RecordError> {
             about: elsewhere.about,
             repeat: elsewhere.repeat.to_owned(),
             cost: "by hand".to_owned(),
+            by_hand: true,
             page: elsewhere.page,
             record: Record::read(root, elsewhere.name)?,
         });
@@ -102,13 +106,21 @@ pub fn write(root: &Path) -> Result<Vec<&'static str>, String> {
 
 /// All comparisons in one table.
 fn list(entries: &[Entry]) -> String {
-    let (met, all) = entries.iter().fold((0, 0), |(met, all), entry| {
-        (met + entry.record.n_met(), all + entry.record.rows.len())
-    });
+    let [met, all] = sum(entries, |entry| !entry.by_hand);
     let mut text = format!(
-        "{all} claims are recorded: {met} are met, {} fall short.\n\n\
-         | validation | what is compared | verdict | takes | recorded |\n| --- | --- | --- | --- | --- |\n",
+        "{all} claims are recorded that `wakemix validate` repeats and sets beside their records: {met} are met, {} fall short.",
         all - met
+    );
+    let [met, all] = sum(entries, |entry| entry.by_hand);
+    if all > 0 {
+        let _ = write!(
+            text,
+            " By hand, with no command that sets them beside their records, {all} more: {met} are met, {} fall short.",
+            all - met
+        );
+    }
+    text.push_str(
+        "\n\n| validation | what is compared | verdict | takes | recorded |\n| --- | --- | --- | --- | --- |\n",
     );
     for Entry { name, about, cost, page, record, .. } in entries {
         let verdict = match verdict(record) {
@@ -122,6 +134,23 @@ fn list(entries: &[Entry]) -> String {
         );
     }
     text
+}
+
+/// How many claims of those entries that `counts` are met, and how many are recorded. A row that stands on a
+/// page more than once, because a part of a validation is one too, is one claim.
+fn sum(entries: &[Entry], counts: impl Fn(&Entry) -> bool) -> [usize; 2] {
+    let mut verdicts: BTreeMap<(&str, &str), Verdict> = BTreeMap::new();
+    for entry in entries.iter().filter(|entry| counts(entry)) {
+        for row in &entry.record.rows {
+            let verdict = verdicts.entry((entry.page, &row.id)).or_insert(row.verdict);
+            // Recorded twice with two verdicts, it falls short.
+            if row.verdict == Verdict::Short {
+                *verdict = Verdict::Short;
+            }
+        }
+    }
+    let met = verdicts.values().filter(|verdict| **verdict == Verdict::Met).count();
+    [met, verdicts.len()]
 }
 
 /// What of `page` is recorded, one table for each of its comparisons.
@@ -184,22 +213,22 @@ fn lines(rows: &[&RecordedRow], text: &mut String) {
         let claim = row.claim.replace('|', "\\|");
         let verdict = if row.verdict == Verdict::Met { "met" } else { "**short**" };
         let expected = figure(row.expected);
-        let accepted = match row.tolerance {
-            Tolerance::Within(0.0) => format!("{expected}, exactly"),
-            Tolerance::Within(most) => format!("{expected} ± {}", figure(most)),
-            Tolerance::AtMost => format!("at most {expected}"),
-            Tolerance::AtLeast => format!("at least {expected}"),
-        };
         let unit = if ["-", "–", ""].contains(&row.unit.as_str()) {
             String::new()
         } else {
             format!(" {}", row.unit)
         };
+        let accepted = match row.tolerance {
+            Tolerance::Within(0.0) => format!("{expected}{unit}, exactly"),
+            Tolerance::Within(most) => format!("{expected} ± {}{unit}", figure(most)),
+            Tolerance::AtMost => format!("at most {expected}{unit}"),
+            Tolerance::AtLeast => format!("at least {expected}{unit}"),
+        };
         let result = match row.measured {
             Some(measured) => figure(measured) + &unit,
             None => "figure not kept".to_owned(),
         };
-        let _ = writeln!(text, "| {claim} | {accepted}{unit} | {result} | {verdict} |");
+        let _ = writeln!(text, "| {claim} | {accepted} | {result} | {verdict} |");
     }
 }
 
@@ -209,7 +238,7 @@ fn figure(value: f64) -> String {
     let text = if value.is_nan() {
         "not a number".to_owned()
     } else if value.is_infinite() {
-        if value > 0.0 { "never".to_owned() } else { "-∞".to_owned() }
+        if value > 0.0 { "inf".to_owned() } else { "-inf".to_owned() }
     } else if size == 0.0 {
         "0".to_owned()
     } else if (1e-3..1e5).contains(&size) {
@@ -237,6 +266,7 @@ mod tests {
             about: "lift against theory",
             repeat: "wakemix validate wing".to_owned(),
             cost: "1 min".to_owned(),
+            by_hand: false,
             page: "wings",
             record: Record::parse(&text).unwrap(),
         }
@@ -277,9 +307,30 @@ mod tests {
         table(&entry(&(met + &short)), &mut text);
         let fold = text.find("<details>").unwrap();
         assert!(text.find("| s19 |").unwrap() < fold && text.find("| m0 |").unwrap() > fold);
-        assert!(
-            list(&[entry(&short)]).contains("20 claims are recorded: 0 are met, 20 fall short.")
-        );
+    }
+
+    #[test]
+    fn sums_count_a_claim_once_and_what_is_kept_by_hand_apart() {
+        let lift = row("lift", "{ within = 0.5 }", "met");
+        let drag = row("drag", "\"at-most\"", "short");
+        let all = entry(&(lift.clone() + &drag));
+        let part = Entry { name: "wing-coarse", ..entry(&drag) };
+        let by_hand = Entry { name: "sail", by_hand: true, page: "sails", ..entry(&lift) };
+        let text = list(&[all, part, by_hand]);
+        assert!(text.starts_with("2 claims are recorded that "), "{text}");
+        assert!(text.contains(": 1 are met, 1 fall short. By hand, "), "{text}");
+        assert!(text.contains(", 1 more: 1 are met, 0 fall short.\n"), "{text}");
+        let elsewhere = Entry { page: "sails", ..entry(&drag) };
+        let text = list(&[entry(&drag), elsewhere]);
+        assert!(text.starts_with("2 claims") && text.contains(": 0 are met, 2 fall short.\n"));
+    }
+
+    #[test]
+    fn a_unit_stands_before_what_is_said_of_a_figure() {
+        let rows = row("lift", "{ within = 0.0 }", "short");
+        let mut text = String::new();
+        table(&entry(&rows), &mut text);
+        assert!(text.contains("| lift | 1 MN, exactly | 1.25 MN | **short** |"), "{text}");
     }
 
     #[test]
@@ -291,7 +342,8 @@ mod tests {
             (12345.6, "12346"),
             (3.2e-10, "3.2e−10"),
             (0.999_96, "1"),
-            (f64::INFINITY, "never"),
+            (f64::INFINITY, "inf"),
+            (f64::NEG_INFINITY, "−inf"),
         ] {
             assert_eq!(figure(value), text);
         }

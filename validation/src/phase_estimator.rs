@@ -16,6 +16,7 @@ mod wind;
 pub use side_by_side::estimators;
 
 use crate::Row;
+use crate::folds::larger;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::{FixedFrame, Measurements, PerBlade, Sense, Vector3};
 use estimation::helix::{
@@ -187,11 +188,11 @@ fn tell(what: &str, figure: &str) {
 /// Its own model's moments with 5 % of noise, own pitch at twelve offsets.
 fn synthetic(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationError> {
     for sense in [Sense::CounterClockwise, Sense::Clockwise] {
-        let (mut worst, mut sum, mut innovation) = (0.0_f64, 0.0, 0.0);
+        let (mut worst, mut sum, mut innovation) = (0.0, 0.0, 0.0);
         for offset in 0..12_u32 {
             let ahead = TAU * f64::from(offset) / 12.0;
             let errors = own_model(machine, sense, ahead, u64::from(offset))?;
-            worst = worst.max(errors.worst());
+            worst = larger(worst, errors.worst());
             sum += (errors.mean[0] + errors.mean[1]) / 24.0;
             innovation += errors.innovation / 12.0;
         }
@@ -315,11 +316,9 @@ fn turbulence(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationEr
                 "deg",
             ));
         }
-        rows.push(unbiased(
-            format!("{name}, robust: mean error of tilt and yaw"),
-            0.5 * (errors[0].mean[0] + errors[0].mean[1]),
-            AIM,
-        ));
+        // No claim: it is within the aim wherever both axes' rms errors are.
+        let mean = 0.5 * (errors[0].mean[0] + errors[0].mean[1]);
+        tell(&format!("{name}, robust: mean error of tilt and yaw, deg"), &format!("{mean:+.1}"));
     }
     Ok(())
 }

@@ -1,8 +1,9 @@
 //! What a validation gave when it was last recorded: `validation/recorded/NAME.toml`, in the program and in
 //! the repository.
 
+pub use crate::recorded::{RecordedRow, Verdict};
 use crate::row::{Row, Tolerance};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{error, fmt, fs, io};
@@ -13,53 +14,29 @@ pub const FOLDER: &str = "validation/recorded";
 /// How a record is weakened where that is meant.
 const BY_HAND: &str = "if that is meant, take its row out of the record's file first, where a reader of the change sees it";
 
-/// Share of a tolerance by which a recorded claim and one of today may differ: what rounding to six digits
-/// leaves.
-const SAME: f64 = 0.01;
+/// First line of a record by `--record`, and of one that was copied.
+const RECORDED: &str =
+    "# Written by `wakemix validate NAME --record`; rows that fall short are recorded as short.";
+const FROM_A_NOTEBOOK: &str = "# Figures of the notebook in docs/validation with the digits that stand there; `wakemix validate NAME --record` writes all.";
+
+/// What to do about a figure that is none.
+const MEND: &str = "mend what makes it, or measure something that always has a value";
 
 /// The rows of one validation as they were recorded.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Record {
     /// Day on which it was made (year-month-day).
     pub date: String,
     /// On what machine, and by what.
     pub conditions: String,
+    /// Whether the measured figures come from a notebook with the few digits that stand there, and not from
+    /// `--record`.
+    #[serde(default)]
+    pub rounded: bool,
     /// Its rows, in their order.
     #[serde(rename = "row")]
     pub rows: Vec<RecordedRow>,
-}
-
-/// A row as it was recorded.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RecordedRow {
-    /// Name within its validation, [`Row::id`].
-    pub id: String,
-    /// What was measured, with its conditions.
-    pub claim: String,
-    /// Measured value, in `unit`; none where a claim was met and the figure was not kept.
-    pub measured: Option<f64>,
-    /// Expected value or limit, in `unit`.
-    pub expected: f64,
-    /// What is accepted around `expected`.
-    pub tolerance: Tolerance,
-    /// Unit of all three.
-    pub unit: String,
-    /// Where the expected value comes from.
-    pub source: String,
-    /// Whether the claim was met.
-    pub verdict: Verdict,
-}
-
-/// What came out for a claim.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// Accepted.
-    Met,
-    /// Not accepted: a shortfall.
-    Short,
 }
 
 /// Why rows cannot be recorded.
@@ -67,8 +44,12 @@ pub enum Verdict {
 pub enum RecordError {
     /// Two rows have one name.
     Twice(String),
-    /// A claim is weaker than the recorded one, or about another figure: said with both.
+    /// Claims whose figures are no finite numbers.
+    NotFinite(String),
+    /// A claim is weaker than the recorded one, or about another figure or unit: said with both.
     Loosened(String),
+    /// Claims that were met and are short now, or that fall shorter, said with both figures.
+    Worse(String),
     /// Recorded claims that were not measured.
     Lost(String),
     /// The file cannot be read or written.
@@ -83,9 +64,16 @@ impl fmt::Display for RecordError {
             Self::Twice(claim) => {
                 write!(out, "two rows are called `{claim}`; word one of them anew")
             }
+            Self::NotFinite(claims) => {
+                write!(out, "not a finite number, which is no figure to record: {claims}; {MEND}")
+            }
             Self::Loosened(claims) => write!(
                 out,
-                "a claim is weaker than its record, or expects another figure: {claims}; {BY_HAND}"
+                "a claim is weaker than its record, or expects another figure or unit: {claims}; {BY_HAND}"
+            ),
+            Self::Worse(claims) => write!(
+                out,
+                "worse than recorded: {claims}; mend it, or record it with --accept-worse and say why on the page"
             ),
             Self::Lost(claims) => write!(out, "recorded and not measured: {claims}; {BY_HAND}"),
             Self::File(path, cause) => {
@@ -98,54 +86,36 @@ impl fmt::Display for RecordError {
 
 impl error::Error for RecordError {}
 
-impl RecordedRow {
-    /// `row` as it is today, to six digits.
-    fn of(row: &Row) -> Self {
-        let tolerance = match row.tolerance {
-            Tolerance::Within(most) => Tolerance::Within(six_digits(most)),
-            one_sided => one_sided,
+/// Whether a claim that got worse may be recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Worse {
+    /// It is refused by name.
+    Refused,
+    /// It is meant, and recorded as it is now.
+    Accepted,
+}
+
+/// What speaks against a new record, each with the claims that it concerns.
+#[derive(Default)]
+struct Problems {
+    not_finite: Vec<String>,
+    loosened: Vec<String>,
+    lost: Vec<String>,
+    worse: Vec<String>,
+}
+
+impl Problems {
+    /// Fails unless there is none, or none but rows that are worse where those are accepted.
+    fn none_but(self, worse: Worse) -> Result<(), RecordError> {
+        let met = |claims: Vec<String>, error: fn(String) -> RecordError| {
+            if claims.is_empty() { Ok(()) } else { Err(error(claims.join("; "))) }
         };
-        Self {
-            id: row.id(),
-            claim: row.what.clone(),
-            measured: Some(six_digits(row.measured)),
-            expected: six_digits(row.expected),
-            tolerance,
-            unit: row.unit.to_owned(),
-            source: row.source.to_owned(),
-            verdict: if row.passes() { Verdict::Met } else { Verdict::Short },
-        }
-    }
-
-    /// How far the recorded figure lies beyond what is accepted, in its unit; zero for a claim that was met.
-    pub fn shortfall(&self) -> f64 {
-        match (self.verdict, self.measured) {
-            (Verdict::Short, Some(measured)) => self.tolerance.beyond(measured, self.expected),
-            // Without a figure nothing may be shorter.
-            (Verdict::Short, None) | (Verdict::Met, _) => 0.0,
-        }
-    }
-
-    /// Whether `row` claims what was recorded, but for rounding.
-    pub(crate) fn claims_as(&self, row: &Row) -> bool {
-        let same = match (self.tolerance, row.tolerance) {
-            (Tolerance::Within(then), Tolerance::Within(now)) => (now - then).abs() <= SAME * then,
-            (then, now) => then == now,
-        };
-        same && self.expects_as(row)
-    }
-
-    /// Whether `row` expects the recorded figure, but for rounding.
-    fn expects_as(&self, row: &Row) -> bool {
-        let room = SAME * row.tolerance.scale(row.expected) + 2e-5 * row.expected.abs();
-        (self.expected - row.expected).abs() <= room
-    }
-
-    /// Whether `row` accepts what the record does not.
-    fn is_stricter_than(&self, row: &Row) -> bool {
-        match (self.tolerance, row.tolerance) {
-            (Tolerance::Within(then), Tolerance::Within(now)) => now > then * (1.0 + SAME),
-            (then, now) => then != now,
+        met(self.not_finite, RecordError::NotFinite)?;
+        met(self.loosened, RecordError::Loosened)?;
+        met(self.lost, RecordError::Lost)?;
+        match worse {
+            Worse::Refused => met(self.worse, RecordError::Worse),
+            Worse::Accepted => Ok(()),
         }
     }
 }
@@ -169,50 +139,67 @@ impl Record {
         self.rows.iter().filter(|row| row.verdict == Verdict::Met).count()
     }
 
-    /// `rows` recorded on the day `date` under `conditions`, where this record was before.
+    /// Whether `row` is worse than `recorded`, a row of this record: short where that was met, or shorter.
+    pub(crate) fn is_worse(&self, row: &Row, recorded: &RecordedRow) -> bool {
+        let rounding = if self.rounded { recorded.half_a_digit() } else { 0.0 };
+        recorded.is_worse_now(row, rounding)
+    }
+
+    /// `rows` recorded on the day `date` under `conditions`, where this record was before; what is worse than
+    /// it only where `worse` is accepted. A claim that differs from its record by rounding stays as it was
+    /// recorded, so that no number of records moves it.
     ///
     /// # Errors
-    /// [`RecordError::Twice`]; [`RecordError::Loosened`] when a row claims less than its record does, or
-    /// expects another figure; [`RecordError::Lost`] when a recorded claim is not among `rows`.
-    pub fn renewed(&self, rows: &[Row], date: &str, conditions: &str) -> Result<Self, RecordError> {
+    /// [`RecordError::Twice`]; [`RecordError::NotFinite`]; [`RecordError::Loosened`] when a row claims less
+    /// than its record does, or expects another figure or unit; [`RecordError::Lost`] when a recorded claim
+    /// is not among `rows`; [`RecordError::Worse`].
+    pub fn renewed(
+        &self,
+        rows: &[Row],
+        date: &str,
+        conditions: &str,
+        worse: Worse,
+    ) -> Result<Self, RecordError> {
         let mut renewed: Vec<RecordedRow> = Vec::new();
-        let mut loosened = Vec::new();
+        let mut problems = Problems::default();
         for row in rows {
-            let now = RecordedRow::of(row);
+            let mut now = RecordedRow::of(row);
             if renewed.iter().any(|other| other.id == now.id) {
                 return Err(RecordError::Twice(now.claim));
             }
-            if let Some(then) = self.row(&now.id)
-                && (!then.expects_as(row) || then.is_stricter_than(row))
-            {
-                loosened.push(format!(
-                    "{}: {} {:?} before, {} {:?} now",
-                    then.claim, then.expected, then.tolerance, now.expected, now.tolerance
-                ));
+            if !(row.measured.is_finite() && row.expected.is_finite()) {
+                problems.not_finite.push(now.claim.clone());
+            }
+            if let Some(then) = self.row(&now.id) {
+                if !then.expects_as(row) || then.is_stricter_than(row) {
+                    problems.loosened.push(then.beside(&now));
+                } else if then.claims_as(row) {
+                    (now.expected, now.tolerance) = (then.expected, then.tolerance);
+                }
+                if self.is_worse(row, then) {
+                    problems.worse.push(then.figures_beside(&now));
+                }
             }
             renewed.push(now);
         }
         let kept = |then: &RecordedRow| renewed.iter().any(|now| now.id == then.id);
-        let lost: Vec<&str> =
-            self.rows.iter().filter(|row| !kept(row)).map(|row| row.claim.as_str()).collect();
-        if !loosened.is_empty() {
-            return Err(RecordError::Loosened(loosened.join("; ")));
-        }
-        if !lost.is_empty() {
-            return Err(RecordError::Lost(lost.join("; ")));
-        }
-        Ok(Self { date: date.to_owned(), conditions: conditions.to_owned(), rows: renewed })
+        let lost = self.rows.iter().filter(|row| !kept(row)).map(|row| row.claim.clone());
+        problems.lost.extend(lost);
+        problems.none_but(worse)?;
+        let (date, conditions) = (date.to_owned(), conditions.to_owned());
+        Ok(Self { date, conditions, rounded: false, rows: renewed })
     }
 
     /// The record as its file holds it.
     pub fn text(&self) -> String {
         let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
         let number = |value: f64| toml::Value::Float(value).to_string();
-        let mut text = String::from(
-            "# Written by `wakemix validate NAME --record`; rows that fall short are recorded as short.\n",
-        );
+        let mut text = format!("{}\n", if self.rounded { FROM_A_NOTEBOOK } else { RECORDED });
         let _ = writeln!(text, "date = {}", quoted(&self.date));
         let _ = writeln!(text, "conditions = {}", quoted(&self.conditions));
+        if self.rounded {
+            text.push_str("rounded = true\n");
+        }
         for row in &self.rows {
             let tolerance = match row.tolerance {
                 Tolerance::Within(most) => format!("{{ within = {} }}", number(most)),
@@ -261,22 +248,21 @@ fn path_of(root: &Path, name: &str) -> PathBuf {
     root.join(FOLDER).join(format!("{name}.toml"))
 }
 
-/// `value` to six significant digits.
-fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::Tolerance::{AtMost, Within};
+    use crate::row::Tolerance::{AtLeast, AtMost, Within};
 
     fn row(what: &str, measured: f64, expected: f64, tolerance: Tolerance) -> Row {
         Row { what: what.to_owned(), measured, expected, tolerance, unit: "MN m", source: "theory" }
     }
 
-    fn empty() -> Record {
-        Record { date: String::new(), conditions: String::new(), rows: Vec::new() }
+    fn recorded(rows: &[Row]) -> Record {
+        Record::default().renewed(rows, "2026-11-22", "here", Worse::Refused).unwrap()
+    }
+
+    fn again(record: &Record, rows: &[Row], worse: Worse) -> Result<Record, RecordError> {
+        record.renewed(rows, "", "", worse)
     }
 
     #[test]
@@ -284,40 +270,99 @@ mod tests {
         let rows = [
             row("lift \"of\" a wing", 1.0 / 3.0, 0.3, Within(0.05)),
             row("drag", 2.0, 1.0, AtMost),
-            row("not a number", f64::INFINITY, 1.0, AtMost),
+            row("moment", 2.0, 1.0, AtLeast),
         ];
-        let record = empty().renewed(&rows, "2026-11-22", "here").unwrap();
+        let record = recorded(&rows);
         assert_eq!(record.rows[0].measured, Some(0.333333));
-        assert_eq!(record.n_met(), 1);
+        assert_eq!(record.n_met(), 2);
         assert_eq!(record.rows[1].shortfall(), 1.0);
         assert_eq!(Record::parse(&record.text()).unwrap(), record);
+        let rounded = Record { rounded: true, ..record };
+        assert!(rounded.text().starts_with("# Figures of the notebook"));
+        assert_eq!(Record::parse(&rounded.text()).unwrap(), rounded);
+        assert!(!again(&rounded, &rows, Worse::Refused).unwrap().rounded);
     }
 
     #[test]
     fn a_claim_may_be_tightened_and_not_loosened() {
-        let record = empty().renewed(&[row("lift", 1.0, 1.0, Within(0.1))], "", "").unwrap();
+        let record = recorded(&[row("lift", 1.0, 1.0, Within(0.1))]);
+        let in_kilonewtons = Row { unit: "kN m", ..row("lift", 1.0, 1.0, Within(0.1)) };
         for (now, allowed) in [
-            (row("lift", 2.0, 1.0, Within(0.1)), true),
+            (row("lift", 1.05, 1.0, Within(0.1)), true),
             (row("lift", 1.0, 1.0, Within(0.05)), true),
             (row("lift", 1.0, 1.0, Within(0.2)), false),
+            (row("lift", 1.0, 1.0, Within(0.1001)), false),
             (row("lift", 1.0, 1.1, Within(0.1)), false),
+            (row("lift", 1.0, 1.0001, Within(0.1)), false),
             (row("lift", 1.0, 1.0, AtMost), false),
+            (in_kilonewtons, false),
         ] {
-            let renewed = record.renewed(std::slice::from_ref(&now), "", "");
+            let renewed = again(&record, std::slice::from_ref(&now), Worse::Accepted);
             assert_eq!(renewed.is_ok(), allowed, "{now:?}");
         }
         let drag = row("drag", 1.0, 5.0, Within(9.0));
-        assert!(matches!(
-            record.renewed(std::slice::from_ref(&drag), "", ""),
-            Err(RecordError::Lost(_))
-        ));
+        let alone = again(&record, std::slice::from_ref(&drag), Worse::Accepted);
+        assert!(matches!(alone, Err(RecordError::Lost(_))));
         let both = [row("lift", 1.0, 1.0, Within(0.1)), drag];
-        assert_eq!(record.renewed(&both, "", "").unwrap().rows.len(), 2);
+        assert_eq!(again(&record, &both, Worse::Refused).unwrap().rows.len(), 2);
+    }
+
+    #[test]
+    fn no_number_of_records_moves_a_claim() {
+        let mut record = recorded(&[row("lift", 1.0, 1.0, Within(0.1))]);
+        let (mut expected, mut tolerance) = (1.0, 0.1);
+        let mut n_records = 0;
+        for _ in 0..100 {
+            (expected, tolerance) = (expected * (1.0 + 5e-7), tolerance * (1.0 + 5e-6));
+            match again(&record, &[row("lift", 1.0, expected, Within(tolerance))], Worse::Refused) {
+                Ok(renewed) => record = renewed,
+                Err(RecordError::Loosened(_)) => break,
+                Err(other) => panic!("{other}"),
+            }
+            n_records += 1;
+            let kept = record.row("lift").unwrap();
+            assert_eq!((kept.expected, kept.tolerance), (1.0, Within(0.1)));
+        }
+        assert!((1..=2).contains(&n_records), "{n_records}");
+    }
+
+    #[test]
+    fn what_got_worse_is_recorded_only_where_that_is_meant() {
+        let then = [row("lift", 1.0, 1.0, Within(0.1)), row("drag", 3.0, 1.0, AtMost)];
+        let record = recorded(&then);
+        for (lift, drag, worse) in
+            [(1.05, 3.1, false), (1.2, 3.0, true), (1.0, 4.0, true), (1.0, 0.5, false)]
+        {
+            let mut now = then.clone();
+            (now[0].measured, now[1].measured) = (lift, drag);
+            let refused =
+                matches!(again(&record, &now, Worse::Refused), Err(RecordError::Worse(_)));
+            assert_eq!(refused, worse, "{lift}, {drag}");
+            let accepted = again(&record, &now, Worse::Accepted).unwrap();
+            assert_eq!(accepted.rows[0].measured, Some(lift));
+        }
+        let now = [row("lift", 1.2, 1.0, Within(0.1)), then[1].clone()];
+        let said = again(&record, &now, Worse::Refused).unwrap_err().to_string();
+        assert!(said.contains("lift: 1, met before, 1.2, short now"), "{said}");
+    }
+
+    #[test]
+    fn what_is_not_finite_is_no_figure_to_record() {
+        for measured in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for tolerance in [Within(1.0), AtMost, AtLeast] {
+                let rows = [row("lift", measured, 1.0, tolerance)];
+                for worse in [Worse::Refused, Worse::Accepted] {
+                    let renewed = again(&Record::default(), &rows, worse);
+                    assert!(matches!(renewed, Err(RecordError::NotFinite(_))), "{rows:?}");
+                }
+            }
+        }
     }
 
     #[test]
     fn two_rows_of_one_name_are_refused() {
         let rows = [row("lift", 1.0, 1.0, AtMost), row("Lift:", 2.0, 2.0, AtMost)];
-        assert!(matches!(empty().renewed(&rows, "", ""), Err(RecordError::Twice(_))));
+        let renewed = again(&Record::default(), &rows, Worse::Accepted);
+        assert!(matches!(renewed, Err(RecordError::Twice(_))));
     }
 }

@@ -16,9 +16,9 @@ pub enum Tolerance {
 
 impl Tolerance {
     /// How far `measured` lies beyond what is accepted around `expected`; zero where it is accepted, infinite
-    /// for what is not a number.
+    /// for what is not a finite number, on whichever side of a limit.
     pub fn beyond(self, measured: f64, expected: f64) -> f64 {
-        if measured.is_nan() || expected.is_nan() {
+        if !measured.is_finite() || expected.is_nan() {
             return f64::INFINITY;
         }
         let beyond = match self {
@@ -58,7 +58,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Whether the measured figure is accepted; never for a value that is not a number.
+    /// Whether the measured figure is accepted; never for one that is not a finite number.
     pub fn passes(&self) -> bool {
         self.tolerance.beyond(self.measured, self.expected) == 0.0
     }
@@ -97,7 +97,9 @@ mod tests {
         assert_eq!(AtLeast.beyond(3.0, 1.0), 0.0);
         assert_eq!(AtLeast.beyond(-1.0, 1.0), 2.0);
         for tolerance in [Within(1.0), AtMost, AtLeast] {
-            assert_eq!(tolerance.beyond(f64::NAN, 1.0), f64::INFINITY);
+            for measured in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                assert_eq!(tolerance.beyond(measured, 1.0), f64::INFINITY);
+            }
         }
         assert_eq!(Within(f64::NAN).beyond(1.0, 1.0), f64::INFINITY);
     }

@@ -2,6 +2,7 @@
 //! in closed form.
 
 use crate::Row;
+use crate::folds::larger;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
 use turbine::Definition;
@@ -173,10 +174,10 @@ fn energy_rows(rows: &mut Vec<Row>) {
         ]);
         structure.restore(state);
         let before = structure.energy();
-        let mut worst = 0.0_f64;
+        let mut worst = 0.0;
         for _ in 0..(duration / STEP) as usize {
             structure.advance(STEP, &AppliedLoads::NONE, &STILL);
-            worst = worst.max((structure.energy().total() - before.total()).abs());
+            worst = larger(worst, (structure.energy().total() - before.total()).abs());
         }
         rows.push(Row {
             what: format!("iea-15mw, undamped free vibration {what}: change of energy"),

@@ -1,12 +1,14 @@
 //! Whole studies as validations run them: with lines of progress, or silent in a process of their own; on
-//! from where an earlier call stopped.
+//! from where an earlier call of the same build stopped.
 
 use crate::Row;
 use crate::row::Tolerance::Within;
 use basis::records::Summary;
+use formats::records::sha256;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::AtomicBool;
+use std::{env, fs, io};
 use study::{Observer, Outcome, StudyOptions};
 
 /// Where the expected values come from.
@@ -32,14 +34,19 @@ impl Observer for Lines {
     }
 }
 
-/// Runs the case at `path` with `overrides` of its keys, or takes up what is left of it in
-/// `runs/validate-NAME`; gives summaries and that folder.
+/// Name of the file in a study's folder that tells which build of the program made it.
+const MADE_BY: &str = "made-by.sha256";
+
+/// Runs the case at `path` with `overrides` of its keys, or takes up what this very build of the program left
+/// of it in `runs/validate-NAME`, and says where that is; gives summaries and that folder.
 pub(crate) fn summaries(
     path: &Path,
     name: &str,
     overrides: Vec<String>,
 ) -> Result<(Vec<Summary>, PathBuf), String> {
     let output = Path::new("runs").join(format!("validate-{name}"));
+    let there = claimed(&output, &this_build()?)?;
+    eprintln!("{there} {}", output.display());
     let options = StudyOptions {
         case: path.to_owned(),
         output: Some(output.clone()),
@@ -55,9 +62,36 @@ pub(crate) fn summaries(
     }
 }
 
+/// Hash of the program that is running.
+fn this_build() -> Result<String, String> {
+    let program = env::current_exe().and_then(fs::read);
+    let program = program.map_err(|error| format!("the program cannot read itself: {error}"))?;
+    Ok(sha256(&program))
+}
+
+/// Makes `folder` that of `build`: what another build left there, or nobody knows which, is taken away, so
+/// that it is neither read as what the program gives now nor gone on with. Gives what is done there.
+fn claimed(folder: &Path, build: &str) -> Result<&'static str, String> {
+    let mark = folder.join(MADE_BY);
+    let named = |error: io::Error| {
+        format!("{}: {error}; take that folder away and repeat", folder.display())
+    };
+    let done = match fs::read_to_string(&mark) {
+        Ok(found) if found.trim() == build => return Ok("going on with what this build left in"),
+        _ if !folder.exists() => "running in",
+        _ => {
+            fs::remove_dir_all(folder).map_err(named)?;
+            "made by another build and taken away, running anew in"
+        }
+    };
+    fs::create_dir_all(folder).map_err(named)?;
+    fs::write(&mark, build).map_err(named)?;
+    Ok(done)
+}
+
 /// `wakemix run`, silent, of the case at `path`: what is left of it in the folder `output`.
 pub(crate) fn command(path: &Path, output: &Path) -> Command {
-    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("wakemix"));
+    let program = env::current_exe().unwrap_or_else(|_| PathBuf::from("wakemix"));
     let mut command = Command::new(program);
     command.arg("run").arg(path).arg("-o").arg(output).arg("--resume");
     command.stdout(Stdio::null()).stderr(Stdio::null());
@@ -79,4 +113,33 @@ pub(crate) fn failure(problem: String) -> Vec<Row> {
 /// The summary of the run of this name.
 pub(crate) fn find<'a>(summaries: &'a [Summary], run: &str) -> Option<&'a Summary> {
     summaries.iter().find(|summary| summary.run == run)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_another_build_left_is_not_taken_up() {
+        let folder = env::temp_dir().join(format!("wakemix-made-by-{}", std::process::id()));
+        let summary = folder.join("baseline").join("summary.json");
+        let leave = || {
+            fs::create_dir_all(folder.join("baseline")).unwrap();
+            fs::write(&summary, "{}").unwrap();
+        };
+        assert_eq!(claimed(&folder, "one").unwrap(), "running in");
+        leave();
+        assert!(claimed(&folder, "one").unwrap().starts_with("going on"));
+        assert!(summary.exists());
+        assert!(claimed(&folder, "other").unwrap().starts_with("made by another build"));
+        assert!(!summary.exists());
+        // Made before builds were told apart.
+        leave();
+        fs::remove_file(folder.join(MADE_BY)).unwrap();
+        assert!(claimed(&folder, "other").unwrap().starts_with("made by another build"));
+        assert!(!summary.exists());
+        assert!(claimed(&folder, "other").unwrap().starts_with("going on"));
+        fs::remove_dir_all(&folder).unwrap();
+        assert_eq!(this_build().unwrap().len(), 64);
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::{advance, lattice};
 use crate::Row;
+use crate::folds::larger;
 use crate::row::Tolerance::Within;
 use basis::{PointForce, Vector3};
 use flow::WindField;
@@ -139,7 +140,7 @@ fn loaded_wind(air: &Lattice, forces: &[PointForce], head: f64) -> (f64, f64, f6
             .length()
                 < spacing
             {
-                centre = centre.max(on_column);
+                centre = larger(centre, on_column);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! IEC turbulence against the standard's own spectra and coherence, and against a record of TurbSim.
 
-use super::mean_of;
+use super::{frozen, mean_of};
 use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
 use flow::inflow::iec::Kaimal;
@@ -15,10 +15,6 @@ const TURBSIM: &str = "TurbSim 2, one record";
 
 /// Seeds over which figures are averaged.
 const SEEDS: u64 = 10;
-/// Standard errors of the mean over the seeds within which it must lie.
-const STANDARD_ERRORS: f64 = 4.0;
-/// Standard deviations over the seeds within which one record of another program must lie of their mean.
-const DEVIATIONS: f64 = 4.0;
 /// Bands of frequency over which spectra and coherence are averaged (Hz).
 const BANDS: [[f64; 2]; 4] = [[0.003, 0.01], [0.01, 0.03], [0.03, 0.1], [0.1, 0.3]];
 /// Points apart along y and z at which coherence is compared; one spacing is 9.667 m.
@@ -71,19 +67,17 @@ pub fn kaimal() -> Vec<Row> {
         let waves = 1..3300;
         let variance: f64 =
             waves.map(|wave| model.spectrum(component, f64::from(wave) * step) * step).sum();
-        rows.push(against_model(
+        rows.extend(against_model(
             format!("standard deviation of {name} over all points"),
             samples.iter().map(|sample| sample.deviations[component]),
             variance.sqrt(),
-            1e-4,
             "m/s",
         ));
         for (index, band) in BANDS.iter().enumerate() {
-            rows.push(against_model(
+            rows.extend(against_model(
                 format!("spectrum of {name}, {} to {} Hz", band[0], band[1]),
                 samples.iter().map(|sample| sample.spectra[component][index]),
                 band_mean(*band, |frequency| model.spectrum(component, frequency)),
-                1e-4,
                 "m2/s",
             ));
         }
@@ -116,16 +110,15 @@ fn coherence(model: &Kaimal, samples: &[Sample]) -> Vec<Row> {
             let what = |name: &str| {
                 format!("coherence of {name} {y} × {z} points apart, {} to {} Hz", band[0], band[1])
             };
-            rows.push(against_model(
+            rows.extend(against_model(
                 what("u"),
                 samples.iter().map(|sample| sample.coherence[index][place]),
                 expected,
-                2e-3,
                 "-",
             ));
             if place == 0 {
                 let lateral = samples.iter().map(|sample| sample.lateral[index]);
-                rows.push(against_model(what("v"), lateral, 0.0, 2e-3, "-"));
+                rows.extend(against_model(what("v"), lateral, 0.0, "-"));
             }
         }
     }
@@ -136,16 +129,9 @@ fn coherence(model: &Kaimal, samples: &[Sample]) -> Vec<Row> {
 fn turbsim(samples: &[Sample]) -> Vec<Row> {
     let mut rows = Vec::new();
     let mut row = |what: String, values: Vec<f64>, turbsim: f64, unit: &'static str| {
-        let (mean, standard_error) = mean_of(values.iter().copied());
-        rows.push(Row {
-            what: format!("TurbSim: {what}"),
-            measured: mean,
-            expected: turbsim,
-            // Its one record scatters as one of ours.
-            tolerance: Within(DEVIATIONS * standard_error * (SEEDS as f64).sqrt() + 1e-4),
-            unit,
-            source: TURBSIM,
-        });
+        let (mean, _) = mean_of(values.iter().copied());
+        let what = format!("TurbSim: {what}");
+        rows.extend(frozen::claim(frozen::KAIMAL, what, [mean, turbsim], unit, TURBSIM));
     };
     for (component, name) in ["u", "v", "w"].into_iter().enumerate() {
         row(
@@ -211,17 +197,15 @@ pub(crate) fn made(settings: &KaimalSettings) -> TurbulenceBox {
     }
 }
 
+/// The mean of `values` beside the model's.
 fn against_model(
     what: String,
     values: impl Iterator<Item = f64> + Clone,
     expected: f64,
-    allowance: f64,
     unit: &'static str,
-) -> Row {
-    let (measured, standard_error) = mean_of(values);
-    // Random phases leave the power of v and w without scatter: there rounding is all.
-    let tolerance = STANDARD_ERRORS * standard_error + allowance * expected.abs().max(1.0);
-    Row { what, measured, expected, tolerance: Within(tolerance), unit, source: IEC }
+) -> Option<Row> {
+    let (mean, _) = mean_of(values);
+    frozen::claim(frozen::KAIMAL, what, [mean, expected], unit, IEC)
 }
 
 /// Frequencies of the record within `band` (Hz), as indices from 1.

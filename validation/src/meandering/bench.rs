@@ -4,6 +4,7 @@
 use super::follower::{Case, END, INTERVAL, Instant, START, run};
 use super::loops::kinds;
 use crate::Row;
+use crate::folds::{larger, ratio, worst};
 use crate::least_squares::Fit;
 use crate::row::Tolerance::{AtLeast, AtMost, Within};
 use control::meandering::Followed;
@@ -126,7 +127,7 @@ fn claims(case: &Case, outcomes: &[Outcome; 3]) -> Vec<Row> {
     // A ratio that should be below one: MSTOGI's over ESOGI's.
     let less = |what: &str, mixed: f64, extended: f64| Row {
         what: format!("{name}: {what}, MSTOGI over ESOGI"),
-        measured: mixed / extended,
+        measured: ratio(mixed, extended),
         expected: 1.0,
         tolerance: AtMost,
         unit: "–",
@@ -180,10 +181,10 @@ fn judged(case: &Case, run: &[Instant]) -> Outcome {
     let steps = after(middle);
     let change = steps[0].rate - run[0].rate;
     let overshoot = if case.sweeps || change == 0.0 {
-        steps.iter().map(|now| (now.estimate.rate / now.rate - 1.0).abs()).fold(0.0, f64::max)
+        worst(steps.iter().map(|now| (now.estimate.rate / now.rate - 1.0).abs()))
     } else {
         let beyond = |now: &Instant| (now.estimate.rate - now.rate) / change;
-        steps.iter().map(beyond).fold(0.0, f64::max)
+        larger(worst(steps.iter().map(beyond)), 0.0)
     };
     let last = after(END - 400.0);
     let error = |now: &Instant| (now.estimate.rate / now.rate - 1.0).abs();
@@ -195,7 +196,7 @@ fn judged(case: &Case, run: &[Instant]) -> Outcome {
             settling(steps),
         ],
         overshoot,
-        ripple: last.iter().map(error).fold(0.0, f64::max),
+        ripple: worst(last.iter().map(error)),
         signal_to_noise: 10.0 * (powers.fundamental / powers.rest).log10(),
         harmonics: [powers.third, powers.fifth]
             .map(|power| 10.0 * (power / powers.fundamental).log10()),

@@ -1,6 +1,7 @@
 //! Loops alone: tones, ramps, transfer functions, and where a loop can come to rest.
 
 use crate::Row;
+use crate::folds::{larger, ratio};
 use crate::row::Tolerance::{AtMost, Within};
 use basis::angle::wrap_to_half_turn;
 use estimation::phase_locked::{
@@ -48,7 +49,7 @@ fn none(what: String, measured: f64, tolerance: f64, unit: &'static str) -> Row 
 fn tones() -> Vec<Row> {
     let mut rows = Vec::new();
     for (name, kind) in &kinds()[1..] {
-        let mut worst = [0.0_f64; 4];
+        let mut worst = [0.0; 4];
         for part in 0..=30 {
             let rate = BAND[0] + (BAND[1] - BAND[0]) * f64::from(part) / 30.0;
             let (_, mut follower) = follower(*kind, Order::QuasiTwo);
@@ -64,7 +65,7 @@ fn tones() -> Vec<Row> {
                         (estimate.offset / 3.0 - 1.0).abs(),
                         (estimate.amplitude / 2.0 - 1.0).abs(),
                     ];
-                    worst = std::array::from_fn(|index| worst[index].max(errors[index]));
+                    worst = std::array::from_fn(|index| larger(worst[index], errors[index]));
                 }
             }
         }
@@ -127,6 +128,7 @@ fn ramps() -> Vec<Row> {
 /// after a step of frequency (St 0.18 to 0.22), of offset (by the amplitude) and of amplitude (by half) at 9
 /// m/s.
 fn steps() -> Vec<Row> {
+    const N_STEPS: u32 = 80_000;
     let rate_of = |strouhal: f64| TAU * strouhal * 9.0 / 240.0;
     let [first, last] = [0.18, 0.22].map(rate_of);
     // Rates, offsets and amplitudes before and after.
@@ -143,8 +145,8 @@ fn steps() -> Vec<Row> {
     for (case, rates, offsets, amplitudes) in cases {
         let outcomes = kinds().map(|(name, kind)| {
             let (_, mut follower) = follower(kind, Order::QuasiTwo);
-            let (mut phase, mut settled, mut beyond) = (0.0, 0.0, 0.0_f64);
-            for step in 0..80_000 {
+            let (mut phase, mut settled, mut beyond) = (0.0, 0.0, 0.0);
+            for step in 0..N_STEPS {
                 let time = INTERVAL * f64::from(step) - 4000.0;
                 let late = usize::from(time >= 0.0);
                 let estimate =
@@ -152,12 +154,15 @@ fn steps() -> Vec<Row> {
                 phase = (phase + rates[late] * INTERVAL) % TAU;
                 if late == 1 {
                     let off = estimate.rate / rates[1] - 1.0;
-                    settled = if off.abs() > 0.02 { time } else { settled };
+                    let outside = off.is_nan() || off.abs() > 0.02;
+                    settled = if outside { time } else { settled };
                     // Before a step of frequency the rate is too low; what counts is beyond the new one.
                     let sided = if rates[0] < rates[1] { off } else { off.abs() };
-                    beyond = beyond.max(sided);
+                    beyond = larger(beyond, sided);
                 }
             }
+            let last = INTERVAL * f64::from(N_STEPS - 1) - 4000.0;
+            let settled = if settled == last { f64::INFINITY } else { settled };
             eprintln!("| {case} | {name} | {settled:.0} | {:.2} |", 100.0 * beyond);
             [settled, beyond]
         });
@@ -165,7 +170,7 @@ fn steps() -> Vec<Row> {
         for (index, what) in ["settling", "excursion"].into_iter().enumerate() {
             rows.push(Row {
                 what: format!("loop alone, {case}: {what}, MSTOGI over ESOGI"),
-                measured: mixed[index] / extended[index],
+                measured: ratio(mixed[index], extended[index]),
                 expected: 1.0,
                 tolerance: AtMost,
                 unit: "–",
@@ -180,7 +185,7 @@ fn steps() -> Vec<Row> {
 fn transfers() -> Vec<Row> {
     let mut rows = Vec::new();
     for (name, kind) in kinds() {
-        let mut worst = [0.0_f64; 3];
+        let mut worst = [0.0; 3];
         for centre in BAND {
             for part in 0..40 {
                 // From a third of the centre rate to three times it.
@@ -195,7 +200,7 @@ fn transfers() -> Vec<Row> {
                     let distance = (found[0] - re).hypot(found[1] - im);
                     // Where the notch lets nothing through there is nothing to be a share of.
                     if closed.gain > 1e-6 {
-                        *worst = worst.max(distance / closed.gain);
+                        *worst = larger(*worst, distance / closed.gain);
                     }
                 }
             }
@@ -335,6 +340,8 @@ fn equilibria() -> Vec<Row> {
             0.0,
             "–",
         ),
-        row("sine: the same, less than all", share(&plain), 0.5, 0.499, "–"),
+        // 254 of the 544 starts by the midpoint rule in steps of 0.002 over the natural rate, a computation of
+        // its own; a start on the edge may go either way.
+        row("sine: the same, by another integration", share(&plain), 254.0 / 544.0, 0.01, "–"),
     ]
 }

@@ -1,6 +1,7 @@
 //! An aeroelastic turbine in a known wind, and estimators that run on it.
 
 use super::wind::{HelixWind, degrees, pitch};
+use crate::folds::larger;
 use basis::{Measurements, PerBlade, Vector3};
 use control::{Baseline, Controller};
 use estimation::Estimator;
@@ -103,7 +104,7 @@ impl Errors {
 
     /// The worse axis' root mean square (deg).
     pub(super) fn worst(&self) -> f64 {
-        self.rms[0].max(self.rms[1])
+        larger(self.rms[0], self.rms[1])
     }
 }
 

@@ -9,6 +9,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use validation::gate::{Judgement, holds, judge};
+use validation::record::{Record, Worse};
 use validation::{Cost, Pictures, VALIDATIONS, Validation, pages};
 
 /// Arguments of `wakemix validate`.
@@ -26,12 +27,22 @@ pub(crate) struct ValidateArguments {
     /// Write what comes out as the new record (validation/recorded) and renew the pages; no claim is loosened
     #[arg(long)]
     record: bool,
+    /// With --record: record also what was met and falls short now, or falls shorter, which is refused otherwise
+    #[arg(long, requires = "record")]
+    accept_worse: bool,
     /// Renew verdicts and tables of docs/validation from the records, and repeat nothing
     #[arg(long, conflicts_with_all = ["names", "quick", "json", "record", "pictures"])]
     pages: bool,
     /// Folder to draw the validations into, where they have pictures: figures/*.svg and *.png
     #[arg(long, value_name = "FOLDER", requires = "names")]
     pictures: Option<PathBuf>,
+}
+
+/// A validation that was repeated, beside its record.
+struct Done {
+    validation: &'static Validation,
+    record: Record,
+    judgements: Vec<Judgement>,
 }
 
 /// Prints each row beside its record, and draws it on request; exit code 1 when a row is not as recorded, 2
@@ -52,10 +63,11 @@ pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
             ExitCode::SUCCESS
         };
     }
-    let mut done: Vec<(&Validation, Vec<Judgement>)> = Vec::new();
+    let mut done: Vec<Done> = Vec::new();
     for validation in wanted {
-        if let Err(problem) = repeat(validation, arguments, &mut done) {
-            return refused(&problem);
+        match repeat(validation, arguments) {
+            Ok(repeated) => done.push(repeated),
+            Err(problem) => return refused(&problem),
         }
     }
     if arguments.record {
@@ -74,8 +86,8 @@ pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
 }
 
 /// Exit code of what was repeated: 0 when all is as recorded, or 1.
-fn code_of(done: &[(&Validation, Vec<Judgement>)]) -> u8 {
-    u8::from(!done.iter().all(|(_, judgements)| holds(judgements)))
+fn code_of(done: &[Done]) -> u8 {
+    u8::from(!done.iter().all(|done| holds(&done.judgements)))
 }
 
 /// Says what is wrong with the call.
@@ -115,19 +127,17 @@ fn listed(counts: impl Fn(&Validation) -> bool) -> String {
 }
 
 /// Repeats `validation`, and prints or records what came out.
-fn repeat(
-    validation: &'static Validation,
-    arguments: &ValidateArguments,
-    done: &mut Vec<(&'static Validation, Vec<Judgement>)>,
-) -> Result<(), String> {
+fn repeat(validation: &'static Validation, arguments: &ValidateArguments) -> Result<Done, String> {
     let record = validation.record().map_err(|error| error.to_string())?;
     let rows = (validation.run)();
     let judgements = judge(&rows, &record);
+    let done = Done { validation, record, judgements };
     if !arguments.json {
-        print::table(validation, &judgements);
+        print::table(&done);
     }
     if arguments.record {
-        record::renew(validation.name, &rows)?;
+        let worse = if arguments.accept_worse { Worse::Accepted } else { Worse::Refused };
+        record::renew(validation.name, &rows, worse)?;
     }
     if let (Some(folder), Some(pictures)) = (&arguments.pictures, validation.pictures) {
         draw(folder, pictures).map_err(|error| {
@@ -135,8 +145,7 @@ fn repeat(
             format!("{error}{cause}\nhint: name another folder with --pictures")
         })?;
     }
-    done.push((validation, judgements));
-    Ok(())
+    Ok(done)
 }
 
 /// Draws a validation into `folder` and says where.
@@ -190,24 +199,25 @@ row = [
 ]
 "#;
 
+    const WING: Validation = Validation {
+        name: "wing",
+        about: "a made-up wing",
+        cost: Cost::UnderAMinute,
+        run: wing,
+        pictures: None,
+        page: "wing",
+        recorded: RECORDED,
+    };
+
     #[test]
     fn a_made_up_validation_has_the_right_verdicts_and_exit_code() {
-        let validation = Validation {
-            name: "wing",
-            about: "a made-up wing",
-            cost: Cost::UnderAMinute,
-            run: wing,
-            pictures: None,
-            page: "wing",
-            recorded: RECORDED,
-        };
-        let judgements = judge(&(validation.run)(), &validation.record().unwrap());
+        let judgements = judge(&(WING.run)(), &WING.record().unwrap());
         let findings: Vec<Finding> = judgements.iter().map(|row| row.finding).collect();
         use Finding::{AsRecorded, ShortfallGone, Worse};
         assert_eq!(findings, [AsRecorded, AsRecorded, Worse, ShortfallGone]);
         let code = |kept: &[usize]| {
-            let rows = kept.iter().map(|&place| judgements[place].clone()).collect();
-            code_of(&[(&validation, rows)])
+            let judgements = kept.iter().map(|&place| judgements[place].clone()).collect();
+            code_of(&[Done { validation: &WING, record: WING.record().unwrap(), judgements }])
         };
         assert_eq!(code(&[0, 1]), 0);
         assert_eq!([code(&[0, 1, 2]), code(&[0, 1, 3])], [1, 1]);

@@ -1,8 +1,10 @@
 //! What `wakemix validate` prints: the list, rows as a table, rows as JSON.
 
-use validation::gate::{Finding, Judgement, holds};
+use super::Done;
+use super::record::Made;
+use validation::gate::{Finding, holds};
 use validation::record::Verdict;
-use validation::{Tolerance, VALIDATIONS, Validation};
+use validation::{Tolerance, VALIDATIONS};
 
 /// All validations by name.
 pub(super) fn list() {
@@ -12,8 +14,10 @@ pub(super) fn list() {
     }
 }
 
-/// The rows of `validation`, and how many are met, fall short, and are not as recorded.
-pub(super) fn table(validation: &Validation, judgements: &[Judgement]) {
+/// The rows of a validation, how many are met, fall short, and are not as recorded, and on what day and
+/// machine they were recorded and are made.
+pub(super) fn table(done: &Done) {
+    let Done { validation, record, judgements } = done;
     println!(
         "{:<64} {:>12} {:>12} {:>10} {:<6} {:<5} record",
         "what", "measured", "expected", "tolerance", "unit", "met"
@@ -39,21 +43,28 @@ pub(super) fn table(validation: &Validation, judgements: &[Judgement]) {
     let other = judgements.iter().filter(|row| row.finding != Finding::AsRecorded).count();
     let name = validation.name;
     println!("{name}: {} rows, {short} fall short, {other} not as recorded", judgements.len());
+    let Made { date, conditions } = Made::here();
+    println!("recorded {}, {}", record.date, record.conditions);
+    println!("now made {date}, {conditions}");
 }
 
 /// All rows of all that was repeated, as one JSON object.
-pub(super) fn json(done: &[(&Validation, Vec<Judgement>)]) {
+pub(super) fn json(done: &[Done]) {
+    let Made { date, conditions } = Made::here();
+    let made = serde_json::json!({ "date": date, "conditions": conditions });
     let validations: Vec<_> = done
         .iter()
-        .map(|(validation, judgements)| {
+        .map(|Done { validation, record, judgements }| {
             serde_json::json!({
                 "name": validation.name,
                 "about": validation.about,
                 "as_recorded": holds(judgements),
+                "recorded": { "date": record.date, "conditions": record.conditions },
+                "made": made,
                 "rows": judgements,
             })
         })
         .collect();
-    let all = done.iter().all(|(_, judgements)| holds(judgements));
+    let all = done.iter().all(|done| holds(&done.judgements));
     println!("{:#}", serde_json::json!({ "as_recorded": all, "validations": validations }));
 }
