@@ -3,7 +3,11 @@
 //! Layout, little-endian: magic, version (u32), sections, end. A section is the length of its name (u32) and
 //! the name, then chunks, each its length (u32, not 0) and bytes, then a chunk length of 0 and the CRC-32 of
 //! name and bytes. The end is a name length of `u32::MAX` and the number of sections (u32). The first section
-//! says which run of which case it is.
+//! says which run of which case it is, and what computed it.
+
+mod problem;
+
+pub use problem::CheckpointProblem;
 
 use crate::FileError;
 use crate::atomic::AtomicFile;
@@ -14,93 +18,70 @@ use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use thiserror::Error;
 
 const MAGIC: [u8; 8] = *b"wmcheckp";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 const WHAT: &str = "the checkpoint";
 const IDENTITY: &str = "identity";
 /// Bytes of a chunk (–), and of the buffers.
 const CHUNK: usize = 1 << 20;
 const LONGEST_NAME: u32 = 64;
 const END: u32 = u32::MAX;
-const FRESH: &str = "start the run afresh, without --resume";
-
-/// What is wrong with a checkpoint.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum CheckpointProblem {
-    /// Some other file.
-    #[error("it is no checkpoint")]
-    NoCheckpoint,
-    /// Written by a program that writes them otherwise.
-    #[error("its layout has version {found}, this program knows version {VERSION}")]
-    OtherVersion {
-        /// Version found.
-        found: u32,
-    },
-    /// Of another run.
-    #[error("it belongs to run `{found}`, not to run `{expected}`")]
-    OtherRun {
-        /// Run found.
-        found: String,
-        /// Run given.
-        expected: String,
-    },
-    /// Of another case, or of this one before it was changed.
-    #[error("the case has changed since it was written")]
-    OtherCase,
-    /// Its end is missing.
-    #[error("it is cut off after {bytes} bytes")]
-    CutOff {
-        /// Bytes that are there.
-        bytes: u64,
-    },
-    /// Its bytes are not those written.
-    #[error("its section `{section}` is damaged")]
-    Damaged {
-        /// Section.
-        section: String,
-    },
-    /// It lacks a section.
-    #[error("it has no section `{section}`")]
-    Missing {
-        /// Section.
-        section: String,
-    },
-    /// A section is sound but holds something else.
-    #[error("its section `{section}` does not hold what this program expects: {reason}")]
-    Unfitting {
-        /// Section.
-        section: String,
-        /// Why.
-        reason: String,
-    },
+/// The refusal of the checkpoint at `path` for `problem`.
+fn refusal(problem: CheckpointProblem, path: &Path) -> FileError {
+    let fix = problem.fix();
+    FileError::Checkpoint { path: path.to_owned(), problem, fix }
 }
 
-impl CheckpointProblem {
-    fn fix(&self) -> &'static str {
-        match self {
-            Self::OtherVersion { .. } => {
-                "go on with the version of the program that wrote it, or start the run afresh, without --resume"
-            }
-            Self::OtherCase => {
-                "undo the change to go on, or start the run afresh, without --resume; threads, checkpoint interval and other runs may change"
-            }
-            _ => FRESH,
-        }
-    }
-
-    fn at(self, path: &Path) -> FileError {
-        let fix = self.fix();
-        FileError::Checkpoint { path: path.to_owned(), problem: self, fix }
-    }
+/// Which run of which case a checkpoint belongs to, and what computes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Identity<'a> {
+    /// Text of the case.
+    pub case_text: &'a str,
+    /// Name of the run.
+    pub run: &'a str,
+    /// Version of the program.
+    pub version: &'a str,
+    /// What of the machine decides the bits, in words.
+    pub backend: &'a str,
 }
 
-/// Which run of which case a checkpoint belongs to.
+/// The same as it is kept.
 #[derive(Serialize, Deserialize)]
-struct Identity {
+struct Kept {
     run: String,
     fingerprint: [u8; 32],
+    version: String,
+    backend: String,
+}
+
+impl Identity<'_> {
+    fn kept(&self) -> Kept {
+        Kept {
+            run: self.run.to_owned(),
+            fingerprint: case::fingerprint(self.case_text, self.run),
+            version: self.version.to_owned(),
+            backend: self.backend.to_owned(),
+        }
+    }
+}
+
+impl Kept {
+    /// What speaks against going on with it where `expected` is to go on.
+    fn problem(self, expected: Self) -> Option<CheckpointProblem> {
+        let (run, version, backend) = (expected.run, expected.version, expected.backend);
+        if self.run != run {
+            Some(CheckpointProblem::OtherRun { found: self.run, expected: run })
+        } else if self.fingerprint != expected.fingerprint {
+            Some(CheckpointProblem::OtherCase)
+        } else if self.version != version {
+            Some(CheckpointProblem::OtherProgram { found: self.version, expected: version })
+        } else if self.backend != backend {
+            Some(CheckpointProblem::OtherBackend { found: self.backend, expected: backend })
+        } else {
+            None
+        }
+    }
 }
 
 /// Writes a checkpoint; the one before it stands until [`finish`](Self::finish).
@@ -112,17 +93,16 @@ pub struct CheckpointWriter {
 }
 
 impl CheckpointWriter {
-    /// Starts the checkpoint at `path` of the run `run` of the case in `case_text`.
+    /// Starts the checkpoint at `path` of the run that `identity` names.
     ///
     /// # Errors
     /// [`FileError::System`].
-    pub fn create(path: &Path, case_text: &str, run: &str) -> Result<Self, FileError> {
+    pub fn create(path: &Path, identity: &Identity) -> Result<Self, FileError> {
         let file = AtomicFile::create(path, WHAT)?;
         let mut writer = Self { file, path: path.to_owned(), n_sections: 0 };
         writer.put(&MAGIC)?;
         writer.put(&VERSION.to_le_bytes())?;
-        let fingerprint = case::fingerprint(case_text, run);
-        writer.state(IDENTITY, &Identity { run: run.to_owned(), fingerprint })?;
+        writer.state(IDENTITY, &identity.kept())?;
         Ok(writer)
     }
 
@@ -228,27 +208,22 @@ pub struct CheckpointReader {
 }
 
 impl CheckpointReader {
-    /// Opens the checkpoint at `path`, which must be whole and of the run `run` of the case in `case_text`.
+    /// Opens the checkpoint at `path`, which must be whole and of the run that `identity` names, computed by
+    /// the same program on a machine that computes alike.
     ///
     /// # Errors
     /// [`FileError::System`] when it cannot be read, [`FileError::Checkpoint`] when the run cannot go on from
     /// it.
-    pub fn open(path: &Path, case_text: &str, run: &str) -> Result<Self, FileError> {
+    pub fn open(path: &Path, identity: &Identity) -> Result<Self, FileError> {
         let read = |source| FileError::system("read", WHAT, path, source);
         let file = File::open(path).map_err(read)?;
         let length = file.metadata().map_err(read)?.len();
         let file = BufReader::with_capacity(CHUNK, file);
         let mut reader = Self { file, path: path.to_owned(), sections: Vec::new() };
         reader.index(length)?;
-        let identity: Identity = reader.state(IDENTITY)?;
-        let problem = if identity.run != run {
-            Some(CheckpointProblem::OtherRun { found: identity.run, expected: run.to_owned() })
-        } else if identity.fingerprint != case::fingerprint(case_text, run) {
-            Some(CheckpointProblem::OtherCase)
-        } else {
-            None
-        };
-        problem.map_or(Ok(reader), |problem| Err(problem.at(path)))
+        let kept: Kept = reader.state(IDENTITY)?;
+        let problem = kept.problem(identity.kept());
+        problem.map_or(Ok(reader), |problem| Err(refusal(problem, path)))
     }
 
     /// On return every section is known and the end is there.
@@ -260,7 +235,7 @@ impl CheckpointReader {
             Err(error) if error.kind() != ErrorKind::UnexpectedEof => {
                 return Err(FileError::system("read", WHAT, &self.path, error));
             }
-            _ => return Err(CheckpointProblem::NoCheckpoint.at(&self.path)),
+            _ => return Err(refusal(CheckpointProblem::NoCheckpoint, &self.path)),
         }
         let problem = match self.index_sections(length) {
             Ok(None) => return Ok(()),
@@ -268,7 +243,7 @@ impl CheckpointReader {
             Err(error) if error.kind() == ErrorKind::UnexpectedEof => cut_off,
             Err(error) => return Err(FileError::system("read", WHAT, &self.path, error)),
         };
-        Err(problem.at(&self.path))
+        Err(refusal(problem, &self.path))
     }
 
     fn index_sections(&mut self, length: u64) -> io::Result<Option<CheckpointProblem>> {
@@ -324,7 +299,7 @@ impl CheckpointReader {
             Ok((_, left)) => format!("{} bytes are left over", left.len()),
             Err(error) => error.to_string(),
         };
-        Err(CheckpointProblem::Unfitting { section: name.to_owned(), reason }.at(&self.path))
+        Err(refusal(CheckpointProblem::Unfitting { section: name.to_owned(), reason }, &self.path))
     }
 
     /// Hands the bytes of the section `name` to `read`.
@@ -340,7 +315,7 @@ impl CheckpointReader {
         let section = || name.to_owned();
         let place = self.sections.iter().find(|(section, _)| section == name);
         let Some(&(_, place)) = place else {
-            return Err(CheckpointProblem::Missing { section: section() }.at(&self.path));
+            return Err(refusal(CheckpointProblem::Missing { section: section() }, &self.path));
         };
         let failed = |source| FileError::system("read", WHAT, &self.path, source);
         self.file.seek(SeekFrom::Start(place)).map_err(failed)?;
@@ -357,9 +332,14 @@ impl CheckpointReader {
             (Ok(true), Ok(())) => Ok(()),
             (Ok(true), Err(error)) => {
                 let reason = error.to_string();
-                Err(CheckpointProblem::Unfitting { section: section(), reason }.at(&self.path))
+                Err(refusal(
+                    CheckpointProblem::Unfitting { section: section(), reason },
+                    &self.path,
+                ))
             }
-            (Ok(false), _) => Err(CheckpointProblem::Damaged { section: section() }.at(&self.path)),
+            (Ok(false), _) => {
+                Err(refusal(CheckpointProblem::Damaged { section: section() }, &self.path))
+            }
             (Err(source), _) => Err(FileError::system("read", WHAT, &self.path, source)),
         }
     }

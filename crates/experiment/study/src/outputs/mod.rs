@@ -27,6 +27,7 @@ pub use section::{Section, Stored};
 pub(crate) use writers::Writers;
 
 use crate::prepared::Prepared;
+use farm::case::Run;
 
 /// The kinds of output that every study has; they finish in this order.
 pub static STANDARD: [&OutputKind; 8] = [
@@ -74,11 +75,11 @@ impl Outputs {
         &self.0
     }
 
-    /// About how much the run of `setup` that leaves most puts on the disk (bytes).
-    pub fn disk(&self, setup: &Prepared) -> u64 {
-        let fed = || self.0.iter().filter(|kind| kind.fed_by.admits(&setup.case));
-        let of_run = |run| fed().map(|kind| (kind.disk)(setup, run)).sum();
-        setup.case.runs.iter().map(of_run).max().unwrap_or(0)
+    /// How much `run` of `setup` puts on the disk at most at any time (bytes), what these outputs add to two
+    /// checkpoints included.
+    pub fn disk_of_run(&self, setup: &Prepared, run: &Run) -> u64 {
+        let fed = self.0.iter().filter(|kind| kind.fed_by.admits(&setup.case));
+        fed.map(|kind| (kind.disk)(setup, run)).sum()
     }
 }
 
