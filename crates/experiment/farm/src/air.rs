@@ -35,6 +35,12 @@ pub trait FarmFlow: FlowSolver + Send + Sync {
         None
     }
 
+    /// What of the machine decides its bits beside [`flow::numerics`], such as `avx512`; empty where nothing
+    /// does.
+    fn backend(&self) -> &'static str {
+        ""
+    }
+
     /// Threads that it runs on (–).
     fn n_threads(&self) -> usize {
         1
@@ -64,6 +70,10 @@ impl FarmFlow for Lattice {
 
     fn fields(&self) -> Option<&dyn FieldSource> {
         Some(self)
+    }
+
+    fn backend(&self) -> &'static str {
+        Lattice::backend(self)
     }
 
     fn n_threads(&self) -> usize {

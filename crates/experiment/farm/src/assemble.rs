@@ -205,15 +205,9 @@ pub fn farm(
         let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)?;
         let turbine = in_air_of(solver, turbine);
         let control = controller(&run.control[index], model, case, plan)?;
-        let seed = sensing::seed_of_turbine(case.wind.seed, index);
-        let mut sensing = Sensing::new(placement.instruments, seed)?;
-        for mounted in &placement.sensors {
-            let definition = turbine.definition();
-            let mount = Mount { definition, foot, interval: plan.interval, seed };
-            sensing =
-                sensing.with_sensor(&mounted.name, mounted.kind.build(&mounted.values, &mount));
-        }
-        machines.push(Machine::new(turbine, control).with_instruments(sensing));
+        let sensing = sensing(case, plan, model, index)?;
+        let machine = Machine::new(turbine, control).named(&placement.name);
+        machines.push(machine.with_instruments(sensing));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     Ok(Farm::new(machines, air, plan.interval, case.flow.threads.unwrap_or(cores))?)
@@ -222,6 +216,26 @@ pub fn farm(
 /// `turbine` with as much of its forces as the air of `solver` asks for.
 pub(crate) fn in_air_of(solver: Solver, turbine: Turbine) -> Turbine {
     if solver.uses_bound_vortices { turbine } else { turbine.without_bound_vortices() }
+}
+
+/// What stands between turbine number `index` of `case`, of `model`, and its controller.
+///
+/// # Errors
+/// [`AssemblyError`] for instruments that cannot be.
+pub fn sensing(
+    case: &Case,
+    plan: &Plan,
+    model: &TurbineModel,
+    index: usize,
+) -> Result<Sensing, AssemblyError> {
+    let (placement, foot) = (&case.turbines[index], plan.positions[index]);
+    let seed = sensing::seed_of_turbine(case.wind.seed, index);
+    let mut sensing = Sensing::new(placement.instruments, seed)?;
+    for mounted in &placement.sensors {
+        let mount = Mount { definition: &model.definition, foot, interval: plan.interval, seed };
+        sensing = sensing.with_sensor(&mounted.name, mounted.kind.build(&mounted.values, &mount));
+    }
+    Ok(sensing)
 }
 
 /// The tower of a turbine of `model`, with its foot at `foot` (m), as its blades feel it; none where

@@ -6,7 +6,31 @@ use flow::{FlowError, FlowSolver, WindField};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use sensing::{Scene, Sensing};
-use turbine::Turbine;
+use thiserror::Error;
+use turbine::{Breakdown, Turbine};
+
+/// Why a farm could not go on.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum FarmError {
+    /// The air could not.
+    #[error(transparent)]
+    Flow(#[from] FlowError),
+    /// A turbine could not: it is no longer a machine.
+    #[error(
+        "{turbine} broke down at {time:.2} s at x {x:.0} m, y {y:.0} m, z {z:.0} m: its {breakdown}",
+        x = position.x, y = position.y, z = position.z
+    )]
+    Turbine {
+        /// Its name.
+        turbine: String,
+        /// Simulated time (s).
+        time: f64,
+        /// Centre of its rotor, farm frame (m).
+        position: Vector3,
+        /// What is no longer finite.
+        breakdown: Breakdown,
+    },
+}
 
 /// Observes a run: files, statistics, live plots.
 pub trait Recorder {
@@ -25,6 +49,8 @@ impl Recorder for Unrecorded {
 
 /// One turbine with what runs on it.
 pub struct Machine {
+    /// Its name, for who is told of it; empty where it has none.
+    pub name: String,
     /// The machine in the air.
     pub turbine: Turbine,
     /// What stands between it and its controller.
@@ -41,7 +67,13 @@ impl Machine {
         let winds = vec![Vector3::ZERO; turbine.stations().len()];
         let pitch = PerBlade::splat(turbine.definition().n_blades, 0.0);
         let commands = Commands { pitch, generator_torque: 0.0 };
-        Self { turbine, sensing: Sensing::perfect(), controller, winds, commands }
+        let (name, sensing) = (String::new(), Sensing::perfect());
+        Self { name, turbine, sensing, controller, winds, commands }
+    }
+
+    /// The same, called `name`.
+    pub fn named(self, name: &str) -> Self {
+        Self { name: name.to_owned(), ..self }
     }
 
     /// The same with other instruments.
@@ -62,6 +94,16 @@ impl Machine {
     fn advance(&mut self, interval: f64, flow: &impl FlowSolver) {
         flow.sample(self.turbine.stations(), &mut self.winds);
         self.turbine.advance(interval, &self.winds, &self.commands);
+    }
+
+    /// Whether it is still a machine at `time` (s).
+    fn check(&self, time: f64) -> Result<(), FarmError> {
+        self.turbine.check().map_err(|breakdown| FarmError::Turbine {
+            turbine: if self.name.is_empty() { "a turbine" } else { &self.name }.to_owned(),
+            time,
+            position: self.turbine.frame().hub,
+            breakdown,
+        })
     }
 }
 
@@ -114,8 +156,8 @@ impl<Flow: FlowSolver + Sync> Farm<Flow> {
     /// Moves everything on by one control interval.
     ///
     /// # Errors
-    /// [`FlowError`] of the flow solver; the farm then stands where the flow broke down.
-    pub fn advance(&mut self, recorder: &mut impl Recorder) -> Result<(), FlowError> {
+    /// [`FarmError`] when the flow solver or a turbine breaks down; the farm then stands where it did.
+    pub fn advance(&mut self, recorder: &mut impl Recorder) -> Result<(), FarmError> {
         let time = self.time();
         self.forces.clear();
         for (index, machine) in self.machines.iter_mut().enumerate() {
@@ -129,7 +171,9 @@ impl<Flow: FlowSolver + Sync> Farm<Flow> {
             }),
             None => self.machines.iter_mut().for_each(|machine| machine.advance(interval, flow)),
         }
+        let after = (self.step + 1) as f64 * interval;
         for (index, machine) in self.machines.iter().enumerate() {
+            machine.check(after)?;
             // Copied as a block, then signed: a turbine does not know its place in the farm.
             let first = self.forces.len();
             self.forces.extend_from_slice(machine.turbine.forces());

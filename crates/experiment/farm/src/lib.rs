@@ -14,7 +14,7 @@ pub mod tracking;
 pub mod wind;
 
 pub use air::{Air, FarmFlow};
-pub use farm::{Farm, Machine, Recorder, Unrecorded};
+pub use farm::{Farm, FarmError, Machine, Recorder, Unrecorded};
 pub use plan::{Plan, plan};
 
 /// Receives the share (–) of a long task that is done; a break ends it.

@@ -15,13 +15,12 @@ use crate::farm::Recorder;
 use crate::plan::Plan;
 use crate::self_check::Tunnel;
 use crate::solvers::{Alone, SolverError};
-use crate::{Farm, Machine, Progress};
+use crate::{Farm, FarmError, Machine, Progress};
 use basis::mbc::to_fixed_frame;
 use basis::{Commands, Truth, Vector3};
 use control::meandering::{Answer, Decoupling};
 use control::{Excitation, Helix, excitation_rate};
 use estimation::EstimationError;
-use flow::FlowError;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use thiserror::Error;
@@ -48,9 +47,9 @@ pub enum CalibrationError {
     /// The flow cannot be set up.
     #[error("the flow of the calibration cannot be set up")]
     Solver(#[from] SolverError),
-    /// The air did not stay finite.
-    #[error("the flow of the calibration diverged")]
-    Flow(#[from] FlowError),
+    /// Flow or turbine did not stay finite.
+    #[error("the calibration diverged")]
+    Flow(#[from] FarmError),
     /// The record tells nothing.
     #[error("the phase estimator cannot be calibrated")]
     Estimation(#[from] EstimationError),

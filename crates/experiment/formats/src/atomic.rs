@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all: write beside, sync, rename.
 
+use crate::beside;
 use crate::checkpoint::CheckpointProblem;
-use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -42,6 +42,20 @@ pub enum FileError {
         /// How to fix it.
         #[help]
         fix: String,
+    },
+    /// Another process is writing it.
+    #[error("{what} is being written by {holder}")]
+    #[diagnostic(
+        code(wakemix::held),
+        help(
+            "wait until that ends, or end it; other runs of the case can be made beside it with --run NAME, and -o DIR takes another folder"
+        )
+    )]
+    Held {
+        /// What only one process may write at a time, in words.
+        what: String,
+        /// Who does, in words.
+        holder: String,
     },
     /// A run cannot go on from this checkpoint.
     #[error("cannot resume from the checkpoint {}: {problem}", path.display())]
@@ -168,11 +182,12 @@ impl AtomicFile {
     /// # Errors
     /// [`FileError::System`].
     pub fn create(path: &Path, what: &'static str) -> Result<Self, FileError> {
-        let beside = beside(path);
-        let file = File::create(&beside)
+        let place = beside::beside(path, beside::PART);
+        let file = File::create(&place)
             .map_err(|source| FileError::system("write", what, path, source))?;
+        beside::claim(&file);
         let file = Some(BufWriter::with_capacity(BUFFER, file));
-        Ok(Self { file, beside, path: path.to_owned(), what })
+        Ok(Self { file, beside: place, path: path.to_owned(), what })
     }
 
     /// Syncs the bytes to the disk and moves the file to its place.
@@ -224,37 +239,10 @@ pub(crate) fn sync_folder(path: &Path) {
     }
 }
 
-/// Takes from `folder` what processes that were killed were [writing](AtomicFile) there.
-///
-/// # Errors
-/// [`FileError::System`].
-pub fn remove_leftovers(folder: &Path) -> Result<(), FileError> {
-    let failed = |source| FileError::system("tidy", "the folder", folder, source);
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        // As `beside` names them: hidden, with the process' number before the ending.
-        let process = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
-        let process = process.and_then(|name| name.rsplit_once('.')).map(|(_, number)| number);
-        let is_number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-        if process.is_some_and(|number| !number.is_empty() && is_number(number)) {
-            fs::remove_file(&path).map_err(failed)?;
-        }
-    }
-    Ok(())
-}
-
-/// Name beside `path`, hidden, of this process alone.
-fn beside(path: &Path) -> PathBuf {
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{}.part", std::process::id()));
-    path.with_file_name(name)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::ffi::OsString;
 
     fn names(folder: &Path) -> Vec<OsString> {
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect()
@@ -280,21 +268,6 @@ mod tests {
         drop(file);
         assert_eq!(fs::read(&path).unwrap(), b"good");
         assert_eq!(names(folder.path()), ["checkpoint"]);
-    }
-
-    #[test]
-    fn what_a_killed_process_left_goes_and_nothing_else() {
-        let folder = tempfile::tempdir().unwrap();
-        let kept = ["checkpoint", "series.csv.part", ".hidden", ".notes.part", ".a.b1.part"];
-        for name in kept.iter().chain(&[".checkpoint.4711.part", ".mean-hub-height.nc.9.part"]) {
-            fs::write(folder.path().join(name), b"x").unwrap();
-        }
-        remove_leftovers(folder.path()).unwrap();
-        let mut left = names(folder.path());
-        left.sort();
-        let mut kept: Vec<OsString> = kept.iter().map(OsString::from).collect();
-        kept.sort();
-        assert_eq!(left, kept);
     }
 
     #[test]

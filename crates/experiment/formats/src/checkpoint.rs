@@ -3,7 +3,7 @@
 //! Layout, little-endian: magic, version (u32), sections, end. A section is the length of its name (u32) and
 //! the name, then chunks, each its length (u32, not 0) and bytes, then a chunk length of 0 and the CRC-32 of
 //! name and bytes. The end is a name length of `u32::MAX` and the number of sections (u32). The first section
-//! says which run of which case it is.
+//! says which run of which case it is, and what computed it.
 
 mod problem;
 
@@ -27,12 +27,55 @@ const IDENTITY: &str = "identity";
 const CHUNK: usize = 1 << 20;
 const LONGEST_NAME: u32 = 96;
 const END: u32 = u32::MAX;
+/// Which run of which case a checkpoint belongs to, and what computes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Identity<'a> {
+    /// Text of the case.
+    pub case_text: &'a str,
+    /// Name of the run.
+    pub run: &'a str,
+    /// Version of the program.
+    pub version: &'a str,
+    /// What of the machine decides the bits, in words.
+    pub backend: &'a str,
+}
 
-/// Which run of which case a checkpoint belongs to.
+/// The same as it is kept.
 #[derive(Serialize, Deserialize)]
-struct Identity {
+struct Kept {
     run: String,
     fingerprint: [u8; 32],
+    version: String,
+    backend: String,
+}
+
+impl Identity<'_> {
+    fn kept(&self) -> Kept {
+        Kept {
+            run: self.run.to_owned(),
+            fingerprint: case::fingerprint(self.case_text, self.run),
+            version: self.version.to_owned(),
+            backend: self.backend.to_owned(),
+        }
+    }
+}
+
+impl Kept {
+    /// What speaks against going on with it where `expected` is to go on.
+    fn problem(self, expected: Self) -> Option<CheckpointProblem> {
+        let (run, version, backend) = (expected.run, expected.version, expected.backend);
+        if self.run != run {
+            Some(CheckpointProblem::OtherRun { found: self.run, expected: run })
+        } else if self.fingerprint != expected.fingerprint {
+            Some(CheckpointProblem::OtherCase)
+        } else if self.version != version {
+            Some(CheckpointProblem::OtherProgram { found: self.version, expected: version })
+        } else if self.backend != backend {
+            Some(CheckpointProblem::OtherBackend { found: self.backend, expected: backend })
+        } else {
+            None
+        }
+    }
 }
 
 /// Writes a checkpoint; the one before it stands until [`finish`](Self::finish).
@@ -44,17 +87,16 @@ pub struct CheckpointWriter {
 }
 
 impl CheckpointWriter {
-    /// Starts the checkpoint at `path` of the run `run` of the case in `case_text`.
+    /// Starts the checkpoint at `path` of the run that `identity` names.
     ///
     /// # Errors
     /// [`FileError::System`].
-    pub fn create(path: &Path, case_text: &str, run: &str) -> Result<Self, FileError> {
+    pub fn create(path: &Path, identity: &Identity) -> Result<Self, FileError> {
         let file = AtomicFile::create(path, WHAT)?;
         let mut writer = Self { file, path: path.to_owned(), n_sections: 0 };
         writer.put(&MAGIC)?;
         writer.put(&VERSION.to_le_bytes())?;
-        let fingerprint = case::fingerprint(case_text, run);
-        writer.state(IDENTITY, &Identity { run: run.to_owned(), fingerprint })?;
+        writer.state(IDENTITY, &identity.kept())?;
         Ok(writer)
     }
 
@@ -160,26 +202,21 @@ pub struct CheckpointReader {
 }
 
 impl CheckpointReader {
-    /// Opens the checkpoint at `path`, which must be whole and of the run `run` of the case in `case_text`.
+    /// Opens the checkpoint at `path`, which must be whole and of the run that `identity` names, computed by
+    /// the same program on a machine that computes alike.
     ///
     /// # Errors
     /// [`FileError::System`] when it cannot be read, [`FileError::Checkpoint`] when the run cannot go on from
     /// it.
-    pub fn open(path: &Path, case_text: &str, run: &str) -> Result<Self, FileError> {
+    pub fn open(path: &Path, identity: &Identity) -> Result<Self, FileError> {
         let read = |source| FileError::system("read", WHAT, path, source);
         let file = File::open(path).map_err(read)?;
         let length = file.metadata().map_err(read)?.len();
         let file = BufReader::with_capacity(CHUNK, file);
         let mut reader = Self { file, path: path.to_owned(), sections: Vec::new() };
         reader.index(length)?;
-        let identity: Identity = reader.state(IDENTITY)?;
-        let problem = if identity.run != run {
-            Some(CheckpointProblem::OtherRun { found: identity.run, expected: run.to_owned() })
-        } else if identity.fingerprint != case::fingerprint(case_text, run) {
-            Some(CheckpointProblem::OtherCase)
-        } else {
-            None
-        };
+        let kept: Kept = reader.state(IDENTITY)?;
+        let problem = kept.problem(identity.kept());
         problem.map_or(Ok(reader), |problem| Err(FileError::checkpoint(path, problem)))
     }
 

@@ -3,9 +3,13 @@
 //! Files appear whole or not at all ([`atomic`]); an error names the file, what was being done, and the fix.
 
 pub mod atomic;
+mod beside;
 pub mod case;
 pub mod checkpoint;
+mod clock;
+pub mod leftovers;
 pub mod library;
+pub mod lock;
 pub mod machine;
 pub mod netcdf;
 pub mod openfast;

@@ -1,10 +1,48 @@
 //! What this machine has to offer, and what of it a process took.
 
-use std::fs;
+mod control_groups;
 
-/// Memory (bytes) that can be had without swapping; none where the system does not report it.
+use std::fs;
+use std::path::Path;
+
+/// Memory (bytes) that this process can have without swapping: what is free on the machine, or less where a
+/// control group, such as that of a container or of a job on a cluster, allows less. None where the system
+/// does not tell.
 pub fn free_memory() -> Option<u64> {
-    amount(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
+    let machine = fs::read_to_string("/proc/meminfo").ok();
+    let machine = machine.and_then(|text| amount(&text, "MemAvailable:"));
+    let groups = fs::read_to_string("/proc/self/cgroup").ok();
+    let allowed =
+        groups.and_then(|groups| control_groups::free_memory(Path::new("/sys/fs/cgroup"), &groups));
+    [machine, allowed].into_iter().flatten().min()
+}
+
+/// Free space (bytes) for this user on the disk that holds `path`, or will hold it; none where the system does
+/// not tell.
+#[cfg(unix)]
+pub fn free_disk(path: &Path) -> Option<u64> {
+    // Of a path that is not there yet, the nearest folder that is.
+    let path = std::path::absolute(path).ok()?;
+    let there = path.ancestors().find(|path| path.exists())?;
+    let disk = rustix::fs::statvfs(there).ok()?;
+    disk.f_bavail.checked_mul(disk.f_frsize)
+}
+
+/// Free space (bytes) on the disk that holds `path`: this system does not tell.
+#[cfg(not(unix))]
+pub fn free_disk(_path: &Path) -> Option<u64> {
+    None
+}
+
+/// Bytes of all files in the folder `path` and those in it; 0 where there is none.
+pub fn size_of_folder(path: &Path) -> u64 {
+    let entries = fs::read_dir(path).into_iter().flatten().flatten();
+    let size = |entry: fs::DirEntry| match entry.metadata() {
+        Ok(metadata) if metadata.is_dir() => size_of_folder(&entry.path()),
+        Ok(metadata) => metadata.len(),
+        Err(_) => 0,
+    };
+    entries.map(size).sum()
 }
 
 /// Most memory (bytes) that this process has held at once; none where the system does not report it.
@@ -43,6 +81,30 @@ mod tests {
         let status =
             "Name:\twakemix\nVmPeak:\t  300000 kB\nVmHWM:\t  120000 kB\nVmRSS:\t   90000 kB\n";
         assert_eq!(amount(status, "VmHWM:"), Some(120_000 * 1024));
+    }
+
+    #[test]
+    fn the_free_disk_is_that_of_the_nearest_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let [here, below] = [folder.path().to_owned(), folder.path().join("not/there/yet")]
+            .map(|path| free_disk(&path));
+        if !cfg!(unix) {
+            assert_eq!([here, below], [None, None]);
+            return;
+        }
+        // Others write meanwhile.
+        let (here, below) = (here.unwrap() as f64, below.unwrap() as f64);
+        assert!(here > 0.0 && (below / here - 1.0).abs() < 0.1, "{here} {below}");
+    }
+
+    #[test]
+    fn a_folder_is_as_large_as_its_files() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("planes")).unwrap();
+        fs::write(folder.path().join("a"), [1; 700]).unwrap();
+        fs::write(folder.path().join("planes/b"), [1; 33]).unwrap();
+        assert_eq!(size_of_folder(folder.path()), 733);
+        assert_eq!(size_of_folder(&folder.path().join("none")), 0);
     }
 
     #[test]

@@ -17,17 +17,33 @@ pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phas
 pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
 
 use basis::records::Summary;
-use formats::records;
+use error::InRecords;
+use formats::lock::Lock;
+use formats::{leftovers, records};
 use std::path::{Path, PathBuf};
 
 /// Makes the report of the study in `directory` from its records; gives the summaries and the report's path.
+///
+/// Where several processes do so at once, each waits for the one before: the last report tells of all runs
+/// that were complete when it began.
 ///
 /// # Errors
 /// [`PostprocessingError::File`] for records that cannot be read, [`PostprocessingError::Report`] for a
 /// report that cannot be written.
 pub fn report(directory: &Path) -> Result<(Vec<Summary>, PathBuf), PostprocessingError> {
+    if !directory.is_dir() {
+        // The reader says what is wrong; a lock would make the folder.
+        records::read_study(directory)?;
+    }
+    let _lock = Lock::wait(&directory.join(".report.lock"))?;
+    for folder in [directory.to_owned(), directory.join("figures")] {
+        if folder.is_dir() {
+            leftovers::remove_abandoned(&folder, None)?;
+        }
+    }
     let study = records::read_study(directory)?;
-    let synchronisation = synchronisation::synchronisation(&study)?;
+    let synchronisation =
+        synchronisation::synchronisation(&study, directory).in_records(directory)?;
     let mut runs = Vec::with_capacity(study.runs.len());
     let mut summaries = Vec::with_capacity(study.runs.len());
     for run in study.runs {

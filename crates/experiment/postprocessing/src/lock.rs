@@ -1,17 +1,19 @@
 //! What a meandering loop finds in the records of a run, replayed: how well it would lock, on any turbine.
 
 use crate::PostprocessingError;
+use crate::error::{InRecords, case_of};
 use crate::phase::query::folder_of;
 use crate::phase::{column, moments, tells};
 use analysis::AnalysisError;
 use analysis::phase::uniform_interval;
+use basis::records::Series;
 use basis::{FixedFrame, Sense};
 use control::ControlError;
 use control::excitation_rate;
 use control::meandering::{Leader, MeanderingError, MeanderingSettings};
 use estimation::phase_locked::{PhaseLockedSettings, TwoAxisLoop, TwoAxisSettings};
 use farm::assemble::AssemblyError;
-use formats::case;
+use farm::case::{Case, Control};
 use formats::records;
 use std::path::PathBuf;
 
@@ -63,7 +65,7 @@ pub struct LockAnswer {
 pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingError> {
     let folder = folder_of(&question.run);
     let manifest = records::read_manifest(&folder)?;
-    let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
+    let case = case_of(&folder, &manifest)?;
     let control = &case.runs[manifest.run_index].control;
     let is_asked = |&index: &usize| {
         let name = &case.turbines[index].name;
@@ -76,17 +78,33 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingEr
             run: manifest.run.clone(),
             requested: question.turbine.clone(),
             turbines: case.turbines.iter().map(|turbine| turbine.name.clone()).collect(),
+            folder: folder.path().to_owned(),
         });
     }
     let summary = records::read_summary(&folder)?;
     let wanted =
         |channel: &str| turbines.iter().any(|&index| tells(&case.turbines[index].name, channel));
     let series = records::read_series(&folder.series_path(), wanted)?;
-    let times = column(&series, "time_s")?;
-    let rate_of_one = excitation_rate(1.0, case.wind.speed, summary.conditions.rotor_diameter);
+    let diameter = summary.conditions.rotor_diameter;
+    answers(question, &case, control, &turbines, &series, diameter)
+        .in_records(&folder.series_path())
+}
+
+/// What the loops of `question` find in `series` on the `turbines` of `case`, which are under `control`; the
+/// first rotor has this `diameter` (m).
+fn answers(
+    question: &LockQuestion,
+    case: &Case,
+    control: &[Control],
+    turbines: &[usize],
+    series: &Series,
+    diameter: f64,
+) -> Result<Vec<LockAnswer>, PostprocessingError> {
+    let times = column(series, "time_s")?;
+    let rate_of_one = excitation_rate(1.0, case.wind.speed, diameter);
     let from = question.from.unwrap_or(case.time.spin_up);
     let mut answers = Vec::with_capacity(turbines.len());
-    for index in turbines {
+    for &index in turbines {
         let own = MeanderingSettings::of(&control[index]);
         let [low, high] = own.map_or(STROUHAL, |own| own.strouhal);
         let [asked_low, asked_high] = question.strouhal;
@@ -98,7 +116,7 @@ pub fn lock(question: &LockQuestion) -> Result<Vec<LockAnswer>, PostprocessingEr
             leader: own.map_or(Leader::Both, |own| own.leader),
         };
         let turbine = case.turbines[index].name.clone();
-        let tracked = track(times, &moments(&series, &turbine)?, &settings, from)?;
+        let tracked = track(times, &moments(series, &turbine)?, &settings, from)?;
         answers.push(LockAnswer {
             turbine,
             sense,
@@ -213,7 +231,7 @@ mod tests {
         let found = track(&[0.0, 0.5], &[FixedFrame::default(); 2], &settings, 1.0);
         assert!(matches!(
             found,
-            Err(PostprocessingError::Analysis(AnalysisError::TooShort { .. }))
+            Err(PostprocessingError::Analysis { source: AnalysisError::TooShort { .. }, .. })
         ));
     }
 }

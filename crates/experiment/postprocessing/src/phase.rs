@@ -7,6 +7,7 @@ mod replay;
 pub use replay::tune;
 
 use crate::PostprocessingError;
+use crate::error::InRecords;
 use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
     fixed_frame_moments, ground_truth, uniform_interval,
@@ -120,7 +121,8 @@ pub(crate) struct Truth {
 pub fn phase(question: &PhaseQuestion) -> Result<PhaseAnswer, PostprocessingError> {
     let mut records = Records::read(question)?;
     let first = records.turbines[0];
-    answer(question, &records.query(first)?)
+    let query = records.query(first)?;
+    answer(question, &query).in_records(&query.path)
 }
 
 /// What [`phase`] answers for the turbine that `question` names, for each that estimates the phase of a helix
@@ -134,7 +136,10 @@ pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, PostprocessingEr
     for index in records.turbines.clone() {
         match records.query(index) {
             Err(error @ PostprocessingError::NoTruth { .. }) => found.without_truth.push(error),
-            query => found.answers.push(answer(question, &query?)?),
+            query => {
+                let query = query?;
+                found.answers.push(answer(question, &query).in_records(&query.path)?);
+            }
         }
     }
     if found.answers.is_empty() && !found.without_truth.is_empty() {
@@ -266,7 +271,8 @@ pub(crate) fn column<'a>(
     series: &'a Series,
     channel: &str,
 ) -> Result<&'a [f64], PostprocessingError> {
-    let missing = || PostprocessingError::MissingChannel { channel: channel.to_owned() };
+    let missing =
+        || PostprocessingError::MissingChannel { path: None, channel: channel.to_owned() };
     series.column(channel).ok_or_else(missing)
 }
 

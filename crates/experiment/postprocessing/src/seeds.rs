@@ -6,12 +6,12 @@ mod error;
 pub use error::SeedsError;
 
 use crate::PostprocessingError;
-use analysis::AnalysisError;
+use crate::error::{InRecords, case_of};
 use analysis::statistics::independent;
 use basis::records::{Statistic, Summary};
 use farm::case::Case;
 use formats::case;
-use formats::records::{self, Manifest};
+use formats::records::{self, Manifest, RunFolder};
 use std::path::{Path, PathBuf};
 
 /// A question to several studies.
@@ -34,6 +34,8 @@ pub struct GainsAnswer {
     pub downstream: Vec<String>,
     /// Run by run.
     pub runs: Vec<RunGains>,
+    /// Gains that are left out because a run compared with has no power, and where, in words.
+    pub undefined: Vec<String>,
 }
 
 /// Gains of one run in all winds.
@@ -82,6 +84,8 @@ impl Study<'_> {
 
 /// A run and the one that it compares with, in one wind.
 struct Pair<'s> {
+    /// Folder of the study.
+    folder: &'s Path,
     run: &'s (Manifest, Summary),
     other: &'s (Manifest, Summary),
 }
@@ -108,13 +112,15 @@ pub fn gains_over_seeds(question: &GainsQuestion) -> Result<GainsAnswer, Postpro
         seeds: Vec::new(),
         downstream: Vec::new(),
         runs: Vec::with_capacity(names.len()),
+        undefined: Vec::new(),
     };
     for name in &names {
         let pairs = pairs(&studies, name)?;
         answer.seeds = seeds(&studies, &pairs)?;
-        let case = case::parse("the manifest's case", &pairs[0].run.0.case_text, &[])?;
-        answer.downstream = downstream(&case);
-        answer.runs.push(run_gains(&pairs, &answer.downstream)?);
+        let folder = RunFolder::new(pairs[0].folder, name);
+        answer.downstream = downstream(&case_of(&folder, &pairs[0].run.0)?);
+        let gains = run_gains(&pairs, &answer.downstream, &mut answer.undefined);
+        answer.runs.push(gains.in_records(&folder.summary_path())?);
     }
     Ok(answer)
 }
@@ -154,7 +160,7 @@ fn pairs<'s>(studies: &'s [Study<'_>], name: &str) -> Result<Vec<Pair<'s>>, Seed
     for study in studies {
         let found = study.find(name).and_then(|run| {
             let other = study.find(run.1.compare_with.as_deref()?)?;
-            Some(Pair { run, other })
+            Some(Pair { folder: study.folder, run, other })
         });
         let pair = found.ok_or_else(|| SeedsError::NoGains { folder: study.folder.to_owned() })?;
         if let Some(first) = pairs.first() {
@@ -228,8 +234,13 @@ fn downstream(case: &Case) -> Vec<String> {
     behind.map(|turbine| turbine.name.clone()).collect()
 }
 
-/// Gains of the run of `pairs`, wind by wind; `downstream` holds the turbines downstream of the first.
-fn run_gains(pairs: &[Pair<'_>], downstream: &[String]) -> Result<RunGains, PostprocessingError> {
+/// Gains of the run of `pairs`, wind by wind; `downstream` holds the turbines downstream of the first. What is
+/// over no power is left out and told in `undefined`.
+fn run_gains(
+    pairs: &[Pair<'_>],
+    downstream: &[String],
+    undefined: &mut Vec<String>,
+) -> Result<RunGains, PostprocessingError> {
     let [here, there] = [pairs[0].run, pairs[0].other].map(|(_, summary)| turbine_names(summary));
     let behind = |all: &[String]| -> Vec<String> {
         all.iter().filter(|name| downstream.contains(name)).cloned().collect()
@@ -247,27 +258,36 @@ fn run_gains(pairs: &[Pair<'_>], downstream: &[String]) -> Result<RunGains, Post
     }
     let mut parts = Vec::with_capacity(requested.len());
     for (name, turbines) in requested {
-        let gains = pairs
-            .iter()
-            .map(|pair| gain(&pair.run.1, &pair.other.1, &turbines))
-            .collect::<Result<Vec<f64>, AnalysisError>>()?;
-        parts.push(PartGains { name, together: independent(&gains)?, gains });
+        let mut gains = Vec::with_capacity(pairs.len());
+        for pair in pairs {
+            match gain(&pair.run.1, &pair.other.1, &turbines) {
+                Some(gain) => gains.push(gain),
+                None => {
+                    let ([run, other], folder) =
+                        ([pair.run, pair.other].map(|(run, _)| &run.run), pair.folder.display());
+                    undefined.push(format!(
+                        "{run}: the gain of {name} over {other} is not defined: its power there is zero in {folder}"
+                    ));
+                }
+            }
+        }
+        if gains.len() == pairs.len() {
+            parts.push(PartGains { name, together: independent(&gains)?, gains });
+        }
     }
     let [run, compare_with] = [pairs[0].run, pairs[0].other].map(|(run, _)| run.run.clone());
     Ok(RunGains { run, compare_with, parts })
 }
 
-/// Mean power of `turbines` together in `summary` over that in `other`, minus one (–).
-fn gain(summary: &Summary, other: &Summary, turbines: &[String]) -> Result<f64, AnalysisError> {
+/// Mean power of `turbines` together in `summary` over that in `other`, minus one (–); none where that is
+/// zero.
+fn gain(summary: &Summary, other: &Summary, turbines: &[String]) -> Option<f64> {
     let power = |summary: &Summary| -> f64 {
         let requested = summary.turbines.iter().filter(|turbine| turbines.contains(&turbine.name));
         requested.map(|turbine| turbine.power.mean).sum()
     };
     let compared = power(other);
-    if compared == 0.0 {
-        return Err(AnalysisError::ZeroMean);
-    }
-    Ok(power(summary) / compared - 1.0)
+    (compared != 0.0).then(|| power(summary) / compared - 1.0)
 }
 
 #[cfg(test)]

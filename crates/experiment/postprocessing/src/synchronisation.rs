@@ -8,6 +8,7 @@ mod tracks;
 mod wake;
 
 use crate::PostprocessingError;
+use crate::error::{InRecords, case_in};
 use crate::phase::query::tells_truth;
 use crate::phase::{PhaseAnswer, Truth, compare, recorded, tells, truth};
 use analysis::AnalysisError;
@@ -16,9 +17,9 @@ use basis::angle::wrap_to_turn;
 use control::excitation_rate;
 use control::phase_sync::PhaseSyncSettings;
 use farm::case::{Case, Sense};
-use formats::case;
 use formats::records::{RunRecords, StudyRecords};
 use report::Synchronisation;
+use std::path::Path;
 
 /// One run in which a turbine joins a helix, or monitors one.
 struct Joined {
@@ -102,14 +103,15 @@ fn pairings(case: &Case, run_indices: &[usize]) -> Vec<Pairing> {
 }
 
 /// The data of the figures and the lines of the table of phases, for each turbine and each helix that it
-/// joins.
+/// joins; `records` are those of the study in `directory`.
 ///
 /// # Errors
 /// [`PostprocessingError`] for records that cannot be analysed.
 pub(crate) fn synchronisation(
     records: &StudyRecords,
+    directory: &Path,
 ) -> Result<Vec<Synchronisation>, PostprocessingError> {
-    let case = case::parse("the manifest's case", &records.case_text, &[])?;
+    let case = case_in(directory, &records.case_text)?;
     let run_indices: Vec<usize> = records.runs.iter().map(|run| run.manifest.run_index).collect();
     let pairings = pairings(&case, &run_indices);
     let found = pairings.iter().map(|pairing| {
@@ -133,7 +135,11 @@ fn synchronised(
     let reference = Reference { rate, sense: pairing.sense };
     let own_name = &case.turbines[turbine].name;
     // Without a true wind there is nothing to compare with; a short run says nothing of phases.
-    let control = |run: &RunRecords| case.runs[run.manifest.run_index].control.as_slice();
+    let control = |run: &RunRecords| {
+        // Runs of another version of the case may have other places.
+        let found = case.runs.get(run.manifest.run_index);
+        found.map(|run| run.control.as_slice()).unwrap_or_default()
+    };
     let truth_of = |own: &RunRecords| -> Result<Option<Truth>, PostprocessingError> {
         for run in &records.runs {
             if !tells_truth(case, control(run), control(own), turbine) {
@@ -154,10 +160,10 @@ fn synchronised(
         let answer = match truth_of(run)? {
             Some(truth) => {
                 let series = run.series.read(|channel| tells(own_name, channel))?;
-                let estimates = recorded(&series, own_name)?;
+                let estimates = recorded(&series, own_name).in_records(run.series.path())?;
                 match compare(own, own_name, &series, &estimates, &truth, &reference, from) {
                     Ok(answer) => Some(answer),
-                    Err(PostprocessingError::Analysis(_)) => None,
+                    Err(PostprocessingError::Analysis { .. }) => None,
                     Err(error) => return Err(error),
                 }
             }
@@ -184,7 +190,9 @@ fn unless_short<T: Default>(
     found: Result<T, PostprocessingError>,
 ) -> Result<T, PostprocessingError> {
     match found {
-        Err(PostprocessingError::Analysis(AnalysisError::TooShort { .. })) => Ok(T::default()),
+        Err(PostprocessingError::Analysis { source: AnalysisError::TooShort { .. }, .. }) => {
+            Ok(T::default())
+        }
         found => found,
     }
 }
@@ -192,6 +200,7 @@ fn unless_short<T: Default>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use formats::case;
 
     const ROW: &str = r#"
 name = "row"

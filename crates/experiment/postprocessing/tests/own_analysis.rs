@@ -31,7 +31,10 @@ fn energy(request: &Request) -> Result<Answer, PostprocessingError> {
     let series = read_series(&RunFolder::new(parent, &name).series_path(), |_| true)?;
     let turbine = request.text("turbine").unwrap_or("T1");
     let channel = format!("{turbine}.power_w");
-    let missing = || PostprocessingError::MissingChannel { channel: channel.clone() };
+    let missing = || PostprocessingError::MissingChannel {
+        path: Some(request.run().join("series.csv")),
+        channel: channel.clone(),
+    };
     let powers = series.column(&channel).ok_or_else(missing)?;
     let times = series.column("time_s").ok_or_else(missing)?;
     let interval = times[1] - times[0];

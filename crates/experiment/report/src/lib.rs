@@ -17,6 +17,10 @@ pub use figures::synchronisation::{
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Files written by this process so far (–).
+static N_WRITTEN: AtomicU64 = AtomicU64::new(0);
 
 /// Everything that a report tells of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -148,13 +152,17 @@ fn write_figures<'f>(
     Ok(())
 }
 
-/// Writes `bytes` beside `path`, brings them to the disk, then puts them in place.
+/// Writes `bytes` beside `path`, brings them to the disk, then puts them in place; several may at once, and
+/// the last of them stays.
 fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
-    let mut unfinished = path.as_os_str().to_owned();
-    unfinished.push(".partial");
-    let unfinished = PathBuf::from(unfinished);
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    // Of this process and this call alone.
+    let call = N_WRITTEN.fetch_add(1, Ordering::Relaxed);
+    let unfinished = path.with_file_name(format!(".{name}.{call}.{}.part", std::process::id()));
     let attempt = || {
         let mut file = File::create(&unfinished)?;
+        // For who looks for what killed processes have left; that it is written does not hang on it.
+        let _ = file.try_lock();
         file.write_all(bytes)?;
         file.sync_all()?;
         drop(file);

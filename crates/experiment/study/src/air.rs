@@ -5,14 +5,20 @@ use crate::prepared::Prepared;
 use farm::Air;
 use farm::solvers::{SolverError, Start, WindSource};
 use flow::Inflow;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// The air of the study `setup` at time zero, which `inflow` enters.
+/// The air of the study `setup` at time zero, which `inflow` enters; `progress` receives the share of its
+/// turbulence that is made, and a break ends that.
 ///
 /// # Errors
 /// [`StudyError`] when its solver cannot be set up, turbulence cannot be made, or a file of wind cannot be
-/// read or does not cover the rotors.
-pub(crate) fn begin(setup: &Prepared, inflow: &Arc<dyn Inflow>) -> Result<Air, StudyError> {
+/// read or does not cover the rotors; [`StudyError::Inflow`] after a break.
+pub(crate) fn begin(
+    setup: &Prepared,
+    inflow: &Arc<dyn Inflow>,
+    progress: &dyn Fn(f64) -> ControlFlow<()>,
+) -> Result<Air, StudyError> {
     let solver = setup.case.flow.solver;
     let planes = if solver.wind == WindSource::Planes {
         let name = setup.case.wind.planes.as_deref().unwrap_or_default();
@@ -20,7 +26,7 @@ pub(crate) fn begin(setup: &Prepared, inflow: &Arc<dyn Inflow>) -> Result<Air, S
     } else {
         None
     };
-    let start = Start { site: setup.site(), inflow: Arc::clone(inflow), planes };
+    let start = Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress };
     (solver.begin)(start).map_err(|error| match error {
         SolverError::Lattice(error) => error.into(),
         SolverError::Inflow(error) => error.into(),

@@ -1,10 +1,13 @@
 //! The channels of a run's series, one row a control instant.
 
+use crate::prepared::Prepared;
 use basis::{Commands, FixedFrame, Truth, Vector3};
-use farm::Machine;
+use farm::case::Run;
 use farm::farm::Recorder;
+use farm::{Machine, assemble};
 use std::ops::Range;
 use turbine::Turbine;
+use turbine::structure::channels_of;
 
 /// Channels before the turbines' own.
 const SHARED: [&str; 4] = ["time_s", "wind.u_m_s", "wind.v_m_s", "wind.w_m_s"];
@@ -31,6 +34,38 @@ pub(crate) const LOADS: [&str; 18] = [
     "TTDspFA",
     "TTDspSS",
 ];
+
+/// Channels of the wind along lines at one place (–).
+const LINES: [&str; 3] = ["average", "tilt", "yaw"];
+/// Channels of a turbine beside its loads and signals: of the machine, and of each blade (–).
+const N_SCALARS: usize = 7;
+const N_PER_BLADE: usize = 3;
+
+/// Loads that the series of a run of `setup` keeps of turbine number `index` (–).
+pub(crate) fn n_loads(setup: &Prepared, index: usize) -> usize {
+    let channels = channels_of(setup.models[index].definition.n_blades);
+    let all = !setup.case.flow.solver.resolves_induction;
+    channels.iter().filter(|channel| all || LOADS.contains(&channel.name.as_str())).count()
+}
+
+/// Channels in the series of `run` with lines at `n_lines` places (–), as [`Row`] has them.
+pub(crate) fn count(setup: &Prepared, run: &Run, n_lines: u64) -> u64 {
+    let of_turbine = |index: usize| {
+        let n_blades = setup.models[index].definition.n_blades;
+        let (plan, model) = (&setup.plan, setup.models[index].clone());
+        // What is found before the runs, if there is to be anything, changes no name.
+        let model = model.without_individual_pitch();
+        let mut control = run.control[index].clone();
+        control.response = control.response.or(control.kind().any_response());
+        let signals = assemble::controller(&control, &model, &setup.case, plan)
+            .map_or(0, |controller| controller.signals().len());
+        let shown = assemble::sensing(&setup.case, plan, &model, index)
+            .map_or(0, |sensing| sensing.channels().len());
+        N_SCALARS + N_PER_BLADE * n_blades + n_loads(setup, index) + signals + shown
+    };
+    let turbines: usize = run.present().map(of_turbine).sum();
+    (SHARED.len() + turbines) as u64 + LINES.len() as u64 * n_lines
+}
 
 /// Gathers one row of the series from the turbines' signals.
 ///
@@ -69,7 +104,7 @@ impl Row {
             let turbine = &machine.turbine;
             let n_blades = turbine.definition().n_blades;
             offsets.push(names.len());
-            let scalars = [
+            let scalars: [&str; N_SCALARS] = [
                 "power_w",
                 "thrust_n",
                 "rotor_speed_rad_s",
@@ -79,7 +114,7 @@ impl Row {
                 "rotor_wind_speed_m_s",
             ];
             names.extend(scalars.iter().map(|channel| format!("{name}.{channel}")));
-            let per_blade: [fn(usize) -> String; 3] = [
+            let per_blade: [fn(usize) -> String; N_PER_BLADE] = [
                 |blade| format!("pitch_{blade}_rad"),
                 |blade| format!("pitch_command_{blade}_rad"),
                 |blade| format!("flap_moment_{blade}_nm"),
@@ -107,8 +142,7 @@ impl Row {
         }
         let first_line = names.len();
         for place in lines {
-            let channels = ["average", "tilt", "yaw"];
-            names.extend(channels.map(|channel| format!("{place}.lines_{channel}_m_s")));
+            names.extend(LINES.map(|channel| format!("{place}.lines_{channel}_m_s")));
         }
         let values = vec![0.0; names.len()];
         let channels = vec![0.0; n_channels];

@@ -2,17 +2,55 @@
 
 use crate::StudyError;
 use crate::observer::Estimate;
-use crate::outputs::Outputs;
+use crate::outputs::{Outputs, series};
 use crate::pitch_identification::PitchIdentifications;
 use crate::prepared::Prepared;
 use crate::warnings::wall_gain;
+use formats::machine;
+use formats::records::RunFolder;
+use std::path::Path;
+
+/// Bytes of the state of a turbine and its controller in a checkpoint, at most about.
+const TURBINE_STATE: u64 = 32 << 10;
+/// Bytes of a run's summary and manifest, text of case and turbines aside: of each turbine, and of the rest.
+const SUMMARY_OF_TURBINE: u64 = 12 << 10;
+const SUMMARY_OF_RUN: u64 = 4 << 10;
+/// Bytes of a study's report with its figures, about.
+const REPORT: u64 = 4 << 20;
+/// Bytes of what is told as a GB, and as a GiB.
+const GB: f64 = 1e9;
+const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
 
 impl Prepared {
-    /// The cost of `n_runs` runs with their `outputs`, and of `identifications` before them; the machine's
-    /// speed is not known yet.
+    /// Channels in the series of run number `index` (–).
+    pub fn channels_of_run(&self, index: usize) -> u64 {
+        series::n_channels(self, &self.case.runs[index])
+    }
+
+    /// Disk (bytes) that run number `index` with its `outputs` takes at most at any time: what it leaves, and
+    /// what it needs on the way.
+    pub fn disk_of_run(&self, index: usize, outputs: &Outputs) -> u64 {
+        let run = &self.case.runs[index];
+        let n_turbines = run.present().count() as u64;
+        let texts = self.turbine_texts.values().map(String::len).sum::<usize>();
+        let records = (self.case_text.len() + texts) as u64
+            + SUMMARY_OF_RUN
+            + n_turbines * SUMMARY_OF_TURBINE;
+        self.checkpoints_of_run(index) + outputs.disk_of_run(self, run) + records
+    }
+
+    /// Bytes of the checkpoints of run number `index`, which go when it is complete: a new one stands beside
+    /// the old one until it is whole.
+    fn checkpoints_of_run(&self, index: usize) -> u64 {
+        let n_turbines = self.case.runs[index].present().count() as u64;
+        2 * ((self.case.flow.solver.memory)(&self.plan) + n_turbines * TURBINE_STATE)
+    }
+
+    /// The cost of the `open` runs (their places in the case) with their `outputs`, and of `identifications`
+    /// before them; the machine's speed is not known yet.
     pub(crate) fn estimate(
         &self,
-        n_runs: usize,
+        open: &[usize],
         identifications: &PitchIdentifications,
         outputs: &Outputs,
     ) -> Estimate {
@@ -20,8 +58,12 @@ impl Prepared {
         let costs = identifications.costs();
         let field = (self.case.flow.solver.memory)(plan);
         let turbulence = farm::wind::turbulence(&self.site());
+        let checkpoints = || open.iter().map(|&index| self.checkpoints_of_run(index));
+        let disks = || open.iter().map(|&index| self.disk_of_run(index, outputs));
+        // Of one run at a time.
+        let checkpoint = checkpoints().max().unwrap_or(0);
         Estimate {
-            n_runs,
+            n_runs: open.len(),
             n_identifications: costs.len(),
             n_identification_steps: costs.iter().map(|cost| cost.n_steps).sum(),
             identification_work: costs.iter().map(|cost| cost.work).sum(),
@@ -30,8 +72,8 @@ impl Prepared {
             interval: plan.interval,
             n_steps: plan.n_steps,
             memory: field + turbulence.map_or(0, |turbulence| turbulence.memory),
-            // A new checkpoint stands beside the old one until it is complete.
-            disk: 2 * field + outputs.disk(self),
+            disk: disks().max().unwrap_or(0),
+            disk_in_all: disks().sum::<u64>() - checkpoints().sum::<u64>() + checkpoint + REPORT,
             updates_per_second: None,
             blockage: plan.blockage,
             wall_gain: wall_gain(plan.blockage),
@@ -45,12 +87,53 @@ impl Prepared {
 /// # Errors
 /// [`StudyError::Memory`].
 pub(crate) fn check_memory(estimate: &Estimate) -> Result<(), StudyError> {
-    const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
     let needed = estimate.memory as f64 / GIB;
-    match formats::machine::free_memory() {
+    match machine::free_memory() {
         Some(free) if (free as f64) < estimate.memory as f64 => {
             Err(StudyError::Memory { needed, available: free as f64 / GIB })
         }
         _ => Ok(()),
+    }
+}
+
+/// Whether the disk of `directory` carries `estimate`, what is in the `folders` of the runs to be made
+/// included; passes where the system does not tell.
+///
+/// # Errors
+/// [`StudyError::Disk`].
+pub(crate) fn check_disk<'a>(
+    estimate: &Estimate,
+    directory: &Path,
+    folders: impl Iterator<Item = &'a RunFolder>,
+) -> Result<(), StudyError> {
+    let Some(free) = machine::free_disk(directory) else { return Ok(()) };
+    let own: u64 = folders.map(|folder| machine::size_of_folder(folder.path())).sum();
+    is_enough(estimate.disk_in_all, free.saturating_add(own), directory)
+}
+
+/// Whether `available` bytes for `directory` are as many as `needed`.
+fn is_enough(needed: u64, available: u64, directory: &Path) -> Result<(), StudyError> {
+    if needed <= available {
+        return Ok(());
+    }
+    let [needed, available] = [needed, available].map(|bytes| bytes as f64 / GB);
+    Err(StudyError::Disk { needed, available, directory: directory.to_owned() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_disk_that_is_too_small_is_told_with_both_numbers() {
+        let folder = Path::new("runs/long");
+        assert!(is_enough(7, 7, folder).is_ok());
+        let error = is_enough(7_300_000_000, 2_040_000_000, folder).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "the study needs up to 7.3 GB of disk, 2.0 GB are free for runs/long"
+        );
+        let help = miette::Diagnostic::help(&error).expect("a fix").to_string();
+        assert!(help.contains("-o") && help.contains("output.interval"), "{help}");
     }
 }

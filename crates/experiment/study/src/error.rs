@@ -1,11 +1,11 @@
 //! Why a study could not be made.
 
 use analysis::AnalysisError;
+use farm::FarmError;
 use farm::assemble::AssemblyError;
 use farm::pitch_response::CalibrationError;
 use farm::plan::PlanError;
 use farm::self_check::SelfCheckError;
-use flow::FlowError;
 use flow::inflow::InflowError;
 use flow::lattice::{LatticeError, PlaneSizeError};
 use formats::atomic::FileError;
@@ -75,12 +75,12 @@ pub enum StudyError {
     PlaneSize(#[from] PlaneSizeError),
     /// The simulation broke down.
     #[error("run {run} diverged: {source}")]
-    #[diagnostic(help("{}", kept(checkpoint, series)))]
+    #[diagnostic(help("{}", kept(source, checkpoint, series)))]
     Diverged {
         /// Run.
         run: String,
         /// Where and when.
-        source: Box<FlowError>,
+        source: Box<FarmError>,
         /// Last good checkpoint, if there is one.
         checkpoint: Option<PathBuf>,
         /// Series up to that time.
@@ -126,6 +126,32 @@ pub enum StudyError {
         /// Its folder.
         directory: PathBuf,
     },
+    /// Results made with another turbine, controller's input or wind are to be resumed or compared with.
+    #[error("run {run} in {} was made with another {file}", directory.display())]
+    #[diagnostic(help("{}", put_back(file, sha256)))]
+    OtherFile {
+        /// Run.
+        run: String,
+        /// Its folder.
+        directory: PathBuf,
+        /// The file as the case names it.
+        file: String,
+        /// SHA-256 of the file with which the run was made; none where it was made without.
+        sha256: Option<String>,
+    },
+    /// A file of wind is not what it was when the study began.
+    #[error(
+        "{file} has changed since the study began: run {run} would not meet the wind of the runs before it"
+    )]
+    #[diagnostic(help("{}", put_back(file, sha256)))]
+    ChangedWind {
+        /// Run that was about to begin.
+        run: String,
+        /// The file as the case names it.
+        file: String,
+        /// SHA-256 of the file when the study began; none where it was not there.
+        sha256: Option<String>,
+    },
     /// A rotor of one or two blades shall pitch them cyclically.
     #[error("run {run}: {turbine} has {n_blades} blades; tilt and yaw need three or more")]
     #[diagnostic(help(
@@ -150,6 +176,21 @@ pub enum StudyError {
         /// Free (GiB).
         available: f64,
     },
+    /// The disk has too little room.
+    #[error(
+        "the study needs up to {needed:.1} GB of disk, {available:.1} GB are free for {}", directory.display()
+    )]
+    #[diagnostic(help(
+        "free some space, name a folder on another disk with -o, make some of the runs with --run, or keep less: a longer output.interval, fewer planes and volumes"
+    ))]
+    Disk {
+        /// Needed (GB).
+        needed: f64,
+        /// Free, with what the runs' own folders hold (GB).
+        available: f64,
+        /// Folder of the results.
+        directory: PathBuf,
+    },
     /// A series lacks a channel that the summary needs.
     #[error("the series has no channel `{channel}`")]
     #[diagnostic(help("the file is of another version; run the case again"))]
@@ -159,8 +200,25 @@ pub enum StudyError {
     },
 }
 
-fn kept(checkpoint: &Option<PathBuf>, series: &Option<PathBuf>) -> String {
-    let mut text = String::from("a shorter flow.step or more cells may carry it");
+/// How to get the study going again where `file` is not the one of SHA-256 `sha256` any more.
+fn put_back(file: &str, sha256: &Option<String>) -> String {
+    let before = match sha256 {
+        Some(sha256) => format!("put the file back that it was, of SHA-256 {sha256}"),
+        None => format!("take {file} away, which was not there"),
+    };
+    format!(
+        "{before}; or use --overwrite to make the run again (with the runs that compare with it), or another folder with -o"
+    )
+}
+
+/// What to do after `source`, and what is left.
+fn kept(source: &FarmError, checkpoint: &Option<PathBuf>, series: &Option<PathBuf>) -> String {
+    let mut text = String::from(match source {
+        FarmError::Flow(_) => "a shorter flow.step or more cells may carry it",
+        FarmError::Turbine { .. } => {
+            "look at wind, rotor speed and loads before it: a shorter flow.step may carry the turbine, and no step does where wind or numbers of the case are beyond what a turbine is made for"
+        }
+    });
     if let Some(path) = series {
         text += &format!("; measured so far: {}", path.display());
     }

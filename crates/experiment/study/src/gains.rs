@@ -3,10 +3,11 @@
 use crate::columns::{Columns, add_to};
 use crate::loads;
 use crate::prepared::Prepared;
-use crate::same_case::check_same;
+use crate::same_case::{WindDigests, check_same};
 use crate::{Observer, StudyError};
+use analysis::AnalysisError;
 use analysis::statistics::{BLOCK_LENGTH, gain};
-use basis::records::{Summary, TurbineSummary};
+use basis::records::{Statistic, Summary, TurbineSummary, Warning, WarningKind};
 use farm::case::Run;
 use formats::records::{self, RunFolder};
 
@@ -38,6 +39,7 @@ pub(crate) fn compared(setup: &Prepared, index: usize) -> Option<usize> {
 /// [`StudyError::File`] for records that cannot be read.
 pub(crate) fn comparison<'a>(
     setup: &'a Prepared,
+    wind: &WindDigests,
     index: usize,
     folders: &[RunFolder],
 ) -> Result<Comparison<'a>, StudyError> {
@@ -46,15 +48,17 @@ pub(crate) fn comparison<'a>(
     if !folder.is_complete() {
         return Ok(Comparison::Missing(run));
     }
-    match check_same(setup, run, folder) {
+    match check_same(setup, wind, run, folder) {
         Ok(()) => Ok(Comparison::Made(run, Columns::open(folder, setup)?)),
-        Err(StudyError::OtherCase { .. }) => Ok(Comparison::Other(run)),
+        Err(StudyError::OtherCase { .. } | StudyError::OtherFile { .. }) => {
+            Ok(Comparison::Other(run))
+        }
         Err(error) => Err(error),
     }
 }
 
-/// On return `summary`, which is that of `run`, holds its gains over the run `other`; each run comes with its
-/// columns.
+/// On return `summary`, which is that of `run`, holds its gains over the run `other`, and warnings of those
+/// that are not defined; each run comes with its columns.
 pub(crate) fn add(
     summary: &mut Summary,
     (run, own): (&Run, &mut Columns),
@@ -65,7 +69,7 @@ pub(crate) fn add(
         columns.expect(expected);
     }
     let is_alike = other.present().eq(run.present());
-    let (mut own_array, mut array) = (Vec::new(), Vec::new());
+    let (mut own_array, mut array, mut undefined) = (Vec::new(), Vec::new(), Vec::new());
     for (turbine, index) in summary.turbines.iter_mut().zip(run.present()) {
         if !other.present().any(|there| there == index) {
             continue;
@@ -73,7 +77,10 @@ pub(crate) fn add(
         let channel = power(&turbine.name);
         let (now, before) = (own.of(&channel)?, there.of(&channel)?);
         let (own_power, power) = (now.column(&channel[0])?, before.column(&channel[0])?);
-        turbine.power_gain = Some(gain(own_power, power, now.interval, BLOCK_LENGTH)?);
+        turbine.power_gain = defined(gain(own_power, power, now.interval, BLOCK_LENGTH))?;
+        if turbine.power_gain.is_none() {
+            undefined.push(not_defined(run, other, Some(&turbine.name)));
+        }
         if is_alike {
             add_to(&mut own_array, own_power);
             add_to(&mut array, power);
@@ -85,10 +92,35 @@ pub(crate) fn add(
     }
     if is_alike {
         let interval = own.of(&[])?.interval;
-        summary.array_power_gain = Some(gain(&own_array, &array, interval, BLOCK_LENGTH)?);
+        summary.array_power_gain = defined(gain(&own_array, &array, interval, BLOCK_LENGTH))?;
+        if summary.array_power_gain.is_none() {
+            undefined.push(not_defined(run, other, None));
+        }
     }
+    summary.warnings.append(&mut undefined);
     summary.compare_with = Some(other.name.clone());
     Ok(())
+}
+
+/// A gain that was `found`; none over a power of zero.
+fn defined(found: Result<Statistic, AnalysisError>) -> Result<Option<Statistic>, AnalysisError> {
+    match found {
+        Err(AnalysisError::ZeroMean) => Ok(None),
+        found => found.map(Some),
+    }
+}
+
+/// What a reader of `run` must know of the gain of `turbine`, or of the array, over the run `other`.
+fn not_defined(run: &Run, other: &Run, turbine: Option<&str>) -> Warning {
+    let whose = turbine.unwrap_or("the array");
+    Warning {
+        kind: WarningKind::GainUndefined,
+        turbine: turbine.map(str::to_owned),
+        message: format!(
+            "{}: the gain of {whose} is not defined: its mean power in {} is zero; compare with a run in which it makes power (compare_with)",
+            run.name, other.name
+        ),
+    }
 }
 
 /// Channels that [`add`] asks for together, in its order; the columns of the run are called `names`.
@@ -113,6 +145,7 @@ fn power(turbine: &str) -> [String; 1] {
 /// [`StudyError::File`] for records that cannot be read or written.
 pub(crate) fn catch_up(
     setup: &Prepared,
+    wind: &WindDigests,
     index: usize,
     folders: &[RunFolder],
     observer: &mut dyn Observer,
@@ -122,19 +155,23 @@ pub(crate) fn catch_up(
     if summary.compare_with.is_some() {
         return Ok(());
     }
-    match comparison(setup, index, folders)? {
+    match comparison(setup, wind, index, folders)? {
         Comparison::None => {}
         Comparison::Missing(Run { name, .. }) => observer.warned(&format!(
             "{} has no gains: the run {name} that it compares with is not made yet; make it with --run {name} --resume",
             run.name
         )),
         Comparison::Other(Run { name, .. }) => observer.warned(&format!(
-            "{} has no gains: the run {name} was made with another version of the case or of a turbine",
+            "{} has no gains: the run {name} was made with another version of the case, of a turbine or of a file of wind",
             run.name
         )),
         Comparison::Made(other, mut there) => {
             let mut own = Columns::open(folder, setup)?;
+            let n_known = summary.warnings.len();
             add(&mut summary, (run, &mut own), (other, &mut there))?;
+            for warning in &summary.warnings[n_known..] {
+                observer.warned(&warning.message);
+            }
             records::write_summary(folder, &summary)?;
         }
     }

@@ -10,7 +10,7 @@ use crate::summarise::summarise;
 use crate::{Prepared, StudyError};
 use basis::records::{Plane, Series, Summary};
 use farm::case::Run;
-use farm::{Air, Farm, Unrecorded};
+use farm::{Air, Farm, FarmError, Unrecorded};
 use flow::fields::PlaneAverage;
 use std::time::Instant;
 
@@ -108,7 +108,7 @@ impl<'a> Kept<'a> {
     }
 
     /// One step of `farm`.
-    fn advance(&mut self, farm: &mut Farm<Air>) -> Result<(), flow::FlowError> {
+    fn advance(&mut self, farm: &mut Farm<Air>) -> Result<(), FarmError> {
         let step = farm.step() + 1;
         if series::schedule(self.prepared).is_due(step) {
             self.rows.start(farm);

@@ -2,6 +2,9 @@
 
 use basis::records::{PitchResponse, Summary};
 use farm::self_check::SelfCheck;
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a study will cost, known before it starts.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,8 +27,10 @@ pub struct Estimate {
     pub n_steps: u64,
     /// Memory of flow field and turbulence (bytes).
     pub memory: u64,
-    /// Files that one run leaves at most, checkpoint included (bytes).
+    /// Disk that one run takes at most at any time, checkpoint included (bytes).
     pub disk: u64,
+    /// The same of all runs still to be made, one after the other, and of the report (bytes).
+    pub disk_in_all: u64,
     /// Cell updates a second, measured on this machine in the self-check; absent before it (1/s).
     pub updates_per_second: Option<f64>,
     /// Share of the domain's cross-section that a rotor takes (–).
@@ -104,6 +109,21 @@ pub trait Observer {
     fn finished(&mut self, _summary: &Summary) {}
     /// Something that a reader of the numbers must know.
     fn warned(&mut self, _warning: &str) {}
+}
+
+/// Takes the share (–) of the turbulence made to `observer`; gives a break when `stop` asks for an end.
+pub(crate) fn making_turbulence<'a, 'o>(
+    stop: &'a AtomicBool,
+    observer: &'a RefCell<&'o mut dyn Observer>,
+) -> impl Fn(f64) -> ControlFlow<()> + use<'a, 'o> {
+    move |share| {
+        observer.borrow_mut().preparing("turbulence", share);
+        if stop.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
 }
 
 /// Ignores every event.

@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use crate::air;
-use crate::observer::{Observer, Silent};
+use crate::observer::{Observer, Silent, making_turbulence};
 use crate::pitch_identification::{Keep, PitchIdentifications};
 use crate::prepared::Prepared;
 use crate::self_check::SelfChecked;
@@ -11,6 +11,7 @@ use farm::pitch_response::CalibrationError;
 use farm::self_check::SelfCheckError;
 use farm::{Air, Farm, assemble, wind};
 use flow::Inflow;
+use flow::inflow::InflowError;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -62,10 +63,13 @@ impl Ready {
         if prepared.calibrate(identifications, keep, stop, observer)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
-        let inflow = {
-            let observer = RefCell::new(&mut *observer);
-            let reported = |share| observer.borrow_mut().preparing("turbulence", share);
-            wind::entering(&prepared.site(), reported)?
+        let entering = {
+            let observer: RefCell<&mut dyn Observer> = RefCell::new(&mut *observer);
+            wind::entering(&prepared.site(), &making_turbulence(stop, &observer))
+        };
+        let inflow = match entering {
+            Err(InflowError::BrokenOff) => return Ok(ControlFlow::Break(())),
+            entering => entering?,
         };
         let inflow = inflow.unwrap_or_else(|| Arc::clone(&prepared.mean_inflow));
         prepared.warnings.extend(checked.warnings);
@@ -78,7 +82,20 @@ impl Ready {
     /// # Errors
     /// [`StudyError`] for air that cannot be set up, and for turbines that cannot be put together.
     pub fn farm(&self, run: &Run) -> Result<Farm<Air>, StudyError> {
+        self.farm_until(run, &|_| ControlFlow::Continue(()))
+    }
+
+    /// The same; `progress` receives the share of the run's turbulence that is made, and a break ends that.
+    ///
+    /// # Errors
+    /// Those of [`farm`](Self::farm), and [`StudyError::Inflow`] after a break.
+    pub(crate) fn farm_until(
+        &self,
+        run: &Run,
+        progress: &dyn Fn(f64) -> ControlFlow<()>,
+    ) -> Result<Farm<Air>, StudyError> {
         let Prepared { case, plan, models, .. } = &self.prepared;
-        Ok(assemble::farm(case, run, plan, models, air::begin(&self.prepared, &self.inflow)?)?)
+        let air = air::begin(&self.prepared, &self.inflow, progress)?;
+        Ok(assemble::farm(case, run, plan, models, air)?)
     }
 }

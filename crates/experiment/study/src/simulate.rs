@@ -3,16 +3,17 @@
 mod checkpoint;
 
 use crate::StudyError;
-use crate::observer::{Observer, Progress};
+use crate::observer::{Observer, Progress, making_turbulence};
 use crate::outputs::{Outputs, Stage, Writers};
 use crate::ready::Ready;
 use basis::records::Cost;
 use checkpoint::Before;
 use farm::case::Run;
-use farm::{Air, Farm, Machine, Plan};
-use flow::FlowError;
-use formats::checkpoint::{CheckpointReader, CheckpointWriter};
+use farm::{Air, Farm, FarmError, Machine, Plan};
+use flow::inflow::InflowError;
+use formats::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
 use formats::records::RunFolder;
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -40,6 +41,12 @@ impl<'a> Job<'a> {
     fn stage(&self, farm: &'a Farm<Air>) -> Stage<'a> {
         Stage { setup: &self.ready.prepared, run: self.run, folder: self.folder, farm }
     }
+
+    /// What a checkpoint of it, computed on `backend`, is known by.
+    fn identity(&self, backend: &'a str) -> Identity<'a> {
+        let (case_text, run) = (&self.ready.prepared.case_text, &self.run.name);
+        Identity { case_text, run, version: env!("CARGO_PKG_VERSION"), backend }
+    }
 }
 
 /// How a run ended.
@@ -50,8 +57,10 @@ pub(crate) enum Ending {
         cost: Cost,
         /// Share of instants at which a pitch limit held a command back, turbine by turbine (–).
         clipped_shares: Vec<f64>,
+        /// What of the machine decided its bits, in words.
+        backend: String,
     },
-    /// Stopped on request; a checkpoint stands.
+    /// Stopped on request; a checkpoint stands, unless no step was made.
     Interrupted,
 }
 
@@ -60,6 +69,8 @@ struct Simulation<'a> {
     job: &'a Job<'a>,
     farm: Farm<Air>,
     outputs: Writers<'a>,
+    /// What of the machine decides its bits, in words.
+    backend: String,
     started: Instant,
     before: Before,
 }
@@ -73,7 +84,15 @@ pub(crate) fn simulate(
     stop: &AtomicBool,
     observer: &mut dyn Observer,
 ) -> Result<Ending, StudyError> {
-    let mut simulation = Simulation::begin(job)?;
+    let farm = {
+        let observer: RefCell<&mut dyn Observer> = RefCell::new(&mut *observer);
+        job.ready.farm_until(job.run, &making_turbulence(stop, &observer))
+    };
+    let farm = match farm {
+        Err(StudyError::Inflow(InflowError::BrokenOff)) => return Ok(Ending::Interrupted),
+        farm => farm?,
+    };
+    let mut simulation = Simulation::begin(job, farm)?;
     let n_steps = job.ready.prepared.plan.n_steps;
     let every = Duration::from_secs_f64(job.ready.prepared.case.output.checkpoint_interval);
     let mut last_checkpoint = Instant::now();
@@ -97,12 +116,12 @@ pub(crate) fn simulate(
 }
 
 impl<'a> Simulation<'a> {
-    fn begin(job: &'a Job<'a>) -> Result<Self, StudyError> {
-        let Job { ready, run, folder, outputs, .. } = *job;
-        let farm = ready.farm(run)?;
-        let path = folder.checkpoint_path();
+    /// The run of `job` with `farm` at time zero, or where its checkpoint has it.
+    fn begin(job: &'a Job<'a>, farm: Farm<Air>) -> Result<Self, StudyError> {
+        let backend = backend(&farm);
+        let path = job.folder.checkpoint_path();
         let mut stored = if job.resume && path.exists() {
-            Some(CheckpointReader::open(&path, &ready.prepared.case_text, &run.name)?)
+            Some(CheckpointReader::open(&path, &job.identity(&backend))?)
         } else {
             None
         };
@@ -112,12 +131,12 @@ impl<'a> Simulation<'a> {
             None => (farm, Before::default()),
         };
         let outputs = Writers::begin(
-            outputs.kinds(),
-            &ready.prepared.case,
+            job.outputs.kinds(),
+            &job.ready.prepared.case,
             &job.stage(&farm),
             stored.as_mut(),
         )?;
-        Ok(Self { job, farm, outputs, started, before })
+        Ok(Self { job, farm, outputs, backend, started, before })
     }
 
     fn step(&mut self) -> Result<(), StudyError> {
@@ -134,11 +153,10 @@ impl<'a> Simulation<'a> {
     /// [`StudyError::Diverged`] for air that is no longer valid, [`StudyError::File`].
     fn checkpoint(&mut self) -> Result<(), StudyError> {
         if let Err(error) = self.farm.flow_mut().check() {
-            return Err(self.diverged(error));
+            return Err(self.diverged(error.into()));
         }
         let (path, made) = (self.job.folder.checkpoint_path(), self.made());
-        let name = &self.job.run.name;
-        let writer = CheckpointWriter::create(&path, &self.job.ready.prepared.case_text, name)?;
+        let writer = CheckpointWriter::create(&path, &self.job.identity(&self.backend))?;
         checkpoint::write(writer, &mut self.farm, &mut self.outputs, made)
     }
 
@@ -151,7 +169,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    fn diverged(&mut self, source: FlowError) -> StudyError {
+    fn diverged(&mut self, source: FarmError) -> StudyError {
         // What was measured up to here is kept; the checkpoint before it stands.
         let series = self.outputs.salvage();
         let checkpoint = self.job.folder.checkpoint_path();
@@ -186,7 +204,15 @@ impl<'a> Simulation<'a> {
         let (plan, made) = (&self.job.ready.prepared.plan, self.made());
         let cost = cost(plan, &self.farm, made.wall_time, made.peak_memory);
         let clipped_shares = clipped_shares(&self.farm);
-        Ok(Ending::Complete { cost, clipped_shares })
+        Ok(Ending::Complete { cost, clipped_shares, backend: self.backend })
+    }
+}
+
+/// What of the machine decides the bits of `farm`, in words.
+fn backend(farm: &Farm<Air>) -> String {
+    match farm.flow().backend() {
+        "" => flow::numerics(),
+        own => format!("{}, air {own}", flow::numerics()),
     }
 }
 

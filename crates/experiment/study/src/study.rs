@@ -2,20 +2,22 @@
 //! need no files.
 
 use crate::columns::Columns;
-use crate::cost::check_memory;
+use crate::cost::{check_disk, check_memory};
 use crate::gains::{self, Comparison};
 use crate::outputs::Outputs;
 use crate::pitch_identification::PitchIdentifications;
 use crate::prepared::Prepared;
 use crate::ready::Ready;
-use crate::same_case::check_same;
+use crate::same_case::{WindDigests, another, check_same};
 use crate::self_check::SelfChecked;
 use crate::simulate::{Ending, Job, simulate};
 use crate::summarise;
 use crate::{Observer, StudyError};
 use basis::records::{Cost, Summary};
 use farm::case::Run;
-use formats::records::{self, Manifest, RunFolder, read_pitch_responses, write_pitch_responses};
+use formats::leftovers;
+use formats::lock::Lock;
+use formats::records::{self, Manifest, PitchResponseRecord, RunFolder, read_pitch_responses};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -82,6 +84,7 @@ pub fn run_with(
 ) -> Result<Outcome, StudyError> {
     let prepared = Prepared::read(&options.case, &options.overrides)?;
     let study = Study::open(options, outputs, &prepared)?;
+    let _locks = if options.dry_run { Vec::new() } else { study.lock(options, observer)? };
     let known = if options.resume { read_pitch_responses(&study.directory)? } else { Vec::new() };
     let identifications = prepared.identifications(&study.open, known);
     let interrupted = || Ok(Outcome::Interrupted { directory: study.directory.clone() });
@@ -95,7 +98,7 @@ pub fn run_with(
     let prepared = if study.open.is_empty() {
         prepared
     } else {
-        let keep = &mut |found: &[_]| Ok(write_pitch_responses(&study.directory, found)?);
+        let keep = &mut |found: &[_]| study.keep_pitch_responses(found);
         let ready = match Ready::new(prepared, checked, identifications, keep, stop, observer)? {
             ControlFlow::Break(()) => return interrupted(),
             ControlFlow::Continue(ready) => ready,
@@ -108,7 +111,7 @@ pub fn run_with(
         ready.prepared
     };
     for &index in &study.wanted {
-        gains::catch_up(&prepared, index, &study.folders, observer)?;
+        gains::catch_up(&prepared, &study.wind, index, &study.folders, observer)?;
     }
     let made = records::read_summaries(&study.directory)?;
     let summaries = made.into_iter().map(|(_, summary)| summary).collect();
@@ -125,6 +128,8 @@ struct Study<'a> {
     wanted: Vec<usize>,
     /// Those of them that are not complete.
     open: Vec<usize>,
+    /// SHA-256 of the files of wind when the study began.
+    wind: WindDigests,
     resume: bool,
 }
 
@@ -132,7 +137,8 @@ impl<'a> Study<'a> {
     /// The study that `options` name; what its folder holds is left as it is.
     ///
     /// # Errors
-    /// [`StudyError::UnknownRun`], [`StudyError::OutputExists`], [`StudyError::OtherCase`].
+    /// [`StudyError::UnknownRun`], [`StudyError::OutputExists`], [`StudyError::OtherCase`],
+    /// [`StudyError::OtherFile`].
     fn open(
         options: &StudyOptions,
         outputs: &'a Outputs,
@@ -155,9 +161,10 @@ impl<'a> Study<'a> {
         if !keeps && open.iter().any(|&index| folders[index].path().exists()) {
             return Err(StudyError::OutputExists { directory });
         }
+        let wind = prepared.wind_digests()?;
         if options.resume {
             for &index in &wanted {
-                check_same(prepared, &runs[index], &folders[index])?;
+                check_same(prepared, &wind, &runs[index], &folders[index])?;
             }
         }
         for &index in &open {
@@ -166,17 +173,58 @@ impl<'a> Study<'a> {
                 && !open.contains(&other)
                 && folders[other].is_complete()
             {
-                check_same(prepared, &runs[other], &folders[other])?;
+                check_same(prepared, &wind, &runs[other], &folders[other])?;
             }
         }
-        Ok(Self { outputs, directory, folders, wanted, open, resume: options.resume })
+        Ok(Self { outputs, directory, folders, wanted, open, wind, resume: options.resume })
+    }
+
+    /// Locks the runs that are asked for, so that no other process writes them, and takes away what killed
+    /// processes have left in the study's own folder; the locks end with what is given.
+    ///
+    /// # Errors
+    /// [`StudyError::File`] says who else writes one of them; [`StudyError::OutputExists`] when one was made
+    /// meanwhile.
+    fn lock(
+        &self,
+        options: &StudyOptions,
+        observer: &mut dyn Observer,
+    ) -> Result<Vec<Lock>, StudyError> {
+        let folders = || self.wanted.iter().map(|&index| &self.folders[index]);
+        let mut locks = folders().map(RunFolder::lock).collect::<Result<Vec<Lock>, _>>()?;
+        // The one that made the folder goes last, and takes it away where nothing came into it.
+        locks.reverse();
+        if !locks.iter().all(Lock::is_held) {
+            observer.warned(&format!(
+                "the file system of {} knows no locks: see to it that no other process writes these runs",
+                self.directory.display()
+            ));
+        }
+        let keeps = options.resume || options.overwrite;
+        if !keeps && folders().any(|folder| folder.manifest_path().exists()) {
+            return Err(StudyError::OutputExists { directory: self.directory.clone() });
+        }
+        leftovers::remove_abandoned(&self.directory, None)?;
+        Ok(locks)
+    }
+
+    /// Keeps what was `found` of pitch responses in the study's folder, beside what those who make other runs
+    /// of it have kept there.
+    ///
+    /// # Errors
+    /// [`StudyError::File`].
+    fn keep_pitch_responses(&self, found: &[PitchResponseRecord]) -> Result<(), StudyError> {
+        if self.wanted.len() == self.folders.len() {
+            return Ok(records::write_pitch_responses(&self.directory, found)?);
+        }
+        Ok(records::add_pitch_responses(&self.directory, found)?)
     }
 
     /// Tells `observer` what the open runs will cost, and checks the rotors where there are such runs; a
     /// break when `stop` asked for an end.
     ///
     /// # Errors
-    /// [`StudyError::Memory`], [`StudyError::SelfCheck`].
+    /// [`StudyError::Memory`], [`StudyError::Disk`], [`StudyError::SelfCheck`].
     fn cost(
         &self,
         prepared: &Prepared,
@@ -184,9 +232,11 @@ impl<'a> Study<'a> {
         stop: &AtomicBool,
         observer: &mut dyn Observer,
     ) -> Result<ControlFlow<(), SelfChecked>, StudyError> {
-        let mut estimate = prepared.estimate(self.open.len(), identifications, self.outputs);
+        let mut estimate = prepared.estimate(&self.open, identifications, self.outputs);
         observer.estimated(&estimate);
         check_memory(&estimate)?;
+        let folders = self.open.iter().map(|&index| &self.folders[index]);
+        check_disk(&estimate, &self.directory, folders)?;
         for warning in &prepared.warnings {
             observer.warned(warning);
         }
@@ -214,22 +264,37 @@ impl<'a> Study<'a> {
     ) -> Result<ControlFlow<()>, StudyError> {
         let index = self.open[place];
         let (run, folder) = (&ready.prepared.case.runs[index], &self.folders[index]);
-        let manifest = begin_run(&ready.prepared, index, folder, self.resume)?;
+        let wind = self.same_wind(&ready.prepared, &run.name)?;
+        let manifest = begin_run(&ready.prepared, wind, index, folder, self.resume)?;
         let (outputs, resume, place) = (self.outputs, self.resume, (place, self.open.len()));
         let job = Job { ready, run, folder, outputs, resume, place };
         match simulate(&job, stop, observer)? {
             Ending::Interrupted => Ok(ControlFlow::Break(())),
-            Ending::Complete { cost, clipped_shares } => {
+            Ending::Complete { cost, clipped_shares, backend } => {
                 let summary = self.summary(ready, index, &clipped_shares, cost)?;
                 for warning in &summary.warnings[ready.prepared.warnings.len()..] {
                     observer.warned(&warning.message);
                 }
-                records::write_manifest(folder, &manifest.finish())?;
+                records::write_manifest(folder, &manifest.finish(&backend))?;
                 // The summary comes last: with it the run is complete.
                 records::write_summary(folder, &summary)?;
                 folder.remove_checkpoint()?;
                 observer.finished(&summary);
                 Ok(ControlFlow::Continue(()))
+            }
+        }
+    }
+
+    /// SHA-256 of the files of wind as they are now, before the run called `run`.
+    ///
+    /// # Errors
+    /// [`StudyError::ChangedWind`] when they are not what they were when the study began.
+    fn same_wind(&self, prepared: &Prepared, run: &str) -> Result<WindDigests, StudyError> {
+        let wind = prepared.wind_digests()?;
+        match another(&self.wind, &wind) {
+            None => Ok(wind),
+            Some((file, sha256)) => {
+                Err(StudyError::ChangedWind { run: run.to_owned(), file, sha256 })
             }
         }
     }
@@ -247,7 +312,7 @@ impl<'a> Study<'a> {
         let mut columns = Columns::open(folder, prepared)?;
         let mut summary = summarise::summarise(prepared, run, &mut columns, clipped_shares, cost)?;
         if let Comparison::Made(other, mut there) =
-            gains::comparison(prepared, index, &self.folders)?
+            gains::comparison(prepared, &self.wind, index, &self.folders)?
         {
             gains::add(&mut summary, (run, &mut columns), (other, &mut there))?;
         }
@@ -258,10 +323,11 @@ impl<'a> Study<'a> {
     }
 }
 
-/// On return the run's folder is ready: empty but for the manifest, or as an interrupted run left it when
-/// `resume`.
+/// On return the run's folder is ready: empty but for the manifest, which tells of `wind`, or as an
+/// interrupted run left it when `resume`.
 fn begin_run(
     prepared: &Prepared,
+    wind: WindDigests,
     index: usize,
     folder: &RunFolder,
     resume: bool,
@@ -275,6 +341,7 @@ fn begin_run(
     let texts = prepared.turbine_texts.iter().map(|(name, text)| (name.as_str(), text.as_str()));
     let version = env!("CARGO_PKG_VERSION");
     let manifest = Manifest::start(version, &prepared.case, &prepared.case_text, index, texts);
+    let manifest = manifest.in_wind(wind);
     records::write_manifest(folder, &manifest)?;
     Ok(manifest)
 }

@@ -103,6 +103,7 @@ impl<'a> Turbine<'a> {
         let thrust = analysed.statistic(&format!("{name}.thrust_n"))?;
         let rotor_speed = analysed.statistic(&format!("{name}.rotor_speed_rad_s"))?;
         let outrun = outrun(&analysed, index, setup)?;
+        warnings.extend(self.warning_of_overspeed(&analysed)?);
         add_to(array, analysed.column(&power_channel)?);
 
         let analysed = columns.of(&pitching(name, n_blades))?;

@@ -137,10 +137,14 @@ fn other_texts_of_file_or_table_are_noticed() {
         assert_ne!(sound, other);
         fs::write(folder.path().join(name), other).expect("a file");
         let outcome = go(true);
-        assert!(matches!(outcome, Err(StudyError::OtherCase { .. })), "{name}: {outcome:?}");
+        let Err(StudyError::OtherFile { file, sha256, .. }) = outcome else {
+            panic!("{outcome:?}")
+        };
+        assert!(file.contains("discon control/DISCON.IN"), "{name}: {file}");
+        assert_eq!(sha256, Some(formats::records::sha256(sound.as_bytes())), "{name}");
         fs::write(folder.path().join(name), sound).expect("a file");
     }
     fs::remove_file(folder.path().join("control/table.txt")).expect("a file");
     let outcome = go(true);
-    assert!(matches!(outcome, Err(StudyError::OtherCase { .. })), "{outcome:?}");
+    assert!(matches!(outcome, Err(StudyError::OtherFile { .. })), "{outcome:?}");
 }

@@ -229,7 +229,8 @@ fn a_case_asks_for_outputs_by_name_and_they_go_on_after_a_break() {
     let prepared = study::Prepared::read(&folder.path().join("case.toml"), &[]).expect("sound");
     let plain = written(&case());
     let without = study::Prepared::read(&plain.path().join("case.toml"), &[]).expect("sound");
-    assert_eq!(outputs.disk(&prepared), outputs.disk(&without) + 30 + 20);
+    let bytes = |setup: &study::Prepared| outputs.disk_of_run(setup, &setup.case.runs[0]);
+    assert_eq!(bytes(&prepared), bytes(&without) + 30 + 20);
 }
 
 #[test]

@@ -13,6 +13,7 @@ use flow::{FlowError, FlowSolver, Inflow, WindField};
 use small::{NREL_5MW, case, laid_out};
 use std::collections::BTreeMap;
 use std::io::{Read, Result, Write};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 static KEYS: [Key; 2] = [
@@ -169,7 +170,8 @@ fn farm_in(flow: &str, solver: Option<Solver>) -> (Case, Plan, Farm<Air>) {
     let models = vec![model.clone(), model];
     let site = farm::wind::Site { case: &case, plan: &plan, models: &models };
     let inflow = farm::wind::without_turbulence(&case, &plan).expect("a plain wind");
-    let air = (solver.begin)(Start { site, inflow, planes: None }).expect("such air can be");
+    let start = Start { site, inflow, planes: None, progress: &|_| ControlFlow::Continue(()) };
+    let air = (solver.begin)(start).expect("such air can be");
     let farm = assemble::farm(&case, &case.runs[0], &plan, &models, air).expect("a farm");
     (case, plan, farm)
 }

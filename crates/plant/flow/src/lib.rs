@@ -5,6 +5,9 @@
 pub mod fields;
 pub mod inflow;
 pub mod lattice;
+mod numerics;
+
+pub use numerics::numerics;
 
 use basis::{PointForce, Vector3};
 use thiserror::Error;

@@ -1,5 +1,6 @@
 //! Pitch actuators: second-order lag with limits of rate and position.
 
+use crate::breakdown::within;
 use lti::lag::free_response;
 use serde::{Deserialize, Serialize};
 
@@ -47,15 +48,15 @@ impl PitchActuator {
             let pitch = target + response[0][0] * error + response[0][1] * state.rate;
             let rate = response[1][0] * error + response[1][1] * state.rate;
             let reach = self.maximum_rate * step;
-            let reached = pitch.clamp(state.pitch - reach, state.pitch + reach);
-            let within = reached.clamp(self.minimum_pitch, self.maximum_pitch);
+            let reached = within(pitch, [state.pitch - reach, state.pitch + reach]);
+            let held = reached.clamp(self.minimum_pitch, self.maximum_pitch);
             limited |= reached != pitch || rate.abs() > self.maximum_rate;
-            state.rate = if within == reached {
+            state.rate = if held == reached {
                 rate.clamp(-self.maximum_rate, self.maximum_rate)
             } else {
                 0.0
             };
-            state.pitch = within;
+            state.pitch = held;
         }
         limited
     }

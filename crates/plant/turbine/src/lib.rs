@@ -5,6 +5,7 @@ pub mod actuators;
 pub mod aero;
 pub mod blockage;
 pub mod bodies;
+mod breakdown;
 pub mod definition;
 pub mod lifting_line;
 pub mod loading;
@@ -16,6 +17,7 @@ pub mod structure;
 mod turbine;
 
 pub use aero::polar::Polar;
+pub use breakdown::Breakdown;
 pub use definition::Definition;
 pub use rotor::Frame;
 pub use turbine::{

@@ -12,6 +12,7 @@ pub use state::TurbineState;
 
 use crate::actuator_line::ActuatorLine;
 use crate::bodies::{self, Body};
+use crate::breakdown::Breakdown;
 use crate::definition::Definition;
 use crate::rotor::Frame;
 use crate::structure::{
@@ -236,6 +237,31 @@ impl Turbine {
             edge_moments: loads.blades.map(|blade| blade.root.moment.x),
             tower_top_acceleration: loads.nacelle_acceleration.x,
         }
+    }
+
+    /// Whether it is still a machine: everything that it stands, turns, bends and pulls with is finite.
+    ///
+    /// # Errors
+    /// [`Breakdown`] names what is not. Nothing that follows from such a turbine means anything.
+    pub fn check(&self) -> Result<(), Breakdown> {
+        let TurbineState { structure, pitch, readings, .. } = &self.state;
+        let first = [
+            ("rotor speed", self.structure.rotor_speed(), "rad/s"),
+            ("thrust", readings.thrust, "N"),
+            ("aerodynamic torque", readings.aerodynamic_torque, "N m"),
+            ("generator torque", readings.generator_torque, "N m"),
+            ("wind at the rotor", readings.rotor_wind_speed, "m/s"),
+        ];
+        let motions = [
+            ("deflection", &structure.coordinates, "m"),
+            ("speed of deflection", &structure.velocities, "m/s"),
+        ];
+        let motions = motions.into_iter().flat_map(|(quantity, motion, unit)| {
+            let values = motion.shared.iter().chain(motion.blades.as_flattened());
+            values.map(move |value| (quantity, *value, unit))
+        });
+        let pitch = pitch.iter().map(|blade| ("pitch", blade.pitch, "rad"));
+        Breakdown::among(first.into_iter().chain(motions).chain(pitch))
     }
 
     /// Instants so far, and those at which a pitch limit held a command back (–).

@@ -151,6 +151,15 @@ fn identifications(estimate: &Estimate) -> String {
     }
 }
 
+/// What the disk must hold, in words.
+fn disk(estimate: &Estimate) -> String {
+    let [run, all] = [estimate.disk, estimate.disk_in_all].map(HumanBytes);
+    match estimate.n_runs {
+        0 | 1 => format!("disk up to {run}"),
+        _ => format!("disk up to {run} a run, {all} in all"),
+    }
+}
+
 /// How the pitch of `turbine` acts, in words.
 fn words_of(turbine: &str, response: &PitchResponse) -> String {
     let turned = |offset: f64| {
@@ -234,21 +243,21 @@ impl Observer for Screen {
                 speed / 1e6
             )),
             _ if n_x == 0 => self.say(&format!(
-                "prescribed wind: {} steps of {:.4} s a run, disk up to {} a run{}",
+                "prescribed wind: {} steps of {:.4} s a run, {}{}",
                 estimate.n_steps,
                 estimate.interval,
-                HumanBytes(estimate.disk),
+                disk(estimate),
                 identifications(estimate),
             )),
             _ => self.say(&format!(
                 "grid: {n_x} × {n_y} × {n_z} = {:.2} million cells of {:.1} m, {} steps of {:.4} s a run; \
-                 memory {}, disk up to {} a run; blockage {:.1} % raises power by {:.1} % in every run; wind {:.3} cells a step",
+                 memory {}, {}; blockage {:.1} % raises power by {:.1} % in every run; wind {:.3} cells a step",
                 (n_x * n_y * n_z) as f64 / 1e6,
                 estimate.spacing,
                 estimate.n_steps,
                 estimate.interval,
                 HumanBytes(estimate.memory),
-                HumanBytes(estimate.disk),
+                disk(estimate),
                 100.0 * estimate.blockage,
                 100.0 * estimate.wall_gain,
                 estimate.lattice_speed,

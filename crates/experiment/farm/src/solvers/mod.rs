@@ -20,7 +20,7 @@ use flow::Inflow;
 use flow::inflow::{InflowError, Planes};
 use flow::lattice::LatticeError;
 use std::fmt;
-use std::ops::Deref;
+use std::ops::{ControlFlow, Deref};
 use std::sync::Arc;
 
 /// The kinds of flow solvers. A new kind is a file beside this one and a line here; a program built on
@@ -103,6 +103,8 @@ pub struct Start<'a> {
     pub inflow: Arc<dyn Inflow>,
     /// The file of planes, opened, for [`WindSource::Planes`].
     pub planes: Option<Box<dyn Planes>>,
+    /// Receives the share (–) of what is made at the start that is done; a break ends it.
+    pub progress: &'a dyn Fn(f64) -> ControlFlow<()>,
 }
 
 /// One rotor alone, at the origin, in a steady wind.

@@ -58,7 +58,7 @@ fn begin(start: Start) -> Result<Air, SolverError> {
     if solver.wind == WindSource::Planes && start.planes.is_none() {
         return Err(SolverError::NoPlanes { solver: solver.name });
     }
-    Ok(Box::new(wind::prescribed(&start.site, start.inflow, start.planes)?))
+    Ok(Box::new(wind::prescribed(&start.site, start.inflow, start.planes, start.progress)?))
 }
 
 fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {

@@ -10,6 +10,7 @@ use flow::inflow::kaimal::{self, Scaling};
 use flow::inflow::planes::BoxPlanes;
 use flow::inflow::prescribed::Placement;
 use flow::inflow::{InflowError, Planes, PrescribedWind, TurbulenceBox, mann};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Air around the outermost tips that a grid of made turbulence covers (diameters of the largest rotor).
@@ -26,20 +27,22 @@ const MEMORY_LIMIT: u64 = 128 << 20;
 const REACH: f64 = 50.0;
 
 /// The wind of `site`, prescribed: `planes` where there are any, else `inflow`, with turbulence on it where
-/// the case has it made around the rotors.
+/// the case has it made around the rotors; `progress` receives the share of that done, and a break ends it.
 ///
 /// # Errors
-/// [`InflowError`] when turbulence cannot be made, or planes do not cover the rotors for the whole run.
+/// [`InflowError`] when turbulence cannot be made, or planes do not cover the rotors for the whole run,
+/// [`InflowError::BrokenOff`] after a break.
 pub fn prescribed(
     site: &Site,
     inflow: Arc<dyn Inflow>,
     planes: Option<Box<dyn Planes>>,
+    progress: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<PrescribedWind, InflowError> {
     if let Some(planes) = planes {
         return over_rotors(site, planes);
     }
     let Some(grid) = made_grid(site) else { return Ok(PrescribedWind::everywhere(inflow)) };
-    let turbulence = Arc::new(made(site, &grid)?);
+    let turbulence = Arc::new(made(site, &grid, progress)?);
     let planes = BoxPlanes::new(turbulence, &profile(site.case, site.plan), grid.lowest)?
         .veering(site.case.wind.veer, site.plan.hub_height);
     over_rotors(site, Box::new(planes))
@@ -123,14 +126,18 @@ fn made_grid(site: &Site) -> Option<MadeGrid> {
     })
 }
 
-/// The turbulence on `grid`.
-fn made(site: &Site, grid: &MadeGrid) -> Result<TurbulenceBox, InflowError> {
+/// The turbulence on `grid`; `progress` receives the share done, and a break ends it.
+fn made(
+    site: &Site,
+    grid: &MadeGrid,
+    progress: &dyn Fn(f64) -> ControlFlow<()>,
+) -> Result<TurbulenceBox, InflowError> {
     let (case, wind) = (site.case, &site.case.wind);
     let MadeGrid { n_points, spacing, lowest, .. } = *grid;
     let standard_deviation = wind.turbulence_intensity * wind.speed;
     let (seed, threads) = (wind.seed, case.flow.threads);
     match wind.turbulence_model {
-        TurbulenceModel::Kaimal => kaimal::generate(
+        TurbulenceModel::Kaimal => kaimal::generate_until(
             &kaimal::KaimalSettings {
                 n_points,
                 spacing,
@@ -142,9 +149,9 @@ fn made(site: &Site, grid: &MadeGrid) -> Result<TurbulenceBox, InflowError> {
                 seed,
                 threads,
             },
-            |_| (),
+            progress,
         ),
-        TurbulenceModel::Mann => mann::generate(
+        TurbulenceModel::Mann => mann::generate_until(
             &mann::MannSettings {
                 n_points,
                 spacing,
@@ -154,7 +161,7 @@ fn made(site: &Site, grid: &MadeGrid) -> Result<TurbulenceBox, InflowError> {
                 seed,
                 threads,
             },
-            |_| (),
+            progress,
         ),
     }
 }

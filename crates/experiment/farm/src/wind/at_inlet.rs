@@ -6,6 +6,7 @@ use flow::Inflow;
 use flow::inflow::sizing::{Need, Size};
 use flow::inflow::turbulent::BLOCKING_HEIGHT;
 use flow::inflow::{InflowError, TurbulentInflow, mann, size_box};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Most memory that the turbulence may take (bytes); a longer run then meets the same wind again, and is
@@ -26,13 +27,13 @@ pub(super) fn turbulence(site: &Site) -> Option<Turbulence> {
 }
 
 /// The wind with turbulence that enters the domain of `site`, made now; none where no turbulence enters so.
-/// `progress` receives the share done.
+/// `progress` receives the share done; a break ends it.
 ///
 /// # Errors
-/// [`InflowError`] when it cannot be made.
+/// [`InflowError`] when it cannot be made, [`InflowError::BrokenOff`] after a break.
 pub fn entering(
     site: &Site,
-    progress: impl Fn(f64),
+    progress: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<Option<Arc<dyn Inflow>>, InflowError> {
     let Some(size) = size(site) else { return Ok(None) };
     let (case, plan, wind) = (site.case, site.plan, &site.case.wind);
@@ -45,7 +46,7 @@ pub fn entering(
         seed: wind.seed,
         threads: case.flow.threads,
     };
-    let turbulence = mann::generate(&settings, progress)?;
+    let turbulence = mann::generate_until(&settings, progress)?;
     let profile = profile(case, plan);
     let inflow = TurbulentInflow::aligned(Arc::new(turbulence), profile, plan.origin)?;
     let inflow = inflow.blocked(BLOCKING_HEIGHT * wind.length_scale);

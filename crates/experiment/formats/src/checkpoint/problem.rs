@@ -1,10 +1,10 @@
-//! What can be wrong with a checkpoint.
+//! Why a run cannot go on from a checkpoint, and what to do then.
 
 use thiserror::Error;
 
 /// Version of the layout.
-pub(super) const VERSION: u32 = 3;
-const FRESH: &str = "start the run afresh, without --resume";
+pub(super) const VERSION: u32 = 4;
+const FRESH: &str = "start the run anew, with --overwrite in place of --resume";
 
 /// What is wrong with a checkpoint.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -29,6 +29,24 @@ pub enum CheckpointProblem {
     /// Of another case, or of this one before it was changed.
     #[error("the case has changed since it was written")]
     OtherCase,
+    /// Of another version of the program.
+    #[error("wakemix {found} wrote it, this is wakemix {expected}: results would be of neither")]
+    OtherProgram {
+        /// Version that wrote it.
+        found: String,
+        /// Version of this program.
+        expected: String,
+    },
+    /// Of a machine that computes otherwise.
+    #[error(
+        "it was computed on \"{found}\", this machine computes on \"{expected}\": the run's bits would be of neither"
+    )]
+    OtherBackend {
+        /// What it was computed on.
+        found: String,
+        /// What this machine computes on.
+        expected: String,
+    },
     /// Its end is missing.
     #[error("it is cut off after {bytes} bytes")]
     CutOff {
@@ -61,11 +79,14 @@ impl CheckpointProblem {
     /// How to fix it.
     pub(crate) fn fix(&self) -> &'static str {
         match self {
-            Self::OtherVersion { .. } => {
-                "resume with the version of the program that wrote it, or start the run anew, without --resume"
+            Self::OtherVersion { .. } | Self::OtherProgram { .. } => {
+                "resume with the version of the program that wrote it, or start the run anew, with --overwrite in place of --resume"
             }
             Self::OtherCase => {
-                "undo the change to go on, or start the run afresh, without --resume; threads, checkpoint interval and other runs may change"
+                "undo the change to go on, or start the run anew, with --overwrite in place of --resume; threads, checkpoint interval and other runs may change"
+            }
+            Self::OtherBackend { .. } => {
+                "resume on a machine with the same instructions, or start the run anew, with --overwrite in place of --resume"
             }
             _ => FRESH,
         }

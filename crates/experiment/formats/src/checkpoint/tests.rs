@@ -4,17 +4,18 @@ use super::*;
 use proptest::prelude::*;
 use std::fs;
 
-const CASE: &str = "some case";
+const HELIX: Identity =
+    Identity { case_text: "some case", run: "helix", version: "0.1.0", backend: "avx512" };
 
 fn write(path: &Path, numbers: &[f64], air: &[u8]) {
-    let mut writer = CheckpointWriter::create(path, CASE, "helix").unwrap();
+    let mut writer = CheckpointWriter::create(path, &HELIX).unwrap();
     writer.state("run", &numbers).unwrap();
     writer.stream("air", |bytes| bytes.write_all(air)).unwrap();
     writer.finish().unwrap();
 }
 
 fn read(path: &Path) -> Result<(Vec<f64>, Vec<u8>), FileError> {
-    let mut reader = CheckpointReader::open(path, CASE, "helix")?;
+    let mut reader = CheckpointReader::open(path, &HELIX)?;
     let mut air = Vec::new();
     let numbers = reader.state("run")?;
     reader.stream("air", |bytes| bytes.read_to_end(&mut air).map(|_| ()))?;
@@ -46,7 +47,7 @@ fn sections_are_found_in_any_order_and_missing_ones_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint");
     write(&path, &[1.0], &[1, 2, 3]);
-    let mut reader = CheckpointReader::open(&path, CASE, "helix").unwrap();
+    let mut reader = CheckpointReader::open(&path, &HELIX).unwrap();
     reader.stream("air", |_| Ok(())).unwrap();
     assert_eq!(reader.state::<Vec<f64>>("run").unwrap(), [1.0]);
     assert!(reader.holds("air") && !reader.holds("wake"));
@@ -63,10 +64,23 @@ fn another_run_case_version_or_file_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint");
     write(&path, &[1.0], &[]);
-    let other_run = problem(CheckpointReader::open(&path, CASE, "pulse"));
+    let other_run = problem(CheckpointReader::open(&path, &Identity { run: "pulse", ..HELIX }));
     assert!(matches!(other_run, CheckpointProblem::OtherRun { .. }));
-    let other_case = problem(CheckpointReader::open(&path, "some other case", "helix"));
+    let other_case =
+        problem(CheckpointReader::open(&path, &Identity { case_text: "some other case", ..HELIX }));
     assert_eq!(other_case, CheckpointProblem::OtherCase);
+    let found = |identity| CheckpointReader::open(&path, &identity);
+    let error = found(Identity { version: "0.2.0", ..HELIX }).unwrap_err();
+    let help = miette::Diagnostic::help(&error).unwrap().to_string();
+    assert!(error.to_string().contains("wakemix 0.1.0 wrote it, this is wakemix 0.2.0"), "{error}");
+    assert!(help.contains("--overwrite"), "{help}");
+    let error = found(Identity { backend: "portable", ..HELIX }).unwrap_err();
+    let help = miette::Diagnostic::help(&error).unwrap().to_string();
+    assert!(
+        error.to_string().contains("on \"avx512\", this machine computes on \"portable\""),
+        "{error}"
+    );
+    assert!(help.contains("same instructions"), "{help}");
     let mut bytes = fs::read(&path).unwrap();
     bytes[8] = 9;
     fs::write(&path, &bytes).unwrap();
@@ -75,7 +89,7 @@ fn another_run_case_version_or_file_is_reported() {
     assert_eq!(problem(read(&path)), CheckpointProblem::NoCheckpoint);
     fs::write(&path, b"").unwrap();
     assert_eq!(problem(read(&path)), CheckpointProblem::NoCheckpoint);
-    let missing = CheckpointReader::open(&folder.path().join("none"), CASE, "helix");
+    let missing = CheckpointReader::open(&folder.path().join("none"), &HELIX);
     assert!(missing.unwrap_err().to_string().contains("cannot read the checkpoint"));
 }
 
@@ -97,7 +111,7 @@ fn a_failure_while_writing_leaves_the_last_good_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint");
     write(&path, &[1.0], &[5; 10]);
-    let mut writer = CheckpointWriter::create(&path, CASE, "helix").unwrap();
+    let mut writer = CheckpointWriter::create(&path, &HELIX).unwrap();
     let full = |bytes: &mut dyn Write| {
         bytes.write_all(&[0; 3 * CHUNK])?;
         Err(ErrorKind::StorageFull.into())

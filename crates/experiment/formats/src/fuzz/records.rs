@@ -2,7 +2,7 @@
 
 use super::{Refusal, survives};
 use crate::case;
-use crate::checkpoint::{CheckpointReader, CheckpointWriter};
+use crate::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
 use crate::records::{self, Manifest, RunFolder, SeriesWriter, read_study};
 use basis::records::{Plane, PlaneAxes, examples};
 use farm::case::{Case, Time, Wind};
@@ -10,6 +10,8 @@ use std::fs;
 use std::path::Path;
 
 const CASE: &str = include_str!("../../../../../cases/quickstart.toml");
+const HELIX: Identity =
+    Identity { case_text: CASE, run: "helix", version: "0.1.0", backend: "portable" };
 
 fn plane() -> Plane {
     Plane {
@@ -64,7 +66,7 @@ fn studies() {
 fn checkpoint(state: impl Fn(&mut CheckpointWriter)) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint");
-    let mut writer = CheckpointWriter::create(&path, CASE, "helix").unwrap();
+    let mut writer = CheckpointWriter::create(&path, &HELIX).unwrap();
     state(&mut writer);
     writer.stream("air", |bytes| bytes.write_all(&[1; 300])).unwrap();
     writer.finish().unwrap();
@@ -80,7 +82,7 @@ fn parts() -> Parts {
 }
 
 fn go_on(path: &Path) -> Result<(), Refusal> {
-    let mut reader = CheckpointReader::open(path, CASE, "helix")?;
+    let mut reader = CheckpointReader::open(path, &HELIX)?;
     reader.state::<Parts>("case")?;
     reader.stream("air", |bytes| bytes.read_exact(&mut [0; 300]))?;
     Ok(())
@@ -100,11 +102,11 @@ fn foreign_states() {
     let case = parts();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("state");
-    let mut writer = CheckpointWriter::create(&path, CASE, "helix").unwrap();
+    let mut writer = CheckpointWriter::create(&path, &HELIX).unwrap();
     writer.state("case", &case).unwrap();
     writer.finish().unwrap();
     let mut state = Vec::new();
-    let mut reader = CheckpointReader::open(&path, CASE, "helix").unwrap();
+    let mut reader = CheckpointReader::open(&path, &HELIX).unwrap();
     reader.stream("case", |bytes| bytes.read_to_end(&mut state).map(|_| ())).unwrap();
     survives(vec![("state", state)], |folder| {
         let state = fs::read(folder.join("state")).unwrap_or_default();

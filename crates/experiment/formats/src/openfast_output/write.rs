@@ -3,6 +3,7 @@
 use super::{NAME_LENGTH, PLAIN, SHORT_NAME, WHAT};
 use crate::FileError;
 use crate::atomic::AtomicFile;
+use crate::beside;
 use crate::table::head::Column;
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
@@ -247,12 +248,14 @@ struct Spool {
 }
 
 impl Spool {
-    fn create(beside: &Path) -> Result<Self, FileError> {
-        let name = beside.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let path = beside.with_file_name(format!(".{name}.{}.rows", std::process::id()));
-        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path);
-        let file = file.map_err(|source| refused(beside, source))?;
-        Ok(Self { file: BufWriter::with_capacity(BUFFER, file), path })
+    /// Rows of the file that will stand at `file`.
+    fn create(file: &Path) -> Result<Self, FileError> {
+        let path = beside::beside(file, beside::ROWS);
+        let mut options = File::options();
+        let rows = options.read(true).write(true).create(true).truncate(true).open(&path);
+        let rows = rows.map_err(|source| refused(file, source))?;
+        beside::claim(&rows);
+        Ok(Self { file: BufWriter::with_capacity(BUFFER, rows), path })
     }
 }
 

@@ -1,12 +1,16 @@
 //! The manifest of a run: what was run, by which program, on which machine, when.
 
+use crate::clock::now;
 use crate::{FileError, library};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::fs;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::Path;
 
+/// Bytes of a file that are taken in at once.
+const BUFFER: usize = 1 << 20;
 /// Version of the layout of [`Manifest`].
 const SCHEMA_VERSION: u32 = 1;
 
@@ -32,11 +36,17 @@ pub struct Manifest {
     /// SHA-256 of the text of each turbine model, and of each controller's own input file and its table,
     /// hexadecimal.
     pub turbines_sha256: BTreeMap<String, String>,
+    /// SHA-256 of each file of wind that the run blew from, hexadecimal, by its path as the case names it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub wind_sha256: BTreeMap<String, String>,
     /// Text of each of them that is not of the library, so that records can be asked anew without its file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub own_turbines: BTreeMap<String, String>,
     /// The machine.
     pub machine: Machine,
+    /// What of the machine decides the bits of the run, in words; absent until it is complete.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub backend: Option<String>,
     /// Start of the run's first session (UTC, RFC 3339).
     pub started: String,
     /// End of the run's last session (UTC, RFC 3339); absent while it goes on.
@@ -100,46 +110,50 @@ impl Manifest {
             case_text: case_text.to_owned(),
             case_sha256: sha256(case_text.as_bytes()),
             turbines_sha256,
+            wind_sha256: BTreeMap::new(),
             own_turbines,
+            backend: None,
             machine: Machine::here(),
             started: now(),
             finished: None,
         }
     }
 
-    /// The manifest of the same run, ended now.
-    pub fn finish(mut self) -> Self {
-        self.finished = Some(now());
-        self
+    /// The manifest of the same run in the wind of files with these SHA-256.
+    pub fn in_wind(self, wind_sha256: BTreeMap<String, String>) -> Self {
+        Self { wind_sha256, ..self }
+    }
+
+    /// The manifest of the same run, ended now, computed with `backend`.
+    pub fn finish(self, backend: &str) -> Self {
+        Self { finished: Some(now()), backend: Some(backend.to_owned()), ..self }
     }
 }
 
 /// SHA-256 of `bytes`, hexadecimal, as `sha256sum` prints it.
 pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(Sha256::new_with_prefix(bytes))
 }
 
-/// This moment (UTC, RFC 3339, whole seconds).
-pub fn now() -> String {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    moment(since.as_secs())
+/// SHA-256 of the file at `path`, which holds `what`, as `sha256sum` prints it; of any length in little
+/// memory.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn sha256_of_file(path: &Path, what: &'static str) -> Result<String, FileError> {
+    let failed = |source| FileError::system("read", what, path, source);
+    let mut file = File::open(path).map_err(failed)?;
+    let (mut digest, mut bytes) = (Sha256::new(), vec![0; BUFFER]);
+    loop {
+        match file.read(&mut bytes).map_err(failed)? {
+            0 => return Ok(hexadecimal(digest)),
+            n => digest.update(&bytes[..n]),
+        }
+    }
 }
 
-/// The moment so many seconds after the start of 1970, UTC, proleptic Gregorian.
-fn moment(seconds: u64) -> String {
-    let (days, second) = (seconds / 86_400, seconds % 86_400);
-    // Years that start in March, in cycles of 400 years, put the odd day last.
-    let days = days + 719_468;
-    let (era, day_of_era) = (days / 146_097, days % 146_097);
-    let year_of_era =
-        (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let march_month = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * march_month + 2) / 5 + 1;
-    let month = if march_month < 10 { march_month + 3 } else { march_month - 9 };
-    let year = 400 * era + year_of_era + u64::from(month <= 2);
-    let (hour, minute, second) = (second / 3_600, second / 60 % 60, second % 60);
-    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
+fn hexadecimal(digest: Sha256) -> String {
+    digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Reads a manifest.
@@ -163,19 +177,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moments_follow_the_calendar() {
-        assert_eq!(moment(0), "1970-01-01T00:00:00Z");
-        assert_eq!(moment(951_782_400), "2000-02-29T00:00:00Z");
-        assert_eq!(moment(1_000_000_000), "2001-09-09T01:46:40Z");
-        assert_eq!(moment(4_107_542_399), "2100-02-28T23:59:59Z");
-        assert_eq!(moment(4_107_542_400), "2100-03-01T00:00:00Z");
-    }
-
-    #[test]
     fn digests_are_those_of_the_standard() {
         // FIPS 180-2, appendix B.1.
         let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(sha256(b"abc"), expected);
+        let file = tempfile::NamedTempFile::new().unwrap();
+        for bytes in [&b"abc"[..], &[], &[7; BUFFER], &[7; 2 * BUFFER + 12_345]] {
+            fs::write(file.path(), bytes).unwrap();
+            assert_eq!(sha256_of_file(file.path(), "bytes").unwrap(), sha256(bytes));
+        }
     }
 
     #[test]

@@ -11,13 +11,17 @@ mod study;
 #[cfg(test)]
 mod summary_page;
 
-pub use manifest::{Machine, Manifest, now, read_manifest, sha256, write_manifest};
-pub use pitch_responses::{PitchResponseRecord, read_pitch_responses, write_pitch_responses};
+pub use crate::clock::now;
+pub use manifest::{Machine, Manifest, read_manifest, sha256, sha256_of_file, write_manifest};
+pub use pitch_responses::{
+    PitchResponseRecord, add_pitch_responses, read_pitch_responses, write_pitch_responses,
+};
 pub use series::SeriesWriter;
 pub use series_file::{SeriesFile, read_series};
 pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
 
-use crate::{FileError, atomic, netcdf, vtk};
+use crate::lock::Lock;
+use crate::{FileError, atomic, leftovers, netcdf, vtk};
 use basis::records::{Plane, SCHEMA_VERSION, Summary};
 use flow::lattice::Volume;
 use serde::de::DeserializeOwned;
@@ -29,6 +33,8 @@ use std::path::{Path, PathBuf};
 
 /// What the name of a recorded wind begins with.
 const INFLOW: &str = "inflow-";
+/// What the name of a turbine's record in OpenFAST's format ends with.
+const OUTB: &str = ".outb";
 const SUMMARY: &str = "the summary of a run";
 
 /// The folder of one run.
@@ -63,7 +69,8 @@ impl RunFolder {
         for file in [summary, self.checkpoint_path(), series, part, self.manifest_path()] {
             gone(fs::remove_file(&file), &file)?;
         }
-        self.remove_inflows("")?;
+        self.remove_named(INFLOW, "")?;
+        self.remove_named("", OUTB)?;
         for folder in [self.planes_path(), self.volumes_path()] {
             gone(fs::remove_dir_all(&folder), &folder)?;
         }
@@ -75,14 +82,24 @@ impl RunFolder {
         self.summary_path().is_file()
     }
 
-    /// Takes away the files of recorded wind whose names end in `ending`.
-    fn remove_inflows(&self, ending: &str) -> Result<(), FileError> {
+    /// The lock of the run: whoever holds it, until it is dropped, writes the run.
+    ///
+    /// # Errors
+    /// [`FileError::Held`] says who else does; [`FileError::System`].
+    pub fn lock(&self) -> Result<Lock, FileError> {
+        let (study, run) = (self.path.parent().unwrap_or(Path::new("")), self.run());
+        let what = format!("run {run} in {}", study.display());
+        Lock::take(&study.join(format!(".{run}.lock")), &what)
+    }
+
+    /// Takes away the files whose names begin with `beginning` and end in `ending`.
+    fn remove_named(&self, beginning: &str, ending: &str) -> Result<(), FileError> {
         if !self.path.is_dir() {
             return Ok(());
         }
         for file in study::entries(&self.path)? {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
-            if name.starts_with(INFLOW) && name.ends_with(ending) {
+            if name.starts_with(beginning) && name.ends_with(ending) {
                 gone(fs::remove_file(&file), &file)?;
             }
         }
@@ -94,18 +111,19 @@ impl RunFolder {
     /// # Errors
     /// [`FileError::System`].
     pub fn remove_checkpoint(&self) -> Result<(), FileError> {
-        self.remove_inflows(".part")?;
+        self.remove_named(INFLOW, ".part")?;
         gone(fs::remove_file(self.checkpoint_path()), &self.checkpoint_path())
     }
 
-    /// Takes away what a killed process was writing: no name that anything reads.
+    /// Takes away what a killed process was writing: no name that anything reads. Only whoever holds the
+    /// [`lock`](Self::lock) may.
     ///
     /// # Errors
     /// [`FileError::System`].
     pub fn remove_leftovers(&self) -> Result<(), FileError> {
         for folder in [self.path.clone(), self.planes_path(), self.volumes_path()] {
             if folder.is_dir() {
-                atomic::remove_leftovers(&folder)?;
+                leftovers::remove_leftovers(&folder)?;
             }
         }
         Ok(())

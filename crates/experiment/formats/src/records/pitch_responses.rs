@@ -1,6 +1,7 @@
 //! Pitch responses identified before the runs of a study: `DIR/probes.json`, so that a resumed study need
 //! not identify them again.
 
+use crate::lock::Lock;
 use crate::{FileError, atomic};
 use basis::records::PitchResponse;
 use serde::{Deserialize, Serialize};
@@ -44,9 +45,51 @@ pub fn write_pitch_responses(
     super::write_json(&path_in(study), WHAT, &records)
 }
 
+/// Adds `records` to what was identified for the study in the folder `study`, each key once; others may do so
+/// at the same time.
+///
+/// # Errors
+/// Those of [`read_pitch_responses`] and [`write_pitch_responses`].
+pub fn add_pitch_responses(study: &Path, records: &[PitchResponseRecord]) -> Result<(), FileError> {
+    let _lock = Lock::wait(&study.join(".probes.lock"))?;
+    let mut all = read_pitch_responses(study)?;
+    for record in records {
+        match all.iter_mut().find(|known| known.key == record.key) {
+            Some(known) => *known = record.clone(),
+            None => all.push(record.clone()),
+        }
+    }
+    write_pitch_responses(study, &all)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_several_add_at_once_is_all_there() {
+        let study = tempfile::tempdir().unwrap();
+        let folder = study.path().join("study");
+        let record = |key: usize, azimuth_offset: f64| PitchResponseRecord {
+            key: key.to_string(),
+            turbine: "T1".into(),
+            response: PitchResponse::IndividualPitch { azimuth_offset },
+        };
+        std::thread::scope(|scope| {
+            for thread in 0..4 {
+                let (folder, record) = (&folder, &record);
+                scope.spawn(move || {
+                    let found: Vec<_> = (0..6).map(|n| record(10 * thread + n, 0.1)).collect();
+                    (1..=6).for_each(|n| add_pitch_responses(folder, &found[..n]).unwrap());
+                });
+            }
+        });
+        assert_eq!(read_pitch_responses(&folder).unwrap().len(), 24);
+        add_pitch_responses(&folder, &[record(0, 0.2)]).unwrap();
+        let all = read_pitch_responses(&folder).unwrap();
+        assert_eq!(all.len(), 24);
+        assert!(all.contains(&record(0, 0.2)) && !all.contains(&record(0, 0.1)));
+    }
 
     #[test]
     fn numbers_come_back_with_their_bits() {

@@ -2,12 +2,12 @@
 
 use crate::{FileError, atomic};
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 pub(super) const WHAT: &str = "the series";
 pub(super) const BUFFER: usize = 1 << 18;
-const FIX: &str = "start the run afresh, without --resume";
+const FIX: &str = "start the run afresh, with --overwrite in place of --resume";
 
 /// Writes rows as they come; the file bears its name once it is whole, until then `.part` after it.
 ///
@@ -38,13 +38,13 @@ impl SeriesWriter {
         Ok(writer)
     }
 
-    /// Goes on with the series that will stand at `path` after its first `n_bytes`; what came after them
-    /// goes.
+    /// Goes on with the series that will stand at `path`, with the channels `names`, after its first
+    /// `n_bytes`; what came after them goes.
     ///
     /// # Errors
-    /// [`FileError::System`], and [`FileError::Content`] when it is shorter than that or does not end a row
-    /// there.
-    pub fn resume(path: &Path, n_bytes: u64) -> Result<Self, FileError> {
+    /// [`FileError::System`], and [`FileError::Content`] when it is shorter than that, does not end a row
+    /// there or has other channels.
+    pub fn resume(path: &Path, names: &[String], n_bytes: u64) -> Result<Self, FileError> {
         let part = atomic::part_of(path);
         let failed = |source| FileError::system("read", WHAT, &part, source);
         if !part.exists() && path.exists() {
@@ -58,17 +58,18 @@ impl SeriesWriter {
             return Err(FileError::content(WHAT, &part, problem, FIX));
         }
         let mut header = String::new();
-        BufReader::new(&file).read_line(&mut header).map_err(failed)?;
+        let most = names.iter().map(|name| name.len() as u64 + 1).sum::<u64>() + 1;
+        BufReader::new((&file).take(most)).read_line(&mut header).map_err(failed)?;
+        check_names(&part, header.trim_end(), names)?;
         let mut last = [0];
         file.seek(SeekFrom::Start(n_bytes - 1)).map_err(failed)?;
-        io::Read::read_exact(&mut file, &mut last).map_err(failed)?;
+        file.read_exact(&mut last).map_err(failed)?;
         if last != *b"\n" {
             let problem = format!("no row ends at byte {n_bytes}, as the checkpoint says");
             return Err(FileError::content(WHAT, &part, problem, FIX));
         }
         file.set_len(n_bytes).map_err(failed)?;
-        let n_columns = header.trim_end().split(',').count();
-        Ok(Self::new(file, part, path, n_columns, n_bytes))
+        Ok(Self::new(file, part, path, names.len(), n_bytes))
     }
 
     fn new(file: File, part: PathBuf, path: &Path, n_columns: usize, n_bytes: u64) -> Self {
@@ -134,6 +135,27 @@ impl SeriesWriter {
     }
 }
 
+/// Whether the series at `part`, which begins with `header`, has the channels `names`.
+fn check_names(part: &Path, header: &str, names: &[String]) -> Result<(), FileError> {
+    let mut found = header.split(',');
+    for (index, name) in names.iter().enumerate() {
+        let here = found.next().unwrap_or_default();
+        if here != name {
+            let problem = format!(
+                "line 1: channel {} is `{here}`, this run writes `{name}` there, one of {}",
+                index + 1,
+                names.len()
+            );
+            return Err(FileError::content(WHAT, part, problem, FIX));
+        }
+    }
+    if found.next().is_some() {
+        let problem = format!("line 1: it has more than the {} channels of this run", names.len());
+        return Err(FileError::content(WHAT, part, problem, FIX));
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::read_series;
@@ -172,7 +194,7 @@ mod tests {
         drop(writer);
         assert!(!broken.exists());
 
-        let mut writer = SeriesWriter::resume(&broken, n_bytes).unwrap();
+        let mut writer = SeriesWriter::resume(&broken, &names(), n_bytes).unwrap();
         (120..300).for_each(|step| writer.write(&row(step)).unwrap());
         writer.finish().unwrap();
         assert_eq!(fs::read(&whole).unwrap(), fs::read(&broken).unwrap());
@@ -194,7 +216,7 @@ mod tests {
         let n_bytes = writer.flush().unwrap();
         writer.write(&row(1)).unwrap();
         writer.finish().unwrap();
-        let mut writer = SeriesWriter::resume(&path, n_bytes).unwrap();
+        let mut writer = SeriesWriter::resume(&path, &names(), n_bytes).unwrap();
         writer.write(&row(1)).unwrap();
         writer.finish().unwrap();
         assert_eq!(read_series(&path, |_| true).unwrap().columns[0].len(), 2);
@@ -207,12 +229,38 @@ mod tests {
         let mut writer = SeriesWriter::create(&path, &names()).unwrap();
         writer.write(&row(1)).unwrap();
         let n_bytes = writer.flush().unwrap();
-        let error = SeriesWriter::resume(&path, n_bytes + 10).unwrap_err();
+        let error = SeriesWriter::resume(&path, &names(), n_bytes + 10).unwrap_err();
         assert!(error.to_string().contains("the checkpoint has"), "{error}");
-        let error = SeriesWriter::resume(&path, n_bytes - 3).unwrap_err();
+        let error = SeriesWriter::resume(&path, &names(), n_bytes - 3).unwrap_err();
         assert!(error.to_string().contains("no row ends at byte"), "{error}");
-        let error = SeriesWriter::resume(&folder.path().join("other.csv"), 5).unwrap_err();
+        let error =
+            SeriesWriter::resume(&folder.path().join("other.csv"), &names(), 5).unwrap_err();
         assert!(error.to_string().contains("cannot read the series"), "{error}");
+    }
+
+    #[test]
+    fn a_series_of_other_channels_is_told_and_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("series.csv");
+        let fewer: Vec<String> = names()[..2].to_vec();
+        let renamed: Vec<String> = names().iter().map(|name| name.replace("T1", "T22")).collect();
+        for (written, said) in [
+            (fewer, "channel 3 is ``, this run writes `T1.pitch_1_rad` there, one of 3"),
+            ([names(), names()].concat(), "more than the 3 channels of this run"),
+            (renamed, "channel 2 is `T22.power_w`, this run writes `T1.power_w`"),
+        ] {
+            let mut writer = SeriesWriter::create(&path, &written).unwrap();
+            writer.write(&vec![0.5; written.len()]).unwrap();
+            let n_bytes = writer.flush().unwrap();
+            drop(writer);
+            let before = fs::read(folder.path().join("series.csv.part")).unwrap();
+            let error = SeriesWriter::resume(&path, &names(), n_bytes).unwrap_err();
+            assert!(error.to_string().contains(said), "{error}");
+            assert!(error.to_string().contains("series.csv.part"), "{error}");
+            let help = miette::Diagnostic::help(&error).unwrap().to_string();
+            assert!(help.contains("--overwrite"), "{help}");
+            assert!(fs::read(folder.path().join("series.csv.part")).unwrap() == before);
+        }
     }
 
     proptest! {

@@ -37,6 +37,11 @@ impl SeriesFile {
         Ok(Self { path: path.to_owned(), names, n_rows, n_bytes })
     }
 
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Names of its channels, in the order of its columns.
     pub fn names(&self) -> &[String] {
         &self.names

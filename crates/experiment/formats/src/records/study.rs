@@ -133,17 +133,36 @@ fn place(run: &Manifest) -> (usize, &str) {
 fn warnings(runs: &[RunRecords], latest: &Manifest) -> Vec<Warning> {
     let differs = |run: &&RunRecords| {
         let run = &run.manifest;
-        run.case_sha256 != latest.case_sha256 || run.turbines_sha256 != latest.turbines_sha256
+        run.case_sha256 != latest.case_sha256
+            || run.turbines_sha256 != latest.turbines_sha256
+            || run.wind_sha256 != latest.wind_sha256
     };
     let warn = |run: &RunRecords| Warning {
         kind: WarningKind::MixedRuns,
         turbine: None,
         message: format!(
-            "run {} was made with another version of the case or of a turbine than run {}",
+            "run {} was made with another version of the case, of a turbine or of a file of wind than run {}",
             run.manifest.run, latest.run
         ),
     };
-    runs.iter().filter(differs).map(warn).collect()
+    let computes_otherwise = |run: &&RunRecords| {
+        run.manifest.version != latest.version || run.manifest.backend != latest.backend
+    };
+    let computed = |run: &Manifest| {
+        let backend = run.backend.as_deref().unwrap_or("an unknown back-end");
+        format!("{} with wakemix {} on {backend}", run.run, run.version)
+    };
+    let warn_of_bits = |run: &RunRecords| Warning {
+        kind: WarningKind::MixedRuns,
+        turbine: None,
+        message: format!(
+            "run {} was computed, and run {}: turbulence parts their last digits soon, and with them what is in the wind by chance",
+            computed(&run.manifest),
+            computed(latest)
+        ),
+    };
+    let mixed = runs.iter().filter(differs).map(warn);
+    mixed.chain(runs.iter().filter(computes_otherwise).map(warn_of_bits)).collect()
 }
 
 /// The phase (rad) in a file's `name` such as `hub-height-phase-010.nc`.
@@ -246,7 +265,7 @@ mod tests {
         };
         write_volume(&folder, 0, &volume).unwrap();
         write_summary(&folder, &summary(&manifest.run)).unwrap();
-        write_manifest(&folder, &manifest.finish()).unwrap();
+        write_manifest(&folder, &manifest.finish("portable")).unwrap();
         folder
     }
 

@@ -85,9 +85,9 @@ pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
         mean_speeds,
         description,
     } = source.outline();
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let files = ["u", "v", "w"].map(|component| format!("{stem}_{component}.bin"));
-    let paths = files.each_ref().map(|name| path.with_file_name(name));
+    let paths = binaries(path);
+    let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let files = paths.each_ref().map(name);
     let create = |component: usize| AtomicFile::create(&paths[component], COMPONENT);
     let mut written = [create(0)?, create(1)?, create(2)?];
     let [n_x, n_y, n_z] = n_points;
@@ -115,6 +115,22 @@ pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
         FileError::content(WHAT, path, error.to_string(), "check the numbers of the box")
     })?;
     atomic::write(path, WHAT, format!("{PREFACE}\n{text}").as_bytes())
+}
+
+/// The binaries that are written with the header at `path`.
+pub(super) fn binaries(path: &Path) -> [PathBuf; 3] {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    ["u", "v", "w"].map(|component| path.with_file_name(format!("{stem}_{component}.bin")))
+}
+
+/// The header at `path` and the binaries that it names.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let header = read_header(path)?;
+    let binaries = header.layout.files.iter().map(|name| path.with_file_name(name));
+    Ok(std::iter::once(path.to_owned()).chain(binaries).collect())
 }
 
 /// Reads the header at `path` and the binaries that it names, beside it.

@@ -21,7 +21,7 @@ pub use recorder::WindRecorder;
 pub use source::{Outline, Source};
 pub use turbsim::{open as open_turbsim, read as read_turbsim, write as write_turbsim};
 
-use crate::FileError;
+use crate::{FileError, leftovers};
 use flow::inflow::{InflowError, PlaneGrid, Planes, TurbulenceBox};
 use std::path::{Path, PathBuf};
 
@@ -71,6 +71,22 @@ pub fn open(path: &Path) -> Result<Box<dyn Planes>, FileError> {
     })
 }
 
+/// Paths of all files that the box at `path` is read from: its own first, then those that belong to it.
+///
+/// # Errors
+/// [`FileError`] for a name that is none of a box, and for a header that cannot be read.
+pub fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+    Ok(match kind(path)? {
+        Kind::Hawc(header) => hawc::files(&header)?,
+        Kind::TurbSim => vec![path.to_owned()],
+        Kind::Bladed => {
+            let summary = path.with_extension("sum");
+            let summary = summary.exists().then_some(summary);
+            std::iter::once(path.to_owned()).chain(summary).collect()
+        }
+    })
+}
+
 /// Writes `stored` to `path`, whose extension chooses the format as in [`read`].
 ///
 /// # Errors
@@ -95,8 +111,15 @@ pub fn convert(from: &Path, to: &Path) -> Result<(), FileError> {
     }
 }
 
-/// Writes the box of `source` as [`write()`] does.
+/// Writes the box of `source` as [`write()`] does; what killed processes have left of it goes.
 fn write_from(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    // A folder that is not there is told by the writer.
+    for file in written(path)?.iter().filter(|_| folder.is_dir()) {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        leftovers::remove_abandoned(folder, Some(&name))?;
+    }
     match kind(path)? {
         Kind::Hawc(header) => hawc::write(&header, source),
         Kind::TurbSim => turbsim::write(path, source),
@@ -110,6 +133,17 @@ fn write_from(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
 /// [`FileError::Content`] when its ending names no format.
 pub fn check_name(path: &Path) -> Result<(), FileError> {
     kind(path).map(|_| ())
+}
+
+/// Paths of the files that a box at `path` is written to.
+fn written(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+    Ok(match kind(path)? {
+        Kind::Hawc(header) => {
+            std::iter::once(header.clone()).chain(hawc::binaries(&header)).collect()
+        }
+        Kind::TurbSim => vec![path.to_owned()],
+        Kind::Bladed => vec![path.to_owned(), path.with_extension("sum")],
+    })
 }
 
 enum Kind {

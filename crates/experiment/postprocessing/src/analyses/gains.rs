@@ -24,7 +24,7 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
         GainsQuestion { studies: request.folders.clone(), runs: request.texts("run").to_vec() };
     let answer = gains_over_seeds(&question)?;
     let json = json(&answer, &question.studies);
-    Ok(Answer { text: text(&answer), json, remarks: Vec::new() })
+    Ok(Answer { text: text(&answer), json, remarks: answer.undefined })
 }
 
 /// Runs × turbines: gain in each wind and in all of them, in percent; the conventions below.
@@ -114,6 +114,7 @@ mod tests {
                     part("downstream", [0.047, 0.043], 0.0254),
                 ],
             }],
+            undefined: Vec::new(),
         }
     }
 

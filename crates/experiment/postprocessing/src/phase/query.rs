@@ -2,6 +2,7 @@
 
 use super::{PhaseQuestion, Truth, tells, truth};
 use crate::PostprocessingError;
+use crate::error::{InRecords, case_of};
 use analysis::phase::Reference;
 use basis::records::{Series, Summary};
 use control::excitation_rate;
@@ -9,7 +10,7 @@ use control::phase_sync::{PHASE_SYNC, PhaseSyncSettings, calibration_of};
 use estimation::helix::Calibration;
 use farm::case::{Case, Control, helix_upstream};
 use formats::records::{self, Manifest, RunFolder};
-use formats::{case, library, turbine_file};
+use formats::{library, turbine_file};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
@@ -48,6 +49,8 @@ pub(super) struct Query<'r> {
     pub(super) pitches: bool,
     /// What [`tells`] of the phase, over time.
     pub(super) series: &'r Series,
+    /// Where that stands.
+    pub(super) path: PathBuf,
     pub(super) truth: Truth,
 }
 
@@ -55,8 +58,8 @@ impl<'q> Records<'q> {
     pub(super) fn read(question: &'q PhaseQuestion) -> Result<Self, PostprocessingError> {
         let folder = folder_of(&question.run);
         let manifest = records::read_manifest(&folder)?;
-        let case = case::parse("the manifest's case", &manifest.case_text, &[])?;
-        let turbines = turbines_of(question, &case, &manifest)?;
+        let case = case_of(&folder, &manifest)?;
+        let turbines = turbines_of(question, &case, &manifest, &folder)?;
         let summary = records::read_summary(&folder)?;
         let wanted = |channel: &str| tells_of_any(&case, &turbines, channel);
         let series = records::read_series(&folder.series_path(), wanted)?;
@@ -78,6 +81,7 @@ impl<'q> Records<'q> {
         let (sense, strouhal) = helix.ok_or_else(|| PostprocessingError::NoHelix {
             run: manifest.run.clone(),
             turbine: turbine.name.clone(),
+            folder: self.folder.path().to_owned(),
         })?;
         let rate =
             excitation_rate(strouhal, case.wind.speed, self.summary.conditions.rotor_diameter);
@@ -99,7 +103,8 @@ impl<'q> Records<'q> {
             Some(folder) => {
                 let wanted = |channel: &str| tells_of_any(case, turbines, channel);
                 let series = read_once(without, folder.series_path(), wanted)?;
-                truth(&folder.run(), &turbine.name, series, &reference)?
+                truth(&folder.run(), &turbine.name, series, &reference)
+                    .in_records(&folder.series_path())?
             }
             None => None,
         };
@@ -110,7 +115,7 @@ impl<'q> Records<'q> {
         let own = control[index].kind().pitching(&control[index]);
         let pitches = own.is_some_and(|own| own.sense.is_some() && own.amplitude != 0.0);
         let sync = PhaseSyncSettings::of(&control[index]);
-        let definition = Arc::new(rotor(&turbine.model, manifest)?);
+        let definition = Arc::new(rotor(&turbine.model, manifest, &self.folder)?);
         let recorded = self.summary.turbines.iter().find(|recorded| recorded.name == turbine.name);
         let response = recorded.and_then(|recorded| recorded.pitch_response.as_ref());
         let calibration = response.and_then(calibration_of);
@@ -124,6 +129,7 @@ impl<'q> Records<'q> {
             sync,
             pitches,
             series: &self.series,
+            path: self.folder.series_path(),
             truth,
         })
     }
@@ -155,6 +161,7 @@ fn turbines_of(
     question: &PhaseQuestion,
     case: &Case,
     manifest: &Manifest,
+    folder: &RunFolder,
 ) -> Result<Vec<usize>, PostprocessingError> {
     let control = &case.runs[manifest.run_index].control;
     let is_asked = |&index: &usize| match &question.turbine {
@@ -167,6 +174,7 @@ fn turbines_of(
             run: manifest.run.clone(),
             requested: question.turbine.clone(),
             turbines: case.turbines.iter().map(|turbine| turbine.name.clone()).collect(),
+            folder: folder.path().to_owned(),
         });
     }
     Ok(turbines)
@@ -182,13 +190,19 @@ pub(crate) fn tells_truth(
 ) -> bool {
     let x = |turbine: usize| case.turbines[turbine].position_diameters[0];
     let mut upstream = (0..case.turbines.len()).filter(|&other| x(other) < x(index));
-    !without[index].is_there() && upstream.all(|other| without[other] == with[other])
+    let is_away = without.get(index).is_some_and(|control| !control.is_there());
+    is_away && upstream.all(|other| without.get(other) == with.get(other))
 }
 
-/// The turbine called `model` as it was in the run of `manifest`.
-fn rotor(model: &str, manifest: &Manifest) -> Result<Definition, PostprocessingError> {
+/// The turbine called `model` as it was in the run of `manifest`, in `folder`.
+fn rotor(
+    model: &str,
+    manifest: &Manifest,
+    folder: &RunFolder,
+) -> Result<Definition, PostprocessingError> {
+    let name = || format!("own_turbines.{model} of {}", folder.manifest_path().display());
     let file = match manifest.own_turbines.get(model) {
-        Some(text) => turbine_file::parse(&format!("{model} of run {}", manifest.run), text)?,
+        Some(text) => turbine_file::parse(&name(), text)?,
         None => library::load(model)?,
     };
     Ok(file.definition)

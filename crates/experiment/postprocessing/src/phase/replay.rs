@@ -3,6 +3,7 @@
 use super::query::{Query, Records};
 use super::{Estimates, PhaseQuestion, Wave, column};
 use crate::PostprocessingError;
+use crate::error::InRecords;
 use analysis::phase::uniform_interval;
 use basis::{Measurements, PerBlade};
 use control::ControlError;
@@ -53,10 +54,15 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
     let mut records = Records::read(question)?;
     let first = records.turbines[0];
     let query = records.query(first)?;
+    tuned(question, &query).in_records(&query.path)
+}
+
+/// What tuning finds for the turbine of `query`.
+fn tuned(question: &PhaseQuestion, query: &Query<'_>) -> Result<Tuned, PostprocessingError> {
     let truth = &query.truth.wind;
     let interval = uniform_interval(column(query.series, "time_s")?)?;
     let from = question.from.unwrap_or(query.case.time.spin_up);
-    let whole = record(&query, interval)?;
+    let whole = record(query, interval)?;
     let (mut measured, mut tilt, mut yaw) = (Vec::new(), Vec::new(), Vec::new());
     for measurements in whole {
         let at = truth.index_at(measurements.time).filter(|at| truth.trusted.contains(at));
@@ -67,8 +73,8 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
         }
     }
     let estimator = question.estimator.unwrap_or(PhaseEstimator::Robust);
-    let options = options(&query, estimator);
-    let setting = setting(&query, interval);
+    let options = options(query, estimator);
+    let setting = setting(query, interval);
     let tuned = tuning::tune(&query.definition, &setting, options, &measured, [&tilt, &yaw]);
     Ok(tuned.map_err(not_estimated)?)
 }

@@ -52,7 +52,7 @@ fn leave(folder: &Path, text: &str, index: usize, powers: &[(&str, f64)]) {
         conditions: Conditions { seed: case.wind.seed, ..made.conditions },
         ..made
     };
-    records::write_manifest(&run, &manifest.finish()).expect("a file");
+    records::write_manifest(&run, &manifest.finish("portable")).expect("a file");
     records::write_summary(&run, &summary).expect("a file");
 }
 
@@ -110,6 +110,20 @@ fn gains_of_three_winds_have_the_interval_of_student() {
     assert!((parts[0].together.mean - 0.322 / 3.0).abs() < 1e-12);
     // What is the same in all winds is certain.
     assert!(parts[1].together.half_width_95.is_some_and(|half_width| half_width < 1e-12));
+}
+
+#[test]
+fn a_gain_over_no_power_is_left_out_and_told() {
+    let studies = [1, 2].map(|seed| study(seed, [0.1, 0.0, 0.2]));
+    let [p3, p1, _] = BASELINE;
+    // In one wind T2 stands still at baseline.
+    leave(studies[1].path(), &seeded(2), 0, &[("T3", p3), ("T1", p1), ("T2", 0.0)]);
+    let answer = ask(&studies.each_ref(), &["helix"]).expect("the rest");
+    let names: Vec<&str> = answer.runs[0].parts.iter().map(|part| part.name.as_str()).collect();
+    assert_eq!(names, ["T3", "T1", "downstream", "all"]);
+    let [told] = answer.undefined.as_slice() else { panic!("{:?}", answer.undefined) };
+    assert!(told.contains("T2") && told.contains("baseline"), "{told}");
+    assert!(told.contains(&studies[1].path().display().to_string()), "{told}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
-use super::slices::{self, POINT_BYTES, Slice};
+use super::slices::{self, Slice};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use basis::keys::Values;
@@ -24,7 +24,7 @@ fn schedule(setup: &Prepared) -> Option<Schedule> {
 
 fn disk(setup: &Prepared, _run: &Run, _: &Values) -> u64 {
     let n_times = schedule(setup).map_or(0, |schedule| schedule.count(setup.plan.n_steps));
-    n_times * slices::n_points(setup) * POINT_BYTES
+    n_times * slices::file_bytes(setup)
 }
 
 struct InstantPlanes {

@@ -3,7 +3,7 @@
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::Stored;
-use super::slices::{self, POINT_BYTES};
+use super::slices;
 use crate::error::StudyError;
 use formats::records::write_last_plane;
 
@@ -11,7 +11,7 @@ pub(super) static KIND: OutputKind = OutputKind {
     name: "last planes",
     keys: Keys::OfOutput(&[]),
     fed_by: FedBy::ResolvedFlow,
-    disk: |setup, _, _| slices::n_points(setup) * POINT_BYTES,
+    disk: |setup, _, _| slices::file_bytes(setup),
     begin,
 };
 

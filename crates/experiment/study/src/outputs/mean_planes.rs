@@ -3,7 +3,7 @@
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
-use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
+use super::slices::{self, SUM_BYTES, Slice};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use flow::fields::{FieldSource, PlaneAverage, PlaneAverageState};
@@ -27,7 +27,7 @@ pub(super) static KIND: OutputKind = OutputKind {
     name: "mean planes",
     keys: Keys::OfOutput(&["crosswind_diameters"]),
     fed_by: FedBy::ResolvedFlow,
-    disk: |setup, _, _| slices::n_points(setup) * (POINT_BYTES + SUM_BYTES),
+    disk: |setup, _, _| slices::file_bytes(setup) + slices::n_points(setup) * SUM_BYTES,
     begin,
 };
 

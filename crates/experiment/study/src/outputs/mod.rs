@@ -97,22 +97,18 @@ impl Outputs {
         &self.0
     }
 
-    /// About how much the run of `setup` that leaves most puts on the disk (bytes).
-    pub fn disk(&self, setup: &Prepared) -> u64 {
+    /// How much `run` of `setup` puts on the disk at most at any time (bytes), what these outputs add to two
+    /// checkpoints included.
+    pub fn disk_of_run(&self, setup: &Prepared, run: &Run) -> u64 {
         let case = &setup.case;
-        let usual = |kind: &&&OutputKind| !kind.is_named() && kind.fed_by.admits(case);
-        let fed = || self.0.iter().filter(usual);
-        let of_run = |run: &Run| -> u64 {
-            let nothing = Values::none();
-            let usual: u64 = fed().map(|kind| (kind.disk)(setup, run, &nothing)).sum();
-            let further = case.output.further.iter().map(|requested| {
-                // One that nobody writes takes no room.
-                writers::kind_of(requested)
-                    .map_or(0, |kind| (kind.disk)(setup, run, &requested.values))
-            });
-            usual + further.sum::<u64>()
-        };
-        case.runs.iter().map(of_run).max().unwrap_or(0)
+        let nothing = Values::none();
+        let usual = self.0.iter().filter(|kind| !kind.is_named() && kind.fed_by.admits(case));
+        let usual: u64 = usual.map(|kind| (kind.disk)(setup, run, &nothing)).sum();
+        let further = case.output.further.iter().map(|requested| {
+            // One that nobody writes takes no room.
+            writers::kind_of(requested).map_or(0, |kind| (kind.disk)(setup, run, &requested.values))
+        });
+        usual + further.sum::<u64>()
     }
 }
 

@@ -4,8 +4,10 @@ use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::Stored;
 use super::series;
+use crate::channels;
 use crate::error::StudyError;
 use crate::prepared::Prepared;
+use basis::keys::Values;
 use farm::case::Run;
 use formats::openfast_output::{Encoding, Layout, OutbWriter};
 use formats::records::RunFolder;
@@ -21,16 +23,27 @@ const RENAMED: [(&str, &str, &str, f64); 6] = [
     ("{}.aerodynamic_torque_nm", "RtFldMxh", "N-m", 1.0),
 ];
 
-/// Bytes of a value in the file.
+/// Bytes of a value in the file, and in the rows that gather beside the file of one turbine at a time.
 const VALUE_BYTES: u64 = size_of::<i16>() as u64;
+const GATHERED_BYTES: u64 = size_of::<f64>() as u64;
+/// Bytes of a channel above the rows: name, unit, range.
+const HEADER_BYTES: u64 = 32;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "outb",
     keys: Keys::OfOutput(&[]),
     fed_by: FedBy::PrescribedWind,
-    disk: |setup, run, _| series::n_values(setup, run) * VALUE_BYTES,
+    disk,
     begin,
 };
+
+fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
+    let n_rows = series::n_rows(setup);
+    let of_turbine = |index: usize| (RENAMED.len() + 1 + channels::n_loads(setup, index)) as u64;
+    let n_channels: u64 = run.present().map(of_turbine).sum();
+    let most = run.present().map(of_turbine).max().unwrap_or(0);
+    n_channels * (n_rows * VALUE_BYTES + HEADER_BYTES) + most * n_rows * GATHERED_BYTES
+}
 
 struct Outb;
 

@@ -21,8 +21,8 @@ pub struct OutputKind {
     pub keys: Keys,
     /// The flows that it can be made of.
     pub fed_by: FedBy,
-    /// About how much one run leaves on the disk (bytes), what it adds to two checkpoints included; the
-    /// values are those of its own keys.
+    /// How much one run puts on the disk at most at any time (bytes), what it adds to two checkpoints
+    /// included: from the bytes that it writes, never below them. The values are those of its own keys.
     pub disk: fn(&Prepared, &Run, &Values) -> u64,
     /// Begins it in a run, or takes it up from the checkpoint; none where the case does not ask for it.
     ///

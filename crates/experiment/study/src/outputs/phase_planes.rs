@@ -4,7 +4,7 @@ use super::mean_planes::AVERAGING_INTERVAL;
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
-use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
+use super::slices::{self, FILE_BYTES, POINT_BYTES, SUM_BYTES, Slice};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use analysis::wake::PhaseAverage;
@@ -31,7 +31,8 @@ fn requested(setup: &Prepared, run: &Run) -> Option<(usize, f64)> {
 
 fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
     let n_phases = requested(setup, run).map_or(0, |(n_phases, _)| n_phases as u64);
-    n_phases * slices::n_points_at_hub_height(setup) * (POINT_BYTES + SUM_BYTES)
+    let of_phase = slices::n_points_at_hub_height(setup) * (POINT_BYTES + SUM_BYTES) + FILE_BYTES;
+    n_phases * of_phase
 }
 
 struct PhasePlanes {

@@ -4,7 +4,7 @@ use super::lines::{self, WindLines};
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
-use crate::channels::Row;
+use crate::channels::{self, Row};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use basis::keys::Values;
@@ -18,15 +18,11 @@ use std::path::PathBuf;
 /// Distance of the wind probe upstream of the first turbine (rotor diameters), or halfway to the inlet if
 /// nearer.
 const PROBE_DISTANCE: f64 = 2.0;
-/// Channels before the turbines' own, and those of the wind along lines at one place (–).
-const N_SHARED: u64 = 4;
-const N_LINES: u64 = 3;
-/// Channels of a turbine with three blades in resolved flow, about (–).
-const N_RESOLVED: u64 = 40;
-/// Channels of a flexible one in prescribed wind, where all loads are kept, about (–).
-const N_PRESCRIBED: u64 = 135;
-/// Bytes of a value in the file, about.
-const VALUE_BYTES: u64 = 19;
+/// Bytes of a value in the file, its comma included: 16 or 17 digits, point and sign; small numbers have an
+/// exponent, round ones fewer digits.
+const VALUE_BYTES: u64 = 20;
+/// Bytes of the name of a channel, about.
+const NAME_BYTES: u64 = 28;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "series",
@@ -41,17 +37,18 @@ pub(crate) fn schedule(setup: &Prepared) -> Schedule {
     Schedule::steps(setup.plan.row_stride)
 }
 
-/// Values in the series of the turbines of `run`, about (–).
-pub(super) fn n_values(setup: &Prepared, run: &Run) -> u64 {
-    let is_prescribed = !setup.case.flow.solver.resolves_induction;
-    let of_turbine = if is_prescribed { N_PRESCRIBED } else { N_RESOLVED };
-    let n_channels =
-        N_SHARED + of_turbine * run.present().count() as u64 + N_LINES * lines::count(setup, run);
-    n_channels * schedule(setup).count(setup.plan.n_steps)
+/// Rows in the series of a run (–).
+pub(super) fn n_rows(setup: &Prepared) -> u64 {
+    schedule(setup).count(setup.plan.n_steps)
+}
+
+/// Channels in the series of `run` (–).
+pub(crate) fn n_channels(setup: &Prepared, run: &Run) -> u64 {
+    channels::count(setup, run, lines::count(setup, run))
 }
 
 fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
-    n_values(setup, run) * VALUE_BYTES
+    n_channels(setup, run) * (n_rows(setup) * VALUE_BYTES + NAME_BYTES)
 }
 
 struct Series {
@@ -129,7 +126,7 @@ fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>
     let rows = Rows::new(setup, run, farm);
     let writer = match stored {
         // So many bytes of it are sure.
-        Some(stored) => SeriesWriter::resume(&folder.series_path(), stored.state()?)?,
+        Some(stored) => SeriesWriter::resume(&folder.series_path(), rows.names(), stored.state()?)?,
         None => SeriesWriter::create(&folder.series_path(), rows.names())?,
     };
     Ok(Some(Box::new(Series { schedule: schedule(setup), rows, writer })))

@@ -6,6 +6,8 @@ use flow::fields::FieldSource;
 
 /// Bytes of a point in a file: three components.
 pub(super) const POINT_BYTES: u64 = 3 * size_of::<f32>() as u64;
+/// Bytes of a plane's file beside its points: header and coordinates.
+pub(super) const FILE_BYTES: u64 = 8 << 10;
 /// Bytes of a point of a sum, three components, in a checkpoint and the one before it.
 pub(super) const SUM_BYTES: u64 = 2 * 3 * size_of::<f64>() as u64;
 
@@ -45,6 +47,16 @@ pub(crate) fn of(setup: &Prepared) -> Vec<Slice> {
         position: foot.x + distance * plan.diameter,
     });
     [hub_height(setup), streamwise].into_iter().chain(across).collect()
+}
+
+/// Planes (–).
+pub(super) fn count(setup: &Prepared) -> u64 {
+    2 + setup.case.output.crosswind_diameters.len() as u64
+}
+
+/// Bytes of a file of each plane.
+pub(super) fn file_bytes(setup: &Prepared) -> u64 {
+    n_points(setup) * POINT_BYTES + count(setup) * FILE_BYTES
 }
 
 /// Points of the plane at hub height (–).

@@ -12,6 +12,8 @@ use formats::records::write_volume;
 
 /// Every so many cells along each axis are kept.
 const STRIDE: usize = 2;
+/// Bytes of a file beside its points.
+const HEADER_BYTES: u64 = 1 << 10;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "volumes",
@@ -28,7 +30,7 @@ fn schedule(setup: &Prepared) -> Option<Schedule> {
 fn disk(setup: &Prepared, _run: &Run, _: &Values) -> u64 {
     let n_times = schedule(setup).map_or(0, |schedule| schedule.count(setup.plan.n_steps));
     let n_points: usize = setup.plan.n_cells.iter().map(|n| n.div_ceil(STRIDE)).product();
-    n_times * n_points as u64 * POINT_BYTES
+    n_times * (n_points as u64 * POINT_BYTES + HEADER_BYTES)
 }
 
 struct Volumes {

@@ -17,7 +17,8 @@ use formats::turbulence_box::WindRecorder;
 const MARGIN: f64 = 0.1;
 /// Cells that the wind crosses between two planes, at most (–).
 const CELLS_BETWEEN: f64 = 0.5;
-/// Bytes of a point: three components as they come, and three of the full field.
+/// Bytes of a point: three components as they come, which stay until the run is complete, and three of the
+/// full field.
 const POINT_BYTES: u64 = 3 * (size_of::<f32>() + size_of::<i16>()) as u64;
 
 pub(super) static KIND: OutputKind = OutputKind {

@@ -139,6 +139,45 @@ fn groups_of_columns_make_the_same_summary_as_all_at_once() {
     assert!(whole.array_power_gain.is_some());
 }
 
+/// A turbine that stands still in the run compared with costs its own gain, not the summary.
+#[test]
+fn a_gain_over_no_power_is_not_defined_and_the_rest_goes_on() {
+    let study = tempfile::tempdir().expect("a folder");
+    let setup = setup(study.path());
+    let [baseline, run] = [&setup.case.runs[0], &setup.case.runs[1]];
+    for (still, undefined) in [
+        (&["T2"][..], vec![Some("T2")]),
+        (&["T1", "T2", "T3"], vec![Some("T1"), Some("T2"), Some("T3"), None]),
+    ] {
+        let folder = leave(study.path(), &setup, 1, N_ROWS, "");
+        let mut own = Columns::open(&folder, &setup).expect("a series");
+        let folder = leave(study.path(), &setup, 0, N_ROWS, "");
+        let mut series =
+            formats::records::read_series(&folder.series_path(), |_| true).expect("it");
+        for turbine in still {
+            let power = format!("{turbine}.power_w");
+            let place = series.names.iter().position(|name| *name == power).expect("its power");
+            series.columns[place].fill(0.0);
+        }
+        let mut there = Columns::of_series(series, &setup);
+        let summary = summarise(&setup, run, &mut own, &[0.0; 3], Cost::default());
+        let mut summary = summary.expect("all channels");
+        let n_before = summary.warnings.len();
+        gains::add(&mut summary, (run, &mut own), (baseline, &mut there)).expect("gains");
+        assert_eq!(summary.compare_with.as_deref(), Some("baseline"));
+        let told = &summary.warnings[n_before..];
+        assert!(told.iter().all(|warning| warning.kind == WarningKind::GainUndefined), "{told:?}");
+        let about: Vec<_> = told.iter().map(|warning| warning.turbine.as_deref()).collect();
+        assert_eq!(about, undefined);
+        for turbine in &summary.turbines {
+            let is_defined = !still.contains(&turbine.name.as_str());
+            assert_eq!(turbine.power_gain.is_some(), is_defined, "{}", turbine.name);
+            assert!(turbine.loads.iter().all(|load| load.change.is_some()), "{}", turbine.name);
+        }
+        assert_eq!(summary.array_power_gain.is_some(), still.len() < 3);
+    }
+}
+
 #[test]
 fn a_channel_that_is_missing_is_named_however_the_rest_is_read() {
     let study = tempfile::tempdir().expect("a folder");

@@ -1,10 +1,17 @@
 //! What a reader of a turbine's numbers must know.
 
 use super::Turbine;
+use crate::StudyError;
+use crate::columns::Analysed;
 use basis::records::{DeliveredPitch, Warning, WarningKind};
 
+/// Turns a minute in a radian a second.
+const RPM: f64 = 30.0 / std::f64::consts::PI;
 /// Share of clipped control instants beyond which a reader must know (–).
 const CLIPPED_SHARE: f64 = 0.01;
+/// Rotor speed over the rated one beyond which a reader must know (–): machines of today shut down at 1.1 to
+/// 1.2 of it.
+const OVERSPEED: f64 = 1.2;
 /// Least share of the set amplitude that the blades must deliver (–).
 const DELIVERED_SHARE: f64 = 0.95;
 
@@ -12,6 +19,33 @@ impl Turbine<'_> {
     /// A warning about this turbine.
     pub(super) fn warning(&self, kind: WarningKind, message: String) -> Warning {
         Warning { kind, turbine: Some(self.name.to_owned()), message }
+    }
+
+    /// Where its rotor turned much faster than its rated speed in the `analysed` time.
+    pub(super) fn warning_of_overspeed(
+        &self,
+        analysed: &Analysed,
+    ) -> Result<Option<Warning>, StudyError> {
+        let Self { setup, run, index, name, .. } = self;
+        let rated = setup.models[*index].constants.rated_rotor_speed;
+        let times = analysed.column("time_s")?;
+        let speeds = analysed.column(&format!("{name}.rotor_speed_rad_s"))?;
+        let instants = times.iter().zip(speeds).map(|(&time, speed)| (time, speed.abs()));
+        let fastest = instants.reduce(|a, b| if b.1 > a.1 { b } else { a });
+        let Some((time, speed)) = fastest.filter(|(_, speed)| *speed > OVERSPEED * rated) else {
+            return Ok(None);
+        };
+        let n_beyond = speeds.iter().filter(|speed| speed.abs() > OVERSPEED * rated).count();
+        let message = format!(
+            "{}: {name} turned at {:.2} times its rated speed at {time:.0} s ({:.1} for {:.1} rpm), and beyond {OVERSPEED} times {:.1} % of the time: \
+             a real machine would have shut down; power and loads of that time are not those of one that runs",
+            run.name,
+            speed / rated,
+            speed * RPM,
+            rated * RPM,
+            100.0 * n_beyond as f64 / speeds.len() as f64,
+        );
+        Ok(Some(self.warning(WarningKind::Overspeed, message)))
     }
 
     /// Where its blades did not do what they were set to.

@@ -15,8 +15,9 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use rustfft::num_complex::Complex32;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// What to make.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -117,6 +118,20 @@ pub fn generate(
     settings: &KaimalSettings,
     progress: impl Fn(f64),
 ) -> Result<TurbulenceBox, InflowError> {
+    generate_until(settings, |share| {
+        progress(share);
+        ControlFlow::Continue(())
+    })
+}
+
+/// As [`generate`]; a break of `progress`, which is asked many times a second, ends it.
+///
+/// # Errors
+/// Those of [`generate`], and [`InflowError::BrokenOff`] after a break.
+pub fn generate_until(
+    settings: &KaimalSettings,
+    progress: impl Fn(f64) -> ControlFlow<()>,
+) -> Result<TurbulenceBox, InflowError> {
     settings.check()?;
     let model = settings.model()?;
     let [n_x, n_y, n_z] = settings.n_points;
@@ -151,11 +166,19 @@ pub fn generate(
             }
             phases.fill(component, wave, amplitude, &mut workspace.bytes, plane);
         };
-        let share = |done: f64| progress((component as f64 + 0.7 * done) / 3.0);
-        by_planes(&mut spectrum, size, n_threads, &fill, &share);
-        passes::along(spectrum, values, n_x, size, n_threads);
+        let share = |done: f64| progress((component as f64 + done) / 3.0);
+        let across = |done: f64| share(0.7 * done);
+        if by_planes(&mut spectrum, size, n_threads, &fill, &across).is_break() {
+            return Err(InflowError::BrokenOff);
+        }
+        let along = |done: f64| share(0.7 + 0.3 * done);
+        if passes::along(spectrum, values, n_x, size, n_threads, &along).is_break() {
+            return Err(InflowError::BrokenOff);
+        }
         scale(settings, model.standard_deviations()[component], values);
-        progress((component + 1) as f64 / 3.0);
+        if share(1.0).is_break() {
+            return Err(InflowError::BrokenOff);
+        }
     }
     TurbulenceBox::new(settings.n_points, settings.spacing, velocity)
 }
@@ -171,26 +194,27 @@ pub fn clipped_share(settings: &KaimalSettings) -> Result<f64, InflowError> {
     Ok(coherent.clipped_share())
 }
 
-/// Calls `fill(plane index, plane, workspace)` on every plane of `spectrum`, on several threads.
+/// Calls `fill(plane index, plane, workspace)` on every plane of `spectrum`, on several threads; a break of
+/// `progress` ends it, and is given back.
 fn by_planes(
     spectrum: &mut [Complex32],
     size: usize,
     n_threads: usize,
     fill: &(impl Fn(usize, &mut [Complex32], &mut coherent::Workspace) + Sync),
-    progress: &impl Fn(f64),
-) {
+    progress: &impl Fn(f64) -> ControlFlow<()>,
+) -> ControlFlow<()> {
     let n_planes = spectrum.len() / size;
     let planes = Mutex::new(spectrum.chunks_mut(size).enumerate());
-    let done = AtomicUsize::new(0);
-    let work = |progress: Option<&dyn Fn(f64)>| {
+    let (done, broken) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let work = |progress: Option<&dyn Fn(f64) -> ControlFlow<()>>| {
         let mut workspace = coherent::Workspace::default();
-        loop {
+        while !broken.load(Ordering::Relaxed) {
             let next = planes.lock().map_or(None, |mut planes| planes.next());
             let Some((index, plane)) = next else { break };
             fill(index, plane, &mut workspace);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if let Some(progress) = progress.filter(|_| done.is_multiple_of(64)) {
-                progress(done as f64 / n_planes as f64);
+            if progress.is_some_and(|progress| progress(done as f64 / n_planes as f64).is_break()) {
+                broken.store(true, Ordering::Relaxed);
             }
         }
     };
@@ -200,6 +224,7 @@ fn by_planes(
         }
         work(Some(progress));
     });
+    if broken.into_inner() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 /// On return the standard deviation of `values`, planes of one component, is `deviation` (m/s) where given.

@@ -25,6 +25,28 @@ fn is_the_same_for_any_number_of_threads_and_another_for_another_seed() {
     assert_ne!(one, generate(&settings(4), |_| {}).unwrap());
 }
 
+#[test]
+fn a_break_of_progress_ends_it_wherever_it_is() {
+    for threads in [1, 3] {
+        for last in [0.0, 0.3, 0.85, 0.99] {
+            let reported = std::cell::RefCell::new(Vec::new());
+            let ended = generate_until(
+                &KaimalSettings { threads: Some(threads), ..settings(3) },
+                |share| {
+                    reported.borrow_mut().push(share);
+                    if share > last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                },
+            );
+            assert_eq!(ended, Err(InflowError::BrokenOff), "{threads} threads, {last}");
+            let reported = reported.into_inner();
+            // Never asked again after the break, and by a single thread before a tenth more is done.
+            let (end, before) = reported.split_last().expect("some progress");
+            assert!(before.iter().all(|share| *share <= last), "{threads} threads, {last}");
+            assert!(*end > last && (threads > 1 || *end <= last + 0.1), "{last}: {end}");
+        }
+    }
+}
+
 /// v and w have the same power at every point: the sum of the model's over the record's frequencies.
 #[test]
 fn lateral_points_have_the_power_of_the_model() {

@@ -8,6 +8,7 @@ use basis::{Matrix3, Vector3};
 use rustfft::num_complex::{Complex32, Complex64};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 /// What to make.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,6 +68,20 @@ pub fn generate(
     settings: &MannSettings,
     progress: impl Fn(f64),
 ) -> Result<TurbulenceBox, InflowError> {
+    generate_until(settings, |share| {
+        progress(share);
+        ControlFlow::Continue(())
+    })
+}
+
+/// As [`generate`]; a break of `progress`, which is asked many times a second, ends it.
+///
+/// # Errors
+/// Those of [`generate`], and [`InflowError::BrokenOff`] after a break.
+pub fn generate_until(
+    settings: &MannSettings,
+    progress: impl Fn(f64) -> ControlFlow<()>,
+) -> Result<TurbulenceBox, InflowError> {
     settings.check()?;
     let tensor = SpectralTensor::new(settings.length_scale, settings.anisotropy)?;
     let [n_x, n_y, n_z] = settings.n_points;
@@ -85,23 +100,21 @@ pub fn generate(
         .threads
         .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
         .clamp(1, 64);
-    passes::across(
-        &mut spectra,
-        n_y,
-        n_z,
-        n_threads,
-        &|x, planes| waves.fill(x, planes),
-        &|share| {
-            progress(0.8 * share);
-        },
-    );
+    let fill = |x: usize, planes: [&mut [Complex32]; 3]| waves.fill(x, planes);
+    let across = |share: f64| progress(0.8 * share);
+    if passes::across(&mut spectra, n_y, n_z, n_threads, &fill, &across).is_break() {
+        return Err(InflowError::BrokenOff);
+    }
     let mut velocity: [Vec<f32>; 3] = Default::default();
     for (component, spectrum) in spectra.into_iter().enumerate() {
         let values = &mut velocity[component];
         values.try_reserve_exact(n_x * n_y * n_z).map_err(out_of_memory)?;
         values.resize(n_x * n_y * n_z, 0.0);
-        passes::along(spectrum, values, n_x, n_y * n_z, n_threads);
-        progress(0.8 + 0.2 * (component + 1) as f64 / 3.0);
+        let share = |done: f64| progress(0.8 + 0.2 * (component as f64 + done) / 3.0);
+        let along = passes::along(spectrum, values, n_x, n_y * n_z, n_threads, &share);
+        if along.is_break() || share(1.0).is_break() {
+            return Err(InflowError::BrokenOff);
+        }
     }
     let mut turbulence = TurbulenceBox::new(settings.n_points, settings.spacing, velocity)?;
     let [realised, ..] = turbulence.standard_deviations();

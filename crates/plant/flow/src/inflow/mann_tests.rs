@@ -136,6 +136,26 @@ fn progress_rises_to_one() {
     assert_eq!(reported.last(), Some(&1.0));
 }
 
+#[test]
+fn a_break_of_progress_ends_it_wherever_it_is() {
+    for threads in [1, 3] {
+        for last in [0.0, 0.3, 0.85, 0.99] {
+            let reported = std::cell::RefCell::new(Vec::new());
+            let ended =
+                generate_until(&MannSettings { threads: Some(threads), ..settings() }, |share| {
+                    reported.borrow_mut().push(share);
+                    if share > last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                });
+            assert_eq!(ended, Err(InflowError::BrokenOff), "{threads} threads, {last}");
+            let reported = reported.into_inner();
+            // Never asked again after the break, and by a single thread before a tenth more is done.
+            let (end, before) = reported.split_last().expect("some progress");
+            assert!(before.iter().all(|share| *share <= last), "{threads} threads, {last}");
+            assert!(*end > last && (threads > 1 || *end <= last + 0.1), "{last}: {end}");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]

@@ -93,6 +93,9 @@ pub enum InflowError {
         /// Time into the record (s).
         time: f64,
     },
+    /// The receiver of its progress stopped it.
+    #[error("the making of turbulence was broken off")]
+    BrokenOff,
     /// A plane of wind that its source could not give.
     #[error("plane {step} of the wind cannot be read: {problem}")]
     Plane {

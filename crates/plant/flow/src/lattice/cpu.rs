@@ -43,6 +43,7 @@ const OUTLET_PULL: f64 = 0.25;
 pub(crate) struct Cpu {
     scaling: Scaling,
     kernel: Kernel,
+    backend: Backend,
     layout: Layout,
     memory: Memory,
     workers: Vec<Mutex<Worker>>,
@@ -119,6 +120,7 @@ impl Cpu {
         let subgrid = (SUBGRID_FACTOR * settings.smagorinsky.powi(2)) as f32;
         Ok(Self {
             kernel,
+            backend,
             memory,
             workers,
             pool: Pool::new(n_threads),
@@ -249,6 +251,10 @@ impl Engine for Cpu {
         read_values(reader, &mut bytes, self.memory.values_mut())?;
         self.n_steps = n_steps;
         Ok(())
+    }
+
+    fn backend(&self) -> &'static str {
+        self.backend.name()
     }
 
     fn n_threads(&self) -> usize {

@@ -50,6 +50,9 @@ pub trait Engine: Send + Sync {
     /// Those of `reader`; the field is undefined then.
     fn read_state(&mut self, n_steps: u64, reader: &mut dyn Read) -> Result<()>;
 
+    /// What of the machine decides its bits, such as the instructions that it computes with: a word or two.
+    fn backend(&self) -> &'static str;
+
     /// Threads that it runs on (–).
     fn n_threads(&self) -> usize;
 

@@ -83,6 +83,11 @@ impl Lattice {
         self.engine.n_threads()
     }
 
+    /// What of the machine decides the bits of the air, such as `avx512`.
+    pub fn backend(&self) -> &'static str {
+        self.engine.backend()
+    }
+
     /// Cells along x, y, z (–).
     pub fn n_cells(&self) -> [usize; 3] {
         self.settings.n_cells

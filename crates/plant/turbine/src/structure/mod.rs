@@ -63,6 +63,11 @@ use midpoint::PhasePoint;
 use serde::{Deserialize, Serialize};
 use stations::{LoadResultants, Stations};
 
+/// What a turbine of `n_blades` blades tells of itself, in the order of [`Structure::write_channels`].
+pub fn channels_of(n_blades: usize) -> Vec<Channel> {
+    channels::table(n_blades)
+}
+
 /// Standard acceleration of free fall (m/s²).
 pub const GRAVITY: f64 = 9.806_65;
 

@@ -120,6 +120,8 @@ pub fn full() -> Summary {
         WarningKind::PitchHeldBack,
         WarningKind::Controller,
         WarningKind::TipSpeed,
+        WarningKind::Overspeed,
+        WarningKind::GainUndefined,
         WarningKind::MixedRuns,
     ];
     let warnings = kinds.map(|kind| Warning {

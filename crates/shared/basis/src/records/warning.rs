@@ -26,6 +26,11 @@ pub enum WarningKind {
     Controller,
     /// A blade's tip outran the sound on the lattice.
     TipSpeed,
-    /// Runs of one study were made with unlike versions of the case or of a turbine.
+    /// A rotor turned much faster than a real machine is let.
+    Overspeed,
+    /// A gain is not defined: the run compared with has no power, or no load, to be a share of.
+    GainUndefined,
+    /// Runs of one study were made with unlike versions of the case, of a turbine, of a file of wind or of
+    /// the program, or on machines that compute otherwise.
     MixedRuns,
 }

@@ -3,23 +3,25 @@
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex32;
+use std::ops::ControlFlow;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Columns transformed together along x: a cache line or two of each plane.
 const BLOCK: usize = 32;
 
 /// Fills each streamwise plane of three half-spectra by `fill(x, planes)`, then transforms it over y and z.
 ///
-/// `spectra` are n × n_z × n_y, y fastest. `progress` receives the share done on the calling thread.
+/// `spectra` are n × n_z × n_y, y fastest. `progress` receives the share done on the calling thread; a break
+/// ends it, and is given back: the spectra are then of no use.
 pub(super) fn across(
     spectra: &mut [Vec<Complex32>; 3],
     n_y: usize,
     n_z: usize,
     n_threads: usize,
     fill: &(impl Fn(usize, [&mut [Complex32]; 3]) + Sync),
-    progress: &impl Fn(f64),
-) {
+    progress: &impl Fn(f64) -> ControlFlow<()>,
+) -> ControlFlow<()> {
     let mut planner = FftPlanner::new();
     let (over_y, over_z) = (planner.plan_fft_inverse(n_y), planner.plan_fft_inverse(n_z));
     let size = n_y * n_z;
@@ -27,12 +29,12 @@ pub(super) fn across(
     let [u, v, w] = spectra;
     let planes = u.chunks_mut(size).zip(v.chunks_mut(size)).zip(w.chunks_mut(size)).enumerate();
     let planes = Mutex::new(planes);
-    let done = AtomicUsize::new(0);
-    let work = |progress: Option<&dyn Fn(f64)>| {
+    let (done, broken) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let work = |progress: Option<&dyn Fn(f64) -> ControlFlow<()>>| {
         let mut turned = vec![Complex32::default(); size];
         let needed = over_y.get_inplace_scratch_len().max(over_z.get_inplace_scratch_len());
         let mut scratch = vec![Complex32::default(); needed];
-        loop {
+        while !broken.load(Ordering::Relaxed) {
             let next = planes.lock().map_or(None, |mut planes| planes.next());
             let Some((x, ((u, v), w))) = next else { break };
             fill(x, [u, v, w]);
@@ -43,8 +45,8 @@ pub(super) fn across(
                 turn(&turned, plane, n_z);
             }
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if let Some(progress) = progress {
-                progress(done as f64 / n_planes as f64);
+            if progress.is_some_and(|progress| progress(done as f64 / n_planes as f64).is_break()) {
+                broken.store(true, Ordering::Relaxed);
             }
         }
     };
@@ -54,26 +56,47 @@ pub(super) fn across(
         }
         work(Some(progress));
     });
+    if broken.into_inner() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 /// Transforms a half-spectrum along x into real `values`, n_x × `n_columns`.
+///
+/// `progress` receives the share done, about, on the calling thread; a break ends it, and is given back: the
+/// values are then of no use.
 pub(in crate::inflow) fn along(
     mut spectrum: Vec<Complex32>,
     values: &mut [f32],
     n_x: usize,
     n_columns: usize,
     n_threads: usize,
-) {
+    progress: &impl Fn(f64) -> ControlFlow<()>,
+) -> ControlFlow<()> {
     let transform = RealFftPlanner::<f32>::new().plan_fft_inverse(n_x);
     let share = n_columns.div_ceil(n_threads);
     let parts =
         split(&mut spectrum, n_columns, share).into_iter().zip(split(values, n_columns, share));
+    let broken = AtomicBool::new(false);
     std::thread::scope(|scope| {
+        let mut first = None;
         for (waves, values) in parts {
-            let transform = &transform;
-            scope.spawn(move || columns(transform.as_ref(), &waves, values));
+            if first.is_none() {
+                first = Some((waves, values));
+                continue;
+            }
+            let (transform, broken) = (&transform, &broken);
+            let goes_on = move |_| !broken.load(Ordering::Relaxed);
+            scope.spawn(move || columns(transform.as_ref(), &waves, values, &goes_on));
+        }
+        // The first part is done here, where progress may be told.
+        if let Some((waves, values)) = first {
+            columns(transform.as_ref(), &waves, values, &|share| {
+                let goes_on = progress(share).is_continue();
+                broken.fetch_or(!goes_on, Ordering::Relaxed);
+                goes_on
+            });
         }
     });
+    if broken.into_inner() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 /// The columns of every row of `rows`, dealt out in runs of `share`: one list of part-rows per run.
@@ -88,10 +111,13 @@ fn split<T>(rows: &mut [T], n_columns: usize, share: usize) -> Vec<Vec<&mut [T]>
     parts
 }
 
+/// Transforms the columns of `waves` into those of `values` as long as `goes_on`, which is told the share
+/// done.
 fn columns(
     transform: &dyn realfft::ComplexToReal<f32>,
     waves: &[&mut [Complex32]],
     mut values: Vec<&mut [f32]>,
+    goes_on: &dyn Fn(f64) -> bool,
 ) {
     let (n_waves, n_x) = (waves.len(), values.len());
     let n_columns = waves[0].len();
@@ -99,6 +125,9 @@ fn columns(
     let mut transformed = vec![0.0; BLOCK * n_x];
     let mut scratch = transform.make_scratch_vec();
     for start in (0..n_columns).step_by(BLOCK) {
+        if !goes_on(start as f64 / n_columns as f64) {
+            return;
+        }
         let block = BLOCK.min(n_columns - start);
         for (x, row) in waves.iter().enumerate() {
             for (column, value) in row[start..start + block].iter().enumerate() {

@@ -147,6 +147,10 @@ impl Engine for Plain {
         Ok(())
     }
 
+    fn backend(&self) -> &'static str {
+        "plain"
+    }
+
     fn n_threads(&self) -> usize {
         1
     }

@@ -12,6 +12,7 @@ pub mod two_constant;
 use super::Polar;
 use super::blade_element::{self, Annulus, Theory, WarmStart};
 use crate::actuator_line::Onset;
+use crate::breakdown::within;
 use serde::{Deserialize, Serialize};
 pub use skew::SkewedWake;
 pub use snel_schepers::SnelSchepers;
@@ -152,7 +153,7 @@ fn steady(
         blade_element::solve_near(annulus, normal, tangential, section, theory, warm_start);
     let limit = largest(onset);
     [factors.axial * normal, factors.tangential * tangential]
-        .map(|velocity| velocity.clamp(-limit, limit))
+        .map(|velocity| within(velocity, [-limit, limit]))
 }
 
 /// Largest induced velocity (m/s) in a wind of `onset`.
