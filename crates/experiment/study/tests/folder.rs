@@ -7,7 +7,7 @@ use small::{options, written};
 use std::fs::{self, File};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
-use study::{Estimate, Observer, Options, Outcome, Prepared};
+use study::{Estimate, Observer, Outcome, Prepared, StudyOptions};
 
 /// Two flexible turbines in turbulence of `model`, for a minute.
 fn case(model: &str) -> String {
@@ -74,7 +74,7 @@ fn a_stop_is_heard_while_turbulence_is_made() {
     let mut observer = Stopping { stop: &stop, share: 0.1, last: 0.0 };
     let outcome = study::run(&options(folder.path()), &stop, &mut observer);
     assert!(matches!(outcome, Ok(Outcome::Interrupted { .. })), "{outcome:?}");
-    let resumed = Options { resume: true, ..options(folder.path()) };
+    let resumed = StudyOptions { resume: true, ..options(folder.path()) };
     let outcome = small::run(&resumed);
     assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{outcome:?}");
 }
@@ -130,7 +130,7 @@ fn what_killed_processes_left_goes_when_the_folder_is_taken_again() {
     }
     // A turbine that is not in this version of the case.
     fs::write(out.join("a/T9.outb"), "old").expect("a file");
-    let again = Options { overwrite: true, ..options(folder.path()) };
+    let again = StudyOptions { overwrite: true, ..options(folder.path()) };
     small::done(&again);
     for name in of_run.iter().chain(&of_study).chain(&["a/T9.outb"]) {
         assert!(!out.join(name).exists(), "{name} is still there");
