@@ -171,7 +171,12 @@ mod tests {
         let again = Lock::take(&path, "run baseline").unwrap();
         drop((other, again));
         if cfg!(unix) {
-            assert!(fs::read_dir(folder.path()).unwrap().next().is_none(), "something is left");
+            let study = path.parent().unwrap();
+            assert!(fs::read_dir(study).unwrap().next().is_none(), "something is left");
+            // What was made for a lock alone goes with it.
+            let alone = folder.path().join("alone/.baseline.lock");
+            drop(Lock::take(&alone, "run baseline").unwrap());
+            assert!(!alone.parent().unwrap().exists());
         }
     }
 

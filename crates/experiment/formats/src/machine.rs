@@ -17,8 +17,8 @@ pub fn free_memory() -> Option<u64> {
     [machine, allowed].into_iter().flatten().min()
 }
 
-/// Free space (bytes) for this user on the disk that holds `path`, or will hold it; none where the system does
-/// not tell.
+/// Free space (bytes) for this user on the disk that holds `path`, or will hold it; none where the system
+/// does not tell.
 #[cfg(unix)]
 pub fn free_disk(path: &Path) -> Option<u64> {
     // Of a path that is not there yet, the nearest folder that is.

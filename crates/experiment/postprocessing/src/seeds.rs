@@ -234,8 +234,8 @@ fn downstream(case: &Case) -> Vec<String> {
     behind.map(|turbine| turbine.name.clone()).collect()
 }
 
-/// Gains of the run of `pairs`, wind by wind; `downstream` holds the turbines downstream of the first. What is
-/// over no power is left out and told in `undefined`.
+/// Gains of the run of `pairs`, wind by wind; `downstream` holds the turbines downstream of the first. What
+/// is over no power is left out and told in `undefined`.
 fn run_gains(
     pairs: &[Pair<'_>],
     downstream: &[String],

@@ -16,7 +16,7 @@ use analysis::phase::Reference;
 use basis::angle::wrap_to_turn;
 use control::excitation_rate;
 use control::phase_sync::PhaseSyncSettings;
-use farm::case::{Case, Sense};
+use farm::case::{Case, Control, Sense};
 use formats::records::{RunRecords, StudyRecords};
 use report::Synchronisation;
 use std::path::Path;
@@ -135,11 +135,7 @@ fn synchronised(
     let reference = Reference { rate, sense: pairing.sense };
     let own_name = &case.turbines[turbine].name;
     // Without a true wind there is nothing to compare with; a short run says nothing of phases.
-    let control = |run: &RunRecords| {
-        // Runs of another version of the case may have other places.
-        let found = case.runs.get(run.manifest.run_index);
-        found.map(|run| run.control.as_slice()).unwrap_or_default()
-    };
+    let control = |run: &RunRecords| control_of(case, run);
     let truth_of = |own: &RunRecords| -> Result<Option<Truth>, PostprocessingError> {
         for run in &records.runs {
             if !tells_truth(case, control(run), control(own), turbine) {
@@ -182,6 +178,12 @@ fn synchronised(
         slices,
         deficits,
     })
+}
+
+/// What controls the turbines of `case` in `run`; nothing where that is of another version of the case.
+fn control_of<'c>(case: &'c Case, run: &RunRecords) -> &'c [Control] {
+    let found = case.runs.get(run.manifest.run_index);
+    found.map(|run| run.control.as_slice()).unwrap_or_default()
 }
 
 /// `found`, or nothing to show where records are too short for it: that is no reason to withhold the rest of

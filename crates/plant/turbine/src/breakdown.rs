@@ -8,7 +8,7 @@ use thiserror::Error;
 pub struct Breakdown {
     /// What it is, in words.
     pub quantity: &'static str,
-    /// Its value, infinite or not a number.
+    /// Its value in that unit, infinite or not a number.
     pub value: f64,
     /// Its unit.
     pub unit: &'static str,

@@ -101,10 +101,10 @@ impl<'q> Records<'q> {
         };
         let truth = match truth_folder {
             Some(folder) => {
+                let path = folder.series_path();
                 let wanted = |channel: &str| tells_of_any(case, turbines, channel);
-                let series = read_once(without, folder.series_path(), wanted)?;
-                truth(&folder.run(), &turbine.name, series, &reference)
-                    .in_records(&folder.series_path())?
+                let series = read_once(without, path.clone(), wanted)?;
+                truth(&folder.run(), &turbine.name, series, &reference).in_records(&path)?
             }
             None => None,
         };
@@ -114,7 +114,6 @@ impl<'q> Records<'q> {
         })?;
         let own = control[index].kind().pitching(&control[index]);
         let pitches = own.is_some_and(|own| own.sense.is_some() && own.amplitude != 0.0);
-        let sync = PhaseSyncSettings::of(&control[index]);
         let definition = Arc::new(rotor(&turbine.model, manifest, &self.folder)?);
         let recorded = self.summary.turbines.iter().find(|recorded| recorded.name == turbine.name);
         let response = recorded.and_then(|recorded| recorded.pitch_response.as_ref());
@@ -126,7 +125,7 @@ impl<'q> Records<'q> {
             reference,
             definition,
             calibration,
-            sync,
+            sync: PhaseSyncSettings::of(&control[index]),
             pitches,
             series: &self.series,
             path: self.folder.series_path(),
