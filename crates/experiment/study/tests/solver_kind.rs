@@ -20,6 +20,7 @@ const EXPANSION: f64 = 0.05;
 static WAKES: SolverKind = SolverKind {
     name: "wakes",
     about: "prescribed wind with a wake behind each rotor that follows its thrust",
+    has_wakes: true,
     begin: |start: Start| -> std::result::Result<Air, SolverError> {
         let Start { site, inflow, .. } = start;
         let disc = |(model, foot): (&assemble::Model, &Vector3)| Disc {

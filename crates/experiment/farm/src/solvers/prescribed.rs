@@ -15,6 +15,7 @@ pub const PRESCRIBED: SolverKind = SolverKind {
     keys: &[],
     wind: WindSource::Deterministic,
     resolves_induction: false,
+    has_wakes: false,
     smearing: |_| Smearing { length: 0.0, sample_spacing: 0.0 },
     needs_self_check: false,
     objections: |_, _| Vec::new(),
