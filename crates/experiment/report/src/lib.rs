@@ -2,6 +2,7 @@
 
 mod draw;
 mod figures;
+mod layout;
 mod page;
 mod sentence;
 mod study;
@@ -11,8 +12,8 @@ mod words;
 use basis::records::{Plane, Series, Summary};
 pub use figures::synchronisation::{
     CentreLine, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure, OffsetPanel,
-    OffsetPoint, PhaseNumbers, PhaseRow, SliceFigure, SlicePanel, SpectrumFigure, SpectrumLine,
-    Synchronisation, TrackFigure, TrackLine, TrackRow,
+    OffsetPoint, PhaseNumbers, PhaseRow, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure,
+    SpectrumLine, Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 use std::fs::{self, File};
 use std::io::{self, Write};

@@ -3,7 +3,8 @@
 use crate::RunRecords;
 use crate::study::{Excitation, ExcitationKind, Study, gain_of};
 use crate::words::{self, SPACE, number, percent};
-use basis::records::{Statistic, TurbineSummary};
+use basis::Sense;
+use basis::records::{Statistic, Summary, TurbineSummary};
 
 /// Changes of power below this (–) are not stated: they print as zero.
 const LEAST_STATED: f64 = 5e-4;
@@ -18,113 +19,172 @@ pub(crate) fn headline(study: &Study) -> String {
 
 /// A remark on how firm the headline is; empty when there is nothing to add.
 pub(crate) fn confidence(study: &Study) -> String {
-    let Some(gain) = study.best().and_then(|run| run.summary.array_power_gain) else {
-        return String::new();
+    let Some(run) = study.best() else { return String::new() };
+    let gains: Vec<Statistic> = if is_summed(run) {
+        run.summary.array_power_gain.into_iter().collect()
+    } else {
+        stated_gains(run).into_iter().map(|(_, gain)| gain).collect()
     };
-    match gain.half_width_95 {
-        Some(width) if width >= gain.mean.abs() => {
-            "The interval includes zero: a study of this length does not show whether there is a \
-             gain."
-                .to_owned()
-        }
-        Some(_) => String::new(),
-        None => {
-            "There is no interval: the analysed time is too short for two blocks, so the figure may \
-             be chance."
-                .to_owned()
-        }
+    let includes_zero =
+        |gain: &Statistic| gain.half_width_95.is_some_and(|width| width >= gain.mean.abs());
+    if gains.iter().any(|gain| gain.half_width_95.is_none()) {
+        "There is no interval: the analysed time is too short for two blocks, so the figure may \
+         be chance."
+            .to_owned()
+    } else if gains.iter().any(includes_zero) {
+        "The interval includes zero: a study of this length does not show whether there is a \
+         gain."
+            .to_owned()
+    } else {
+        String::new()
     }
+}
+
+/// Whether the sum over the turbines of `run` means something: not where several stand in wind without wakes,
+/// in which no turbine feels another.
+pub(crate) fn is_summed(run: &RunRecords) -> bool {
+    run.summary.has_wakes() || run.summary.turbines.len() < 2
+}
+
+/// Gains of single turbines that do not print as zero.
+fn stated_gains(run: &RunRecords) -> Vec<(&TurbineSummary, Statistic)> {
+    let gains = run.summary.turbines.iter().filter_map(|t| Some((t, t.power_gain?)));
+    gains.filter(|(_, gain)| gain.mean.abs() >= LEAST_STATED).collect()
 }
 
 /// The gain of one run: "A counter-clockwise helix of 4.0° on T1 cost T1 2.1 % …".
 pub(crate) fn gain_sentence(study: &Study, run: &RunRecords) -> String {
-    let excitations = study.changed_excitations(run);
-    let subject = if excitations.is_empty() {
-        format!("The run “{}”", run.summary.run)
-    } else {
-        let parts: Vec<String> = excitations
-            .iter()
-            .map(|excitation| format!("{} on {}", words_of(excitation), excitation.turbine.name))
-            .collect();
-        words::capitalised(&words::list(&parts))
+    let done = done(study, run);
+    let subject = match done.is_empty() {
+        true => format!("The run “{}”", run.summary.run),
+        false => words::capitalised(&words::list(&done)),
     };
-    let gains: Vec<(&TurbineSummary, f64)> = run
-        .summary
-        .turbines
-        .iter()
-        .filter_map(|turbine| Some((turbine, turbine.power_gain?.mean)))
-        .collect();
-    let stated = |gain: &f64| gain.abs() >= LEAST_STATED;
-    let says = |(turbine, gain): &(&TurbineSummary, f64)| {
-        format!("{} {}", turbine.name, percent(gain.abs()))
-    };
-    let losses: Vec<String> =
-        gains.iter().filter(|gain| stated(&gain.1) && gain.1 < 0.0).map(says).collect();
-    let wins: Vec<String> =
-        gains.iter().filter(|gain| stated(&gain.1) && gain.1 > 0.0).map(says).collect();
+    let gains = stated_gains(run);
+    let (losses, wins): (Vec<_>, Vec<_>) = gains.iter().partition(|(_, gain)| gain.mean < 0.0);
     let mut clauses = Vec::new();
     if !losses.is_empty() {
-        clauses.push(format!("cost {} of its power", words::list(&losses)));
-        if losses.len() > 1 {
-            clauses[0] = format!("cost {} of their power", words::list(&losses));
-        }
+        let whose = if losses.len() > 1 { "their" } else { "its" };
+        clauses.push(format!("cost {} of {whose} power", changes(run, &losses)));
     }
     if !wins.is_empty() {
-        clauses.push(format!("gave {} more", words::list(&wins)));
+        clauses.push(format!("gave {} more", changes(run, &wins)));
     }
     if clauses.is_empty() {
         clauses.push("left the power as it was".to_owned());
     }
+    let clauses = clauses.join(" and ");
+    if !is_summed(run) {
+        return format!("{subject} {clauses}.");
+    }
     let total = run.summary.array_power_gain.map(|gain| words::gain(&gain)).unwrap_or_default();
-    let whole = match gains.len() {
+    let n_gains =
+        run.summary.turbines.iter().filter(|turbine| turbine.power_gain.is_some()).count();
+    let whole = match n_gains {
         0 | 1 => String::new(),
         n => format!(" for the {} together", words::small_count(n)),
     };
-    format!("{subject} {}: {total}{whole}.", clauses.join(" and "))
+    format!("{subject} {clauses}: {total}{whole}.")
+}
+
+/// "T1 2.1 %", with its interval where no sum follows that has one; how many there are and the span of their
+/// changes where they are too many to name.
+fn changes(run: &RunRecords, gains: &[&(&TurbineSummary, Statistic)]) -> String {
+    const MOST_NAMED: usize = 4;
+    if gains.len() > MOST_NAMED {
+        let sizes = || gains.iter().map(|(_, gain)| gain.mean.abs());
+        let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+        let count = words::small_count(gains.len());
+        return format!("{count} turbines {} to {}", percent(least), percent(most));
+    }
+    let says = |(turbine, gain): &&(&TurbineSummary, Statistic)| {
+        let size = Statistic { mean: gain.mean.abs(), ..*gain };
+        let change = if is_summed(run) { percent(size.mean) } else { words::size(&size) };
+        format!("{} {change}", turbine.name)
+    };
+    words::list(&gains.iter().map(says).collect::<Vec<_>>())
+}
+
+/// What was done in `run` and not in the one that it compares with, an item each.
+fn done(study: &Study, run: &RunRecords) -> Vec<String> {
+    let says = |excitation: &Excitation| {
+        format!("a {} on {}", name_of(excitation), excitation.turbine.name)
+    };
+    study.changed_excitations(run).iter().map(says).collect()
 }
 
 /// One run against the others in a few words, for the list under the headline.
 pub(crate) fn short_gain(study: &Study, run: &RunRecords) -> Option<String> {
     gain_of(run)?;
-    let gain = run.summary.array_power_gain?;
-    let done: Vec<String> = study
-        .changed_excitations(run)
-        .iter()
-        .map(|excitation| format!("{} on {}", words_of(excitation), excitation.turbine.name))
-        .collect();
-    let done = if done.is_empty() { String::new() } else { format!(", {}", words::list(&done)) };
-    Some(format!("{} for the array{done}", words::gain(&gain)))
+    let mut items = Vec::new();
+    if is_summed(run) {
+        let gain = run.summary.array_power_gain?;
+        items.push(format!("{} for the array", words::gain(&gain)));
+    } else {
+        let gains = stated_gains(run);
+        items.extend(gains.iter().map(|(t, gain)| format!("{} {}", t.name, words::gain(gain))));
+        if items.is_empty() {
+            items.push("power as it was".to_owned());
+        }
+    }
+    let done = done(study, run);
+    if !done.is_empty() {
+        items.push(words::list(&done));
+    }
+    Some(items.join(", "))
 }
 
 fn power_sentence(run: &RunRecords) -> String {
-    let names: Vec<String> = run.summary.turbines.iter().map(|t| t.name.clone()).collect();
-    let power = &run.summary.array_power;
-    let decimals = words::three_figures(power.mean / 1e6);
-    let uncertain = match power.half_width_95 {
-        Some(_) => format!(" {}", words::interval(power, 1e6, decimals)),
-        None => String::new(),
+    const MOST_NAMED: usize = 6;
+    let turbines = &run.summary.turbines;
+    let power = |power: &Statistic| {
+        let decimals = words::three_figures(power.mean / 1e6);
+        let uncertain = match power.half_width_95 {
+            Some(_) => format!(" {}", words::interval(power, 1e6, decimals)),
+            None => String::new(),
+        };
+        format!("{}{uncertain}{SPACE}MW", number(power.mean / 1e6, decimals))
     };
-    let together = if names.len() > 1 { " together" } else { "" };
-    format!(
-        "{} made {}{uncertain}{SPACE}MW{together} in the run “{}”.",
-        words::list(&names),
-        number(power.mean / 1e6, decimals),
-        run.summary.run
-    )
+    let name = &run.summary.run;
+    if is_summed(run) {
+        let names: Vec<String> = turbines.iter().map(|turbine| turbine.name.clone()).collect();
+        let who = match names.len() {
+            n if n > MOST_NAMED => format!("The {} turbines", words::small_count(n)),
+            _ => words::list(&names),
+        };
+        let together = if names.len() > 1 { " together" } else { "" };
+        return format!(
+            "{who} made {}{together} in the run “{name}”.",
+            power(&run.summary.array_power)
+        );
+    }
+    let each =
+        turbines.iter().map(|turbine| format!("{} made {}", turbine.name, power(&turbine.power)));
+    format!("{} in the run “{name}”.", words::list(&each.collect::<Vec<_>>()))
 }
 
-/// "a counter-clockwise helix of 4.0°".
-pub(crate) fn words_of(excitation: &Excitation) -> String {
-    let amplitude = number(excitation.pitch.commanded_amplitude_deg, 1);
-    if let Some(offset) = excitation.synchronised_at() {
-        return format!("a synchronised helix of {amplitude}° at {offset}");
+/// "counter-clockwise helix of 4.0°".
+pub(crate) fn name_of(excitation: &Excitation) -> String {
+    let amplitude = amplitude(excitation.pitch.commanded_amplitude_deg);
+    match (excitation.kind, excitation.synchronised_at()) {
+        (ExcitationKind::InStep(_), Some(offset)) => {
+            format!("helix of {amplitude}° in step at {offset}")
+        }
+        (ExcitationKind::InStep(_), None) => format!("helix of {amplitude}° in step"),
+        (ExcitationKind::Helix(Sense::CounterClockwise), _) => {
+            format!("counter-clockwise helix of {amplitude}°")
+        }
+        (ExcitationKind::Helix(Sense::Clockwise), _) => format!("clockwise helix of {amplitude}°"),
+        (ExcitationKind::Pulse, _) => format!("pulse of {amplitude}°"),
+        (ExcitationKind::Named(name), _) => {
+            format!("periodic pitch of {amplitude}° under “{name}”")
+        }
     }
-    match excitation.kind {
-        ExcitationKind::CounterClockwise => format!("a counter-clockwise helix of {amplitude}°"),
-        ExcitationKind::Clockwise => format!("a clockwise helix of {amplitude}°"),
-        ExcitationKind::Pulse => format!("a pulse of {amplitude}°"),
-        ExcitationKind::Other => format!("“{}”", excitation.turbine.control.description),
-    }
+}
+
+/// An amplitude (deg) with one decimal, with a second one where it has one.
+fn amplitude(degrees: f64) -> String {
+    let text = number(degrees, 2);
+    text.strip_suffix('0').map_or(text.clone(), str::to_owned)
 }
 
 /// The conditions that all runs share, one item each.
@@ -143,11 +203,26 @@ pub(crate) fn shared_conditions(study: &Study) -> Vec<String> {
         items.push(format!("spacing {spacing}"));
     }
     items.push(length(&summary.array_power, conditions.duration - conditions.spin_up));
-    items.push(match conditions.cells_per_diameter {
-        Some(cells) => format!("{} cells per diameter", number(cells, 0)),
-        None => "prescribed wind, no wakes".to_owned(),
-    });
+    items.push(air(summary));
     items
+}
+
+/// What moves the air: "lattice, 16 cells per diameter", or "uniform wind, no wakes".
+fn air(summary: &Summary) -> String {
+    let solver = summary.flow.as_ref().map(|flow| flow.solver.as_str());
+    let mut items = Vec::new();
+    match (summary.conditions.cells_per_diameter, solver) {
+        (Some(cells), solver) => {
+            items.extend(solver.map(str::to_owned));
+            items.push(format!("{} cells per diameter", number(cells, 0)));
+        }
+        (None, Some(solver)) => items.push(format!("flow solver {solver}")),
+        (None, None) => items.push("prescribed wind".to_owned()),
+    }
+    if !summary.has_wakes() {
+        items.push("no wakes".to_owned());
+    }
+    items.join(", ")
 }
 
 /// Excitations of a run: "ccw helix on T1, 4.0° target, 3.9° delivered, St 0.25".
@@ -157,10 +232,11 @@ pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<Stri
         .iter()
         .map(|excitation| {
             let kind = match excitation.kind {
-                ExcitationKind::CounterClockwise => "ccw helix",
-                ExcitationKind::Clockwise => "cw helix",
-                ExcitationKind::Pulse => "pulse",
-                ExcitationKind::Other => excitation.turbine.control.description.as_str(),
+                ExcitationKind::Helix(sense) | ExcitationKind::InStep(sense) => {
+                    format!("{sense} helix")
+                }
+                ExcitationKind::Pulse => "pulse".to_owned(),
+                ExcitationKind::Named(name) => name.to_owned(),
             };
             let synchronised =
                 excitation.synchronised_at().map(|offset| format!(" synchronised at {offset}"));
@@ -168,7 +244,7 @@ pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<Stri
                 "{kind}{} on {}, {}° target, {}° delivered, St{SPACE}{}",
                 synchronised.unwrap_or_default(),
                 excitation.turbine.name,
-                number(excitation.pitch.commanded_amplitude_deg, 1),
+                amplitude(excitation.pitch.commanded_amplitude_deg),
                 number(excitation.pitch.delivered_amplitude_deg, 1),
                 number(excitation.strouhal, 2)
             )
@@ -185,22 +261,22 @@ pub(crate) fn conditions_line(study: &Study, run: Option<&RunRecords>) -> String
     items.join(" · ")
 }
 
-/// The conditions of all runs in one line: each excitation where there are few, their span where
-/// there are many.
-pub(crate) fn study_line(study: &Study) -> String {
+/// The conditions of all runs, an item each: each excitation where there are few, their span where there are
+/// many.
+pub(crate) fn study_conditions(study: &Study) -> Vec<String> {
     const MOST: usize = 3;
     let mut items = shared_conditions(study);
     let runs = study.runs();
     let each: Vec<String> = runs.iter().flat_map(|run| excitation_conditions(study, run)).collect();
     if each.len() <= MOST {
         items.extend(each);
-        return items.join(" · ");
+        return items;
     }
     let all: Vec<Excitation> = runs.iter().flat_map(|run| study.excitations(run)).collect();
     items.push(span("St", all.iter().map(|excitation| excitation.strouhal), 2, ""));
     let delivered = all.iter().map(|excitation| excitation.pitch.delivered_amplitude_deg);
     items.push(span("delivered", delivered, 1, "°"));
-    items.join(" · ")
+    items
 }
 
 /// "St 0.25" or "St 0.20 to 0.30".
@@ -215,12 +291,38 @@ fn span(name: &str, values: impl Iterator<Item = f64>, decimals: usize, unit: &s
     }
 }
 
-/// Distance of neighbours in words: "5.0 D", or "5.0 D, 6.0 D".
+/// Distance of neighbours in words: "5.0 D", "5.0 D, 6.0 D", or "4.0 D to 7.0 D" where there are many.
 pub(crate) fn spacing(study: &Study) -> Option<String> {
-    let mut spacings: Vec<String> =
-        study.spacings().iter().map(|spacing| format!("{}{SPACE}D", number(*spacing, 1))).collect();
-    spacings.dedup();
-    if spacings.is_empty() { None } else { Some(spacings.join(", ")) }
+    let spacing = spread(&study.spacings(), 1, "D")?;
+    let staggered = if study.lanes.len() > 1 { " along the wind, staggered" } else { "" };
+    Some(format!("{spacing}{staggered}"))
+}
+
+/// The same in metres.
+pub(crate) fn spacing_in_metres(study: &Study) -> Option<String> {
+    let diameter = study.diameter();
+    let metres: Vec<f64> = study.spacings().iter().map(|spacing| spacing * diameter).collect();
+    spread(&metres, 0, "m")
+}
+
+/// Each of `values` once where they are few, their span where they are many; none of none.
+fn spread(values: &[f64], decimals: usize, unit: &str) -> Option<String> {
+    const MOST: usize = 3;
+    let mut stated: Vec<String> = Vec::new();
+    for value in values {
+        let text = format!("{}{SPACE}{unit}", number(*value, decimals));
+        if !stated.contains(&text) {
+            stated.push(text);
+        }
+    }
+    if stated.len() <= MOST {
+        return (!stated.is_empty()).then(|| stated.join(", "));
+    }
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [least, most] =
+        [least, most].map(|value| format!("{}{SPACE}{unit}", number(value, decimals)));
+    Some(format!("{least} to {most}"))
 }
 
 /// "2100 s analysed in 3 ten-minute blocks".

@@ -1,20 +1,21 @@
 //! A study seen as its reader sees it: which run is the measure, what was done, where things stand.
 
+use crate::layout::{self, Lane, Rotor};
 use crate::{ReportError, RunRecords, StudyRecords};
 use basis::Sense;
 use basis::records::{DeliveredPitch, Plane, PlaneAxes, TurbineSummary};
 
 /// How a turbine was excited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ExcitationKind {
-    /// Helix, blades pitch at rotor minus excitation frequency.
-    Clockwise,
-    /// Helix, blades pitch at rotor plus excitation frequency.
-    CounterClockwise,
+pub(crate) enum ExcitationKind<'a> {
+    /// Helix; its sense says whether blades pitch at rotor plus or minus excitation frequency.
+    Helix(Sense),
+    /// Helix of this sense, in step with one that comes in.
+    InStep(Sense),
     /// Collective pitch.
     Pulse,
-    /// Known only by the controller's own description.
-    Other,
+    /// Another periodic pitch, known by the name of its controller's kind.
+    Named(&'a str),
 }
 
 /// One excited turbine of a run.
@@ -23,7 +24,7 @@ pub(crate) struct Excitation<'a> {
     /// The turbine.
     pub(crate) turbine: &'a TurbineSummary,
     /// How it was excited.
-    pub(crate) kind: ExcitationKind,
+    pub(crate) kind: ExcitationKind<'a>,
     /// What the actuators delivered.
     pub(crate) pitch: DeliveredPitch,
     /// f D / U with the target wind speed and the first turbine's diameter (–).
@@ -38,21 +39,14 @@ impl Excitation<'_> {
     }
 }
 
-/// Where a turbine stands.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Place {
-    /// Name of the turbine.
-    pub(crate) name: String,
-    /// Downwind and to the left (diameters of the first turbine).
-    pub(crate) position: [f64; 2],
-}
-
 /// The study, digested.
 pub(crate) struct Study<'a> {
     /// The records behind it.
     pub(crate) records: &'a StudyRecords,
-    /// Where the turbines stand; empty when the case file does not tell.
-    pub(crate) layout: Vec<Place>,
+    /// The rotors in their places; empty where nothing tells.
+    pub(crate) rotors: Vec<Rotor>,
+    /// The lines along the wind in which they stand.
+    pub(crate) lanes: Vec<Lane>,
     /// Colour index of each run: 0 is kept for the run that others compare with.
     pub(crate) colours: Vec<usize>,
 }
@@ -79,7 +73,8 @@ impl<'a> Study<'a> {
                 run => run,
             })
             .collect();
-        Ok(Self { records, layout: layout_of(&records.case_text), colours })
+        let rotors = layout::rotors(records);
+        Ok(Self { records, lanes: layout::lanes(&rotors), rotors, colours })
     }
 
     /// The runs.
@@ -104,30 +99,32 @@ impl<'a> Study<'a> {
         names
     }
 
-    /// How far left of the origin the first turbine stands (diameters).
-    pub(crate) fn side(&self) -> f64 {
-        self.layout.first().map_or(0.0, |place| place.position[1])
-    }
-
     /// Diameter of the first turbine's rotor (m).
     pub(crate) fn diameter(&self) -> f64 {
-        let diameter = self.runs()[0].summary.conditions.rotor_diameter;
-        if diameter > 0.0 { diameter } else { 1.0 }
+        layout::diameter(&self.runs()[0].summary)
+    }
+
+    /// The rotors that are there in `run`.
+    pub(crate) fn rotors_of(&self, run: &RunRecords) -> impl Iterator<Item = &Rotor> {
+        let turbines = &run.summary.turbines;
+        let is_there = |rotor: &&Rotor| turbines.iter().any(|turbine| turbine.name == rotor.name);
+        self.rotors.iter().filter(is_there)
+    }
+
+    /// Names of the rotors in `lane`.
+    pub(crate) fn names_in(&self, lane: &Lane) -> Vec<String> {
+        lane.rotors.iter().map(|&index| self.rotors[index].name.clone()).collect()
+    }
+
+    /// Whether turbines feel one another's wakes, so that a sum over them means something.
+    pub(crate) fn has_wakes(&self) -> bool {
+        self.runs().iter().all(|run| run.summary.has_wakes())
     }
 
     /// Speed that velocities are shown relative to: the target at hub height (m/s).
     pub(crate) fn free_stream(&self) -> f64 {
         let speed = self.runs()[0].summary.conditions.target_wind_speed;
         if speed > 0.0 { speed } else { 1.0 }
-    }
-
-    /// Hub height, from the hub-height plane (m).
-    pub(crate) fn hub_height(&self) -> Option<f64> {
-        self.runs().iter().find_map(|run| {
-            let planes = run.mean_planes.iter().chain(&run.instant_planes);
-            let mut horizontal = planes.filter(|plane| plane.axes == PlaneAxes::Horizontal);
-            horizontal.next().map(|plane| plane.origin[2])
-        })
     }
 
     /// Run with the largest gain of the array.
@@ -173,15 +170,16 @@ impl<'a> Study<'a> {
         if changed.is_empty() { all } else { changed }
     }
 
-    /// Distances between neighbours along the row (diameters).
+    /// Distances between neighbours along the row (diameters); in a staggered one along the wind alone,
+    /// between turbines that do not stand side by side.
     pub(crate) fn spacings(&self) -> Vec<f64> {
-        self.layout
-            .windows(2)
-            .map(|pair| {
-                let [from, to] = [pair[0].position, pair[1].position];
-                (to[0] - from[0]).hypot(to[1] - from[1])
-            })
-            .collect()
+        /// Turbines nearer along the wind than this stand side by side (diameters).
+        const SIDE_BY_SIDE: f64 = 0.5;
+        let mut places: Vec<f64> =
+            self.rotors.iter().map(|rotor| rotor.hub[0] / self.diameter()).collect();
+        places.sort_by(f64::total_cmp);
+        let distances = places.windows(2).map(|pair| pair[1] - pair[0]);
+        distances.filter(|distance| *distance > SIDE_BY_SIDE).collect()
     }
 }
 
@@ -232,46 +230,20 @@ pub(crate) fn gain_of(run: &RunRecords) -> Option<f64> {
 }
 
 /// How `turbine` was set to be excited.
-fn kind_of(turbine: &TurbineSummary) -> ExcitationKind {
-    match turbine.control.excitation.map(|set| set.sense) {
-        Some(Some(Sense::CounterClockwise)) => ExcitationKind::CounterClockwise,
-        Some(Some(Sense::Clockwise)) => ExcitationKind::Clockwise,
-        Some(None) => ExcitationKind::Pulse,
-        None => ExcitationKind::Other,
+fn kind_of(turbine: &TurbineSummary) -> ExcitationKind<'_> {
+    let control = &turbine.control;
+    let sense = control.excitation.and_then(|set| set.sense);
+    match (control.kind.as_str(), sense) {
+        ("helix", Some(sense)) => ExcitationKind::Helix(sense),
+        ("phase-sync", Some(sense)) => ExcitationKind::InStep(sense),
+        ("pulse", None) => ExcitationKind::Pulse,
+        (name, _) => ExcitationKind::Named(name),
     }
-}
-
-/// Where the case file puts the turbines; empty when it does not tell of all.
-fn layout_of(case_text: &str) -> Vec<Place> {
-    let Ok(case) = case_text.parse::<toml::Table>() else { return Vec::new() };
-    let turbines = case.get("turbine").and_then(toml::Value::as_array);
-    let place = |turbine: &toml::Value| {
-        let pair = turbine.get("position_diameters")?.as_array()?;
-        let value = |index: usize| {
-            let value: &toml::Value = pair.get(index)?;
-            value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64))
-        };
-        let name = turbine.get("name")?.as_str()?.to_owned();
-        Some(Place { name, position: [value(0)?, value(1)?] })
-    };
-    turbines
-        .and_then(|turbines| turbines.iter().map(place).collect::<Option<Vec<_>>>())
-        .unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_layout_comes_from_the_case_file() {
-        let text = "[[turbine]]\nname = 'A'\nposition_diameters = [0, 0.0]\n\
-                    [[turbine]]\nname = 'B'\nposition_diameters = [5.0, -1]\n";
-        let positions: Vec<[f64; 2]> = layout_of(text).iter().map(|place| place.position).collect();
-        assert_eq!(positions, [[0.0, 0.0], [5.0, -1.0]]);
-        assert!(layout_of("name = 3").is_empty() && layout_of("not toml at all [").is_empty());
-        assert!(layout_of("[[turbine]]\nposition_diameters = [1]\n").is_empty());
-    }
 
     #[test]
     fn a_plane_is_linear_between_its_points() {

@@ -52,7 +52,15 @@ pub(crate) fn interval(statistic: &Statistic, scale: f64, decimals: usize) -> St
 
 /// A gain and its interval: "+5.3 % ± 1.2 %".
 pub(crate) fn gain(statistic: &Statistic) -> String {
-    let mean = signed_percent(statistic.mean);
+    with_interval(signed_percent(statistic.mean), statistic)
+}
+
+/// The same without the sign.
+pub(crate) fn size(statistic: &Statistic) -> String {
+    with_interval(percent(statistic.mean), statistic)
+}
+
+fn with_interval(mean: String, statistic: &Statistic) -> String {
     match statistic.half_width_95 {
         Some(width) if width.is_finite() => format!("{mean} ±{SPACE}{}", percent(width)),
         _ => format!("{mean} (no interval)"),

@@ -11,8 +11,9 @@ use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
 use analysis::statistics::{BLOCK_LENGTH, statistic};
 use basis::records::{
-    Conditions, ControlSummary, Cost, DeliveredPitch, Finding, Load, PitchExcitation,
-    SCHEMA_VERSION, Statistic, Summary, TurbineSummary, Warning, WarningKind,
+    Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding, FlowSummary, Load,
+    PitchExcitation, Rotor, SCHEMA_VERSION, Statistic, Summary, TurbineSummary, Warning,
+    WarningKind,
 };
 use control::{MissingChannel, Pitching, TurbineRecord};
 use farm::assemble::controller;
@@ -53,6 +54,7 @@ pub(crate) fn summarise(
         run: run.name.clone(),
         compare_with: None,
         conditions: conditions(&analysed, setup)?,
+        flow: Some(flow(setup)),
         array_power: statistic(&array, analysed.interval, BLOCK_LENGTH)?,
         array_power_gain: None,
         turbines,
@@ -126,6 +128,7 @@ impl<'a> Turbine<'a> {
         Ok(TurbineSummary {
             name: name.to_owned(),
             model: setup.case.turbines[index].model.clone(),
+            rotor: Some(self.rotor()),
             control: self.control_summary(outcome.findings)?,
             power,
             thrust,
@@ -141,6 +144,14 @@ impl<'a> Turbine<'a> {
         })
     }
 
+    /// Its rotor in its place.
+    fn rotor(&self) -> Rotor {
+        let foot = self.setup.plan.positions[self.index];
+        let definition = &self.setup.models[self.index].definition;
+        let hub = [foot.x, foot.y, foot.z + definition.rotor.hub_height];
+        Rotor { diameter: definition.rotor_diameter(), hub }
+    }
+
     /// What ran on it.
     fn control_summary(&self, findings: Vec<Finding>) -> Result<ControlSummary, StudyError> {
         let Self { setup, index, .. } = *self;
@@ -154,7 +165,8 @@ impl<'a> Turbine<'a> {
             stop: set.stop,
         });
         let plain = ControlSummary::plain(self.control.kind().name(), &runs.describe());
-        Ok(ControlSummary { excitation, findings, ..plain })
+        let settings = Some(ControlSetting::all(self.control.values()));
+        Ok(ControlSummary { settings, excitation, findings, ..plain })
     }
 
     /// Its excitation as its blades delivered it; none without one, or in too short a record.
@@ -304,6 +316,12 @@ fn outrun(
     let radius = setup.models[index].definition.rotor_radius();
     let plan = &setup.plan;
     Ok(Outrun::of(times, rotor_speeds, radius, plan.spacing, plan.interval))
+}
+
+/// What moves the air of `setup`.
+fn flow(setup: &Prepared) -> FlowSummary {
+    let solver = setup.case.flow.solver;
+    FlowSummary { solver: solver.name.to_owned(), has_wakes: solver.has_wakes }
 }
 
 fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, StudyError> {

@@ -51,6 +51,7 @@ static WAKES: SolverKind = SolverKind {
         Vec::from_iter(still.then(objection))
     },
     uses_bound_vortices: true,
+    has_wakes: true,
     begin: |start: Start| -> std::result::Result<Air, SolverError> {
         let Start { site, inflow, .. } = start;
         let values = &site.case.flow.values;

@@ -5,7 +5,7 @@ pub mod examples;
 mod load;
 mod warning;
 
-pub use control::{ControlSummary, Finding, PitchExcitation};
+pub use control::{ControlSetting, ControlSummary, Finding, PitchExcitation, SettingValue};
 pub use load::{Load, LoadKind};
 use serde::{Deserialize, Serialize};
 pub use warning::{Warning, WarningKind};
@@ -143,6 +143,15 @@ pub struct MeanderingSummary {
     pub yaw: Option<MeanderingAxis>,
 }
 
+/// A rotor in its place.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rotor {
+    /// Its diameter (m).
+    pub diameter: f64,
+    /// Where its hub is: hub height above the foot of the tower (m, farm frame).
+    pub hub: [f64; 3],
+}
+
 /// One turbine over one run's analysed time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TurbineSummary {
@@ -150,6 +159,9 @@ pub struct TurbineSummary {
     pub name: String,
     /// Turbine model.
     pub model: String,
+    /// Its rotor in its place; absent in records that do not tell.
+    #[serde(default)]
+    pub rotor: Option<Rotor>,
     /// What controlled it.
     pub control: ControlSummary,
     /// Electrical power (W).
@@ -239,6 +251,15 @@ pub struct Conditions {
     pub duration: f64,
 }
 
+/// What moved the air.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FlowSummary {
+    /// Name of the flow solver, the word of `flow.solver`.
+    pub solver: String,
+    /// Whether its wind holds the rotors' wakes, so that turbines feel one another.
+    pub has_wakes: bool,
+}
+
 /// One run in numbers; `summary.json` is this, written out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -252,6 +273,9 @@ pub struct Summary {
     pub compare_with: Option<String>,
     /// The wind.
     pub conditions: Conditions,
+    /// What moved the air; absent in records that do not tell.
+    #[serde(default)]
+    pub flow: Option<FlowSummary>,
     /// The turbines, in the case file's order.
     pub turbines: Vec<TurbineSummary>,
     /// Electrical power of all turbines together (W).
@@ -262,6 +286,14 @@ pub struct Summary {
     pub cost: Cost,
     /// Warnings that a reader of the numbers must see.
     pub warnings: Vec<Warning>,
+}
+
+impl Summary {
+    /// Whether turbines felt one another's wakes; where the record does not tell, whether the air had cells.
+    pub fn has_wakes(&self) -> bool {
+        let has_cells = self.conditions.cells_per_diameter.is_some();
+        self.flow.as_ref().map_or(has_cells, |flow| flow.has_wakes)
+    }
 }
 
 /// Equally spaced samples of many channels, as `series.csv` holds them.

@@ -36,6 +36,10 @@ pub(crate) fn render(summaries: &[Summary]) -> String {
         for turbine in &summary.turbines {
             text += &row(&summary.run, turbine, &loads);
         }
+        // Without wakes no turbine feels another, so that a sum means nothing.
+        if !summary.has_wakes() && summary.turbines.len() > 1 {
+            continue;
+        }
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,

@@ -19,6 +19,7 @@ pub static LATTICE: SolverKind = SolverKind {
     check: |_| Vec::new(),
     wind: WindSource::AtInlet,
     resolves_induction: true,
+    has_wakes: true,
     smearing: |plan| Smearing {
         length: SMEARING_CELLS * plan.spacing,
         sample_spacing: plan.spacing,

@@ -46,6 +46,8 @@ pub struct SolverKind {
     /// Whether the wind that it gives contains the rotors' induction; otherwise turbines make their own by
     /// momentum theory.
     pub resolves_induction: bool,
+    /// Whether the wind that it gives holds the rotors' wakes, so that turbines feel one another.
+    pub has_wakes: bool,
     /// How it wants forces spread, and interpolates the wind, where it resolves induction.
     pub smearing: fn(&Plan) -> Smearing,
     /// Whether it asks for the bound vortices of blades, not for their forces alone.

@@ -16,6 +16,7 @@ pub const PRESCRIBED: SolverKind = SolverKind {
     check: |_| Vec::new(),
     wind: WindSource::Deterministic,
     resolves_induction: false,
+    has_wakes: false,
     smearing: |_| Smearing { length: 0.0, sample_spacing: 0.0 },
     uses_bound_vortices: false,
     needs_self_check: false,

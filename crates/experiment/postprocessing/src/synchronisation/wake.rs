@@ -5,8 +5,11 @@ use super::{Joined, Synchronised};
 use crate::PostprocessingError;
 use analysis::AnalysisError;
 use analysis::wake::{PhasePlane, centre_line, recentred_deficit};
-use basis::records::Plane;
-use report::{CentreLine, DeficitFigure, DeficitLine, DeficitPanel, SliceFigure, SlicePanel};
+use basis::records::{Plane, Rotor};
+use farm::case::Placement;
+use report::{
+    CentreLine, DeficitFigure, DeficitLine, DeficitPanel, SliceFigure, SlicePanel, SliceRotor,
+};
 
 /// Width of the Gaussian that finds a centre (rotor diameters).
 const WIDTH: f64 = 0.5;
@@ -67,17 +70,31 @@ pub(super) fn wake(
         let points = line_of(plane)?;
         lines.push(CentreLine { name: records.manifest.run.clone(), colour, points });
     }
-    let rotors = (0..study.case.turbines.len())
-        .map(|index| study.case.turbines[index].position_diameters.map(|d| d * study.diameter));
     let slices = SliceFigure {
         diameter: study.diameter,
         free_stream: study.case.wind.speed,
-        rotors: rotors.collect(),
+        rotors: rotors(study),
         planes: panels,
         centre_lines: lines,
         phase: "t = 0 Te".into(),
     };
     Ok((Some(slices), deficits(study, &cases, width)?))
+}
+
+/// The rotors of the case; as large as the first and at the height of the planes where no record tells.
+fn rotors(study: &Synchronised) -> Vec<SliceRotor> {
+    let runs = || study.records.runs.iter();
+    let turbines = || runs().flat_map(|run| &run.summary.turbines);
+    let height = runs().flat_map(|run| &run.phase_planes).map(|(_, plane)| plane.origin[2]).next();
+    let rotor = |placed: &Placement| {
+        let told = turbines().filter(|turbine| turbine.name == placed.name);
+        let [x, y] = placed.position_diameters.map(|d| d * study.diameter);
+        let alike = Rotor { diameter: study.diameter, hub: [x, y, height.unwrap_or(0.0)] };
+        let Rotor { diameter, hub } =
+            told.filter_map(|turbine| turbine.rotor).next().unwrap_or(alike);
+        SliceRotor { name: placed.name.clone(), hub, diameter }
+    };
+    study.case.turbines.iter().map(rotor).collect()
 }
 
 fn deficits(

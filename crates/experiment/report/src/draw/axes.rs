@@ -2,7 +2,7 @@
 
 use super::colour::Ink;
 use super::font::Face;
-use super::{Look, Role, Shape, TextStyle, polyline, rectangle, segment, text};
+use super::{Axis, Look, Role, Shape, TextStyle, polyline, rectangle, segment, text};
 use crate::words;
 
 /// Size of tick labels.
@@ -42,6 +42,21 @@ impl Scale {
         let spread = (high - low).max(least);
         let middle = 0.5 * (low + high);
         Self::linear(middle - (0.5 + margin) * spread, middle + (0.5 + margin) * spread)
+    }
+
+    /// Around all finite `values` and the means of `whiskers`, each with its half length, which it holds too
+    /// as far as `reach` beyond their means.
+    pub(crate) fn around_whiskers(
+        values: impl IntoIterator<Item = f64>,
+        whiskers: &[(f64, f64)],
+        reach: f64,
+        margin: f64,
+    ) -> Self {
+        let ends = whiskers.iter().flat_map(|&(mean, half)| {
+            let half = half.clamp(0.0, reach);
+            [mean - half, mean + half]
+        });
+        Self::around(values.into_iter().chain(ends), margin)
     }
 
     /// Where `value` lies between the ends (0 to 1 within).
@@ -93,6 +108,34 @@ pub(crate) struct Readout {
     pub(crate) x_unit: String,
     /// Unit of the vertical axis.
     pub(crate) y_unit: String,
+    /// The axis along which the nearest point of a line is looked for.
+    pub(crate) along: Axis,
+    /// Whether both axes are enlarged, not the horizontal one alone.
+    pub(crate) both: bool,
+    /// What the colours mean, where it is a field.
+    pub(crate) field: Option<FieldValues>,
+}
+
+impl Readout {
+    /// `shapes` as the group that it tells of, cut `margin` outside its frame.
+    pub(crate) fn group(self, margin: f64, shapes: Vec<Shape>) -> Shape {
+        let [left, top, width, height] = self.frame;
+        let clip = [left - margin, top - margin, width + 2.0 * margin, height + 2.0 * margin];
+        Shape::Group { role: Role::Panel(self), clip: Some(clip), shapes }
+    }
+}
+
+/// What the colours of a field mean.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FieldValues {
+    /// What it shows, in a few words.
+    pub(crate) name: String,
+    /// Colour index of its run.
+    pub(crate) run: usize,
+    /// Values of the first and the last colour.
+    pub(crate) range: [f64; 2],
+    /// Unit of the values.
+    pub(crate) unit: String,
 }
 
 /// A rectangle on the sheet with a scale on each side.
@@ -138,17 +181,33 @@ impl Frame {
     pub(crate) fn rows(&self, n_wanted: usize, labelled: bool, shapes: &mut Vec<Shape>) {
         let [left, _, width, _] = self.area;
         let (ticks, decimals) = self.y.ticks(n_wanted);
+        let mut inner = Vec::new();
         for tick in ticks {
             let [_, y] = self.point([self.x.low, tick]);
-            shapes.push(segment([left, y], [left + width, y], Look::line(Ink::Grid, 1.0)));
+            inner.push(segment([left, y], [left + width, y], Look::line(Ink::Grid, 1.0)));
             if !labelled {
                 continue;
             }
             let label =
                 if self.y.logarithmic { power(tick) } else { words::number(tick, decimals) };
             let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
-            shapes.push(text([left - 7.0, y + 4.0], label, setting));
+            inner.push(text([left - 7.0, y + 4.0], label, setting));
         }
+        self.ticks(Axis::Y, inner, shapes);
+    }
+
+    /// Ticks with their values left of a field, without grid lines across it.
+    pub(crate) fn heights(&self, n_wanted: usize, shapes: &mut Vec<Shape>) {
+        let left = self.area[0];
+        let (ticks, decimals) = self.y.ticks(n_wanted);
+        let mut inner = Vec::new();
+        for tick in ticks {
+            let [_, y] = self.point([self.x.low, tick]);
+            inner.push(segment([left - 4.0, y], [left, y], Look::line(Ink::Axis, 1.0)));
+            let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
+            inner.push(text([left - 7.0, y + 4.0], words::number(tick, decimals), setting));
+        }
+        self.ticks(Axis::Y, inner, shapes);
     }
 
     /// Ticks below, with their values where `labelled`, and the line that carries them.
@@ -157,14 +216,16 @@ impl Frame {
         let base = top + height;
         shapes.push(segment([left, base], [left + width, base], Look::line(Ink::Axis, 1.0)));
         let (ticks, decimals) = self.x.ticks(n_wanted);
+        let mut inner = Vec::new();
         for tick in ticks {
             let [x, _] = self.point([tick, self.y.low]);
-            shapes.push(segment([x, base], [x, base + 4.0], Look::line(Ink::Axis, 1.0)));
+            inner.push(segment([x, base], [x, base + 4.0], Look::line(Ink::Axis, 1.0)));
             if labelled {
                 let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(0.5);
-                shapes.push(text([x, base + 17.0], words::number(tick, decimals), setting));
+                inner.push(text([x, base + 17.0], words::number(tick, decimals), setting));
             }
         }
+        self.ticks(Axis::X, inner, shapes);
     }
 
     /// A title above the frame at its left.
@@ -187,22 +248,39 @@ impl Frame {
         shapes.push(text([left - distance, top + 0.5 * height], content, setting));
     }
 
+    /// `shapes` behind the lines and the grid of this frame, cut at its edges.
+    pub(crate) fn behind(&self, shapes: Vec<Shape>) -> Shape {
+        Shape::Group { role: Role::Behind(self.area), clip: Some(self.area), shapes }
+    }
+
     /// A pale band over the whole height between two horizontal values.
     pub(crate) fn band(&self, from: f64, to: f64, shapes: &mut Vec<Shape>) {
         let area = self.rectangle([from, self.y.low], [to, self.y.high]);
         shapes.push(rectangle(area, Look::fill(Ink::Band)));
     }
 
-    /// The lines of this frame as one group, cut at its edges, whose values can be read off.
-    pub(crate) fn panel(&self, lines: Vec<Shape>, units: [&str; 2]) -> Shape {
-        let readout = Readout {
+    /// What a pointer can read off this frame, with the units of its axes.
+    pub(crate) fn readout(&self, units: [&str; 2]) -> Readout {
+        Readout {
             frame: self.area,
             range: [self.x.low, self.x.high, self.y.low, self.y.high],
             logarithmic: self.y.logarithmic,
             x_unit: units[0].to_owned(),
             y_unit: units[1].to_owned(),
-        };
-        Shape::Group { role: Role::Panel(readout), clip: Some(self.area), shapes: lines }
+            along: Axis::X,
+            both: true,
+            field: None,
+        }
+    }
+
+    /// The lines of this frame as one group, cut at its edges, whose values can be read off.
+    pub(crate) fn panel(&self, lines: Vec<Shape>, units: [&str; 2]) -> Shape {
+        self.readout(units).group(0.0, lines)
+    }
+
+    /// Ticks along one side of this frame.
+    pub(crate) fn ticks(&self, axis: Axis, ticks: Vec<Shape>, shapes: &mut Vec<Shape>) {
+        shapes.push(Shape::Group { role: Role::Ticks(self.area, axis), clip: None, shapes: ticks });
     }
 }
 

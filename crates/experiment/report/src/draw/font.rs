@@ -53,9 +53,57 @@ impl Face {
     }
 }
 
+/// `items` joined by `separator`, in lines that are no longer than `width` in letters of `size`; an item that
+/// is longer is broken between its words.
+pub(crate) fn wrapped(
+    items: &[String],
+    separator: &str,
+    face: &Face,
+    size: f64,
+    width: f64,
+) -> Vec<String> {
+    // Readers' own fonts may be wider than the one that is measured.
+    let fits = |line: &str| 1.1 * face.width(line, size) <= width;
+    let mut lines: Vec<String> = Vec::new();
+    let mut line = String::new();
+    for item in items {
+        let mut between = separator;
+        let whole = [item.as_str()];
+        let words: Vec<&str> = item.split(' ').collect();
+        let pieces: &[&str] = if fits(item) { &whole } else { &words };
+        for piece in pieces {
+            let longer = format!("{line}{between}{piece}");
+            if line.is_empty() {
+                line = (*piece).to_owned();
+            } else if fits(&longer) {
+                line = longer;
+            } else {
+                lines.push(std::mem::replace(&mut line, (*piece).to_owned()));
+            }
+            between = " ";
+        }
+    }
+    lines.extend((!line.is_empty()).then_some(line));
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_break_between_items_and_long_items_between_words() {
+        let face = Face::new(false);
+        let items = ["9.0\u{a0}m/s", "TI 5 %", "a helix of which there is a lot to say"];
+        let items = items.map(str::to_owned);
+        let width = 1.1 * face.width("a helix of which there", 10.0) + 1.0;
+        let lines = wrapped(&items, " · ", &face, 10.0, width);
+        assert_eq!(lines[0], "9.0\u{a0}m/s · TI 5 %");
+        assert_eq!(lines[1], "a helix of which there");
+        assert!(lines.iter().all(|line| 1.1 * face.width(line, 10.0) <= width), "{lines:?}");
+        assert_eq!(lines[1..].join(" "), items[2]);
+        assert!(wrapped(&[], " · ", &face, 10.0, width).is_empty());
+    }
 
     #[test]
     fn the_faces_hold_every_letter_of_the_figures() {

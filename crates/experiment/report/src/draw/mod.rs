@@ -6,6 +6,7 @@ pub(crate) mod field;
 pub(crate) mod font;
 pub(crate) mod raster;
 pub(crate) mod svg;
+pub(crate) mod whisker;
 
 use colour::Ink;
 use field::Picture;
@@ -82,8 +83,29 @@ pub(crate) enum Role {
     Plain,
     /// All that a run draws, so that it can be hidden.
     Run(usize),
-    /// The lines of one pair of axes, whose values can be read off.
+    /// What stands in one pair of axes, whose values can be read off and which can be enlarged.
     Panel(axes::Readout),
+    /// What lies behind the panel in this frame (left, top, width, height), below its grid, and is enlarged
+    /// with it.
+    Behind([f64; 4]),
+    /// The ticks along one side of the pair of axes in this frame (left, top, width, height), which others
+    /// replace where it is enlarged.
+    Ticks([f64; 4], Axis),
+    /// A line of this name.
+    Line(String),
+    /// Something that tells this to a pointer on it.
+    Mark(String),
+    /// The bar that tells the colours of the fields of this drawing.
+    Bar,
+}
+
+/// One of the two axes of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Axis {
+    /// The horizontal one.
+    X,
+    /// The vertical one.
+    Y,
 }
 
 /// How a shape looks.
@@ -138,12 +160,14 @@ pub(crate) struct TextStyle {
     pub(crate) anchor: f64,
     /// Whether it reads upwards.
     pub(crate) upwards: bool,
+    /// Whether it has a pale halo, so that it can be read on a coloured field.
+    pub(crate) halo: bool,
 }
 
 impl TextStyle {
     /// Plain text of `size`, anchored at its start.
     pub(crate) fn plain(ink: Ink, size: f64) -> Self {
-        Self { ink, size, bold: false, anchor: 0.0, upwards: false }
+        Self { ink, size, bold: false, anchor: 0.0, upwards: false, halo: false }
     }
 
     /// The same, bold.
@@ -154,6 +178,11 @@ impl TextStyle {
     /// The same, anchored elsewhere.
     pub(crate) fn anchored(self, anchor: f64) -> Self {
         Self { anchor, ..self }
+    }
+
+    /// The same with a halo.
+    pub(crate) fn on_field(self) -> Self {
+        Self { halo: true, ..self }
     }
 
     /// The same, reading upwards.

@@ -2,6 +2,7 @@
 
 use super::colour::{self, Ink};
 use super::font::Face;
+use super::svg::HALO;
 use super::{Figure, Look, Shape, TextStyle};
 use skrifa::outline::OutlinePen;
 use tiny_skia::{
@@ -157,6 +158,12 @@ impl Painter {
             .post_concat(Transform::from_rotate(turn))
             .post_translate(x as f32, y as f32)
             .post_scale(SCALE, SCALE);
+        if setting.halo {
+            let stroke =
+                Stroke { width: HALO as f32, line_join: LineJoin::Round, ..Stroke::default() };
+            let paint = paint(Ink::FieldHalo, 1.0);
+            self.sheet.stroke_path(&path, &paint, &stroke, transform, self.mask.as_ref());
+        }
         let paint = paint(setting.ink, 1.0);
         self.sheet.fill_path(&path, &paint, FillRule::Winding, transform, self.mask.as_ref());
     }

@@ -1,8 +1,9 @@
 //! Figures as SVG: readable text, inks as classes, so that a page's style sheet may recolour them.
 
+use super::axes::Readout;
 use super::colour::{Ink, hex};
 use super::field::base64;
-use super::{Figure, Look, Role, Shape, TextStyle};
+use super::{Axis, Figure, Look, Role, Shape, TextStyle};
 use std::fmt::Write;
 
 /// The figure as a file of its own.
@@ -30,6 +31,9 @@ pub(crate) fn inline(figure: &Figure) -> Result<String, png::EncodingError> {
     writer.text.push_str("</svg>");
     Ok(writer.text)
 }
+
+/// Width of the halo of a text.
+pub(crate) const HALO: f64 = 3.0;
 
 struct Writer<'a> {
     text: String,
@@ -89,12 +93,20 @@ impl Writer<'_> {
             true => format!(" transform=\"rotate(-90 {x} {y})\""),
             false => String::new(),
         };
+        let look = Look { fill: Some(setting.ink), opacity: 1.0, ..Look::default() };
+        let (look, halo) = match setting.halo {
+            true => {
+                let halo = Look { stroke: Some(Ink::FieldHalo), width: HALO, ..look };
+                (halo, " paint-order=\"stroke\"")
+            }
+            false => (look, ""),
+        };
         let _ = write!(
             self.text,
-            "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\"{anchor}{}{turn} {}>{}</text>",
+            "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\"{anchor}{}{turn}{halo} {}>{}</text>",
             short(setting.size),
             if setting.bold { " font-weight=\"600\"" } else { "" },
-            fill(Some(setting.ink)),
+            looks(&look),
             escaped(content)
         );
     }
@@ -108,17 +120,15 @@ impl Writer<'_> {
         let mut attributes = match role {
             Role::Plain => String::new(),
             Role::Run(run) => format!(" data-run=\"{run}\""),
-            Role::Panel(readout) => {
-                let numbers: Vec<String> =
-                    readout.frame.iter().chain(&readout.range).map(|n| format!("{n:.6}")).collect();
-                format!(
-                    " data-panel=\"{}\" data-log=\"{}\" data-x=\"{}\" data-y=\"{}\"",
-                    numbers.join(" "),
-                    u8::from(readout.logarithmic),
-                    escaped(&readout.x_unit),
-                    escaped(&readout.y_unit)
-                )
+            Role::Panel(readout) => of_panel(readout),
+            Role::Behind(frame) => format!(" data-behind=\"{}\"", numbers(frame)),
+            Role::Ticks(frame, axis) => {
+                let axis = if *axis == Axis::X { "x" } else { "y" };
+                format!(" data-ticks=\"{axis}\" data-frame=\"{}\"", numbers(frame))
             }
+            Role::Line(name) => format!(" data-line=\"{}\"", escaped(name)),
+            Role::Mark(words) => format!(" data-mark=\"{}\"", escaped(words)),
+            Role::Bar => " data-bar=\"\"".to_owned(),
         };
         if let Some([left, top, width, height]) = clip {
             self.n_clips += 1;
@@ -133,13 +143,49 @@ impl Writer<'_> {
             );
             let _ = write!(attributes, " clip-path=\"url(#{id})\"");
         }
-        let _ = write!(self.text, "<g{attributes}>");
+        // What is enlarged lies inside what cuts it.
+        let (open, close) = match role {
+            Role::Panel(_) | Role::Behind(_) => ("<g class=\"zoom\">", "</g></g>"),
+            _ => ("", "</g>"),
+        };
+        let _ = write!(self.text, "<g{attributes}>{open}");
         for shape in shapes {
             self.shape(shape)?;
         }
-        self.text.push_str("</g>");
+        self.text.push_str(close);
         Ok(())
     }
+}
+
+/// What the page's script must know of a pair of axes.
+fn of_panel(readout: &Readout) -> String {
+    let mut text = format!(
+        " data-panel=\"{} {}\" data-log=\"{}\" data-x=\"{}\" data-y=\"{}\" data-along=\"{}\" data-zoom=\"{}\"",
+        numbers(&readout.frame),
+        numbers(&readout.range),
+        u8::from(readout.logarithmic),
+        escaped(&readout.x_unit),
+        escaped(&readout.y_unit),
+        if readout.along == Axis::X { "x" } else { "y" },
+        if readout.both { "xy" } else { "x" },
+    );
+    if let Some(field) = &readout.field {
+        let _ = write!(
+            text,
+            " data-field=\"{}\" data-unit=\"{}\" data-name=\"{}\" data-colour=\"{}\"",
+            numbers(&field.range),
+            escaped(&field.unit),
+            escaped(&field.name),
+            field.run
+        );
+    }
+    text
+}
+
+/// Numbers for the script, precise enough to tell frames apart and values to four digits.
+fn numbers(values: &[f64]) -> String {
+    let each: Vec<String> = values.iter().map(|value| format!("{value:.6}")).collect();
+    each.join(" ")
 }
 
 /// Attributes of a look; the class lets a style sheet overrule the colour.

@@ -1,12 +1,14 @@
 //! Gains over the compared run: by turbine, and over amplitude.
 
 use super::WIDTH;
-use crate::draw::axes::{Frame, MEDIUM, SMALL, Scale, legend};
+use crate::draw::axes::{Frame, MEDIUM, Readout, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::font::Face;
-use crate::draw::{Figure, Look, Role, Shape, TextStyle, rectangle, segment, text};
+use crate::draw::whisker::{self, Style, whisker};
+use crate::draw::{Axis, Figure, Look, Role, Shape, TextStyle, rectangle, segment, text};
 use crate::study::{ExcitationKind, Study};
 use crate::words;
+use basis::Sense;
 use basis::records::Statistic;
 
 const ROW: f64 = 24.0;
@@ -29,36 +31,44 @@ pub(crate) fn gains(study: &Study) -> Option<Figure> {
         groups.iter().map(|group| group_face.width(&group.0, MEDIUM)).fold(40.0, f64::max);
     let left = 16.0 + group_width + 16.0 + name_width + 16.0;
     let height: f64 = groups.iter().map(|(_, rows)| ROW * rows.len() as f64 + 14.0).sum::<f64>();
-    let ends = rows().flat_map(|row| {
-        let half = row.2.half_width_95.unwrap_or(0.0);
-        [100.0 * (row.2.mean - half), 100.0 * (row.2.mean + half), 0.0]
-    });
     let frame = Frame {
         area: [left, 18.0, WIDTH - left - 150.0, height],
-        x: Scale::around(ends, 0.06),
+        x: scale(rows().map(|row| row.2)),
         y: Scale::linear(0.0, 1.0),
     };
     let mut shapes = Vec::new();
     bands(&groups, frame.area[1], &mut shapes);
     ruler(&frame, &mut shapes);
     let mut y = frame.area[1];
-    for (_, rows) in &groups {
+    let mut whiskers = Vec::new();
+    for (name, rows) in &groups {
         y += 7.0;
         for row in rows {
-            shapes.push(whisker(row, &frame, left - 16.0, y + 0.5 * ROW));
+            names(row, left - 16.0, y + 0.5 * ROW, &mut shapes);
+            whiskers.push(row_whisker(name, row, &frame, y + 0.5 * ROW));
             y += ROW;
         }
         y += 7.0;
     }
+    shapes.push(Readout { both: false, ..frame.readout(["%", ""]) }.group(6.0, whiskers));
     Some(Figure {
         name: "gains".to_owned(),
         title: "Power gain over the compared run".to_owned(),
-        caption: "Dots: gain of the mean power; whiskers: 95\u{a0}% interval from paired blocks."
+        caption: "Dots: gain of the mean power; whiskers: 95\u{a0}% interval from paired blocks, an arrow \
+                  where one goes on beyond the axis."
             .to_owned(),
         width: WIDTH,
         height: frame.area[1] + height + 50.0,
         shapes,
     })
+}
+
+/// The axis (%) of `gains`: zero, every mean, and the intervals that are not far beyond the usual.
+fn scale(gains: impl Iterator<Item = Statistic>) -> Scale {
+    let whisker = |gain: Statistic| (100.0 * gain.mean, 100.0 * gain.half_width_95.unwrap_or(0.0));
+    let whiskers: Vec<(f64, f64)> = gains.map(whisker).collect();
+    let halves = whiskers.iter().map(|whisker| whisker.1).filter(|half| *half > 0.0);
+    Scale::around_whiskers([0.0], &whiskers, whisker::reach(halves), 0.06)
 }
 
 /// A band with its name for each of `groups`, the first one below `y`.
@@ -78,14 +88,15 @@ fn bands(groups: &[Group], mut y: f64, shapes: &mut Vec<Shape>) {
 /// Lines at round gains, with their numbers and what they are below.
 fn ruler(frame: &Frame, shapes: &mut Vec<Shape>) {
     let (ticks, decimals) = frame.x.ticks(8);
+    let bottom = frame.area[1] + frame.area[3];
+    let mut inner = Vec::new();
     for tick in ticks {
         let [x, _] = frame.point([tick, 0.0]);
-        let bottom = frame.area[1] + frame.area[3];
-        let ink = if tick == 0.0 { Ink::Axis } else { Ink::Grid };
-        shapes.push(segment([x, frame.area[1]], [x, bottom], Look::line(ink, 1.0)));
+        inner.push(segment([x, frame.area[1]], [x, bottom], Look::line(Ink::Grid, 1.0)));
         let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(0.5);
-        shapes.push(text([x, bottom + 17.0], words::number(tick, decimals), setting));
+        inner.push(text([x, bottom + 17.0], words::number(tick, decimals), setting));
     }
+    frame.ticks(Axis::X, inner, shapes);
     frame.x_label("power gain over the compared run (%)", shapes);
 }
 
@@ -106,7 +117,7 @@ fn groups<'a>(study: &Study<'a>) -> Vec<Group<'a>> {
             (turbine.to_owned(), rows)
         })
         .collect();
-    if groups.len() > 1 {
+    if groups.len() > 1 && study.has_wakes() {
         let rows = runs()
             .filter_map(|(run, &colour)| {
                 Some((colour, run.summary.run.as_str(), run.summary.array_power_gain?))
@@ -119,32 +130,41 @@ fn groups<'a>(study: &Study<'a>) -> Vec<Group<'a>> {
     groups
 }
 
-fn whisker((colour, name, gain): &Row, frame: &Frame, name_end: f64, y: f64) -> Shape {
-    let x = |share: f64| frame.point([100.0 * share, 0.0])[0];
-    let look = Look::line(Ink::Run(*colour), 2.0);
-    let mut shapes = Vec::new();
+/// Name and number of a row, at its two ends.
+fn names((colour, name, gain): &Row, name_end: f64, y: f64, shapes: &mut Vec<Shape>) {
     let setting = TextStyle::plain(Ink::Text, MEDIUM).anchored(1.0);
-    shapes.push(text([name_end, y + 4.0], *name, setting));
-    if let Some(half) = gain.half_width_95 {
-        let (from, to) = (x(gain.mean - half), x(gain.mean + half));
-        shapes.push(segment([from, y], [to, y], look));
-        shapes.push(segment([from, y - 5.0], [from, y + 5.0], look));
-        shapes.push(segment([to, y - 5.0], [to, y + 5.0], look));
-    }
-    let center = [x(gain.mean), y];
-    shapes.push(Shape::Circle { center, radius: 5.0, look: Look::fill(Ink::Run(*colour)) });
     let label = match gain.half_width_95 {
         Some(_) => words::gain(gain),
         None => words::signed_percent(gain.mean),
     };
-    let setting = TextStyle::plain(Ink::Text, MEDIUM).anchored(1.0);
-    shapes.push(text([WIDTH - 22.0, y + 4.0], label, setting));
-    Shape::Group { role: Role::Run(*colour), clip: None, shapes }
+    let inner = vec![
+        text([name_end, y + 4.0], *name, setting),
+        text([WIDTH - 22.0, y + 4.0], label, setting),
+    ];
+    shapes.push(Shape::Group { role: Role::Run(*colour), clip: None, shapes: inner });
+}
+
+/// The gain of a row of the group called `group`, with a line at zero behind it.
+fn row_whisker(group: &str, (colour, name, gain): &Row, frame: &Frame, y: f64) -> Shape {
+    let style =
+        Style { ink: Ink::Run(*colour), width: 2.0, cap: 5.0, radius: 5.0, numbered: false };
+    let half = gain.half_width_95.map(|half| 100.0 * half);
+    let [zero, _] = frame.point([0.0, 0.0]);
+    let line = segment([zero, y - 0.5 * ROW], [zero, y + 0.5 * ROW], Look::line(Ink::Axis, 1.0));
+    let mut shapes = vec![line];
+    shapes.extend(whisker(frame, Axis::X, y, 100.0 * gain.mean, half, style));
+    told(format!("{group}, {name}: {}", words::gain(gain)), *colour, shapes)
+}
+
+/// `shapes` of a run that tell `words`.
+fn told(words: String, colour: usize, shapes: Vec<Shape>) -> Shape {
+    let mark = Shape::Group { role: Role::Mark(words), clip: None, shapes };
+    Shape::Group { role: Role::Run(colour), clip: None, shapes: vec![mark] }
 }
 
 /// A line of the figure over amplitude.
 struct Line {
-    name: &'static str,
+    name: String,
     /// Colour of its first run.
     colour: usize,
     /// Delivered amplitude (deg) with the gains of all together and of the excited turbine.
@@ -162,38 +182,39 @@ pub(crate) fn gain_over_amplitude(study: &Study) -> Option<Figure> {
         return None;
     }
     let mut shapes = Vec::new();
-    let names: Vec<(usize, &str)> = lines.iter().map(|line| (line.colour, line.name)).collect();
+    let names: Vec<(usize, &str)> =
+        lines.iter().map(|line| (line.colour, line.name.as_str())).collect();
     let top =
         22.0 + legend([64.0, 22.0], WIDTH - 90.0, |_| Role::Plain, &names, &mut shapes) + 18.0;
-    for (side, title) in ["all together", "the excited turbine"].into_iter().enumerate() {
-        let ends = lines.iter().flat_map(|line| &line.points).flat_map(|(_, gains)| {
-            let half = gains[side].half_width_95.unwrap_or(0.0);
-            [gains[side].mean - half, gains[side].mean + half, 0.0].map(|share| 100.0 * share)
-        });
+    // Without wakes there is no "together".
+    let first = if study.has_wakes() { 0 } else { 1 };
+    let panels = ["all together", "the excited turbine"].into_iter().enumerate().skip(first);
+    for (side, title) in panels {
+        let points = lines.iter().flat_map(|line| &line.points);
         let frame = Frame {
-            area: [64.0 + 476.0 * side as f64, top, 424.0, HEIGHT],
+            area: [64.0 + 476.0 * (side - first) as f64, top, 424.0, HEIGHT],
             x: Scale::linear(0.0, 1.06 * largest),
-            y: Scale::around(ends, 0.06),
+            y: scale(points.map(|(_, gains)| gains[side])),
         };
         frame.rows(5, true, &mut shapes);
         frame.columns(6, true, &mut shapes);
         frame.title(title, &mut shapes);
         frame.x_label("delivered amplitude (°)", &mut shapes);
-        if side == 0 {
+        if side == first {
             frame.y_label("power gain (%)", 46.0, &mut shapes);
         }
         let zero = [frame.point([0.0, 0.0]), frame.point([frame.x.high, 0.0])];
-        shapes.push(segment(zero[0], zero[1], Look::line(Ink::Axis, 1.0)));
-        for line in &lines {
-            over_amplitude(line, side, &frame, &mut shapes);
-        }
+        let zero = segment(zero[0], zero[1], Look::line(Ink::Axis, 1.0));
+        shapes.push(frame.behind(vec![zero]));
+        let inner = lines.iter().map(|line| over_amplitude(line, side, &frame)).collect();
+        shapes.push(frame.readout(["°", "%"]).group(6.0, inner));
     }
     Some(Figure {
         name: "gain-over-amplitude".to_owned(),
         title: "Power gain over amplitude".to_owned(),
         caption:
-            "Whiskers: 95\u{a0}% intervals from paired blocks; amplitude zero is the compared \
-                  run itself."
+            "Whiskers: 95\u{a0}% intervals from paired blocks, with an arrow and its end's number where one \
+             goes on beyond the axis; amplitude zero is the compared run itself."
                 .to_owned(),
         width: WIDTH,
         height: top + HEIGHT + 50.0,
@@ -202,13 +223,22 @@ pub(crate) fn gain_over_amplitude(study: &Study) -> Option<Figure> {
 }
 
 fn lines_over_amplitude(study: &Study) -> Vec<Line> {
-    const KINDS: [(ExcitationKind, &str); 3] = [
-        (ExcitationKind::CounterClockwise, "counter-clockwise helix"),
-        (ExcitationKind::Clockwise, "clockwise helix"),
-        (ExcitationKind::Pulse, "pulse"),
-    ];
+    let mut kinds: Vec<ExcitationKind> = Vec::new();
+    for excitation in study.runs().iter().flat_map(|run| study.excitations(run)) {
+        if !kinds.contains(&excitation.kind) {
+            kinds.push(excitation.kind);
+        }
+    }
     let mut lines = Vec::new();
-    for (kind, name) in KINDS {
+    for kind in kinds {
+        let name = match kind {
+            ExcitationKind::Helix(Sense::CounterClockwise) => "counter-clockwise helix".to_owned(),
+            ExcitationKind::Helix(Sense::Clockwise) => "clockwise helix".to_owned(),
+            ExcitationKind::Pulse => "pulse".to_owned(),
+            // Its gain is a matter of the phase offset.
+            ExcitationKind::InStep(_) => continue,
+            ExcitationKind::Named(name) => name.to_owned(),
+        };
         let mut colours = Vec::new();
         let mut points = Vec::new();
         for (run, &colour) in study.runs().iter().zip(&study.colours) {
@@ -229,21 +259,22 @@ fn lines_over_amplitude(study: &Study) -> Vec<Line> {
     lines
 }
 
-fn over_amplitude(line: &Line, side: usize, frame: &Frame, shapes: &mut Vec<Shape>) {
+fn over_amplitude(line: &Line, side: usize, frame: &Frame) -> Shape {
     let ink = Ink::Run(line.colour);
     let gains = line.points.iter().map(|(amplitude, gains)| (*amplitude, gains[side]));
     let through: Vec<[f64; 2]> = std::iter::once([0.0, 0.0])
         .chain(gains.clone().map(|(amplitude, gain)| [amplitude, 100.0 * gain.mean]))
         .collect();
     let look = Look::line(ink, 1.8).dashed(run_dash(line.colour));
-    shapes.push(crate::draw::polyline(frame.points(&through), look));
+    let mut shapes = vec![crate::draw::polyline(frame.points(&through), look)];
+    let style = Style { ink, width: 1.6, cap: 0.0, radius: 4.5, numbered: true };
     for (amplitude, gain) in gains {
-        if let Some(half) = gain.half_width_95 {
-            let ends = [gain.mean - half, gain.mean + half]
-                .map(|share| frame.point([amplitude, 100.0 * share]));
-            shapes.push(segment(ends[0], ends[1], Look::line(ink, 1.6)));
-        }
-        let center = frame.point([amplitude, 100.0 * gain.mean]);
-        shapes.push(Shape::Circle { center, radius: 4.5, look: Look::fill(ink) });
+        let half = gain.half_width_95.map(|half| 100.0 * half);
+        let [x, _] = frame.point([amplitude, 0.0]);
+        let mark = whisker(frame, Axis::Y, x, 100.0 * gain.mean, half, style);
+        let degrees = words::number(amplitude, 2);
+        let words = format!("{}, {degrees}°: {}", line.name, words::gain(&gain));
+        shapes.push(Shape::Group { role: Role::Mark(words), clip: None, shapes: mark });
     }
+    Shape::Group { role: Role::Plain, clip: None, shapes }
 }

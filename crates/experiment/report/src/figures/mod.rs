@@ -4,12 +4,13 @@ mod gains;
 pub(crate) mod pitch;
 pub(crate) mod power;
 mod profiles;
+mod rotors;
 mod sheet;
 mod slices;
 pub(crate) mod synchronisation;
 
 use crate::draw::colour::Ink;
-use crate::draw::font::Face;
+use crate::draw::font::{Face, wrapped};
 use crate::draw::{Figure, TextStyle, text};
 use crate::sentence;
 use crate::study::Study;
@@ -51,7 +52,7 @@ pub(crate) fn all(study: &Study) -> Figures {
     figures.extend(pitch::pitch(study));
     figures.extend(power::rotor_speed(study));
     let mut joined = joined(&study.records.synchronisation);
-    let conditions = sentence::study_line(study);
+    let conditions = sentence::study_conditions(study);
     let of_turbines = joined.iter_mut().flat_map(|(_, figures)| figures);
     figures.iter_mut().chain(of_turbines).for_each(|figure| sign(figure, &conditions));
     Figures { study: figures, joined }
@@ -75,24 +76,11 @@ fn joined(found: &[Synchronisation]) -> Vec<(String, Vec<Figure>)> {
 }
 
 /// Writes the conditions below a figure, so that it keeps them wherever it is shown.
-fn sign(figure: &mut Figure, conditions: &str) {
+fn sign(figure: &mut Figure, conditions: &[String]) {
     const SIZE: f64 = 10.5;
     const LINE: f64 = 15.0;
-    let face = Face::new(false);
-    let mut line = String::new();
-    let mut lines = Vec::new();
-    for item in conditions.split(" · ") {
-        let longer = if line.is_empty() { item.to_owned() } else { format!("{line} · {item}") };
-        // Readers' own fonts may be wider than the one that is measured.
-        if !line.is_empty() && 1.1 * face.width(&longer, SIZE) > figure.width - 40.0 {
-            lines.push(std::mem::replace(&mut line, item.to_owned()));
-        } else {
-            line = longer;
-        }
-    }
-    lines.push(line);
     let setting = TextStyle::plain(Ink::Muted, SIZE);
-    for line in lines {
+    for line in wrapped(conditions, " · ", &Face::new(false), SIZE, figure.width - 40.0) {
         figure.height += LINE;
         figure.shapes.push(text([16.0, figure.height - 4.0], line, setting));
     }

@@ -163,26 +163,23 @@ fn spectra(rows: &[&Excited], area: [f64; 4], shapes: &mut Vec<Shape>) {
     frame.y_label("amplitude (°)", 46.0, shapes);
     let marks = [(rotor - excitation, "1P−fₑ"), (rotor, "1P"), (rotor + excitation, "1P+fₑ")];
     let base = area[1] + area[3];
+    let mut inner: Vec<Shape> = Vec::new();
     for (index, (frequency, name)) in marks.into_iter().enumerate() {
         if frequency <= 0.0 {
             continue;
         }
         let [x, _] = frame.point([frequency, 1.0]);
         let look = Look::line(Ink::Axis, 1.0).dashed(Some([4.0, 3.0]));
-        shapes.push(segment([x, area[1] - 4.0], [x, base], look));
+        inner.push(segment([x, area[1]], [x, base], look));
         // Labels stand apart even where the excitation is slow.
-        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored([1.0, 0.5, 0.0][index]);
-        let shift = [6.0, 0.0, -6.0][index];
-        let lift = if index == 1 { 20.0 } else { 8.0 };
-        shapes.push(text([x + shift, area[1] - lift], name, setting));
+        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored([1.0, 0.0, 0.0][index]);
+        let shift = [-4.0, 4.0, 4.0][index];
+        let below = if index == 1 { 26.0 } else { 12.0 };
+        inner.push(text([x + shift, area[1] + below], name, setting));
     }
-    let group = lines
-        .into_iter()
-        .map(|(colour, line)| {
-            let look = Look::line(Ink::Run(colour), 1.8).dashed(run_dash(colour));
-            let shapes = vec![frame.line(&line, look)];
-            Shape::Group { role: Role::Run(colour), clip: None, shapes }
-        })
-        .collect();
-    shapes.push(frame.panel(group, ["Hz", "°"]));
+    inner.extend(lines.into_iter().map(|(colour, line)| {
+        let look = Look::line(Ink::Run(colour), 1.8).dashed(run_dash(colour));
+        Shape::Group { role: Role::Run(colour), clip: None, shapes: vec![frame.line(&line, look)] }
+    }));
+    shapes.push(frame.panel(inner, ["Hz", "°"]));
 }

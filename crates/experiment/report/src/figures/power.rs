@@ -1,11 +1,13 @@
 //! Power and rotor speed over time.
 
 use super::{TIME, WIDTH};
-use crate::draw::axes::{Frame, Scale, legend};
+use crate::draw::axes::{Frame, Readout, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
-use crate::draw::{Figure, Look, Role, Shape, TextStyle, segment, text};
+use crate::draw::whisker::{Style, whisker};
+use crate::draw::{Axis, Figure, Look, Role, Shape, TextStyle, text};
 use crate::study::Study;
 use crate::trace::{envelope, moving_mean, thinned};
+use crate::words;
 use basis::records::Statistic;
 use std::f64::consts::TAU;
 
@@ -98,7 +100,8 @@ fn over_time(study: &Study, quantity: &Quantity) -> Option<Figure> {
         title: quantity.title.to_owned(),
         caption: format!(
             "Thick: {SMOOTHING:.0} s moving mean{raw}. Grey: spin-up, not analysed. Marks at the \
-             right: mean over the analysed time with its 95\u{a0}% interval.",
+             right: mean over the analysed time with its 95\u{a0}% interval; an arrow has the number of \
+             an end beyond the axis.",
         ),
         width: WIDTH,
         height: frame_top + 14.0,
@@ -142,15 +145,10 @@ fn panel(
     let shown = raw_lines.iter().chain(&lines).flat_map(|(_, line)| line);
     // The start of the spin-up may overshoot far beyond what matters.
     let settled = shown.filter(|point| point[0] > 0.5 * conditions.spin_up).map(|point| point[1]);
-    let scale = Scale::around(settled, 0.08);
-    let frame = Frame { area, x: Scale::linear(0.0, end), y: scale };
+    let y = scale(settled.collect(), &statistics(study, quantity, turbine));
+    let frame = Frame { area, x: Scale::linear(0.0, end), y };
     if conditions.spin_up > 0.0 {
-        frame.band(0.0, conditions.spin_up.min(end), shapes);
-        if is_last {
-            let [x, _] = frame.point([0.5 * conditions.spin_up, scale.low]);
-            let setting = TextStyle::plain(Ink::Muted, 11.5).anchored(0.5);
-            shapes.push(text([x, area[1] + area[3] - 8.0], "spin-up", setting));
-        }
+        shapes.push(spin_up(&frame, conditions.spin_up.min(end), is_last));
     }
     frame.rows(4, true, shapes);
     frame.columns(10, is_last, shapes);
@@ -170,8 +168,45 @@ fn panel(
             run_group(*colour, vec![frame.line(line, look)])
         }))
         .collect();
-    shapes.push(frame.panel(groups, ["s", quantity.unit]));
+    shapes.push(Readout { both: false, ..frame.readout(["s", quantity.unit]) }.group(0.0, groups));
     means(study, quantity, turbine, &frame, shapes);
+}
+
+/// The axis of the values `settled` and of `means` with their intervals, which may be many times as long as
+/// the signal is wide: as far as that at most.
+fn scale(settled: Vec<f64>, means: &[Mean]) -> Scale {
+    let signal = Scale::around(settled.iter().copied(), 0.0);
+    let whiskers: Vec<(f64, f64)> =
+        means.iter().map(|(.., mean, half)| (*mean, half.unwrap_or(0.0))).collect();
+    Scale::around_whiskers(settled, &whiskers, signal.high - signal.low, 0.08)
+}
+
+/// The time up to `end` (s), which is not analysed; called so where it is `named`.
+fn spin_up(frame: &Frame, end: f64, named: bool) -> Shape {
+    let [_, top, _, height] = frame.area;
+    let mut behind = Vec::new();
+    frame.band(0.0, end, &mut behind);
+    if named {
+        let [x, _] = frame.point([0.5 * end, frame.y.low]);
+        let setting = TextStyle::plain(Ink::Muted, 11.5).anchored(0.5);
+        behind.push(text([x, top + height - 8.0], "spin-up", setting));
+    }
+    frame.behind(behind)
+}
+
+/// Colour and name of a run, a mean and half the width of its interval (units of the axis).
+type Mean<'a> = (usize, &'a str, f64, Option<f64>);
+
+/// Those of `turbine` in each run.
+fn statistics<'a>(study: &'a Study, quantity: &Quantity, turbine: &str) -> Vec<Mean<'a>> {
+    let runs = study.runs().iter().zip(&study.colours);
+    let found = runs.filter_map(|(run, &colour)| {
+        let summary = run.summary.turbines.iter().find(|summary| summary.name == turbine)?;
+        let statistic = (quantity.statistic)(summary);
+        let half = statistic.half_width_95.map(|half| half / quantity.scale);
+        Some((colour, run.summary.run.as_str(), statistic.mean / quantity.scale, half))
+    });
+    found.filter(|found| found.2.is_finite()).collect()
 }
 
 /// Means of the runs with their intervals, right of the frame.
@@ -182,29 +217,21 @@ fn means(
     frame: &Frame,
     shapes: &mut Vec<Shape>,
 ) {
-    let [left, top, width, height] = frame.area;
+    let [left, _, width, _] = frame.area;
     let step = (44.0 / study.runs().len() as f64).min(13.0);
-    let clamped = |y: f64| y.clamp(top, top + height);
-    for (index, (run, &colour)) in study.runs().iter().zip(&study.colours).enumerate() {
-        let Some(summary) = run.summary.turbines.iter().find(|summary| summary.name == turbine)
-        else {
-            continue;
-        };
-        let statistic = (quantity.statistic)(summary);
-        let mean = statistic.mean / quantity.scale;
-        if !mean.is_finite() {
-            continue;
-        }
+    let found = statistics(study, quantity, turbine);
+    for (index, (colour, name, mean, half)) in found.into_iter().enumerate() {
         let x = left + width + 12.0 + step * index as f64;
-        let y = |value: f64| clamped(frame.point([0.0, value])[1]);
-        let mut marks = Vec::new();
-        if let Some(half) = statistic.half_width_95.map(|half| half / quantity.scale) {
-            let look = Look::line(Ink::Run(colour), 1.6);
-            marks.push(segment([x, y(mean - half)], [x, y(mean + half)], look));
-        }
-        let center = [x, y(mean)];
-        marks.push(Shape::Circle { center, radius: 3.4, look: Look::fill(Ink::Run(colour)) });
-        shapes.push(run_group(colour, marks));
+        let ink = Ink::Run(colour);
+        let style = Style { ink, width: 1.6, cap: 0.0, radius: 3.4, numbered: true };
+        let mark = whisker(frame, Axis::Y, x, mean, half, style);
+        let decimals = words::three_figures(mean);
+        let interval =
+            half.map_or(String::new(), |half| format!(" ± {}", words::number(half, decimals)));
+        let unit = quantity.unit;
+        let words = format!("{name}, mean: {}{interval} {unit}", words::number(mean, decimals));
+        let mark = Shape::Group { role: Role::Mark(words), clip: None, shapes: mark };
+        shapes.push(run_group(colour, vec![mark]));
     }
 }
 

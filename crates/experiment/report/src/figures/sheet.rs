@@ -1,11 +1,12 @@
 //! A sheet of velocity slices: panels on one scale with their rotors, and the bar of its colours.
 
-use super::WIDTH;
+use super::{WIDTH, rotors};
 use crate::RunRecords;
-use crate::draw::axes::{Frame, LARGE, MEDIUM, SMALL, Scale};
+use crate::draw::axes::{FieldValues, Frame, LARGE, MEDIUM, Readout, SMALL, Scale};
 use crate::draw::colour::{Ink, Map};
 use crate::draw::field::Picture;
-use crate::draw::{Figure, Look, Shape, TextStyle, rectangle, segment, text};
+use crate::draw::font::{Face, wrapped};
+use crate::draw::{Figure, Look, Role, Shape, TextStyle, rectangle, segment, text};
 use crate::study::{Study, sample};
 use crate::words::{SPACE, number};
 use basis::records::{Plane, PlaneAxes};
@@ -36,24 +37,29 @@ pub(super) struct Sheet<'a> {
     pub(super) bar: &'static str,
 }
 
+/// Height of a line of a panel's title.
+const TITLE: f64 = 16.0;
+
 impl Sheet<'_> {
     /// The figure with all `panels`.
     pub(super) fn draw(&self, name: &str, title: &str, caption: &str, panels: &[Panel]) -> Figure {
-        const GAP: f64 = 46.0;
         let diameter = self.study.diameter();
         let [low, high, bottom, top] = self.window;
         let n_columns = self.n_columns.min(panels.len());
-        let gap = if n_columns > 2 { 18.0 } else { GAP };
-        let room = WIDTH - LEFT - RIGHT - gap * (n_columns - 1) as f64;
-        let width = room / n_columns as f64;
-        let height = (width * (top - bottom) / (high - low)).clamp(60.0, 460.0);
+        let gap = if n_columns > 2 { 18.0 } else { 46.0 };
+        let width = (WIDTH - LEFT - RIGHT - gap * (n_columns - 1) as f64) / n_columns as f64;
+        let true_height = width * (top - bottom) / (high - low);
+        let height = true_height.clamp(84.0, 560.0);
+        let titles: Vec<Vec<String>> =
+            panels.iter().map(|panel| self.title(panel, width)).collect();
+        let above = TITLE * titles.iter().map(Vec::len).max().unwrap_or(1) as f64;
         let n_rows = panels.len().div_ceil(n_columns);
-        let step = height + if n_columns > 2 { 42.0 } else { 44.0 };
+        let (first, step) = (18.0 + above, height + above + 26.0);
         let mut shapes = Vec::new();
-        for (index, panel) in panels.iter().enumerate() {
+        for (index, (panel, title)) in panels.iter().zip(&titles).enumerate() {
             let (row, column) = (index / n_columns, index % n_columns);
             let left = LEFT + (width + gap) * column as f64;
-            let area = [left, 34.0 + step * row as f64, width, height];
+            let area = [left, first + step * row as f64, width, height];
             // Looking downwind, y grows to the left.
             let mirrored = panel.plane.axes == PlaneAxes::Crosswind;
             let (from, to) = if mirrored { (high, low) } else { (low, high) };
@@ -62,33 +68,61 @@ impl Sheet<'_> {
                 x: Scale::linear(from / diameter, to / diameter),
                 y: Scale::linear(bottom / diameter, top / diameter),
             };
+            self.headed(panel, title, &frame, &mut shapes);
             self.panel(panel, &frame, &mut shapes);
             let is_last_row = index + n_columns >= panels.len();
             frame.columns(if n_columns > 2 { 3 } else { 12 }, is_last_row, &mut shapes);
             if column == 0 {
-                rows(&frame, &mut shapes);
+                frame.heights(4, &mut shapes);
                 frame.y_label(self.labels[1], 38.0, &mut shapes);
             }
             if is_last_row {
                 frame.x_label(self.labels[0], &mut shapes);
             }
         }
-        let base = 34.0 + step * (n_rows - 1) as f64 + height;
-        let bar = [WIDTH - RIGHT + 22.0, 34.0, 14.0, (base - 34.0).min(300.0)];
+        let base = first + step * (n_rows - 1) as f64 + height;
+        let bar = [WIDTH - RIGHT + 22.0, first, 14.0, (base - first).min(300.0)];
         colour_bar(bar, self.range, self.map, 6, self.bar, &mut shapes);
         let free_stream = number(self.study.free_stream(), 1);
+        let stretched = stretched(height / true_height);
         Figure {
             name: name.to_owned(),
             title: title.to_owned(),
-            caption: format!("{caption} U∞ = {free_stream}{SPACE}m/s, the target at hub height."),
+            caption: format!(
+                "{caption}{stretched} U∞ = {free_stream}{SPACE}m/s, the target at hub height."
+            ),
             width: WIDTH,
             height: base + 48.0,
             shapes,
         }
     }
 
+    /// Size of the letters of a panel's title.
+    fn title_size(&self) -> f64 {
+        if self.n_columns > 2 { MEDIUM } else { LARGE }
+    }
+
+    /// Lines of a panel's title.
+    fn title(&self, panel: &Panel, width: f64) -> Vec<String> {
+        let title = std::slice::from_ref(&panel.title);
+        wrapped(title, "", &Face::new(true), self.title_size(), width - 16.0)
+    }
+
+    /// The title of a panel with the colour of its run, above `frame`.
+    fn headed(&self, panel: &Panel, title: &[String], frame: &Frame, shapes: &mut Vec<Shape>) {
+        let [left, top, ..] = frame.area;
+        let start = top - 9.0 - TITLE * title.len().saturating_sub(1) as f64;
+        let look = Look::fill(Ink::Run(panel.colour));
+        shapes.push(Shape::Circle { center: [left + 5.0, start - 4.5], radius: 4.5, look });
+        let setting = TextStyle::plain(Ink::Text, self.title_size()).bold();
+        for (index, line) in title.iter().enumerate() {
+            let base = start + TITLE * index as f64;
+            shapes.push(text([left + 16.0, base], line.as_str(), setting));
+        }
+    }
+
     fn panel(&self, panel: &Panel, frame: &Frame, shapes: &mut Vec<Shape>) {
-        let [left, top, width, height] = frame.area;
+        let [_, _, width, height] = frame.area;
         let diameter = self.study.diameter();
         let size = [width.round().max(2.0) as usize, height.round().max(2.0) as usize];
         let picture = Picture::new(size, self.map, self.range, |column, row| {
@@ -99,45 +133,30 @@ impl Sheet<'_> {
             let value = value(panel, first * diameter, second * diameter);
             value.map_or(f64::NAN, |value| value / self.study.free_stream())
         });
-        shapes.push(Shape::Field { area: frame.area, picture });
-        let look = Look::fill(Ink::Run(panel.colour));
-        shapes.push(Shape::Circle { center: [left + 5.0, top - 13.5], radius: 4.5, look });
-        let size = if self.n_columns > 2 { MEDIUM } else { LARGE };
-        let setting = TextStyle::plain(Ink::Text, size).bold();
-        shapes.push(text([left + 16.0, top - 9.0], panel.title.as_str(), setting));
-        let clip = Some(frame.area);
-        let shapes_on_field = self.rotors(panel, frame);
-        shapes.push(Shape::Group { role: crate::draw::Role::Plain, clip, shapes: shapes_on_field });
+        let mut inner = vec![Shape::Field { area: frame.area, picture }];
+        let there = self.study.rotors_of(panel.run);
+        inner.extend(rotors::on_plane(there, panel.plane, frame, diameter));
+        let field = FieldValues {
+            name: panel.title.clone(),
+            run: panel.colour,
+            range: self.range,
+            unit: "U∞".to_owned(),
+        };
+        let readout = Readout { field: Some(field), ..frame.readout(["D", "D"]) };
+        shapes.push(readout.group(0.0, inner));
     }
+}
 
-    /// Rotors as lines from above or from the side, as a circle from upwind.
-    fn rotors(&self, panel: &Panel, frame: &Frame) -> Vec<Shape> {
-        let plane = panel.plane;
-        let hub = self.study.hub_height().unwrap_or(plane.origin[2]) / self.study.diameter();
-        let halo = Look::line(Ink::FieldHalo, 5.0).opacity(0.75);
-        let core = Look::line(Ink::OnField, 2.4);
-        let mut shapes = Vec::new();
-        if plane.axes == PlaneAxes::Crosswind {
-            let y = self.study.side();
-            let center = frame.point([y, hub]);
-            let radius = 0.5 * (frame.point([y, hub])[1] - frame.point([y, hub + 1.0])[1]).abs();
-            for look in [
-                Look::line(Ink::FieldHalo, 3.0).opacity(0.6),
-                Look { dash: Some([5.0, 4.0]), ..Look::line(Ink::OnField, 1.4) },
-            ] {
-                shapes.push(Shape::Circle { center, radius, look });
-            }
-            return shapes;
+/// What a caption says of a field that is drawn `factor` times as high as it is.
+pub(super) fn stretched(factor: f64) -> String {
+    match factor {
+        factor if factor > 1.05 => {
+            format!(" Heights on the sheet are stretched {} times.", number(factor, 1))
         }
-        let turbines = &panel.run.summary.turbines;
-        let is_there = |name: &str| turbines.iter().any(|turbine| turbine.name == name);
-        for place in self.study.layout.iter().filter(|place| is_there(&place.name)) {
-            let [x, y] = place.position;
-            let middle = if plane.axes == PlaneAxes::Horizontal { y } else { hub };
-            let ends = [frame.point([x, middle - 0.5]), frame.point([x, middle + 0.5])];
-            shapes.extend([halo, core].map(|look| segment(ends[0], ends[1], look)));
+        factor if factor < 0.95 => {
+            format!(" Heights on the sheet are shortened {} times.", number(1.0 / factor, 1))
         }
-        shapes
+        _ => String::new(),
     }
 }
 
@@ -153,7 +172,8 @@ pub(super) fn colour_bar(
 ) {
     let frame = Frame { area, x: Scale::linear(0.0, 1.0), y: Scale::linear(low, high) };
     let picture = Picture::new([1, 256], map, [255.0, 0.0], |_, row| row as f64);
-    shapes.push(Shape::Field { area, picture });
+    let bar = vec![Shape::Field { area, picture }];
+    shapes.push(Shape::Group { role: Role::Bar, clip: None, shapes: bar });
     shapes.push(rectangle(area, Look::line(Ink::Axis, 0.8)));
     let (ticks, decimals) = frame.y.ticks(n_ticks);
     let right = area[0] + area[2];
@@ -164,18 +184,6 @@ pub(super) fn colour_bar(
         shapes.push(text([right + 7.0, y + 4.0], number(tick, decimals), setting));
     }
     shapes.push(text([area[0] - 4.0, area[1] - 10.0], title, TextStyle::plain(Ink::Muted, MEDIUM)));
-}
-
-/// Tick labels left of a field, without grid lines across it.
-fn rows(frame: &Frame, shapes: &mut Vec<Shape>) {
-    let [left, ..] = frame.area;
-    let (ticks, decimals) = frame.y.ticks(4);
-    for tick in ticks {
-        let [_, y] = frame.point([frame.x.low, tick]);
-        shapes.push(segment([left - 4.0, y], [left, y], Look::line(Ink::Axis, 1.0)));
-        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
-        shapes.push(text([left - 7.0, y + 4.0], number(tick, decimals), setting));
-    }
 }
 
 /// Lowest and highest coordinates of a plane's own axes (m).

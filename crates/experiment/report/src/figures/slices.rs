@@ -4,8 +4,9 @@ use super::sheet::{Panel, Sheet, Window, extent, range, values};
 use crate::RunRecords;
 use crate::draw::Figure;
 use crate::draw::colour::Map;
+use crate::layout::Rotor;
 use crate::study::{Study, is_whole, plane};
-use crate::words::{SPACE, number};
+use crate::words::{self, SPACE, number};
 use basis::records::{Plane, PlaneAxes};
 
 /// Above so many runs the slices stand in two columns.
@@ -14,8 +15,8 @@ const MOST_STACKED: usize = 3;
 /// Mean velocity at hub height in each run.
 pub(crate) fn mean(study: &Study) -> Option<Figure> {
     let panels = mean_panels(study, "hub-height");
-    let caption =
-        "Mean streamwise velocity at hub height, seen from above; black lines are rotors.";
+    let caption = "Mean streamwise velocity at hub height, seen from above. Black lines are rotors, as long as those \
+         are wide.";
     along(study, "mean-hub-height", "Mean wake at hub height", caption, &panels, mean_range(study))
 }
 
@@ -36,12 +37,58 @@ pub(crate) fn instants(study: &Study) -> Option<Figure> {
     along(study, "instant-hub-height", "Wake at one instant", caption, &panels, None)
 }
 
-/// Mean velocity on the vertical plane through the rotors.
+/// Mean velocity on the vertical planes through the rotors.
 pub(crate) fn streamwise(study: &Study) -> Option<Figure> {
-    let panels = mean_panels(study, "streamwise");
-    let caption = "Mean streamwise velocity on the vertical plane through the rotors, in the colours \
-                   of the hub-height figure; what lies beyond them keeps the last one.";
+    let mut panels = Vec::new();
+    for (run, &colour) in study.runs().iter().zip(&study.colours) {
+        let along = run.mean_planes.iter();
+        for plane in along.filter(|plane| plane.axes == PlaneAxes::Streamwise && is_whole(plane)) {
+            let through = match study.lanes.len() {
+                0 | 1 => String::new(),
+                _ => format!(", {}", through(study, run, plane)),
+            };
+            let title = format!("{}{through}", run.summary.run);
+            panels.push(Panel { run, colour, title, plane, minus: None });
+        }
+    }
+    // Runs at the same place stand together, so that they can be compared.
+    let first = study.rotors.first().map_or(0.0, |rotor| rotor.hub[1]);
+    let place = |panel: &Panel| (panel.plane.origin[1] - first).abs() > 1e-6 * study.diameter();
+    panels.sort_by(|a, b| {
+        let y = a.plane.origin[1].total_cmp(&b.plane.origin[1]);
+        place(a).cmp(&place(b)).then(y)
+    });
+    let caption = match study.lanes.len() {
+        0 | 1 => {
+            "Mean streamwise velocity on the vertical plane through the rotors, in the colours of the \
+                  hub-height figure; what lies beyond them keeps the last one. Black lines are rotors."
+        }
+        _ => {
+            "Mean streamwise velocity on vertical planes through rotors of the staggered row, in the \
+              colours of the hub-height figure; what lies beyond them keeps the last one. Black lines are \
+              rotors, as long as what the plane cuts out of them."
+        }
+    };
     along(study, "mean-streamwise", "Mean wake from the side", caption, &panels, mean_range(study))
+}
+
+/// Which rotors of `run` a plane along the wind goes through, in words: "through T1 and T3".
+fn through(study: &Study, run: &RunRecords, plane: &Plane) -> String {
+    const MOST_NAMED: usize = 4;
+    /// Share of a diameter that a rotor is cut in at least for the plane to go through it (–).
+    const LEAST_CUT: f64 = 0.95;
+    let y = plane.origin[1];
+    let is_cut = |rotor: &&Rotor| {
+        let half = rotor.half_chord(y - rotor.hub[1]).unwrap_or(0.0);
+        2.0 * half >= LEAST_CUT * rotor.diameter
+    };
+    let names: Vec<String> =
+        study.rotors_of(run).filter(is_cut).map(|rotor| rotor.name.clone()).collect();
+    match names.len() {
+        0 => format!("y = {}{SPACE}D", number(y / study.diameter(), 1)),
+        n if n > MOST_NAMED => format!("through {} and {} others", names[0], n - 1),
+        _ => format!("through {}", words::list(&names)),
+    }
 }
 
 /// What each run changes in the mean velocity of the run that it compares with.
@@ -101,25 +148,25 @@ pub(crate) fn crosswind(study: &Study) -> Option<Figure> {
         }
         for index in found {
             let plane = &run.mean_planes[index];
-            let distance = number(plane.origin[0] / study.diameter(), 1);
-            let distance = distance.strip_suffix(".0").unwrap_or(&distance);
-            let title = format!("{}, {distance}{SPACE}D", run.summary.run);
+            let title = format!("{}, {}{SPACE}D", run.summary.run, behind_first(study, plane));
             panels.push(Panel { run, colour, title, plane, minus: None });
         }
     }
-    let (diameter, hub) = (study.diameter(), study.hub_height().unwrap_or(study.diameter()));
     let extent = extent(panels.first()?.plane);
-    let center = study.side() * diameter;
-    let window = [
-        extent[0].max(center - 1.3 * diameter),
-        extent[1].min(center + 1.3 * diameter),
-        extent[2].max(0.0),
-        extent[3].min(hub + 1.2 * diameter),
-    ];
+    let window = across_rotors(study, extent);
     if window[0] >= window[1] || window[2] >= window[3] {
         return None;
     }
     let range = mean_range(study).unwrap_or_else(|| range(study, &panels, window));
+    // Wide rows want wide panels.
+    let shape = (window[1] - window[0]) / (window[3] - window[2]);
+    let n_columns = n_columns.min(if shape > 3.0 {
+        2
+    } else if shape > 1.8 {
+        3
+    } else {
+        MOST_COLUMNS
+    });
     let sheet = Sheet {
         study,
         window,
@@ -129,9 +176,35 @@ pub(crate) fn crosswind(study: &Study) -> Option<Figure> {
         labels: ["y/D", "z/D"],
         bar: "u/U∞",
     };
-    let caption = "Mean streamwise velocity across the wake, looking downwind; the circle is the first \
-                   turbine's rotor.";
-    Some(sheet.draw("mean-crosswind", "Across the wake", caption, &panels))
+    let first = study.rotors.first().map_or("the first turbine", |rotor| rotor.name.as_str());
+    let caption = format!(
+        "Mean streamwise velocity across the wake, looking downwind, at distances from {first}; circles are \
+         the rotors upstream."
+    );
+    Some(sheet.draw("mean-crosswind", "Across the wake", &caption, &panels))
+}
+
+/// How far behind the first turbine `plane` lies (diameters), as a reader wants it.
+fn behind_first(study: &Study, plane: &Plane) -> String {
+    let first = study.rotors.first().map_or(0.0, |rotor| rotor.hub[0]);
+    let distance = number((plane.origin[0] - first) / study.diameter(), 1);
+    distance.strip_suffix(".0").unwrap_or(&distance).to_owned()
+}
+
+/// What to show of planes across the wind of this `extent`: all rotors with some room around them.
+fn across_rotors(study: &Study, extent: Window) -> Window {
+    let room = 0.8 * study.diameter();
+    let (mut low, mut high, mut top) = (f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for rotor in &study.rotors {
+        let radius = 0.5 * rotor.diameter;
+        low = low.min(rotor.hub[1] - radius - room);
+        high = high.max(rotor.hub[1] + radius + room);
+        top = top.max(rotor.hub[2] + radius + room);
+    }
+    if low > high {
+        return extent;
+    }
+    [extent[0].max(low), extent[1].min(high), extent[2].max(0.0), extent[3].min(top)]
 }
 
 /// One panel for each run that has the plane.
@@ -187,17 +260,20 @@ fn along(
     Some(sheet.draw(name, title, caption, panels))
 }
 
-/// What to show of a plane along the wind: all of its length, two diameters beside the row.
+/// What to show of a plane along the wind: all of its length, with room beside and above the rotors.
 fn window(study: &Study, plane: &Plane) -> Window {
     let [left, right, low, high] = extent(plane);
-    let diameter = study.diameter();
-    let (lowest, highest) = if plane.axes == PlaneAxes::Horizontal {
-        let sides = study.layout.iter().map(|place| place.position[1]);
-        let (least, most) = sides.fold((0.0_f64, 0.0_f64), |(a, b), y| (a.min(y), b.max(y)));
-        ((least - 1.75) * diameter, (most + 1.75) * diameter)
-    } else {
-        (0.0, study.hub_height().unwrap_or(diameter) + 1.5 * diameter)
-    };
+    let room = 1.25 * study.diameter();
+    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+    let axis = if plane.axes == PlaneAxes::Horizontal { 1 } else { 2 };
+    for rotor in &study.rotors {
+        let radius = 0.5 * rotor.diameter;
+        lowest = lowest.min(rotor.hub[axis] - radius - room);
+        highest = highest.max(rotor.hub[axis] + radius + room);
+    }
+    if axis == 2 {
+        lowest = 0.0;
+    }
     let (low_shown, high_shown) = (low.max(lowest), high.min(highest));
     if low_shown < high_shown {
         [left, right, low_shown, high_shown]

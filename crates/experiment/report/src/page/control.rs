@@ -2,6 +2,7 @@
 
 use crate::study::{ExcitationKind, Study};
 use crate::words::{SPACE, number, percent, three_figures};
+use basis::Sense;
 use basis::records::{MeanderingAxis, PitchResponse};
 use minijinja::{Value, context};
 
@@ -41,11 +42,15 @@ pub(crate) fn excitations(study: &Study) -> Vec<Value> {
     for (run, &colour) in study.runs().iter().zip(&study.colours) {
         for excitation in study.excitations(run) {
             let pitch = &excitation.pitch;
+            let turning = |sense: Sense| match sense {
+                Sense::CounterClockwise => "counter-clockwise",
+                Sense::Clockwise => "clockwise",
+            };
             let kind = match excitation.kind {
-                ExcitationKind::CounterClockwise => "helix, counter-clockwise".to_owned(),
-                ExcitationKind::Clockwise => "helix, clockwise".to_owned(),
+                ExcitationKind::Helix(sense) => format!("helix, {}", turning(sense)),
+                ExcitationKind::InStep(sense) => format!("helix in step, {}", turning(sense)),
                 ExcitationKind::Pulse => "pulse".to_owned(),
-                ExcitationKind::Other => excitation.turbine.control.description.clone(),
+                ExcitationKind::Named(_) => excitation.turbine.control.description.clone(),
             };
             rows.push(context! {
                 run => run.summary.run.clone(),

@@ -11,12 +11,16 @@ use crate::figures::Figures;
 use crate::sentence;
 use crate::study::Study;
 use crate::words;
+use basis::records::Summary;
 use minijinja::{Environment, Value, context};
 use std::fmt::Write;
 
 const TEMPLATE: &str = include_str!("report.html");
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
+/// Zoom and pointer of D3, and its licences.
+const D3: &str = include_str!("d3/d3.min.js");
+const D3_LICENCES: &str = include_str!("d3/LICENSE");
 
 /// The page of `study` with `figures`.
 pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportError> {
@@ -26,6 +30,9 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
     // The name's ending turns escaping on.
     environment.add_template("report.html", TEMPLATE)?;
     let warnings = warnings(study);
+    let (glance_heads, glance) = tables::glance(study);
+    let lead = leading(figures);
+    let leading = lead.iter().map(|figure| drawing(figure)).collect::<Result<Vec<_>, _>>()?;
     let sentences: Vec<Vec<String>> = study
         .runs()
         .iter()
@@ -37,7 +44,7 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
         description => records.description.clone(),
         version => records.version.clone(),
         style => Value::from_safe_string(format!("{}{STYLE}", inks())),
-        script => Value::from_safe_string(SCRIPT.to_owned()),
+        script => Value::from_safe_string(format!("/*\n{D3_LICENCES}*/\n{D3}\n{SCRIPT}")),
         headline => sentence::headline(study),
         confidence => sentence::confidence(study),
         headline_conditions => sentence::conditions_line(study, best),
@@ -48,6 +55,8 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
         conditions => tables::conditions(study),
         excitations => control::excitations(study),
         responses => control::responses(study),
+        glance_heads,
+        glance,
         rows => tables::results(study),
         has_gains => best.is_some(),
         load_conventions => loads::conventions(study),
@@ -58,7 +67,8 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
         run_names => study.names().into_iter().map(|(_, name)| name.to_owned()).collect::<Vec<_>>(),
         conditions_line => sentence::conditions_line(study, None),
         small_print => small_print(study),
-        parts => parts(figures)?,
+        leading,
+        parts => parts(figures, lead)?,
         phases => control::phases(study),
         costs => tables::costs(study),
         case_text => records.case_text.clone(),
@@ -123,24 +133,31 @@ fn warnings(study: &Study) -> Vec<Vec<String>> {
         .collect()
 }
 
+/// How the air was moved, and what that leaves out.
+fn method(summary: &Summary) -> String {
+    let solver = summary.flow.as_ref().map_or("prescribed", |flow| flow.solver.as_str());
+    match (summary.conditions.cells_per_diameter, summary.has_wakes()) {
+        (Some(_), true) => "Large-eddy simulation with actuator lines: blades are lines of force from tabulated \
+                            aerofoil data; rotor speed follows torque and inertia; blades, tower and drive train \
+                            bend unless the case says rigid."
+            .to_owned(),
+        (None, true) => format!(
+            "Flow solver “{solver}”, without a grid, whose wind holds wakes; what they are made of is that \
+             solver's own."
+        ),
+        (_, false) => "Prescribed wind: turbines make their own induction by blade-element momentum with skewed \
+                       wake, and with dynamic inflow and dynamic stall unless the case says otherwise; no turbine \
+                       feels another's wake, so their power is not added up. What a helix does to wakes is not in \
+                       these figures."
+            .to_owned(),
+    }
+}
+
 /// What a careful reader must know of the method and its coarseness.
 fn small_print(study: &Study) -> Vec<String> {
     let summary = &study.runs()[0].summary;
     let conditions = &summary.conditions;
-    let mut items = match conditions.cells_per_diameter {
-        Some(_) => vec![
-            "Large-eddy simulation with actuator lines: blades are lines of force from tabulated \
-             aerofoil data; rotor speed follows torque and inertia; blades, tower and drive train \
-             bend unless the case says rigid."
-                .to_owned(),
-        ],
-        None => vec![
-            "Prescribed wind: turbines make their own induction by blade-element momentum with skewed \
-             wake, and with dynamic inflow and dynamic stall unless the case says otherwise; no turbine \
-             feels another's wake. What a helix does to wakes is not in these figures."
-                .to_owned(),
-        ],
-    };
+    let mut items = vec![method(summary)];
     if let Some(cells) = conditions.cells_per_diameter.filter(|cells| *cells < 24.0) {
         items.push(format!(
             "{} cells per diameter are coarse: the near wake and the tip vortices are blurred, small \
@@ -168,63 +185,75 @@ fn small_print(study: &Study) -> Vec<String> {
     items
 }
 
-/// The figures in the order and under the headings of the page.
-fn parts(figures: &Figures) -> Result<Vec<Value>, ReportError> {
-    const PARTS: [(&str, &str, &[&str]); 3] = [
-        ("Power", "", &["gains", "gain-over-amplitude", "power"]),
-        (
-            "The wake",
-            "Velocities are relative to the target free stream at hub height; lengths to the \
-             first turbine's rotor diameter D.",
-            &[
-                "mean-hub-height",
-                "difference-hub-height",
-                "instant-hub-height",
-                "mean-streamwise",
-                "mean-crosswind",
-                "profiles",
-                "recovery",
-            ],
-        ),
-        ("Blades and rotor", "", &["pitch", "rotor-speed"]),
-    ];
+/// Parts of the page: anchor, heading, lead, and the figures that belong there.
+const PARTS: [(&str, &str, &str, &[&str]); 3] = [
+    ("power-figures", "Power", "", &["gains", "gain-over-amplitude", "power"]),
+    (
+        "wake-figures",
+        "The wake",
+        "Velocities are relative to the target free stream at hub height; lengths to the first turbine's \
+         rotor diameter D.",
+        &[
+            "mean-hub-height",
+            "difference-hub-height",
+            "instant-hub-height",
+            "mean-streamwise",
+            "mean-crosswind",
+            "profiles",
+            "recovery",
+        ],
+    ),
+    ("blade-figures", "Blades and rotor", "", &["pitch", "rotor-speed"]),
+];
+
+/// The figures that the page opens with: the wake from above, and the gains, or else power over time.
+fn leading(figures: &Figures) -> Vec<&Figure> {
+    let named = |name: &str| figures.study.iter().find(|figure| figure.name == name);
+    let second = named("gains").or_else(|| named("power"));
+    named("mean-hub-height").into_iter().chain(second).collect()
+}
+
+/// The figures without those that lead, in the order and under the headings of the page.
+fn parts(figures: &Figures, lead: Vec<&Figure>) -> Result<Vec<Value>, ReportError> {
     const JOINED: &str = "A turbine finds the helix that meets it in its blade loads, and joins it with a phase offset: the lead of its \
          pitch over the wind that meets it.";
     // What has no place of its own stands in the last.
     let place = |figure: &Figure| {
         let name = figure.name.as_str();
-        PARTS.iter().position(|(_, _, names)| names.contains(&name)).unwrap_or(PARTS.len() - 1)
+        PARTS.iter().position(|(.., names)| names.contains(&name)).unwrap_or(PARTS.len() - 1)
     };
+    let leads = |figure: &&Figure| lead.iter().any(|other| other.name == figure.name);
     let mut parts = Vec::new();
-    for (index, (title, lead, _)) in PARTS.iter().enumerate() {
+    for (index, (id, title, words, _)) in PARTS.iter().enumerate() {
         let here = figures.study.iter().filter(|figure| place(figure) == index);
-        parts.extend(part(title, lead, here)?);
+        parts.extend(part(id, title, words, here.filter(|figure| !leads(figure)))?);
     }
-    for (title, figures) in &figures.joined {
-        parts.extend(part(title, JOINED, figures.iter())?);
+    for (index, (title, figures)) in figures.joined.iter().enumerate() {
+        parts.extend(part(&format!("joined-{}", index + 1), title, JOINED, figures.iter())?);
     }
     Ok(parts)
 }
 
-/// `figures` under a heading; nothing where there are none.
+/// `figures` under a heading with an anchor; nothing where there are none.
 fn part<'f>(
+    id: &str,
     title: &str,
     lead: &str,
     figures: impl Iterator<Item = &'f Figure>,
 ) -> Result<Option<Value>, ReportError> {
-    let mut drawings = Vec::new();
-    for figure in figures {
-        let drawn = svg::inline(figure)
-            .map_err(|source| ReportError::Picture { figure: figure.name.clone(), source })?;
-        drawings.push(context! {
-            name => figure.name.clone(),
-            title => figure.title.clone(),
-            caption => figure.caption.clone(),
-            svg => Value::from_safe_string(drawn),
-        });
-    }
-    if drawings.is_empty() {
-        return Ok(None);
-    }
-    Ok(Some(context! { title => title, lead => lead, figures => drawings }))
+    let drawings: Vec<Value> = figures.map(drawing).collect::<Result<_, _>>()?;
+    Ok((!drawings.is_empty())
+        .then(|| context! { id => id, title => title, lead => lead, figures => drawings }))
+}
+
+/// A figure for the template.
+fn drawing(figure: &Figure) -> Result<Value, ReportError> {
+    let drawn = svg::inline(figure)
+        .map_err(|source| ReportError::Picture { figure: figure.name.clone(), source })?;
+    Ok(context! {
+        name => figure.name.clone(),
+        title => figure.title.clone(),
+        caption => figure.caption.clone(),
+        svg => Value::from_safe_string(drawn),
+    })
 }

@@ -5,7 +5,7 @@ use crate::draw::colour::Ink;
 use crate::sentence;
 use crate::study::Study;
 use crate::words::{self, SPACE, number, percent, three_figures};
-use basis::records::{Conditions, Statistic};
+use basis::records::{Conditions, Statistic, Summary, TurbineSummary};
 use minijinja::{Value, context};
 use std::f64::consts::TAU;
 
@@ -47,20 +47,10 @@ pub(crate) fn conditions(study: &Study) -> Vec<Value> {
     // A run may leave turbines out.
     let turbines = |run: &&RunRecords| run.summary.turbines.len();
     let fullest = study.runs().iter().max_by_key(turbines).map_or(summary, |run| &run.summary);
-    let mut models: Vec<String> = fullest.turbines.iter().map(|t| t.model.clone()).collect();
-    models.dedup();
-    facts.push(fact(
-        "Turbines",
-        format!("{} × {}", fullest.turbines.len(), models.join(", ")),
-        format!("rotor diameter D = {}{SPACE}m", number(conditions.rotor_diameter, 1)),
-    ));
+    facts.push(fact("Turbines", machines(fullest), diameters(study)));
     if let Some(spacing) = sentence::spacing(study) {
-        let meters: Vec<String> = study
-            .spacings()
-            .iter()
-            .map(|spacing| number(spacing * conditions.rotor_diameter, 0))
-            .collect();
-        facts.push(fact("Spacing", spacing, format!("{}{SPACE}m", meters.join(", "))));
+        let metres = sentence::spacing_in_metres(study).unwrap_or_default();
+        facts.push(fact("Spacing", spacing, metres));
     }
     let blocks = sentence::length(&summary.array_power, analysed);
     facts.push(fact(
@@ -69,8 +59,38 @@ pub(crate) fn conditions(study: &Study) -> Vec<Value> {
         format!("{}{SPACE}s spin-up, {blocks}", number(conditions.spin_up, 0)),
     ));
     facts.extend(excitation(study));
-    facts.push(grid(conditions));
+    facts.push(grid(summary));
     facts
+}
+
+/// How many there are of each model: "2 × iea-15mw, 1 × nrel-5mw".
+fn machines(summary: &Summary) -> String {
+    let mut models: Vec<(&str, usize)> = Vec::new();
+    for turbine in &summary.turbines {
+        match models.iter_mut().find(|(model, _)| *model == turbine.model) {
+            Some((_, count)) => *count += 1,
+            None => models.push((&turbine.model, 1)),
+        }
+    }
+    let each = models.iter().map(|(model, count)| format!("{count}{SPACE}×{SPACE}{model}"));
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// The first turbine's rotor diameter, which is the unit of lengths, and those of others that differ.
+fn diameters(study: &Study) -> String {
+    let first = number(study.diameter(), 1);
+    let mut others: Vec<String> = Vec::new();
+    for rotor in &study.rotors {
+        let diameter = number(rotor.diameter, 1);
+        if diameter != first && !others.contains(&diameter) {
+            others.push(diameter);
+        }
+    }
+    let whose = study.rotors.first().map_or("the first turbine", |rotor| rotor.name.as_str());
+    match others.is_empty() {
+        true => format!("rotor diameter D = {first}{SPACE}m"),
+        false => format!("D = {first}{SPACE}m of {whose}, others {}{SPACE}m", others.join(", ")),
+    }
 }
 
 /// The first excitation of the run with the largest gain, or of the last one.
@@ -78,10 +98,9 @@ fn excitation(study: &Study) -> Option<Value> {
     let run = study.best().or_else(|| study.runs().last())?;
     let excitations = study.excitations(run);
     let excitation = excitations.first()?;
-    let value = sentence::words_of(excitation);
     Some(fact(
         if study.best().is_some() { "Excitation, best run" } else { "Excitation" },
-        words::capitalised(value.trim_start_matches("a ")),
+        words::capitalised(&sentence::name_of(excitation)),
         format!(
             "on {}, {}° delivered, St{SPACE}{}",
             excitation.turbine.name,
@@ -91,21 +110,25 @@ fn excitation(study: &Study) -> Option<Value> {
     ))
 }
 
-fn grid(conditions: &Conditions) -> Value {
+fn grid(summary: &Summary) -> Value {
+    let conditions = &summary.conditions;
+    let solver = summary.flow.as_ref().map(|flow| flow.solver.clone());
+    let wakes = if summary.has_wakes() { "with wakes" } else { "no wakes" };
     match conditions.cells_per_diameter {
         Some(cells) => fact(
             "Grid",
             format!("{} cells per D", number(cells, 0)),
             format!(
-                "{}{SPACE}m cells, {}{SPACE}s flow step",
+                "{}{}{SPACE}m cells, {}{SPACE}s flow step",
+                solver.map_or(String::new(), |solver| format!("{solver}, ")),
                 number(conditions.rotor_diameter / cells, 1),
                 number(conditions.interval, 3)
             ),
         ),
         None => fact(
-            "Wind",
-            "prescribed".to_owned(),
-            format!("no wakes, {}{SPACE}s step", number(conditions.interval, 3)),
+            "Flow solver",
+            solver.unwrap_or_else(|| "prescribed wind".to_owned()),
+            format!("{wakes}, {}{SPACE}s step", number(conditions.interval, 3)),
         ),
     }
 }
@@ -119,7 +142,7 @@ pub(crate) fn results(study: &Study) -> Vec<Value> {
     let mut rows = Vec::new();
     for (run, &colour) in study.runs().iter().zip(&study.colours) {
         let summary = &run.summary;
-        let has_total = summary.turbines.len() > 1;
+        let has_total = summary.turbines.len() > 1 && sentence::is_summed(run);
         let span = summary.turbines.len() + usize::from(has_total);
         for (index, turbine) in summary.turbines.iter().enumerate() {
             let excited = turbine.delivered_pitch.filter(|p| p.commanded_amplitude_deg > 0.0);
@@ -163,6 +186,36 @@ pub(crate) fn results(study: &Study) -> Vec<Value> {
         }
     }
     rows
+}
+
+/// The short table: its columns, and a row for each run with power and gain of each turbine and of all.
+pub(crate) fn glance(study: &Study) -> (Vec<String>, Vec<Value>) {
+    const MOST_TURBINES: usize = 6;
+    let names = study.turbines();
+    let sums = names.len() > 1 && study.runs().iter().all(sentence::is_summed);
+    let shown = if sums && names.len() > MOST_TURBINES { &[][..] } else { &names[..] };
+    let mut heads: Vec<String> = shown.iter().map(|name| (*name).to_owned()).collect();
+    heads.extend(sums.then(|| "All".to_owned()));
+    let cell = |power: &Statistic, gain: Option<&Statistic>| {
+        let megawatts = power.mean / 1e6;
+        let power = format!("{}{SPACE}MW", number(megawatts, three_figures(megawatts)));
+        let change = gain.map_or(String::new(), words::gain);
+        let is_gain = gain.map(|gain| gain.mean > 0.0);
+        context! { power, change, is_gain }
+    };
+    let rows = study.runs().iter().zip(&study.colours).map(|(run, &colour)| {
+        let summary = &run.summary;
+        let of = |name: &&str| {
+            let found = summary.turbines.iter().find(|turbine| turbine.name == *name);
+            found.map(|turbine: &TurbineSummary| cell(&turbine.power, turbine.power_gain.as_ref()))
+        };
+        let mut cells: Vec<Option<Value>> = shown.iter().map(of).collect();
+        if sums {
+            cells.push(Some(cell(&summary.array_power, summary.array_power_gain.as_ref())));
+        }
+        context! { run => summary.run.clone(), colour, ink => Ink::Run(colour).name(), cells }
+    });
+    (heads, rows.collect())
 }
 
 /// Mean and "± half width" in units of `scale`.

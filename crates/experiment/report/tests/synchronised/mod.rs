@@ -3,8 +3,8 @@
 use basis::records::{Plane, PlaneAxes, Statistic};
 use report::{
     CentreLine, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure, OffsetPanel,
-    OffsetPoint, SliceFigure, SlicePanel, SpectrumFigure, SpectrumLine, Synchronisation,
-    TrackFigure, TrackLine, TrackRow,
+    OffsetPoint, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine,
+    Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -228,7 +228,15 @@ fn wake() -> SliceFigure {
     SliceFigure {
         diameter: DIAMETER,
         free_stream: SPEED,
-        rotors: vec![[0.0, 0.0], [1200.0, 0.0], [2400.0, 0.0]],
+        rotors: [0.0, 1200.0, 2400.0]
+            .into_iter()
+            .enumerate()
+            .map(|(index, x)| SliceRotor {
+                name: format!("T{}", index + 1),
+                hub: [x, 0.0, 150.0],
+                diameter: DIAMETER,
+            })
+            .collect(),
         planes: panels.collect(),
         centre_lines: lines.collect(),
         phase: "t = 0 Te".into(),

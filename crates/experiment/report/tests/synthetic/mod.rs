@@ -1,5 +1,7 @@
 //! A study in closed form: Gaussian wakes that a helix makes recover sooner, sinusoidal pitch.
 
+pub(crate) mod layouts;
+
 use basis::Sense;
 use basis::records::{
     Conditions, Cost, DeliveredPitch, PitchResponse, Plane, PlaneAxes, Series, Statistic, Summary,

@@ -34,19 +34,41 @@ pub(super) fn hub_height(setup: &Prepared) -> Slice {
     Slice { name: "hub-height".to_owned(), axes: PlaneAxes::Horizontal, position }
 }
 
-/// All planes that are kept: at hub height, along the wind through the first turbine, and across it where the
-/// case says.
+/// Planes along the wind at most (–).
+const MOST_ALONG: usize = 4;
+/// Turbines whose hubs are nearer to a plane along the wind than this lie on it (rotor diameters).
+const ON_PLANE: f64 = 0.05;
+
+/// Planes along the wind: through the first turbine, and, in a staggered row, through those that stand beside
+/// it, as many as are kept, with the names of those that they go through.
+fn along(setup: &Prepared) -> Vec<Slice> {
+    let plan = &setup.plan;
+    let mut slices: Vec<Slice> = Vec::new();
+    for (turbine, foot) in setup.case.turbines.iter().zip(&plan.positions) {
+        let near = |slice: &Slice| (slice.position - foot.y).abs() < ON_PLANE * plan.diameter;
+        if slices.len() == MOST_ALONG || slices.iter().any(near) {
+            continue;
+        }
+        let name = match slices.is_empty() {
+            true => "streamwise".to_owned(),
+            false => format!("streamwise-{}", turbine.name),
+        };
+        slices.push(Slice { name, axes: PlaneAxes::Streamwise, position: foot.y });
+    }
+    slices
+}
+
+/// All planes that are kept: at hub height, along the wind through the turbines, and across it where the case
+/// says.
 pub(crate) fn of(setup: &Prepared) -> Vec<Slice> {
     let plan = &setup.plan;
     let foot = plan.positions[0];
-    let streamwise =
-        Slice { name: "streamwise".to_owned(), axes: PlaneAxes::Streamwise, position: foot.y };
     let across = setup.case.output.crosswind_diameters.iter().map(|distance| Slice {
         name: format!("{distance}D"),
         axes: PlaneAxes::Crosswind,
         position: foot.x + distance * plan.diameter,
     });
-    [hub_height(setup), streamwise].into_iter().chain(across).collect()
+    std::iter::once(hub_height(setup)).chain(along(setup)).chain(across).collect()
 }
 
 /// Planes (–).
@@ -69,5 +91,5 @@ pub(super) fn n_points_at_hub_height(setup: &Prepared) -> u64 {
 pub(super) fn n_points(setup: &Prepared) -> u64 {
     let [n_x, n_y, n_z] = setup.plan.n_cells.map(|n| n as u64);
     let n_across = setup.case.output.crosswind_diameters.len() as u64;
-    n_x * n_y + n_x * n_z + n_across * n_y * n_z
+    n_x * n_y + along(setup).len() as u64 * n_x * n_z + n_across * n_y * n_z
 }

@@ -35,3 +35,38 @@ fn each_key_of_the_case_file_belongs_to_one_output() {
         assert_eq!(unknown, None, "{}", kind.name);
     }
 }
+
+#[test]
+fn a_staggered_row_has_a_plane_along_the_wind_through_each_line_of_turbines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("case.toml");
+    let mut case = "name = \"row\"\n[wind]\nspeed = 9.0\nturbulence_intensity = 0.0\n\
+                    [flow]\nsolver = \"uniform\"\n[time]\nspin_up = 10.0\nduration = 60.0\n"
+        .to_owned();
+    for (index, side) in [0.0, 0.8, 0.02, -0.8, 0.8, 1.6, 2.4].into_iter().enumerate() {
+        let (name, x) = (format!("T{}", index + 1), 4.0 * index as f64);
+        case += &format!(
+            "[[turbine]]\nname = \"{name}\"\nmodel = \"nrel-5mw\"\nposition_diameters = [{x:.1}, {side}]\n"
+        );
+    }
+    case += "[[run]]\nname = \"baseline\"\n";
+    std::fs::write(&path, case).expect("a file");
+    let setup = Prepared::read(&path, &[]).expect("a sound case");
+    let along: Vec<(String, f64)> = slices::of(&setup)
+        .into_iter()
+        .filter(|slice| slice.axes == basis::records::PlaneAxes::Streamwise)
+        .map(|slice| (slice.name, slice.position / setup.plan.diameter))
+        .collect();
+    // Four at most.
+    let expected = [
+        ("streamwise", 0.0),
+        ("streamwise-T2", 0.8),
+        ("streamwise-T4", -0.8),
+        ("streamwise-T6", 1.6),
+    ];
+    assert_eq!(along.len(), expected.len());
+    for ((name, y), (expected_name, expected_y)) in along.iter().zip(expected) {
+        assert_eq!(name, expected_name);
+        assert!((y - expected_y).abs() < 1e-12, "{name}: {y}");
+    }
+}

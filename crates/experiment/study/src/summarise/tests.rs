@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::gains;
+use basis::records::SettingValue;
 use formats::records::{RunFolder, SeriesWriter};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -137,6 +138,14 @@ fn groups_of_columns_make_the_same_summary_as_all_at_once() {
         assert!(turbine.pitch_duty.is_some() && turbine.power_gain.is_some());
     }
     assert!(whole.array_power_gain.is_some());
+    assert!(!whole.has_wakes());
+    assert_eq!(whole.flow.as_ref().map(|flow| flow.solver.as_str()), Some("uniform"));
+    let rotor = third.rotor.expect("a place");
+    assert_eq!(rotor.diameter, setup.plan.diameter);
+    assert_eq!(rotor.hub, [10.0 * setup.plan.diameter, 0.0, setup.plan.hub_height]);
+    let settings = first.control.settings.as_deref().expect("settings");
+    let amplitude = settings.iter().find(|setting| setting.key == "amplitude_deg");
+    assert_eq!(amplitude.map(|set| &set.value), Some(&SettingValue::Number(4.0)));
 }
 
 /// A turbine that stands still in the run compared with costs its own gain, not the summary.

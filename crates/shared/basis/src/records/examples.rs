@@ -1,9 +1,9 @@
 //! Made-up summaries for tests and examples, so that each needs to write down only what it is about.
 
 use super::{
-    Conditions, ControlSummary, Cost, DeliveredPitch, Finding, Load, LoadKind, MeanderingAxis,
-    MeanderingSummary, PitchDuty, PitchExcitation, PitchResponse, SCHEMA_VERSION, Statistic,
-    Summary, TurbineSummary, Warning, WarningKind,
+    Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding, FlowSummary, Load,
+    LoadKind, MeanderingAxis, MeanderingSummary, PitchDuty, PitchExcitation, PitchResponse, Rotor,
+    SCHEMA_VERSION, SettingValue, Statistic, Summary, TurbineSummary, Warning, WarningKind,
 };
 use crate::Sense;
 
@@ -17,6 +17,7 @@ pub fn turbine(name: &str, power: f64) -> TurbineSummary {
     TurbineSummary {
         name: name.to_owned(),
         model: "iea-15mw".to_owned(),
+        rotor: None,
         control: ControlSummary::plain("baseline", "baseline"),
         power: statistic(power),
         thrust: statistic(1.9e6),
@@ -46,6 +47,7 @@ pub fn summary(run: &str, turbines: Vec<TurbineSummary>) -> Summary {
         run: run.to_owned(),
         compare_with: None,
         conditions: conditions(),
+        flow: None,
         array_power: statistic(turbines.iter().map(|turbine| turbine.power.mean).sum()),
         turbines,
         array_power_gain: None,
@@ -132,6 +134,7 @@ pub fn full() -> Summary {
     Summary {
         compare_with: Some("baseline".to_owned()),
         conditions: Conditions { roughness_length: Some(0.01), ..conditions() },
+        flow: Some(FlowSummary { solver: "lattice".to_owned(), has_wakes: true }),
         array_power: with_interval(4e7),
         array_power_gain: Some(gain),
         cost: Cost {
@@ -159,7 +162,12 @@ fn full_turbine(name: &str, gain: Statistic) -> TurbineSummary {
     let kinds = [LoadKind::Deviation, damage_equivalent(10.0)];
     let loads = kinds.map(|kind| Load { change: Some(gain), ..load("RootMyb1", kind, 12_340.0) });
     TurbineSummary {
+        rotor: Some(Rotor { diameter: 240.0, hub: [0.0, 0.0, 150.0] }),
         control: ControlSummary {
+            settings: Some(vec![ControlSetting {
+                key: "amplitude_deg".to_owned(),
+                value: SettingValue::Number(4.0),
+            }]),
             excitation,
             findings: vec![Finding {
                 name: "locked-share".to_owned(),

@@ -1,10 +1,10 @@
 //! Deficits about the wake's own centre, cases overlaid, a panel for each distance.
 
-use super::marks::{case_line, free_stream, names};
+use super::marks::{case_line, free_stream, named, names};
 use super::{DeficitFigure, DeficitLine};
-use crate::draw::axes::{Frame, Scale, legend};
+use crate::draw::axes::{Frame, Readout, Scale, legend};
 use crate::draw::colour::Ink;
-use crate::draw::{Figure, Look, Role, Shape, polyline, rectangle};
+use crate::draw::{Axis, Figure, Look, Role, Shape, rectangle};
 use crate::figures::WIDTH;
 
 const HEIGHT: f64 = 250.0;
@@ -36,7 +36,7 @@ pub(super) fn deficits(figure: &DeficitFigure) -> Option<Figure> {
             y: Scale::linear(-reach, reach),
         };
         let rotor = frame.rectangle([scale.low, -0.5], [scale.high, 0.5]);
-        shapes.push(rectangle(rotor, Look::fill(Ink::Band)));
+        shapes.push(frame.behind(vec![rectangle(rotor, Look::fill(Ink::Band))]));
         frame.rows(6, index == 0, &mut shapes);
         frame.columns(if width > 200.0 { 4 } else { 3 }, true, &mut shapes);
         frame.title(&panel.title, &mut shapes);
@@ -45,7 +45,8 @@ pub(super) fn deficits(figure: &DeficitFigure) -> Option<Figure> {
             frame.y_label("(y − centre)/D", 40.0, &mut shapes);
         }
         let inner = panel.lines.iter().map(|line| drawn(figure, line, &frame)).collect();
-        shapes.push(Shape::Group { role: Role::Plain, clip: Some(frame.area), shapes: inner });
+        let readout = frame.readout(["U∞", "D"]);
+        shapes.push(Readout { along: Axis::Y, ..readout }.group(0.0, inner));
     }
     Some(Figure {
         name: "recentred-deficits".to_owned(),
@@ -69,5 +70,5 @@ fn drawn(figure: &DeficitFigure, line: &DeficitLine, frame: &Frame) -> Shape {
         .zip(&line.offsets)
         .map(|(deficit, offset)| [deficit / figure.free_stream, offset / figure.diameter])
         .collect();
-    polyline(frame.points(&points), case_line(line.colour, 2.0))
+    named(&line.name, vec![frame.line(&points, case_line(line.colour, 2.0))])
 }

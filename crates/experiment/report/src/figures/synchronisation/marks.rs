@@ -2,7 +2,7 @@
 
 use crate::draw::axes::{Frame, SMALL};
 use crate::draw::colour::{Ink, run_dash};
-use crate::draw::{Look, Shape, TextStyle, segment, text};
+use crate::draw::{Axis, Look, Role, Shape, TextStyle, segment, text};
 use crate::words::{SPACE, number};
 
 /// A degree as a reader sees it.
@@ -13,23 +13,27 @@ pub(super) fn degree_columns(frame: &Frame, step: f64, shapes: &mut Vec<Shape>) 
     let [left, top, width, height] = frame.area;
     let base = top + height;
     shapes.push(segment([left, base], [left + width, base], Look::line(Ink::Axis, 1.0)));
+    let mut ticks = Vec::new();
     for degrees in multiples(step, frame.x.low, frame.x.high) {
         let [x, _] = frame.point([degrees, frame.y.low]);
-        shapes.push(segment([x, base], [x, base + 4.0], Look::line(Ink::Axis, 1.0)));
+        ticks.push(segment([x, base], [x, base + 4.0], Look::line(Ink::Axis, 1.0)));
         let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(0.5);
-        shapes.push(text([x, base + 17.0], number(degrees, 0), setting));
+        ticks.push(text([x, base + 17.0], number(degrees, 0), setting));
     }
+    frame.ticks(Axis::X, ticks, shapes);
 }
 
 /// Grid lines every `step` degrees across a frame whose vertical values are degrees.
 pub(super) fn degree_rows(frame: &Frame, step: f64, shapes: &mut Vec<Shape>) {
     let [left, _, width, _] = frame.area;
+    let mut ticks = Vec::new();
     for degrees in multiples(step, frame.y.low, frame.y.high) {
         let [_, y] = frame.point([frame.x.low, degrees]);
-        shapes.push(segment([left, y], [left + width, y], Look::line(Ink::Grid, 1.0)));
+        ticks.push(segment([left, y], [left + width, y], Look::line(Ink::Grid, 1.0)));
         let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
-        shapes.push(text([left - 7.0, y + 4.0], number(degrees, 0), setting));
+        ticks.push(text([left - 7.0, y + 4.0], number(degrees, 0), setting));
     }
+    frame.ticks(Axis::Y, ticks, shapes);
 }
 
 fn multiples(step: f64, low: f64, high: f64) -> impl Iterator<Item = f64> {
@@ -53,6 +57,11 @@ pub(super) fn upright(frame: &Frame, value: f64, label: &str, shapes: &mut Vec<S
         let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(anchor);
         shapes.push(text([place, top + 13.0], label, setting));
     }
+}
+
+/// A case's line, or the pieces of it, under its `name`.
+pub(super) fn named(name: &str, shapes: Vec<Shape>) -> Shape {
+    Shape::Group { role: Role::Line(name.to_owned()), clip: None, shapes }
 }
 
 /// The look of a case's line.

@@ -188,14 +188,25 @@ pub struct SliceFigure {
     pub diameter: f64,
     /// Free-stream speed at hub height (m/s).
     pub free_stream: f64,
-    /// Places of the rotors, x and y (m).
-    pub rotors: Vec<[f64; 2]>,
+    /// The rotors.
+    pub rotors: Vec<SliceRotor>,
     /// Cases whose velocity is shown.
     pub planes: Vec<SlicePanel>,
     /// Cases of which the centre line is shown.
     pub centre_lines: Vec<CentreLine>,
     /// Which phase it is, in words, such as `t = 0 Te`.
     pub phase: String,
+}
+
+/// A rotor from above.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SliceRotor {
+    /// Name of its turbine.
+    pub name: String,
+    /// Its hub (m, farm frame).
+    pub hub: [f64; 3],
+    /// Its diameter (m).
+    pub diameter: f64,
 }
 
 /// One case from above.

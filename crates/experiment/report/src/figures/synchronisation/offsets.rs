@@ -1,11 +1,13 @@
 //! Changes over the phase offset with the curve through them and its band.
 
-use super::marks::{degree_columns, degrees, upright};
+use super::marks::{degree_columns, degrees, named, upright};
 use super::{CurvePoint, OffsetFigure, OffsetPanel, OffsetPoint};
 use crate::draw::axes::{Frame, Scale};
 use crate::draw::colour::Ink;
-use crate::draw::{Figure, Look, Role, Shape, polyline, segment};
+use crate::draw::whisker::{self, Style, whisker};
+use crate::draw::{Axis, Figure, Look, Role, Shape, segment};
 use crate::figures::WIDTH;
+use crate::words;
 
 const HEIGHT: f64 = 270.0;
 const LEFT: f64 = 66.0;
@@ -22,7 +24,7 @@ pub(super) fn offsets(figure: &OffsetFigure) -> Option<Figure> {
     if n_panels == 0 {
         return None;
     }
-    let scale = Scale::around(panels.iter().flat_map(|panel| extremes(panel)), 0.06);
+    let scale = scale(&panels);
     let width = (WIDTH - LEFT - 24.0 - GAP * (n_panels - 1) as f64) / n_panels as f64;
     let mut shapes = Vec::new();
     for (index, panel) in panels.iter().enumerate() {
@@ -37,14 +39,14 @@ pub(super) fn offsets(figure: &OffsetFigure) -> Option<Figure> {
             frame.y_label(&figure.label, 44.0, &mut shapes);
         }
         let zero = [frame.point([0.0, 0.0]), frame.point([360.0, 0.0])];
-        shapes.push(segment(zero[0], zero[1], Look::line(Ink::Axis, 1.0)));
+        shapes.push(frame.behind(vec![segment(zero[0], zero[1], Look::line(Ink::Axis, 1.0))]));
         let mut inner = curve(panel, &frame);
         if let Some(best) = panel.curve.iter().max_by(|a, b| a.mean.total_cmp(&b.mean)) {
             upright(&frame, best.offset.to_degrees(), &degrees(best.offset), &mut inner);
         }
-        shapes.push(frame.panel(inner, ["°", "%"]));
-        // Over the frame's edges, which would cut the marks at zero and at a whole turn.
-        shapes.extend(panel.points.iter().map(|point| mark(point, &frame)));
+        inner.extend(panel.points.iter().map(|point| mark(point, &frame)));
+        // Beyond the frame's edges, which would cut the marks at zero and at a whole turn.
+        shapes.push(frame.readout(["°", "%"]).group(6.0, inner));
     }
     let has_curve = panels.iter().any(|panel| !panel.curve.is_empty());
     let of_curve = "; line and band: Gaussian process through them and where it lies with 95\u{a0}%, \
@@ -53,7 +55,8 @@ pub(super) fn offsets(figure: &OffsetFigure) -> Option<Figure> {
         name: figure.name.clone(),
         title: figure.title.clone(),
         caption: format!(
-            "Dots: simulated, whiskers: their 95\u{a0}% intervals{}.",
+            "Dots: simulated, whiskers: their 95\u{a0}% intervals, with an arrow and its end's number where one goes on \
+             beyond the axis{}.",
             if has_curve { of_curve } else { "" }
         ),
         width: WIDTH,
@@ -62,14 +65,18 @@ pub(super) fn offsets(figure: &OffsetFigure) -> Option<Figure> {
     })
 }
 
-/// Values (%) that the scale has to hold.
-fn extremes(panel: &OffsetPanel) -> impl Iterator<Item = f64> + '_ {
-    let points = panel.points.iter().flat_map(|point| {
+/// The axis (%): zero, the curves, every mean, and the intervals that are not far beyond the usual.
+fn scale(panels: &[&OffsetPanel]) -> Scale {
+    let points = panels.iter().flat_map(|panel| &panel.points);
+    let whisker = |point: &OffsetPoint| {
         let half = point.change.half_width_95.unwrap_or(0.0);
-        [point.change.mean - half, point.change.mean + half]
-    });
-    let curve = panel.curve.iter().flat_map(|point| point.band_95);
-    points.chain(curve).chain([0.0]).map(|share| 100.0 * share)
+        (100.0 * point.change.mean, 100.0 * half)
+    };
+    let whiskers: Vec<(f64, f64)> = points.map(whisker).collect();
+    let halves = whiskers.iter().map(|whisker| whisker.1).filter(|half| *half > 0.0);
+    let curves = panels.iter().flat_map(|panel| &panel.curve);
+    let curves = curves.flat_map(|point| point.band_95).map(|share| 100.0 * share);
+    Scale::around_whiskers(curves.chain([0.0]), &whiskers, whisker::reach(halves), 0.06)
 }
 
 fn curve(panel: &OffsetPanel, frame: &Frame) -> Vec<Shape> {
@@ -84,29 +91,21 @@ fn curve(panel: &OffsetPanel, frame: &Frame) -> Vec<Shape> {
     let look = Look::fill(CURVE).opacity(0.16);
     vec![
         Shape::Path { points: band, closed: true, look },
-        frame.line(&along(|point| point.mean), Look::line(CURVE, 2.0)),
+        named("curve", vec![frame.line(&along(|point| point.mean), Look::line(CURVE, 2.0))]),
     ]
 }
 
 /// A dot with its whiskers; an offset of zero stands at both ends.
 fn mark(point: &OffsetPoint, frame: &Frame) -> Shape {
-    let look = Look::line(POINT, 1.4);
-    let mut shapes = Vec::new();
+    let style = Style { ink: POINT, width: 1.4, cap: 4.0, radius: 4.0, numbered: true };
+    let half = point.change.half_width_95.map(|half| 100.0 * half);
     let offset = point.offset.to_degrees();
     let places = if offset == 0.0 { vec![0.0, 360.0] } else { vec![offset] };
+    let mut shapes = Vec::new();
     for place in places {
-        let center = frame.point([place, 100.0 * point.change.mean]);
-        if !center[1].is_finite() {
-            continue;
-        }
-        if let Some(half) = point.change.half_width_95 {
-            let ends = [-half, half].map(|h| frame.point([place, 100.0 * (point.change.mean + h)]));
-            shapes.push(polyline(ends.to_vec(), look));
-            for [x, y] in ends {
-                shapes.push(segment([x - 4.0, y], [x + 4.0, y], look));
-            }
-        }
-        shapes.push(Shape::Circle { center, radius: 4.0, look: Look::fill(POINT) });
+        let [x, _] = frame.point([place, 0.0]);
+        shapes.extend(whisker(frame, Axis::Y, x, 100.0 * point.change.mean, half, style));
     }
-    Shape::Group { role: Role::Plain, clip: None, shapes }
+    let words = format!("{}: {}", degrees(point.offset), words::gain(&point.change));
+    Shape::Group { role: Role::Mark(words), clip: None, shapes }
 }

@@ -1,22 +1,22 @@
 //! The wake from above at one phase of the excitation: deficits of single cases, centre lines of all.
 
-use super::marks::{case_line, free_stream, names};
-use super::{SliceFigure, SlicePanel};
-use crate::draw::axes::{Frame, MEDIUM, SMALL, Scale, legend};
+use super::marks::{case_line, free_stream, named, names};
+use super::{SliceFigure, SlicePanel, SliceRotor};
+use crate::draw::axes::{FieldValues, Frame, MEDIUM, Readout, Scale, legend};
 use crate::draw::colour::{Ink, Map};
 use crate::draw::field::Picture;
-use crate::draw::{Figure, Look, Role, Shape, TextStyle, polyline, segment, text};
-use crate::figures::WIDTH;
-use crate::figures::sheet::colour_bar;
+use crate::draw::{Figure, Look, Role, Shape, TextStyle, polyline, text};
+use crate::figures::sheet::{colour_bar, stretched};
+use crate::figures::{WIDTH, rotors};
+use crate::layout::Rotor;
 use crate::study::sample;
-use crate::words::number;
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 84.0;
 /// Height of the panel with the centre lines.
 const LINES: f64 = 210.0;
-/// Half width of a plane that is shown (diameters).
-const HALF_WIDTH: f64 = 1.5;
+/// What is shown of a plane beside the rotors (diameters).
+const BESIDE: f64 = 1.0;
 
 /// A field for each panel, then all centre lines.
 pub(super) fn slices(figure: &SliceFigure) -> Option<Figure> {
@@ -24,9 +24,10 @@ pub(super) fn slices(figure: &SliceFigure) -> Option<Figure> {
     let ends = extent(figure)?;
     let width = WIDTH - LEFT - RIGHT;
     let scale = Scale::linear(ends[0] / diameter, ends[1] / diameter);
-    let height = (width * 2.0 * HALF_WIDTH * diameter / (ends[1] - ends[0])).clamp(80.0, 260.0);
-    let center = figure.rotors.first().map_or(0.0, |rotor| rotor[1] / diameter);
-    let across = Scale::linear(center - HALF_WIDTH, center + HALF_WIDTH);
+    let sides = sides(figure);
+    let true_height = width * (sides[1] - sides[0]) * diameter / (ends[1] - ends[0]);
+    let height = true_height.clamp(84.0, 460.0);
+    let across = Scale::linear(sides[0], sides[1]);
     let range = range(figure);
     let mut shapes = Vec::new();
     let mut top = 34.0;
@@ -34,7 +35,7 @@ pub(super) fn slices(figure: &SliceFigure) -> Option<Figure> {
         let frame = Frame { area: [LEFT, top, width, height], x: scale, y: across };
         field(figure, panel, range, &frame, &mut shapes);
         frame.columns(12, index + 1 == figure.planes.len(), &mut shapes);
-        heights(&frame, &mut shapes);
+        frame.heights(4, &mut shapes);
         frame.y_label("y/D", 40.0, &mut shapes);
         top += height + 40.0;
     }
@@ -56,7 +57,8 @@ pub(super) fn slices(figure: &SliceFigure) -> Option<Figure> {
         title: format!("The wake by phase of the excitation, {}", figure.phase),
         caption: format!(
             "Streamwise velocity at hub height averaged at one phase, seen from above, with the wake's centre; below, the \
-             centres of all cases on a stretched scale. {}.",
+             centres of all cases on a stretched scale.{} {}.",
+            stretched(height / true_height),
             free_stream(figure.free_stream)
         ),
         width: WIDTH,
@@ -78,9 +80,10 @@ fn centres(figure: &SliceFigure, area: [f64; 4], x: Scale, shapes: &mut Vec<Shap
     frame.rows(5, true, shapes);
     frame.columns(12, true, shapes);
     frame.y_label("y/D of the centre", 46.0, shapes);
-    let mut inner = uprights(figure, &frame);
+    let mut inner = Vec::new();
+    rotors::along(there(figure).iter(), &frame, diameter, &mut inner);
     for (line, points) in figure.centre_lines.iter().zip(&lines) {
-        inner.push(frame.line(points, case_line(line.colour, 2.0)));
+        inner.push(named(&line.name, vec![frame.line(points, case_line(line.colour, 2.0))]));
     }
     shapes.push(frame.panel(inner, ["D", "D"]));
 }
@@ -133,18 +136,12 @@ fn field(
         sample(&panel.plane, x * diameter, y * diameter)
             .map_or(f64::NAN, |speed| speed / figure.free_stream)
     });
-    shapes.push(Shape::Field { area: frame.area, picture });
     let look = Look::fill(Ink::Run(panel.colour));
     shapes.push(Shape::Circle { center: [left + 5.0, top - 13.5], radius: 4.5, look });
     let setting = TextStyle::plain(Ink::Text, MEDIUM).bold();
     shapes.push(text([left + 16.0, top - 9.0], panel.title.as_str(), setting));
-    let mut inner = Vec::new();
-    for [x, y] in &figure.rotors {
-        let ends = [-0.5, 0.5].map(|side| frame.point([x / diameter, y / diameter + side]));
-        for look in [Look::line(Ink::FieldHalo, 5.0).opacity(0.75), Look::line(Ink::OnField, 2.4)] {
-            inner.push(segment(ends[0], ends[1], look));
-        }
-    }
+    let mut inner = vec![Shape::Field { area: frame.area, picture }];
+    inner.extend(rotors::on_plane(there(figure).iter(), &panel.plane, frame, diameter));
     let centres: Vec<[f64; 2]> =
         panel.centre_line.iter().map(|p| [p[0] / diameter, p[1] / diameter]).collect();
     for look in
@@ -152,26 +149,31 @@ fn field(
     {
         inner.push(polyline(frame.points(&centres), look));
     }
-    shapes.push(Shape::Group { role: Role::Plain, clip: Some(frame.area), shapes: inner });
+    let field =
+        FieldValues {
+            name: panel.title.clone(), run: panel.colour, range, unit: "U∞".to_owned()
+        };
+    let readout = Readout { field: Some(field), ..frame.readout(["D", "D"]) };
+    shapes.push(readout.group(0.0, inner));
 }
 
-/// Dashed lines where the rotors stand.
-fn uprights(figure: &SliceFigure, frame: &Frame) -> Vec<Shape> {
-    let mut shapes = Vec::new();
-    for [x, _] in &figure.rotors {
-        super::marks::upright(frame, x / figure.diameter, "", &mut shapes);
-    }
-    shapes
+/// The rotors, as other figures know them.
+fn there(figure: &SliceFigure) -> Vec<Rotor> {
+    let rotor = |rotor: &SliceRotor| Rotor {
+        name: rotor.name.clone(),
+        hub: rotor.hub,
+        diameter: rotor.diameter,
+    };
+    figure.rotors.iter().map(rotor).collect()
 }
 
-/// Values left of a field, without lines across it.
-fn heights(frame: &Frame, shapes: &mut Vec<Shape>) {
-    let (ticks, decimals) = frame.y.ticks(4);
-    let left = frame.area[0];
-    for tick in ticks {
-        let [_, y] = frame.point([frame.x.low, tick]);
-        shapes.push(segment([left - 4.0, y], [left, y], Look::line(Ink::Axis, 1.0)));
-        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
-        shapes.push(text([left - 7.0, y + 4.0], number(tick, decimals), setting));
-    }
+/// What is shown across the wind (diameters): all rotors with room beside them.
+fn sides(figure: &SliceFigure) -> [f64; 2] {
+    let ends = figure.rotors.iter().flat_map(|rotor| {
+        let reach = 0.5 * rotor.diameter + BESIDE * figure.diameter;
+        [rotor.hub[1] - reach, rotor.hub[1] + reach].map(|y| y / figure.diameter)
+    });
+    let (low, high) =
+        ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
+    if low < high { [low, high] } else { [-1.5, 1.5] }
 }

@@ -1,7 +1,7 @@
 //! Amplitudes around the excitation frequency, cases overlaid.
 
 use super::SpectrumFigure;
-use super::marks::{case_line, names, upright};
+use super::marks::{case_line, named, names, upright};
 use crate::draw::axes::{Frame, Scale, legend};
 use crate::draw::{Figure, Role, Shape};
 use crate::figures::WIDTH;
@@ -43,7 +43,9 @@ pub(super) fn spectra(figure: &SpectrumFigure) -> Option<Figure> {
     frame.y_label(&figure.label, 50.0, &mut shapes);
     let mut inner: Vec<Shape> = Vec::new();
     upright(&frame, 1.0, "excitation", &mut inner);
-    inner.extend(lines.iter().map(|(colour, line)| frame.line(line, case_line(*colour, 1.8))));
+    inner.extend(figure.lines.iter().zip(&lines).map(|(of, (colour, line))| {
+        named(&of.name, vec![frame.line(line, case_line(*colour, 1.8))])
+    }));
     shapes.push(frame.panel(inner, ["fe", ""]));
     Some(Figure {
         name: figure.name.clone(),

@@ -1,8 +1,8 @@
 //! Signals over time in rows: estimates beside the truth, winds, pitch and moments of several cases.
 
-use super::marks::{case_line, degree_rows, names, upright};
+use super::marks::{case_line, degree_rows, named, names, upright};
 use super::{TrackFigure, TrackLine, TrackRow};
-use crate::draw::axes::{Frame, Scale, legend};
+use crate::draw::axes::{Frame, Readout, Scale, legend};
 use crate::draw::{Figure, Role, Shape};
 use crate::figures::WIDTH;
 use crate::trace::envelope;
@@ -47,9 +47,11 @@ pub(super) fn tracks(figure: &TrackFigure) -> Option<Figure> {
         }
         for (line, pieces) in row.lines.iter().zip(&drawn.pieces) {
             let look = case_line(line.colour, 1.6);
-            inner.extend(pieces.iter().map(|piece| frame.line(piece, look)));
+            let pieces = pieces.iter().map(|piece| frame.line(piece, look)).collect();
+            inner.push(named(&line.name, pieces));
         }
-        shapes.push(frame.panel(inner, ["s", if row.is_angle { "°" } else { "" }]));
+        let readout = frame.readout(["s", if row.is_angle { "°" } else { "" }]);
+        shapes.push(Readout { both: false, ..readout }.group(0.0, inner));
     }
     Some(Figure {
         name: figure.name.clone(),
