@@ -64,7 +64,7 @@ pub fn resume() -> Vec<Row> {
     };
     match kill_and_compare() {
         Ok((kills, compared, different)) => {
-            eprintln!("{compared} files compared");
+            tell!("{compared} files compared");
             vec![
                 row(
                     "kills at random moments, each followed by --resume",

@@ -22,13 +22,13 @@ impl Observer for Lines {
         let share = 10 * progress.step / progress.n_steps.max(1);
         let line = format!("{} {share}0 %", progress.run);
         if line != self.last {
-            eprintln!("{line}, {:.0} s left in all", progress.time_left);
+            tell!("{line}, {:.0} s left in all", progress.time_left);
             self.last = line;
         }
     }
 
     fn warned(&mut self, warning: &str) {
-        eprintln!("warning: {warning}");
+        tell!("warning: {warning}");
     }
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn summaries(
         case: path.to_owned(),
         output: Some(output.clone()),
         overrides,
-        resume: true,
+        resume: formats::records::is_begun(&output),
         ..Options::default()
     };
     let mut observer = Lines { last: String::new() };
@@ -59,7 +59,10 @@ pub(crate) fn summaries(
 pub(crate) fn command(path: &Path, output: &Path) -> Command {
     let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("wakemix"));
     let mut command = Command::new(program);
-    command.arg("run").arg(path).arg("-o").arg(output).arg("--resume");
+    command.arg("run").arg(path).arg("-o").arg(output);
+    if formats::records::is_begun(output) {
+        command.arg("--resume");
+    }
     command.stdout(Stdio::null()).stderr(Stdio::null());
     command
 }

@@ -97,7 +97,7 @@ fn beside(what: &str, measured: &[f64], reference: f64, aim: f64) -> Row {
     let scatter = student_97_5(measured.len() - 1) * standard_error * (n + 1.0).sqrt();
     let aimed = aim * reference;
     let accepted = if scatter > aimed { "by chance" } else { "by aim" };
-    eprintln!("{what}: one record scatters by ±{:.1} %", 100.0 * scatter / mean);
+    tell!("{what}: one record scatters by ±{:.1} %", 100.0 * scatter / mean);
     Row {
         what: format!("{what}, mean of {n}, {accepted}"),
         measured: mean,

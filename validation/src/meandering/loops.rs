@@ -135,10 +135,10 @@ fn steps() -> Vec<Row> {
         ("offset step", [last, last], [0.0, 1.0], [1.0, 1.0]),
         ("amplitude step", [last, last], [0.0, 0.0], [1.0, 1.5]),
     ];
-    eprintln!(
+    tell!(
         "| loop alone | generator | settling, s | largest excursion of ω̂ beyond the new rate, % |"
     );
-    eprintln!("| --- | --- | --- | --- |");
+    tell!("| --- | --- | --- | --- |");
     let mut rows = Vec::new();
     for (case, rates, offsets, amplitudes) in cases {
         let outcomes = kinds().map(|(name, kind)| {
@@ -158,7 +158,7 @@ fn steps() -> Vec<Row> {
                     beyond = beyond.max(sided);
                 }
             }
-            eprintln!("| {case} | {name} | {settled:.0} | {:.2} |", 100.0 * beyond);
+            tell!("| {case} | {name} | {settled:.0} | {:.2} |", 100.0 * beyond);
             [settled, beyond]
         });
         let [_, extended, mixed] = outcomes;

@@ -4,6 +4,7 @@ pub mod air;
 pub mod assemble;
 pub mod case;
 pub mod farm;
+pub mod operation;
 pub mod pitch_response;
 pub mod plan;
 pub mod self_check;

@@ -6,7 +6,7 @@
 //! says which run of which case it is.
 
 use crate::FileError;
-use crate::atomic::AtomicFile;
+use crate::atomic::{self, AtomicFile};
 use crate::case;
 use crc32fast::Hasher;
 use serde::de::DeserializeOwned;
@@ -24,7 +24,7 @@ const IDENTITY: &str = "identity";
 const CHUNK: usize = 1 << 20;
 const LONGEST_NAME: u32 = 64;
 const END: u32 = u32::MAX;
-const FRESH: &str = "start the run afresh, without --resume";
+const FRESH: &str = "start the run afresh: --run NAME --overwrite in place of --resume";
 
 /// What is wrong with a checkpoint.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -81,10 +81,10 @@ impl CheckpointProblem {
     fn fix(&self) -> &'static str {
         match self {
             Self::OtherVersion { .. } => {
-                "go on with the version of the program that wrote it, or start the run afresh, without --resume"
+                "go on with the version of the program that wrote it, or start the run afresh: --run NAME --overwrite in place of --resume"
             }
             Self::OtherCase => {
-                "undo the change to go on, or start the run afresh, without --resume; threads, checkpoint interval and other runs may change"
+                "undo the change to go on, or start the run afresh: --run NAME --overwrite in place of --resume; threads, checkpoint interval and other runs may change"
             }
             _ => FRESH,
         }
@@ -235,7 +235,7 @@ impl CheckpointReader {
     /// it.
     pub fn open(path: &Path, case_text: &str, run: &str) -> Result<Self, FileError> {
         let read = |source| FileError::system("read", WHAT, path, source);
-        let file = File::open(path).map_err(read)?;
+        let file = atomic::open(path).map_err(read)?;
         let length = file.metadata().map_err(read)?.len();
         let file = BufReader::with_capacity(CHUNK, file);
         let mut reader = Self { file, path: path.to_owned(), sections: Vec::new() };

@@ -132,7 +132,8 @@ impl<'a> Study<'a> {
     /// The study that `options` name; what its folder holds is left as it is.
     ///
     /// # Errors
-    /// [`StudyError::UnknownRun`], [`StudyError::OutputExists`], [`StudyError::OtherCase`].
+    /// [`StudyError::UnknownRun`], [`StudyError::OutputExists`], [`StudyError::NothingToResume`],
+    /// [`StudyError::OtherCase`], and [`StudyError::File`] for a folder that cannot be written into.
     fn open(
         options: &Options,
         outputs: &'a Outputs,
@@ -152,8 +153,14 @@ impl<'a> Study<'a> {
             .filter(|&index| !(options.resume && folders[index].is_complete()))
             .collect();
         let keeps = options.resume || options.overwrite || options.dry_run;
-        if !keeps && open.iter().any(|&index| folders[index].path().exists()) {
+        if !keeps && open.iter().any(|&index| folders[index].holds_results()) {
             return Err(StudyError::OutputExists { directory });
+        }
+        if !options.dry_run {
+            formats::atomic::check_folder(&directory)?;
+        }
+        if options.resume && !options.dry_run && !records::is_begun(&directory) {
+            return Err(StudyError::NothingToResume { directory });
         }
         if options.resume {
             for &index in &wanted {
@@ -214,6 +221,10 @@ impl<'a> Study<'a> {
     ) -> Result<ControlFlow<()>, StudyError> {
         let index = self.open[place];
         let (run, folder) = (&ready.prepared.case.runs[index], &self.folders[index]);
+        if self.resume && folder.holds_results() && !folder.checkpoint_path().exists() {
+            let name = &run.name;
+            observer.warned(&format!("{name} left no checkpoint: it begins at time zero again"));
+        }
         let manifest = begin_run(&ready.prepared, index, folder, self.resume)?;
         let (outputs, resume, place) = (self.outputs, self.resume, (place, self.open.len()));
         let job = Job { ready, run, folder, outputs, resume, place };

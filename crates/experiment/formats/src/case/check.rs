@@ -2,13 +2,15 @@
 
 use super::document::{Entry, Node, Sources, Value};
 use super::error::{Problem, ProblemKind};
+use super::findings::Findings;
 use super::instruments::instruments_of;
 use super::keys;
 use super::kinds;
 use super::momentum::{dynamic_inflow_of, tower_influence_of};
-use super::section::{Findings, Section, list};
+use super::section::{Section, list};
 use super::spelling::nearest;
 use super::wind::{check_together, wind_of};
+use crate::records;
 use basis::keys::Table;
 use control::{CONTROLLERS, ControllerKind, Place};
 use farm::case::{
@@ -181,6 +183,12 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
         if section.has("name") && runs.iter().any(|other| other.name.eq_ignore_ascii_case(&name)) {
             note_duplicate(section, "run", &name);
         }
+        if records::OWN_FOLDERS.iter().any(|own| own.eq_ignore_ascii_case(&name)) {
+            let key = section.key_path("name");
+            let why = format!("a study's folder has its own `{name}`, beside those of the runs");
+            let fix = Some("choose another name".to_owned());
+            section.findings().note(section.span_of("name"), ProblemKind::Taken { key, why }, fix);
+        }
         let compare_with = section.optional_text("compare_with");
         let control = controls_of(section, turbines, time);
         if !control.is_empty() && !control.iter().any(Control::is_there) {
@@ -301,6 +309,9 @@ fn note_unknown_turbine(
     span: std::ops::Range<usize>,
     turbines: &[Placement],
 ) {
+    if section.findings().are_full() {
+        return;
+    }
     let names = || turbines.iter().map(|turbine| turbine.name.as_str());
     let known = list(names());
     let kind = ProblemKind::UnknownName { key, what: "turbine", name: name.to_owned(), known };

@@ -51,7 +51,7 @@ pub(super) static WIND: Table = Table {
     heading: "[wind]",
     about: "The wind that comes in: a mean profile with Mann's turbulence on it, the same for every run.",
     keys: &[
-        key("speed", above(0.0, 40.0), "m/s", Required, "Mean speed at hub height of the first turbine.")
+        key("speed", above(0.0, 40.0), "m/s", Required, "Mean speed at hub height of the first turbine. At every hub it lies between the cut-in and cut-out wind speeds that the turbine's file states under `[operation]`.")
             .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }, Slip { unit: "cm/s", factor: 0.01 }]),
         key("turbulence_intensity", from(0.0, 0.5), "–", Required, "Standard deviation of the streamwise component over `speed`, at hub height; 0 switches the turbulence off.")
             .mistaken(&[Slip { unit: "percent", factor: 0.01 }]),
@@ -93,7 +93,7 @@ const SOLVER_KEY: Key = key(
 const COMMON_KEYS: [Key; 2] = [
     key(
         "step",
-        above(0.0, 10.0),
+        from(1e-4, 10.0),
         "s",
         Otherwise("chosen from tip speed and wind speed; 0.02 s in prescribed wind"),
         "Step of the air, which is the control interval too.",

@@ -3,7 +3,8 @@
 
 use super::document::{Entry, Value as Written, find};
 use super::error::ProblemKind;
-use super::section::{Findings, Section};
+use super::findings::Findings;
+use super::section::Section;
 use super::spelling::nearest;
 use super::write::quoted;
 use basis::keys::{Holds, Objection, Table, Value, Values};

@@ -6,6 +6,7 @@
 mod check;
 mod document;
 mod error;
+mod findings;
 mod instruments;
 mod keys;
 mod kinds;

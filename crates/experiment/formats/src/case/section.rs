@@ -1,33 +1,11 @@
 //! One table of the file, read key by key against the table of keys.
 
-use super::document::{Entry, Node, Sources, Value, find};
-use super::error::{Problem, ProblemKind};
+use super::document::{Entry, Node, Value, find};
+use super::error::ProblemKind;
+use super::findings::Findings;
 use super::spelling::nearest;
 use basis::keys::{Holds, Key, LeftOut, Range, Table};
-use std::cell::RefCell;
 use std::ops;
-
-/// What was found wrong so far.
-pub(super) struct Findings<'a> {
-    sources: &'a Sources,
-    problems: RefCell<Vec<Problem>>,
-}
-
-impl<'a> Findings<'a> {
-    pub(super) fn new(sources: &'a Sources) -> Self {
-        Self { sources, problems: RefCell::new(Vec::new()) }
-    }
-
-    /// Notes a problem at `span`, with the fix where one is known.
-    pub(super) fn note(&self, span: ops::Range<usize>, kind: ProblemKind, fix: Option<String>) {
-        let problem = Problem::new(self.sources, span, kind).with_fix(fix);
-        self.problems.borrow_mut().push(problem);
-    }
-
-    pub(super) fn into_problems(self) -> Vec<Problem> {
-        self.problems.into_inner()
-    }
-}
 
 /// Tables under one heading at most (–): what the turbines do in the runs takes memory by the product of
 /// both.
@@ -54,7 +32,8 @@ impl<'a> Section<'a> {
     ) -> Self {
         let section = Self { table, entries, span, path, findings };
         for entry in entries {
-            if !table.keys.iter().any(|key| key.name == entry.key) {
+            // To look for what may have been meant takes longer than to read.
+            if !findings.are_full() && !table.keys.iter().any(|key| key.name == entry.key) {
                 let kind = ProblemKind::UnknownKey { key: section.key_path(&entry.key) };
                 findings.note(entry.key_span.clone(), kind, Some(section.suggest(&entry.key)));
             }

@@ -77,6 +77,8 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
         nacelle: Some(structure.nacelle),
         drive_train: Some(drive_train),
         pitch_actuator: None,
+        // No file of a deck tells.
+        operation: None,
         controller: None,
         airfoils: Some(airfoils),
     };
@@ -110,5 +112,7 @@ fn air_density(main: &Deck) -> f64 {
     main.number("AirDens").unwrap_or(1.225)
 }
 
+#[cfg(test)]
+mod numbers_tests;
 #[cfg(test)]
 pub(crate) mod tests;

@@ -9,9 +9,8 @@ use super::packed::{PackedPlanes, Packing};
 use super::source::{Outline, Source, each_plane, whole};
 use super::{FASTEST, StoredBox, in_order_of_arrival};
 use crate::FileError;
-use crate::atomic::AtomicFile;
+use crate::atomic::{self, AtomicFile};
 use flow::inflow::{PlaneGrid, Planes};
-use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -76,7 +75,7 @@ pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
 
 fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
     let refused = |source| FileError::system("read", WHAT, path, source);
-    let mut file = File::open(path).map_err(refused)?;
+    let mut file = atomic::open(path).map_err(refused)?;
     let found = file.metadata().map_err(refused)?.len();
     let header = read_header(path, &mut file, found)?;
     let mut description = vec![0; header.description_length];
@@ -102,7 +101,7 @@ fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
         scales: header.slopes.map(|slope| 1.0 / f64::from(slope)),
         from_left: false,
     };
-    super::sound(path, WHAT, &packing.grid)?;
+    super::sound(path, WHAT, &packing.grid, header.hub_height)?;
     Ok((PackedPlanes::new(file, path, WHAT, packing), header, description))
 }
 

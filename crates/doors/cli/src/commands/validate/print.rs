@@ -5,17 +5,18 @@ use validation::record::Verdict;
 use validation::{Tolerance, VALIDATIONS, Validation};
 
 /// All validations by name.
-pub(super) fn list() {
-    println!("{:<20} {:>8}  what", "name", "minutes");
-    for validation in VALIDATIONS {
-        println!("{:<20} {:>8}  {}", validation.name, validation.cost, validation.about);
+pub(super) fn list() -> String {
+    let mut text = format!("{:<20} {:>8}  what\n", "name", "minutes");
+    for Validation { name, cost, about, .. } in VALIDATIONS {
+        text += &format!("{name:<20} {cost:>8}  {about}\n");
     }
+    text
 }
 
 /// The rows of `validation`, and how many are met, fall short, and are not as recorded.
-pub(super) fn table(validation: &Validation, judgements: &[Judgement]) {
-    println!(
-        "{:<64} {:>12} {:>12} {:>10} {:<6} {:<5} record",
+pub(super) fn table(validation: &Validation, judgements: &[Judgement]) -> String {
+    let mut text = format!(
+        "{:<64} {:>12} {:>12} {:>10} {:<6} {:<5} record\n",
         "what", "measured", "expected", "tolerance", "unit", "met"
     );
     for row in judgements {
@@ -30,19 +31,20 @@ pub(super) fn table(validation: &Validation, judgements: &[Judgement]) {
         if let (Some(then), Finding::Worse) = (row.recorded, row.finding) {
             record.push_str(&format!(", then {then}"));
         }
-        println!(
-            "{:<64} {measured:>12.6} {:>12.6} {tolerance:>10} {:<6} {met:<5} {record}",
+        text += &format!(
+            "{:<64} {measured:>12.6} {:>12.6} {tolerance:>10} {:<6} {met:<5} {record}\n",
             row.claim, row.expected, row.unit
         );
     }
     let short = judgements.iter().filter(|row| row.verdict == Verdict::Short).count();
     let other = judgements.iter().filter(|row| row.finding != Finding::AsRecorded).count();
     let name = validation.name;
-    println!("{name}: {} rows, {short} fall short, {other} not as recorded", judgements.len());
+    let n_rows = judgements.len();
+    text + &format!("{name}: {n_rows} rows, {short} fall short, {other} not as recorded\n")
 }
 
 /// All rows of all that was repeated, as one JSON object.
-pub(super) fn json(done: &[(&Validation, Vec<Judgement>)]) {
+pub(super) fn json(done: &[(&Validation, Vec<Judgement>)]) -> String {
     let validations: Vec<_> = done
         .iter()
         .map(|(validation, judgements)| {
@@ -55,5 +57,5 @@ pub(super) fn json(done: &[(&Validation, Vec<Judgement>)]) {
         })
         .collect();
     let all = done.iter().all(|(_, judgements)| holds(judgements));
-    println!("{:#}", serde_json::json!({ "as_recorded": all, "validations": validations }));
+    format!("{:#}\n", serde_json::json!({ "as_recorded": all, "validations": validations }))
 }
