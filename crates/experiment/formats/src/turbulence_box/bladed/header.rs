@@ -274,7 +274,7 @@ impl Summary {
         let mut repeats = None;
         for (index, line) in text.lines().enumerate() {
             let upper = line.to_uppercase();
-            let number = || number_in(&path, index + 1, &upper);
+            let number = || number_in(&path, index + 1, line);
             for (component, name) in ["TI(U", "TI(V", "TI(W"].into_iter().enumerate() {
                 if upper.contains(name) {
                     intensities[component] = number()?.filter(|percent| *percent >= 0.0);
