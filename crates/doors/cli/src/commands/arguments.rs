@@ -81,11 +81,11 @@ mod tests {
     fn what_is_there_is_not_lost() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("case.toml");
-        assert!(check_free(&[file.clone()], false).is_ok());
+        assert!(check_free(std::slice::from_ref(&file), false).is_ok());
         fs::write(&file, "mine").unwrap();
-        let refused = check_free(&[file.clone()], false).unwrap_err().to_string();
+        let refused = check_free(std::slice::from_ref(&file), false).unwrap_err().to_string();
         assert!(refused.contains("is there already"), "{refused}");
-        assert!(check_free(&[file.clone()], true).is_ok());
+        assert!(check_free(std::slice::from_ref(&file), true).is_ok());
         assert!(check_free(&[folder.path().to_owned()], true).is_err());
         assert!(check_free(&[folder.path().join("none/a.bts")], true).is_err());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
