@@ -119,7 +119,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
     let (flow_power, flow_thrust) = (together.power * force * wind_speed, together.thrust * force);
     // The runs take minutes each: what is known is printed at once.
     let percent = |measured: f64, expected: f64| 100.0 * (measured / expected - 1.0);
-    eprintln!(
+    tell!(
         "{name}{shape}, {cells_per_diameter} cells per diameter, {wind_speed} m/s: power {:+.2} %, thrust {:+.2} % of blade-element momentum; \
          {:+.2} %, {:+.2} % of the axisymmetric flow",
         percent(check.power, check.expected_power),

@@ -3,6 +3,17 @@
 //! `wakemix validate NAME` repeats one and sets it beside its record (`validation/recorded/`), of which the
 //! pages in `docs/validation/` show the verdicts.
 
+// What is told goes through `tell!`: a closed pipe is no reason to panic.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
+/// A line on standard error; there is nobody to tell when that fails.
+macro_rules! tell {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($text)*);
+    }};
+}
+
 pub mod actuator_line;
 pub mod aeroelastic;
 mod axisymmetric;

@@ -146,8 +146,8 @@ fn trial(wind: HelixWind, own: f64, instruments: Instruments, duration: f64) -> 
 pub fn phase_estimator() -> Vec<Row> {
     let file = formats::library::load("iea-15mw").expect("the library's own turbines are readable");
     let machine = Machine { definition: Arc::new(file.definition), constants: file.controller };
-    eprintln!("| without an aim | measured |");
-    eprintln!("| --- | --- |");
+    tell!("| without an aim | measured |");
+    tell!("| --- | --- |");
     let mut rows = Vec::new();
     let done = synthetic(&machine, &mut rows)
         .and_then(|()| turbulence(&machine, &mut rows))
@@ -156,7 +156,7 @@ pub fn phase_estimator() -> Vec<Row> {
         .and_then(|()| robustness::robustness(&machine, &mut rows))
         .and_then(|()| on_and_off::on_and_off(&machine, &mut rows));
     if let Err(error) = done {
-        eprintln!("the estimator could not be made: {error}");
+        tell!("the estimator could not be made: {error}");
         rows.push(Row {
             what: "the estimator is made".to_owned(),
             measured: f64::NAN,
@@ -182,7 +182,7 @@ fn unbiased(what: String, measured: f64, tolerance: f64) -> Row {
 
 /// Prints a figure that has no aim as a line of the table.
 fn tell(what: &str, figure: &str) {
-    eprintln!("| {what} | {figure} |");
+    tell!("| {what} | {figure} |");
 }
 
 /// Its own model's moments with 5 % of noise, own pitch at twelve offsets.

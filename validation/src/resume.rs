@@ -70,7 +70,7 @@ pub fn resume() -> Vec<Row> {
     };
     match kill_and_compare() {
         Ok(Compared { same, different }) => {
-            different.iter().for_each(|file| eprintln!("not the same: {}", file.display()));
+            different.iter().for_each(|file| tell!("not the same: {}", file.display()));
             vec![
                 row(
                     "files compared (series, planes, volumes)",

@@ -24,13 +24,13 @@ impl Observer for Lines {
         let share = 10 * progress.step / progress.n_steps.max(1);
         let line = format!("{} {share}0 %", progress.run);
         if line != self.last {
-            eprintln!("{line}, {:.0} s left in all", progress.time_left);
+            tell!("{line}, {:.0} s left in all", progress.time_left);
             self.last = line;
         }
     }
 
     fn warned(&mut self, warning: &str) {
-        eprintln!("warning: {warning}");
+        tell!("warning: {warning}");
     }
 }
 
@@ -46,12 +46,12 @@ pub(crate) fn summaries(
 ) -> Result<(Vec<Summary>, PathBuf), String> {
     let output = Path::new("runs").join(format!("validate-{name}"));
     let there = claimed(&output, &this_build()?)?;
-    eprintln!("{there} {}", output.display());
+    tell!("{there} {}", output.display());
     let options = StudyOptions {
         case: path.to_owned(),
         output: Some(output.clone()),
         overrides,
-        resume: true,
+        resume: formats::records::is_begun(&output),
         ..StudyOptions::default()
     };
     let mut observer = Lines { last: String::new() };
@@ -93,7 +93,10 @@ fn claimed(folder: &Path, build: &str) -> Result<&'static str, String> {
 pub(crate) fn command(path: &Path, output: &Path) -> Command {
     let program = env::current_exe().unwrap_or_else(|_| PathBuf::from("wakemix"));
     let mut command = Command::new(program);
-    command.arg("run").arg(path).arg("-o").arg(output).arg("--resume");
+    command.arg("run").arg(path).arg("-o").arg(output);
+    if formats::records::is_begun(output) {
+        command.arg("--resume");
+    }
     command.stdout(Stdio::null()).stderr(Stdio::null());
     command
 }

@@ -139,7 +139,7 @@ fn beside(
     let n = measured.len() as f64;
     let (mean, standard_error) = mean_of(measured.iter().copied());
     let scatter = student_97_5(measured.len() - 1) * standard_error * (n + 1.0).sqrt();
-    eprintln!(
+    tell!(
         "{what}: mean {mean:.3} MN m beside {reference:.3} MN m; one record scatters by ±{:.1} %",
         100.0 * scatter / mean
     );

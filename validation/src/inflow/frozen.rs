@@ -27,7 +27,7 @@ pub(super) fn claim(
     let accepted =
         frozen.iter().find(|(claim, _)| *claim == what).map_or(f64::NAN, |found| found.1);
     if accepted == NO_CLAIM {
-        eprintln!("no claim, {what}: {measured:.4} {unit} beside {expected:.4} {unit}");
+        tell!("no claim, {what}: {measured:.4} {unit} beside {expected:.4} {unit}");
         return None;
     }
     Some(Row { what, measured, expected, tolerance: Within(accepted), unit, source })

@@ -83,16 +83,16 @@ struct Outcome {
 
 /// Repeats all cases with all generators; prints the table and gives what the source claims as rows.
 pub fn bench() -> Vec<Row> {
-    eprintln!(
+    tell!(
         "| case | generator | settling after start, s | after 1000 s, s | overshoot | ripple of ω̂, % | SNR, dB | 3rd, dB | 5th, dB | amplitude error, % | offset, % |"
     );
-    eprintln!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+    tell!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let mut rows = Vec::new();
     for case in &CASES {
         let outcomes = kinds().map(|(name, kind)| {
             let run = run(case, kind, true).expect("the bench's own settings are sound");
             let outcome = judged(case, &run);
-            eprintln!("{}", outcome.line(case.name, name));
+            tell!("{}", outcome.line(case.name, name));
             outcome
         });
         rows.extend(claims(case, &outcomes));

@@ -55,7 +55,7 @@ pub fn disk() -> Vec<Row> {
     let full = Bench::new(0.0, following());
     let decoupling = decoupling(&full.rig, &full.loads);
     let Decoupling { azimuth_offset, delay, gain } = decoupling;
-    eprintln!(
+    tell!(
         "azimuth offset {:.1}°, delay {delay:.2} s, {:.0} MN m/rad",
         azimuth_offset.to_degrees(),
         1e-6 * gain
@@ -154,7 +154,7 @@ impl Bench {
     /// What the loop makes of the loads without control at `place`.
     fn rows(&self, place: &str) -> Vec<Row> {
         let [tilt, yaw] = self.amplitudes;
-        eprintln!(
+        tell!(
             "\n{place}: baseline amplitudes tilt {:.2}, yaw {:.2} MN m; unlocked {:.0} % of the time",
             1e-6 * tilt,
             1e-6 * yaw,

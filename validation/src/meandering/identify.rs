@@ -46,7 +46,7 @@ pub(super) fn decoupling(rig: &Rig, loads: &[FixedFrame]) -> Decoupling {
     });
     for (sense, answer) in [(Sense::CounterClockwise, ccw), (Sense::Clockwise, cw)] {
         let (gain, lead) = (1e-6 * answer.gain, answer.lead.to_degrees());
-        eprintln!("helix {sense}: {gain:.1} MN m lost per radian of pitch, lead {lead:.1}°");
+        tell!("helix {sense}: {gain:.1} MN m lost per radian of pitch, lead {lead:.1}°");
     }
     Decoupling::from_senses(rate, ccw, cw)
 }

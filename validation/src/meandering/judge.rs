@@ -113,7 +113,7 @@ pub(super) fn percent(change: &Statistic) -> String {
 
 /// Prints a row of a table.
 pub(super) fn print_line(name: &str, cells: &[String]) {
-    eprintln!("| {name} | {} |", cells.join(" | "));
+    tell!("| {name} | {} |", cells.join(" | "));
 }
 
 /// Runs beside the one without control.
@@ -167,7 +167,7 @@ impl<'a> Table<'a> {
 
     /// Prints all changes with their intervals.
     pub(super) fn print(&self) {
-        eprintln!("\n{}:\n", self.name);
+        tell!("\n{}:\n", self.name);
         let line = |name: String, cells: Vec<String>| print_line(&name, &cells);
         let cells = |of: &dyn Fn(usize) -> String| (0..self.runs.len()).map(of).collect();
         line("target factor".into(), cells(&|run| format!("{}", self.runs[run].factor)));

@@ -137,10 +137,10 @@ fn steps() -> Vec<Row> {
         ("offset step", [last, last], [0.0, 1.0], [1.0, 1.0]),
         ("amplitude step", [last, last], [0.0, 0.0], [1.0, 1.5]),
     ];
-    eprintln!(
+    tell!(
         "| loop alone | generator | settling, s | largest excursion of ω̂ beyond the new rate, % |"
     );
-    eprintln!("| --- | --- | --- | --- |");
+    tell!("| --- | --- | --- | --- |");
     let mut rows = Vec::new();
     for (case, rates, offsets, amplitudes) in cases {
         let outcomes = kinds().map(|(name, kind)| {
@@ -163,7 +163,7 @@ fn steps() -> Vec<Row> {
             }
             let last = INTERVAL * f64::from(N_STEPS - 1) - 4000.0;
             let settled = if settled == last { f64::INFINITY } else { settled };
-            eprintln!("| {case} | {name} | {settled:.0} | {:.2} |", 100.0 * beyond);
+            tell!("| {case} | {name} | {settled:.0} | {:.2} |", 100.0 * beyond);
             [settled, beyond]
         });
         let [_, extended, mixed] = outcomes;

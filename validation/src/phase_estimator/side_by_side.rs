@@ -69,16 +69,16 @@ pub fn estimators() -> Vec<Row> {
     let file = formats::library::load("iea-15mw").expect("the library's own turbines are readable");
     let machine = Machine { definition: Arc::new(file.definition), constants: file.controller };
     side_by_side(&machine).unwrap_or_else(|error| {
-        eprintln!("the estimators could not be made: {error}");
+        tell!("the estimators could not be made: {error}");
         vec![row("the estimators are made".to_owned(), f64::NAN, 0.0, "–")]
     })
 }
 
 fn side_by_side(machine: &Machine) -> Result<Vec<Row>, EstimationError> {
-    eprintln!(
+    tell!(
         "| record | estimator | within {SETTLED:.0}° after, s | worse axis, rms deg | mean, deg | rate, % | trust | held, % |"
     );
-    eprintln!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    tell!("| --- | --- | --- | --- | --- | --- | --- | --- |");
     let (mut rows, mut costs) = (Vec::new(), [0.0_f64; 4]);
     for (index, known) in records(machine)?.iter().enumerate() {
         // On the turbine in prescribed wind the wake stays with the blades, on its own model it is the
@@ -94,7 +94,7 @@ fn side_by_side(machine: &Machine) -> Result<Vec<Row>, EstimationError> {
             outcomes.push((name, judge(known, &mut loops(kind))));
         }
         for (place, (name, outcome)) in outcomes.iter().enumerate() {
-            eprintln!("| {} | {name} | {} |", known.name, outcome.line());
+            tell!("| {} | {name} | {} |", known.name, outcome.line());
             // The first record meets cold caches.
             costs[place] = if index == 0 { f64::INFINITY } else { costs[place].min(outcome.cost) };
             let what = format!("{}: {name}, worse axis, rms error", known.name);

@@ -1,5 +1,8 @@
 //! The command line: words in, words out; the work is done in the rooms behind it.
 
+// What is printed goes through `commands::output`: a closed pipe or a full disk is no reason to panic.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 mod commands;
 #[cfg(test)]
 mod reference;
@@ -45,7 +48,10 @@ enum Command {
 
 fn main() -> ExitCode {
     wakemix::study::outputs::announce();
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return commands::output::usage(&error),
+    };
     let done = match arguments.command {
         Command::Run(run) => return commands::run::run(&run),
         Command::Report { directory } => commands::report::run(&directory),
@@ -54,16 +60,10 @@ fn main() -> ExitCode {
         Command::Fatigue(arguments) => commands::fatigue::run(&arguments),
         Command::Analyse(command) => commands::analyse::run(&command),
         Command::Validate(arguments) => return commands::validate::run(&arguments),
-        Command::Schema => {
-            println!("{}", wakemix::formats::case::schema());
-            Ok(())
-        }
+        Command::Schema => commands::output::print(&(wakemix::formats::case::schema() + "\n")),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(report) => {
-            eprintln!("{report:?}");
-            ExitCode::from(commands::BAD_INPUT)
-        }
+        Err(report) => commands::output::refuse(&report),
     }
 }

@@ -50,9 +50,9 @@ fn the_wind_of_a_case_becomes_a_full_field() {
     assert!((number(&info["lowest_height"]) - 40.0).abs() < 1e-4);
     assert!((number(&info["mean_speeds"][0]) - 12.0).abs() < 1e-3);
     assert!((number(&info["turbulence_intensity"]) - 0.2).abs() < 1e-3);
-    let output = wakemix(&["inflow", "convert", "gusty.bts", "gusty.toml"], folder.path());
+    let output = wakemix(&["inflow", "convert", "gusty.bts", "field.toml"], folder.path());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let output = wakemix(&["inflow", "info", "gusty_v.bin", "--json"], folder.path());
+    let output = wakemix(&["inflow", "info", "field_v.bin", "--json"], folder.path());
     let converted: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     // Binaries keep the fluctuations that the field has, and the means to the last digit.
     assert_eq!(converted, info);

@@ -5,6 +5,7 @@ pub mod assemble;
 pub mod case;
 pub mod domain;
 pub mod farm;
+pub mod operation;
 pub mod outputs;
 pub mod pitch_response;
 pub mod plan;

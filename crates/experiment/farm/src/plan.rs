@@ -1,6 +1,7 @@
 //! From layout to domain: cells, step, memory and cost, checked before anything runs.
 
 mod error;
+mod step;
 
 pub use error::PlanError;
 
@@ -8,6 +9,7 @@ use crate::case::{Case, Placement, Shear};
 use basis::Vector3;
 use flow::inflow::GREATEST_ROUGHNESS;
 use std::collections::BTreeMap;
+use step::step;
 
 /// Fastest free stream that the lattice carries without visible compressibility, in cells a step (Mach 0.2).
 pub const MAXIMUM_LATTICE_SPEED: f64 = 0.12;
@@ -16,14 +18,9 @@ pub const MINIMUM_CELLS_PER_DIAMETER: f64 = 8.0;
 /// Speed of sound on the lattice, in cells a step: a tip that outruns it meets its own bound vortex
 /// (docs/validation/actuator-line.md).
 pub const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
-/// Fastest tip that a chosen step allows, in cells a step, in the mean wind; what a gust adds beyond the
-/// speed of sound is warned of after the run.
-const FASTEST_TIP: f64 = 0.5;
 /// Farthest that a wind which veers may turn between hub height and the ends of the domain below and above
 /// (rad): wind comes in at every height of the inlet.
 const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_3;
-/// Longest step between two control instants (s): pitch actuators and rotor speed are integrated on it.
-const LONGEST_STEP: f64 = 0.5;
 
 /// Step of turbines in prescribed wind unless the case says otherwise (s): a thirtieth of the fastest period
 /// that carries load.
@@ -292,36 +289,6 @@ fn domain(
     // Whole cells: the width is centred on the layout again after rounding.
     let y_low = 0.5 * (low.y + high.y) - 0.5 * n_cells[1] as f64 * spacing;
     (Vector3::new(low.x - flow.upstream_diameters * diameter, y_low, 0.0), n_cells)
-}
-
-fn step(case: &Case, machines: &[(&Placement, Footprint)], spacing: f64) -> Result<f64, PlanError> {
-    let (fastest, tip_speed) = machines
-        .iter()
-        .map(|(placement, footprint)| (placement, footprint.tip_speed))
-        .reduce(|a, b| if b.1 > a.1 { b } else { a })
-        .map_or(("", 0.0), |(placement, speed)| (placement.name.as_str(), speed));
-    let tip_limit = LATTICE_SOUND_SPEED * spacing / tip_speed;
-    let speed_limit = MAXIMUM_LATTICE_SPEED * spacing / case.wind.speed;
-    match case.flow.step {
-        Some(step) if step > tip_limit => Err(PlanError::TipOutruns {
-            name: fastest.to_owned(),
-            step,
-            cells: step * tip_speed / spacing,
-            tip_speed,
-            longest: tip_limit,
-        }),
-        Some(step) if step > speed_limit => Err(PlanError::TooFast {
-            step,
-            cells: case.wind.speed * step / spacing,
-            longest: speed_limit,
-        }),
-        Some(step) => Ok(step),
-        None => {
-            let safe = FASTEST_TIP * spacing / tip_speed;
-            let longest = safe.min(speed_limit).min(LONGEST_STEP);
-            Ok(60.0 / (60.0 / longest).ceil())
-        }
-    }
 }
 
 fn check_extent(machines: &[(&Placement, Footprint)], plan: &Plan) -> Result<(), PlanError> {

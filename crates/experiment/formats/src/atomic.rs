@@ -3,12 +3,14 @@
 use crate::beside;
 use crate::checkpoint::CheckpointProblem;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Bytes gathered before the system is asked to write them.
 const BUFFER: usize = 1 << 20;
+/// Longest file that is read whole (bytes).
+const LONGEST: u64 = 256 << 20;
 
 /// Why a file could not be read or written.
 #[derive(Debug, Error, miette::Diagnostic)]
@@ -110,6 +112,8 @@ fn fix_of(kind: ErrorKind, path: &Path) -> String {
         }
         ErrorKind::NotFound => format!("check that {} exists and is spelt right", path.display()),
         ErrorKind::IsADirectory => format!("{} is a folder: name a file", path.display()),
+        ErrorKind::Unsupported => format!("name a file in the place of {}", path.display()),
+        ErrorKind::FileTooLarge => "name a smaller file".to_owned(),
         ErrorKind::NotADirectory | ErrorKind::AlreadyExists => {
             format!(
                 "something other than a folder stands at {folder}: remove it or choose another folder (-o DIR)"
@@ -163,7 +167,66 @@ pub fn read_text(path: &Path, what: &'static str) -> Result<String, FileError> {
 /// # Errors
 /// [`FileError::System`].
 pub fn read_bytes(path: &Path, what: &'static str) -> Result<Vec<u8>, FileError> {
-    fs::read(path).map_err(|source| FileError::system("read", what, path, source))
+    read_whole(path).map_err(|source| FileError::system("read", what, path, source))
+}
+
+/// Opens the file at `path` to be read. Devices, pipes and sockets are none: they may never end, or never
+/// begin.
+///
+/// # Errors
+/// What the system says, [`ErrorKind::IsADirectory`], and [`ErrorKind::Unsupported`] for what is no file.
+pub(crate) fn open(path: &Path) -> io::Result<File> {
+    // Asked before it is opened: who opens a pipe waits for the one who writes.
+    let kind = fs::metadata(path)?;
+    if kind.is_dir() {
+        return Err(ErrorKind::IsADirectory.into());
+    }
+    if !kind.is_file() {
+        let problem = "it is no file, but a device, a pipe or a socket";
+        return Err(io::Error::new(ErrorKind::Unsupported, problem));
+    }
+    File::open(path)
+}
+
+/// All bytes of the file at `path`.
+///
+/// # Errors
+/// Those of [`open`], and [`ErrorKind::FileTooLarge`] beyond 256 MiB, which nothing has that is read whole.
+pub(crate) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
+    let file = open(path)?;
+    let length = file.metadata()?.len();
+    let mut bytes = Vec::new();
+    if length <= LONGEST {
+        bytes.reserve_exact(length as usize);
+        file.take(LONGEST + 1).read_to_end(&mut bytes)?;
+    }
+    if length > LONGEST || bytes.len() as u64 > LONGEST {
+        let problem = format!("it has more than {} MiB", LONGEST >> 20);
+        return Err(io::Error::new(ErrorKind::FileTooLarge, problem));
+    }
+    Ok(bytes)
+}
+
+/// Whether files can be made in `folder`, or in the nearest folder above it that is there; nothing stays.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn check_folder(folder: &Path) -> Result<(), FileError> {
+    let here = Path::new(".");
+    let mut there = if folder.as_os_str().is_empty() { here } else { folder };
+    while fs::symlink_metadata(there).is_err_and(|error| error.kind() == ErrorKind::NotFound) {
+        let above = there.parent().unwrap_or(here);
+        there = if above.as_os_str().is_empty() { here } else { above };
+    }
+    let what = "into the folder";
+    let refused = |source| FileError::system("write", what, folder, source);
+    if !fs::metadata(there).map_err(refused)?.is_dir() {
+        let fix = format!("{} is not a folder: choose another one (-o DIR)", there.display());
+        let (path, source) = (folder.to_owned(), ErrorKind::NotADirectory.into());
+        return Err(FileError::System { verb: "write", what, path, fix, source });
+    }
+    let probe = beside::beside(&there.join("probe"), beside::PART);
+    File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(refused)
 }
 
 /// A file being written beside its place; [`commit`](Self::commit) moves it there, dropping it leaves

@@ -10,7 +10,7 @@ mod problem;
 pub use problem::CheckpointProblem;
 
 use crate::FileError;
-use crate::atomic::AtomicFile;
+use crate::atomic::{self, AtomicFile};
 use crate::case;
 use crc32fast::Hasher;
 use problem::VERSION;
@@ -210,7 +210,7 @@ impl CheckpointReader {
     /// it.
     pub fn open(path: &Path, identity: &Identity) -> Result<Self, FileError> {
         let read = |source| FileError::system("read", WHAT, path, source);
-        let file = File::open(path).map_err(read)?;
+        let file = atomic::open(path).map_err(read)?;
         let length = file.metadata().map_err(read)?.len();
         let file = BufReader::with_capacity(CHUNK, file);
         let mut reader = Self { file, path: path.to_owned(), sections: Vec::new() };

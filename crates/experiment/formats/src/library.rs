@@ -59,7 +59,9 @@ mod tests {
             assert!((definition.rotor_diameter() - diameter).abs() < 0.1, "{name}");
             assert!((definition.rotor.hub_height - height).abs() < 0.05, "{name}");
             assert!((definition.blade_mass() / mass - 1.0).abs() < margin, "{name}");
-            assert_eq!(file.sources.len(), 10);
+            assert_eq!(file.sources.len(), 11);
+            let operation = definition.operation.unwrap();
+            assert_eq!([operation.cut_in, operation.cut_out], [3.0, 25.0]);
             let rated = file.controller.rated_torque
                 * file.controller.rated_rotor_speed
                 * definition.efficiency();

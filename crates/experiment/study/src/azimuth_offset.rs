@@ -10,9 +10,13 @@ use control::meandering::relative_gain;
 use farm::assemble::TurbineModel;
 use farm::pitch_response::answers;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Longest period of a helix that identifies a turbine (s): a record of a few of them stays in memory.
+const LONGEST_PERIOD: f64 = 2e4;
 
 /// A question about a turbine.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +68,12 @@ pub fn azimuth_offset(question: &OffsetQuestion) -> Result<OffsetAnswer, StudyEr
     let loaded = BTreeMap::from([(question.model.clone(), model)]);
     let Prepared { case, plan, models, .. } = Prepared::with_models(case, loaded)?;
     let rate = excitation_rate(question.strouhal, case.wind.speed, plan.diameter);
+    let period = TAU / rate;
+    if period > LONGEST_PERIOD {
+        let OffsetQuestion { strouhal, wind_speed, .. } = *question;
+        let most = LONGEST_PERIOD;
+        return Err(StudyError::SlowHelix { strouhal, wind_speed, period, most });
+    }
     let mut whole = |_| ControlFlow::Continue(());
     let [ccw, cw] = answers(&case, &plan, &models[0], 0, case.wind.speed, rate, &mut whole)?;
     let decoupling = Decoupling::from_senses(rate, ccw, cw);
@@ -93,6 +103,8 @@ mod tests {
         let fast = azimuth_offset(&fast).unwrap();
         let apart = fast.decoupling.azimuth_offset - slow.decoupling.azimuth_offset;
         assert!(apart.abs() < 1f64.to_radians(), "{slow:?} {fast:?}");
+        let slow = OffsetQuestion { strouhal: 1e-3, ..question.clone() };
+        assert!(matches!(azimuth_offset(&slow), Err(StudyError::SlowHelix { .. })));
         let nobody = OffsetQuestion { model: "nobody".to_owned(), ..question };
         assert!(azimuth_offset(&nobody).is_err());
     }

@@ -115,6 +115,28 @@ pub enum StudyError {
         /// The folder.
         directory: PathBuf,
     },
+    /// There is nothing to go on with.
+    #[error("{} holds no run to go on with", directory.display())]
+    #[diagnostic(help("leave --resume out to begin, or name the folder of the results with -o"))]
+    NothingToResume {
+        /// The folder.
+        directory: PathBuf,
+    },
+    /// A helix that turns too slowly to be followed.
+    #[error(
+        "a helix of Strouhal number {strouhal:?} in {wind_speed:?} m/s turns once in {period:.0} s, {most:.0} s are the most"
+    )]
+    #[diagnostic(help("take more wind, or a greater Strouhal number"))]
+    SlowHelix {
+        /// Strouhal number (–).
+        strouhal: f64,
+        /// Wind (m/s).
+        wind_speed: f64,
+        /// Period (s).
+        period: f64,
+        /// Longest period (s).
+        most: f64,
+    },
     /// Results of another case or of other turbines are to be resumed.
     #[error("run {run} in {} was made with another version of the case or of a turbine", directory.display())]
     #[diagnostic(help(

@@ -34,6 +34,7 @@ mod self_check;
 mod simulate;
 mod study;
 mod summarise;
+mod threads;
 mod tips;
 mod warnings;
 

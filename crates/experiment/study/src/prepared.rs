@@ -3,9 +3,11 @@
 
 use crate::StudyError;
 use crate::models::{self, Machines};
-use crate::warnings;
+use crate::{threads, warnings};
 use farm::assemble::{TurbineModel, controller};
 use farm::case::Case;
+use farm::operation::check_operation;
+use farm::solvers::WindSource;
 use farm::wind::{self, Site};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -59,12 +61,16 @@ impl Prepared {
         let case = file.case.clone();
         let plan = plan(&case, &machines.footprints(case.wind.speed))?;
         let models = machines.equipped(&case);
+        threads::check(file)?;
+        let recorded = recorded_speed(file)?;
+        check_operation(&case, &plan, &models, recorded)?;
         check_control(&case, &plan, &models)?;
         let mean_inflow = wind::without_turbulence(&case, &plan)?;
         let mut warnings = warnings::of(&case, &plan);
         let site = Site { case: &case, plan: &plan, models: &models };
         warnings.extend(wind::turbulence(&site).and_then(|turbulence| turbulence.warning));
         warnings.extend(machines.warnings);
+        warnings.extend(warnings::of_operation(&case, &models));
         Ok(Self {
             case_text: formats::case::write(&case),
             turbine_texts: machines.texts,
@@ -85,6 +91,28 @@ impl Prepared {
     /// What the wind is made for.
     pub(crate) fn site(&self) -> Site<'_> {
         Site { case: &self.case, plan: &self.plan, models: &self.models }
+    }
+}
+
+/// Mean speed (m/s) of the wind that the case of `file` reads, where it reads one; that it can be read shows
+/// here, not when a run begins.
+///
+/// # Errors
+/// [`StudyError::Case`] at `wind.planes`.
+fn recorded_speed(file: &CaseFile) -> Result<Option<f64>, StudyError> {
+    if file.case.flow.solver.wind != WindSource::Planes {
+        return Ok(None);
+    }
+    let name = file.case.wind.planes.as_deref().unwrap_or_default();
+    match formats::turbulence_box::open(&file.folder().join(name)) {
+        Ok(planes) => Ok(Some(planes.grid().speed)),
+        Err(error) => {
+            let mut message = format!("the wind cannot be read: {error}");
+            if let Some(cause) = error.source() {
+                message += &format!(": {cause}");
+            }
+            Err(StudyError::Case(objection(file, &["wind", "planes"], message)))
+        }
     }
 }
 

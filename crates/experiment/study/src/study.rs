@@ -137,8 +137,9 @@ impl<'a> Study<'a> {
     /// The study that `options` name; what its folder holds is left as it is.
     ///
     /// # Errors
-    /// [`StudyError::UnknownRun`], [`StudyError::OutputExists`], [`StudyError::OtherCase`],
-    /// [`StudyError::OtherFile`].
+    /// [`StudyError::UnknownRun`], [`StudyError::OutputExists`], [`StudyError::NothingToResume`],
+    /// [`StudyError::OtherCase`], [`StudyError::OtherFile`], and [`StudyError::File`] for a folder that cannot
+    /// be written into.
     fn open(
         options: &StudyOptions,
         outputs: &'a Outputs,
@@ -158,8 +159,14 @@ impl<'a> Study<'a> {
             .filter(|&index| !(options.resume && folders[index].is_complete()))
             .collect();
         let keeps = options.resume || options.overwrite || options.dry_run;
-        if !keeps && open.iter().any(|&index| folders[index].path().exists()) {
+        if !keeps && open.iter().any(|&index| folders[index].holds_results()) {
             return Err(StudyError::OutputExists { directory });
+        }
+        if !options.dry_run {
+            formats::atomic::check_folder(&directory)?;
+        }
+        if options.resume && !options.dry_run && !records::is_begun(&directory) {
+            return Err(StudyError::NothingToResume { directory });
         }
         let wind = prepared.wind_digests()?;
         if options.resume {
@@ -264,6 +271,10 @@ impl<'a> Study<'a> {
     ) -> Result<ControlFlow<()>, StudyError> {
         let index = self.open[place];
         let (run, folder) = (&ready.prepared.case.runs[index], &self.folders[index]);
+        if self.resume && folder.holds_results() && !folder.checkpoint_path().exists() {
+            let name = &run.name;
+            observer.warned(&format!("{name} left no checkpoint: it begins at time zero again"));
+        }
         let wind = self.same_wind(&ready.prepared, &run.name)?;
         let manifest = begin_run(&ready.prepared, wind, index, folder, self.resume)?;
         let (outputs, resume, place) = (self.outputs, self.resume, (place, self.open.len()));

@@ -1,7 +1,9 @@
 //! What a reader of the numbers must know of a case before it runs.
 
+use crate::threads::cores;
 use farm::Plan;
-use farm::case::{Case, Run, Solver};
+use farm::assemble::TurbineModel;
+use farm::case::{Case, Placement, Run, Solver};
 use turbine::blockage::equivalent_speed_ratio;
 
 /// Rise of a rotor's power by the walls of the domain beyond which a reader must know (–).
@@ -12,6 +14,8 @@ const USUAL_THRUST: f64 = 0.8;
 const CELLS_TO_WARN: f64 = 16.0;
 /// Blocks below which an interval says little (–).
 const BLOCKS_TO_WARN: f64 = 3.0;
+/// Steps of a run beyond which somebody should know (–): ten million take hours of prescribed wind.
+const STEPS_TO_WARN: u64 = 10_000_000;
 /// Periods of an excitation below which its analysis says little (–).
 const PERIODS_TO_WARN: f64 = 3.0;
 
@@ -24,6 +28,7 @@ pub(crate) fn wall_gain(blockage: f64) -> f64 {
 pub(crate) fn of(case: &Case, plan: &Plan) -> Vec<String> {
     let mut warnings = Vec::from_iter(farm::wind::off_balance(case));
     warnings.extend(of_domain(case, plan));
+    warnings.extend(of_cost(case, plan));
     warnings.extend(of_places(case));
     let blocks = (case.time.duration - case.time.spin_up) / analysis::statistics::BLOCK_LENGTH;
     if blocks < BLOCKS_TO_WARN {
@@ -33,6 +38,37 @@ pub(crate) fn of(case: &Case, plan: &Plan) -> Vec<String> {
     }
     warnings.extend(case.runs.iter().flat_map(|run| of_run(case, plan, run)));
     warnings
+}
+
+/// Of steps that hardly end, and of more threads than there are cores.
+fn of_cost(case: &Case, plan: &Plan) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if plan.n_steps > STEPS_TO_WARN {
+        warnings.push(format!(
+            "a run takes {:.1e} steps of {:?} s: raise flow.step, or lower time.duration",
+            plan.n_steps as f64, plan.interval
+        ));
+    }
+    let n_cores = cores();
+    if let Some(threads) = case.flow.threads.filter(|threads| *threads > n_cores) {
+        warnings.push(format!(
+            "flow.threads = {threads} on {n_cores} cores: threads that wait for each other are slower than fewer"
+        ));
+    }
+    warnings
+}
+
+/// Of turbines whose files state no cut-in and cut-out wind speeds.
+pub(crate) fn of_operation(case: &Case, models: &[TurbineModel]) -> Option<String> {
+    let silent = |(_, model): &(&Placement, &TurbineModel)| model.definition.operation.is_none();
+    let named = case.turbines.iter().zip(models).filter(silent).map(|(it, _)| it.name.as_str());
+    let names: Vec<&str> = named.collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the wind is not held against cut-in and cut-out of {}: the turbine file states none; add the group [operation]",
+            names.join(", ")
+        )
+    })
 }
 
 /// Of walls that are near, and cells that are coarse.

@@ -115,6 +115,59 @@ fn what_does_not_fit_is_pointed_at_in_the_file() {
     }
 }
 
+/// The NREL 5 MW turbine works from 3 to 25 m/s.
+#[test]
+fn wind_in_which_a_turbine_stands_still_is_refused_at_its_key() {
+    let uniform = PRESCRIBED
+        .replace("solver = \"turbulence\"", "solver = \"uniform\"")
+        .replace("turbulence_model = \"kaimal\"\n", "")
+        .replace("turbulence_intensity = 0.1", "turbulence_intensity = 0.0");
+    let with = |event: &str| uniform.replace("[flow]", &format!("event = {event}\n[flow]"));
+    let fast = uniform.replace("speed = 9.0", "speed = 39.0");
+    let slow = uniform.replace("speed = 9.0", "speed = 1.0");
+    let step = with("{ kind = \"step\", start = 100.0, speed = 30.0 }");
+    let stairs =
+        with("{ kind = \"staircase\", start = 100.0, hold = 50.0, rise = 2.0, n_steps = 9 }");
+    for (case, line, said) in [
+        (&fast, 4, "wind.speed = 39 m/s gives T1 a mean wind of 39.00 m/s at its hub"),
+        (&slow, 4, "it works from 3 to 25 m/s"),
+        (&step, 6, "wind.event, which leads to 30 m/s, gives T1"),
+        (&stairs, 6, "wind.event, which leads to 27 m/s, gives T1"),
+    ] {
+        let (outcome, _) = dry(case);
+        let Err(StudyError::Case(error)) = outcome else { panic!("{outcome:?}") };
+        let problem = &error.problems()[0];
+        assert!(problem.to_string().contains(said), "{problem}");
+        assert!(problem.to_string().contains("[operation]"), "{problem}");
+        assert_eq!(problem.line(), line, "{problem}");
+    }
+    // What comes and goes may lead beyond.
+    let gust = with("{ kind = \"operating-gust\", start = 100.0, gust = 30.0 }");
+    for case in [&uniform, &gust, &uniform.replace("speed = 9.0", "speed = 25.0")] {
+        let (outcome, _) = dry(case);
+        assert!(matches!(outcome, Ok(Outcome::Estimated)), "{outcome:?}");
+    }
+}
+
+#[test]
+fn threads_and_steps_that_hardly_end_are_refused_or_told() {
+    let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let with = |flow: &str| PRESCRIBED.replace("[time]", &format!("{flow}\n[time]"));
+    if 16 * n_cores < 1024 {
+        let Err(StudyError::Case(error)) = dry(&with("threads = 1024")).0 else { panic!("1024") };
+        assert_eq!(error.problems()[0].line(), 9);
+        assert!(error.to_string().contains("cannot be run"), "{error}");
+    }
+    let (outcome, reports) = dry(&with(&format!("threads = {}", n_cores + 1)));
+    assert!(outcome.is_ok() && reports.warnings.iter().any(|told| told.contains("flow.threads")));
+    let Err(StudyError::Case(error)) = dry(&with("step = 1e-9")).0 else { panic!("1e-9") };
+    assert!(error.to_lines().contains("0.0001 <= step <= 10 s"), "{}", error.to_lines());
+    let (outcome, reports) =
+        dry(&with("step = 1e-4").replace("duration = 660.0", "duration = 2000.0"));
+    assert!(outcome.is_ok(), "{outcome:?}");
+    assert!(reports.warnings.iter().any(|told| told.contains("raise flow.step")));
+}
+
 #[test]
 fn a_long_record_of_turbulence_returns_rather_than_fill_the_memory() {
     let (outcome, ten_minutes) = dry(PRESCRIBED);

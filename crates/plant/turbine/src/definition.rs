@@ -32,10 +32,21 @@ pub struct Definition {
     pub drive_train: DriveTrain,
     /// Pitch actuator of each blade.
     pub pitch_actuator: PitchActuator,
+    /// Between which mean wind speeds it works; absent where the source does not tell.
+    pub operation: Option<Operation>,
     /// Electrical power at rated (W).
     pub rated_power: f64,
     /// Rotor speed at rated (rad/s).
     pub rated_rotor_speed: f64,
+}
+
+/// Between which mean wind speeds at hub height a turbine works.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Operation {
+    /// It starts in this wind (m/s).
+    pub cut_in: f64,
+    /// It is stopped above this wind (m/s).
+    pub cut_out: f64,
 }
 
 /// Position and angles of the rotor.

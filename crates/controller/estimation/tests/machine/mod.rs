@@ -77,6 +77,7 @@ pub(crate) fn definition() -> Arc<Definition> {
             stiffness: 1e10,
             damping: 1e8,
         },
+        operation: None,
         rated_power: 15e6,
         rated_rotor_speed: 0.8,
         ..base

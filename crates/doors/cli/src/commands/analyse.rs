@@ -1,5 +1,7 @@
 //! `wakemix analyse`: what the records of runs tell. Arguments and help come from the list of analyses.
 
+use super::arguments::finite;
+use super::output::{print, tell};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
@@ -67,7 +69,7 @@ fn argument(setting: &AnalysisSetting) -> Arg {
     match setting.takes {
         Takes::Text => argument,
         Takes::Texts => argument.action(ArgAction::Append),
-        Takes::Number => argument.value_parser(value_parser!(f64)),
+        Takes::Number => argument.value_parser(finite),
         Takes::Choice(words) => {
             let word = |(word, about): &(&'static str, &'static str)| {
                 PossibleValue::new(*word).help(*about)
@@ -102,14 +104,13 @@ fn requested(
 pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
     let answer = (command.analysis.run)(&command.request)?;
     for remark in &answer.remarks {
-        eprintln!("{remark}");
+        tell(remark);
     }
     if command.json {
-        println!("{}", serde_json::to_string_pretty(&answer.json).into_diagnostic()?);
+        print(&(serde_json::to_string_pretty(&answer.json).into_diagnostic()? + "\n"))
     } else {
-        print!("{}", answer.text);
+        print(&answer.text)
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -2,11 +2,12 @@
 
 mod bearing;
 
+use super::arguments::{bins, finite};
+use super::output::print;
 use clap::Args;
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 use std::fmt::Write as _;
-use std::io::{ErrorKind, Write};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use wakemix::analysis::fatigue::{
@@ -49,13 +50,13 @@ pub(crate) struct FatigueArguments {
     #[arg(long, value_name = "NAME", requires = "bearing")]
     turbine: Option<String>,
     /// Time at which the count begins (s); all of the file when left out
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
     from: Option<f64>,
     /// Time at which the count ends (s), a row at T included; all of the file when left out
-    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
     to: Option<f64>,
     /// Sort ranges into N equal bins first, as some studies do (200), and use the middle of each
-    #[arg(long, value_name = "N", conflicts_with = "bearing")]
+    #[arg(long, value_name = "N", conflicts_with = "bearing", value_parser = bins)]
     bins: Option<NonZeroUsize>,
     /// Print JSON on stdout instead of text
     #[arg(long)]
@@ -115,10 +116,7 @@ pub(crate) fn run(arguments: &FatigueArguments) -> Result<()> {
         let count = count(arguments)?;
         if arguments.json { lines(&json(arguments, &count))? } else { text(arguments, &count) }
     };
-    match std::io::stdout().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).into_diagnostic(),
-        _ => Ok(()),
-    }
+    print(&text)
 }
 
 /// `value` as text that ends its last line.

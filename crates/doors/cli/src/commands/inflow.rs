@@ -1,11 +1,14 @@
 //! `wakemix inflow`: turbulence boxes made, looked at, converted.
 
+use super::arguments::{check_free, finite, positive};
+use super::output::tell;
 use clap::{Args, Subcommand, ValueEnum};
 use indicatif::{HumanBytes, ProgressBar};
 use miette::{IntoDiagnostic, miette};
 use std::path::PathBuf;
 use wakemix::flow::inflow::iec::TurbulenceClass;
 use wakemix::flow::inflow::{MeanProfile, kaimal, mann};
+use wakemix::formats::machine;
 use wakemix::formats::turbulence_box::{self, StoredBox};
 
 /// Subcommands of `wakemix inflow`.
@@ -28,6 +31,9 @@ pub(crate) enum InflowCommand {
         from: PathBuf,
         /// Box to write; its ending chooses the format
         to: PathBuf,
+        /// Put the new file in the place of an old one
+        #[arg(long)]
+        overwrite: bool,
     },
     /// Write the wind of a case without turbulence (shear, veer, gusts, steps, rotating disk) as a full field
     Sample(super::inflow_sample::SampleArguments),
@@ -71,19 +77,19 @@ pub(crate) struct GenerateArguments {
     #[arg(long, value_enum, default_value = "mann")]
     model: Model,
     /// Mean speed at hub height (m/s)
-    #[arg(long)]
+    #[arg(long, value_parser = positive)]
     speed: f64,
     /// Turbulence intensity: streamwise standard deviation over mean speed (0.06 is 6 %)
-    #[arg(long, required_unless_present = "class", conflicts_with = "class")]
+    #[arg(long, required_unless_present = "class", conflicts_with = "class", value_parser = finite)]
     ti: Option<f64>,
     /// Normal turbulence model of a category instead of --ti
     #[arg(long, value_enum, ignore_case = true)]
     class: Option<Class>,
     /// Length scale L of Mann's tensor (m) [default: 33.6]
-    #[arg(long)]
+    #[arg(long, value_parser = positive)]
     length_scale: Option<f64>,
     /// Anisotropy Γ of Mann's tensor; 0 is isotropic [default: 3.9]
-    #[arg(long)]
+    #[arg(long, value_parser = finite)]
     gamma: Option<f64>,
     /// What is scaled to exactly the target deviation, of --model kaimal [default: none]
     #[arg(long, value_enum)]
@@ -98,23 +104,26 @@ pub(crate) struct GenerateArguments {
     #[arg(long, value_parser = distances)]
     spacing: [f64; 3],
     /// Time step (s); along x points then stand speed × time step apart, whatever --spacing says
-    #[arg(long)]
+    #[arg(long, value_parser = positive)]
     time_step: Option<f64>,
     /// Hub height (m)
-    #[arg(long, default_value_t = 150.0)]
+    #[arg(long, default_value_t = 150.0, value_parser = positive)]
     hub_height: f64,
     /// Height of the lowest points (m) [default: half a spacing for mann, centred on the hub for kaimal]
-    #[arg(long)]
+    #[arg(long, value_parser = finite)]
     lowest_height: Option<f64>,
     /// Power-law exponent of the mean profile that is written beside the fluctuations
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
     shear_exponent: f64,
     /// Roughness length (m): a logarithmic mean profile instead
-    #[arg(long, conflicts_with = "shear_exponent")]
+    #[arg(long, conflicts_with = "shear_exponent", value_parser = positive)]
     roughness_length: Option<f64>,
     /// File to write: NAME.toml or NAME.bin (HAWC2-style), NAME.bts (TurbSim) or NAME.wnd (Bladed)
     #[arg(short, long)]
     output: PathBuf,
+    /// Put the new file in the place of an old one
+    #[arg(long)]
+    overwrite: bool,
 }
 
 /// Runs `command`.
@@ -125,9 +134,10 @@ pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
     match command {
         InflowCommand::Generate(arguments) => generate(&arguments),
         InflowCommand::Info { file, json } => super::inflow_info::run(&file, json),
-        InflowCommand::Convert { from, to } => {
+        InflowCommand::Convert { from, to, overwrite } => {
+            check_free(&turbulence_box::files_of(&to)?, overwrite)?;
             turbulence_box::convert(&from, &to)?;
-            eprintln!("wrote {}", to.display());
+            tell(&format!("wrote {}", to.display()));
             Ok(())
         }
         InflowCommand::Sample(arguments) => super::inflow_sample::run(&arguments),
@@ -136,17 +146,25 @@ pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
 
 fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
     let plan = Plan::new(arguments)?;
-    turbulence_box::check_name(&arguments.output)?;
+    check_free(&turbulence_box::files_of(&arguments.output)?, arguments.overwrite)?;
     let [n_x, n_y, n_z] = arguments.size;
     let memory = match plan.settings {
         BoxSettings::Mann(_) => mann::peak_memory(arguments.size),
         BoxSettings::Kaimal(_) => kaimal::peak_memory(arguments.size),
     };
-    eprintln!(
+    tell(&format!(
         "box: {n_x} × {n_y} × {n_z} points, {:.0} s of wind; memory {}",
         n_x as f64 * plan.spacing[0] / arguments.speed,
         HumanBytes(memory),
-    );
+    ));
+    if let Some(free) = machine::free_memory().filter(|free| *free < memory) {
+        return Err(miette!(
+            help = "take fewer points, --size",
+            "the box needs {} of memory, {} are free",
+            HumanBytes(memory),
+            HumanBytes(free)
+        ));
+    }
     let bar = ProgressBar::new(1000);
     let progress = |share: f64| bar.set_position((1000.0 * share) as u64);
     let turbulence = match &plan.settings {
@@ -165,7 +183,7 @@ fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
         description: format!("wakemix {}: {}", env!("CARGO_PKG_VERSION"), plan.description),
     };
     turbulence_box::write(&arguments.output, &stored)?;
-    eprintln!("wrote {}", arguments.output.display());
+    tell(&format!("wrote {}", arguments.output.display()));
     Ok(())
 }
 
@@ -193,14 +211,6 @@ impl Plan {
                 "--ti {ti} is not a turbulence intensity"
             ));
         }
-        let finite =
-            [speed, arguments.hub_height].iter().all(|value| value.is_finite() && *value > 0.0);
-        if !finite || !arguments.shear_exponent.is_finite() {
-            return Err(miette!(
-                help = "--speed in m/s and --hub-height in m are positive, --shear-exponent is a number",
-                "speed, hub height or shear exponent is out of range"
-            ));
-        }
         let standard_deviation = match arguments.class {
             Some(Class::A) => TurbulenceClass::A.standard_deviation(speed),
             Some(Class::B) => TurbulenceClass::B.standard_deviation(speed),
@@ -215,7 +225,7 @@ impl Plan {
             Model::Mann => 0.5 * up,
             Model::Kaimal => arguments.hub_height - 0.5 * height,
         });
-        if lowest_height.is_nan() || lowest_height < 0.0 {
+        if lowest_height < 0.0 {
             return Err(miette!(
                 help =
                     "use fewer points along z, a smaller spacing, a higher hub or --lowest-height",
@@ -318,9 +328,7 @@ fn points(text: &str) -> Result<[usize; 3], String> {
 fn distances(text: &str) -> Result<[f64; 3], String> {
     let values: Vec<f64> = text
         .split('x')
-        .map(|part| {
-            part.trim().parse().map_err(|_| format!("`{part}` is not a distance in metres"))
-        })
+        .map(|part| positive(part).map_err(|_| format!("`{part}` is not a distance in metres")))
         .collect::<Result<_, _>>()?;
     match values[..] {
         [one] => Ok([one; 3]),

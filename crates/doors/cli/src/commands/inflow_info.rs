@@ -1,7 +1,7 @@
 //! `wakemix inflow info`: what a turbulence box holds.
 
+use super::output::print;
 use miette::IntoDiagnostic;
-use std::io::{ErrorKind, Write};
 use std::path::Path;
 use wakemix::flow::inflow::statistics::{BoxStatistics, line_deviations, statistics};
 use wakemix::formats::turbulence_box::{self, StoredBox};
@@ -28,9 +28,9 @@ pub(crate) fn run(file: &Path, json: bool) -> miette::Result<()> {
             "hub_standard_deviations": hub_deviations(&stored),
             "statistics": numbers,
         });
-        say(&(serde_json::to_string_pretty(&value).into_diagnostic()? + "\n"))
+        print(&(serde_json::to_string_pretty(&value).into_diagnostic()? + "\n"))
     } else {
-        say(&text(&stored, &numbers))
+        print(&text(&stored, &numbers))
     }
 }
 
@@ -40,14 +40,6 @@ fn hub_deviations(stored: &StoredBox) -> [f64; 3] {
     let row = (stored.hub_height - stored.lowest_height) / stored.turbulence.spacing()[2];
     let z = (row.round().max(0.0) as usize).min(n_z - 1);
     line_deviations(&stored.turbulence, n_y / 2, z)
-}
-
-/// Writes `text` to stdout; a reader that has read enough, such as `head`, is no error.
-fn say(text: &str) -> miette::Result<()> {
-    match std::io::stdout().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).into_diagnostic(),
-        _ => Ok(()),
-    }
 }
 
 fn text(stored: &StoredBox, numbers: &BoxStatistics) -> String {

@@ -1,5 +1,7 @@
 //! `wakemix inflow sample`: the wind of a case without turbulence as a file that other programs read.
 
+use super::arguments::{check_free, positive};
+use super::output::tell;
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
 use std::path::PathBuf;
@@ -28,11 +30,14 @@ pub(crate) struct SampleArguments {
     #[arg(long, value_parser = distances)]
     spacing: Option<[f64; 2]>,
     /// Time between planes (s)
-    #[arg(long, default_value_t = 0.1)]
+    #[arg(long, default_value_t = 0.1, value_parser = positive)]
     time_step: f64,
     /// File to write: NAME.bts (TurbSim), NAME.wnd (Bladed), NAME.toml or NAME.bin (HAWC2-style)
     #[arg(short, long)]
     output: PathBuf,
+    /// Put the new file in the place of an old one
+    #[arg(long)]
+    overwrite: bool,
 }
 
 /// Writes the wind of the case around the first turbine.
@@ -41,20 +46,13 @@ pub(crate) struct SampleArguments {
 /// A case that cannot be read or has another kind of wind, a grid that makes no sense, a file that cannot be
 /// written.
 pub(crate) fn run(arguments: &SampleArguments) -> miette::Result<()> {
-    turbulence_box::check_name(&arguments.output)?;
+    check_free(&turbulence_box::files_of(&arguments.output)?, arguments.overwrite)?;
     let setup = Prepared::read(&arguments.case, &arguments.overrides)?;
     if setup.case.flow.solver != Solver::UNIFORM {
         return Err(miette!(
             help = "use --set flow.solver=uniform; turbulence is made by `wakemix inflow generate`",
             "{}: only the wind of flow.solver = \"uniform\" can be sampled",
             arguments.case.display()
-        ));
-    }
-    if !(arguments.time_step.is_finite() && arguments.time_step > 0.0) {
-        return Err(miette!(
-            help = "give seconds, such as --time-step 0.1",
-            "--time-step {} is no time",
-            arguments.time_step
         ));
     }
     let (plan, wind) = (&setup.plan, &setup.case.wind);
@@ -89,7 +87,7 @@ pub(crate) fn run(arguments: &SampleArguments) -> miette::Result<()> {
         ),
     };
     turbulence_box::write(&arguments.output, &stored)?;
-    eprintln!("wrote {}", arguments.output.display());
+    tell(&format!("wrote {}", arguments.output.display()));
     Ok(())
 }
 

@@ -1,10 +1,12 @@
 //! One module per command.
 
 pub(crate) mod analyse;
+mod arguments;
 pub(crate) mod fatigue;
 pub(crate) mod inflow;
 mod inflow_info;
 mod inflow_sample;
+pub(crate) mod output;
 pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod table;
@@ -15,5 +17,7 @@ pub(crate) mod validate;
 pub(crate) const BAD_INPUT: u8 = 2;
 /// Exit code of a simulation that diverged.
 pub(crate) const DIVERGED: u8 = 3;
+/// Exit code when nobody reads the output any more, that of other programs whose pipe is closed.
+pub(crate) const CLOSED_PIPE: u8 = 141;
 /// Exit code of a run that was interrupted and can be resumed.
 pub(crate) const INTERRUPTED: u8 = 130;

@@ -1,11 +1,11 @@
 //! `wakemix report`: the page and figures of a study, made anew from its records.
 
+use super::output::print;
 use miette::Result;
 use std::path::Path;
 
 /// Rebuilds the report of the study in `directory`; its path goes to stdout.
 pub(crate) fn run(directory: &Path) -> Result<()> {
     let (_, page) = wakemix::postprocessing::report(directory)?;
-    println!("{}", page.display());
-    Ok(())
+    print(&format!("{}\n", page.display()))
 }

@@ -1,9 +1,14 @@
 //! `wakemix run`: one study from case file to report.
 
+mod again;
+
+use super::output::{print, refuse, tell};
 use super::{BAD_INPUT, DIVERGED, INTERRUPTED};
 use crate::commands::table;
+use again::interrupted;
 use clap::Args;
 use indicatif::{HumanBytes, HumanDuration, ProgressBar, ProgressStyle};
+use miette::IntoDiagnostic;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -58,10 +63,10 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
         if flag.swap(true, Ordering::SeqCst) {
             std::process::exit(i32::from(INTERRUPTED));
         }
-        eprintln!("\nstopping after this step; press Ctrl-C again to stop now");
+        tell("\nstopping after this step; press Ctrl-C again to stop now");
     });
     if let Err(error) = installed {
-        eprintln!("warning: Ctrl-C will not write a checkpoint: {error}");
+        tell(&format!("warning: Ctrl-C will not write a checkpoint: {error}"));
     }
     let options = StudyOptions {
         case: arguments.case.clone(),
@@ -79,12 +84,7 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
         Ok(Outcome::Done { directory, .. }) => done(&directory, arguments.json),
         Ok(Outcome::Estimated) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted { directory }) => {
-            eprintln!(
-                "interrupted; resume with: wakemix run {} -o {}{} --resume",
-                shell_word(&arguments.case.display().to_string()),
-                shell_word(&directory.display().to_string()),
-                repeated(arguments)
-            );
+            tell(&interrupted(arguments, &directory));
             ExitCode::from(INTERRUPTED)
         }
         Err(error) => {
@@ -94,7 +94,7 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
                 | StudyError::Calibration(CalibrationError::Flow(_)) => DIVERGED,
                 _ => BAD_INPUT,
             };
-            eprintln!("{:?}", miette::Report::new(error));
+            refuse(&miette::Report::new(error));
             ExitCode::from(code)
         }
     }
@@ -105,36 +105,18 @@ fn done(directory: &Path, as_json: bool) -> ExitCode {
     let (summaries, page) = match postprocessing::report(directory) {
         Ok(made) => made,
         Err(error) => {
-            eprintln!("{:?}", miette::Report::new(error));
-            return ExitCode::from(BAD_INPUT);
+            return refuse(&miette::Report::new(error));
         }
     };
-    if as_json {
-        match serde_json::to_string_pretty(&summaries) {
-            Ok(text) => println!("{text}"),
-            Err(error) => eprintln!("error: the summaries cannot be printed: {error}"),
-        }
+    tell(&format!("report: {}", page.display()));
+    let text = if as_json {
+        serde_json::to_string_pretty(&summaries).map(|text| text + "\n").into_diagnostic()
     } else {
-        print!("{}", table::render(&summaries));
-    }
-    eprintln!("report: {}", page.display());
-    ExitCode::SUCCESS
-}
-
-/// The runs and overrides of `arguments` as they were given, for the same command once more.
-fn repeated(arguments: &RunArguments) -> String {
-    let runs = arguments.runs.iter().map(|name| format!(" --run {}", shell_word(name)));
-    let overrides = arguments.overrides.iter().map(|text| format!(" --set {}", shell_word(text)));
-    runs.chain(overrides).collect()
-}
-
-/// `text` as one word of a shell.
-fn shell_word(text: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+%@".contains(c);
-    if !text.is_empty() && text.chars().all(plain) {
-        text.to_owned()
-    } else {
-        format!("'{}'", text.replace('\'', r"'\''"))
+        Ok(table::render(&summaries))
+    };
+    match text.and_then(|text| print(&text)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(report) => refuse(&report),
     }
 }
 
@@ -220,13 +202,13 @@ impl Screen {
         if self.printed.as_ref().is_none_or(|(last, printed)| last != what || *printed != tenth) {
             self.printed = Some((what.to_owned(), tenth));
             if tenth > 0 {
-                eprintln!("{what}: {} %, {left}", 100 / TENTHS * tenth);
+                tell(&format!("{what}: {} %, {left}", 100 / TENTHS * tenth));
             }
         }
     }
 
     fn say(&self, line: &str) {
-        self.bar.suspend(|| eprintln!("{line}"));
+        self.bar.suspend(|| tell(line));
     }
 }
 
@@ -339,20 +321,7 @@ impl Observer for Screen {
 
 #[cfg(test)]
 mod tests {
-    use super::{PitchResponse, shell_word, words_of};
-
-    #[test]
-    fn a_shell_reads_a_word_back() {
-        for (text, word) in [
-            ("cases/a.toml", "cases/a.toml"),
-            ("wind.speed=7", "wind.speed=7"),
-            ("my case", "'my case'"),
-            ("it's", r"'it'\''s'"),
-            ("", "''"),
-        ] {
-            assert_eq!(shell_word(text), word);
-        }
-    }
+    use super::{PitchResponse, words_of};
 
     #[test]
     fn the_offset_of_the_pitch_and_that_of_the_estimator_are_kept_apart() {

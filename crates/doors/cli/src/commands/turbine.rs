@@ -1,7 +1,9 @@
 //! `wakemix turbine`: the library of turbines, and what blade-element momentum says of them.
 
+use super::arguments::{check_free, finite, positive};
+use super::output::{print, tell};
 use clap::Subcommand;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, miette};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -36,6 +38,9 @@ pub(crate) enum TurbineCommand {
         /// Turbine file to write (TOML)
         #[arg(short, long)]
         output: PathBuf,
+        /// Put the new file in the place of an old one
+        #[arg(long)]
+        overwrite: bool,
         /// Short name, such as iea-15mw; the stem of OUTPUT when left out
         #[arg(long)]
         name: Option<String>,
@@ -65,7 +70,7 @@ pub(crate) enum TurbineCommand {
         #[arg(long, value_name = "A:B:N", default_value = "9")]
         wind: Range,
         /// Strouhal number of the identification helices, with the wind and the rotor's diameter
-        #[arg(long, value_name = "ST", default_value_t = 0.25)]
+        #[arg(long, value_name = "ST", default_value_t = 0.25, value_parser = positive)]
         strouhal: f64,
         /// Blades and tower that do not bend
         #[arg(long)]
@@ -93,8 +98,7 @@ impl FromStr for Range {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let number = |part: &str| {
-            let value = part.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-            value.ok_or_else(|| {
+            finite(part).map_err(|_| {
                 format!("\"{part}\" is not a number; write FROM:TO:COUNT, as in 6:11:11")
             })
         };
@@ -132,7 +136,8 @@ pub(crate) fn run(command: TurbineCommand) -> Result<()> {
             )?;
             print(&text)
         }
-        TurbineCommand::Import { file, output, name, title, source } => {
+        TurbineCommand::Import { file, output, overwrite, name, title, source } => {
+            check_free(std::slice::from_ref(&output), overwrite)?;
             let stem = output.file_stem().map(|stem| stem.to_string_lossy().into_owned());
             let options = openfast::ImportOptions { name: name.or(stem), title, source };
             import(&file, &output, &options)
@@ -141,15 +146,6 @@ pub(crate) fn run(command: TurbineCommand) -> Result<()> {
         TurbineCommand::Offset { name, wind, strouhal, rigid } => {
             offset(&name, wind, strouhal, !rigid)
         }
-    }
-}
-
-/// Writes `text` to stdout; a reader that has seen enough is no error.
-fn print(text: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        result => result.into_diagnostic().wrap_err("cannot write to standard output"),
     }
 }
 
@@ -190,7 +186,7 @@ fn rows(
     definition: &Definition,
     controller: &Constants,
     best: &Coefficients,
-) -> [(&'static str, String); 12] {
+) -> [(&'static str, String); 13] {
     [
         ("blades", definition.n_blades.to_string()),
         (
@@ -221,6 +217,7 @@ fn rows(
                 definition.tower.profile.last().map_or(0.0, |p| p.diameter)
             ),
         ),
+        ("cut-in, cut-out", operation(definition)),
         (
             "rated",
             format!(
@@ -272,6 +269,14 @@ fn rows(
     ]
 }
 
+/// Between which mean wind speeds a turbine works, in words.
+fn operation(definition: &Definition) -> String {
+    definition.operation.map_or_else(
+        || "not stated".to_owned(),
+        |operation| format!("{:.1} m/s, {:.1} m/s", operation.cut_in, operation.cut_out),
+    )
+}
+
 fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Result<()> {
     let extension = file.extension().map(|end| end.to_string_lossy().to_lowercase());
     let document = match extension.as_deref() {
@@ -287,14 +292,14 @@ fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Resu
     };
     let written = turbine_file::write(&document);
     atomic::write(output, "the turbine file", written.text.as_bytes())?;
-    eprintln!("wrote {}", output.display());
+    tell(&format!("wrote {}", output.display()));
     if written.missing.is_empty() {
         turbine_file::read(output)?;
         return Ok(());
     }
-    eprintln!("{} lacks these groups and keys:", file.display());
+    tell(&format!("{} lacks these groups and keys:", file.display()));
     for key in &written.missing {
-        eprintln!("  {key}");
+        tell(&format!("  {key}"));
     }
     let place = output.display();
     Err(miette!(
@@ -322,7 +327,21 @@ fn steady(file: &TurbineFile, tsr: Range, pitch: Range) -> Result<()> {
     print(&String::from_utf8_lossy(&bytes))
 }
 
+/// Nothing when the turbine called `name` works in all of `wind`.
+fn check_wind(name: &str, wind: Range) -> Result<()> {
+    let Some(operation) = library::load(name)?.definition.operation else { return Ok(()) };
+    let works = operation.cut_in..=operation.cut_out;
+    match [wind.from, wind.to].into_iter().find(|speed| !works.contains(speed)) {
+        Some(speed) => Err(miette!(
+            help = format!("take winds from {} to {} m/s", works.start(), works.end()),
+            "--wind {speed}: {name} stands still in that wind"
+        )),
+        None => Ok(()),
+    }
+}
+
 fn offset(name: &str, wind: Range, strouhal: f64, flexible: bool) -> Result<()> {
+    check_wind(name, wind)?;
     let mut head = "wind_speed_m_s,azimuth_offset_deg,delay_s,moment_per_degree_mnm,\
                     relative_gain_without,relative_gain_with\n";
     for wind_speed in wind.values() {

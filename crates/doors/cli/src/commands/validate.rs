@@ -4,6 +4,7 @@ mod print;
 mod record;
 
 use super::BAD_INPUT;
+use super::output::{print, refuse, tell};
 use clap::Args;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -33,6 +34,9 @@ pub(crate) struct ValidateArguments {
     /// Renew verdicts and tables of docs/validation from the records, and repeat nothing
     #[arg(long, conflicts_with_all = ["names", "quick", "json", "record", "pictures"])]
     pages: bool,
+    /// Put new pictures in the place of old ones
+    #[arg(long, requires = "pictures")]
+    overwrite: bool,
     /// Folder to draw the validations into, where they have pictures: figures/*.svg and *.png
     #[arg(long, value_name = "FOLDER", requires = "names")]
     pictures: Option<PathBuf>,
@@ -59,9 +63,16 @@ pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
         return if arguments.json || arguments.record {
             refused("no validation is named\nhint: name validations, or use --quick")
         } else {
-            print::list();
-            ExitCode::SUCCESS
+            printed(&print::list())
         };
+    }
+    if let Some(folder) = arguments.pictures.as_ref().filter(|_| !arguments.overwrite)
+        && folder.join("figures").exists()
+    {
+        let folder = folder.display();
+        return refused(&format!(
+            "{folder} has figures already\nhint: name another folder, or give --overwrite"
+        ));
     }
     let mut done: Vec<Done> = Vec::new();
     for validation in wanted {
@@ -74,12 +85,15 @@ pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
         return renew_pages();
     }
     if arguments.json {
-        print::json(&done);
+        let code = printed(&print::json(&done));
+        if code != ExitCode::SUCCESS {
+            return code;
+        }
     }
     let code = code_of(&done);
     if code != 0 {
-        eprintln!(
-            "not all is as recorded\nhint: fix what got worse; where a change is meant, renew the record with --record"
+        tell(
+            "not all is as recorded\nhint: fix what got worse; where a change is meant, renew the record with --record",
         );
     }
     ExitCode::from(code)
@@ -90,9 +104,14 @@ fn code_of(done: &[Done]) -> u8 {
     u8::from(!done.iter().all(|done| holds(&done.judgements)))
 }
 
+/// Prints `text`; the exit code says whether that went well.
+fn printed(text: &str) -> ExitCode {
+    print(text).map_or_else(|report| refuse(&report), |()| ExitCode::SUCCESS)
+}
+
 /// Says what is wrong with the call.
 fn refused(problem: &str) -> ExitCode {
-    eprintln!("error: {problem}");
+    tell(&format!("error: {problem}"));
     ExitCode::from(BAD_INPUT)
 }
 
@@ -133,7 +152,7 @@ fn repeat(validation: &'static Validation, arguments: &ValidateArguments) -> Res
     let judgements = judge(&rows, &record);
     let done = Done { validation, record, judgements };
     if !arguments.json {
-        print::table(&done);
+        print(&print::table(&done)).map_err(|error| error.to_string())?;
     }
     if arguments.record {
         let worse = if arguments.accept_worse { Worse::Accepted } else { Worse::Refused };
@@ -151,7 +170,8 @@ fn repeat(validation: &'static Validation, arguments: &ValidateArguments) -> Res
 /// Draws a validation into `folder` and says where.
 fn draw(folder: &Path, pictures: Pictures) -> Result<(), validation::ReportError> {
     for name in pictures(folder)? {
-        eprintln!("{}", folder.join("figures").join(format!("{name}.svg")).display());
+        let picture = folder.join("figures").join(format!("{name}.svg"));
+        tell(&picture.display().to_string());
     }
     Ok(())
 }
@@ -160,10 +180,8 @@ fn draw(folder: &Path, pictures: Pictures) -> Result<(), validation::ReportError
 fn renew_pages() -> ExitCode {
     match pages::write(Path::new("")) {
         Ok(changed) => {
-            for name in changed {
-                println!("{}/{name}.md", pages::FOLDER);
-            }
-            ExitCode::SUCCESS
+            let names = changed.iter().map(|name| format!("{}/{name}.md\n", pages::FOLDER));
+            printed(&names.collect::<String>())
         }
         Err(problem) => refused(&problem),
     }

@@ -80,6 +80,38 @@ pub enum PlanError {
         /// Longest step (s).
         longest: f64,
     },
+    /// The free stream hardly moves in a step.
+    #[error(
+        "flow.step = {step:?} s is too short: the wind moves {cells:.1e} cells a step, which the lattice rounds away, and a run would take days; at least {shortest:.2e} s, or leave the key out"
+    )]
+    TooSlow {
+        /// Step given (s).
+        step: f64,
+        /// Cells a step (–).
+        cells: f64,
+        /// Shortest step (s).
+        shortest: f64,
+    },
+    /// A turbine stands still in this wind.
+    #[error(
+        "{what} gives {name} a mean wind of {speed:.2} m/s at its hub, and it works from {cut_in} to {cut_out} m/s: it would stand still; {fix}"
+    )]
+    NotInOperation {
+        /// What makes the wind, such as `wind.speed = 39 m/s`.
+        what: String,
+        /// Key that decides.
+        key: &'static str,
+        /// Turbine.
+        name: String,
+        /// Mean wind at its hub (m/s).
+        speed: f64,
+        /// Its cut-in wind speed (m/s).
+        cut_in: f64,
+        /// Its cut-out wind speed (m/s).
+        cut_out: f64,
+        /// What to change.
+        fix: &'static str,
+    },
     /// The wind's profile is calm up to the rotor.
     #[error(
         "wind.roughness_length = {roughness_length} m is too much for a hub at {hub_height:.0} m: {highest:.1} m, a tenth of it, is the maximum; 0.0002 is calm sea, 0.03 farmland, 1 a town"
@@ -138,7 +170,10 @@ impl PlanError {
             Self::OutsideDomain { name, .. } => vec!["turbine", name, "position_diameters"],
             Self::Overlap { second, .. } => vec!["turbine", second, "position_diameters"],
             Self::TooCoarse { .. } => vec!["flow", "cells_per_diameter"],
-            Self::TipOutruns { .. } | Self::TooFast { .. } => vec!["flow", "step"],
+            Self::TipOutruns { .. } | Self::TooFast { .. } | Self::TooSlow { .. } => {
+                vec!["flow", "step"]
+            }
+            Self::NotInOperation { key, .. } => vec!["wind", *key],
             Self::TooRough { .. } => vec!["wind", "roughness_length"],
             Self::VeersTooFar { .. } => vec!["wind", "veer_deg_per_m"],
             Self::CrosswindOutside { .. } => vec!["output", "crosswind_diameters"],

@@ -1,5 +1,6 @@
 //! Domains that fit, steps that tips do not outrun, and errors that name what does not fit.
 
+use super::step::FASTEST_TIP;
 use super::*;
 use crate::case::{
     Control, DynamicInflow, Flow, Instruments, Output, Placement, Run, Shear, Solver, Time,
@@ -119,6 +120,13 @@ fn what_does_not_fit_is_named_with_its_fix() {
     fast.flow.step = Some(0.1);
     fast.wind.speed = 24.0;
     assert!(error(&fast).contains("the wind moves 0.16 cells"), "{}", error(&fast));
+
+    // A hundredth of the longest step, at which the tip moves with the sound.
+    let mut short = case(&[[0.0, 0.0]]);
+    short.flow.step = Some(0.00106);
+    assert!(error(&short).contains("at least 1.07e-3 s"), "{}", error(&short));
+    short.flow.step = Some(0.00108);
+    assert!(plan(&short, &footprints()).is_ok());
 
     let mut rough = case(&[[0.0, 0.0]]);
     rough.wind.shear = Shear::LogLaw { roughness_length: 16.0 };

@@ -12,6 +12,7 @@ use super::solver::flow_of;
 use super::sources::Sources;
 use super::spelling::{list, nearest};
 use super::wind::{check_together, wind_of};
+use crate::records;
 use basis::keys::Table;
 use control::{CONTROLLERS, ControllerKind, Place};
 use farm::case::{
@@ -152,6 +153,12 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
         // Folders of file systems that do not tell capitals apart would collide.
         if section.has("name") && runs.iter().any(|other| other.name.eq_ignore_ascii_case(&name)) {
             note_duplicate(section, "run", &name);
+        }
+        if records::OWN_FOLDERS.iter().any(|own| own.eq_ignore_ascii_case(&name)) {
+            let key = section.key_path("name");
+            let why = format!("a study's folder has its own `{name}`, beside those of the runs");
+            let fix = Some("choose another name".to_owned());
+            section.findings().note(section.span_of("name"), ProblemKind::Taken { key, why }, fix);
         }
         let compare_with = section.optional_text("compare_with");
         let control = controls_of(section, turbines, time);

@@ -10,6 +10,8 @@ use thiserror::Error;
 
 /// Longest line (bytes) that is drawn: what draws counts at most 65535 columns, and a tab takes several.
 const LONGEST_DRAWN: usize = 2000;
+/// Problems after which no more are looked for (–): who has so many has another kind of file.
+pub(super) const MOST_PROBLEMS: usize = 100;
 /// Lines that are drawn above and below a problem, and one.
 const DRAWN_AROUND: usize = 2;
 
@@ -21,7 +23,7 @@ pub enum CaseError {
     #[diagnostic(transparent)]
     File(#[from] FileError),
     /// It was read, but something in it is wrong.
-    #[error("{name} cannot be run: {} of its entries {}", problems.len(), if problems.len() == 1 { "is wrong" } else { "are wrong" })]
+    #[error("{name} cannot be run: {}", amount(problems.len()))]
     #[diagnostic(code(wakemix::case))]
     Invalid {
         /// The file.
@@ -30,6 +32,17 @@ pub enum CaseError {
         #[related]
         problems: Vec<Problem>,
     },
+}
+
+/// In words, how many entries are wrong.
+fn amount(n_problems: usize) -> String {
+    match n_problems {
+        1 => "1 of its entries is wrong".to_owned(),
+        MOST_PROBLEMS => {
+            format!("{n_problems} of its entries are wrong, or more: the rest is not looked at")
+        }
+        _ => format!("{n_problems} of its entries are wrong"),
+    }
 }
 
 impl CaseError {
@@ -217,6 +230,14 @@ pub enum ProblemKind {
         /// The name.
         name: String,
     },
+    /// A name that the study's folder has in use.
+    #[error("`{key}` cannot be that: {why}")]
+    Taken {
+        /// The key, dotted.
+        key: String,
+        /// Why not.
+        why: String,
+    },
     /// Turbines in each other's way.
     #[error(
         "turbines {first} and {second} overlap: they stand {distance:.2} diameters apart, at least 1 is needed"
@@ -335,7 +356,7 @@ impl ProblemKind {
             Self::UnknownChoice { .. } => "no such choice",
             Self::UnknownName { what, .. } => return format!("no such {what}"),
             Self::BadName { .. } => "not a name",
-            Self::Duplicate { .. } => "used twice",
+            Self::Duplicate { .. } | Self::Taken { .. } => "used already",
             Self::Overlap { .. } => "too close",
             Self::NothingAnalysed { .. } => "too short",
             Self::StartsTooLate { .. } => "too late",

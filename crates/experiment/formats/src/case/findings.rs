@@ -1,7 +1,7 @@
-//! What was found wrong in a case file so far.
+//! What is wrong with a case file, gathered while it is read: all of it, or the first hundred.
 
 use super::document::{Entry, Value, find};
-use super::error::{Problem, ProblemKind};
+use super::error::{MOST_PROBLEMS, Problem, ProblemKind};
 use super::sources::Sources;
 use super::spelling::{list, nearest};
 use basis::keys::Objection;
@@ -28,8 +28,16 @@ impl<'a> Findings<'a> {
         Self { sources, turbines, problems: RefCell::new(Vec::new()) }
     }
 
+    /// Whether there are so many problems that no more are noted.
+    pub(super) fn are_full(&self) -> bool {
+        self.problems.borrow().len() >= MOST_PROBLEMS
+    }
+
     /// Notes a problem at `span`, with the fix where one is known.
     pub(super) fn note(&self, span: Range<usize>, kind: ProblemKind, fix: Option<String>) {
+        if self.are_full() {
+            return;
+        }
         let problem = Problem::new(self.sources, span, kind).with_fix(fix);
         self.problems.borrow_mut().push(problem);
     }

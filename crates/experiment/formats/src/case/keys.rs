@@ -52,7 +52,7 @@ pub(super) static WIND: Table = Table {
     heading: "[wind]",
     about: "The incoming wind: a mean profile with turbulence on it (Mann's, Kaimal's, recorded planes, or none), the same for every run.",
     keys: &[
-        key("speed", above(0.0, 40.0), "m/s", Required, "Mean speed at hub height of the first turbine.")
+        key("speed", above(0.0, 40.0), "m/s", Required, "Mean speed at hub height of the first turbine. At every hub it lies between the cut-in and cut-out wind speeds that the turbine's file states under `[operation]`.")
             .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }, Slip { unit: "cm/s", factor: 0.01 }]),
         key("turbulence_intensity", from(0.0, 0.5), "–", Required, "Standard deviation of the streamwise component over `speed`, at hub height; 0 switches the turbulence off.")
             .mistaken(&[Slip { unit: "percent", factor: 0.01 }]),

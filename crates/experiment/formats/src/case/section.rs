@@ -31,7 +31,8 @@ impl<'a> Section<'a> {
     ) -> Self {
         let section = Self { table, entries, span, path, findings };
         for entry in entries {
-            if !table.keys.iter().any(|key| key.name == entry.key) {
+            // To look for what may have been meant takes longer than to read.
+            if !findings.are_full() && !table.keys.iter().any(|key| key.name == entry.key) {
                 let kind = ProblemKind::UnknownKey { key: section.key_path(&entry.key) };
                 findings.note(entry.key_span.clone(), kind, Some(section.suggest(&entry.key)));
             }

@@ -19,7 +19,7 @@ impl Sources {
     /// Adds a text; gives the place of its first byte.
     pub(super) fn add(&mut self, name: &str, text: &str) -> usize {
         let start = self.end;
-        self.parts.push((start, Arc::new(NamedSource::new(name, text.to_owned()))));
+        self.parts.push((start, Arc::new(NamedSource::new(name, drawable(text)))));
         // One byte apart, so that the end of one text is not the start of the next.
         self.end = start + text.len() + 1;
         start
@@ -33,4 +33,17 @@ impl Sources {
         let within = |place: usize| place.saturating_sub(*start).min(length);
         (Arc::clone(source), within(span.start)..within(span.end))
     }
+}
+
+/// `text` with marks of the same length in the place of characters that would steer the terminal which draws
+/// it.
+fn drawable(text: &str) -> String {
+    let mark = |c: char| match c {
+        '\n' | '\t' => c,
+        '\r' => ' ',
+        c if c.is_control() && c.len_utf8() == 1 => '?',
+        c if c.is_control() => '¿',
+        c => c,
+    };
+    text.chars().map(mark).collect()
 }

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 /// Version of the layout.
 pub(super) const VERSION: u32 = 4;
-const FRESH: &str = "start the run anew, with --overwrite in place of --resume";
+const FRESH: &str = "start the run anew: --run NAME --overwrite in place of --resume";
 
 /// What is wrong with a checkpoint.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -80,13 +80,13 @@ impl CheckpointProblem {
     pub(crate) fn fix(&self) -> &'static str {
         match self {
             Self::OtherVersion { .. } | Self::OtherProgram { .. } => {
-                "resume with the version of the program that wrote it, or start the run anew, with --overwrite in place of --resume"
+                "resume with the version of the program that wrote it, or start the run anew: --run NAME --overwrite in place of --resume"
             }
             Self::OtherCase => {
-                "undo the change to go on, or start the run anew, with --overwrite in place of --resume; threads, checkpoint interval and other runs may change"
+                "undo the change to go on, or start the run anew: --run NAME --overwrite in place of --resume; threads, checkpoint interval and other runs may change"
             }
             Self::OtherBackend { .. } => {
-                "resume on a machine with the same instructions, or start the run anew, with --overwrite in place of --resume"
+                "resume on a machine with the same instructions, or start the run anew: --run NAME --overwrite in place of --resume"
             }
             _ => FRESH,
         }

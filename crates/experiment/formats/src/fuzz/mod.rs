@@ -11,6 +11,7 @@ mod damage;
 mod decks;
 pub(crate) mod memory;
 mod nesting;
+pub(crate) mod numbers;
 mod records;
 mod tables;
 mod winds;

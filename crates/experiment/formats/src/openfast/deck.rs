@@ -1,7 +1,7 @@
 //! One file of a deck: lines of values followed by their key.
 
+use crate::atomic;
 use crate::turbine_file::TurbineFileError;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A text file of figures before their keys: `value  Key - description` or `value ! Key - description`.
@@ -41,7 +41,8 @@ impl Deck {
     /// The file at `path`.
     pub(crate) fn read(path: &Path) -> Result<Self, TurbineFileError> {
         // Decks carry degree signs in whatever encoding their author's editor had.
-        let bytes = fs::read(path).map_err(|source| TurbineFileError::unreadable(path, source))?;
+        let bytes = atomic::read_whole(path)
+            .map_err(|source| TurbineFileError::unreadable(path, source))?;
         Ok(Self::parse(path, &String::from_utf8_lossy(&bytes)))
     }
 
@@ -153,14 +154,9 @@ impl Deck {
     ) -> Result<Vec<Value<'a>>, TurbineFileError> {
         let start = self.required(key)?;
         let lines = self.lines.get(start..start + count).ok_or_else(|| {
-            let found = format!("{} lines", self.lines.len() - start);
-            self.error(
-                start + 1,
-                key,
-                format!("{count} lines"),
-                found,
-                "add the missing lines, or correct their number",
-            )
+            let (expected, found) = (format!("{count} lines"), self.lines.len() - start);
+            let fix = "add the missing lines, or correct their number";
+            self.error(start + 1, key, expected, format!("{found} lines"), fix)
         })?;
         let value = |line: &'a Line| {
             let text = line.values.first().ok_or_else(|| {
@@ -360,7 +356,8 @@ fn line_of(number: usize, text: &str) -> Line {
     if !starts_comment {
         values.extend(words.next().map(|word| word.text));
         for word in words {
-            if word.quoted || number_of(&word.text).is_some() {
+            // What is no finite number stands in the place of one, too; it is refused once it is asked for.
+            if word.quoted || number_of(&word.text).is_some() || word.text.parse::<f64>().is_ok() {
                 values.push(word.text);
             } else if !word.text.chars().all(|c| "!-#".contains(c)) {
                 key = normalised(&word.text);

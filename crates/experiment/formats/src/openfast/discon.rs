@@ -84,7 +84,12 @@ pub(crate) fn controller(
 
 /// The number before a mode's `key`, `default` where the deck has none.
 fn mode(deck: &Deck, key: &'static str, default: f64) -> Result<f64, TurbineFileError> {
-    if deck.has(key) { deck.number(key) } else { Ok(default) }
+    if !deck.has(key) {
+        return Ok(default);
+    }
+    let number = deck.number(key)?;
+    let is_mode = number.fract() == 0.0 && (0.0..=10.0).contains(&number);
+    if is_mode { Ok(number) } else { Err(deck.value(key)?.error("a whole number from 0 to 10")) }
 }
 
 /// How torque is controlled, and whether power is constant above rated.
@@ -102,7 +107,7 @@ fn torque_control(deck: &Deck) -> Result<(TorqueControl, bool), TurbineFileError
             _ => Err(deck.value("VS_ControlMode")?.error("0, 1, 2 or 3")),
         };
     }
-    let constant_power = deck.number("VS_ConstPower")? != 0.0;
+    let constant_power = mode(deck, "VS_ConstPower", 0.0)? != 0.0;
     match number {
         // The third finds its speed from the power by the same constant, so it stands still where the first
         // does.

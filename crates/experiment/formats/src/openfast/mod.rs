@@ -77,6 +77,8 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
         nacelle: Some(structure.nacelle),
         drive_train: Some(drive_train),
         pitch_actuator: None,
+        // No file of a deck tells.
+        operation: None,
         controller: None,
         airfoils: Some(airfoils),
     };
@@ -86,7 +88,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
         let torque_control = document.controller.as_ref().and_then(|known| known.torque_control);
         if torque_control == Some(TorqueControl::TipSpeedRatio) {
             let origin = format!("{} as imported", path.display());
-            torque_gain::derive(&mut document, air_density(&main), &origin)?;
+            torque_gain::derive(&mut document, air_density(&main)?, &origin)?;
         }
     }
     Ok(document)
@@ -106,9 +108,21 @@ fn pitch_actuator(discon: &Deck, source: String) -> Result<PitchActuator, Turbin
 
 /// Air density of the deck (kg/m³); that of the standard atmosphere where the main file leaves it to the
 /// modules.
-fn air_density(main: &Deck) -> f64 {
-    main.number("AirDens").unwrap_or(1.225)
+///
+/// # Errors
+/// A density that is none.
+fn air_density(main: &Deck) -> Result<f64, TurbineFileError> {
+    if !main.has("AirDens") || main.value("AirDens")?.text.eq_ignore_ascii_case("default") {
+        return Ok(1.225);
+    }
+    let density = main.number("AirDens")?;
+    if density > 0.0 && density <= 5.0 {
+        return Ok(density);
+    }
+    Err(main.value("AirDens")?.error("a density above zero, at most 5 kg/m³"))
 }
 
+#[cfg(test)]
+mod numbers_tests;
 #[cfg(test)]
 pub(crate) mod tests;

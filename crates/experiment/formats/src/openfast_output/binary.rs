@@ -1,8 +1,8 @@
 //! Reading OpenFAST's binary output.
 
 use super::{LISTED_TIMES, NAME_LENGTH, PLAIN, REGULAR_TIMES, SHORT_NAME, WHAT};
-use crate::FileError;
 use crate::table::head::{Column, Head};
+use crate::{FileError, atomic};
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -48,7 +48,7 @@ impl Values {
 /// [`FileError`].
 pub(crate) fn open(path: &Path) -> Result<(Head, BinaryRows), FileError> {
     let refused = |source| FileError::system("read", WHAT, path, source);
-    let file = File::open(path).map_err(refused)?;
+    let file = atomic::open(path).map_err(refused)?;
     let length = file.metadata().map_err(refused)?.len();
     let file = BufReader::with_capacity(1 << 18, file);
     let mut fields = Fields { path, file, place: 0, length };

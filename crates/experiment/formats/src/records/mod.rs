@@ -92,6 +92,21 @@ impl RunFolder {
         Lock::take(&study.join(format!(".{run}.lock")), &what)
     }
 
+    /// Whether there is anything in it that a run has made: more than a manifest and empty folders, which one
+    /// leaves that fails before its first step.
+    pub fn holds_results(&self) -> bool {
+        let own = [self.manifest_path(), self.planes_path(), self.volumes_path()];
+        let is_bare = |path: &PathBuf| {
+            *path == own[0]
+                || own.contains(path) && study::entries(path).is_ok_and(|e| e.is_empty())
+        };
+        match study::entries(&self.path) {
+            Ok(entries) => !entries.iter().all(is_bare),
+            // What is no folder, or cannot be looked into, is somebody's.
+            Err(_) => fs::symlink_metadata(&self.path).is_ok(),
+        }
+    }
+
     /// Takes away the files whose names begin with `beginning` and end in `ending`.
     fn remove_named(&self, beginning: &str, ending: &str) -> Result<(), FileError> {
         if !self.path.is_dir() {
@@ -173,6 +188,23 @@ impl RunFolder {
     pub fn volumes_path(&self) -> PathBuf {
         self.path.join("volumes")
     }
+}
+
+/// Names of folders that a study has for itself beside those of its runs.
+pub const OWN_FOLDERS: &[&str] = &["figures"];
+
+/// Whether the study's folder `study` holds anything to go on with: a run that was begun, or what was
+/// identified before the runs.
+pub fn is_begun(study: &Path) -> bool {
+    let is_run = |path: PathBuf| RunFolder { path }.manifest_path().is_file();
+    pitch_responses::path_in(study).is_file()
+        || study::entries(study).is_ok_and(|entries| entries.into_iter().any(is_run))
+}
+
+/// Whether a run in the study's folder `study` left a checkpoint.
+pub fn has_checkpoint(study: &Path) -> bool {
+    let left = |path: PathBuf| RunFolder { path }.checkpoint_path().is_file();
+    study::entries(study).is_ok_and(|entries| entries.into_iter().any(left))
 }
 
 /// On return the file or folder is not there.

@@ -20,7 +20,7 @@ pub struct PitchResponseRecord {
     pub response: PitchResponse,
 }
 
-fn path_in(study: &Path) -> PathBuf {
+pub(super) fn path_in(study: &Path) -> PathBuf {
     study.join("probes.json")
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 pub(super) const WHAT: &str = "the series";
 pub(super) const BUFFER: usize = 1 << 18;
-const FIX: &str = "start the run afresh, with --overwrite in place of --resume";
+const FIX: &str = "start the run anew: --run NAME --overwrite in place of --resume";
 
 /// Writes rows as they come; the file bears its name once it is whole, until then `.part` after it.
 ///

@@ -1,7 +1,7 @@
 //! The series of a run read back: whole, or no more of it than is wanted.
 
 use super::series::{BUFFER, WHAT};
-use crate::FileError;
+use crate::{FileError, atomic};
 use basis::records::Series;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, ErrorKind};
@@ -119,7 +119,7 @@ pub fn read_series(path: &Path, wanted: impl Fn(&str) -> bool) -> Result<Series,
 /// The series at `path` behind its first line, and that line.
 fn started(path: &Path) -> Result<(BufReader<File>, String), FileError> {
     let failed = |source| refused_reading(path, source);
-    let mut reader = BufReader::with_capacity(BUFFER, File::open(path).map_err(failed)?);
+    let mut reader = BufReader::with_capacity(BUFFER, atomic::open(path).map_err(failed)?);
     let mut line = String::new();
     reader.read_line(&mut line).map_err(failed)?;
     Ok((reader, line))

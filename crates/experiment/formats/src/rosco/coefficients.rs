@@ -3,6 +3,9 @@
 use crate::turbine_file::TurbineFileError;
 use control::baseline::{CoefficientTable, CoefficientTableError};
 
+/// Greatest number that is an angle (deg), a ratio or a coefficient.
+const GREATEST: f64 = 1000.0;
+
 /// What a line of numbers belongs to, by the remark above it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Part {
@@ -97,9 +100,10 @@ fn rows(file: &str, text: &str) -> Result<Vec<Row>, TurbineFileError> {
         }
         let words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|w| !w.is_empty());
         let number = |word: &str| {
-            let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
+            let number = word.parse::<f64>().ok().filter(|number| number.abs() <= GREATEST);
             number.ok_or_else(|| {
-                error(file, index + 1, "coefficients", "a number", &format!("\"{word}\""))
+                let expected = format!("a number from -{GREATEST} to {GREATEST}");
+                error(file, index + 1, "coefficients", &expected, &format!("\"{word}\""))
             })
         };
         let numbers = words.map(number).collect::<Result<Vec<f64>, _>>()?;

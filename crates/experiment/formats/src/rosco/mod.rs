@@ -6,11 +6,11 @@ mod limits;
 
 pub use coefficients::parse_coefficients;
 
+use crate::atomic;
 use crate::openfast::deck::Deck;
 use crate::openfast::discon;
 use crate::turbine_file::{Controller, TurbineFileError, controller_of};
 use control::baseline::Constants;
-use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -42,18 +42,21 @@ pub struct Discon {
 /// is there but cannot be read.
 pub fn read(path: &Path) -> Result<Discon, TurbineFileError> {
     // Decks carry degree signs in whatever encoding their author's editor had.
-    let bytes = fs::read(path).map_err(|source| TurbineFileError::unreadable(path, source))?;
+    let bytes =
+        atomic::read_whole(path).map_err(|source| TurbineFileError::unreadable(path, source))?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let deck = Deck::parse(path, &text);
-    let above_zero = |key: &'static str| {
+    let above_zero = |key: &'static str, most: f64| {
         let number = deck.number(key)?;
-        if number > 0.0 { Ok(number) } else { Err(deck.value(key)?.error("a number above zero")) }
+        let expected = || format!("a number above zero, at most {most}");
+        let fits = number > 0.0 && number <= most;
+        if fits { Ok(number) } else { Err(deck.value(key)?.error(&expected())) }
     };
-    let gear_ratio = above_zero("WE_GearboxRatio")?;
-    let radius = above_zero("WE_BladeRadius")?;
-    let efficiency = above_zero("VS_GenEff")? / 100.0;
-    let inertia = above_zero("WE_Jtot")?;
-    let air_density = above_zero("WE_RhoAir")?;
+    let gear_ratio = above_zero("WE_GearboxRatio", 1e3)?;
+    let radius = above_zero("WE_BladeRadius", 300.0)?;
+    let efficiency = above_zero("VS_GenEff", 100.0)? / 100.0;
+    let inertia = above_zero("WE_Jtot", 1e12)?;
+    let air_density = above_zero("WE_RhoAir", 5.0)?;
     let controller: Controller = discon::controller(&deck, gear_ratio, deck.name().to_owned())?;
     limits::check(&controller, &deck, &path.display().to_string())?;
     let mut constants = controller_of(&controller, radius, efficiency);
@@ -61,7 +64,7 @@ pub fn read(path: &Path) -> Result<Discon, TurbineFileError> {
     if deck.has("PerfFileName") {
         let named = deck.value("PerfFileName")?;
         let place = named.path();
-        match fs::read(&place) {
+        match atomic::read_whole(&place) {
             Ok(bytes) => {
                 table_text = String::from_utf8_lossy(&bytes).into_owned();
                 let table = parse_coefficients(&place.display().to_string(), &table_text)?;

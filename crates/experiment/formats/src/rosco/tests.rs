@@ -220,7 +220,7 @@ fn errors_name_file_line_key_and_what_was_expected() {
 fn figures_that_no_controller_can_have_are_refused_by_their_own_keys() {
     for (from, to, place, expected) in [
         ("1100.               ! VS_MaxTq", "900. ! VS_MaxTq", "line 41, VS_MaxTq", "50000 to"),
-        ("-30.                ! VS_KP", "30. ! VS_KP", "VS_KP", "torque_proportional zero or more"),
+        ("-30.                ! VS_KP", "30. ! VS_KP", "VS_KP", "torque_proportional 0 to 1e12"),
         ("0.05 0.1 0.2        ! PC", "0.05 0.2 0.1 ! PC", "PC_GS_angles", "increases"),
         ("0.25                ! F_VS", "0.0 ! F_VS", "F_VSRefSpdCornerFreq", "above zero"),
         ("0.1                 ! FA_HPF", "0.0 ! FA_HPF", "FA_HPFCornerFreq", "above zero"),
@@ -252,7 +252,11 @@ fn a_table_that_does_not_fit_is_refused_with_its_line() {
     for (from, to, place) in [
         ("0.41  0.46  0.43\n", "", "line 11, power coefficient: expected 2 rows"),
         ("0.41  0.46  0.43", "0.41  0.46", "line 12, power coefficient: expected 3 numbers"),
-        ("0.75  0.80", "0.75  much", "line 17, coefficients: expected a number, found \"much\""),
+        (
+            "0.75  0.80",
+            "0.75  much",
+            "line 17, coefficients: expected a number from -1000 to 1000, found \"much\"",
+        ),
         ("-1.0   0.0", "-1.0  -1.0", "line 3, pitch angles: expected increasing numbers"),
         ("# TSR vector", "# ratios", "tip-speed ratios: expected a line"),
         ("0.70  0.72", "0.70  nan", "line 16, coefficients: expected a number"),

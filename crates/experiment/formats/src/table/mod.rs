@@ -17,6 +17,9 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use text::TextRows;
 
+/// Greatest value that is taken for a measurement, in any unit; squares and sums of such are finite.
+const GREATEST: f64 = 1e30;
+
 /// A table being read.
 #[derive(Debug)]
 pub struct TableReader {
@@ -107,7 +110,7 @@ impl TableReader {
     /// Reads the next row into `row`: time (s), then the selected channels. False at the end of the table.
     ///
     /// # Errors
-    /// [`FileError`] with the place: a row cut short, what is not a number or not finite, time that runs
+    /// [`FileError`] with the place: a row cut short, what is not a number, not finite or beyond ±1e30, time that runs
     /// backwards.
     ///
     /// # Panics
@@ -119,7 +122,9 @@ impl TableReader {
             Rows::Text(rows) => rows.read(&self.path, &self.head.columns, &self.wanted, row)?,
         };
         if there {
-            if let Some(slot) = row.iter().position(|value| !value.is_finite()) {
+            // Not so of what is not a number, too.
+            let is_sound = |value: &f64| value.abs() <= GREATEST;
+            if let Some(slot) = row.iter().position(|value| !is_sound(value)) {
                 return Err(self.not_finite(slot, row));
             }
             if row[0] < self.latest_time {
@@ -134,8 +139,10 @@ impl TableReader {
         let column = &self.head.columns[self.wanted[slot]];
         let place = self.place();
         let time = if slot > 0 { format!(" ({} s)", row[0]) } else { String::new() };
-        let problem =
-            format!("{place}{time}: {} is {}, not a finite number", column.name, row[slot]);
+        let problem = format!(
+            "{place}{time}: {} is {:?}, not a finite number within ±{GREATEST:e}",
+            column.name, row[slot]
+        );
         let fix = "find out why the program that wrote it had no number there";
         FileError::content(WHAT, &self.path, problem, fix)
     }

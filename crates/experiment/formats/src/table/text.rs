@@ -1,7 +1,7 @@
 //! Rows of numbers in text.
 
 use super::head::{Column, WHAT};
-use crate::FileError;
+use crate::{FileError, atomic};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::ops::Range;
@@ -38,7 +38,7 @@ pub(crate) struct TextRows {
 
 impl TextRows {
     pub(crate) fn open(path: &Path) -> Result<Self, FileError> {
-        let file = File::open(path).map_err(|e| FileError::system("read", WHAT, path, e))?;
+        let file = atomic::open(path).map_err(|e| FileError::system("read", WHAT, path, e))?;
         Ok(Self {
             reader: BufReader::with_capacity(BUFFER, file),
             line: Vec::new(),

@@ -3,7 +3,8 @@
 use super::controller::{self, controller_of, from_rpm};
 use super::document::{self, Document};
 use super::error::{Place, Step, TurbineFileError};
-use super::{TurbineFile, document as file};
+use super::operation::operation_of;
+use super::{TurbineFile, document as file, ranges};
 use basis::Vector3;
 use basis::blades::MAXIMUM_BLADES;
 use turbine::actuators::PitchActuator;
@@ -23,6 +24,7 @@ const SHAPE_TOLERANCE: f64 = 2e-3;
 const END_TOLERANCE: f64 = 1e-4;
 
 pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> {
+    ranges::check(document, place)?;
     let missing = |group: &'static str| {
         let fix =
             format!("add [{group}]; `wakemix turbine show nrel-5mw --file` prints a complete one");
@@ -53,16 +55,17 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         polars,
         blade_structure: blade_structure_of(structure, length, place)?,
         tower: tower_of(tower, rotor, place)?,
-        hub: hub_of(hub, place)?,
-        nacelle: nacelle_of(nacelle, place)?,
-        drive_train: drive_train_of(drive_train, place)?,
+        hub: hub_of(hub),
+        nacelle: nacelle_of(nacelle),
+        drive_train: drive_train_of(drive_train),
         pitch_actuator: actuator_of(actuator, place)?,
+        operation: document.operation.as_ref().map(|o| operation_of(o, place)).transpose()?,
         rated_power: 1e3 * controller_group.rated_power_kw,
         rated_rotor_speed: from_rpm(controller_group.rated_rotor_speed_rpm),
     };
     controller::check(controller_group, place)?;
     let radius = definition.rotor_radius();
-    let sources = [
+    let mut sources = vec![
         ("rotor", &rotor.source),
         ("blade", &blade.source),
         ("blade_structure", &structure.source),
@@ -74,12 +77,16 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         ("controller", &controller_group.source),
         ("airfoils", &airfoils.source),
     ];
+    sources.extend(document.operation.as_ref().map(|group| ("operation", &group.source)));
     check_sources(&sources, place)?;
     Ok(TurbineFile {
         title: document.title.clone(),
         definition,
         controller: controller_of(controller_group, radius, drive_train.generator_efficiency),
-        sources: sources.map(|(group, source)| (group.to_owned(), source.clone())).into(),
+        sources: sources
+            .into_iter()
+            .map(|(group, source)| (group.to_owned(), source.clone()))
+            .collect(),
     })
 }
 
@@ -96,16 +103,11 @@ fn check_sources(sources: &[(&'static str, &String)], place: &Place) -> Checked<
 
 fn rotor_of(rotor: &file::Rotor, place: &Place) -> Checked<RotorGeometry> {
     let at = |key| [Key("rotor"), Key(key)];
-    place.positive(&at("hub_radius"), rotor.hub_radius)?;
     if rotor.tip_radius <= rotor.hub_radius {
         let expected = format!("more than hub_radius, {} m", rotor.hub_radius);
         let fix = "both count from the rotor apex, along the blade";
         return Err(place.error(&at("tip_radius"), expected, rotor.tip_radius.to_string(), fix));
     }
-    place.within(&at("tip_radius"), rotor.tip_radius, 0.1, 300.0, " m")?;
-    place.within(&at("precone_deg"), rotor.precone_deg, -30.0, 30.0, "°")?;
-    place.within(&at("shaft_tilt_deg"), rotor.shaft_tilt_deg, -30.0, 30.0, "°")?;
-    place.within(&at("overhang"), rotor.overhang, -50.0, 50.0, " m")?;
     if rotor.hub_height < rotor.tip_radius {
         let expected = format!("more than tip_radius, {} m", rotor.tip_radius);
         let fix = "raise the hub, or the blades meet the ground";
@@ -150,8 +152,6 @@ fn stations_of(
     let station_of = |(row, station): (usize, &document::Station)| {
         let (span, chord, twist, prebend, sweep, polar_name) = station;
         let path = [Key("blade"), Key("stations"), Row(row)];
-        place.positive(&path, *chord)?;
-        place.within(&path, *twist, -90.0, 90.0, "° twist")?;
         place.within(&path, *prebend, -0.3 * length, 0.3 * length, " m prebend")?;
         place.within(&path, *sweep, -0.3 * length, 0.3 * length, " m sweep")?;
         let polar = airfoils.polar.iter().position(|polar| polar.name == *polar_name);
@@ -225,12 +225,11 @@ fn unsteady_of(unsteady: &document::Unsteady) -> aero::UnsteadyConstants {
 
 fn mode_of(mode: &file::Mode, group: &str, key: &str, place: &Place) -> Checked<Mode> {
     let sum: f64 = mode.coefficients.iter().sum();
-    if (sum - 1.0).abs() > SHAPE_TOLERANCE || !sum.is_finite() {
+    if (sum - 1.0).abs() > SHAPE_TOLERANCE {
         let fix = "divide the coefficients by their sum, so that the free end moves by one";
         let path = [Key(group), Key(key)];
         return Err(place.error(&path, "coefficients that add up to 1", format!("{sum:.6}"), fix));
     }
-    place.within(&[Key(group), Key(key)], mode.damping_ratio, 0.0, 0.2, " damping ratio")?;
     Ok(Mode { coefficients: mode.coefficients, damping_ratio: mode.damping_ratio })
 }
 
@@ -242,22 +241,16 @@ fn blade_structure_of(
     let spans: Vec<f64> = structure.sections.iter().map(|section| section[0]).collect();
     place.rising("blade_structure", "sections", &spans, 2, true)?;
     spans_end_at(place, [Key("blade_structure"), Key("sections")], &spans, length)?;
-    let section_of = |(row, section): (usize, &[f64; 5])| {
-        let path = [Key("blade_structure"), Key("sections"), Row(row)];
-        for value in &section[2..] {
-            place.positive(&path, *value)?;
-        }
-        Ok(BladeSection {
-            span: section[0],
-            twist: section[1].to_radians(),
-            mass: section[2],
-            flap_stiffness: section[3],
-            edge_stiffness: section[4],
-        })
+    let section_of = |section: &[f64; 5]| BladeSection {
+        span: section[0],
+        twist: section[1].to_radians(),
+        mass: section[2],
+        flap_stiffness: section[3],
+        edge_stiffness: section[4],
     };
     let mode = |mode, key| mode_of(mode, "blade_structure", key, place);
     Ok(BladeStructure {
-        sections: structure.sections.iter().enumerate().map(section_of).collect::<Checked<_>>()?,
+        sections: structure.sections.iter().map(section_of).collect(),
         flap_modes: [
             mode(&structure.flap_mode_1, "flap_mode_1")?,
             mode(&structure.flap_mode_2, "flap_mode_2")?,
@@ -288,31 +281,24 @@ fn tower_of(tower: &file::Tower, rotor: &file::Rotor, place: &Place) -> Checked<
     place.rising("tower", "profile", &heights, 2, true)?;
     let section_heights: Vec<f64> = tower.sections.iter().map(|row| row[0]).collect();
     place.rising("tower", "sections", &section_heights, 2, true)?;
-    let profile_of = |(row, profile): (usize, &[f64; 3])| {
-        let path = [Key("tower"), Key("profile"), Row(row)];
-        place.positive(&path, profile[1])?;
-        place.within(&path, profile[2], 0.0, 3.0, " drag coefficient")?;
-        Ok(TowerProfile { height: profile[0], diameter: profile[1], drag_coefficient: profile[2] })
+    let profile_of = |profile: &[f64; 3]| TowerProfile {
+        height: profile[0],
+        diameter: profile[1],
+        drag_coefficient: profile[2],
     };
-    let section_of = |(row, section): (usize, &[f64; 4])| {
-        let path = [Key("tower"), Key("sections"), Row(row)];
-        for value in &section[1..] {
-            place.positive(&path, *value)?;
-        }
-        Ok(TowerSection {
-            height: section[0],
-            mass: section[1],
-            fore_aft_stiffness: section[2],
-            side_to_side_stiffness: section[3],
-        })
+    let section_of = |section: &[f64; 4]| TowerSection {
+        height: section[0],
+        mass: section[1],
+        fore_aft_stiffness: section[2],
+        side_to_side_stiffness: section[3],
     };
     let mode = |mode, key| mode_of(mode, "tower", key, place);
     Ok(Tower {
         base_height: tower.base_height,
         top_height: tower.top_height,
         top_to_shaft: tower.top_to_shaft,
-        profile: tower.profile.iter().enumerate().map(profile_of).collect::<Checked<_>>()?,
-        sections: tower.sections.iter().enumerate().map(section_of).collect::<Checked<_>>()?,
+        profile: tower.profile.iter().map(profile_of).collect(),
+        sections: tower.sections.iter().map(section_of).collect(),
         fore_aft_modes: [
             mode(&tower.fore_aft_mode_1, "fore_aft_mode_1")?,
             mode(&tower.fore_aft_mode_2, "fore_aft_mode_2")?,
@@ -324,62 +310,33 @@ fn tower_of(tower: &file::Tower, rotor: &file::Rotor, place: &Place) -> Checked<
     })
 }
 
-fn hub_of(hub: &file::Hub, place: &Place) -> Checked<Hub> {
-    place.positive(&[Key("hub"), Key("mass")], hub.mass)?;
-    place.positive(&[Key("hub"), Key("inertia")], hub.inertia)?;
-    Ok(Hub { mass: hub.mass, inertia: hub.inertia })
+fn hub_of(hub: &file::Hub) -> Hub {
+    Hub { mass: hub.mass, inertia: hub.inertia }
 }
 
-fn nacelle_of(nacelle: &file::Nacelle, place: &Place) -> Checked<Nacelle> {
-    place.positive(&[Key("nacelle"), Key("mass")], nacelle.mass)?;
-    place.positive(&[Key("nacelle"), Key("yaw_inertia")], nacelle.yaw_inertia)?;
-    place.not_negative(&[Key("nacelle"), Key("yaw_bearing_mass")], nacelle.yaw_bearing_mass)?;
-    Ok(Nacelle {
+fn nacelle_of(nacelle: &file::Nacelle) -> Nacelle {
+    Nacelle {
         mass: nacelle.mass,
         yaw_inertia: nacelle.yaw_inertia,
         center_of_mass: Vector3::from_array(nacelle.center_of_mass),
         yaw_bearing_mass: nacelle.yaw_bearing_mass,
-    })
+    }
 }
 
-fn drive_train_of(drive_train: &file::DriveTrain, place: &Place) -> Checked<DriveTrain> {
-    let at = |key| [Key("drive_train"), Key(key)];
-    place.within(&at("gear_ratio"), drive_train.gear_ratio, 1.0, 1000.0, "")?;
-    place.positive(&at("generator_inertia"), drive_train.generator_inertia)?;
-    place.within(
-        &at("gearbox_efficiency"),
-        drive_train.gearbox_efficiency,
-        0.5,
-        1.0,
-        ", a share",
-    )?;
-    place.within(
-        &at("generator_efficiency"),
-        drive_train.generator_efficiency,
-        0.5,
-        1.0,
-        ", a share",
-    )?;
-    place.positive(&at("stiffness"), drive_train.stiffness)?;
-    place.not_negative(&at("damping"), drive_train.damping)?;
-    Ok(DriveTrain {
+fn drive_train_of(drive_train: &file::DriveTrain) -> DriveTrain {
+    DriveTrain {
         gear_ratio: drive_train.gear_ratio,
         generator_inertia: drive_train.generator_inertia,
         gearbox_efficiency: drive_train.gearbox_efficiency,
         generator_efficiency: drive_train.generator_efficiency,
         stiffness: drive_train.stiffness,
         damping: drive_train.damping,
-    })
+    }
 }
 
 fn actuator_of(actuator: &file::PitchActuator, place: &Place) -> Checked<PitchActuator> {
-    let at = |key| [Key("pitch_actuator"), Key(key)];
-    place.positive(&at("natural_frequency"), actuator.natural_frequency)?;
-    place.within(&at("damping_ratio"), actuator.damping_ratio, 0.05, 5.0, "")?;
-    place.within(&at("maximum_rate_deg_s"), actuator.maximum_rate_deg_s, 0.01, 100.0, "°/s")?;
-    place.within(&at("minimum_pitch_deg"), actuator.minimum_pitch_deg, -90.0, 90.0, "°")?;
     let (low, high) = (actuator.minimum_pitch_deg, actuator.maximum_pitch_deg);
-    place.within(&at("maximum_pitch_deg"), high, low, 180.0, "°")?;
+    place.within(&[Key("pitch_actuator"), Key("maximum_pitch_deg")], high, low, 180.0, "°")?;
     Ok(PitchActuator {
         natural_frequency: actuator.natural_frequency,
         damping_ratio: actuator.damping_ratio,

@@ -1,87 +1,27 @@
-//! The controller's constants: limits of what the file may hold, and their form in SI.
+//! The controller's constants: what ties them to one another, and their form in SI.
 
 use super::document::{self, Controller};
-use super::error::{
-    Place,
-    Step::{Key, Row},
-    TurbineFileError,
-};
+use super::error::{Place, Step::Key, TurbineFileError};
 use control::baseline::{
     Constants, IndividualPitch, MAXIMUM_NOTCHES, MinimumPitch, Notch, PitchFloor, PitchGains,
     SetPointSmoothing, TorqueControl, TorqueGains, TowerDamping, WIND_SPEED_FILTER_CORNER,
 };
 use std::f64::consts::PI;
 
-/// What the group `controller` may hold.
+/// What the group `controller` may hold beyond what holds for each of its numbers.
 pub(super) fn check(controller: &Controller, place: &Place) -> Result<(), TurbineFileError> {
     let at = |key| [Key("controller"), Key(key)];
-    place.within(&at("rated_power_kw"), controller.rated_power_kw, 1e-3, 1e5, " kW")?;
-    place.within(
-        &at("rated_rotor_speed_rpm"),
-        controller.rated_rotor_speed_rpm,
-        0.1,
-        2000.0,
-        " rpm",
-    )?;
     let rated = controller.rated_rotor_speed_rpm;
-    place.within(
-        &at("minimum_rotor_speed_rpm"),
-        controller.minimum_rotor_speed_rpm,
-        0.0,
-        rated,
-        " rpm",
-    )?;
-    place.within(
-        &at("optimal_tip_speed_ratio"),
-        controller.optimal_tip_speed_ratio,
-        1.0,
-        20.0,
-        "",
-    )?;
-    let positive = [
-        ("torque_gain", controller.torque_gain),
-        ("rated_torque", controller.rated_torque),
-        ("maximum_torque_rate", controller.maximum_torque_rate),
-        ("maximum_pitch_rate_deg_s", controller.maximum_pitch_rate_deg_s),
-        ("speed_filter_corner", controller.speed_filter_corner),
-    ];
-    for (key, value) in positive {
-        place.positive(&at(key), value)?;
-    }
-    place.not_negative(&at("minimum_torque"), controller.minimum_torque)?;
-    place.within(
-        &at("maximum_torque"),
-        controller.maximum_torque,
-        controller.rated_torque,
-        1e10,
-        " N m",
-    )?;
-    place.not_negative(&at("torque_proportional"), controller.torque_proportional)?;
-    place.not_negative(&at("torque_integral"), controller.torque_integral)?;
-    place.within(&at("fine_pitch_deg"), controller.fine_pitch_deg, -30.0, 30.0, "°")?;
+    let minimum = controller.minimum_rotor_speed_rpm;
+    place.within(&at("minimum_rotor_speed_rpm"), minimum, 0.0, rated, " rpm")?;
+    let (least, most) = (controller.rated_torque, controller.maximum_torque);
+    place.within(&at("maximum_torque"), most, least, 1e10, " N m")?;
     let fine = controller.fine_pitch_deg;
     place.within(&at("maximum_pitch_deg"), controller.maximum_pitch_deg, fine, 180.0, "°")?;
     let speeds: Vec<f64> = controller.minimum_pitch.iter().map(|row| row[0]).collect();
     place.rising("controller", "minimum_pitch", &speeds, 0, true)?;
     let pitches: Vec<f64> = controller.pitch_gains.iter().map(|row| row[0]).collect();
     place.rising("controller", "pitch_gains", &pitches, 1, true)?;
-    let smoothing = &controller.set_point_smoothing;
-    let at = |key| [Key("controller"), Key("set_point_smoothing"), Key(key)];
-    place.not_negative(&at("torque_shift"), smoothing.torque_shift)?;
-    place.not_negative(&at("pitch_shift"), smoothing.pitch_shift)?;
-    place.positive(&at("filter_corner"), smoothing.filter_corner)?;
-    optional(controller, place)
-}
-
-/// What the keys may hold that a controller can do without.
-fn optional(controller: &Controller, place: &Place) -> Result<(), TurbineFileError> {
-    let at = |key| [Key("controller"), Key(key)];
-    if let Some(damping) = controller.speed_filter_damping {
-        place.within(&at("speed_filter_damping"), damping, 0.05, 5.0, "")?;
-    }
-    if let Some(corner) = controller.wind_speed_filter_corner {
-        place.positive(&at("wind_speed_filter_corner"), corner)?;
-    }
     if controller.speed_notches.len() > MAXIMUM_NOTCHES {
         return Err(place.error(
             &at("speed_notches"),
@@ -90,29 +30,10 @@ fn optional(controller: &Controller, place: &Place) -> Result<(), TurbineFileErr
             "leave out the notches that matter least",
         ));
     }
-    for (row, [frequency, numerator, denominator]) in controller.speed_notches.iter().enumerate() {
-        let at = [Key("controller"), Key("speed_notches"), Row(row)];
-        place.positive(&at, *frequency)?;
-        place.not_negative(&at, *numerator)?;
-        place.positive(&at, *denominator)?;
-    }
-    if let Some(damping) = &controller.tower_damping {
-        let at = |key| [Key("controller"), Key("tower_damping"), Key(key)];
-        place.not_negative(&at("gain"), damping.gain)?;
-        place.positive(&at("high_pass_corner"), damping.high_pass_corner)?;
-        place.within(&at("limit_deg"), damping.limit_deg, 0.0, 90.0, "°")?;
-    }
     if let Some(individual) = &controller.individual_pitch {
-        let at = |key| [Key("controller"), Key("individual_pitch"), Key(key)];
-        place.not_negative(&at("proportional"), individual.proportional)?;
-        place.not_negative(&at("integral"), individual.integral)?;
-        if let Some(offset) = individual.azimuth_offset_deg {
-            place.within(&at("azimuth_offset_deg"), offset, -360.0, 360.0, "°")?;
-        }
-        place.within(&at("limit_deg"), individual.limit_deg, 0.0, 90.0, "°")?;
         let [start, full] = individual.ramp;
-        place.not_negative(&at("ramp"), start)?;
-        place.within(&at("ramp"), full, start, 1e3, " m/s")?;
+        let ramp = [Key("controller"), Key("individual_pitch"), Key("ramp")];
+        place.within(&ramp, full, start, 1e3, " m/s")?;
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! The file as it is written: one struct per group, units in the keys where they are not SI.
 
+use super::operation::Operation;
 use serde::{Deserialize, Serialize};
 
 /// A turbine file. Groups may be missing while a turbine is being put together; [`super::parse`] asks for
@@ -29,6 +30,8 @@ pub struct Document {
     pub drive_train: Option<DriveTrain>,
     /// Pitch actuators.
     pub pitch_actuator: Option<PitchActuator>,
+    /// Between which mean wind speeds it works; not every source tells.
+    pub operation: Option<Operation>,
     /// Constants of torque and pitch control.
     pub controller: Option<Controller>,
     /// Polars.

@@ -73,6 +73,9 @@ impl TurbineFileError {
     pub(super) fn syntax(file: &str, text: &str, error: &toml::de::Error) -> Self {
         let place = error.span().map_or(text.len(), |span| span.start);
         let message = error.message().trim().replace('\n', "; ");
+        // Of a value, the reader says what it is, and not whose.
+        let key = if message.starts_with("invalid") { key_at(text, place) } else { String::new() };
+        let message = if key.is_empty() { message } else { format!("{key}: {message}") };
         let fix = if message.starts_with("unknown field") {
             "correct or remove this key; `wakemix turbine show nrel-5mw --file` prints a complete one"
         } else if message.starts_with("missing field") {
@@ -91,6 +94,23 @@ impl TurbineFileError {
 
 fn place(line: usize) -> String {
     if line == 0 { String::new() } else { format!(", line {line}") }
+}
+
+/// The key whose value stands at byte number `place` of `text`, as a path through the file; empty where none
+/// does, and where the text cannot be read that far.
+fn key_at(text: &str, place: usize) -> String {
+    let Ok(root) = DeTable::parse(text) else { return String::new() };
+    let (mut table, mut path) = (root.get_ref(), String::new());
+    loop {
+        let holds = |value: &toml::Spanned<DeValue>| value.span().contains(&place);
+        let Some((key, value)) = table.iter().find(|(_, value)| holds(value)) else { return path };
+        path += if path.is_empty() { "" } else { "." };
+        path += key.get_ref();
+        match value.get_ref() {
+            DeValue::Table(inner) => table = inner,
+            _ => return path,
+        }
+    }
 }
 
 /// Line (from 1) of byte number `place` of `text`.
@@ -191,24 +211,8 @@ impl Place<'_> {
         ))
     }
 
-    /// Nothing when `value` lies above zero.
-    pub(super) fn positive(&self, path: &[Step], value: f64) -> Result<(), TurbineFileError> {
-        if value.is_finite() && value > 0.0 {
-            return Ok(());
-        }
-        Err(self.error(path, "a number above zero", value.to_string(), "check figure and unit"))
-    }
-
-    /// Nothing when `value` does not lie below zero.
-    pub(super) fn not_negative(&self, path: &[Step], value: f64) -> Result<(), TurbineFileError> {
-        if value.is_finite() && value >= 0.0 {
-            return Ok(());
-        }
-        Err(self.error(path, "zero or more", value.to_string(), "check figure and unit"))
-    }
-
-    /// Nothing when the first `column` of a table increases, from row to row where `strictly`, and has
-    /// `least` rows or more.
+    /// Nothing when the first `column` of a table increases, from row to row where `strictly`, and has `least`
+    /// rows or more.
     pub(super) fn rising(
         &self,
         group: &str,

@@ -5,6 +5,8 @@ mod check;
 mod controller;
 mod document;
 mod error;
+mod operation;
+mod ranges;
 mod text;
 mod write;
 mod write_controller;
@@ -16,10 +18,12 @@ pub use document::{
     TorqueControl, Tower, TowerDamping, Unsteady,
 };
 pub use error::TurbineFileError;
+pub use operation::Operation;
 pub use write::{Written, write};
 
+use crate::atomic;
 use control::baseline::Constants;
-use std::fs;
+use std::io;
 use std::path::Path;
 use turbine::Definition;
 
@@ -63,7 +67,9 @@ pub(crate) fn check_controller(
     controller: &Controller,
     file: &str,
 ) -> Result<(), TurbineFileError> {
-    controller::check(controller, &error::Place { file, text: "" })
+    let place = error::Place { file, text: "" };
+    ranges::check_controller(controller, &place)?;
+    controller::check(controller, &place)
 }
 
 /// The turbine in the file at `path`.
@@ -71,8 +77,9 @@ pub(crate) fn check_controller(
 /// # Errors
 /// As [`parse`], and when the file cannot be read.
 pub fn read(path: &Path) -> Result<TurbineFile, TurbineFileError> {
-    let text =
-        fs::read_to_string(path).map_err(|source| TurbineFileError::unreadable(path, source))?;
+    let text = atomic::read_whole(path)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other))
+        .map_err(|source| TurbineFileError::unreadable(path, source))?;
     parse(&path.display().to_string(), &text)
 }
 

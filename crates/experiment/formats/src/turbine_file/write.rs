@@ -4,6 +4,7 @@ use super::document::{
     Airfoils, Blade, BladeStructure, Document, DriveTrain, Hub, Nacelle, PitchActuator, PolarTable,
     Rotor, Tower, Unsteady,
 };
+use super::operation::Operation;
 use super::text::{Text, number, numbers, quoted};
 use super::write_controller::controller;
 
@@ -40,6 +41,7 @@ pub fn write(document: &Document) -> Written {
     out.group("nacelle", &document.nacelle, nacelle);
     out.group("drive_train", &document.drive_train, drive_train);
     out.group("pitch_actuator", &document.pitch_actuator, pitch_actuator);
+    operation(&mut out, document.operation.as_ref());
     out.group("controller", &document.controller, controller);
     out.group("airfoils", &document.airfoils, airfoils);
     let Text { text, missing, .. } = out;
@@ -133,6 +135,24 @@ fn pitch_actuator(out: &mut Text, actuator: &PitchActuator) {
     out.number("maximum_rate_deg_s", actuator.maximum_rate_deg_s, "");
     out.number("minimum_pitch_deg", actuator.minimum_pitch_deg, "");
     out.number("maximum_pitch_deg", actuator.maximum_pitch_deg, "");
+}
+
+/// The group that not every source tells of: a comment stands in its place then, and nothing is missing.
+fn operation(out: &mut Text, operation: Option<&Operation>) {
+    let Some(operation) = operation else {
+        out.line("");
+        out.line("# [operation] is not in the source: with it, cases are held against cut-in and cut-out;");
+        out.line(
+            "# source, cut_in_wind_speed and cut_out_wind_speed, mean wind at hub height (m/s)",
+        );
+        return;
+    };
+    let write = |out: &mut Text, group: &Operation| {
+        out.text("source", &group.source);
+        out.number("cut_in_wind_speed", group.cut_in_wind_speed, "mean wind at hub height");
+        out.number("cut_out_wind_speed", group.cut_out_wind_speed, "");
+    };
+    out.group("operation", &Some(operation.clone()), write);
 }
 
 fn airfoils(out: &mut Text, airfoils: &Airfoils) {

@@ -19,7 +19,6 @@ use crate::FileError;
 use crate::atomic::{self, AtomicFile};
 use flow::inflow::{PlaneGrid, Planes};
 use header::{Header, Summary};
-use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
@@ -66,7 +65,7 @@ pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
 /// Planes with the hub height (m).
 fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
     let refused = |source| FileError::system("read", WHAT, path, source);
-    let mut file = File::open(path).map_err(refused)?;
+    let mut file = atomic::open(path).map_err(refused)?;
     let found = file.metadata().map_err(refused)?.len();
     let header = Header::read(path, &mut file, found)?;
     let summary = Summary::beside(path)?;
@@ -112,8 +111,8 @@ fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
         scales,
         from_left: summary.from_left,
     };
-    super::sound(path, WHAT, &packing.grid)?;
     let hub_height = summary.hub_height.unwrap_or(middle);
+    super::sound(path, WHAT, &packing.grid, hub_height)?;
     Ok((PackedPlanes::new(file, path, WHAT, packing), hub_height))
 }
 

@@ -5,14 +5,16 @@
 //! the order in which OpenFAST's InflowWind reads HAWC files: x slowest and in order of arrival, then y from
 //! left to right looking downwind, then z upwards, fastest.
 
+mod header;
+
 use super::blocks::Blocks;
 use super::source::{Outline, Source, whole};
 use super::{FASTEST, StoredBox, in_order_of_arrival};
 use crate::FileError;
 use crate::atomic::{self, AtomicFile};
 use flow::inflow::{InflowError, PlaneGrid, Planes};
+use header::read_header;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -85,16 +87,18 @@ pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
         mean_speeds,
         description,
     } = source.outline();
-    let paths = binaries(path);
-    let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let files = paths.each_ref().map(name);
+    let paths = &files_of(path)[1..];
+    let name = |component: usize| {
+        paths[component].file_name().unwrap_or_default().to_string_lossy().into_owned()
+    };
+    let files = [name(0), name(1), name(2)];
     let create = |component: usize| AtomicFile::create(&paths[component], COMPONENT);
     let mut written = [create(0)?, create(1)?, create(2)?];
     let [n_x, n_y, n_z] = n_points;
     let mut bytes = Vec::with_capacity(4 * n_y * n_z);
     for place in 0..n_x {
         let planes = source.plane(in_order_of_arrival(place, n_x))?;
-        for ((file, plane), path) in written.iter_mut().zip(planes).zip(&paths) {
+        for ((file, plane), path) in written.iter_mut().zip(planes).zip(paths) {
             bytes.clear();
             for y in (0..n_y).rev() {
                 for z in 0..n_z {
@@ -117,10 +121,11 @@ pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
     atomic::write(path, WHAT, format!("{PREFACE}\n{text}").as_bytes())
 }
 
-/// The binaries that are written with the header at `path`.
-pub(super) fn binaries(path: &Path) -> [PathBuf; 3] {
+/// The files of a box whose header is at `path`.
+pub(super) fn files_of(path: &Path) -> Vec<PathBuf> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    ["u", "v", "w"].map(|component| path.with_file_name(format!("{stem}_{component}.bin")))
+    let file = |component| path.with_file_name(format!("{stem}_{component}.bin"));
+    vec![path.to_owned(), file("u"), file("v"), file("w")]
 }
 
 /// The header at `path` and the binaries that it names.
@@ -161,60 +166,6 @@ pub(super) fn stream(path: &Path) -> Result<impl Source + use<>, FileError> {
     };
     let velocity = std::array::from_fn(|_| vec![0.0; n_points[1] * n_points[2]]);
     Ok(HawcSource { components, outline, velocity })
-}
-
-fn read_header(path: &Path) -> Result<Header, FileError> {
-    let text = atomic::read_text(path, WHAT)?;
-    let header: Header = toml::from_str(&text).map_err(|error| {
-        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-        let problem = format!("line {line}: {}", error.message());
-        FileError::content(
-            WHAT,
-            path,
-            problem,
-            "the comments of a header that `wakemix inflow generate` wrote name all keys",
-        )
-    })?;
-    let wrong = |problem: String, fix: &str| Err(FileError::content(WHAT, path, problem, fix));
-    let Layout { n_points, spacing, x_runs, y_runs, .. } = &header.layout;
-    if !matches!(x_runs, Axis::Upwind | Axis::Downwind) {
-        return wrong("box.x_runs is a way along y".into(), "x_runs = \"upwind\" or \"downwind\"");
-    }
-    if !matches!(y_runs, Axis::Left | Axis::Right) {
-        return wrong("box.y_runs is a way along x".into(), "y_runs = \"left\" or \"right\"");
-    }
-    let n_values = n_points.iter().try_fold(4_usize, |bytes, n| bytes.checked_mul(*n));
-    if n_values.is_none_or(|bytes| bytes == 0) {
-        return wrong(
-            format!("box.n_points = {n_points:?} is not a size"),
-            "give the points along x, y, z",
-        );
-    }
-    if !spacing.iter().all(|spacing| spacing.is_finite() && *spacing > 0.0) {
-        return wrong(
-            format!("box.spacing = {spacing:?} is not a distance"),
-            "give metres along x, y, z",
-        );
-    }
-    let wind = &header.wind;
-    for (key, value) in [("hub_speed", wind.hub_speed), ("hub_height", wind.hub_height)] {
-        if !(value.is_finite() && value > 0.0) {
-            return wrong(format!("wind.{key} = {value} is not positive"), "give it in m/s or m");
-        }
-    }
-    if !wind.lowest_height.is_finite() || wind.mean_speeds.iter().any(|speed| !speed.is_finite()) {
-        return wrong("a number under [wind] is not finite".into(), "give numbers");
-    }
-    if wind.mean_speeds.len() != n_points[2] {
-        let found = wind.mean_speeds.len();
-        let needed = n_points[2];
-        return wrong(
-            format!("wind.mean_speeds has {found} speeds for {needed} heights"),
-            "one per height, lowest first",
-        );
-    }
-    super::sound(path, WHAT, &grid_of(&header))?;
-    Ok(header)
 }
 
 /// The file `name` of a component, which must stand beside the header at `path`.
@@ -321,7 +272,7 @@ impl Component {
         let Layout { n_points, x_runs, y_runs, .. } = *layout;
         let [n_x, n_y, n_z] = n_points;
         let refused = |source| FileError::system("read", COMPONENT, path, source);
-        let file = File::open(path).map_err(refused)?;
+        let file = atomic::open(path).map_err(refused)?;
         let found = file.metadata().map_err(refused)?.len();
         let size = n_y * n_z;
         let needed = 4 * (n_x * size) as u64;

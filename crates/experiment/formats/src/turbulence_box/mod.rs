@@ -116,7 +116,7 @@ fn write_from(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     // A folder that is not there is told by the writer.
-    for file in written(path)?.iter().filter(|_| folder.is_dir()) {
+    for file in files_of(path)?.iter().filter(|_| folder.is_dir()) {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         leftovers::remove_abandoned(folder, Some(&name))?;
     }
@@ -135,12 +135,13 @@ pub fn check_name(path: &Path) -> Result<(), FileError> {
     kind(path).map(|_| ())
 }
 
-/// Paths of the files that a box at `path` is written to.
-fn written(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+/// The files that [`write()`] makes for a box called `path`.
+///
+/// # Errors
+/// Those of [`check_name`].
+pub fn files_of(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(match kind(path)? {
-        Kind::Hawc(header) => {
-            std::iter::once(header.clone()).chain(hawc::binaries(&header)).collect()
-        }
+        Kind::Hawc(header) => hawc::files_of(&header),
         Kind::TurbSim => vec![path.to_owned()],
         Kind::Bladed => vec![path.to_owned(), path.with_extension("sum")],
     })
@@ -176,11 +177,32 @@ fn kind(path: &Path) -> Result<Kind, FileError> {
 /// wind would crowd the memory.
 const SPACINGS: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
 
-/// Makes sure that wind can come in over `grid`, which stands in the file of `what` at `path`.
-fn sound(path: &Path, what: &'static str, grid: &PlaneGrid) -> Result<(), FileError> {
+/// Heights of hubs and points that a file may hold (m).
+const HEIGHTS: std::ops::RangeInclusive<f64> = -1e3..=1e4;
+
+/// Makes sure that wind can come in over `grid`, which stands in the file of `what` at `path` with a hub at
+/// `hub_height` (m).
+fn sound(
+    path: &Path,
+    what: &'static str,
+    grid: &PlaneGrid,
+    hub_height: f64,
+) -> Result<(), FileError> {
     let fix = "copy the file again, or make it again";
     let refusal = |problem: String| FileError::content(what, path, problem, fix);
     grid.check().map_err(|error| refusal(error.to_string()))?;
+    if grid.speed > f64::from(FASTEST) {
+        let problem = format!("its mean speed is {:?} m/s; {FASTEST} m/s are the most", grid.speed);
+        return Err(refusal(problem));
+    }
+    for (name, height) in [("hub", hub_height), ("lowest row of points", grid.first[1])] {
+        if !HEIGHTS.contains(&height) {
+            let [least, most] = [HEIGHTS.start(), HEIGHTS.end()];
+            return Err(refusal(format!(
+                "its {name} stands at {height:?} m; {least} to {most} m is the range"
+            )));
+        }
+    }
     let along = grid.speed * grid.interval;
     for (axis, spacing) in ["x", "y", "z"].iter().zip([along, grid.spacing[0], grid.spacing[1]]) {
         if !SPACINGS.contains(&spacing) {
@@ -209,6 +231,8 @@ fn in_order_of_arrival(place: usize, n_x: usize) -> usize {
 
 #[cfg(test)]
 mod conversion_tests;
+#[cfg(test)]
+mod numbers_tests;
 #[cfg(test)]
 mod streaming_tests;
 #[cfg(test)]

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 const WHAT: &str = "a record of wind";
 const BUFFER: usize = 1 << 18;
-const FIX: &str = "start the run afresh, with --overwrite in place of --resume";
+const FIX: &str = "start the run anew: --run NAME --overwrite in place of --resume";
 
 /// Writes planes of wind as they come.
 #[derive(Debug)]

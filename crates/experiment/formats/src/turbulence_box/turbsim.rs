@@ -9,9 +9,8 @@ use super::packed::{PackedPlanes, Packing};
 use super::source::{Outline, Source, each_plane, whole};
 use super::{FASTEST, StoredBox, in_order_of_arrival};
 use crate::FileError;
-use crate::atomic::AtomicFile;
+use crate::atomic::{self, AtomicFile};
 use flow::inflow::{PlaneGrid, Planes};
-use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -22,6 +21,8 @@ const ONCE: i16 = 7;
 const PERIODIC: i16 = 8;
 /// Bytes in front of the description.
 const FIXED_HEADER: usize = 2 + 4 * 4 + 12 * 4 + 4;
+/// Integers per m/s at most: a record that hardly changes has many.
+const STEEPEST: f32 = 1e12;
 /// Characters that TurbSim reserves for the description.
 const LONGEST_DESCRIPTION: usize = 200;
 
@@ -76,7 +77,7 @@ pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
 
 fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
     let refused = |source| FileError::system("read", WHAT, path, source);
-    let mut file = File::open(path).map_err(refused)?;
+    let mut file = atomic::open(path).map_err(refused)?;
     let found = file.metadata().map_err(refused)?.len();
     let header = read_header(path, &mut file, found)?;
     let mut description = vec![0; header.description_length];
@@ -102,7 +103,7 @@ fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
         scales: header.slopes.map(|slope| 1.0 / f64::from(slope)),
         from_left: false,
     };
-    super::sound(path, WHAT, &packing.grid)?;
+    super::sound(path, WHAT, &packing.grid, header.hub_height)?;
     Ok((PackedPlanes::new(file, path, WHAT, packing), header, description))
 }
 
@@ -337,7 +338,8 @@ fn check_scales(slopes: [f32; 3], intercepts: [f32; 3]) -> Result<(), Wrong> {
         ["u", "v", "w"].iter().zip(slopes.into_iter().zip(intercepts))
     {
         let ends = [i16::MIN, i16::MAX].map(|end| (f32::from(end) - intercept) / slope);
-        if !ends.iter().all(|end| end.abs() <= FASTEST) {
+        let is_slope = slope > 0.0 && slope <= STEEPEST;
+        if !is_slope || !ends.iter().all(|end| end.abs() <= FASTEST) {
             let problem = format!(
                 "slope {slope} and intercept {intercept} of {component} give winds of {} to {} m/s",
                 ends[0], ends[1]

@@ -10,8 +10,8 @@ mod tower;
 
 use crate::openfast::ImportOptions;
 use crate::turbine_file::{
-    Controller, Document, DriveTrain, Hub, Nacelle, PitchActuator, Rotor, SetPointSmoothing,
-    TurbineFileError,
+    Controller, Document, DriveTrain, Hub, Nacelle, Operation, PitchActuator, Rotor,
+    SetPointSmoothing, TurbineFileError,
 };
 use node::{File, Node};
 use std::f64::consts::PI;
@@ -61,6 +61,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
         nacelle: elastic(&nacelle).map(|elastic| nacelle_of(&elastic, &source)).transpose()?,
         drive_train: Some(drive_train(&nacelle, &source)?),
         pitch_actuator: pitch_actuator(&root, &source)?,
+        operation: operation(&root, &source)?,
         controller: controller(&root, &assembly, radius, &source)?,
         airfoils: Some(blade.airfoils),
     })
@@ -145,6 +146,20 @@ fn pitch_actuator(root: &Node, source: &str) -> Result<Option<PitchActuator>, Tu
         maximum_rate_deg_s: pitch.number("max_pitch_rate")?.to_degrees(),
         minimum_pitch_deg: pitch.number("min_pitch")?.to_degrees(),
         maximum_pitch_deg: pitch.number("max_pitch")?.to_degrees(),
+    }))
+}
+
+/// Cut-in and cut-out; none where the file does not tell both.
+fn operation(root: &Node, source: &str) -> Result<Option<Operation>, TurbineFileError> {
+    let supervisory = root.optional("control").and_then(|control| control.optional("supervisory"));
+    let Some(supervisory) = supervisory else { return Ok(None) };
+    if supervisory.optional("Vin").is_none() || supervisory.optional("Vout").is_none() {
+        return Ok(None);
+    }
+    Ok(Some(Operation {
+        source: source.to_owned(),
+        cut_in_wind_speed: supervisory.number("Vin")?,
+        cut_out_wind_speed: supervisory.number("Vout")?,
     }))
 }
 

@@ -1,9 +1,9 @@
 //! YAML in which every value knows its line and the path that leads to it.
 
+use crate::atomic;
 use crate::turbine_file::TurbineFileError;
 use saphyr::{LoadableYamlNode, MarkedYaml, YamlData};
 use saphyr_parser::{Event, Parser};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Lists and groups within each other at most (–); turbines have some ten.
@@ -25,7 +25,8 @@ pub(super) struct Node<'a> {
 
 impl File {
     pub(super) fn read(path: &Path) -> Result<Self, TurbineFileError> {
-        let bytes = fs::read(path).map_err(|source| TurbineFileError::unreadable(path, source))?;
+        let bytes = atomic::read_whole(path)
+            .map_err(|source| TurbineFileError::unreadable(path, source))?;
         Ok(Self { path: path.to_owned(), text: String::from_utf8_lossy(&bytes).into_owned() })
     }
 

@@ -75,6 +75,7 @@ pub(super) fn machine() -> Arc<Definition> {
             damping: 1e6,
         },
         pitch_actuator: PitchActuator { minimum_pitch: -0.05, ..base.pitch_actuator },
+        operation: None,
         rated_power: 3e6,
         rated_rotor_speed: 1.4,
         ..base

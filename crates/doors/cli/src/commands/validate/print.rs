@@ -4,22 +4,23 @@ use super::Done;
 use super::record::Made;
 use validation::gate::{Finding, holds};
 use validation::record::Verdict;
-use validation::{Tolerance, VALIDATIONS};
+use validation::{Tolerance, VALIDATIONS, Validation};
 
 /// All validations by name.
-pub(super) fn list() {
-    println!("{:<20} {:>8}  what", "name", "minutes");
-    for validation in VALIDATIONS {
-        println!("{:<20} {:>8}  {}", validation.name, validation.cost, validation.about);
+pub(super) fn list() -> String {
+    let mut text = format!("{:<20} {:>8}  what\n", "name", "minutes");
+    for Validation { name, cost, about, .. } in VALIDATIONS {
+        text += &format!("{name:<20} {cost:>8}  {about}\n");
     }
+    text
 }
 
 /// The rows of a validation, how many are met, fall short, and are not as recorded, and on what day and
 /// machine they were recorded and are made.
-pub(super) fn table(done: &Done) {
+pub(super) fn table(done: &Done) -> String {
     let Done { validation, record, judgements } = done;
-    println!(
-        "{:<64} {:>12} {:>12} {:>10} {:<6} {:<5} record",
+    let mut text = format!(
+        "{:<64} {:>12} {:>12} {:>10} {:<6} {:<5} record\n",
         "what", "measured", "expected", "tolerance", "unit", "met"
     );
     for row in judgements {
@@ -34,22 +35,23 @@ pub(super) fn table(done: &Done) {
         if let (Some(then), Finding::Worse) = (row.recorded, row.finding) {
             record.push_str(&format!(", then {then}"));
         }
-        println!(
-            "{:<64} {measured:>12.6} {:>12.6} {tolerance:>10} {:<6} {met:<5} {record}",
+        text += &format!(
+            "{:<64} {measured:>12.6} {:>12.6} {tolerance:>10} {:<6} {met:<5} {record}\n",
             row.claim, row.expected, row.unit
         );
     }
     let short = judgements.iter().filter(|row| row.verdict == Verdict::Short).count();
     let other = judgements.iter().filter(|row| row.finding != Finding::AsRecorded).count();
     let name = validation.name;
-    println!("{name}: {} rows, {short} fall short, {other} not as recorded", judgements.len());
+    let n_rows = judgements.len();
+    text += &format!("{name}: {n_rows} rows, {short} fall short, {other} not as recorded\n");
+    text += &format!("recorded {}, {}\n", record.date, record.conditions);
     let Made { date, conditions } = Made::here();
-    println!("recorded {}, {}", record.date, record.conditions);
-    println!("now made {date}, {conditions}");
+    text + &format!("now made {date}, {conditions}\n")
 }
 
 /// All rows of all that was repeated, as one JSON object.
-pub(super) fn json(done: &[Done]) {
+pub(super) fn json(done: &[Done]) -> String {
     let Made { date, conditions } = Made::here();
     let made = serde_json::json!({ "date": date, "conditions": conditions });
     let validations: Vec<_> = done
@@ -66,5 +68,5 @@ pub(super) fn json(done: &[Done]) {
         })
         .collect();
     let all = done.iter().all(|done| holds(&done.judgements));
-    println!("{:#}", serde_json::json!({ "as_recorded": all, "validations": validations }));
+    format!("{:#}\n", serde_json::json!({ "as_recorded": all, "validations": validations }))
 }

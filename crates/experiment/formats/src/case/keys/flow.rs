@@ -1,7 +1,7 @@
 //! Keys of `[flow]`: what moves the air, what the kinds of flow solver need, what all need.
 
 use basis::keys::LeftOut::{Otherwise, Value};
-use basis::keys::{Holds, Key, Slip, Table, above, key};
+use basis::keys::{Holds, Key, Slip, Table, from, key};
 use farm::case::Solver;
 use farm::solvers::{SOLVERS, SolverKind};
 use std::sync::{Mutex, PoisonError};
@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 pub(in crate::case) static COMMON: [Key; 2] = [
     key(
         "step",
-        above(0.0, 10.0),
+        from(1e-4, 10.0),
         "s",
         Otherwise("chosen from tip speed and wind speed; 0.02 s in prescribed wind"),
         "Time step of the flow, which is the control interval too.",

@@ -246,3 +246,34 @@ fn a_file_that_is_not_there_or_not_text_is_reported() {
     let error = read(&path, &[]).unwrap_err();
     assert!(error.to_string().contains("byte 1 is not UTF-8 text"), "{error}");
 }
+
+#[test]
+fn a_run_cannot_have_the_name_of_what_a_study_keeps_beside_it() {
+    for name in ["figures", "Figures"] {
+        let told = message("name = \"baseline\"\n", &format!("name = \"{name}\"\n"));
+        let expected = format!("`run.{name}.name` cannot be that: a study's folder has its own");
+        assert!(told.contains(&expected), "{told}");
+    }
+}
+
+#[test]
+fn after_the_first_hundred_problems_no_more_are_looked_for() {
+    let keys: String = (0..100_000).map(|key| format!("spead_{key} = 9\n")).collect();
+    let error =
+        parse("small.toml", &SMALL.replacen("[wind]\n", &format!("[wind]\n{keys}"), 1), &[]);
+    let error = error.unwrap_err();
+    assert_eq!(error.problems().len(), 100);
+    let said = "small.toml cannot be run: 100 of its entries are wrong, or more: the rest is not looked at";
+    assert_eq!(error.to_string(), said);
+}
+
+#[test]
+fn what_is_drawn_of_a_file_cannot_steer_a_terminal() {
+    let text = SMALL.replacen("speed = 9", "speed = 9 # \u{1b}[2J\u{9b}31m é", 1);
+    let error = parse("small.toml", &text, &[]).unwrap_err();
+    let mut drawn = String::new();
+    miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::none())
+        .render_report(&mut drawn, &error)
+        .unwrap();
+    assert!(!drawn.contains(['\u{1b}', '\u{9b}']) && drawn.contains("9 # ?[2J¿31m é"), "{drawn:?}");
+}

@@ -8,6 +8,8 @@ use std::path::Path;
 
 /// Bytes that the longest header takes, and some.
 const LONGEST: u64 = 1024;
+/// Greatest number of a summary that means something: heights in m, intensities in %.
+const GREATEST: f64 = 1e5;
 
 /// What a header says.
 #[derive(Debug)]
@@ -270,25 +272,20 @@ impl Summary {
         let text = atomic::read_text(&path, super::SUMMARY)?;
         let mut intensities = [None; 3];
         let mut repeats = None;
-        for line in text.lines() {
+        for (index, line) in text.lines().enumerate() {
             let upper = line.to_uppercase();
-            // "value  name" in one part of a summary, "name = value" in another.
-            let number = || -> Option<f64> {
-                let part = upper.split_once('=').map_or(upper.as_str(), |(_, value)| value);
-                let number: f64 = part.split_whitespace().next()?.parse().ok()?;
-                number.is_finite().then_some(number)
-            };
+            let number = || number_in(&path, index + 1, line);
             for (component, name) in ["TI(U", "TI(V", "TI(W"].into_iter().enumerate() {
                 if upper.contains(name) {
-                    intensities[component] = number().filter(|percent| *percent >= 0.0);
+                    intensities[component] = number()?.filter(|percent| *percent >= 0.0);
                 }
             }
             if upper.contains("CLOCKWISE") {
                 summary.from_left = upper.trim_start().starts_with('T');
             } else if upper.contains("HUB HEIGHT") && summary.hub_height.is_none() {
-                summary.hub_height = number();
+                summary.hub_height = number()?;
             } else if upper.contains("HEIGHT OFFSET") {
-                summary.height_offset = number().unwrap_or(0.0);
+                summary.height_offset = number()?.unwrap_or(0.0);
             } else if upper.contains("PERIODIC") {
                 repeats = Some(!upper.contains("NON-PERIODIC") && !upper.contains("NOT PERIODIC"));
             }
@@ -299,6 +296,22 @@ impl Summary {
         summary.repeats = repeats.unwrap_or(true);
         Ok(summary)
     }
+}
+
+/// The number in a line of the summary at `path`: `value  name` in one part of it, `name = value` in another;
+/// none where that is a word.
+///
+/// # Errors
+/// [`FileError::Content`] for a number that is not finite, or beyond all that a summary tells of.
+fn number_in(path: &Path, line: usize, text: &str) -> Result<Option<f64>, FileError> {
+    let part = text.split_once('=').map_or(text, |(_, value)| value);
+    let word = part.split_whitespace().next().unwrap_or_default();
+    let Ok(number) = word.parse::<f64>() else { return Ok(None) };
+    if number.abs() <= GREATEST {
+        return Ok(Some(number));
+    }
+    let problem = format!("line {line}: {word} is no number from -{GREATEST} to {GREATEST}");
+    Err(FileError::content(super::SUMMARY, path, problem, "correct the line, or take it away"))
 }
 
 /// The new header, type 4, of the box that `outline` is of, whose integers are scaled with `intensities` (%).

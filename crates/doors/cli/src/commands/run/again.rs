@@ -1,0 +1,101 @@
+//! What there is to do after a study that was stopped: the same command once more.
+
+use super::RunArguments;
+use std::path::Path;
+use wakemix::formats::records;
+
+/// What there is to do after a study that was stopped, with its results in `directory`.
+pub(super) fn interrupted(arguments: &RunArguments, directory: &Path) -> String {
+    if arguments.dry_run {
+        return "interrupted; a dry run leaves nothing to go on with".to_owned();
+    }
+    // What lies there may be of the study that was to be overwritten.
+    let kept = if arguments.overwrite {
+        records::has_checkpoint(directory)
+    } else {
+        records::is_begun(directory)
+    };
+    let (what, how) = match (kept, arguments.overwrite) {
+        (true, _) => ("interrupted; go on with", " --resume"),
+        (false, true) => ("interrupted before anything was kept; begin again with", " --overwrite"),
+        (false, false) => ("interrupted before anything was kept; begin again with", ""),
+    };
+    format!(
+        "{what}: wakemix run {} -o {}{}{how}",
+        shell_word(&arguments.case.display().to_string()),
+        shell_word(&directory.display().to_string()),
+        repeated(arguments)
+    )
+}
+
+/// The runs and overrides of `arguments` as they were given, for the same command once more.
+fn repeated(arguments: &RunArguments) -> String {
+    let runs = arguments.runs.iter().map(|name| format!(" --run {}", shell_word(name)));
+    let overrides = arguments.overrides.iter().map(|text| format!(" --set {}", shell_word(text)));
+    runs.chain(overrides).collect()
+}
+
+/// `text` as one word of a shell.
+fn shell_word(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+%@".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::path::PathBuf;
+
+    #[test]
+    fn a_shell_reads_a_word_back() {
+        for (text, word) in [
+            ("cases/a.toml", "cases/a.toml"),
+            ("wind.speed=7", "wind.speed=7"),
+            ("my case", "'my case'"),
+            ("it's", r"'it'\''s'"),
+            ("", "''"),
+        ] {
+            assert_eq!(shell_word(text), word);
+        }
+    }
+
+    #[test]
+    fn what_is_advised_is_what_there_is_to_do() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("out");
+        let mut arguments = RunArguments {
+            case: PathBuf::from("my case.toml"),
+            output: None,
+            runs: vec!["helix".to_owned()],
+            overrides: Vec::new(),
+            resume: false,
+            overwrite: false,
+            dry_run: true,
+            json: false,
+        };
+        assert!(!interrupted(&arguments, &directory).contains("wakemix run"));
+        arguments.dry_run = false;
+        let place = shell_word(&directory.display().to_string());
+        let begin = format!(
+            "before anything was kept; begin again with: wakemix run 'my case.toml' -o {place} --run helix"
+        );
+        let advice = interrupted(&arguments, &directory);
+        assert!(advice.ends_with(&begin), "{advice}");
+        fs::create_dir_all(directory.join("helix")).unwrap();
+        fs::write(directory.join("helix/manifest.json"), "{}").unwrap();
+        let advice = interrupted(&arguments, &directory);
+        assert!(advice.ends_with("--run helix --resume"), "{advice}");
+        // What lies there is of the study that was to be overwritten, unless it has a checkpoint.
+        arguments.overwrite = true;
+        let advice = interrupted(&arguments, &directory);
+        assert!(advice.ends_with("--run helix --overwrite"), "{advice}");
+        fs::write(directory.join("helix/checkpoint"), "").unwrap();
+        let advice = interrupted(&arguments, &directory);
+        assert!(advice.ends_with("--run helix --resume"), "{advice}");
+    }
+}

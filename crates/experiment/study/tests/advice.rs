@@ -1,0 +1,120 @@
+//! What the program advises is what it accepts, and what cannot be done is known before anything is done.
+
+mod small;
+
+use formats::FileError;
+use formats::records::RunFolder;
+use miette::Diagnostic;
+use small::{HALFWAY, NREL_5MW, STOP, options, run, written};
+use std::fs;
+use std::sync::atomic::AtomicBool;
+use study::outputs::Outputs;
+use study::{Observer, Outcome, Silent, StudyError, StudyOptions};
+
+const RUNS: &str = r#"[[run]]
+name = "baseline"
+[[run]]
+name = "again"
+"#;
+
+fn case() -> String {
+    small::case("advised", "", [10.0, 40.0], &[NREL_5MW], RUNS)
+}
+
+fn help(error: &StudyError) -> String {
+    error.help().map(|help| help.to_string()).unwrap_or_default()
+}
+
+#[test]
+fn a_damaged_checkpoint_says_what_then_works() {
+    let folder = written(&case());
+    let outputs = Outputs::standard().with(&HALFWAY);
+    let first = options(folder.path());
+    let outcome = study::run_with(&first, &outputs, &STOP, &mut Silent);
+    assert!(matches!(outcome, Ok(Outcome::Interrupted { .. })), "{outcome:?}");
+    let checkpoint = RunFolder::new(&folder.path().join("out"), "baseline").checkpoint_path();
+    let mut bytes = fs::read(&checkpoint).expect("a checkpoint");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0xff;
+    fs::write(&checkpoint, bytes).expect("a damaged checkpoint");
+    let error = run(&StudyOptions { resume: true, ..first.clone() }).expect_err("it is damaged");
+    assert!(matches!(&error, StudyError::File(FileError::Checkpoint { .. })), "{error:?}");
+    let advice = help(&error);
+    assert!(advice.contains("--run NAME --overwrite in place of --resume"), "{advice}");
+    let followed = StudyOptions { overwrite: true, runs: vec!["baseline".into()], ..first.clone() };
+    assert!(matches!(run(&followed), Ok(Outcome::Done { .. })));
+    // And with that run complete, the study goes on.
+    assert!(matches!(run(&StudyOptions { resume: true, ..first }), Ok(Outcome::Done { .. })));
+}
+
+#[test]
+fn nothing_cannot_be_resumed() {
+    let folder = written(&case());
+    let first = options(folder.path());
+    let resumed = StudyOptions { resume: true, ..first.clone() };
+    let error = run(&resumed).expect_err("nothing is there");
+    assert!(matches!(&error, StudyError::NothingToResume { .. }), "{error:?}");
+    assert!(help(&error).contains("leave --resume out"), "{error:?}");
+    assert!(!folder.path().join("out").exists());
+    let dry = run(&StudyOptions { dry_run: true, ..resumed.clone() });
+    assert!(matches!(dry, Ok(Outcome::Estimated)), "{dry:?}");
+    let one = StudyOptions { runs: vec!["baseline".into()], ..first };
+    assert!(matches!(run(&one), Ok(Outcome::Done { .. })));
+    // The other run begins, as there is a study to go on with.
+    assert!(matches!(run(&resumed), Ok(Outcome::Done { .. })));
+}
+
+/// What a run leaves that fails before its first step is no result.
+#[test]
+fn a_manifest_alone_does_not_block_the_next_try() {
+    let folder = written(&case());
+    let place = RunFolder::new(&folder.path().join("out"), "baseline");
+    place.create().expect("folders");
+    fs::write(place.manifest_path(), "{}").expect("a manifest");
+    assert!(!place.holds_results());
+    fs::write(place.path().join("notes.txt"), "mine").expect("a file of somebody's");
+    assert!(place.holds_results());
+    let error = run(&options(folder.path())).expect_err("somebody's file is there");
+    assert!(matches!(error, StudyError::OutputExists { .. }), "{error:?}");
+    fs::remove_file(place.path().join("notes.txt")).expect("a file");
+    assert!(matches!(run(&options(folder.path())), Ok(Outcome::Done { .. })));
+}
+
+/// Hears nothing but that rotors are being checked.
+#[derive(Default)]
+struct Ears {
+    prepared: bool,
+}
+
+impl Observer for Ears {
+    fn preparing(&mut self, _what: &str, _share: f64) {
+        self.prepared = true;
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_into_is_known_before_the_rotors_are_checked() {
+    let folder =
+        written(&case().replace("solver = \"uniform\"\nstep = 0.2", "cells_per_diameter = 8"));
+    for output in ["case.toml", "case.toml/deep/out"] {
+        let options =
+            StudyOptions { output: Some(folder.path().join(output)), ..options(folder.path()) };
+        let mut ears = Ears::default();
+        let error = study::run(&options, &AtomicBool::new(false), &mut ears);
+        let error = error.expect_err("a file is no folder");
+        assert!(matches!(&error, StudyError::File(FileError::System { .. })), "{error:?}");
+        assert!(help(&error).contains("-o DIR") && !ears.prepared, "{error:?}");
+    }
+}
+
+#[test]
+fn wind_that_is_not_there_leaves_nothing_behind() {
+    let planes = case().replace("solver = \"uniform\"", "solver = \"planes\"");
+    let planes = planes.replace("[flow]", "planes = \"none.bts\"\n[flow]");
+    let folder = written(&planes);
+    let Err(StudyError::Case(error)) = run(&options(folder.path())) else { panic!("no wind") };
+    let problem = &error.problems()[0];
+    assert_eq!(problem.line(), 6, "{problem}");
+    assert!(problem.to_string().contains("the wind cannot be read"), "{problem}");
+    assert!(!folder.path().join("out").exists());
+}
