@@ -10,7 +10,6 @@ use super::momentum::{dynamic_inflow_of, tower_influence_of};
 use super::section::{Section, list};
 use super::spelling::nearest;
 use super::wind::{check_together, wind_of};
-use crate::records;
 use basis::keys::Table;
 use control::{CONTROLLERS, ControllerKind, Place};
 use farm::case::{
@@ -19,6 +18,9 @@ use farm::case::{
 };
 use farm::solvers::GROUND;
 use sensing::{SENSORS, SensorKind};
+
+/// Names of folders that a study has for itself beside those of its runs.
+const OWN_FOLDERS: [&str; 1] = ["figures"];
 
 /// The case that `entries` describe.
 ///
@@ -183,7 +185,7 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
         if section.has("name") && runs.iter().any(|other| other.name.eq_ignore_ascii_case(&name)) {
             note_duplicate(section, "run", &name);
         }
-        if records::OWN_FOLDERS.iter().any(|own| own.eq_ignore_ascii_case(&name)) {
+        if OWN_FOLDERS.iter().any(|own| own.eq_ignore_ascii_case(&name)) {
             let key = section.key_path("name");
             let why = format!("a study's folder has its own `{name}`, beside those of the runs");
             let fix = Some("choose another name".to_owned());
