@@ -12,7 +12,6 @@ use super::solver::flow_of;
 use super::sources::Sources;
 use super::spelling::{list, nearest};
 use super::wind::{check_together, wind_of};
-use crate::records;
 use basis::keys::Table;
 use control::{CONTROLLERS, ControllerKind, Place};
 use farm::case::{
@@ -20,6 +19,9 @@ use farm::case::{
 };
 use farm::outputs::{OUTPUTS, OutputKeys};
 use sensing::{SENSORS, SensorKind};
+
+/// Names of folders that a study has for itself beside those of its runs.
+const OWN_FOLDERS: [&str; 1] = ["figures"];
 
 /// The case that `entries` describe.
 ///
@@ -154,7 +156,7 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
         if section.has("name") && runs.iter().any(|other| other.name.eq_ignore_ascii_case(&name)) {
             note_duplicate(section, "run", &name);
         }
-        if records::OWN_FOLDERS.iter().any(|own| own.eq_ignore_ascii_case(&name)) {
+        if OWN_FOLDERS.iter().any(|own| own.eq_ignore_ascii_case(&name)) {
             let key = section.key_path("name");
             let why = format!("a study's folder has its own `{name}`, beside those of the runs");
             let fix = Some("choose another name".to_owned());

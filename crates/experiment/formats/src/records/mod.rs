@@ -190,9 +190,6 @@ impl RunFolder {
     }
 }
 
-/// Names of folders that a study has for itself beside those of its runs.
-pub const OWN_FOLDERS: &[&str] = &["figures"];
-
 /// Whether the study's folder `study` holds anything to go on with: a run that was begun, or what was
 /// identified before the runs.
 pub fn is_begun(study: &Path) -> bool {

@@ -110,8 +110,8 @@ impl TableReader {
     /// Reads the next row into `row`: time (s), then the selected channels. False at the end of the table.
     ///
     /// # Errors
-    /// [`FileError`] with the place: a row cut short, what is not a number, not finite or beyond ±1e30, time that runs
-    /// backwards.
+    /// [`FileError`] with the place: a row cut short, what is not a number, not finite or beyond ±1e30, time
+    /// that runs backwards.
     ///
     /// # Panics
     /// When `row` has not one value more than channels were selected.

@@ -40,11 +40,7 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
     let actuator = document.pitch_actuator.as_ref().ok_or_else(|| missing("pitch_actuator"))?;
     let controller_group = document.controller.as_ref().ok_or_else(|| missing("controller"))?;
     let airfoils = document.airfoils.as_ref().ok_or_else(|| missing("airfoils"))?;
-    if !(1..=MAXIMUM_BLADES).contains(&document.n_blades) {
-        let (expected, found) =
-            (format!("1 to {MAXIMUM_BLADES} blades"), document.n_blades.to_string());
-        return Err(place.error(&[Key("n_blades")], expected, found, "count the blades"));
-    }
+    check_blades(document.n_blades, place)?;
     let polars = polars_of(airfoils, place)?;
     let length = rotor.tip_radius - rotor.hub_radius;
     let definition = Definition {
@@ -78,26 +74,36 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         ("airfoils", &airfoils.source),
     ];
     sources.extend(document.operation.as_ref().map(|group| ("operation", &group.source)));
-    check_sources(&sources, place)?;
     Ok(TurbineFile {
         title: document.title.clone(),
         definition,
         controller: controller_of(controller_group, radius, drive_train.generator_efficiency),
-        sources: sources
-            .into_iter()
-            .map(|(group, source)| (group.to_owned(), source.clone()))
-            .collect(),
+        sources: checked_sources(&sources, place)?,
     })
 }
 
-/// Every group of `sources` names one.
-fn check_sources(sources: &[(&'static str, &String)], place: &Place) -> Checked<()> {
+fn check_blades(n_blades: usize, place: &Place) -> Checked<()> {
+    if (1..=MAXIMUM_BLADES).contains(&n_blades) {
+        return Ok(());
+    }
+    let (expected, found) = (format!("1 to {MAXIMUM_BLADES} blades"), n_blades.to_string());
+    Err(place.error(&[Key("n_blades")], expected, found, "count the blades"))
+}
+
+/// Groups with their `sources`, each of which names one.
+fn checked_sources(
+    sources: &[(&'static str, &String)],
+    place: &Place,
+) -> Checked<Vec<(String, String)>> {
     match sources.iter().find(|(_, source)| source.trim().is_empty()) {
         Some((group, _)) => {
             let fix = "name publication or input set, with its commit or edition";
             Err(place.error(&[Key(group), Key("source")], "a source", "an empty text", fix))
         }
-        None => Ok(()),
+        None => Ok(sources
+            .iter()
+            .map(|(group, source)| ((*group).to_owned(), (*source).clone()))
+            .collect()),
     }
 }
 
