@@ -3,6 +3,7 @@
 //! The figures are those of van Vondelen et al. (2025): estimates beside the truth (their Figs. 10, 11), the
 //! answer to the pitch (12, 13), power and loads over the offset (14, 15), the wake (16, 17).
 
+pub(crate) mod curve;
 mod offsets;
 mod tracks;
 mod wake;
