@@ -266,21 +266,37 @@ mod tests {
         }
         assert!(wrapped(curve.highest.input - 2.0).abs() < 0.05, "{:?}", curve.highest);
         assert!(wrapped(curve.lowest.input - 2.0 - PI).abs() < 0.05, "{:?}", curve.lowest);
-        let many = CurveSettings { degrees_of_freedom: &[2; 8], ..settings };
-        let wider = process.curve(&grid(24), &many).expect("a curve");
-        // Two degrees of freedom know less than a variance that is exact.
-        let width = |curve: &Curve| curve.highest.input_95[1] - curve.highest.input_95[0];
-        assert!(width(&wider) > 1.2 * width(&curve), "{} {}", width(&wider), width(&curve));
+    }
+
+    /// Alone, under a prior that says nothing, an observation with a standard error s of ν degrees of freedom
+    /// tells its value within t(0.975, ν) s: 4.30 s for two, not 1.96 s.
+    #[test]
+    fn a_lone_observation_has_the_tails_of_students_t() {
+        let inputs = vec![0.0, 10.0, 20.0];
+        let observations = Observations::of_curve(inputs.clone(), vec![0.0; 3]);
+        let observations = observations.with_deviations(&[1.0; 3]);
+        let parameters =
+            Hyperparameters { signal_variance: 1e4, lengths: vec![0.1], noise_variance: 0.0 };
+        let shape = Shape::SquaredExponential;
+        let process =
+            GaussianProcess::new(shape, parameters, observations, Mean::Zero).expect("a process");
+        let settings = CurveSettings { degrees_of_freedom: &[2; 3], n_draws: 8000, seed: 5 };
+        let curve = process.curve(&inputs, &settings).expect("a curve");
+        let half: f64 = curve.bands_95.iter().map(|[low, high]| (high - low) / 6.0).sum();
+        // A 97.5 % point of this distribution has a standard error of 14.5 over the root of the draws; six of
+        // them, whose draws count for a quarter as many.
+        let near = 4.0 * 14.5 / (6.0 * 8000.0 / 4.0_f64).sqrt();
+        assert!((half - 4.303).abs() < near, "{half}, {near}");
     }
 
     /// Studies as they are run: eight offsets, each a mean of three blocks with its standard error. The
-    /// interval of the best offset holds the true one 95 times in a hundred; 120 studies may show 106 at the
+    /// interval of the best offset holds the true one 95 times in a hundred; 100 studies may show 87 at the
     /// least (99.9 % of a binomial distribution).
     #[test]
     fn the_interval_of_the_best_input_holds_the_true_one() {
         let offsets: Vec<f64> =
             [0.0, 90.0, 120.0, 150.0, 180.0, 210.0, 270.0, 330.0_f64].map(f64::to_radians).into();
-        let (n_studies, freedom, deviation) = (120, 2_usize, 0.25);
+        let (n_studies, freedom, deviation) = (100, 2_usize, 0.25);
         let mut normals = Normals::new(11);
         let mut n_held = 0;
         for study in 0..n_studies {
@@ -297,13 +313,13 @@ mod tests {
             let process = GaussianProcess::fit(PERIODIC, observations, &fit).expect("a fit");
             let freedom = vec![freedom; offsets.len()];
             let settings =
-                CurveSettings { degrees_of_freedom: &freedom, n_draws: 300, seed: study as u64 };
-            let curve = process.curve(&grid(36), &settings).expect("a curve");
+                CurveSettings { degrees_of_freedom: &freedom, n_draws: 200, seed: study as u64 };
+            let curve = process.curve(&grid(24), &settings).expect("a curve");
             let [low, high] = curve.highest.input_95;
             let away = wrapped(best - curve.highest.input) + curve.highest.input;
             n_held += usize::from((low..=high).contains(&away));
         }
-        assert!(n_held >= 106, "{n_held} of {n_studies}");
+        assert!(n_held >= 87, "{n_held} of {n_studies}");
     }
 
     #[test]

@@ -15,7 +15,9 @@ pub use analyses::{ANALYSES, Analysis};
 pub use error::PostprocessingError;
 pub use lock::{LockAnswer, LockQuestion, lock};
 pub use over_offset::over_offset;
-pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phases, tune};
+pub use phase::{
+    PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, Replayed, phase, phases, tune,
+};
 pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
 pub use synchronisation::curve::offset_panel;
 

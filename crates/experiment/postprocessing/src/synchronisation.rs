@@ -12,7 +12,7 @@ use crate::PostprocessingError;
 use crate::phase::query::tells_truth;
 use crate::phase::{PhaseAnswer, Truth, compare, recorded, tells, truth};
 use analysis::AnalysisError;
-use analysis::phase::Reference;
+use analysis::phase::{Band, Reference};
 use basis::angle::wrap_to_turn;
 use control::excitation_rate;
 use control::phase_sync::PhaseSyncSettings;
@@ -132,6 +132,7 @@ fn synchronised(
     let diameter = records.runs[first].summary.conditions.rotor_diameter;
     let rate = excitation_rate(pairing.strouhal, case.wind.speed, diameter);
     let reference = Reference { rate, sense: pairing.sense };
+    let band = Band::around(reference.frequency(), Band::RATIO);
     let own_name = &case.turbines[turbine].name;
     // Without a true wind there is nothing to compare with; a short run says nothing of phases.
     let control = |run: &RunRecords| case.runs[run.manifest.run_index].control.as_slice();
@@ -141,7 +142,7 @@ fn synchronised(
                 continue;
             }
             let series = run.series.read(|channel| tells(own_name, channel))?;
-            if let Ok(Some(truth)) = truth(&run.manifest.run, own_name, &series, &reference) {
+            if let Ok(Some(truth)) = truth(&run.manifest.run, own_name, &series, &reference, band) {
                 return Ok(Some(truth));
             }
         }

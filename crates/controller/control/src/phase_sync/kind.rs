@@ -1,7 +1,7 @@
 //! `kind = "phase-sync"`: its checks, and how it is built.
 
 use super::settings::{PhaseEstimator, PhaseSyncSettings, TABLE, response_of};
-use super::{PhaseSync, SyncSettings};
+use super::{PhaseSync, SyncSettings, choices};
 use crate::Controller;
 use crate::excitation::Excitation;
 use crate::keys::{sense, starts_too_late};
@@ -70,14 +70,7 @@ impl ControllerKind for PhaseSyncKind {
             // Nothing is pitched, with whatever offset.
             values.set("azimuth_offset_deg", 0.0);
         }
-        if values.word("estimator") != "published" && values.has("wandering_phase") {
-            objections.push(Objection {
-                key: Some("wandering_phase"),
-                message: "is of no use here: it goes with estimator = \"published\"; the states of \"robust\" are sine and cosine components, which wander as wandering_amplitude says".to_owned(),
-                label: "of no use",
-                fix: "leave it out".to_owned(),
-            });
-        }
+        objections.extend(choices::objections(values));
         objections
     }
 

@@ -78,6 +78,8 @@ impl HelixEstimator {
             sense: settings.sense,
             rate: settings.rate,
             diameter: definition.rotor_diameter(),
+            interval: settings.interval * options.update_every as f64,
+            n_blades: definition.n_blades,
         };
         let rotor = Rotor::new(definition, settings, &options);
         let state = HelixEstimatorState {

@@ -79,6 +79,7 @@ impl LinearEstimator {
             response: None,
             rate: None,
             adaptation: None,
+            huber_limit: None,
             roundness: 0.0,
             ..options
         };
@@ -99,6 +100,8 @@ impl LinearEstimator {
             sense: settings.sense,
             rate: settings.rate,
             diameter: definition.rotor_diameter(),
+            interval: settings.interval * options.update_every as f64,
+            n_blades: definition.n_blades,
         };
         let state = LinearEstimatorState {
             filter: filter.blank(),

@@ -2,10 +2,10 @@
 
 use super::{PhaseQuestion, Truth, tells, truth};
 use crate::PostprocessingError;
-use analysis::phase::Reference;
+use analysis::phase::{Band, Reference};
 use basis::records::{Series, Summary};
 use control::excitation_rate;
-use control::phase_sync::{PHASE_SYNC, PhaseSyncSettings, calibration_of};
+use control::phase_sync::{PHASE_SYNC, PhaseSyncSettings, azimuth_offset_of, calibration_of};
 use estimation::helix::Calibration;
 use farm::case::{Case, Control, helix_upstream};
 use formats::records::{self, Manifest, RunFolder};
@@ -49,6 +49,10 @@ pub(super) struct Query<'r> {
     /// What [`tells`] of the phase, over time.
     pub(super) series: &'r Series,
     pub(super) truth: Truth,
+    /// The same through the published filter, where the records can hold its band.
+    pub(super) published: Option<Truth>,
+    /// Azimuth offset of the transformation (rad) with which it pitched, where that was recorded.
+    pub(super) transformation_offset: Option<f64>,
 }
 
 impl<'q> Records<'q> {
@@ -95,13 +99,17 @@ impl<'q> Records<'q> {
                 .map(|run| RunFolder::new(&study, &run.name))
                 .find(RunFolder::is_complete),
         };
-        let truth = match truth_folder {
+        let frequency = reference.frequency();
+        let band = self.question.band.unwrap_or(Band::around(frequency, Band::RATIO));
+        let (truth, published) = match truth_folder {
             Some(folder) => {
                 let wanted = |channel: &str| tells_of_any(case, turbines, channel);
                 let series = read_once(without, folder.series_path(), wanted)?;
-                truth(&folder.run(), &turbine.name, series, &reference)?
+                let through = |band| truth(&folder.run(), &turbine.name, series, &reference, band);
+                let published = Band::published(frequency).map(through);
+                (through(band)?, published.and_then(Result::ok).flatten())
             }
-            None => None,
+            None => (None, None),
         };
         let truth = truth.ok_or_else(|| PostprocessingError::NoTruth {
             turbine: turbine.name.clone(),
@@ -125,6 +133,8 @@ impl<'q> Records<'q> {
             pitches,
             series: &self.series,
             truth,
+            published,
+            transformation_offset: response.and_then(azimuth_offset_of),
         })
     }
 }
