@@ -298,8 +298,8 @@ fn turbulence(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationEr
         );
         for ((form, _), errors) in forms.iter().zip(&errors) {
             let [tilt, yaw] = errors.rms;
-            // The published form has no aim; with an identified azimuth offset, as its authors gave it one, it
-            // is compared in `forms`.
+            // The published form has no aim; with an identified azimuth offset, as its authors gave it one,
+            // it is compared in `forms`.
             if *form == "robust" {
                 rows.push(row(format!("{name}, {form}: tilt, rms error"), tilt, AIM, "deg"));
                 rows.push(row(format!("{name}, {form}: yaw, rms error"), yaw, AIM, "deg"));

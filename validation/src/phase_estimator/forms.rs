@@ -80,18 +80,12 @@ pub(super) fn forms(machine: &Machine) -> Result<(), EstimationError> {
                 100.0 * INTENSITY,
                 own.to_degrees()
             );
-            let axis = |of: fn(&Errors) -> [f64; 2], axis: usize| {
-                told(&errors.iter().map(|errors| of(errors)[axis]).collect::<Vec<_>>())
+            let axis = |of: fn(&Errors, usize) -> f64, axis: usize| {
+                told(&errors.iter().map(|errors| of(errors, axis)).collect::<Vec<_>>())
             };
-            let (rms, mean): (fn(&Errors) -> [f64; 2], fn(&Errors) -> [f64; 2]) =
-                (|errors| errors.rms, |errors| errors.mean);
-            let figures = format!(
-                "{} / {}; {} / {}",
-                axis(rms, 0),
-                axis(rms, 1),
-                axis(mean, 0),
-                axis(mean, 1)
-            );
+            let [tilt, yaw] = [0, 1].map(|place| axis(|errors, axis| errors.rms[axis], place));
+            let biases = [0, 1].map(|place| axis(|errors, axis| errors.mean[axis], place));
+            let figures = format!("{tilt} / {yaw}; {} / {}", biases[0], biases[1]);
             tell(&what, &figures);
         }
     }

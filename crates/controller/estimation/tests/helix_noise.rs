@@ -12,8 +12,8 @@ use machine::*;
 /// Three helix periods.
 const CONVERGED: f64 = 3.0 * PERIOD;
 
-/// The filter is one whatever its interval: what it believes of its own errors, and the errors themselves where
-/// noise of one intensity is read more or less often.
+/// The filter is one whatever its interval: what it believes of its own errors, and the errors themselves
+/// where noise of one intensity is read more or less often.
 #[test]
 fn variance_and_error_do_not_depend_on_the_interval() {
     let definition = definition();

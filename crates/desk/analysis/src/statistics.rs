@@ -115,8 +115,8 @@ pub fn independent(values: &[f64]) -> Result<Statistic, AnalysisError> {
 /// Standard error of the mean of `statistic` (its unit), and the degrees of freedom behind it (–): the half
 /// width of its interval over Student's t for its n − 1 degrees of freedom, s / √n. None without an interval.
 ///
-/// An interval of few blocks is several times as wide as that of a normal distribution (4.30 standard errors on
-/// either side for three), so that a half width over 1.96 is no standard error.
+/// An interval of few blocks is several times as wide as that of a normal distribution (4.30 standard errors
+/// on either side for three), so that a half width over 1.96 is no standard error.
 ///
 /// ```
 /// use analysis::statistics::{independent, standard_error};

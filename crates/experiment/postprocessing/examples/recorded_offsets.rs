@@ -1,5 +1,5 @@
-//! The curves of the report through changes over the phase offset that were recorded in a table, drawn and told:
-//! `cargo run -p wakemix-postprocessing --example recorded_offsets -- TABLE FOLDER`.
+//! The curves of the report through changes over the phase offset that were recorded in a table, drawn and
+//! told: `cargo run -p wakemix-postprocessing --example recorded_offsets -- TABLE FOLDER`.
 //!
 //! `validation/data/synchronised-helix/power-over-offset.csv` is such a table: degrees, then gain and half of
 //! its 95 % interval for each turbine, all in percent, from three blocks.

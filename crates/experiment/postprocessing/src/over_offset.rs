@@ -6,12 +6,12 @@ use formats::records;
 use report::OffsetFigure;
 use std::path::Path;
 
-/// What the study in `directory` tells over the phase offset: for each turbine that joins a helix, by its name,
-/// its figures of power and loads.
+/// What the study in `directory` tells over the phase offset: for each turbine that joins a helix, by its
+/// name, its figures of power and loads.
 ///
 /// # Errors
-/// [`PostprocessingError`] for records that cannot be read, and [`PostprocessingError::NoOffsets`] where no run
-/// with an offset compares with another.
+/// [`PostprocessingError`] for records that cannot be read, and [`PostprocessingError::NoOffsets`] where no
+/// run with an offset compares with another.
 pub fn over_offset(
     directory: &Path,
 ) -> Result<Vec<(String, Vec<OffsetFigure>)>, PostprocessingError> {

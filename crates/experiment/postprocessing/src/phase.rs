@@ -57,8 +57,8 @@ pub struct PhaseAxis {
     /// Estimated against true wind at the excitation frequency; absent in records shorter than two segments.
     pub coherence: Option<Coherence>,
     /// Mean of the squared phase errors over the estimator's own variance of them (–), with its interval from
-    /// blocks: one where the estimator knows its errors, more where it is too sure of itself. Absent where the
-    /// series does not hold the variance.
+    /// blocks: one where the estimator knows its errors, more where it is too sure of itself. Absent where
+    /// the series does not hold the variance.
     pub consistency: Option<Statistic>,
     /// Estimated phase at each time (rad).
     pub phase: Vec<f64>,
@@ -302,8 +302,8 @@ pub(crate) fn compare(
     })
 }
 
-/// Mean of the squared errors of `phase` against `truth` (rad) over the square of their `deviation` (rad), one
-/// each `interval` (s), with its interval from blocks of `block` (s).
+/// Mean of the squared errors of `phase` against `truth` (rad) over the square of their `deviation` (rad),
+/// one each `interval` (s), with its interval from blocks of `block` (s).
 ///
 /// Source: Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, §5.4
 /// (normalised estimation error squared). Its bounds by chi-square take errors as independent from instant to
@@ -341,7 +341,8 @@ pub(crate) fn column<'a>(
     series.column(channel).ok_or_else(missing)
 }
 
-/// The true wind at the place of turbine `name` in the `series` of `run`, through a filter of `band`; nothing where that was not kept.
+/// The true wind at the place of turbine `name` in the `series` of `run`, through a filter of `band`; nothing
+/// where that was not kept.
 ///
 /// # Errors
 /// [`PostprocessingError::Analysis`] for a record that is too short or has gaps.

@@ -1,10 +1,10 @@
 //! What a correction leaves of the readings over: the intensity of the noise in them, whatever the interval.
 //!
-//! The residual of a reading after the correction tells the variance of its noise. White noise has the variance
-//! of its intensity over the interval, but what a model leaves over lasts longer than the interval between two
-//! readings. So residuals are averaged over a fixed time before they are squared: the mean of n readings has
-//! the variance of the intensity over n intervals, and both kinds of noise tell one intensity at any interval up
-//! to that time. Readings further apart stand for themselves.
+//! The residual of a reading after the correction tells the variance of its noise. White noise has the
+//! variance of its intensity over the interval, but what a model leaves over lasts longer than the interval
+//! between two readings. So residuals are averaged over a fixed time before they are squared: the mean of n
+//! readings has the variance of the intensity over n intervals, and both kinds of noise tell one intensity at
+//! any interval up to that time. Readings further apart stand for themselves.
 
 use basis::PerBlade;
 use serde::{Deserialize, Serialize};
@@ -20,8 +20,8 @@ pub(super) struct Leftover {
     /// Sum of the residuals (N m), and their number (–).
     sums: PerBlade<f64>,
     counts: PerBlade<f64>,
-    /// Sum of the variances that the states leave in the readings (N² m²), and of the nominal variances of their
-    /// noise.
+    /// Sum of the variances that the states leave in the readings (N² m²), and of the nominal variances of
+    /// their noise.
     spreads: PerBlade<f64>,
     nominal: PerBlade<f64>,
     /// Time since the window began (s).
@@ -72,8 +72,8 @@ impl Leftover {
 mod tests {
     use super::*;
 
-    /// Mean of what windows tell of the readings `of` three blades, `interval` (s) apart, of nominal intensity
-    /// one.
+    /// Mean of what windows tell of the readings `of` three blades, `interval` (s) apart, of nominal
+    /// intensity one.
     fn told(interval: f64, mut of: impl FnMut(f64) -> f64) -> f64 {
         let mut leftover = Leftover::new(3);
         let (mut sum, mut n) = (0.0, 0.0);

@@ -35,8 +35,8 @@ pub struct Options {
     pub rate: Option<f64>,
     /// Adaptation of the noise to the innovation; none for constant noise.
     pub adaptation: Option<Adaptation>,
-    /// Innovations beyond this many standard deviations (–) have less weight, after Huber; none where all have
-    /// their full weight.
+    /// Innovations beyond this many standard deviations (–) have less weight, after Huber; none where all
+    /// have their full weight.
     pub huber_limit: Option<f64>,
     /// Correlation of the process noise of tilt and yaw (–, 0 to below 1): one would be a helix that stays
     /// round.
@@ -95,9 +95,9 @@ pub enum Wake {
 }
 
 /// Noise model of the filter: intensities of continuous white noise (two-sided spectral densities), so that
-/// the filter does not depend on how often it is updated. Process noise grows a variance by its intensity times
-/// the time that passes; a reading that stands for an interval has the variance of its intensity over that
-/// interval.
+/// the filter does not depend on how often it is updated. Process noise grows a variance by its intensity
+/// times the time that passes; a reading that stands for an interval has the variance of its intensity over
+/// that interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
     /// Measurement noise of one blade's moment.
@@ -123,8 +123,8 @@ pub enum Measurement {
 }
 
 impl Measurement {
-    /// Variance (N² m²) of a reading that stands for an `interval` (s), where the mean moment is `mean_moment`
-    /// (N m). The only place where measurement noise is made discrete.
+    /// Variance (N² m²) of a reading that stands for an `interval` (s), where the mean moment is
+    /// `mean_moment` (N m). The only place where measurement noise is made discrete.
     pub(super) fn variance(self, interval: f64, mean_moment: f64) -> f64 {
         let density = match self {
             Self::Moment(density) => density,

@@ -147,8 +147,8 @@ impl TrueWave {
 /// Process noise intensities of mean wind and helix, from the `truth` sampled every `interval` (s): Algorithm
 /// 1, step 2. Mean squares of the changes over an excitation period, of `rate` (rad/s), per time.
 ///
-/// A filtered signal is smooth: its changes from sample to sample grow with the interval, so that their squares
-/// per time tell the interval, not the wind. Over a period, as long as filters remember, they do not.
+/// A filtered signal is smooth: its changes from sample to sample grow with the interval, so that their
+/// squares per time tell the interval, not the wind. Over a period, as long as filters remember, they do not.
 ///
 /// # Errors
 /// [`EstimationError`] for a truth that is shorter than two periods, or whose columns differ in length.
@@ -229,8 +229,8 @@ mod tests {
         assert!(matches!(short, Err(EstimationError::Length { .. })));
     }
 
-    /// A smooth truth, as filters leave it, has the same intensities at every sampling interval; those of steps
-    /// from sample to sample would be five times as large at a five times longer one.
+    /// A smooth truth, as filters leave it, has the same intensities at every sampling interval; those of
+    /// steps from sample to sample would be five times as large at a five times longer one.
     #[test]
     fn process_noise_does_not_depend_on_the_interval() {
         let rate = TAU / 100.0;

@@ -39,9 +39,9 @@ pub struct Tuned {
     /// the record, on which the factor was chosen: one number of many tried, so that it is less than another
     /// record will show.
     pub error: f64,
-    /// The same over the first half, to which the noise was fitted.
+    /// The same over the first half (rad), to which the noise was fitted.
     pub fitted_error: f64,
-    /// The same over the second half with the options that were given.
+    /// The same over the second half with the options that were given (rad).
     pub untuned_error: f64,
 }
 
@@ -165,11 +165,12 @@ pub fn best_scale(range: [f64; 2], mut cost: impl FnMut(f64) -> f64) -> (f64, f6
 }
 
 /// Algorithm 1 whole. From the first half of the `record`: measurement noise from its moments above twice the
-/// excitation rate in the fixed frame's tilt, process noise of mean wind and helix from the `truth`, sample by
-/// sample. On the second half: the scale of the process noise, by trial.
+/// excitation rate in the fixed frame's tilt, process noise of mean wind and helix from the `truth`, sample
+/// by sample. On the second half: the scale of the process noise, by trial.
 ///
-/// The variance of a reading times the interval is the intensity of white noise, whatever the interval. Of noise
-/// that lasts longer than the interval it is what readings so far apart make of it; the scale is found with it.
+/// The variance of a reading times the interval is the intensity of white noise, whatever the interval. Of
+/// noise that lasts longer than the interval it is what readings so far apart make of it; the scale is found
+/// with it.
 ///
 /// # Errors
 /// [`EstimationError`] for a record that is uneven, shorter than six excitation periods, or of another length

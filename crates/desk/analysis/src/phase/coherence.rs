@@ -40,9 +40,9 @@ pub struct Coherence {
 /// The interval of the phase error is that of Student's t for 2 (n − 1) degrees of freedom, n the segments
 /// counted for as many as are independent: sin of its half width = t √((1 − γ²)/(γ² 2 (n − 1))).
 ///
-/// Source: Welch (1967); Bendat and Piersol, "Random Data", 4th ed., 2010, §9.2 (error of coherence); Koopmans,
-/// "The Spectral Analysis of Time Series", 1974, §8.5 (interval of the phase); Harris, Proc. IEEE 66, 1978,
-/// Eq. 17 (independent segments).
+/// Source: Welch (1967); Bendat and Piersol, "Random Data", 4th ed., 2010, §9.2 (error of coherence);
+/// Koopmans, "The Spectral Analysis of Time Series", 1974, §8.5 (interval of the phase); Harris, Proc. IEEE
+/// 66, 1978, Eq. 17 (independent segments).
 ///
 /// # Errors
 /// [`AnalysisError::UnequalLengths`]; [`AnalysisError::TooShort`] with fewer than two segments;

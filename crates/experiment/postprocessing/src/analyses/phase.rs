@@ -136,31 +136,40 @@ fn text(answer: &PhaseAnswer) -> String {
         "phase error deg",
         "consistency"
     );
-    for (name, axis) in [("tilt", &answer.tilt), ("yaw", &answer.yaw)] {
-        let agreement = &axis.agreement;
-        let bias = match agreement.bias_half_width_95 {
-            Some(half) => with_interval(agreement.bias, half),
-            None => format!("{:.1}", agreement.bias.to_degrees()),
-        };
-        let coherence =
-            axis.coherence.map_or("–".to_owned(), |found| format!("{:.3}", found.coherence));
-        let error = axis.coherence.map_or("–".to_owned(), |found| {
-            with_interval(found.phase_error, found.phase_error_half_width_95)
-        });
-        text += &format!(
-            "{name:<6} {:>14.2} {:>10.2} {:>20} {bias:>16} {:>10.1} {:>9.3} {coherence:>11} {error:>18} {:>15}\n",
-            axis.amplitude,
-            axis.true_amplitude,
-            rmse(agreement),
-            agreement.spread.to_degrees(),
-            agreement.locking,
-            axis.consistency
-                .as_ref()
-                .map_or("–".to_owned(), |found| super::with_interval(found, 1.0, 2)),
-        );
-    }
+    text += &line("tilt", &answer.tilt);
+    text += &line("yaw", &answer.yaw);
+    text + &below(answer)
+}
+
+/// The line of the axis called `name`.
+fn line(name: &str, axis: &PhaseAxis) -> String {
+    let agreement = &axis.agreement;
+    let bias = match agreement.bias_half_width_95 {
+        Some(half) => with_interval(agreement.bias, half),
+        None => format!("{:.1}", agreement.bias.to_degrees()),
+    };
+    let coherence =
+        axis.coherence.map_or("–".to_owned(), |found| format!("{:.3}", found.coherence));
+    let error = axis.coherence.map_or("–".to_owned(), |found| {
+        with_interval(found.phase_error, found.phase_error_half_width_95)
+    });
+    format!(
+        "{name:<6} {:>14.2} {:>10.2} {:>20} {bias:>16} {:>10.1} {:>9.3} {coherence:>11} {error:>18} {:>15}\n",
+        axis.amplitude,
+        axis.true_amplitude,
+        rmse(agreement),
+        agreement.spread.to_degrees(),
+        agreement.locking,
+        axis.consistency
+            .as_ref()
+            .map_or("–".to_owned(), |found| super::with_interval(found, 1.0, 2)),
+    )
+}
+
+/// Conventions, and what else the records tell, below the table.
+fn below(answer: &PhaseAnswer) -> String {
     let n_blocks = answer.tilt.agreement.n_blocks;
-    text += &format!(
+    let mut text = format!(
         "± and ranges: 95 % by Student's t from {n_blocks} blocks of {:.0} s; coherence and phase error, estimate before truth, at the helix's frequency, from the cross-spectrum\n\
          consistency: squared errors over the estimator's own variance of them, 1 where it knows them\n",
         answer.block

@@ -87,18 +87,7 @@ impl<'q> Records<'q> {
             excitation_rate(strouhal, case.wind.speed, self.summary.conditions.rotor_diameter);
         let reference = Reference { rate, sense };
         let study = self.folder.path().parent().unwrap_or(Path::new("")).to_owned();
-        let truth_folder = match &self.question.truth {
-            Some(path) => Some(folder_of(path)),
-            None => case
-                .runs
-                .iter()
-                .filter(|run| {
-                    case.output.lines_at.contains(&index)
-                        && tells_truth(case, &run.control, control, index)
-                })
-                .map(|run| RunFolder::new(&study, &run.name))
-                .find(RunFolder::is_complete),
-        };
+        let truth_folder = truth_folder(self.question, case, control, index, &study);
         let frequency = reference.frequency();
         let band = self.question.band.unwrap_or(Band::around(frequency, Band::RATIO));
         let (truth, published) = match truth_folder {
@@ -137,6 +126,24 @@ impl<'q> Records<'q> {
             transformation_offset: response.and_then(azimuth_offset_of),
         })
     }
+}
+
+/// The folder of the run that holds the true wind of turbine `index` in a run of `case` under `control`: the one
+/// that `question` names, or else a complete one in the folder `study`.
+fn truth_folder(
+    question: &PhaseQuestion,
+    case: &Case,
+    control: &[Control],
+    index: usize,
+    study: &Path,
+) -> Option<RunFolder> {
+    if let Some(path) = &question.truth {
+        return Some(folder_of(path));
+    }
+    let runs = case.runs.iter().filter(|run| {
+        case.output.lines_at.contains(&index) && tells_truth(case, &run.control, control, index)
+    });
+    runs.map(|run| RunFolder::new(study, &run.name)).find(RunFolder::is_complete)
 }
 
 /// Whether `channel` [`tells`] of the phase at one of the `turbines` of `case`.

@@ -17,7 +17,8 @@ use farm::assemble::AssemblyError;
 pub enum Replayed {
     /// One that a turbine runs.
     InRun(PhaseEstimator),
-    /// The linear filter of the earlier method, around the means of the record: true wind, rotor speed, pitch.
+    /// The linear filter of the earlier method, around the means of the record: true wind, rotor speed,
+    /// pitch.
     Linear,
 }
 
@@ -74,8 +75,8 @@ fn operating_point(query: &Query<'_>, record: &[Measurements]) -> OperatingPoint
 }
 
 /// Noise for the estimator that `question` names, tuned on its record against the true wind: fitted to the
-/// first half, its scale chosen on the second. The truth is the one that [`phase`](super::phase) compares with,
-/// filtered once.
+/// first half, its scale chosen on the second. The truth is the one that [`phase`](super::phase) compares
+/// with, filtered once.
 ///
 /// Source: van Vondelen et al. (2025), Algorithm 1.
 ///
@@ -122,7 +123,8 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
 /// Choices of `estimator`, calibrated as in the run, with what it was given there.
 ///
 /// # Errors
-/// [`PostprocessingError::Setting`] where the published form shall have an azimuth offset that was not recorded.
+/// [`PostprocessingError::Setting`] where the published form shall have an azimuth offset that was not
+/// recorded.
 fn options(query: &Query<'_>, estimator: PhaseEstimator) -> Result<Options, PostprocessingError> {
     let options = estimator.options(query.case.flow.solver.resolves_induction);
     let options = match estimator {

@@ -1,5 +1,5 @@
-//! The curve that a Gaussian process puts through changes over the phase offset, with its band and where it is
-//! highest and lowest.
+//! The curve that a Gaussian process puts through changes over the phase offset, with its band and where it
+//! is highest and lowest.
 
 use analysis::statistics::standard_error;
 use report::{CurveEnd, CurvePoint, OffsetPanel, OffsetPoint};
