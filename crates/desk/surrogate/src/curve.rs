@@ -28,9 +28,9 @@ pub struct Extreme {
     pub input: f64,
     /// The mean curve there (unit of the values).
     pub value: f64,
-    /// Central 95 % of the inputs at which drawn curves have it (unit of the inputs). With a periodic kernel they are counted from
-    /// `input` the shorter way round, so that the ends lie within half a period of it, on either side of the
-    /// seam; an interval of a whole period knows nothing.
+    /// Central 95 % of the inputs at which drawn curves have it (unit of the inputs). With a periodic kernel
+    /// they are counted from `input` the shorter way round, so that the ends lie within half a period of it,
+    /// on either side of the seam; an interval of a whole period knows nothing.
     pub input_95: [f64; 2],
 }
 

@@ -128,8 +128,8 @@ impl<'q> Records<'q> {
     }
 }
 
-/// The folder of the run that holds the true wind of turbine `index` in a run of `case` under `control`: the one
-/// that `question` names, or else a complete one in the folder `study`.
+/// The folder of the run that holds the true wind of turbine `index` in a run of `case` under `control`: the
+/// one that `question` names, or else a complete one in the folder `study`.
 fn truth_folder(
     question: &PhaseQuestion,
     case: &Case,
