@@ -7,6 +7,7 @@
 //! resolved flow it keeps its default.
 
 mod choices;
+mod forms;
 mod on_and_off;
 mod rig;
 mod robustness;
@@ -153,6 +154,7 @@ pub fn phase_estimator() -> Vec<Row> {
         .and_then(|()| turbulence(&machine, &mut rows))
         .and_then(|()| choices::options(&machine, &mut rows))
         .and_then(|()| choices::linear(&machine))
+        .and_then(|()| forms::forms(&machine))
         .and_then(|()| robustness::robustness(&machine, &mut rows))
         .and_then(|()| on_and_off::on_and_off(&machine, &mut rows));
     if let Err(error) = done {
@@ -298,8 +300,8 @@ fn turbulence(machine: &Machine, rows: &mut Vec<Row>) -> Result<(), EstimationEr
         );
         for ((form, _), errors) in forms.iter().zip(&errors) {
             let [tilt, yaw] = errors.rms;
-            // The published form has no aim: its authors identified an azimuth offset for their turbine,
-            // which is not given here.
+            // The published form has no aim; with an identified azimuth offset, as its authors gave it one,
+            // it is compared in `forms`.
             if *form == "robust" {
                 rows.push(row(format!("{name}, {form}: tilt, rms error"), tilt, AIM, "deg"));
                 rows.push(row(format!("{name}, {form}: yaw, rms error"), yaw, AIM, "deg"));

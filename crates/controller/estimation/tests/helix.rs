@@ -99,7 +99,12 @@ fn innovations_and_errors_keep_within_their_chi_square_bounds() {
     let eddies = Eddies { deviation: 0.3, time_constant: 0.5 };
     let base = HelixOptions::default();
     let options = HelixOptions {
-        noise: Noise { amplitude: density, mean_wind: 1e-3, ..base.noise },
+        noise: Noise {
+            measurement: noise_of_readings(),
+            amplitude: density,
+            mean_wind: 1e-3,
+            ..base.noise
+        },
         eddies: Some(eddies),
         adaptation: None,
         response: None,

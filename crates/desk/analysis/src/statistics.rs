@@ -112,6 +112,24 @@ pub fn independent(values: &[f64]) -> Result<Statistic, AnalysisError> {
     })
 }
 
+/// Standard error of the mean of `statistic` (its unit), and the degrees of freedom behind it (–): the half
+/// width of its interval over Student's t for its n − 1 degrees of freedom, s / √n. None without an interval.
+///
+/// An interval of few blocks is several times as wide as that of a normal distribution (4.30 standard errors
+/// on either side for three), so that a half width over 1.96 is no standard error.
+///
+/// ```
+/// use analysis::statistics::{independent, standard_error};
+/// // s = √2, n = 2
+/// let (error, freedom) = standard_error(&independent(&[1.0, 3.0])?).unwrap();
+/// assert!((error - 1.0).abs() < 1e-12 && freedom == 1);
+/// # Ok::<(), analysis::AnalysisError>(())
+/// ```
+pub fn standard_error(statistic: &Statistic) -> Option<(f64, usize)> {
+    let freedom = statistic.n_blocks.checked_sub(1).filter(|freedom| *freedom > 0)?;
+    Some((statistic.half_width_95? / student_97_5(freedom), freedom))
+}
+
 /// Turbulence intensity (–): standard deviation of the streamwise velocity `samples` (m/s) over their mean.
 ///
 /// # Errors

@@ -18,6 +18,7 @@
 //! # Ok::<(), surrogate::SurrogateError>(())
 //! ```
 
+mod curve;
 mod factor;
 mod fit;
 mod kernel;
@@ -26,6 +27,7 @@ mod observations;
 mod process;
 mod sample;
 
+pub use curve::{Curve, CurveSettings, Extreme};
 pub use fit::{FitSettings, Noise};
 pub use kernel::{Hyperparameters, Shape};
 pub use likelihood::Mean;

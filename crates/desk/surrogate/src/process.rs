@@ -35,7 +35,8 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// 95 % interval of the curve (unit of the values).
+    /// 95 % interval of the curve (unit of the values), normal: known variances are taken as exact, and
+    /// hyperparameters as known. [`GaussianProcess::curve`] takes in that variances are uncertain.
     pub fn band_95(&self) -> [f64; 2] {
         [-1.0, 1.0].map(|sign| self.mean + sign * NORMAL_97_5 * self.standard_deviation)
     }
@@ -107,6 +108,14 @@ impl GaussianProcess {
     /// The hyperparameters.
     pub fn hyperparameters(&self) -> &Hyperparameters {
         &self.parameters
+    }
+
+    pub(crate) fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    pub(crate) fn kind_of_mean(&self) -> Mean {
+        self.mean
     }
 
     /// The observations behind the process.

@@ -103,6 +103,28 @@ pub enum PostprocessingError {
         /// Folder of the study.
         directory: PathBuf,
     },
+    /// No run joins a helix with an offset and compares with another.
+    #[error("no run in {} joins a helix with an offset and compares with another", directory.display())]
+    #[diagnostic(help(
+        "give a turbine `kind = \"phase-sync\"` with an `amplitude_deg` above 0, and its run a `compare_with`"
+    ))]
+    NoOffsets {
+        /// Folder of the study.
+        directory: PathBuf,
+    },
+    /// Something set that is not understood.
+    #[error("--{setting} {given}: {expected}")]
+    #[diagnostic(help("{fix}"))]
+    Setting {
+        /// Name of the setting.
+        setting: &'static str,
+        /// What was given.
+        given: String,
+        /// What was expected.
+        expected: &'static str,
+        /// What to write.
+        fix: &'static str,
+    },
     /// A series lacks a channel.
     #[error("{} has no channel `{channel}`", told(path))]
     #[diagnostic(help(

@@ -6,6 +6,7 @@
 pub mod analyses;
 mod error;
 mod lock;
+mod over_offset;
 mod phase;
 mod seeds;
 mod synchronisation;
@@ -13,8 +14,12 @@ mod synchronisation;
 pub use analyses::{ANALYSES, Analysis};
 pub use error::PostprocessingError;
 pub use lock::{LockAnswer, LockQuestion, lock};
-pub use phase::{PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, phase, phases, tune};
+pub use over_offset::over_offset;
+pub use phase::{
+    PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, Replayed, phase, phases, tune,
+};
 pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
+pub use synchronisation::curve::offset_panel;
 
 use basis::records::Summary;
 use error::InRecords;

@@ -4,7 +4,7 @@
 pub(crate) mod query;
 mod replay;
 
-pub use replay::tune;
+pub use replay::{Replayed, tune};
 
 use crate::PostprocessingError;
 use crate::error::InRecords;
@@ -12,9 +12,10 @@ use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
     fixed_frame_moments, ground_truth, uniform_interval,
 };
+use analysis::statistics::statistic;
 use basis::FixedFrame;
-use basis::records::Series;
-use control::phase_sync::PhaseEstimator;
+use basis::angle::wrap_to_half_turn;
+use basis::records::{Series, Statistic};
 use query::{Query, Records};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -37,7 +38,10 @@ pub struct PhaseQuestion {
     /// a run beside this one when absent.
     pub truth: Option<PathBuf>,
     /// Estimator to run over the records; the run's own estimate when absent.
-    pub estimator: Option<PhaseEstimator>,
+    pub estimator: Option<Replayed>,
+    /// Band of the filter through which the truth goes; [`Band::around`] the excitation with [`Band::RATIO`]
+    /// when absent.
+    pub band: Option<Band>,
     /// First time that counts (s); the end of the spin-up when absent.
     pub from: Option<f64>,
 }
@@ -53,6 +57,10 @@ pub struct PhaseAxis {
     pub agreement: Agreement,
     /// Estimated against true wind at the excitation frequency; absent in records shorter than two segments.
     pub coherence: Option<Coherence>,
+    /// Mean of the squared phase errors over the estimator's own variance of them (–), with its interval from
+    /// blocks: one where the estimator knows its errors, more where it is too sure of itself. Absent where
+    /// the series does not hold the variance.
+    pub consistency: Option<Statistic>,
     /// Estimated phase at each time (rad).
     pub phase: Vec<f64>,
     /// True phase at each time (rad).
@@ -68,6 +76,12 @@ pub struct PhaseAnswer {
     pub turbine: String,
     /// Run with the true wind.
     pub truth: String,
+    /// Frequency of the helix (Hz).
+    pub frequency: f64,
+    /// Band of the truth.
+    pub band: Band,
+    /// Length of the blocks behind all intervals (s).
+    pub block: f64,
     /// Times that count (s).
     pub times: Vec<f64>,
     /// Mean estimated and true wind over the disc (m/s).
@@ -82,6 +96,9 @@ pub struct PhaseAnswer {
     /// future: what its loads hold, beside what an estimator made of them in time. Absent where the turbine
     /// pitched a helix of its own.
     pub zero_phase: Option<[Agreement; 2]>,
+    /// Tilt and yaw phase of the estimate against the truth in the published band, at the times at which both
+    /// bands can be trusted. Absent where the records cannot hold that band.
+    pub published_band: Option<[Agreement; 2]>,
 }
 
 /// The answers for all turbines of a run that look for a helix.
@@ -105,12 +122,15 @@ pub(crate) struct Estimates {
 struct Wave {
     amplitude: Vec<f64>,
     phase: Vec<f64>,
+    /// Standard deviation that the estimator has of the phase (rad); empty where it is not known.
+    deviation: Vec<f64>,
 }
 
 /// The wind where the turbine would stand, in a run without it.
 pub(crate) struct Truth {
     /// Name of the run.
     pub(crate) run: String,
+    band: Band,
     wind: GroundTruth,
 }
 
@@ -150,21 +170,40 @@ pub fn phases(question: &PhaseQuestion) -> Result<PhaseAnswers, PostprocessingEr
 
 /// Answer of the records of `query` for one turbine.
 fn answer(question: &PhaseQuestion, query: &Query<'_>) -> Result<PhaseAnswer, PostprocessingError> {
-    let Query { run, case, name, reference, series, truth, .. } = query;
+    let Query { run, case, name, reference, series, truth, published, .. } = query;
     let estimates = match question.estimator {
         Some(estimator) => replay::replay(query, estimator)?,
         None => recorded(series, name)?,
     };
     let from = question.from.unwrap_or(case.time.spin_up);
-    let compared =
-        |estimates: &Estimates| compare(run, name, series, estimates, truth, reference, from);
+    let compared = |estimates: &Estimates, truth: &Truth| {
+        compare(run, name, series, estimates, truth, reference, from)
+    };
+    let agreements = |found: PhaseAnswer| [found.tilt.agreement, found.yaw.agreement];
     let zero_phase = if query.pitches {
         None
     } else {
-        let looked_back = compared(&zero_phase(series, name, reference)?)?;
-        Some([looked_back.tilt.agreement, looked_back.yaw.agreement])
+        let looked_back = zero_phase(series, name, reference, truth.band)?;
+        Some(agreements(compared(&looked_back, truth)?))
     };
-    Ok(PhaseAnswer { zero_phase, ..compared(&estimates)? })
+    let published_band = match published {
+        Some(published) => {
+            let alike = published.within(truth);
+            Some(agreements(compared(&estimates, &alike)?))
+        }
+        None => None,
+    };
+    Ok(PhaseAnswer { zero_phase, published_band, ..compared(&estimates, truth)? })
+}
+
+impl Truth {
+    /// The same, trusted only where `other` is, whose samples are the same instants.
+    fn within(&self, other: &Self) -> Self {
+        let [own, theirs] = [&self.wind.trusted, &other.wind.trusted];
+        let trusted = own.start.max(theirs.start)..own.end.min(theirs.end);
+        let wind = GroundTruth { trusted, ..self.wind.clone() };
+        Self { run: self.run.clone(), band: self.band, wind }
+    }
 }
 
 /// What the blade moments of turbine `name` tell of its wind to a filter that knows the future; moments (N m)
@@ -173,12 +212,15 @@ fn zero_phase(
     series: &Series,
     name: &str,
     reference: &Reference,
+    band: Band,
 ) -> Result<Estimates, PostprocessingError> {
     let moments = moments(series, name)?;
     let times = column(series, "time_s")?;
-    let band = Band::around(reference.frequency(), Band::RATIO);
     let filtered = ground_truth(&moments, times[0], uniform_interval(times)?, reference, band)?;
-    let wave = |axis: AxisWind| Wave { amplitude: axis.amplitude, phase: axis.phase };
+    let wave = |axis: AxisWind| {
+        let AxisWind { amplitude, phase, .. } = axis;
+        Wave { amplitude, phase, deviation: Vec::new() }
+    };
     Ok(Estimates {
         trust: vec![1.0; filtered.average.len()],
         wind: filtered.average,
@@ -203,7 +245,7 @@ pub(crate) fn compare(
     turbine: &str,
     series: &Series,
     estimates: &Estimates,
-    Truth { run: truth_run, wind: truth }: &Truth,
+    Truth { run: truth_run, band, wind: truth }: &Truth,
     reference: &Reference,
     from: f64,
 ) -> Result<PhaseAnswer, PostprocessingError> {
@@ -233,7 +275,13 @@ pub(crate) fn compare(
         } else {
             None
         };
+        let deviation =
+            if estimate.deviation.is_empty() { None } else { Some(pick(&estimate.deviation)) };
+        let consistency = deviation
+            .map(|deviation| consistency(&phase, &true_phase, &deviation, interval, block))
+            .transpose()?;
         Ok::<PhaseAxis, PostprocessingError>(PhaseAxis {
+            consistency,
             amplitude: mean(&pick(&estimate.amplitude)),
             true_amplitude: mean(&pick_true(&truth.amplitude)),
             agreement: agreement(&phase, &true_phase, interval, block)?,
@@ -246,13 +294,36 @@ pub(crate) fn compare(
         run: run.to_owned(),
         turbine: turbine.to_owned(),
         truth: truth_run.clone(),
+        frequency: reference.frequency(),
+        band: *band,
+        block,
         tilt: axis(&estimates.tilt, &truth.tilt, 0.0)?,
         yaw: axis(&estimates.yaw, &truth.yaw, reference.sense.yaw_lead())?,
         mean_winds: [mean(&pick(&estimates.wind)), mean(&pick_true(&truth.average))],
         trust: mean(&pick(&estimates.trust)),
         times: pick(times),
         zero_phase: None,
+        published_band: None,
     })
+}
+
+/// Mean of the squared errors of `phase` against `truth` (rad) over the square of their `deviation` (rad),
+/// one each `interval` (s), with its interval from blocks of `block` (s).
+///
+/// Source: Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, §5.4
+/// (normalised estimation error squared). Its bounds by chi-square take errors as independent from instant to
+/// instant; these last as long as the filter remembers, so that the interval is that of block means.
+fn consistency(
+    phase: &[f64],
+    truth: &[f64],
+    deviation: &[f64],
+    interval: f64,
+    block: f64,
+) -> Result<Statistic, PostprocessingError> {
+    let squares = phase.iter().zip(truth).zip(deviation).map(|((phase, truth), deviation)| {
+        (wrap_to_half_turn(phase - truth) / deviation.max(f64::MIN_POSITIVE)).powi(2)
+    });
+    Ok(statistic(&squares.collect::<Vec<_>>(), interval, block)?)
 }
 
 /// Whether `channel` of a series tells of the phase of a helix at turbine `name`; no other is asked for here.
@@ -276,7 +347,8 @@ pub(crate) fn column<'a>(
     series.column(channel).ok_or_else(missing)
 }
 
-/// The true wind at the place of turbine `name` in the `series` of `run`; nothing where that was not kept.
+/// The true wind at the place of turbine `name` in the `series` of `run`, through a filter of `band`; nothing
+/// where that was not kept.
 ///
 /// # Errors
 /// [`PostprocessingError::Analysis`] for a record that is too short or has gaps.
@@ -285,6 +357,7 @@ pub(crate) fn truth(
     name: &str,
     series: &Series,
     reference: &Reference,
+    band: Band,
 ) -> Result<Option<Truth>, PostprocessingError> {
     let part = |axis: &str| series.column(&format!("{name}.lines_{axis}_m_s"));
     let (Some(average), Some(tilt), Some(yaw)) = (part("average"), part("tilt"), part("yaw"))
@@ -296,9 +369,8 @@ pub(crate) fn truth(
     let winds: Vec<FixedFrame> = (0..times.len())
         .map(|row| FixedFrame { average: average[row], tilt: tilt[row], yaw: yaw[row] })
         .collect();
-    let band = Band::around(reference.frequency(), Band::RATIO);
     let wind = ground_truth(&winds, times[0], interval, reference, band)?;
-    Ok(Some(Truth { run: run.to_owned(), wind }))
+    Ok(Some(Truth { run: run.to_owned(), band, wind }))
 }
 
 /// Estimate of turbine `name` during the run.
@@ -308,6 +380,9 @@ pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, Postpro
         Ok::<Wave, PostprocessingError>(Wave {
             amplitude: channel(&format!("estimated_{axis}_amplitude_m_s"))?,
             phase: channel(&format!("estimated_{axis}_phase_rad"))?,
+            // Earlier series do not hold it.
+            deviation: channel(&format!("estimated_{axis}_phase_deviation_rad"))
+                .unwrap_or_default(),
         })
     };
     Ok(Estimates {

@@ -3,6 +3,7 @@
 //! The figures are those of van Vondelen et al. (2025): estimates beside the truth (their Figs. 10, 11), the
 //! answer to the pitch (12, 13), power and loads over the offset (14, 15), the wake (16, 17).
 
+pub(crate) mod curve;
 mod offsets;
 mod tracks;
 mod wake;
@@ -12,7 +13,7 @@ use crate::error::{InRecords, case_in};
 use crate::phase::query::tells_truth;
 use crate::phase::{PhaseAnswer, Truth, compare, recorded, tells, truth};
 use analysis::AnalysisError;
-use analysis::phase::Reference;
+use analysis::phase::{Band, Reference};
 use basis::angle::wrap_to_turn;
 use control::excitation_rate;
 use control::phase_sync::PhaseSyncSettings;
@@ -133,6 +134,7 @@ fn synchronised(
     let diameter = records.runs[first].summary.conditions.rotor_diameter;
     let rate = excitation_rate(pairing.strouhal, case.wind.speed, diameter);
     let reference = Reference { rate, sense: pairing.sense };
+    let band = Band::around(reference.frequency(), Band::RATIO);
     let own_name = &case.turbines[turbine].name;
     // Without a true wind there is nothing to compare with; a short run says nothing of phases.
     let control = |run: &RunRecords| control_of(case, run);
@@ -142,7 +144,7 @@ fn synchronised(
                 continue;
             }
             let series = run.series.read(|channel| tells(own_name, channel))?;
-            if let Ok(Some(truth)) = truth(&run.manifest.run, own_name, &series, &reference) {
+            if let Ok(Some(truth)) = truth(&run.manifest.run, own_name, &series, &reference, band) {
                 return Ok(Some(truth));
             }
         }

@@ -6,7 +6,7 @@ mod small;
 
 use basis::angle::wrap_to_half_turn;
 use control::phase_sync::PhaseEstimator;
-use postprocessing::PhaseQuestion;
+use postprocessing::{PhaseQuestion, Replayed};
 use small::{ABSENT, DISK, behind_helix, done, options, written};
 use std::fs;
 
@@ -33,7 +33,7 @@ fn a_replay_estimates_what_the_run_did() {
 /// Noise that differs from the estimator's own makes phases differ by far more than what is allowed.
 #[test]
 fn a_replay_assumes_the_noise_that_the_run_was_given() {
-    assert_same_phases(", measurement_noise_mnm = 0.6, process_noise_amplitude = 3e-3");
+    assert_same_phases(", measurement_noise_1s_mnm = 0.19, process_noise_amplitude = 3e-3");
 }
 
 /// The case with `keys` in the control of T2: its run, and a replay of it, find the same phases.
@@ -51,10 +51,24 @@ fn assert_same_phases(keys: &str) {
             PhaseQuestion { run: output.join("joined"), estimator, ..PhaseQuestion::default() };
         postprocessing::phase(&question).expect("a sound record")
     };
-    let (recorded, replayed) = (ask(None), ask(Some(PhaseEstimator::Robust)));
+    let (recorded, replayed) = (ask(None), ask(Some(Replayed::InRun(PhaseEstimator::Robust))));
     assert!(recorded.times.len() > 100, "{} instants", recorded.times.len());
     let phases = recorded.tilt.phase.iter().zip(&replayed.tilt.phase);
     let apart = phases.map(|(a, b)| wrap_to_half_turn(a - b));
     let farthest = apart.fold(0.0_f64, |farthest, apart| farthest.max(apart.abs()));
     assert!(farthest < 1e-6, "{farthest} rad");
+    // So do their deviations, without which nobody could tell how sure they were.
+    let [kept, again] = [&recorded, &replayed]
+        .map(|found| found.tilt.consistency.as_ref().expect("deviations in the series").mean);
+    assert!(kept > 0.0 && (again / kept - 1.0).abs() < 1e-6, "{kept} {again}");
+    // The published forms and the linear one listen to the same records.
+    for form in [
+        Replayed::InRun(PhaseEstimator::Published),
+        Replayed::InRun(PhaseEstimator::PublishedWithOffset),
+        Replayed::Linear,
+    ] {
+        let found = ask(Some(form));
+        assert_eq!(found.times, recorded.times, "{form:?}");
+        assert!(found.tilt.agreement.rmse.is_finite(), "{form:?}");
+    }
 }

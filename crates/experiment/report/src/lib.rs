@@ -11,9 +11,9 @@ mod words;
 
 use basis::records::{Plane, Series, Summary};
 pub use figures::synchronisation::{
-    CentreLine, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure, OffsetPanel,
-    OffsetPoint, PhaseNumbers, PhaseRow, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure,
-    SpectrumLine, Synchronisation, TrackFigure, TrackLine, TrackRow,
+    CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure,
+    OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow, SliceFigure, SlicePanel, SliceRotor,
+    SpectrumFigure, SpectrumLine, Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 use std::fs::{self, File};
 use std::io::{self, Write};

@@ -7,7 +7,7 @@ use crate::observer::{IdentificationProgress, Observer};
 use crate::prepared::Prepared;
 use basis::records::PitchResponse;
 use control::Identification;
-use control::phase_sync::{PhaseEstimator, PhaseNoise, response_of};
+use control::phase_sync::{PhaseEstimator, response_of};
 use farm::Progress;
 use farm::case::DynamicInflow;
 use farm::pitch_response::{
@@ -15,6 +15,7 @@ use farm::pitch_response::{
     individual_pitch_offset, individual_pitch_offset_cost, own_pitch, own_pitch_cost,
 };
 use formats::records::{PitchResponseRecord, sha256};
+use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -129,7 +130,7 @@ impl Prepared {
         let needed = match needed {
             Needed::IndividualPitch => format!("individual pitch {INDIVIDUAL_PITCH_STROUHAL:?}"),
             Needed::Control(Identification::OwnPitch(sync))
-                if sync.estimator == PhaseEstimator::Published =>
+                if sync.estimator != PhaseEstimator::Robust =>
             {
                 format!("azimuth offset {:?}", sync.strouhal)
             }
@@ -139,7 +140,7 @@ impl Prepared {
                 sync.amplitude,
                 sync.strouhal,
                 sync.azimuth_offset.map_or("found".to_owned(), |given| format!("{given:?}")),
-                trace(&sync.noise)
+                trace(&sync.noise) + &trace(&sync.choices)
             ),
             Needed::Control(Identification::Loads { strouhal }) => {
                 format!("decoupling {strouhal:?}")
@@ -272,10 +273,10 @@ impl Prepared {
     }
 }
 
-/// What `noise` leaves in the digest of a calibration: nothing where none is given, so that what was found
-/// before one could give any is still known.
-fn trace(noise: &PhaseNoise) -> String {
-    if *noise == PhaseNoise::default() { String::new() } else { format!(" {noise:?}") }
+/// What is `given` of an estimator leaves in the digest of a calibration: nothing where nothing is given, so
+/// that what was found before one could give any is still known.
+fn trace<T: Default + PartialEq + fmt::Debug>(given: &T) -> String {
+    if *given == T::default() { String::new() } else { format!(" {given:?}") }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! `kind = "phase-sync"`: its checks, and how it is built.
 
 use super::settings::{PhaseEstimator, PhaseSyncSettings, TABLE, response_of};
-use super::{PhaseSync, SyncSettings};
+use super::{PhaseSync, SyncSettings, choices};
 use crate::Controller;
 use crate::excitation::Excitation;
 use crate::keys::{sense, starts_too_late};
@@ -70,14 +70,7 @@ impl ControllerKind for PhaseSyncKind {
             // Nothing is pitched, with whatever offset.
             values.set("azimuth_offset_deg", 0.0);
         }
-        if values.word("estimator") != "published" && values.has("process_noise_phase") {
-            objections.push(Objection {
-                key: Some("process_noise_phase"),
-                message: "has no effect here: it applies only with estimator = \"published\"; the states of \"robust\" are sine and cosine components, whose process noise is process_noise_amplitude".to_owned(),
-                label: "no effect",
-                fix: "leave it out".to_owned(),
-            });
-        }
+        objections.extend(choices::objections(values));
         objections
     }
 

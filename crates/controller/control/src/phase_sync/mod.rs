@@ -19,11 +19,15 @@
 //! What the paper leaves open: the excitation is as strong as the estimate is trusted. Where the wind carries
 //! no helix, or the loads go missing, it fades to the baseline, and comes back when the helix does.
 
+mod choices;
 mod kind;
 mod settings;
 
+pub use choices::{Adapts, EstimatorChoices};
 pub use kind::PHASE_SYNC;
-pub use settings::{PhaseEstimator, PhaseNoise, PhaseSyncSettings, calibration_of, response_of};
+pub use settings::{
+    PhaseEstimator, PhaseNoise, PhaseSyncSettings, azimuth_offset_of, calibration_of, response_of,
+};
 
 use crate::controller::{ForeignState, from_bytes, to_bytes};
 use crate::excitation::{Excitation, fade_in};
@@ -182,7 +186,7 @@ impl PhaseSync {
 }
 
 /// Signals in the series.
-const SIGNALS: [&str; 9] = [
+const SIGNALS: [&str; 11] = [
     "estimated_wind_m_s",
     "estimated_tilt_wind_m_s",
     "estimated_yaw_wind_m_s",
@@ -190,6 +194,8 @@ const SIGNALS: [&str; 9] = [
     "estimated_yaw_amplitude_m_s",
     "estimated_tilt_phase_rad",
     "estimated_yaw_phase_rad",
+    "estimated_tilt_phase_deviation_rad",
+    "estimated_yaw_phase_deviation_rad",
     "estimate_trust",
     "sync_share",
 ];
@@ -228,6 +234,8 @@ impl Excitation for PhaseSync {
             estimate.yaw.amplitude,
             estimate.tilt.phase,
             estimate.yaw.phase,
+            estimate.tilt.phase_variance.sqrt(),
+            estimate.yaw.phase_variance.sqrt(),
             estimate.trust.overall(),
             self.share,
         ]);

@@ -1,6 +1,7 @@
 //! `kind = "phase-sync"`: its keys, and what they say.
 
 use super::TRUST;
+use super::choices::EstimatorChoices;
 use crate::keys::{PHASE_RANGE, START, sense};
 use crate::kind::{Control, Site};
 use basis::Sense;
@@ -52,10 +53,10 @@ pub(super) static TABLE: Table = Table {
         ),
         key(
             "estimator",
-            Holds::Choice(&["robust", "published"]),
+            Holds::Choice(&["robust", "published", "published-with-offset"]),
             "",
             Value("\"robust\""),
-            "`robust`: extended Kalman filter with states for shear, eddies and other model errors. `published`: the four states of van Vondelen et al. (2025).",
+            "`robust`: extended Kalman filter with states for shear, eddies and other model errors. `published`: the four states of van Vondelen et al. (2025), on stiff blades without weight. `published-with-offset`: the same, whose model takes the pitch to act with the azimuth offset ψ, as the paper has it.",
         ),
         key(
             "fallback",
@@ -65,17 +66,24 @@ pub(super) static TABLE: Table = Table {
             "What it does where the estimate cannot be trusted. `baseline`: it fades out, and comes back with the helix. `none`: it goes on.",
         ),
         key(
-            "measurement_noise_mnm",
+            "measurement_noise_1s_mnm",
             above(0.0, 1e4),
             "MN m",
-            Otherwise("5 % of the mean moment"),
-            "Standard deviation of the noise in a blade's moment that the estimator assumes. `wakemix analyse tune` finds it, and the wave's process noise intensity, on the records of a run.",
+            Otherwise("1.6 % of the mean moment, which are 5 % for a reading every 0.1 s"),
+            "Noise in a blade's moment that the estimator assumes: the standard deviation of its mean over a second, root of its intensity. A reading every Δt seconds has that over √Δt. `wakemix analyse tune` finds it, and process noise intensities, on the records of a run.",
+        ),
+        key(
+            "process_noise_mean_wind",
+            above(0.0, 1e6),
+            "m²/s³",
+            Otherwise("0.02"),
+            "Process noise intensity of the mean wind in the estimator, a variance per time, (m/s)²/s.",
         ),
         key(
             "process_noise_amplitude",
             above(0.0, 1e6),
             "m²/s³",
-            Otherwise("8e-4; 1e-4 with `estimator = \"published\"`"),
+            Otherwise("8e-4; 1e-4 with a published estimator"),
             "Process noise intensity of the helix's amplitude in the estimator, a variance per time, (m/s)²/s; with `robust` of each of its sine and cosine components.",
         )
         .formerly(&["wandering_amplitude"]),
@@ -83,10 +91,45 @@ pub(super) static TABLE: Table = Table {
             "process_noise_phase",
             above(0.0, 1e6),
             "rad²/s",
-            Otherwise("1e-4; only with `estimator = \"published\"`"),
+            Otherwise("1e-4; only with a published estimator"),
             "Process noise intensity of each phase in the estimator, a variance per time.",
         )
         .formerly(&["wandering_phase"]),
+        key(
+            "process_noise_rate",
+            above(0.0, 1.0),
+            "rad²/s³",
+            Otherwise("the excitation rate is taken to be the nominal one"),
+            "Makes the excitation rate a state of the estimator, with this process noise intensity, a variance per time, (rad/s)²/s; 1e-9 follows a rate that is some percent off.",
+        ),
+        key(
+            "adaptation",
+            Holds::Choice(&["none", "noise", "noise-and-wave"]),
+            "",
+            Otherwise("\"noise\"; \"none\" with a published estimator"),
+            "What the estimator adapts to its innovation: nothing; the noise of moments and eddies; the process noise of the wave too.",
+        ),
+        key(
+            "amplitudes",
+            Holds::Choice(&["shared", "separate"]),
+            "",
+            Otherwise("\"shared\"; only with a published estimator"),
+            "Whether tilt and yaw of the helix share an amplitude in the estimator, or each has its own; the components of `robust` are each axis' own.",
+        ),
+        key(
+            "dynamic_inflow",
+            Holds::Choice(&["snel-schepers", "two-constant"]),
+            "",
+            Otherwise("\"snel-schepers\""),
+            "Delay of the wake in the estimator's model. `snel-schepers`: with the inertia of the air. `two-constant`: with two time constants, after Øye; it turns with the blades in a resolved flow too.",
+        ),
+        key(
+            "wake_time_factor",
+            above(0.0, 10.0),
+            "–",
+            Otherwise("0.4 with `robust` in a resolved flow, else 1"),
+            "Factor on the time constant of Snel and Schepers's delay in the estimator's model.",
+        ),
         START,
     ],
 };
@@ -115,6 +158,8 @@ pub struct PhaseSyncSettings {
     pub fallback: bool,
     /// Noise that the estimator assumes.
     pub noise: PhaseNoise,
+    /// What else of it is chosen.
+    pub choices: EstimatorChoices,
     /// What the estimator makes of the turbine's own pitch; found before the runs.
     pub calibration: Option<Calibration>,
 }
@@ -138,17 +183,19 @@ impl PhaseSyncSettings {
                 .or(control.response.as_ref().and_then(azimuth_offset_of))
                 .or((amplitude == 0.0).then_some(0.0)),
             start: values.number("start"),
-            estimator: if values.word("estimator") == "published" {
-                PhaseEstimator::Published
-            } else {
-                PhaseEstimator::Robust
+            estimator: match values.word("estimator") {
+                "published" => PhaseEstimator::Published,
+                "published-with-offset" => PhaseEstimator::PublishedWithOffset,
+                _ => PhaseEstimator::Robust,
             },
             fallback: values.word("fallback") != "none",
             noise: PhaseNoise {
-                measurement: values.optional_number("measurement_noise_mnm").map(|n| n * MEGA),
+                measurement: values.optional_number("measurement_noise_1s_mnm").map(|n| n * MEGA),
+                process_noise_mean_wind: values.optional_number("process_noise_mean_wind"),
                 process_noise_amplitude: values.optional_number("process_noise_amplitude"),
                 process_noise_phase: values.optional_number("process_noise_phase"),
             },
+            choices: EstimatorChoices::of(values),
             calibration: control.response.as_ref().and_then(calibration_of),
         })
     }
@@ -164,9 +211,17 @@ impl PhaseSyncSettings {
         }
     }
 
-    /// Choices of its estimator with its own noise, before calibration.
+    /// Choices of its estimator with its own noise, before calibration; the published one with the azimuth
+    /// offset as far as it is known.
     pub fn estimator_options(&self, flow_resolves_induction: bool) -> HelixOptions {
-        self.noise.apply(self.estimator.options(flow_resolves_induction))
+        let options = self.estimator.options(flow_resolves_induction);
+        let options = self.noise.apply(self.choices.apply(options));
+        match (self.estimator, self.azimuth_offset) {
+            (PhaseEstimator::PublishedWithOffset, Some(offset)) => {
+                options.with_azimuth_offset(offset)
+            }
+            _ => options,
+        }
     }
 
     /// Trust below which the excitation fades out, and above which it comes back (–).
@@ -178,8 +233,10 @@ impl PhaseSyncSettings {
 /// Noise that a phase estimator assumes; what is absent stays as the estimator has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhaseNoise {
-    /// Standard deviation of one blade's moment (N m).
+    /// Standard deviation of one blade's moment over a second (N m √s).
     pub measurement: Option<f64>,
+    /// Process noise intensity of the mean wind ((m/s)²/s).
+    pub process_noise_mean_wind: Option<f64>,
     /// Process noise intensity of amplitudes, or of sine and cosine components ((m/s)²/s).
     pub process_noise_amplitude: Option<f64>,
     /// Process noise intensity of phases (rad²/s).
@@ -192,6 +249,7 @@ impl PhaseNoise {
         let mut options = options;
         let noise = &mut options.noise;
         noise.measurement = self.measurement.map_or(noise.measurement, Measurement::Moment);
+        noise.mean_wind = self.process_noise_mean_wind.unwrap_or(noise.mean_wind);
         noise.amplitude = self.process_noise_amplitude.unwrap_or(noise.amplitude);
         noise.phase = self.process_noise_phase.unwrap_or(noise.phase);
         options
@@ -203,8 +261,10 @@ impl PhaseNoise {
 pub enum PhaseEstimator {
     /// The extended Kalman filter with states for what its model lacks.
     Robust,
-    /// The extended Kalman filter as it was published.
+    /// The extended Kalman filter as it was published, without the azimuth offset of its model.
     Published,
+    /// The same with the azimuth offset of the transformation in its model.
+    PublishedWithOffset,
 }
 
 impl PhaseEstimator {
@@ -219,7 +279,7 @@ impl PhaseEstimator {
                 options
             }
             Self::Robust => HelixOptions::default(),
-            Self::Published => HelixOptions::published(),
+            Self::Published | Self::PublishedWithOffset => HelixOptions::published(),
         }
     }
 }
@@ -237,7 +297,7 @@ pub fn calibration_of(response: &PitchResponse) -> Option<Calibration> {
 }
 
 /// The azimuth offset (rad) in `response` with which a turbine that joins a helix pitches.
-fn azimuth_offset_of(response: &PitchResponse) -> Option<f64> {
+pub fn azimuth_offset_of(response: &PitchResponse) -> Option<f64> {
     match *response {
         PitchResponse::Estimator { transformation_offset, .. } => transformation_offset,
         PitchResponse::Transformation { azimuth_offset } => Some(azimuth_offset),

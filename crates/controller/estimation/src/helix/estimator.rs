@@ -51,12 +51,7 @@ impl HelixEstimator {
         options: HelixOptions,
     ) -> Result<Self, EstimationError> {
         check(definition, settings, &options)?;
-        let filter = Filter {
-            options,
-            sense: settings.sense,
-            rate: settings.rate,
-            diameter: definition.rotor_diameter(),
-        };
+        let filter = Filter::new(definition, settings, options);
         let rotor = Rotor::new(definition, settings, &options);
         let state = HelixEstimatorState {
             filter: filter.blank(),
@@ -195,6 +190,24 @@ impl Estimator for HelixEstimator {
 
     fn restore(&mut self, state: HelixEstimatorState) {
         self.state = state;
+    }
+}
+
+impl Filter {
+    /// For a turbine of `definition`.
+    pub(super) fn new(
+        definition: &Definition,
+        settings: &HelixSettings,
+        options: HelixOptions,
+    ) -> Self {
+        Self {
+            options,
+            sense: settings.sense,
+            rate: settings.rate,
+            diameter: definition.rotor_diameter(),
+            interval: settings.interval * options.update_every as f64,
+            n_blades: definition.n_blades,
+        }
     }
 }
 

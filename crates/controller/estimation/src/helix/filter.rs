@@ -1,6 +1,7 @@
 //! The Kalman filter proper: prediction of the states, correction by the moments, adaptation of the noise.
 
-use super::options::{Adaptation, HelixOptions, Measurement};
+use super::leftover::Leftover;
+use super::options::{Adaptation, HelixOptions};
 use super::rotor::{Expected, WINDS};
 use super::state_estimate::{
     BIAS, MEAN_WIND, N_STATES, PASSING, RATE, RESPONSE, StateEstimate, Vector, WAVE,
@@ -13,8 +14,6 @@ use basis::{FixedFrame, PerBlade, Sense};
 use lti::lag::kept;
 use serde::{Deserialize, Serialize};
 
-/// Innovations beyond this many standard deviations have less weight, after Huber (–).
-const HUBER_LIMIT: f64 = 3.0;
 /// Standard deviation of the mean wind at the start (m/s).
 const INITIAL_WIND: f64 = 1.0;
 /// Standard deviation of the constant tilt and yaw at the start over the mean wind (–).
@@ -33,6 +32,9 @@ pub(super) struct Filter {
     pub(super) rate: f64,
     /// Rotor diameter (m).
     pub(super) diameter: f64,
+    /// Time that a reading stands for (s): from update to update as set. A late reading is no better for it.
+    pub(super) interval: f64,
+    pub(super) n_blades: usize,
 }
 
 /// State of the filter.
@@ -40,8 +42,10 @@ pub(super) struct Filter {
 pub(super) struct FilterState {
     pub(super) estimate: StateEstimate,
     pub(super) monitor: TrustMonitor,
-    /// Adapted variance of the moments over that of the options (–).
+    /// Adapted noise intensity of the moments over that of the options (–).
     measurement: f64,
+    /// What has been left of the readings over since the intensity was adapted last.
+    leftover: Leftover,
     /// Adapted variance of the eddies (m²/s²).
     eddies: f64,
     /// Adapted process noise intensity of the wave over that of the options (–).
@@ -84,6 +88,7 @@ impl Filter {
             estimate: StateEstimate::zero(),
             monitor: TrustMonitor::default(),
             measurement: 1.0,
+            leftover: Leftover::new(self.n_blades),
             eddies: self.options.eddies.map_or(0.0, |eddies| eddies.deviation.powi(2)),
             process_noise: 1.0,
             instantaneous: FixedFrame::default(),
@@ -203,14 +208,11 @@ impl Filter {
         state.pitch_wind = now.pitch_wind;
         let n_blades = readings.len();
         let mean_moment = expected.moments.mean().abs();
-        let nominal = match self.options.noise.measurement {
-            Measurement::Moment(deviation) => deviation.powi(2),
-            Measurement::Share(share) => (share * mean_moment).powi(2),
-        }
-        .max(f64::MIN_POSITIVE);
+        let nominal = self.options.noise.measurement.variance(self.interval, mean_moment);
         let variance = nominal * state.measurement;
+        let limit = self.options.huber_limit.unwrap_or(f64::INFINITY);
         let before = state.estimate.mean;
-        let (mut n_used, mut square, mut left) = (0, 0.0, 0.0);
+        let (mut n_used, mut square) = (0, 0.0);
         for blade in 0..n_blades {
             let Some(reading) = readings[blade] else { continue };
             let slopes = &slopes[blade];
@@ -220,16 +222,15 @@ impl Filter {
             let spread = state.estimate.variance_along(slopes);
             let total = spread + variance;
             let distance = innovation.abs() / total.sqrt();
-            let inflation = (distance / HUBER_LIMIT).max(1.0);
+            let inflation = (distance / limit).max(1.0);
             let inflated = inflation * total - spread;
             state.estimate.correct(slopes, innovation, inflated);
             n_used += 1;
             square += (distance * distance).min(1e6);
-            // Posterior residual plus the remaining uncertainty of the state: an estimate of the measurement
-            // noise.
-            let residual = (innovation * inflated / (inflation * total)).abs();
-            let limit = HUBER_LIMIT * variance.sqrt();
-            left += (residual.min(limit).powi(2) + state.estimate.variance_along(slopes)) / nominal;
+            let residual = innovation * inflated / (inflation * total);
+            let most = limit * variance.sqrt();
+            let left_spread = state.estimate.variance_along(slopes);
+            state.leftover.add(blade, residual.clamp(-most, most), left_spread, nominal);
         }
         if n_used == 0 {
             return 0;
@@ -242,7 +243,7 @@ impl Filter {
         let n = n_used as f64;
         state.monitor.compare(now.interval, self.rate, square / n);
         if let Some(adaptation) = self.options.adaptation {
-            self.learn(now.interval, adaptation, left / n, &before, state);
+            self.learn(now.interval, adaptation, &before, state);
         }
         n_used
     }
@@ -314,20 +315,21 @@ impl Filter {
         }
     }
 
-    /// Adapts the noise: `left` is the estimated measurement variance over the nominal one (–), `before` are
-    /// the states before the correction.
+    /// Adapts the noise over the `interval` (s); `before` are the states before the correction.
     fn learn(
         &self,
         interval: f64,
         adaptation: Adaptation,
-        left: f64,
         before: &Vector,
         state: &mut FilterState,
     ) {
         let share = 1.0 - kept(interval, adaptation.time_constant);
         let bound = adaptation.bound * adaptation.bound;
-        state.measurement += share * (left - state.measurement);
-        state.measurement = state.measurement.clamp(1.0 / bound, bound);
+        if let Some((over, left)) = state.leftover.take(interval, self.interval) {
+            let share = 1.0 - kept(over, adaptation.time_constant);
+            state.measurement += share * (left - state.measurement);
+            state.measurement = state.measurement.clamp(1.0 / bound, bound);
+        }
         let StateEstimate { mean, covariance } = &state.estimate;
         if let Some(eddies) = self.options.eddies {
             // Expected square of the eddies' states: square of the mean plus variance.

@@ -79,6 +79,7 @@ impl LinearEstimator {
             response: None,
             rate: None,
             adaptation: None,
+            huber_limit: None,
             roundness: 0.0,
             ..options
         };
@@ -94,12 +95,7 @@ impl LinearEstimator {
         let between = |step: f64, up: f64, down: f64| (up - down) / step;
         let OperatingPoint { wind, pitch, .. } = point;
         let half = [0.5 * WIND_STEP, 0.5 * PITCH_STEP];
-        let filter = Filter {
-            options,
-            sense: settings.sense,
-            rate: settings.rate,
-            diameter: definition.rotor_diameter(),
-        };
+        let filter = Filter::new(definition, settings, options);
         let state = LinearEstimatorState {
             filter: filter.blank(),
             clock: Clock::new(n_blades),

@@ -1,10 +1,13 @@
-//! Options of the helix estimator, with its two presets.
+//! HelixOptions of the helix estimator, with its two presets.
 
 use super::wave::Form;
 use crate::EstimationError;
 use serde::{Deserialize, Serialize};
 
-/// Options; [`HelixOptions::default`] is the robust form, [`HelixOptions::published`] that of the authors.
+/// Innovations beyond this many standard deviations have less weight in the robust form (–).
+const HUBER_LIMIT: f64 = 3.0;
+
+/// HelixOptions; [`HelixOptions::default`] is the robust form, [`HelixOptions::published`] that of the authors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HelixOptions {
     /// States of the wave.
@@ -32,6 +35,9 @@ pub struct HelixOptions {
     pub rate: Option<f64>,
     /// Adaptation of the noise to the innovation; none for constant noise.
     pub adaptation: Option<Adaptation>,
+    /// Innovations beyond this many standard deviations (–) have less weight, after Huber; none where all
+    /// have their full weight.
+    pub huber_limit: Option<f64>,
     /// Correlation of the process noise of tilt and yaw (–, 0 to below 1): one would be a helix that stays
     /// round.
     pub roundness: f64,
@@ -48,6 +54,8 @@ pub struct Rotor {
     pub wake: Wake,
     /// Whether its blades bend: first flapwise mode, with aerodynamic damping.
     pub flexible: bool,
+    /// Whether its blades have weight: gravity and centrifugal force at their roots.
+    pub weight: bool,
     /// Factor on tilt and yaw of the pitch (–): the blades' response to it over the model's.
     pub pitch_gain: f64,
     /// Angle by which a blade leads its pitch (rad): the pitch that acts is the one measured this part of a
@@ -68,6 +76,9 @@ pub enum Wake {
         /// Factor on the model's time constant (–).
         time_factor: f64,
     },
+    /// Dynamic inflow of Øye with two time constants that follow wind and induction, in the rotating frame of
+    /// each blade.
+    TwoConstantWithBlades,
     /// The same dynamic inflow in the non-rotating frame, fixed in space.
     ///
     /// A load that oscillates from side to side of the rotor changes the induction less, and sooner, than one
@@ -83,7 +94,10 @@ pub enum Wake {
     },
 }
 
-/// Noise model of the filter; process noise intensities are variances per time.
+/// Noise model of the filter: intensities of continuous white noise (two-sided spectral densities), so that
+/// the filter does not depend on how often it is updated. Process noise grows a variance by its intensity
+/// times the time that passes; a reading that stands for an interval has the variance of its intensity over
+/// that interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
     /// Measurement noise of one blade's moment.
@@ -98,14 +112,32 @@ pub struct Noise {
     pub initial_amplitude: f64,
 }
 
-/// Measurement noise of one blade's moment.
+/// Measurement noise of one blade's moment: the square root of its intensity, which is the standard deviation
+/// of its mean over a second. A reading at every Δt seconds has that over √Δt.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Measurement {
-    /// Standard deviation (N m).
+    /// In moments (N m √s).
     Moment(f64),
-    /// Standard deviation over the mean of the moment (–).
+    /// Over the mean of the moment (√s).
     Share(f64),
 }
+
+impl Measurement {
+    /// Variance (N² m²) of a reading that stands for an `interval` (s), where the mean moment is
+    /// `mean_moment` (N m). The only place where measurement noise is made discrete.
+    pub(super) fn variance(self, interval: f64, mean_moment: f64) -> f64 {
+        let density = match self {
+            Self::Moment(density) => density,
+            Self::Share(share) => share * mean_moment,
+        };
+        (density * density / interval).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// Interval (s) between the readings of the trials from which the default noise comes.
+const TRIAL_INTERVAL: f64 = 0.1;
+/// Noise of a reading there, over the mean moment (–).
+const TRIAL_NOISE: f64 = 0.05;
 
 /// Tilt and yaw of passing eddies: first-order Gauss-Markov noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -127,6 +159,11 @@ pub struct Adaptation {
     pub wave: bool,
 }
 
+impl Adaptation {
+    /// That of the robust form.
+    pub const USUAL: Self = Self { time_constant: 200.0, bound: 5.0, wave: false };
+}
+
 /// Method for the derivatives of the moments by the states.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Jacobian {
@@ -146,12 +183,13 @@ impl Default for HelixOptions {
             rotor: Rotor {
                 wake: Wake::InAir { time_factor: 0.4, share: 0.6 },
                 flexible: true,
+                weight: true,
                 pitch_gain: 1.0,
                 pitch_azimuth_offset: 0.0,
                 reading_delay: 0.0,
             },
             noise: Noise {
-                measurement: Measurement::Share(0.05),
+                measurement: Measurement::Share(TRIAL_NOISE * TRIAL_INTERVAL.sqrt()),
                 mean_wind: 0.02,
                 amplitude: 8e-4,
                 phase: 1e-3,
@@ -162,7 +200,8 @@ impl Default for HelixOptions {
             response: None,
             model_uncertainty: 0.03,
             rate: None,
-            adaptation: Some(Adaptation { time_constant: 200.0, bound: 5.0, wave: false }),
+            adaptation: Some(Adaptation::USUAL),
+            huber_limit: Some(HUBER_LIMIT),
             roundness: 0.7,
             jacobian: Jacobian::Analytic,
             update_every: 1,
@@ -171,8 +210,12 @@ impl Default for HelixOptions {
 }
 
 impl HelixOptions {
-    /// The form of van Vondelen et al. (2025): mean wind, one amplitude, two phases; a wake with delay; fixed
-    /// noise; slopes by central differences.
+    /// The form of van Vondelen et al. (2025): mean wind, one amplitude, two phases; a wake with delay; stiff
+    /// blades without weight; fixed noise, all innovations with their full weight; slopes by central
+    /// differences.
+    ///
+    /// The paper gives the model an azimuth offset of the pitch, identified for its turbine (§2.4): with
+    /// [`HelixOptions::with_azimuth_offset`].
     ///
     /// The paper gives no numbers for its noise; with these the filter converges within about two periods on
     /// its own model. [`tuning`](super::tuning) finds others from records.
@@ -182,12 +225,13 @@ impl HelixOptions {
             rotor: Rotor {
                 wake: Wake::WithBlades { time_factor: 1.0 },
                 flexible: false,
+                weight: false,
                 pitch_gain: 1.0,
                 pitch_azimuth_offset: 0.0,
                 reading_delay: 0.0,
             },
             noise: Noise {
-                measurement: Measurement::Share(0.05),
+                measurement: Measurement::Share(TRIAL_NOISE * TRIAL_INTERVAL.sqrt()),
                 mean_wind: 0.02,
                 amplitude: 1e-4,
                 phase: 1e-4,
@@ -199,10 +243,16 @@ impl HelixOptions {
             model_uncertainty: 0.03,
             rate: None,
             adaptation: None,
+            huber_limit: None,
             roundness: 0.0,
             jacobian: Jacobian::CentralDifferences { step: 1e-5 },
             update_every: 1,
         }
+    }
+
+    /// The same with a pitch that acts `offset` (rad) of a turn after it is measured.
+    pub fn with_azimuth_offset(self, offset: f64) -> Self {
+        Self { rotor: Rotor { pitch_azimuth_offset: offset, ..self.rotor }, ..self }
     }
 
     /// # Errors
@@ -221,7 +271,7 @@ impl HelixOptions {
     fn check_process(&self) -> Result<(), EstimationError> {
         let Noise { measurement, mean_wind, amplitude, phase, initial_amplitude } = self.noise;
         let (Measurement::Moment(noise) | Measurement::Share(noise)) = measurement;
-        positive_variance("measurement", "standard deviation of a moment", noise)?;
+        positive_variance("measurement", "root of the intensity for a moment", noise)?;
         positive_variance("process", "intensity for the mean wind", mean_wind)?;
         positive_variance("process", "intensity for the amplitudes", amplitude)?;
         if self.form != Form::Quadrature {
@@ -241,6 +291,9 @@ impl HelixOptions {
         if let Some(Adaptation { time_constant, bound, .. }) = self.adaptation {
             positive("time constant of the adaptation (s)", time_constant)?;
             within("bound of the adaptation (–)", bound, bound >= 1.0, "1 or more")?;
+        }
+        if let Some(limit) = self.huber_limit {
+            positive("standard deviations from which innovations have less weight (–)", limit)?;
         }
         let round = (0.0..1.0).contains(&self.roundness);
         if !round {

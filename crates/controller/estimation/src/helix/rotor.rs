@@ -13,7 +13,7 @@ use turbine::actuator_line::ActuatorLine;
 use turbine::aero::Induction;
 use turbine::aero::blade_element::Theory;
 use turbine::aero::blade_moments::{BladeMoments, Conditions, Wake};
-use turbine::aero::induction::SnelSchepers;
+use turbine::aero::induction::{SnelSchepers, TwoConstant};
 
 /// Range of the mean wind in the model (m/s).
 pub(super) const WINDS: [f64; 2] = [1.0, 50.0];
@@ -31,7 +31,8 @@ const NOMINAL_WIND: f64 = 9.0;
 #[derive(Clone, Debug)]
 pub(super) struct Rotor {
     blades: BladeMoments,
-    weight: Weight,
+    /// None for blades without weight.
+    weight: Option<Weight>,
     flap: Option<Flap>,
     /// Share of tilt and yaw of the induction, where it is fixed in space (–).
     in_air: Option<f64>,
@@ -93,6 +94,7 @@ impl Rotor {
             | options::Wake::InAir { time_factor, .. } => {
                 Induction::SnelSchepers(SnelSchepers { time_factor })
             }
+            options::Wake::TwoConstantWithBlades => Induction::TwoConstant(TwoConstant::varying()),
         };
         let elements = line.elements();
         let blades =
@@ -104,7 +106,7 @@ impl Rotor {
             pitch: PerBlade::splat(n_blades, 0.0),
         });
         Self {
-            weight: Weight::new(definition),
+            weight: options.rotor.weight.then(|| Weight::new(definition)),
             flap: options.rotor.flexible.then(|| Flap::new(definition)),
             in_air: match options.rotor.wake {
                 options::Wake::InAir { share, .. } => Some(share),
@@ -223,7 +225,7 @@ impl Rotor {
         state: &RotorModelState,
     ) -> PerBlade<f64> {
         let conditions = self.conditions(wind, kinematics);
-        let weight = self.weight.moment(kinematics.rotor_speed);
+        let weight = self.weight_at(kinematics.rotor_speed);
         let moments = self.blades.moments(&conditions, self.met(state, memory));
         bend.apply(&moments.map(|moment| moment + weight))
     }
@@ -246,8 +248,13 @@ impl Rotor {
             }
             None => Bend::none(azimuth),
         };
-        let weight = self.weight.moment(rotor_speed);
+        let weight = self.weight_at(rotor_speed);
         Expected { moments: bend.apply(&moments.map(|moment| moment + weight)), slopes, bend }
+    }
+
+    /// Moment (N m) of the weight of a blade at `rotor_speed` (rad/s).
+    fn weight_at(&self, rotor_speed: f64) -> f64 {
+        self.weight.as_ref().map_or(0.0, |weight| weight.moment(rotor_speed))
     }
 
     fn conditions(&self, wind: FixedFrame, kinematics: &RotorKinematics) -> Conditions {

@@ -5,7 +5,7 @@
 use basis::angle::wrap_to_turn;
 use basis::mbc::to_blades;
 use basis::{FixedFrame, Measurements, Sense};
-use estimation::helix::{HelixOptions, HelixSettings, MeasurementModel};
+use estimation::helix::{HelixOptions, HelixSettings, Measurement, MeasurementModel};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 use turbine::definition::*;
@@ -159,7 +159,18 @@ impl World {
         model: &mut MeasurementModel,
         dice: &mut Dice,
     ) -> Measurements<'static> {
-        let time = step as f64 * INTERVAL;
+        self.read_every(INTERVAL, step, model, dice)
+    }
+
+    /// The same where readings are an `interval` (s) apart.
+    pub(crate) fn read_every(
+        &self,
+        interval: f64,
+        step: usize,
+        model: &mut MeasurementModel,
+        dice: &mut Dice,
+    ) -> Measurements<'static> {
+        let time = step as f64 * interval;
         let azimuth = ROTOR_SPEED * time;
         let angle = self.rate * time + self.own.1;
         let own = FixedFrame {
@@ -168,11 +179,11 @@ impl World {
             yaw: self.own.0 * (angle + self.sense.yaw_lead()).sin(),
         };
         let pitch = to_blades(azimuth, own, 3);
-        let moments = model.moments(INTERVAL, self.wind(time), azimuth, ROTOR_SPEED, &pitch);
+        let moments = model.moments(interval, self.wind(time), azimuth, ROTOR_SPEED, &pitch);
         let scale = self.noise * moments.mean();
         Measurements {
             time,
-            interval: INTERVAL,
+            interval,
             azimuth: wrap_to_turn(azimuth),
             rotor_speed: ROTOR_SPEED,
             generator_speed: ROTOR_SPEED,
@@ -181,6 +192,11 @@ impl World {
             ..Measurements::at_rest(3)
         }
     }
+}
+
+/// Noise of 5 % of the mean in readings at every [`INTERVAL`].
+pub(crate) fn noise_of_readings() -> Measurement {
+    Measurement::Share(0.05 * INTERVAL.sqrt())
 }
 
 /// The model of an estimator with `options`, with finer blades.

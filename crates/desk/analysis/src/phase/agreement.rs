@@ -9,8 +9,11 @@ use basis::angle::wrap_to_half_turn;
 pub struct Agreement {
     /// Root mean square of the difference, each on the shorter way round (rad, [0, π]).
     pub rmse: f64,
-    /// 95 % interval of `rmse` (rad); absent with fewer than two blocks.
+    /// 95 % interval of `rmse` (rad): of the mean square by Student's t, its root; absent with fewer than two
+    /// blocks.
     pub rmse_95: Option<[f64; 2]>,
+    /// Blocks behind all intervals (–); one degree of freedom less.
+    pub n_blocks: usize,
     /// Circular mean of estimate minus truth (rad, [−π, π)): a constant correction would remove it.
     pub bias: f64,
     /// Half width of the 95 % interval of `bias` (rad); absent with fewer than two blocks.
@@ -63,6 +66,7 @@ pub fn agreement(
         rmse_95: square
             .half_width_95
             .map(|half| [square.mean - half, square.mean + half].map(|end| end.max(0.0).sqrt())),
+        n_blocks: square.n_blocks,
         bias,
         bias_half_width_95: match of_blocks.as_slice() {
             [] => None,

@@ -1,6 +1,7 @@
 //! Coherence, gain and phase error of one record against another at one frequency.
 
-use crate::{AnalysisError, statistics::mean};
+use crate::AnalysisError;
+use crate::statistics::{mean, student_97_5};
 use realfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -20,7 +21,7 @@ pub struct Coherence {
     pub floor_95: f64,
     /// Phase of the estimate minus that of the truth (rad, [−π, π]): positive when the estimate is ahead.
     pub phase_error: f64,
-    /// Half width of its 95 % interval (rad), at most π.
+    /// Half width of its 95 % interval (rad); π where nothing is known.
     pub phase_error_half_width_95: f64,
     /// Amplitude of the estimate over that of the truth it follows (–).
     pub gain: f64,
@@ -36,8 +37,12 @@ pub struct Coherence {
 /// sines are coherent whatever their phases; here coherence is reduced by amplitudes and phases that change
 /// differently from segment to segment.
 ///
-/// Source: Welch (1967); Bendat and Piersol, "Random Data", 4th ed., 2010, §9.2 (errors of coherence and
-/// phase), with the segments counted for as many as are independent (Harris, Proc. IEEE 66, 1978, Eq. 17).
+/// The interval of the phase error is that of Student's t for 2 (n − 1) degrees of freedom, n the segments
+/// counted for as many as are independent: sin of its half width = t √((1 − γ²)/(γ² 2 (n − 1))).
+///
+/// Source: Welch (1967); Bendat and Piersol, "Random Data", 4th ed., 2010, §9.2 (error of coherence);
+/// Koopmans, "The Spectral Analysis of Time Series", 1974, §8.5 (interval of the phase); Harris, Proc. IEEE
+/// 66, 1978, Eq. 17 (independent segments).
 ///
 /// # Errors
 /// [`AnalysisError::UnequalLengths`]; [`AnalysisError::TooShort`] with fewer than two segments;
@@ -84,14 +89,17 @@ pub fn coherence(
         let moved = coherence.sqrt().min(1.0 - 1e-12).atanh() + off;
         moved.max(0.0).tanh().powi(2)
     });
-    let phase_deviation =
-        ((1.0 - coherence) / coherence.max(f64::MIN_POSITIVE)).sqrt() * half_width;
+    // Few segments leave few degrees of freedom, 2 (n − 1).
+    let freedom = (2.0 * (n_independent - 1.0)).max(1.0);
+    let unexplained = (1.0 - coherence) / coherence.max(f64::MIN_POSITIVE);
+    let sine = student_97_5(freedom.floor() as usize) * (unexplained / freedom).sqrt();
+    let phase_half_width = if sine < 1.0 { sine.asin() } else { std::f64::consts::PI };
     Ok(Coherence {
         coherence,
         coherence_95: ends,
         floor_95: 1.0 - 0.05_f64.powf(1.0 / (n_independent - 1.0)),
         phase_error: cross.arg(),
-        phase_error_half_width_95: phase_deviation.min(std::f64::consts::PI),
+        phase_error_half_width_95: phase_half_width,
         gain: if of_truth > 0.0 { cross.norm() / of_truth } else { 0.0 },
         n_segments,
     })

@@ -23,6 +23,16 @@ impl Band {
         Self { low: frequency / ratio, high: frequency * ratio }
     }
 
+    /// Upper edge of the band of van Vondelen et al. (2025), Algorithm 2 (Hz); their lower edge is not told.
+    pub const PUBLISHED_HIGH: f64 = 0.15;
+
+    /// The published band about `frequency` (Hz): up to [`Band::PUBLISHED_HIGH`], from where
+    /// [`Band::around`] with [`Band::RATIO`] begins. None where that holds no `frequency`.
+    pub fn published(frequency: f64) -> Option<Self> {
+        let low = frequency / Self::RATIO;
+        (frequency < Self::PUBLISHED_HIGH).then_some(Self { low, high: Self::PUBLISHED_HIGH })
+    }
+
     /// Time (s) over which the filter remembers an end of the record: this far inside, what an end does to
     /// the phase of a lone wave is below a twentieth of a radian, and falls about tenfold over each further
     /// stretch of this length.

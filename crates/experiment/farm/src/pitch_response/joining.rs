@@ -88,7 +88,7 @@ pub fn own_pitch(
         }
     };
     let calibration = match sync.estimator {
-        PhaseEstimator::Published => None,
+        PhaseEstimator::Published | PhaseEstimator::PublishedWithOffset => None,
         PhaseEstimator::Robust => {
             let mut report = |share: f64| progress(share_of_first + (1.0 - share_of_first) * share);
             let found = calibration(case, plan, model, index, sync, azimuth_offset, &mut report);

@@ -120,7 +120,8 @@ fn phase_sync(keys: &str) -> PhaseSyncSettings {
 #[test]
 fn noise_of_a_phase_estimator_is_its_own_unless_given() {
     assert_eq!(phase_sync("").noise, PhaseNoise::default());
-    let robust = phase_sync(", measurement_noise_mnm = 0.3141, process_noise_amplitude = 2.5e-4");
+    let robust =
+        phase_sync(", measurement_noise_1s_mnm = 0.3141, process_noise_amplitude = 2.5e-4");
     assert_eq!(robust.noise.measurement, Some(0.3141 * 1e6));
     assert_eq!(robust.noise.process_noise_amplitude, Some(2.5e-4));
     assert_eq!(robust.noise.process_noise_phase, None);

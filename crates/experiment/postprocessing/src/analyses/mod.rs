@@ -5,6 +5,7 @@
 
 mod gains;
 mod lock;
+mod offsets;
 mod phase;
 mod tune;
 
@@ -15,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// All analyses, in the order in which they are listed.
 pub const ANALYSES: &[Analysis] =
-    &[phase::ANALYSIS, tune::ANALYSIS, gains::ANALYSIS, lock::ANALYSIS];
+    &[phase::ANALYSIS, tune::ANALYSIS, offsets::ANALYSIS, gains::ANALYSIS, lock::ANALYSIS];
 
 /// One analysis.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,8 @@
 //! `phase`: how well a turbine finds the phase of the helix that meets it.
 
 use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes};
-use crate::{PhaseAnswer, PhaseAxis, PhaseQuestion, PostprocessingError, phases};
+use crate::{PhaseAnswer, PhaseAxis, PhaseQuestion, PostprocessingError, Replayed, phases};
+use analysis::phase::{Agreement, Band};
 use control::phase_sync::PhaseEstimator;
 use serde_json::json;
 
@@ -33,9 +34,23 @@ pub(super) const SETTINGS: &[AnalysisSetting] = &[
         value: "NAME",
         takes: Takes::Choice(&[
             ("robust", "With states for model errors"),
-            ("published", "The four states of van Vondelen et al. (2025)"),
+            (
+                "published",
+                "The four states of van Vondelen et al. (2025), without the azimuth offset of their model",
+            ),
+            (
+                "published-with-offset",
+                "The same with the azimuth offset that was found before the run",
+            ),
+            ("linear", "The linear filter of the earlier method, around the means of the record"),
         ]),
         about: "Run this estimator over the records, instead of reading the run's own estimate",
+    },
+    AnalysisSetting {
+        name: "band",
+        value: "LOW-HIGH",
+        takes: Takes::Text,
+        about: "Band (Hz) of the filter through which the true wind goes, such as 0.0073-0.15; from two thirds to three halves of the helix's frequency when left out",
     },
     AnalysisSetting {
         name: "from",
@@ -46,21 +61,42 @@ pub(super) const SETTINGS: &[AnalysisSetting] = &[
 ];
 
 /// The question that `request` puts.
-pub(super) fn question(request: &Request) -> PhaseQuestion {
-    PhaseQuestion {
+///
+/// # Errors
+/// [`PostprocessingError::Setting`] for a band that is none.
+pub(super) fn question(request: &Request) -> Result<PhaseQuestion, PostprocessingError> {
+    Ok(PhaseQuestion {
         run: request.run().to_owned(),
         turbine: request.text("turbine").map(str::to_owned),
         truth: request.text("truth").map(Into::into),
         estimator: request.text("estimator").map(|name| match name {
-            "published" => PhaseEstimator::Published,
-            _ => PhaseEstimator::Robust,
+            "published" => Replayed::InRun(PhaseEstimator::Published),
+            "published-with-offset" => Replayed::InRun(PhaseEstimator::PublishedWithOffset),
+            "linear" => Replayed::Linear,
+            _ => Replayed::InRun(PhaseEstimator::Robust),
         }),
+        band: request.text("band").map(band).transpose()?,
         from: request.number("from"),
-    }
+    })
+}
+
+/// The band that `given` says, LOW-HIGH in Hz.
+fn band(given: &str) -> Result<Band, PostprocessingError> {
+    let ends = given.split_once('-');
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|end| end.is_finite());
+    let band = ends.and_then(|(low, high)| Some(Band { low: number(low)?, high: number(high)? }));
+    band.filter(|band| 0.0 < band.low && band.low < band.high).ok_or_else(|| {
+        PostprocessingError::Setting {
+            setting: "band",
+            given: given.to_owned(),
+            expected: "two frequencies above zero in Hz, the lower first",
+            fix: "write it like --band 0.0073-0.0164",
+        }
+    })
 }
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
-    let found = phases(&question(request))?;
+    let found = phases(&question(request)?)?;
     let texts: Vec<String> = found.answers.iter().map(text).collect();
     Ok(Answer {
         text: texts.join("\n"),
@@ -84,11 +120,11 @@ fn text(answer: &PhaseAnswer) -> String {
         _ => "no time".to_owned(),
     };
     let mut text = format!(
-        "{} in {}, against the wind of {} at its place; {span}\nmean wind {estimated:.2} m/s estimated, {truth:.2} m/s true; trust {:.2}\n",
-        answer.turbine, answer.run, answer.truth, answer.trust
+        "{} in {}, against the wind of {} at its place, {:.4} to {:.4} Hz; {span}\nmean wind {estimated:.2} m/s estimated, {truth:.2} m/s true; trust {:.2}\n",
+        answer.turbine, answer.run, answer.truth, answer.band.low, answer.band.high, answer.trust
     );
     text += &format!(
-        "{:<6} {:>14} {:>10} {:>10} {:>16} {:>10} {:>9} {:>11} {:>18}\n",
+        "{:<6} {:>14} {:>10} {:>20} {:>16} {:>10} {:>9} {:>11} {:>18} {:>15}\n",
         "axis",
         "amplitude m/s",
         "true m/s",
@@ -97,29 +133,56 @@ fn text(answer: &PhaseAnswer) -> String {
         "spread deg",
         "locking",
         "coherence",
-        "phase error deg"
+        "phase error deg",
+        "consistency"
     );
-    for (name, axis) in [("tilt", &answer.tilt), ("yaw", &answer.yaw)] {
-        let agreement = &axis.agreement;
-        let bias = match agreement.bias_half_width_95 {
-            Some(half) => with_interval(agreement.bias, half),
-            None => format!("{:.1}", agreement.bias.to_degrees()),
-        };
-        let coherence =
-            axis.coherence.map_or("–".to_owned(), |found| format!("{:.3}", found.coherence));
-        let error = axis.coherence.map_or("–".to_owned(), |found| {
-            with_interval(found.phase_error, found.phase_error_half_width_95)
-        });
+    text += &line("tilt", &answer.tilt);
+    text += &line("yaw", &answer.yaw);
+    text + &below(answer)
+}
+
+/// The line of the axis called `name`.
+fn line(name: &str, axis: &PhaseAxis) -> String {
+    let agreement = &axis.agreement;
+    let bias = match agreement.bias_half_width_95 {
+        Some(half) => with_interval(agreement.bias, half),
+        None => format!("{:.1}", agreement.bias.to_degrees()),
+    };
+    let coherence =
+        axis.coherence.map_or("–".to_owned(), |found| format!("{:.3}", found.coherence));
+    let error = axis.coherence.map_or("–".to_owned(), |found| {
+        with_interval(found.phase_error, found.phase_error_half_width_95)
+    });
+    format!(
+        "{name:<6} {:>14.2} {:>10.2} {:>20} {bias:>16} {:>10.1} {:>9.3} {coherence:>11} {error:>18} {:>15}\n",
+        axis.amplitude,
+        axis.true_amplitude,
+        rmse(agreement),
+        agreement.spread.to_degrees(),
+        agreement.locking,
+        axis.consistency
+            .as_ref()
+            .map_or("–".to_owned(), |found| super::with_interval(found, 1.0, 2)),
+    )
+}
+
+/// Conventions, and what else the records tell, below the table.
+fn below(answer: &PhaseAnswer) -> String {
+    let n_blocks = answer.tilt.agreement.n_blocks;
+    let mut text = format!(
+        "± and ranges: 95 % by Student's t from {n_blocks} blocks of {:.0} s; coherence and phase error, estimate before truth, at the helix's frequency, from the cross-spectrum\n\
+         consistency: squared errors over the estimator's own variance of them, 1 where it knows them\n",
+        answer.block
+    );
+    if let Some([tilt, yaw]) = &answer.published_band {
         text += &format!(
-            "{name:<6} {:>14.2} {:>10.2} {:>10.1} {bias:>16} {:>10.1} {:>9.3} {coherence:>11} {error:>18}\n",
-            axis.amplitude,
-            axis.true_amplitude,
-            agreement.rmse.to_degrees(),
-            agreement.spread.to_degrees(),
-            agreement.locking,
+            "against the truth from {:.4} to {} Hz, the published upper edge: RMSE {}° in tilt, {}° in yaw\n",
+            published_low(answer),
+            Band::PUBLISHED_HIGH,
+            rmse(tilt),
+            rmse(yaw)
         );
     }
-    text += "± 95 %; coherence and phase error, estimate before truth, at the helix's frequency, from the cross-spectrum\n";
     if let Some([tilt, yaw]) = answer.zero_phase {
         let [tilt, yaw] =
             [tilt, yaw].map(|found| (found.spread.to_degrees(), found.bias.to_degrees()));
@@ -129,6 +192,22 @@ fn text(answer: &PhaseAnswer) -> String {
         );
     }
     text
+}
+
+/// Lower edge (Hz) of the published band of `answer`.
+fn published_low(answer: &PhaseAnswer) -> f64 {
+    answer.frequency / Band::RATIO
+}
+
+/// Root mean square of the error with its interval, in degrees.
+fn rmse(agreement: &Agreement) -> String {
+    let whole = format!("{:.1}", agreement.rmse.to_degrees());
+    match agreement.rmse_95 {
+        Some([low, high]) => {
+            format!("{whole} ({:.0} to {:.0})", low.to_degrees(), high.to_degrees())
+        }
+        None => whole,
+    }
 }
 
 /// An angle and its half width (rad), in degrees.
@@ -143,6 +222,7 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
             "amplitude_m_s": axis.amplitude,
             "true_amplitude_m_s": axis.true_amplitude,
             "rmse_deg": agreement.rmse.to_degrees(),
+            "rmse_95_deg": agreement.rmse_95.map(|ends| ends.map(f64::to_degrees)),
             "bias_deg": agreement.bias.to_degrees(),
             "bias_half_width_95_deg": agreement.bias_half_width_95.map(f64::to_degrees),
             "spread_deg": agreement.spread.to_degrees(),
@@ -152,12 +232,17 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
             "phase_error_deg": axis.coherence.map(|found| found.phase_error.to_degrees()),
             "phase_error_half_width_95_deg":
                 axis.coherence.map(|found| found.phase_error_half_width_95.to_degrees()),
+            "consistency": axis.consistency.as_ref().map(|found| found.mean),
+            "consistency_half_width_95": axis.consistency.as_ref().and_then(|found| found.half_width_95),
         })
     };
     json!({
         "run": answer.run,
         "turbine": answer.turbine,
         "truth": answer.truth,
+        "band_hz": [answer.band.low, answer.band.high],
+        "n_blocks": answer.tilt.agreement.n_blocks,
+        "block_s": answer.block,
         "from_s": answer.times.first(),
         "to_s": answer.times.last(),
         "mean_wind_m_s": answer.mean_winds[0],
@@ -169,13 +254,18 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
             "spread_deg": found.spread.to_degrees(),
             "bias_deg": found.bias.to_degrees(),
         }))),
+        "published_band": answer.published_band.map(|axes| axes.map(|found| json!({
+            "rmse_deg": found.rmse.to_degrees(),
+            "rmse_95_deg": found.rmse_95.map(|ends| ends.map(f64::to_degrees)),
+        }))),
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use analysis::phase::{Agreement, Coherence};
+    use analysis::phase::Coherence;
+    use basis::records::Statistic;
 
     /// An axis with an error of `error` (deg) at the helix's frequency, or in a record too short to tell.
     fn axis(error: Option<f64>) -> PhaseAxis {
@@ -193,13 +283,20 @@ mod tests {
             true_amplitude: 1.1,
             agreement: Agreement {
                 rmse: 0.2,
-                rmse_95: None,
+                rmse_95: Some([0.17, 0.23]),
+                n_blocks: 4,
                 bias: 0.1,
                 bias_half_width_95: Some(0.05),
                 spread: 0.17,
                 locking: 0.98,
             },
             coherence,
+            consistency: error.map(|_| Statistic {
+                mean: 1.5,
+                standard_deviation: 1.0,
+                half_width_95: Some(0.75),
+                n_blocks: 4,
+            }),
             phase: vec![0.0],
             true_phase: vec![0.0],
         }
@@ -211,23 +308,47 @@ mod tests {
             run: "joined".into(),
             turbine: "T2".into(),
             truth: "alone".into(),
+            frequency: 0.0109,
+            band: Band { low: 0.0073, high: 0.0164 },
+            block: 366.0,
             times: vec![600.0],
             mean_winds: [8.0, 8.1],
             tilt: axis(Some(-12.34)),
             yaw: axis(None),
             trust: 0.5,
             zero_phase: None,
+            published_band: Some([axis(None).agreement; 2]),
         };
         let text = text(&answer);
         let lines: Vec<&str> = text.lines().collect();
-        assert!(lines[2].ends_with("coherence    phase error deg"), "{text}");
-        assert!(lines[3].starts_with("tilt") && lines[3].ends_with(" -12.3 ± 4.6"), "{text}");
+        assert!(lines[2].ends_with("coherence    phase error deg     consistency"), "{text}");
+        assert!(lines[3].starts_with("tilt") && lines[3].contains(" -12.3 ± 4.6 "), "{text}");
+        assert!(
+            lines[3].contains(" 11.5 (10 to 13) ") && lines[3].ends_with(" 1.50 ± 0.75"),
+            "{text}"
+        );
         assert!(lines[4].starts_with("yaw") && lines[4].ends_with(" –"), "{text}");
+        assert!(lines[5].contains("from 4 blocks of 366 s"), "{text}");
+        assert!(
+            lines[7].contains("0.0073 to 0.15 Hz") && lines[7].contains("11.5 (10 to 13)°"),
+            "{text}"
+        );
         let width = |line: &str| line.chars().count();
         assert_eq!([width(lines[3]), width(lines[4])], [width(lines[2]); 2], "{text}");
         let json = json(&answer);
         let half_width = json["tilt"]["phase_error_half_width_95_deg"].as_f64().expect("a number");
         assert!((half_width - 4.56).abs() < 1e-9, "{half_width}");
+        assert_eq!(json["tilt"]["consistency"], 1.5);
+        assert!(json["yaw"]["consistency"].is_null());
         assert!(json["yaw"]["phase_error_half_width_95_deg"].is_null());
+    }
+
+    #[test]
+    fn a_band_is_two_frequencies() {
+        assert_eq!(band("0.0073-0.15").expect("a band"), Band { low: 0.0073, high: 0.15 });
+        for wrong in ["0.1", "0.2-0.1", "-0.1", "a-b", "0-0.1", "0.1-inf"] {
+            let refused = band(wrong).expect_err("no band").to_string();
+            assert!(refused.starts_with(&format!("--band {wrong}: two frequencies")), "{refused}");
+        }
     }
 }

@@ -3,10 +3,10 @@
 use super::{PhaseQuestion, Truth, tells, truth};
 use crate::PostprocessingError;
 use crate::error::{InRecords, case_of};
-use analysis::phase::Reference;
+use analysis::phase::{Band, Reference};
 use basis::records::{Series, Summary};
 use control::excitation_rate;
-use control::phase_sync::{PHASE_SYNC, PhaseSyncSettings, calibration_of};
+use control::phase_sync::{PHASE_SYNC, PhaseSyncSettings, azimuth_offset_of, calibration_of};
 use estimation::helix::Calibration;
 use farm::case::{Case, Control, helix_upstream};
 use formats::records::{self, Manifest, RunFolder};
@@ -52,6 +52,10 @@ pub(super) struct Query<'r> {
     /// Where that stands.
     pub(super) path: PathBuf,
     pub(super) truth: Truth,
+    /// The same through the published filter, where the records can hold its band.
+    pub(super) published: Option<Truth>,
+    /// Azimuth offset of the transformation (rad) with which it pitched, where that was recorded.
+    pub(super) transformation_offset: Option<f64>,
 }
 
 impl<'q> Records<'q> {
@@ -87,26 +91,20 @@ impl<'q> Records<'q> {
             excitation_rate(strouhal, case.wind.speed, self.summary.conditions.rotor_diameter);
         let reference = Reference { rate, sense };
         let study = self.folder.path().parent().unwrap_or(Path::new("")).to_owned();
-        let truth_folder = match &self.question.truth {
-            Some(path) => Some(folder_of(path)),
-            None => case
-                .runs
-                .iter()
-                .filter(|run| {
-                    case.output.lines_at.contains(&index)
-                        && tells_truth(case, &run.control, control, index)
-                })
-                .map(|run| RunFolder::new(&study, &run.name))
-                .find(RunFolder::is_complete),
-        };
-        let truth = match truth_folder {
+        let truth_folder = truth_folder(self.question, case, control, index, &study);
+        let frequency = reference.frequency();
+        let band = self.question.band.unwrap_or(Band::around(frequency, Band::RATIO));
+        let (truth, published) = match truth_folder {
             Some(folder) => {
                 let path = folder.series_path();
                 let wanted = |channel: &str| tells_of_any(case, turbines, channel);
                 let series = read_once(without, path.clone(), wanted)?;
-                truth(&folder.run(), &turbine.name, series, &reference).in_records(&path)?
+                let through = |band| truth(&folder.run(), &turbine.name, series, &reference, band);
+                let published = Band::published(frequency).map(through);
+                let truth = through(band).in_records(&path)?;
+                (truth, published.and_then(Result::ok).flatten())
             }
-            None => None,
+            None => (None, None),
         };
         let truth = truth.ok_or_else(|| PostprocessingError::NoTruth {
             turbine: turbine.name.clone(),
@@ -130,8 +128,28 @@ impl<'q> Records<'q> {
             series: &self.series,
             path: self.folder.series_path(),
             truth,
+            published,
+            transformation_offset: response.and_then(azimuth_offset_of),
         })
     }
+}
+
+/// The folder of the run that holds the true wind of turbine `index` in a run of `case` under `control`: the
+/// one that `question` names, or else a complete one in the folder `study`.
+fn truth_folder(
+    question: &PhaseQuestion,
+    case: &Case,
+    control: &[Control],
+    index: usize,
+    study: &Path,
+) -> Option<RunFolder> {
+    if let Some(path) = &question.truth {
+        return Some(folder_of(path));
+    }
+    let runs = case.runs.iter().filter(|run| {
+        case.output.lines_at.contains(&index) && tells_truth(case, &run.control, control, index)
+    });
+    runs.map(|run| RunFolder::new(study, &run.name)).find(RunFolder::is_complete)
 }
 
 /// Whether `channel` [`tells`] of the phase at one of the `turbines` of `case`.

@@ -8,48 +8,81 @@ use analysis::phase::uniform_interval;
 use basis::{Measurements, PerBlade};
 use control::ControlError;
 use control::phase_sync::PhaseEstimator;
-use estimation::helix::tuning::{self, Tuned};
-use estimation::helix::{HelixOptions, HelixSettings};
-use estimation::{EstimationError, HelixEstimator};
+use estimation::helix::tuning::{self, TrueWave, Tuned};
+use estimation::helix::{HelixOptions, HelixSettings, OperatingPoint};
+use estimation::{EstimationError, HelixEstimator, LinearEstimator};
 use farm::assemble::AssemblyError;
+
+/// An estimator that can be run over records.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Replayed {
+    /// One that a turbine runs.
+    InRun(PhaseEstimator),
+    /// The linear filter of the earlier method, around the means of the record: true wind, rotor speed,
+    /// pitch.
+    Linear,
+}
 
 /// Estimate of `estimator` on the records of the turbine, row by row, calibrated as in the run.
 pub(super) fn replay(
     query: &Query<'_>,
-    estimator: PhaseEstimator,
+    estimator: Replayed,
 ) -> Result<Estimates, PostprocessingError> {
     let interval = uniform_interval(column(query.series, "time_s")?)?;
     let setting = setting(query, interval);
-    let options = options(query, estimator);
-    let mut estimator =
-        HelixEstimator::new(&query.definition, &setting, options).map_err(not_estimated)?;
     let record = record(query, interval)?;
-    let replayed = tuning::replay(&mut estimator, &record, interval).map_err(not_estimated)?;
+    let replayed = match estimator {
+        Replayed::InRun(estimator) => {
+            let options = options(query, estimator)?;
+            let estimator = HelixEstimator::new(&query.definition, &setting, options);
+            tuning::replay(&mut estimator.map_err(not_estimated)?, &record, interval)
+        }
+        Replayed::Linear => {
+            let point = operating_point(query, &record);
+            let options = HelixOptions::default();
+            let estimator = LinearEstimator::new(&query.definition, &setting, point, options);
+            tuning::replay(&mut estimator.map_err(not_estimated)?, &record, interval)
+        }
+    };
     let mut estimates = Estimates {
         wind: Vec::new(),
         tilt: Wave::default(),
         yaw: Wave::default(),
         trust: Vec::new(),
     };
-    for estimate in replayed {
+    for estimate in replayed.map_err(not_estimated)? {
         estimates.wind.push(estimate.mean_wind);
         for (wave, axis) in
             [(&mut estimates.tilt, estimate.tilt), (&mut estimates.yaw, estimate.yaw)]
         {
             wave.amplitude.push(axis.amplitude);
             wave.phase.push(axis.phase);
+            wave.deviation.push(axis.phase_variance.sqrt());
         }
         estimates.trust.push(estimate.trust.overall());
     }
     Ok(estimates)
 }
 
-/// Noise for the estimator that `question` names, tuned on its record against the true wind.
+/// Means over the `record` of rotor speed and pitch, and the true mean wind.
+fn operating_point(query: &Query<'_>, record: &[Measurements]) -> OperatingPoint {
+    let n = record.len().max(1) as f64;
+    let mean = |of: fn(&Measurements) -> f64| record.iter().map(of).sum::<f64>() / n;
+    OperatingPoint {
+        wind: analysis::statistics::mean(&query.truth.wind.average),
+        rotor_speed: mean(|read| read.rotor_speed),
+        pitch: mean(|read| read.pitch.mean()),
+    }
+}
+
+/// Noise for the estimator that `question` names, tuned on its record against the true wind: fitted to the
+/// first half, its scale chosen on the second. The truth is the one that [`phase`](super::phase) compares
+/// with, filtered once.
 ///
 /// Source: van Vondelen et al. (2025), Algorithm 1.
 ///
 /// # Errors
-/// As [`phase`](super::phase).
+/// As [`phase`](super::phase); [`PostprocessingError::Setting`] for an estimator that has no noise to tune.
 pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
     let mut records = Records::read(question)?;
     let first = records.turbines[0];
@@ -63,30 +96,68 @@ fn tuned(question: &PhaseQuestion, query: &Query<'_>) -> Result<Tuned, Postproce
     let interval = uniform_interval(column(query.series, "time_s")?)?;
     let from = question.from.unwrap_or(query.case.time.spin_up);
     let whole = record(query, interval)?;
-    let (mut measured, mut tilt, mut yaw) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut measured, mut wave) = (Vec::new(), TrueWave::default());
     for measurements in whole {
         let at = truth.index_at(measurements.time).filter(|at| truth.trusted.contains(at));
         if let (Some(at), true) = (at, measurements.time >= from) {
             measured.push(measurements);
-            tilt.push(truth.tilt.wind[at]);
-            yaw.push(truth.yaw.wind[at]);
+            wave.average.push(truth.average[at]);
+            for (axis, truth) in [&truth.tilt, &truth.yaw].into_iter().enumerate() {
+                wave.amplitudes[axis].push(truth.amplitude[at]);
+                wave.phases[axis].push(truth.phase[at]);
+            }
         }
     }
-    let estimator = question.estimator.unwrap_or(PhaseEstimator::Robust);
-    let options = options(query, estimator);
+    let estimator = match question.estimator {
+        None => PhaseEstimator::Robust,
+        Some(Replayed::InRun(estimator)) => estimator,
+        Some(Replayed::Linear) => {
+            return Err(PostprocessingError::Setting {
+                setting: "estimator",
+                given: "linear".to_owned(),
+                expected: "one that a turbine runs, whose noise a case file can give",
+                fix: "name robust, published or published-with-offset",
+            });
+        }
+    };
+    let options = options(query, estimator)?;
     let setting = setting(query, interval);
-    let tuned = tuning::tune(&query.definition, &setting, options, &measured, [&tilt, &yaw]);
+    let tuned = tuning::tune(&query.definition, &setting, options, &measured, &wave);
     Ok(tuned.map_err(not_estimated)?)
 }
 
-/// Choices of `estimator`, calibrated as in the run, with the noise that it was given there.
-fn options(query: &Query<'_>, estimator: PhaseEstimator) -> HelixOptions {
+/// Choices of `estimator`, calibrated as in the run, with what it was given there.
+///
+/// # Errors
+/// [`PostprocessingError::Setting`] where the published form shall have an azimuth offset that was not
+/// recorded.
+fn options(
+    query: &Query<'_>,
+    estimator: PhaseEstimator,
+) -> Result<HelixOptions, PostprocessingError> {
     let options = estimator.options(query.case.flow.solver.resolves_induction);
-    let calibration = query.calibration.filter(|_| estimator == PhaseEstimator::Robust);
-    let options = calibration.map_or(options, |found| found.apply(options));
-    // Noise is given to one estimator; another's states may have other process noise.
+    let options = match estimator {
+        PhaseEstimator::Robust => query.calibration.map_or(options, |found| found.apply(options)),
+        PhaseEstimator::Published => options,
+        PhaseEstimator::PublishedWithOffset => {
+            // What pitches nothing has nothing to turn.
+            let unneeded = (!query.pitches).then_some(0.0);
+            let offset = query.transformation_offset.or(unneeded);
+            options.with_azimuth_offset(offset.ok_or_else(no_offset)?)
+        }
+    };
+    // Noise and choices are given to one estimator; another's states may have other process noise.
     let sync = query.sync.filter(|sync| sync.estimator == estimator);
-    sync.map_or(options, |sync| sync.noise.apply(options))
+    Ok(sync.map_or(options, |sync| sync.noise.apply(sync.choices.apply(options))))
+}
+
+fn no_offset() -> PostprocessingError {
+    PostprocessingError::Setting {
+        setting: "estimator",
+        given: "published-with-offset".to_owned(),
+        expected: "a run before which the azimuth offset of the turbine was found",
+        fix: "name published, or run the case with the turbine under kind = \"phase-sync\" and without azimuth_offset_deg",
+    }
 }
 
 fn not_estimated(error: EstimationError) -> AssemblyError {

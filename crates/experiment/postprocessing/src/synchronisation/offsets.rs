@@ -1,20 +1,13 @@
 //! Power and loads over the phase offset, with the curve that a Gaussian process puts through them.
 
+use super::curve::offset_panel;
 use super::{Joined, Synchronised};
 use crate::PostprocessingError;
 use analysis::statistics::{BLOCK_LENGTH, gain};
 use basis::records::{Series, Statistic, TurbineSummary};
 use formats::records::RunRecords;
-use report::{CurvePoint, OffsetFigure, OffsetPanel, OffsetPoint};
-use std::f64::consts::TAU;
-use surrogate::{FitSettings, GaussianProcess, Observations, Shape};
+use report::{OffsetFigure, OffsetPanel, OffsetPoint};
 
-/// Fewest offsets through which a curve is drawn (–).
-const FEWEST: usize = 6;
-/// Points of a curve (–).
-const N_CURVE: usize = 121;
-/// Half width of a 95 % interval over the standard deviation (–).
-const HALF_WIDTH: f64 = 1.96;
 /// Channels whose damage-equivalent loads are shown, and their titles.
 const LOADS: [(&str, &str); 4] = [
     ("RootMyc1", "blade root flapwise"),
@@ -77,7 +70,7 @@ fn power(
             let change = turbine(study, run, name)?.power_gain?;
             Some(OffsetPoint { offset: run.offset()?, change })
         });
-        panels.push(panel((*name).to_owned(), points.collect()));
+        panels.push(offset_panel((*name).to_owned(), points.collect()));
     }
     if names.len() > 1 {
         let mut points = Vec::new();
@@ -87,7 +80,7 @@ fn power(
             };
             points.push(OffsetPoint { offset, change });
         }
-        panels.push(panel(names.join(" + "), points));
+        panels.push(offset_panel(names.join(" + "), points));
     }
     Ok(panels)
 }
@@ -102,40 +95,7 @@ fn fatigue(study: &Synchronised, joined: &[&Joined], name: &str, channel: &str) 
         let change = Statistic { mean, standard_deviation: 0.0, half_width_95: None, n_blocks: 1 };
         Some(OffsetPoint { offset: run.offset()?, change })
     });
-    panel(name.to_owned(), points.collect())
-}
-
-/// The points with the curve of most probable changes through them.
-fn panel(title: String, points: Vec<OffsetPoint>) -> OffsetPanel {
-    let curve = curve(&points).unwrap_or_default();
-    OffsetPanel { title, points, curve }
-}
-
-/// Nothing where the points are too few, or allow no curve.
-fn curve(points: &[OffsetPoint]) -> Option<Vec<CurvePoint>> {
-    if points.len() < FEWEST {
-        return None;
-    }
-    let inputs = points.iter().map(|point| point.offset).collect();
-    let values = points.iter().map(|point| point.change.mean).collect();
-    let observations = Observations::of_curve(inputs, values);
-    let deviations: Option<Vec<f64>> = points
-        .iter()
-        .map(|point| point.change.half_width_95.map(|half| half / HALF_WIDTH))
-        .collect();
-    let observations = match deviations {
-        Some(deviations) => observations.with_deviations(&deviations),
-        None => observations,
-    };
-    let shape = Shape::Periodic { period: TAU };
-    let process = GaussianProcess::fit(shape, observations, &FitSettings::default()).ok()?;
-    (0..N_CURVE)
-        .map(|index| {
-            let offset = TAU * index as f64 / (N_CURVE - 1) as f64;
-            let found = process.predict(&[offset]).ok()?;
-            Some(CurvePoint { offset, mean: found.mean, band_95: found.band_95() })
-        })
-        .collect()
+    offset_panel(name.to_owned(), points.collect())
 }
 
 /// The run that `run`'s gains compare with.

@@ -2,8 +2,8 @@
 
 use basis::records::{Plane, PlaneAxes, Statistic};
 use report::{
-    CentreLine, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure, OffsetPanel,
-    OffsetPoint, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine,
+    CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure,
+    OffsetPanel, OffsetPoint, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine,
     Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 use std::f64::consts::{PI, TAU};
@@ -59,6 +59,16 @@ fn power() -> OffsetFigure {
             title: title.into(),
             points: offsets.iter().enumerate().map(point).collect(),
             curve: curve.collect(),
+            highest: Some(CurveEnd {
+                offset: 150_f64.to_radians(),
+                offset_95: [117_f64.to_radians(), 182_f64.to_radians()],
+                change: mean + swing,
+            }),
+            lowest: Some(CurveEnd {
+                offset: 330_f64.to_radians(),
+                offset_95: [301_f64.to_radians(), 365_f64.to_radians()],
+                change: mean - swing,
+            }),
         }
     };
     OffsetFigure {

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::{OffsetQuestion, Silent, azimuth_offset};
-use control::phase_sync::PhaseSyncSettings;
-use estimation::helix::{HelixOptions, Measurement};
+use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
+use estimation::helix::{Adaptation, Form, HelixOptions, Measurement, Wake};
 use farm::pitch_response::OwnPitch;
 use formats::records::{read_pitch_responses, write_pitch_responses};
 
@@ -71,9 +71,9 @@ fn noise_that_is_given_is_another_calibration_and_none_leaves_no_trace() {
     assert_eq!(trace(&PhaseNoise::default()), "");
     let usual = key("");
     assert_eq!(key(", start = 20.0"), usual);
-    let given = key(", measurement_noise_mnm = 0.5");
+    let given = key(", measurement_noise_1s_mnm = 0.5");
     assert_ne!(given, usual);
-    assert_ne!(key(", measurement_noise_mnm = 0.6"), given);
+    assert_ne!(key(", measurement_noise_1s_mnm = 0.6"), given);
     assert_ne!(key(", process_noise_amplitude = 0.5"), given);
 }
 
@@ -193,7 +193,7 @@ fn the_estimator_of_a_run_assumes_the_noise_that_is_given() {
         given.estimator_options(setup.case.flow.solver.resolves_induction)
     };
     let usual = options("");
-    let given = options(", measurement_noise_mnm = 0.5, process_noise_amplitude = 3e-3");
+    let given = options(", measurement_noise_1s_mnm = 0.5, process_noise_amplitude = 3e-3");
     assert_eq!(given.noise.measurement, Measurement::Moment(5e5));
     assert_eq!((given.noise.amplitude, given.noise.phase), (3e-3, usual.noise.phase));
     assert_eq!(HelixOptions { noise: usual.noise, ..given }, usual);
@@ -201,4 +201,30 @@ fn the_estimator_of_a_run_assumes_the_noise_that_is_given() {
     let own = HelixOptions::published().noise;
     assert_eq!((published.noise.phase, published.noise.amplitude), (3e-4, own.amplitude));
     assert_eq!(published.noise.measurement, own.measurement);
+}
+
+#[test]
+fn what_an_estimator_can_do_can_be_chosen() {
+    let options = |keys: &str| -> HelixOptions {
+        let setup = setup(&format!("{keys}, azimuth_offset_deg = 17"), &[]);
+        let control = &setup.case.runs[0].control[1];
+        let given = PhaseSyncSettings::of(control).expect("phase-sync");
+        given.estimator_options(true)
+    };
+    assert_eq!(options(""), HelixOptions::default());
+    assert_eq!(options(", process_noise_rate = 1e-9").rate, Some(1e-9));
+    assert_eq!(options(", process_noise_mean_wind = 0.01").noise.mean_wind, 0.01);
+    assert_eq!(options(", adaptation = \"none\"").adaptation, None);
+    let wave = options(", adaptation = \"noise-and-wave\"").adaptation.expect("adapts");
+    assert_eq!(wave, Adaptation { wave: true, ..Adaptation::USUAL });
+    let slower = options(", wake_time_factor = 0.5").rotor.wake;
+    assert_eq!(slower, Wake::InAir { time_factor: 0.5, share: 0.6 });
+    let two_constant = options(", dynamic_inflow = \"two-constant\"").rotor.wake;
+    assert_eq!(two_constant, Wake::TwoConstantWithBlades);
+    let published = |keys: &str| options(&format!(", estimator = \"published\"{keys}"));
+    assert_eq!(published(""), HelixOptions::published());
+    assert_eq!(published(", amplitudes = \"separate\"").form, Form::SeparateAmplitudes);
+    assert_eq!(published(", adaptation = \"noise\"").adaptation, Some(Adaptation::USUAL));
+    let offset = options(", estimator = \"published-with-offset\"");
+    assert_eq!(offset, HelixOptions::published().with_azimuth_offset(17f64.to_radians()));
 }

@@ -100,8 +100,18 @@ fn errors_name_file_line_key_and_fix() {
         ),
         (
             "\"helix\", sense",
-            "\"phase-sync\", offset_deg = 90, measurement_noise_mnm = 0, sense",
-            "`run.helix.control.T1.measurement_noise_mnm` = 0 is out of range: 0 < measurement_noise_mnm <= 10000 MN m",
+            "\"phase-sync\", offset_deg = 90, amplitudes = \"separate\", sense",
+            "`run.helix.control.T1.amplitudes` is of no use here: it goes with a published estimator",
+        ),
+        (
+            "\"helix\", sense",
+            "\"phase-sync\", offset_deg = 90, dynamic_inflow = \"two-constant\", wake_time_factor = 0.5, sense",
+            "`run.helix.control.T1.wake_time_factor` is of no use here: it goes with dynamic_inflow = \"snel-schepers\"",
+        ),
+        (
+            "\"helix\", sense",
+            "\"phase-sync\", offset_deg = 90, measurement_noise_1s_mnm = 0, sense",
+            "`run.helix.control.T1.measurement_noise_1s_mnm` = 0 is out of range: 0 < measurement_noise_1s_mnm <= 10000 MN m",
         ),
         (
             "\"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25",

@@ -92,6 +92,21 @@ pub struct OffsetPanel {
     pub points: Vec<OffsetPoint>,
     /// A curve through the points at ascending offsets; may be empty.
     pub curve: Vec<CurvePoint>,
+    /// Where the curve is highest; absent without one.
+    pub highest: Option<CurveEnd>,
+    /// Where it is lowest.
+    pub lowest: Option<CurveEnd>,
+}
+
+/// Where a curve over the offset is highest or lowest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurveEnd {
+    /// Offset (rad, [0, 2π)).
+    pub offset: f64,
+    /// Its 95 % interval (rad), which may pass zero or a whole turn.
+    pub offset_95: [f64; 2],
+    /// The curve there (–).
+    pub change: f64,
 }
 
 /// The change at one offset.

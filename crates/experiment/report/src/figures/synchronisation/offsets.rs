@@ -1,13 +1,13 @@
 //! Changes over the phase offset with the curve through them and its band.
 
-use super::marks::{degree_columns, degrees, named, upright};
-use super::{CurvePoint, OffsetFigure, OffsetPanel, OffsetPoint};
+use super::marks::{DEGREE, degree_columns, degrees, named, upright};
+use super::{CurveEnd, CurvePoint, OffsetFigure, OffsetPanel, OffsetPoint};
 use crate::draw::axes::{Frame, Scale};
 use crate::draw::colour::Ink;
 use crate::draw::whisker::{self, Style, whisker};
 use crate::draw::{Axis, Figure, Look, Role, Shape, segment};
 use crate::figures::WIDTH;
-use crate::words;
+use crate::words::{self, number};
 
 const HEIGHT: f64 = 270.0;
 const LEFT: f64 = 66.0;
@@ -40,9 +40,13 @@ pub(super) fn offsets(figure: &OffsetFigure) -> Option<Figure> {
         }
         let zero = [frame.point([0.0, 0.0]), frame.point([360.0, 0.0])];
         shapes.push(frame.behind(vec![segment(zero[0], zero[1], Look::line(Ink::Axis, 1.0))]));
-        let mut inner = curve(panel, &frame);
-        if let Some(best) = panel.curve.iter().max_by(|a, b| a.mean.total_cmp(&b.mean)) {
-            upright(&frame, best.offset.to_degrees(), &degrees(best.offset), &mut inner);
+        let mut inner = Vec::new();
+        if let Some(best) = &panel.highest {
+            inner.extend(interval(best, &frame));
+        }
+        inner.extend(curve(panel, &frame));
+        if let Some(best) = &panel.highest {
+            upright(&frame, best.offset.to_degrees(), &with_interval(best), &mut inner);
         }
         inner.extend(panel.points.iter().map(|point| mark(point, &frame)));
         // Beyond the frame's edges, which would cut the marks at zero and at a whole turn.
@@ -50,7 +54,7 @@ pub(super) fn offsets(figure: &OffsetFigure) -> Option<Figure> {
     }
     let has_curve = panels.iter().any(|panel| !panel.curve.is_empty());
     let of_curve = "; line and band: Gaussian process through them and where it lies with 95\u{a0}%, \
-                    dashed: its highest place";
+                    dashed, with its own 95\u{a0}% interval shaded: its highest place";
     Some(Figure {
         name: figure.name.clone(),
         title: figure.title.clone(),
@@ -93,6 +97,25 @@ fn curve(panel: &OffsetPanel, frame: &Frame) -> Vec<Shape> {
         Shape::Path { points: band, closed: true, look },
         named("curve", vec![frame.line(&along(|point| point.mean), Look::line(CURVE, 2.0))]),
     ]
+}
+
+/// Offset of `best` with its interval, such as "105° (62 to 148°)".
+fn with_interval(best: &CurveEnd) -> String {
+    let [low, high] = best.offset_95.map(|end| number(end.to_degrees(), 0));
+    format!("{} ({low} to {high}{DEGREE})", degrees(best.offset))
+}
+
+/// Where `best` lies with 95 %, over the height of `frame`: in two parts where that passes a whole turn.
+fn interval(best: &CurveEnd, frame: &Frame) -> Vec<Shape> {
+    let [low, high] = best.offset_95.map(f64::to_degrees);
+    let parts = [-360.0, 0.0, 360.0].map(|turn| [(low + turn).max(0.0), (high + turn).min(360.0)]);
+    let strip = |[low, high]: [f64; 2]| {
+        let (bottom, top) = (frame.y.low, frame.y.high);
+        let corners = [[low, bottom], [high, bottom], [high, top], [low, top]];
+        let look = Look::fill(Ink::Axis).opacity(0.12);
+        Shape::Path { points: frame.points(&corners), closed: true, look }
+    };
+    parts.into_iter().filter(|[low, high]| low < high).map(strip).collect()
 }
 
 /// A dot with its whiskers; an offset of zero stands at both ends.
