@@ -54,7 +54,7 @@ impl Face {
 }
 
 /// `items` joined by `separator`, in lines that are no longer than `width` in letters of `size`; an item that
-/// is longer is broken between its words.
+/// is longer begins a line of its own and is broken between its words.
 pub(crate) fn wrapped(
     items: &[String],
     separator: &str,
@@ -71,6 +71,9 @@ pub(crate) fn wrapped(
         let whole = [item.as_str()];
         let words: Vec<&str> = item.split(' ').collect();
         let pieces: &[&str] = if fits(item) { &whole } else { &words };
+        if pieces.len() > 1 && !line.is_empty() {
+            lines.push(std::mem::take(&mut line));
+        }
         for piece in pieces {
             let longer = format!("{line}{between}{piece}");
             if line.is_empty() {

@@ -285,6 +285,10 @@
       });
     }
     svg.addEventListener("pointerleave", clear);
+    // Pixels are there by the time the pointer reaches a field.
+    figure.addEventListener("pointerenter", () => {
+      if (svg.querySelector("[data-bar]")) svg.querySelectorAll("image").forEach(pixels);
+    }, { once: true });
     svg.addEventListener("pointermove", (event) => {
       const mark = markAt(event);
       if (mark) {

@@ -38,6 +38,22 @@ fn a_staggered_row_has_planes_through_each_line_of_rotors_with_their_names() {
 }
 
 #[test]
+fn a_long_row_is_told_in_few_words_and_its_fields_say_that_they_are_stretched() {
+    let page = page(&layouts::long_row());
+    assert_well_formed(&page);
+    for words in [
+        "cost T1 2.0 %, T6 2.0 % and T11 2.0 % of their power and gave twelve turbines 3.0 % to 11.0 % more: \
+         +5.3 % ± 1.2 % for the 15 together.",
+        "<thead><tr><th>Run</th><th class=\"n\">All</th></tr></thead>",
+        "Heights on the sheet are stretched 2.1 times.",
+        "spacing 5.0 D ·",
+    ] {
+        assert!(page.contains(words), "`{words}` is missing");
+    }
+    assert!(drawing(&page, "mean-crosswind").contains(">T1, T2</text>"));
+}
+
+#[test]
 fn an_interval_that_leaves_its_axes_has_an_arrow_with_its_number() {
     let study = layouts::staggered();
     let power = study.runs[0].summary.turbines[2].power;
