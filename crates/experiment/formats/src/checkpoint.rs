@@ -293,8 +293,13 @@ impl CheckpointReader {
             Ok((_, left)) => format!("{} bytes are left over", left.len()),
             Err(error) => error.to_string(),
         };
+        Err(self.unfitting(name, reason))
+    }
+
+    /// What to say where the section `name` is sound but holds something else, for `reason`.
+    pub fn unfitting(&self, name: &str, reason: String) -> FileError {
         let problem = CheckpointProblem::Unfitting { section: name.to_owned(), reason };
-        Err(FileError::checkpoint(&self.path, problem))
+        FileError::checkpoint(&self.path, problem)
     }
 
     /// Hands the bytes of the section `name` to `read`.

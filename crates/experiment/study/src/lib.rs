@@ -47,3 +47,4 @@ pub use prepared::Prepared;
 pub use ready::Ready;
 pub use self_check::SelfChecked;
 pub use study::{Outcome, StudyOptions, run, run_with};
+pub use warnings::SetupWarning;

@@ -3,7 +3,8 @@
 
 use crate::StudyError;
 use crate::models::{self, Machines};
-use crate::{threads, warnings};
+use crate::threads;
+use crate::warnings::{self, SetupWarning};
 use farm::assemble::{TurbineModel, controller};
 use farm::case::Case;
 use farm::operation::check_operation;
@@ -35,7 +36,7 @@ pub struct Prepared {
     /// The wind that enters, its turbulence left out.
     pub mean_inflow: Arc<dyn Inflow>,
     /// What a reader of the numbers must know.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<SetupWarning>,
     /// Folder that paths in the case are relative to.
     folder: PathBuf,
 }
@@ -68,9 +69,10 @@ impl Prepared {
         let mean_inflow = wind::without_turbulence(&case, &plan)?;
         let mut warnings = warnings::of(&case, &plan);
         let site = Site { case: &case, plan: &plan, models: &models };
-        warnings.extend(wind::turbulence(&site).and_then(|turbulence| turbulence.warning));
-        warnings.extend(machines.warnings);
-        warnings.extend(warnings::of_operation(&case, &models));
+        let turbulence = wind::turbulence(&site).and_then(|turbulence| turbulence.warning);
+        let operation = warnings::of_operation(&case, &models);
+        let further = turbulence.into_iter().chain(machines.warnings).chain(operation);
+        warnings.extend(further.map(SetupWarning::from));
         Ok(Self {
             case_text: formats::case::write(&case),
             turbine_texts: machines.texts,

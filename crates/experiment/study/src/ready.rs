@@ -6,6 +6,7 @@ use crate::observer::{Observer, Silent, making_turbulence};
 use crate::pitch_identification::{Keep, PitchIdentifications};
 use crate::prepared::Prepared;
 use crate::self_check::SelfChecked;
+use crate::warnings::SetupWarning;
 use farm::case::Run;
 use farm::pitch_response::CalibrationError;
 use farm::self_check::SelfCheckError;
@@ -72,7 +73,7 @@ impl Ready {
             entering => entering?,
         };
         let inflow = inflow.unwrap_or_else(|| Arc::clone(&prepared.mean_inflow));
-        prepared.warnings.extend(checked.warnings);
+        prepared.warnings.extend(checked.warnings.into_iter().map(SetupWarning::from));
         Ok(ControlFlow::Continue(Self { prepared, inflow }))
     }
 

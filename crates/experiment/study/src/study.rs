@@ -245,7 +245,7 @@ impl<'a> Study<'a> {
         let folders = self.open.iter().map(|&index| &self.folders[index]);
         check_disk(&estimate, &self.directory, folders)?;
         for warning in &prepared.warnings {
-            observer.warned(warning);
+            observer.warned(&warning.message);
         }
         if self.open.is_empty() {
             return Ok(ControlFlow::Continue(SelfChecked::default()));
@@ -283,7 +283,9 @@ impl<'a> Study<'a> {
             Ending::Interrupted => Ok(ControlFlow::Break(())),
             Ending::Complete { cost, clipped_shares, backend } => {
                 let summary = self.summary(ready, index, &clipped_shares, cost)?;
-                for warning in &summary.warnings[ready.prepared.warnings.len()..] {
+                let known = &ready.prepared.warnings;
+                let n_known = known.iter().filter(|warning| warning.concerns(&run.name)).count();
+                for warning in &summary.warnings[n_known..] {
                     observer.warned(&warning.message);
                 }
                 records::write_manifest(folder, &manifest.finish(&backend))?;

@@ -7,6 +7,7 @@ use crate::columns::{Analysed, Columns, add_to, names_of};
 use crate::loads;
 use crate::prepared::Prepared;
 use crate::tips::Outrun;
+use crate::warnings::SetupWarning;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
 use analysis::statistics::{BLOCK_LENGTH, statistic};
@@ -35,12 +36,13 @@ pub(crate) fn summarise(
 ) -> Result<Summary, StudyError> {
     let expected = parts(setup, run, columns.names());
     columns.expect(expected);
-    let before = |message: &String| Warning {
+    let before = |warning: &SetupWarning| Warning {
         kind: WarningKind::Setup,
-        turbine: None,
-        message: message.clone(),
+        turbine: warning.turbine.clone(),
+        message: warning.message.clone(),
     };
-    let mut warnings: Vec<Warning> = setup.warnings.iter().map(before).collect();
+    let known = setup.warnings.iter().filter(|warning| warning.concerns(&run.name));
+    let mut warnings: Vec<Warning> = known.map(before).collect();
     let mut turbines = Vec::new();
     let mut array = Vec::new();
     for (index, &clipped_share) in run.present().zip(clipped_shares) {
@@ -300,22 +302,20 @@ fn collective_pitch(
     Ok(statistic(&mean, analysed.interval, BLOCK_LENGTH)?)
 }
 
-/// How the tip of the turbine at `index` outran the sound on the lattice in the analysed time; none where it
-/// did not, and where there is no lattice.
+/// How the tip of the turbine at `index` exceeded the speed of sound of the solver's air in the analysed time;
+/// none where it did not, and where that air has no sound.
 fn outrun(
     analysed: &Analysed,
     index: usize,
     setup: &Prepared,
 ) -> Result<Option<Outrun>, StudyError> {
-    if setup.plan.cells() == 0 {
-        return Ok(None);
-    }
+    let plan = &setup.plan;
+    let Some(sound_speed) = (setup.case.flow.solver.sound_speed)(plan) else { return Ok(None) };
     let name = &setup.case.turbines[index].name;
     let times = analysed.column("time_s")?;
     let rotor_speeds = analysed.column(&format!("{name}.rotor_speed_rad_s"))?;
     let radius = setup.models[index].definition.rotor_radius();
-    let plan = &setup.plan;
-    Ok(Outrun::of(times, rotor_speeds, radius, plan.spacing, plan.interval))
+    Ok(Outrun::of(times, rotor_speeds, radius, sound_speed, plan.interval))
 }
 
 /// What moves the air of `setup`.

@@ -3,15 +3,14 @@
 use crate::threads::cores;
 use farm::Plan;
 use farm::assemble::TurbineModel;
-use farm::case::{Case, Placement, Run, Solver};
+use farm::case::{Case, Placement, Run};
+use std::fmt;
 use turbine::blockage::equivalent_speed_ratio;
 
 /// Rise of a rotor's power by the walls of the domain beyond which a reader must know (–).
 const WALL_GAIN_TO_WARN: f64 = 0.05;
 /// Thrust coefficient of a rotor below rated, with which that rise is estimated (–).
 const USUAL_THRUST: f64 = 0.8;
-/// Cells per diameter below which wakes are smeared (–).
-const CELLS_TO_WARN: f64 = 16.0;
 /// Blocks below which an interval says little (–).
 const BLOCKS_TO_WARN: f64 = 3.0;
 /// Steps of a run beyond which somebody should know (–): ten million take hours of prescribed wind.
@@ -19,13 +18,43 @@ const STEPS_TO_WARN: u64 = 10_000_000;
 /// Periods of an excitation below which its analysis says little (–).
 const PERIODS_TO_WARN: f64 = 3.0;
 
+/// What a reader of the numbers must know, as it is seen before the runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SetupWarning {
+    /// The run that it is about, by its name; all where absent.
+    pub run: Option<String>,
+    /// The turbine that it is about, by its name; the whole run where absent.
+    pub turbine: Option<String>,
+    /// What is to be known, in a sentence that names run and turbine.
+    pub message: String,
+}
+
+impl SetupWarning {
+    /// Whether it is about the run called `run`.
+    pub fn concerns(&self, run: &str) -> bool {
+        self.run.as_ref().is_none_or(|own| own == run)
+    }
+}
+
+impl From<String> for SetupWarning {
+    fn from(message: String) -> Self {
+        Self { run: None, turbine: None, message }
+    }
+}
+
+impl fmt::Display for SetupWarning {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.message)
+    }
+}
+
 /// Rise of a rotor's power (–) in a domain of which it takes `blockage` (–), over that in unbounded air.
 pub(crate) fn wall_gain(blockage: f64) -> f64 {
     equivalent_speed_ratio(USUAL_THRUST, blockage).powi(3) - 1.0
 }
 
 /// All warnings of `case` as it is laid out in `plan`.
-pub(crate) fn of(case: &Case, plan: &Plan) -> Vec<String> {
+pub(crate) fn of(case: &Case, plan: &Plan) -> Vec<SetupWarning> {
     let mut warnings = Vec::from_iter(farm::wind::off_balance(case));
     warnings.extend(of_domain(case, plan));
     warnings.extend(of_cost(case, plan));
@@ -36,6 +65,7 @@ pub(crate) fn of(case: &Case, plan: &Plan) -> Vec<String> {
             "{blocks:.1} blocks of ten minutes are analysed; with fewer than {BLOCKS_TO_WARN:.0} the intervals say little"
         ));
     }
+    let mut warnings: Vec<SetupWarning> = warnings.into_iter().map(SetupWarning::from).collect();
     warnings.extend(case.runs.iter().flat_map(|run| of_run(case, plan, run)));
     warnings
 }
@@ -83,12 +113,7 @@ fn of_domain(case: &Case, plan: &Plan) -> Vec<String> {
             100.0 * gain
         ));
     }
-    let cells = case.flow.domain().cells_per_diameter;
-    if case.flow.solver == Solver::LATTICE && cells < CELLS_TO_WARN {
-        warnings.push(format!(
-            "{cells:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results"
-        ));
-    }
+    warnings.extend((case.flow.solver.warnings)(case, plan));
     warnings
 }
 
@@ -112,20 +137,25 @@ fn of_places(case: &Case) -> Vec<String> {
 }
 
 /// Of phase offsets beyond a turn, and of excitations that are analysed over too few periods.
-fn of_run(case: &Case, plan: &Plan, run: &Run) -> Vec<String> {
+fn of_run(case: &Case, plan: &Plan, run: &Run) -> Vec<SetupWarning> {
     let mut warnings = Vec::new();
     for (control, placement) in run.control.iter().zip(&case.turbines) {
+        let about = |message| SetupWarning {
+            run: Some(run.name.clone()),
+            turbine: Some(placement.name.clone()),
+            message,
+        };
         for warning in control.kind().warnings(control) {
-            warnings.push(format!("run {}: {}{warning}", run.name, placement.name));
+            warnings.push(about(format!("run {}: {}{warning}", run.name, placement.name)));
         }
         let Some(strouhal) = control.kind().slowest_strouhal(control) else { continue };
         let period = plan.diameter / (strouhal * case.wind.speed);
         let periods = (case.time.duration - case.time.spin_up) / period;
         if periods < PERIODS_TO_WARN {
-            warnings.push(format!(
+            warnings.push(about(format!(
                 "run {}: only {periods:.1} periods of {}'s excitation ({period:.0} s) are analysed",
                 run.name, placement.name
-            ));
+            )));
         }
     }
     warnings

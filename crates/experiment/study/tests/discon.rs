@@ -95,7 +95,7 @@ fn a_turbine_runs_under_the_constants_of_its_file_alone() {
     let estimator = given.estimator.as_ref().expect("the table is there");
     assert!((estimator.coefficients.power(7.5, 0.0) - 0.455).abs() < 1e-12);
     assert_eq!(setup.models[0].definition.name, setup.models[1].definition.name);
-    assert!(!setup.warnings.iter().any(|warning| warning.contains("DISCON.IN")));
+    assert!(!setup.warnings.iter().any(|warning| warning.message.contains("DISCON.IN")));
 }
 
 #[test]
@@ -103,7 +103,10 @@ fn what_the_file_lacks_or_does_not_fit_is_reported() {
     let folder = written(&DISCON.replace("table.txt", "none.txt").replace("63.0 ", "80.0 "));
     let given = setup(folder.path()).expect("a sound case").warnings;
     for expected in ["control/none.txt", "a rotor of 80.0 m radius"] {
-        assert!(given.iter().any(|warning| warning.contains(expected)), "{expected}: {given:?}");
+        assert!(
+            given.iter().any(|warning| warning.message.contains(expected)),
+            "{expected}: {given:?}"
+        );
     }
 
     let folder = written(&DISCON.replace("48000.", "40000."));

@@ -7,6 +7,7 @@ use basis::keys::{Table, Values, above, key};
 use basis::registry::Named;
 use basis::{Commands, Measurements, Vector3};
 use control::{CONTROLLERS, Control, ControlError, Controller, ControllerKind, ForeignState, Site};
+use formats::table::TableReader;
 use sensing::{Mount, SENSORS, Scene, Sensor, SensorKind};
 use small::{case, done, options, written};
 use std::fs;
@@ -79,7 +80,7 @@ struct Shy {
 impl Controller for Shy {
     fn update(&mut self, measurements: &Measurements) -> Commands {
         let mut commands = self.inner.update(measurements);
-        let seen = measurements.reading("eye").map(|values| values[0]);
+        let seen = measurements.reading("Eye").map(|values| values[0]);
         if seen.is_some_and(|wind| wind > 10.0) {
             commands.generator_torque = 0.0;
         }
@@ -127,7 +128,7 @@ impl ControllerKind for ShyKind {
 fn a_sensor_reads_the_flow_and_its_readings_reach_controller_and_series() {
     SENSORS.add(&BeamKind).expect("no kind is called so yet");
     CONTROLLERS.add(&ShyKind).expect("no kind is called so yet");
-    let machine = format!("{}\nsensors.eye = {{ kind = \"beam\", ahead = 80.0 }}", small::NREL_5MW);
+    let machine = format!("{}\nsensors.Eye = {{ kind = \"beam\", ahead = 80.0 }}", small::NREL_5MW);
     let step = "event = { kind = \"step\", start = 20.0, speed = 12.0 }\n";
     let runs = "[[run]]\nname = \"own\"\ncontrol.T1 = { kind = \"shy\" }\n";
     let text = case("sensor", step, [10.0, 40.0], &[&machine], runs);
@@ -143,7 +144,7 @@ fn a_sensor_reads_the_flow_and_its_readings_reach_controller_and_series() {
             .unwrap_or_else(|| panic!("{wanted} is missing"))
     };
     let [time, eye, count, torque] =
-        ["time_s", "T1.eye.wind_m_s", "T1.eye.n_readings_–", "T1.generator_torque_nm"].map(place);
+        ["time_s", "T1.Eye.wind_m_s", "T1.Eye.n_readings_–", "T1.generator_torque_nm"].map(place);
     let rows: Vec<Vec<f64>> = rows
         .map(|row| row.split(',').map(|value| value.parse().expect("a number")).collect())
         .collect();
@@ -162,4 +163,11 @@ fn a_sensor_reads_the_flow_and_its_readings_reach_controller_and_series() {
     let case = formats::case::parse("sensor.toml", &text, &[]).expect("a sound case");
     let again = formats::case::parse("again", &formats::case::write(&case), &[]);
     assert_eq!(again.expect("what was written is read"), case);
+    // What it shows is no load of OpenFAST's, though its name begins with a capital as theirs do.
+    let outb = TableReader::open(&folder.path().join("out/own/T1.outb")).expect("an .outb");
+    let names = || outb.channels().iter().map(|column| column.name.as_str());
+    assert!(names().any(|name| name == "RootMyb1") && !names().any(|name| name.contains("Eye")));
+    for page in [formats::case::reference(), formats::case::schema()] {
+        assert!(page.contains("Distance that it looks ahead"), "the kind is told of");
+    }
 }

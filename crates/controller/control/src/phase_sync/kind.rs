@@ -61,7 +61,7 @@ impl ControllerKind for PhaseSyncKind {
                 message: format!(
                     "{turbine} is to join a helix, but no turbine upstream of it pitches one in this run"
                 ),
-                label: "joins what?",
+                label: "no helix upstream",
                 fix: "give a turbine upstream a helix, or set which helix it is: sense = \"ccw\", strouhal = 0.25"
                     .to_owned(),
             });

@@ -3,13 +3,16 @@
 use super::{Alone, Fault, Objection, Smearing, SolverError, SolverKind, Start, WindSource};
 use crate::air::Air;
 use crate::assemble::{SMEARING_CELLS, lattice_settings};
-use crate::case::{Flow, TurbulenceModel, Wind};
+use crate::case::{Case, Flow, TurbulenceModel, Wind};
 use crate::domain::{self, Sides};
-use crate::plan;
+use crate::plan::{self, Plan};
 use flow::lattice::Lattice;
 
 /// Bytes of a cell in the flow field, boundaries included.
 const CELL_BYTES: u64 = 80;
+
+/// Cells per diameter below which wakes are smeared (–).
+const CELLS_TO_WARN: f64 = 16.0;
 
 /// Lattice-Boltzmann large-eddy simulation, which feels the turbines.
 pub static LATTICE: SolverKind = SolverKind {
@@ -27,6 +30,8 @@ pub static LATTICE: SolverKind = SolverKind {
     uses_bound_vortices: false,
     needs_self_check: true,
     objections,
+    warnings,
+    sound_speed: |plan| Some(plan::LATTICE_SOUND_SPEED * plan.spacing / plan.interval),
     plan: plan::in_a_box,
     memory: |plan| plan.cells() as u64 * CELL_BYTES,
     begin,
@@ -44,6 +49,16 @@ fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
     Ok(Box::new(tunnel.air(wind, diameter, threads)?))
 }
 
+fn warnings(case: &Case, _: &Plan) -> Vec<String> {
+    let cells = case.flow.domain().cells_per_diameter;
+    let coarse = || {
+        format!(
+            "{cells:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results"
+        )
+    };
+    Vec::from_iter((cells < CELLS_TO_WARN).then(coarse))
+}
+
 fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
     let mut objections = Vec::new();
     let mut object = |key, fault, fix| objections.push(Objection { key, fault, fix });
@@ -52,7 +67,8 @@ fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
         object("planes", Fault::NoUse(why), "leave it out, or use flow.solver = \"planes\"");
     }
     if wind.turbulence_model == TurbulenceModel::Kaimal {
-        let why = "Kaimal's turbulence has divergence, which the lattice would turn into sound";
+        let why =
+            "Kaimal's turbulence has divergence, which the lattice would turn into pressure waves";
         let fix = "take turbulence_model = \"mann\", or flow.solver = \"turbulence\"";
         object("turbulence_model", Fault::Refused(why), fix);
     }
@@ -62,7 +78,7 @@ fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
         object("veer_deg_per_m", Fault::NoUse(why), fix);
     }
     if wind.event.is_some() {
-        let why = "the air of flow.solver = \"lattice\" would answer it with sound";
+        let why = "flow.solver = \"lattice\" would answer it with pressure waves";
         object("event", Fault::NoUse(why), "leave it out, or use flow.solver = \"uniform\"");
     }
     objections

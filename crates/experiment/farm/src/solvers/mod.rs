@@ -56,6 +56,10 @@ pub struct SolverKind {
     pub needs_self_check: bool,
     /// What of the case's wind and domain it cannot take.
     pub objections: fn(&Wind, &Flow) -> Vec<Objection>,
+    /// What a reader of the numbers must know of a case in it, as it is laid out.
+    pub warnings: fn(&Case, &Plan) -> Vec<String>,
+    /// Speed of sound (m/s) of its air, which no tip may exceed; none where the air has no sound.
+    pub sound_speed: fn(&Plan) -> Option<f64>,
     /// Domain and step for a layout.
     pub plan: fn(&Case, &Layout) -> Result<Plan, PlanError>,
     /// Memory that its field takes (bytes).

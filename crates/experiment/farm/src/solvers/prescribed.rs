@@ -21,6 +21,8 @@ pub const PRESCRIBED: SolverKind = SolverKind {
     uses_bound_vortices: false,
     needs_self_check: false,
     objections: |_, _| Vec::new(),
+    warnings: |_, _| Vec::new(),
+    sound_speed: |_| None,
     plan: plan::without_cells,
     memory: |_| 0,
     begin,

@@ -12,6 +12,7 @@ use farm::case::Run;
 use formats::openfast_output::{Encoding, Layout, OutbWriter};
 use formats::records::RunFolder;
 use formats::table::{Column, TableReader};
+use turbine::structure::{Channel, channels_of};
 
 /// Channels of ours under OpenFAST's names: ours, theirs, unit, factor to it; `{}` is the turbine's name.
 const RENAMED: [(&str, &str, &str, f64); 6] = [
@@ -67,7 +68,6 @@ impl Output for Outb {
 fn write(setup: &Prepared, run: &Run, folder: &RunFolder, index: usize) -> Result<(), StudyError> {
     let turbine = setup.case.turbines[index].name.as_str();
     let mut reader = TableReader::open(&folder.series_path())?;
-    let prefix = format!("{turbine}.");
     let (mut ours, mut channels, mut scales) = (Vec::new(), Vec::new(), Vec::new());
     // Ours is on the low-speed side.
     let gear_ratio = setup.models[index].definition.drive_train.gear_ratio;
@@ -77,19 +77,14 @@ fn write(setup: &Prepared, run: &Run, folder: &RunFolder, index: usize) -> Resul
         channels.push(Column { name: name.to_owned(), unit: unit.to_owned() });
         scales.push(scale);
     }
-    for column in reader.channels() {
-        // Loads already stand under OpenFAST's names and units, and only they begin with a capital.
-        let Some((name, unit)) = column
-            .name
-            .strip_prefix(&prefix)
-            .filter(|rest| rest.starts_with(|c: char| c.is_ascii_uppercase()))
-            .and_then(|rest| rest.split_once('_'))
-        else {
-            continue;
-        };
-        ours.push(column.name.clone());
-        channels.push(Column { name: name.to_owned(), unit: unit.to_owned() });
-        scales.push(1.0);
+    // Loads already stand under OpenFAST's names and units.
+    for Channel { name, unit, .. } in channels_of(setup.models[index].definition.n_blades) {
+        let own = format!("{turbine}.{name}_{unit}");
+        if reader.channels().iter().any(|column| column.name == own) {
+            ours.push(own);
+            channels.push(Column { name, unit: unit.to_owned() });
+            scales.push(1.0);
+        }
     }
     let names: Vec<&str> = ours.iter().map(String::as_str).collect();
     reader.select(&names)?;

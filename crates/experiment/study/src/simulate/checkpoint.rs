@@ -78,6 +78,10 @@ pub(super) fn read(
 ) -> Result<(Farm<Air>, Before), StudyError> {
     let state: RunState = reader.state(RUN)?;
     let mut farm = farm.at_step(state.step);
+    let n_machines = farm.machines().len();
+    for n_stored in [state.turbines.len(), state.controllers.len()] {
+        fits(reader, RUN, n_stored, n_machines)?;
+    }
     let states = state.turbines.into_iter().zip(state.controllers);
     for (machine, (turbine, controller)) in farm.machines_mut().iter_mut().zip(states) {
         machine.turbine.restore(turbine);
@@ -85,6 +89,7 @@ pub(super) fn read(
     }
     if has_instruments(&farm) {
         let stored: Vec<sensing::SensingState> = reader.state(INSTRUMENTS)?;
+        fits(reader, INSTRUMENTS, stored.len(), n_machines)?;
         for (machine, stored) in farm.machines_mut().iter_mut().zip(stored) {
             machine.sensing.restore(stored)?;
         }
@@ -92,4 +97,18 @@ pub(super) fn read(
     reader.stream(AIR, |bytes| farm.flow_mut().read_state(bytes))?;
     let peak_memory = if reader.holds(PEAK_MEMORY) { reader.state(PEAK_MEMORY)? } else { None };
     Ok((farm, Before { step: state.step, wall_time: state.wall_time, peak_memory }))
+}
+
+/// Nothing where a `section` has as many states as there are turbines.
+fn fits(
+    reader: &CheckpointReader,
+    section: &str,
+    n_stored: usize,
+    n_turbines: usize,
+) -> Result<(), StudyError> {
+    if n_stored == n_turbines {
+        return Ok(());
+    }
+    let reason = format!("{n_stored} states for {n_turbines} turbines");
+    Err(reader.unfitting(section, reason).into())
 }

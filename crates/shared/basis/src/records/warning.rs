@@ -24,7 +24,7 @@ pub enum WarningKind {
     PitchHeldBack,
     /// A controller could not do what it was set to do for part of the time.
     Controller,
-    /// A blade's tip outran the sound on the lattice.
+    /// A blade's tip moved faster than the flow's numerical speed of sound.
     TipSpeed,
     /// A rotor turned much faster than a real machine is let.
     Overspeed,
