@@ -22,9 +22,9 @@ const CASE_ITSELF: &str = "the case itself";
 const POWER_RATIOS: [(u32, f64); 4] = [(2, 0.994), (3, 0.986), (4, 0.975), (5, 0.963)];
 const RATIO_TOLERANCE: f64 = 0.01;
 /// Array gain of a tuned helix, two IEA 22 MW turbines at 5 D in 8 m/s (van der Hoek, Dammann, van Wingerden:
-/// 7.5 % ccw, about 3 % cw, near 4° and St 0.25), and how far ours may lie from it: the half width of the 95 %
-/// interval that ours had when it was recorded (2026-11-22), frozen, so that a gain that scatters more is no
-/// easier to meet.
+/// 7.5 % ccw, about 3 % cw, near 4° and St 0.25), and how far ours may lie from it: the half width of the
+/// 95 % interval that ours had when it was recorded (2026-11-22), frozen, so that a gain that scatters more
+/// is no easier to meet.
 const ARRAY_GAINS: [(&str, f64, f64); 2] = [("ccw-4", 7.5, 2.3), ("cw-4", 3.0, 1.34)];
 /// Hub-height centre-line speed (m/s) behind one IEA 22 MW turbine in 10 m/s: distance (D), baseline, helix
 /// ccw 4° (published large-eddy tables).

@@ -340,8 +340,8 @@ fn equilibria() -> Vec<Row> {
             0.0,
             "–",
         ),
-        // 254 of the 544 starts by the midpoint rule in steps of 0.002 over the natural rate, a computation of
-        // its own; a start on the edge may go either way.
+        // 254 of the 544 starts by the midpoint rule in steps of 0.002 over the natural rate, a computation
+        // of its own; a start on the edge may go either way.
         row("sine: the same, by another integration", share(&plain), 254.0 / 544.0, 0.01, "–"),
     ]
 }

@@ -56,7 +56,10 @@ fn every_refusal_names_file_and_fix() {
         let first = Request::of(&monitoring).with("turbine", "T1");
         refused(name, &first, &out);
         let behind_nobody = Request::of(&baseline).with("turbine", "T2");
-        assert!(refused(name, &behind_nobody, &baseline).contains("no helix comes from upstream"));
+        assert!(
+            refused(name, &behind_nobody, &baseline)
+                .contains("no turbine upstream of T2 pitches a helix")
+        );
     }
     let late = Request::of(&monitoring).with("from", "1e9");
     let refusal = refused("lock", &late, &monitoring.join("series.csv"));

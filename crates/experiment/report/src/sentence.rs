@@ -166,10 +166,10 @@ fn power_sentence(run: &RunRecords) -> String {
 pub(crate) fn name_of(excitation: &Excitation) -> String {
     let amplitude = amplitude(excitation.pitch.commanded_amplitude_deg);
     match (excitation.kind, excitation.synchronised_at()) {
-        (ExcitationKind::InStep(_), Some(offset)) => {
-            format!("helix of {amplitude}° in step at {offset}")
+        (ExcitationKind::Synchronised(_), Some(offset)) => {
+            format!("synchronised helix of {amplitude}° at {offset}")
         }
-        (ExcitationKind::InStep(_), None) => format!("helix of {amplitude}° in step"),
+        (ExcitationKind::Synchronised(_), None) => format!("synchronised helix of {amplitude}°"),
         (ExcitationKind::Helix(Sense::CounterClockwise), _) => {
             format!("counter-clockwise helix of {amplitude}°")
         }
@@ -232,7 +232,7 @@ pub(crate) fn excitation_conditions(study: &Study, run: &RunRecords) -> Vec<Stri
         .iter()
         .map(|excitation| {
             let kind = match excitation.kind {
-                ExcitationKind::Helix(sense) | ExcitationKind::InStep(sense) => {
+                ExcitationKind::Helix(sense) | ExcitationKind::Synchronised(sense) => {
                     format!("{sense} helix")
                 }
                 ExcitationKind::Pulse => "pulse".to_owned(),

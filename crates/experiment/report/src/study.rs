@@ -10,8 +10,8 @@ use basis::records::{DeliveredPitch, Plane, PlaneAxes, TurbineSummary};
 pub(crate) enum ExcitationKind<'a> {
     /// Helix; its sense says whether blades pitch at rotor plus or minus excitation frequency.
     Helix(Sense),
-    /// Helix of this sense, in step with one that comes in.
-    InStep(Sense),
+    /// Helix of this sense, synchronised with the incoming one.
+    Synchronised(Sense),
     /// Collective pitch.
     Pulse,
     /// Another periodic pitch, known by the name of its controller's kind.
@@ -235,7 +235,7 @@ fn kind_of(turbine: &TurbineSummary) -> ExcitationKind<'_> {
     let sense = control.excitation.and_then(|set| set.sense);
     match (control.kind.as_str(), sense) {
         ("helix", Some(sense)) => ExcitationKind::Helix(sense),
-        ("phase-sync", Some(sense)) => ExcitationKind::InStep(sense),
+        ("phase-sync", Some(sense)) => ExcitationKind::Synchronised(sense),
         ("pulse", None) => ExcitationKind::Pulse,
         (name, _) => ExcitationKind::Named(name),
     }

@@ -138,8 +138,8 @@ impl<'a> Study<'a> {
     ///
     /// # Errors
     /// [`StudyError::UnknownRun`], [`StudyError::OutputExists`], [`StudyError::NothingToResume`],
-    /// [`StudyError::OtherCase`], [`StudyError::OtherFile`], and [`StudyError::File`] for a folder that cannot
-    /// be written into.
+    /// [`StudyError::OtherCase`], [`StudyError::OtherFile`], and [`StudyError::File`] for a folder that
+    /// cannot be written into.
     fn open(
         options: &StudyOptions,
         outputs: &'a Outputs,
@@ -208,7 +208,7 @@ impl<'a> Study<'a> {
             ));
         }
         let keeps = options.resume || options.overwrite;
-        if !keeps && folders().any(|folder| folder.manifest_path().exists()) {
+        if !keeps && folders().any(RunFolder::holds_results) {
             return Err(StudyError::OutputExists { directory: self.directory.clone() });
         }
         leftovers::remove_abandoned(&self.directory, None)?;

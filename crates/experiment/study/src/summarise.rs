@@ -302,8 +302,8 @@ fn collective_pitch(
     Ok(statistic(&mean, analysed.interval, BLOCK_LENGTH)?)
 }
 
-/// How the tip of the turbine at `index` exceeded the speed of sound of the solver's air in the analysed time;
-/// none where it did not, and where that air has no sound.
+/// How the tip of the turbine at `index` exceeded the speed of sound of the solver's air in the analysed
+/// time; none where it did not, and where that air has no sound.
 fn outrun(
     analysed: &Analysed,
     index: usize,

@@ -1,5 +1,5 @@
-//! Blade tips that exceeded the speed of sound of the solver's air: the step is chosen in the mean wind, and a gust may turn
-//! a rotor faster.
+//! Blade tips that exceeded the speed of sound of the solver's air: the step is chosen in the mean wind, and
+//! a gust may turn a rotor faster.
 
 /// How fast a tip moved in a record, against the sound of the solver's air.
 #[derive(Clone, Copy, Debug, PartialEq)]

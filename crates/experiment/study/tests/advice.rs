@@ -77,7 +77,8 @@ fn a_manifest_alone_does_not_block_the_next_try() {
     let error = run(&options(folder.path())).expect_err("somebody's file is there");
     assert!(matches!(error, StudyError::OutputExists { .. }), "{error:?}");
     fs::remove_file(place.path().join("notes.txt")).expect("a file");
-    assert!(matches!(run(&options(folder.path())), Ok(Outcome::Done { .. })));
+    let outcome = run(&options(folder.path()));
+    assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{outcome:?}");
 }
 
 /// Hears nothing but that rotors are being checked.

@@ -7,6 +7,7 @@ use farm::FarmError;
 use formats::records::{SeriesFile, read_summary};
 use miette::Diagnostic;
 use small::{options, written};
+use std::fs;
 use std::path::Path;
 use study::{Outcome, Prepared, StudyError};
 
@@ -24,7 +25,7 @@ spin_up = 5.0
 duration = {duration:?}
 [[turbine]]
 name = "T1"
-model = "iea-15mw"
+model = "any-wind.toml"
 position_diameters = [0.0, 0.0]
 [[run]]
 name = "baseline"
@@ -42,9 +43,20 @@ const STAIRCASE: &str = r#"speed = 9.0
 turbulence_intensity = 0.0
 event = { kind = "staircase", start = 5.0, rise = 40.0, n_steps = 10, hold = 4.0 }"#;
 
+/// The folder of `case`, with a turbine whose file states no cut-out wind speed, so that no wind is refused.
+fn in_any_wind(case: &str) -> tempfile::TempDir {
+    let folder = written(case);
+    let library = include_str!("../../../../turbines/iea-15mw.toml");
+    let (before, rest) = library.split_once("[operation]").expect("the group");
+    let (_, after) = rest.split_once("[controller]").expect("the group behind it");
+    fs::write(folder.path().join("any-wind.toml"), format!("{before}[controller]{after}"))
+        .expect("a turbine file");
+    folder
+}
+
 /// How the study of `case` ended, and the folder of its run.
 fn broken(case: &str) -> (StudyError, tempfile::TempDir) {
-    let folder = written(case);
+    let folder = in_any_wind(case);
     let error = small::run(&options(folder.path())).expect_err("no turbine survives that");
     (error, folder)
 }
@@ -78,7 +90,7 @@ fn a_turbine_that_breaks_down_ends_its_run_with_time_and_place() {
 
 #[test]
 fn in_memory_a_broken_turbine_is_told_too() {
-    let folder = written(&case(STAIRCASE, "uniform", 60.0));
+    let folder = in_any_wind(&case(STAIRCASE, "uniform", 60.0));
     let prepared = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
     let error = prepared.ready().expect("ready").run("baseline").expect_err("no turbine survives");
     assert!(matches!(error, StudyError::Diverged { .. }), "{error:?}");
@@ -90,7 +102,7 @@ fn a_rotor_that_turns_too_fast_is_warned_of() {
     let gust = r#"speed = 11.0
 turbulence_intensity = 0.0
 event = { kind = "step", start = 20.0, speed = 30.0 }"#;
-    let folder = written(&case(gust, "uniform", 60.0));
+    let folder = in_any_wind(&case(gust, "uniform", 60.0));
     let outcome = small::run(&options(folder.path()));
     let Ok(Outcome::Done { summaries, .. }) = outcome else { panic!("{outcome:?}") };
     let found =

@@ -219,13 +219,14 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
     .map(str::to_owned);
     let series = |name: &str, observer: &mut dyn FnMut(&AtomicBool, &StudyOptions) -> Outcome| {
         let output = folder.path().join(name);
-        let options = StudyOptions {
+        let mut options = StudyOptions {
             output: Some(output.clone()),
             overrides: overrides.to_vec(),
-            resume: true,
             ..options(folder.path())
         };
-        while !matches!(observer(&AtomicBool::new(false), &options), Outcome::Done { .. }) {}
+        while !matches!(observer(&AtomicBool::new(false), &options), Outcome::Done { .. }) {
+            options.resume = true;
+        }
         read(&output)
     };
     let run = |stop: &AtomicBool, options: &StudyOptions, observer: &mut dyn Observer| {

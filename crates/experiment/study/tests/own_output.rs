@@ -248,7 +248,7 @@ fn keys_of_an_output_are_checked_like_all_others_and_stand_in_the_reference() {
         (", since = \"1 s\"", "must be a number, found text \"1 s\"; write 1, without quotes"),
         (", turbines = [\"T9\"]", "`output.further.early.turbines` names the turbine `T9`"),
         (", since = 13", "`output.further.early.since` = 13 s brings bad luck; take 14"),
-        ("s", "`output.further.early.kind` = \"largest-powers\" does not exist"),
+        ("s", "`output.further.early.kind` = \"largest-powers\" is unknown"),
     ];
     for (keys, expected) in cases {
         let text = if keys == "s" {
@@ -268,7 +268,7 @@ fn keys_of_an_output_are_checked_like_all_others_and_stand_in_the_reference() {
         "{misplaced}"
     );
     let unnamed = parse(&asked_for("").replace("further.early", "further.\"so early\""));
-    assert!(unnamed.expect_err("no name").to_lines().contains("is not a name"));
+    assert!(unnamed.expect_err("no name").to_lines().contains("is not a valid name"));
     assert!(formats::case::reference().contains("| `since` | 0 <= x <= 1000000 | s | `0` | Time"));
     assert!(formats::case::schema().contains("\"largest-power\""));
 

@@ -165,7 +165,7 @@ fn a_sensor_reads_the_flow_and_its_readings_reach_controller_and_series() {
     assert_eq!(again.expect("what was written is read"), case);
     // What it shows is no load of OpenFAST's, though its name begins with a capital as theirs do.
     let outb = TableReader::open(&folder.path().join("out/own/T1.outb")).expect("an .outb");
-    let names = || outb.channels().iter().map(|column| column.name.as_str());
+    let names = || outb.channels().map(|column| column.name.as_str());
     assert!(names().any(|name| name == "RootMyb1") && !names().any(|name| name.contains("Eye")));
     for page in [formats::case::reference(), formats::case::schema()] {
         assert!(page.contains("Distance that it looks ahead"), "the kind is told of");

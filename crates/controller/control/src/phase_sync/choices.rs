@@ -77,8 +77,8 @@ pub(super) fn objections(values: &Values) -> Vec<Objection> {
     let mut useless = |key: &'static str, why: &str| {
         objections.push(Objection {
             key: Some(key),
-            message: format!("is of no use here: {why}"),
-            label: "of no use",
+            message: format!("has no effect here: {why}"),
+            label: "no effect",
             fix: "leave it out".to_owned(),
         });
     };
@@ -86,20 +86,20 @@ pub(super) fn objections(values: &Values) -> Vec<Objection> {
         if values.has("process_noise_phase") {
             useless(
                 "process_noise_phase",
-                "it goes with a published estimator; the states of \"robust\" are sine and cosine components, which wander as process_noise_amplitude says",
+                "it applies only with a published estimator; the states of \"robust\" are sine and cosine components, whose process noise is process_noise_amplitude",
             );
         }
         if values.has("amplitudes") {
             useless(
                 "amplitudes",
-                "it goes with a published estimator; the sine and cosine components of \"robust\" are each axis' own",
+                "it applies only with a published estimator; the sine and cosine components of \"robust\" are each axis' own",
             );
         }
     }
     if values.has("wake_time_factor") && values.word("dynamic_inflow") == "two-constant" {
         useless(
             "wake_time_factor",
-            "it goes with dynamic_inflow = \"snel-schepers\"; Øye's time constants follow wind and induction",
+            "it applies only with dynamic_inflow = \"snel-schepers\"; Øye's time constants follow wind and induction",
         );
     }
     objections

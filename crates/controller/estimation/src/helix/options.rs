@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Innovations beyond this many standard deviations have less weight in the robust form (–).
 const HUBER_LIMIT: f64 = 3.0;
 
-/// HelixOptions; [`HelixOptions::default`] is the robust form, [`HelixOptions::published`] that of the authors.
+/// Choices; [`HelixOptions::default`] is the robust form, [`HelixOptions::published`] that of the authors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HelixOptions {
     /// States of the wave.

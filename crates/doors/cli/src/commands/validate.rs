@@ -28,7 +28,7 @@ pub(crate) struct ValidateArguments {
     /// Write what comes out as the new record (validation/recorded) and renew the pages; no claim is loosened
     #[arg(long)]
     record: bool,
-    /// With --record: record also what was met and falls short now, or falls shorter, which is refused otherwise
+    /// With --record: record what was met and falls short now, or falls shorter; otherwise that is refused
     #[arg(long, requires = "record")]
     accept_worse: bool,
     /// Renew verdicts and tables of docs/validation from the records, and repeat nothing

@@ -232,7 +232,7 @@ name = "baseline"
             let message = read(figures).expect_err(figures);
             assert!(
                 message.contains(expected),
-                "{figures}\nexpected {expected}\ntold     {message}"
+                "{figures}\nexpected {expected}\nfound    {message}"
             );
         }
     }

@@ -176,7 +176,7 @@ name = "baseline"
         ];
         for (keys, solver, expected) in cases {
             let lines = message(keys, solver);
-            assert!(lines.contains(expected), "{keys}\nexpected {expected}\ntold     {lines}");
+            assert!(lines.contains(expected), "{keys}\nexpected {expected}\nfound    {lines}");
         }
         // This much is true of resolved flow too.
         let still = text("tower_influence = \"none\"").replace("\"uniform\"", "\"lattice\"");

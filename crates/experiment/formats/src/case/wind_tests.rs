@@ -192,7 +192,7 @@ fn what_cannot_be_is_reported_with_its_line() {
         (
             step,
             "lattice",
-            "windy.toml:6: `wind.event` has no effect here: the air of flow.solver = \"lattice\"",
+            "windy.toml:6: `wind.event` has no effect here: flow.solver = \"lattice\"",
         ),
         (step, "turbulence", "`wind.event` has no effect here"),
         (
@@ -206,7 +206,7 @@ fn what_cannot_be_is_reported_with_its_line() {
     for (keys, solver, expected) in cases {
         let text = text(keys).replace("\"uniform\"", &format!("\"{solver}\""));
         let message = parse("windy.toml", &text, &[]).unwrap_err().to_lines();
-        assert!(message.contains(expected), "{keys}\nexpected {expected}\ntold     {message}");
+        assert!(message.contains(expected), "{keys}\nexpected {expected}\nfound    {message}");
     }
     for (text, other) in [(text(""), "roughness_length"), (logarithmic("0.06"), "shear_exponent")] {
         let message = parse("windy.toml", &text, &[format!("wind.{other}=0.1")]);

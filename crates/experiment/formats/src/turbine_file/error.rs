@@ -211,8 +211,8 @@ impl Place<'_> {
         ))
     }
 
-    /// Nothing when the first `column` of a table increases, from row to row where `strictly`, and has `least`
-    /// rows or more.
+    /// Nothing when the first `column` of a table increases, from row to row where `strictly`, and has
+    /// `least` rows or more.
     pub(super) fn rising(
         &self,
         group: &str,

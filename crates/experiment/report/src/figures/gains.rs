@@ -236,7 +236,7 @@ fn lines_over_amplitude(study: &Study) -> Vec<Line> {
             ExcitationKind::Helix(Sense::Clockwise) => "clockwise helix".to_owned(),
             ExcitationKind::Pulse => "pulse".to_owned(),
             // Its gain is a matter of the phase offset.
-            ExcitationKind::InStep(_) => continue,
+            ExcitationKind::Synchronised(_) => continue,
             ExcitationKind::Named(name) => name.to_owned(),
         };
         let mut colours = Vec::new();

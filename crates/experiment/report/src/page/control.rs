@@ -48,7 +48,9 @@ pub(crate) fn excitations(study: &Study) -> Vec<Value> {
             };
             let kind = match excitation.kind {
                 ExcitationKind::Helix(sense) => format!("helix, {}", turning(sense)),
-                ExcitationKind::InStep(sense) => format!("helix in step, {}", turning(sense)),
+                ExcitationKind::Synchronised(sense) => {
+                    format!("synchronised helix, {}", turning(sense))
+                }
                 ExcitationKind::Pulse => "pulse".to_owned(),
                 ExcitationKind::Named(_) => excitation.turbine.control.description.clone(),
             };

@@ -80,7 +80,7 @@ fn write(setup: &Prepared, run: &Run, folder: &RunFolder, index: usize) -> Resul
     // Loads already stand under OpenFAST's names and units.
     for Channel { name, unit, .. } in channels_of(setup.models[index].definition.n_blades) {
         let own = format!("{turbine}.{name}_{unit}");
-        if reader.channels().iter().any(|column| column.name == own) {
+        if reader.channels().any(|column| column.name == own) {
             ours.push(own);
             channels.push(Column { name, unit: unit.to_owned() });
             scales.push(1.0);

@@ -86,7 +86,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense",
             "\"phase-sync\", offset_deg = 90, process_noise_phase = 1e-4, sense",
-            "`run.helix.control.T1.process_noise_phase` has no effect here: it applies only with estimator = \"published\"",
+            "`run.helix.control.T1.process_noise_phase` has no effect here: it applies only with a published estimator",
         ),
         (
             "\"helix\", sense",
@@ -101,12 +101,12 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense",
             "\"phase-sync\", offset_deg = 90, amplitudes = \"separate\", sense",
-            "`run.helix.control.T1.amplitudes` is of no use here: it goes with a published estimator",
+            "`run.helix.control.T1.amplitudes` has no effect here: it applies only with a published estimator",
         ),
         (
             "\"helix\", sense",
             "\"phase-sync\", offset_deg = 90, dynamic_inflow = \"two-constant\", wake_time_factor = 0.5, sense",
-            "`run.helix.control.T1.wake_time_factor` is of no use here: it goes with dynamic_inflow = \"snel-schepers\"",
+            "`run.helix.control.T1.wake_time_factor` has no effect here: it applies only with dynamic_inflow = \"snel-schepers\"",
         ),
         (
             "\"helix\", sense",
@@ -187,7 +187,7 @@ fn errors_name_file_line_key_and_fix() {
     ];
     for (from, to, expected) in cases {
         let lines = message(from, to);
-        assert!(lines.contains(expected), "{from} -> {to}\nexpected {expected}\ntold     {lines}");
+        assert!(lines.contains(expected), "{from} -> {to}\nexpected {expected}\nfound    {lines}");
     }
 }
 
@@ -242,7 +242,7 @@ fn errors_of_overrides_name_the_override() {
     ];
     for (text, expected) in cases {
         let lines = small(&[text]).unwrap_err().to_lines();
-        assert!(lines.contains(expected), "{text}\nexpected {expected}\ntold     {lines}");
+        assert!(lines.contains(expected), "{text}\nexpected {expected}\nfound    {lines}");
     }
 }
 
