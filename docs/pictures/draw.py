@@ -1,9 +1,7 @@
 #!/usr/bin/env python3
 """Draws the pictures of docs/concepts. Directions and signs follow from the conventions below by formulas.
 
-    python3 docs/pictures/draw.py           writes the pictures anew
-    python3 docs/pictures/draw.py --check   says whether they are up to date
-
+`python3 docs/pictures/draw.py` writes the pictures anew, with `--check` it says whether they are up to date.
 Conventions (crates/shared/basis, crates/controller/control/src/excitation.rs): x downwind, y left looking
 downwind, z up; azimuth 0 is up and grows clockwise looking downwind; tilt is the cosine, yaw the sine component
 over azimuth; a helix commands tilt = A sin(angle) and yaw = A sin(angle + 90 deg) (ccw) or A sin(angle - 90 deg) (cw).

@@ -1,9 +1,7 @@
 "use strict";
 // Runs can be hidden, charts and fields enlarged and read. The page is whole without any of it.
 (function () {
-  const NAMESPACE = "http://www.w3.org/2000/svg";
-  const MOST = 40;
-  const names = {}, colours = {};
+  const NAMESPACE = "http://www.w3.org/2000/svg", MOST = 40, names = {}, colours = {};
 
   // ---- runs -------------------------------------------------------------------------------------
   const chips = document.querySelectorAll(".chip[data-chip]");
@@ -12,18 +10,16 @@
     names[run] = chip.textContent;
     colours[run] = chip.querySelector("i").style.background;
     if (chips.length < 2) return;
-    const button = document.createElement("button");
-    button.type = "button";
-    button.className = chip.className;
-    button.title = chip.title + " (click to hide or show)";
+    const button = Object.assign(document.createElement("button"), {
+      type: "button", className: chip.className, title: chip.title + " (click to hide or show)",
+    });
     button.setAttribute("aria-pressed", "true");
     while (chip.firstChild) button.appendChild(chip.firstChild);
     button.addEventListener("click", () => {
       const visible = button.getAttribute("aria-pressed") !== "true";
       button.setAttribute("aria-pressed", String(visible));
-      document.querySelectorAll('svg [data-run="' + run + '"]').forEach((shape) => {
-        shape.classList.toggle("hidden", !visible);
-      });
+      const shapes = document.querySelectorAll('svg [data-run="' + run + '"]');
+      shapes.forEach((shape) => shape.classList.toggle("hidden", !visible));
     });
     chip.replaceWith(button);
   });
