@@ -1,7 +1,7 @@
 //! Outputs: what a run leaves besides its summary, each written on a schedule of its own.
 //!
 //! An output is a file here and a line in [`STANDARD`]. Somebody else's is added to
-//! [`OUTPUTS`](farm::outputs::OUTPUTS), and cases ask for it by a name; or it is handed to
+//! [`OUTPUTS`], and cases ask for it by a name; or it is handed to
 //! [`run_with`](crate::run_with) with [`Outputs::with`], and every run has it.
 //!
 //! Reading order: `output` (what an output is), `schedule` (when it is due), `section` (its state in a
