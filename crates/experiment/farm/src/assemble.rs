@@ -172,8 +172,8 @@ pub(crate) fn turbine_settings(
 }
 
 /// The farm of one run, at time zero: the turbines that are there in it, in the case's order, in `air`.
-/// `models` holds one entry per turbine of the case, in its order, each [equipped](TurbineModel::equipped) for the
-/// case; the farm's machines are those of [`Run::present`].
+/// `models` holds one entry per turbine of the case, in its order, each [equipped](TurbineModel::equipped)
+/// for the case; the farm's machines are those of [`Run::present`].
 ///
 /// # Errors
 /// [`AssemblyError`].

@@ -57,8 +57,9 @@ impl Leftover {
                 let [mean, spread, nominal] =
                     [self.sums[blade], self.spreads[blade], self.nominal[blade]]
                         .map(|sum| sum / count);
-                // The mean of the readings is that much less noisy; the states' share in it stays.
-                left += (mean * mean + spread) * count / nominal;
+                // The mean of the readings is that much less noisy. A correction has followed each reading
+                // by its gain, spread over noise, so that the residuals hold that much less of it.
+                left += (mean * mean + spread / count) * count / nominal;
                 n_blades += 1.0;
             }
         }
@@ -102,6 +103,39 @@ mod tests {
             // A swing of some seconds, of variance one half, has half the window's length.
             let lasting = told(interval, |time| (0.9 * time).sin());
             assert!((lasting / (0.5 * WINDOW) - 1.0).abs() < 0.01, "{interval}: {lasting}");
+        }
+    }
+
+    #[test]
+    fn what_the_corrections_took_is_given_back_once() {
+        // Of a filter with a steady gain of k on a still state: posterior variance k R, residuals
+        // (1 − k) of innovations. Noise of intensity one, readings as often as this.
+        for interval in [0.01_f64, 0.02, 0.05, 0.1] {
+            let mut state = 5_u64;
+            let mut uniform = || {
+                state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+            };
+            let variance = 1.0 / interval;
+            // A random walk of intensity 25 under it: the filter's steady state, a Riccati equation in one
+            // unknown.
+            let drift = 25.0 * interval;
+            let before = 0.5 * (drift + (drift * drift + 4.0 * drift * variance).sqrt());
+            let gain = before / (before + variance);
+            let (mut walk, mut estimate, mut leftover) = (0.0_f64, 0.0_f64, Leftover::new(1));
+            let (mut sum, mut n) = (0.0, 0.0);
+            for _ in 0..200_000 {
+                walk += (12.0 * drift).sqrt() * uniform();
+                let reading = walk + (12.0 * variance).sqrt() * uniform();
+                estimate += gain * (reading - estimate);
+                leftover.add(0, reading - estimate, gain * variance, variance);
+                if let Some((_, left)) = leftover.take(interval, interval) {
+                    sum += left;
+                    n += 1.0;
+                }
+            }
+            let left: f64 = sum / n;
+            assert!((left - 1.0).abs() < 0.1, "{left} with readings {interval} s apart");
         }
     }
 
