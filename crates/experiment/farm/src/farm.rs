@@ -156,7 +156,7 @@ impl<Flow: FlowSolver + Sync> Farm<Flow> {
     /// Moves everything on by one control interval.
     ///
     /// # Errors
-    /// [`FarmError`] when the flow solver or a turbine breaks down; the farm then stands where it did.
+    /// [`FarmError`] when the flow solver or a turbine breaks down; the step is then not counted.
     pub fn advance(&mut self, recorder: &mut impl Recorder) -> Result<(), FarmError> {
         let time = self.time();
         self.forces.clear();

@@ -102,7 +102,7 @@ fn fix_of(kind: ErrorKind, path: &Path) -> String {
     let folder = path.parent().unwrap_or(path).display();
     match kind {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => format!(
-            "the disk or quota of {folder} is full: free some space or choose another folder (-o DIR), then resume with --resume"
+            "the disk or quota of {folder} is full: free some space and repeat the command (a run: with --resume), or begin again in another folder (-o)"
         ),
         ErrorKind::PermissionDenied => {
             format!("check the permissions of {folder}, or choose another folder (-o DIR)")

@@ -83,8 +83,13 @@ pub fn run_with(
     observer: &mut dyn Observer,
 ) -> Result<Outcome, StudyError> {
     let prepared = Prepared::read(&options.case, &options.overrides)?;
-    let study = Study::open(options, outputs, &prepared)?;
+    let mut study = Study::open(options, outputs, &prepared)?;
     let _locks = if options.dry_run { Vec::new() } else { study.lock(options, observer)? };
+    if options.resume {
+        // Another process may have completed runs before these were locked.
+        study.open.retain(|&index| !study.folders[index].is_complete());
+    }
+    let study = study;
     let known = if options.resume { read_pitch_responses(&study.directory)? } else { Vec::new() };
     let identifications = prepared.identifications(&study.open, known);
     let interrupted = || Ok(Outcome::Interrupted { directory: study.directory.clone() });
@@ -103,6 +108,11 @@ pub fn run_with(
             ControlFlow::Break(()) => return interrupted(),
             ControlFlow::Continue(ready) => ready,
         };
+        if options.overwrite {
+            // What was there goes before the first run, so that wherever this study is stopped, what is
+            // left is of it alone and can be resumed.
+            study.open.iter().try_for_each(|&index| study.folders[index].clear())?;
+        }
         for place in 0..study.open.len() {
             if study.make(&ready, place, stop, observer)?.is_break() {
                 return interrupted();
@@ -364,15 +374,19 @@ fn wanted_runs(runs: &[Run], names: &[String]) -> Result<Vec<usize>, StudyError>
     if names.is_empty() {
         return Ok((0..runs.len()).collect());
     }
-    names
-        .iter()
-        .map(|name| {
-            runs.iter().position(|run| run.name == *name).ok_or_else(|| StudyError::UnknownRun {
-                name: name.clone(),
-                known: runs.iter().map(|run| run.name.clone()).collect(),
-            })
-        })
-        .collect()
+    let mut wanted = Vec::new();
+    for name in names {
+        let index = runs.iter().position(|run| run.name == *name);
+        let index = index.ok_or_else(|| StudyError::UnknownRun {
+            name: name.clone(),
+            known: runs.iter().map(|run| run.name.clone()).collect(),
+        })?;
+        // One that is named twice is made once.
+        if !wanted.contains(&index) {
+            wanted.push(index);
+        }
+    }
+    Ok(wanted)
 }
 
 /// `name` as a folder name: letters, digits, dashes.

@@ -7,7 +7,7 @@ use formats::records::RunFolder;
 use miette::Diagnostic;
 use small::{HALFWAY, NREL_5MW, STOP, options, run, written};
 use std::fs;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use study::outputs::Outputs;
 use study::{Observer, Outcome, Silent, StudyError, StudyOptions};
 
@@ -44,7 +44,17 @@ fn a_damaged_checkpoint_says_what_then_works() {
     let followed = StudyOptions { overwrite: true, runs: vec!["baseline".into()], ..first.clone() };
     assert!(matches!(run(&followed), Ok(Outcome::Done { .. })));
     // And with that run complete, the study goes on.
-    assert!(matches!(run(&StudyOptions { resume: true, ..first }), Ok(Outcome::Done { .. })));
+    let resumed = StudyOptions { resume: true, ..first.clone() };
+    assert!(matches!(run(&resumed), Ok(Outcome::Done { .. })));
+    // Another study in its place, stopped in its first run: the rest of the old one is not taken for its own.
+    STOP.store(false, Ordering::Relaxed);
+    let overrides = vec!["time.duration=44".to_owned()];
+    let other = StudyOptions { overwrite: true, overrides, ..first };
+    let outcome = study::run_with(&other, &outputs, &STOP, &mut Silent);
+    assert!(matches!(outcome, Ok(Outcome::Interrupted { .. })), "{outcome:?}");
+    let outcome = run(&StudyOptions { overwrite: false, resume: true, ..other });
+    let Ok(Outcome::Done { summaries, .. }) = outcome else { panic!("{outcome:?}") };
+    assert!(summaries.iter().all(|summary| summary.conditions.duration == 44.0));
 }
 
 #[test]
@@ -118,4 +128,24 @@ fn wind_that_is_not_there_leaves_nothing_behind() {
     assert_eq!(problem.line(), 6, "{problem}");
     assert!(problem.to_string().contains("the wind cannot be read"), "{problem}");
     assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn a_run_that_is_named_twice_is_made_once() {
+    let folder = written(&case());
+    let twice = StudyOptions { runs: vec!["baseline".into(); 2], ..options(folder.path()) };
+    let outcome = run(&twice);
+    let Ok(Outcome::Done { .. }) = outcome else { panic!("{outcome:?}") };
+    let again = StudyOptions { runs: vec!["baseline".into(); 2], overwrite: true, ..twice };
+    assert!(matches!(run(&again), Ok(Outcome::Done { .. })));
+}
+
+/// The study's own locks bear these names.
+#[test]
+fn no_run_takes_a_name_that_the_study_has_in_use() {
+    for name in ["figures", "probes", "report"] {
+        let text = case().replace("name = \"baseline\"", &format!("name = \"{name}\""));
+        let folder = written(&text);
+        assert!(matches!(run(&options(folder.path())), Err(StudyError::Case(_))), "{name}");
+    }
 }

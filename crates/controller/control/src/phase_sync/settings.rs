@@ -63,7 +63,7 @@ pub(super) static TABLE: Table = Table {
             Holds::Choice(&["baseline", "none"]),
             "",
             Value("\"baseline\""),
-            "What it does where the estimate cannot be trusted. `baseline`: it fades out, and comes back with the helix. `none`: it goes on.",
+            "What it does where the estimate cannot be trusted. `baseline`: it fades out, and comes back with the helix. `none`: it keeps pitching.",
         ),
         key(
             "measurement_noise_1s_mnm",

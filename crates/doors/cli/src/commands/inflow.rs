@@ -129,7 +129,7 @@ pub(crate) struct GenerateArguments {
 /// Runs `command`.
 ///
 /// # Errors
-/// BoxSettings that make no box, files that cannot be read or written.
+/// Settings that make no box, files that cannot be read or written.
 pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
     match command {
         InflowCommand::Generate(arguments) => generate(&arguments),
@@ -254,7 +254,7 @@ struct Place {
     standard_deviation: f64,
 }
 
-/// BoxSettings of Mann's turbulence at `place`, and what the description of its box says of them.
+/// Settings of Mann's turbulence at `place`, and what the description of its box says of them.
 fn mann_of(arguments: &GenerateArguments, place: &Place) -> miette::Result<(BoxSettings, String)> {
     if arguments.scale.is_some() {
         return Err(miette!(
@@ -277,7 +277,7 @@ fn mann_of(arguments: &GenerateArguments, place: &Place) -> miette::Result<(BoxS
     Ok((BoxSettings::Mann(settings), model))
 }
 
-/// BoxSettings of Kaimal's turbulence at `place`, and what the description of its box says of them.
+/// Settings of Kaimal's turbulence at `place`, and what the description of its box says of them.
 fn kaimal_of(
     arguments: &GenerateArguments,
     place: &Place,

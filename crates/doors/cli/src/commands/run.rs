@@ -294,7 +294,7 @@ impl Observer for Screen {
         self.bar.set_prefix(what.clone());
         self.bar.set_length(progress.n_steps);
         self.bar.set_position(progress.step);
-        let left = HumanDuration(Duration::from_secs_f64(progress.time_left.max(0.0)));
+        let left = HumanDuration(Duration::from_secs_f64(progress.time_left.clamp(0.0, LONGEST)));
         let message = match progress.updates_per_second / 1e6 {
             0.0 => format!("{left} left in all"),
             updates => format!("{updates:.0} Mups, {left} left in all"),

@@ -21,7 +21,7 @@ use farm::outputs::{OUTPUTS, OutputKeys};
 use sensing::{SENSORS, SensorKind};
 
 /// Names of folders that a study has for itself beside those of its runs.
-const OWN_FOLDERS: [&str; 1] = ["figures"];
+const OWN_FOLDERS: [&str; 3] = ["figures", "probes", "report"];
 
 /// The case that `entries` describe.
 ///

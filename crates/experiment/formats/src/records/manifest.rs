@@ -39,7 +39,8 @@ pub struct Manifest {
     /// SHA-256 of each file of wind that the run blew from, hexadecimal, by its path as the case names it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub wind_sha256: BTreeMap<String, String>,
-    /// Text of each of them that is not of the library, so that records can be asked anew without its file.
+    /// Text of each turbine model and input file that is not of the library, so that records can be asked
+    /// anew without its file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub own_turbines: BTreeMap<String, String>,
     /// The machine.
@@ -47,9 +48,9 @@ pub struct Manifest {
     /// What of the machine decides the bits of the run, in words; absent until it is complete.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub backend: Option<String>,
-    /// Start of the run's first session (UTC, RFC 3339).
+    /// Start of the run's first part (UTC, RFC 3339).
     pub started: String,
-    /// End of the run's last session (UTC, RFC 3339); absent while it goes on.
+    /// End of the run's last part (UTC, RFC 3339); absent while it goes on.
     pub finished: Option<String>,
 }
 

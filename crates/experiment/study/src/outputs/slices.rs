@@ -73,7 +73,7 @@ pub(crate) fn of(setup: &Prepared) -> Vec<Slice> {
 
 /// Planes (–).
 pub(super) fn count(setup: &Prepared) -> u64 {
-    2 + setup.case.output.crosswind_diameters.len() as u64
+    (1 + along(setup).len() + setup.case.output.crosswind_diameters.len()) as u64
 }
 
 /// Bytes of a file of each plane.

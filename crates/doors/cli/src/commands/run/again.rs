@@ -7,7 +7,7 @@ use wakemix::formats::records;
 /// What there is to do after a study that was stopped, with its results in `directory`.
 pub(super) fn interrupted(arguments: &RunArguments, directory: &Path) -> String {
     if arguments.dry_run {
-        return "interrupted; a dry run leaves nothing to go on with".to_owned();
+        return "interrupted; a dry run leaves nothing to resume".to_owned();
     }
     // What lies there may be of the study that was to be overwritten.
     let kept = if arguments.overwrite {
@@ -16,7 +16,7 @@ pub(super) fn interrupted(arguments: &RunArguments, directory: &Path) -> String 
         records::is_begun(directory)
     };
     let (what, how) = match (kept, arguments.overwrite) {
-        (true, _) => ("interrupted; go on with", " --resume"),
+        (true, _) => ("interrupted; resume with", " --resume"),
         (false, true) => ("interrupted before anything was kept; begin again with", " --overwrite"),
         (false, false) => ("interrupted before anything was kept; begin again with", ""),
     };
