@@ -1,23 +1,9 @@
 //! `wakemix fatigue` from outside: tables in, loads with their convention out, bad input reported.
 
+mod program;
+
+use program::{said, wakemix};
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
-
-fn wakemix(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_wakemix"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
-}
-
-/// What a command that failed said: drawn messages wrap, what matters is the words.
-fn message(output: &Output) -> String {
-    let message = String::from_utf8_lossy(&output.stderr);
-    let words: Vec<&str> = message.split_whitespace().filter(|word| *word != "│").collect();
-    words.join(" ")
-}
 
 /// A wave of amplitude 3 and one of 0.5, both of 1 Hz, sampled at 20 Hz over `seconds` from their peaks.
 fn waves(seconds: usize) -> String {
@@ -94,7 +80,7 @@ fn bad_input_ends_with_code_2_and_a_fix() {
     ];
     for (arguments, expected) in cases {
         let output = wakemix(&[&["fatigue"], arguments.as_slice()].concat(), folder.path());
-        let message = message(&output);
+        let message = said(&output);
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(expected), "{message}\n{expected}");
         assert!(output.stdout.is_empty());
@@ -126,7 +112,7 @@ fn the_count_ends_at_the_given_time() {
     assert_eq!(value["to_s"], 20.0);
     for times in [&["--to", "-1"][..], &["--from", "30", "--to", "20"]] {
         let output = run(times);
-        let message = message(&output);
+        let message = said(&output);
         assert_eq!(output.status.code(), Some(2), "{message}");
         let expected = "leaves 0 samples to count before --to: it begins at 0 s";
         assert!(message.contains(expected) && message.contains("after --from"), "{message}");
@@ -209,7 +195,7 @@ fn a_bearing_that_cannot_be_counted_is_refused_with_a_fix() {
     ];
     for (arguments, expected) in cases {
         let output = wakemix(&[&["fatigue", "--bearing"][..], arguments].concat(), folder.path());
-        let message = message(&output);
+        let message = said(&output);
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(expected), "{message}\n{expected}");
     }

@@ -1,9 +1,10 @@
 //! `wakemix inflow` from outside: the wind of a case sampled, other kinds of wind refused, profiles beside
 //! boxes.
 
+mod program;
+
+use program::{said, wakemix};
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 
 const CASE: &str = r#"
 name = "gusty"
@@ -25,14 +26,6 @@ position_diameters = [0.0, 0.0]
 name = "baseline"
 "#;
 
-fn wakemix(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_wakemix"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
-}
-
 #[test]
 fn the_wind_of_a_case_becomes_a_full_field() {
     let folder = tempfile::tempdir().unwrap();
@@ -40,7 +33,7 @@ fn the_wind_of_a_case_becomes_a_full_field() {
     let grid = ["--size", "3x5", "--spacing", "20x25", "--time-step", "0.5"];
     let made = ["inflow", "sample", "gusty.toml", "-o", "gusty.bts"];
     let output = wakemix(&[&made[..], &grid[..]].concat(), folder.path());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{}", said(&output));
     let output = wakemix(&["inflow", "info", "gusty.bts", "--json"], folder.path());
     let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(info["n_points"], serde_json::json!([20, 3, 5]));
@@ -51,7 +44,7 @@ fn the_wind_of_a_case_becomes_a_full_field() {
     assert!((number(&info["mean_speeds"][0]) - 12.0).abs() < 1e-3);
     assert!((number(&info["turbulence_intensity"]) - 0.2).abs() < 1e-3);
     let output = wakemix(&["inflow", "convert", "gusty.bts", "field.toml"], folder.path());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{}", said(&output));
     let output = wakemix(&["inflow", "info", "field_v.bin", "--json"], folder.path());
     let converted: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     // Binaries keep the fluctuations that the field has, and the means to the last digit.
@@ -81,7 +74,7 @@ fn a_box_has_the_given_profile_beside_it() {
         wakemix(&[&box_of[..], &size[..], profile].concat(), folder.path())
     };
     let output = generate(&["--roughness-length", "0.03"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{}", said(&output));
     let output = wakemix(&["inflow", "info", "logarithmic.toml", "--json"], folder.path());
     let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     for (row, speed) in info["mean_speeds"].as_array().unwrap().iter().enumerate() {

@@ -1,24 +1,12 @@
 //! What a program meets in the wild: pipes that close, disks that are full, files that are none, names that
 //! are taken, and numbers that nobody meant.
 
+mod program;
+
+use program::{said, wakemix};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
-
-fn wakemix(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_wakemix"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
-}
-
-/// What a command said beside its data: drawn messages wrap, what matters is the words.
-fn said(output: &Output) -> String {
-    let message = String::from_utf8_lossy(&output.stderr);
-    let words: Vec<&str> = message.split_whitespace().filter(|word| *word != "│").collect();
-    words.join(" ")
-}
+use std::process::{Command, Stdio};
 
 /// On return the command was refused as bad input, with `words` in what it said.
 fn refused(arguments: &[&str], folder: &Path, words: &str) {

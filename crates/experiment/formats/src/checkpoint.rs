@@ -7,6 +7,7 @@
 
 mod problem;
 
+pub(crate) use problem::ANEW;
 pub use problem::CheckpointProblem;
 
 use crate::FileError;

@@ -4,7 +4,15 @@ use thiserror::Error;
 
 /// Version of the layout.
 pub(super) const VERSION: u32 = 4;
-const FRESH: &str = "start the run anew: --run NAME --overwrite in place of --resume";
+/// The advice to begin a run again, as a literal, so that others can be put together with it.
+macro_rules! anew {
+    () => {
+        "start the run anew: --run NAME --overwrite in place of --resume"
+    };
+}
+
+/// What to do where a run cannot go on from what it left.
+pub(crate) const ANEW: &str = anew!();
 
 /// What is wrong with a checkpoint.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -80,15 +88,19 @@ impl CheckpointProblem {
     pub(crate) fn fix(&self) -> &'static str {
         match self {
             Self::OtherVersion { .. } | Self::OtherProgram { .. } => {
-                "resume with the version of the program that wrote it, or start the run anew: --run NAME --overwrite in place of --resume"
+                concat!("resume with the version of the program that wrote it, or ", anew!())
             }
             Self::OtherCase => {
-                "undo the change to go on, or start the run anew: --run NAME --overwrite in place of --resume; threads, checkpoint interval and other runs may change"
+                concat!(
+                    "undo the change to go on, or ",
+                    anew!(),
+                    "; threads, checkpoint interval and other runs may change"
+                )
             }
             Self::OtherBackend { .. } => {
-                "resume on a machine with the same instructions, or start the run anew: --run NAME --overwrite in place of --resume"
+                concat!("resume on a machine with the same instructions, or ", anew!())
             }
-            _ => FRESH,
+            _ => ANEW,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The series of a run: one row a control instant, as CSV that pandas and spreadsheets open.
 
+use crate::checkpoint::ANEW;
 use crate::{FileError, atomic};
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
@@ -7,7 +8,6 @@ use std::path::{Path, PathBuf};
 
 pub(super) const WHAT: &str = "the series";
 pub(super) const BUFFER: usize = 1 << 18;
-const FIX: &str = "start the run anew: --run NAME --overwrite in place of --resume";
 
 /// Writes rows as they come; the file bears its name once it is whole, until then `.part` after it.
 ///
@@ -55,7 +55,7 @@ impl SeriesWriter {
         let length = file.metadata().map_err(failed)?.len();
         if length < n_bytes || n_bytes == 0 {
             let problem = format!("it has {length} bytes, the checkpoint has {n_bytes}");
-            return Err(FileError::content(WHAT, &part, problem, FIX));
+            return Err(FileError::content(WHAT, &part, problem, ANEW));
         }
         let mut header = String::new();
         let most = names.iter().map(|name| name.len() as u64 + 1).sum::<u64>() + 1;
@@ -66,7 +66,7 @@ impl SeriesWriter {
         file.read_exact(&mut last).map_err(failed)?;
         if last != *b"\n" {
             let problem = format!("no row ends at byte {n_bytes}, as the checkpoint says");
-            return Err(FileError::content(WHAT, &part, problem, FIX));
+            return Err(FileError::content(WHAT, &part, problem, ANEW));
         }
         file.set_len(n_bytes).map_err(failed)?;
         Ok(Self::new(file, part, path, names.len(), n_bytes))
@@ -146,12 +146,12 @@ fn check_names(part: &Path, header: &str, names: &[String]) -> Result<(), FileEr
                 index + 1,
                 names.len()
             );
-            return Err(FileError::content(WHAT, part, problem, FIX));
+            return Err(FileError::content(WHAT, part, problem, ANEW));
         }
     }
     if found.next().is_some() {
         let problem = format!("line 1: it has more than the {} channels of this run", names.len());
-        return Err(FileError::content(WHAT, part, problem, FIX));
+        return Err(FileError::content(WHAT, part, problem, ANEW));
     }
     Ok(())
 }

@@ -6,6 +6,7 @@
 //! break.
 
 use super::turbsim;
+use crate::checkpoint::ANEW;
 use crate::{FileError, atomic};
 use flow::inflow::PlaneGrid;
 use std::fs::File;
@@ -14,7 +15,6 @@ use std::path::{Path, PathBuf};
 
 const WHAT: &str = "a record of wind";
 const BUFFER: usize = 1 << 18;
-const FIX: &str = "start the run anew: --run NAME --overwrite in place of --resume";
 
 /// Writes planes of wind as they come.
 #[derive(Debug)]
@@ -51,7 +51,7 @@ impl WindRecorder {
         let length = file.metadata().map_err(failed)?.len();
         if length < n_bytes || !n_bytes.is_multiple_of(12 * n_points as u64) {
             let problem = format!("it has {length} bytes, the checkpoint has {n_bytes}");
-            return Err(FileError::content(WHAT, &part, problem, FIX));
+            return Err(FileError::content(WHAT, &part, problem, ANEW));
         }
         file.set_len(n_bytes).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;

@@ -1,6 +1,6 @@
 //! Made-up studies of other layouts: staggered rows, mixed rotors, long rows, wind without wakes.
 
-use super::{INTERVAL, SPIN_UP, WIND_SPEED, noise, two_runs};
+use super::{INTERVAL, SPIN_UP, WIND_SPEED, noise, sampled, two_runs};
 use basis::records::{
     FlowSummary, Plane, PlaneAxes, Rotor, Series, Statistic, TurbineSummary, examples,
 };
@@ -145,23 +145,8 @@ fn planes(run: &mut RunRecords, placed: &[Placed], is_helix: bool) {
     let n = |from: f64, to: f64| ((to - from) / step).round() as usize + 1;
     let (left, right) = (low - 600.0, high + 600.0);
     let make = |name: String, axes, origin: [f64; 3], n_points: [usize; 2], averaged: f64| {
-        let mut streamwise = Vec::with_capacity(n_points[0] * n_points[1]);
-        for second in 0..n_points[1] {
-            for first in 0..n_points[0] {
-                let (a, b) = (first as f64 * step, second as f64 * step);
-                let offset = match axes {
-                    PlaneAxes::Horizontal => [a, b, 0.0],
-                    PlaneAxes::Streamwise => [a, 0.0, b],
-                    PlaneAxes::Crosswind => [0.0, a, b],
-                };
-                let point = [0, 1, 2].map(|axis| origin[axis] + offset[axis]);
-                streamwise.push(velocity(placed, is_helix, point) as f32);
-            }
-        }
-        let still = vec![0.0; streamwise.len()];
-        let velocity = [streamwise, still.clone(), still];
-        let spacing = [step; 2];
-        Plane { name, axes, origin, spacing, n_points, time: 2400.0, averaged, velocity }
+        let plane = sampled(axes, origin, n_points, step, |at| velocity(placed, is_helix, at));
+        Plane { name, time: 2400.0, averaged, ..plane }
     };
     let from_above = [n(-480.0, end), n(left, right)];
     let start = [-480.0, left, 150.0];

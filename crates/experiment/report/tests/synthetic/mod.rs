@@ -237,34 +237,48 @@ fn velocity(recipe: &Recipe, [x, y, z]: [f64; 3], time: Option<f64>) -> f64 {
     velocity
 }
 
+/// A plane without a name at time zero, its points `step` (m) apart, with `velocity` (m/s) along the wind.
+pub(crate) fn sampled(
+    axes: PlaneAxes,
+    origin: [f64; 3],
+    n_points: [usize; 2],
+    step: f64,
+    velocity: impl Fn([f64; 3]) -> f64,
+) -> Plane {
+    let mut streamwise = Vec::with_capacity(n_points[0] * n_points[1]);
+    for second in 0..n_points[1] {
+        for first in 0..n_points[0] {
+            let (a, b) = (first as f64 * step, second as f64 * step);
+            let offset = match axes {
+                PlaneAxes::Horizontal => [a, b, 0.0],
+                PlaneAxes::Streamwise => [a, 0.0, b],
+                PlaneAxes::Crosswind => [0.0, a, b],
+            };
+            let point = [0, 1, 2].map(|axis| origin[axis] + offset[axis]);
+            streamwise.push(velocity(point) as f32);
+        }
+    }
+    let still = vec![0.0; streamwise.len()];
+    let (velocity, spacing) = ([streamwise, still.clone(), still], [step; 2]);
+    Plane {
+        name: String::new(),
+        axes,
+        origin,
+        spacing,
+        n_points,
+        time: 0.0,
+        averaged: 0.0,
+        velocity,
+    }
+}
+
 fn planes(recipe: &Recipe, time: Option<f64>) -> Vec<Plane> {
     let step = DIAMETER / 16.0;
     let mut planes = Vec::new();
     let mut add = |name: String, axes, origin: [f64; 3], n_points: [usize; 2]| {
-        let mut streamwise = Vec::with_capacity(n_points[0] * n_points[1]);
-        for second in 0..n_points[1] {
-            for first in 0..n_points[0] {
-                let (a, b) = (first as f64 * step, second as f64 * step);
-                let offset = match axes {
-                    PlaneAxes::Horizontal => [a, b, 0.0],
-                    PlaneAxes::Streamwise => [a, 0.0, b],
-                    PlaneAxes::Crosswind => [0.0, a, b],
-                };
-                let point = [0, 1, 2].map(|axis| origin[axis] + offset[axis]);
-                streamwise.push(velocity(recipe, point, time) as f32);
-            }
-        }
-        let still = vec![0.0; streamwise.len()];
-        planes.push(Plane {
-            name,
-            axes,
-            origin,
-            spacing: [step; 2],
-            n_points,
-            time: time.unwrap_or(DURATION),
-            averaged: if time.is_some() { 0.0 } else { DURATION - SPIN_UP },
-            velocity: [streamwise, still.clone(), still],
-        });
+        let plane = sampled(axes, origin, n_points, step, |point| velocity(recipe, point, time));
+        let averaged = if time.is_some() { 0.0 } else { DURATION - SPIN_UP };
+        planes.push(Plane { name, time: time.unwrap_or(DURATION), averaged, ..plane });
     };
     let half_width = 2.5 * DIAMETER;
     let start = [-2.0 * DIAMETER, -half_width, HUB_HEIGHT];
