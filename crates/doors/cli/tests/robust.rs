@@ -214,7 +214,7 @@ fn names_cannot_steer_the_terminal() {
 fn a_run_says_what_it_will_not_do() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("case.toml"), CASE).unwrap();
-    refused(&["run", "case.toml", "--resume"], folder.path(), "holds no run to go on with");
+    refused(&["run", "case.toml", "--resume"], folder.path(), "holds no run to resume");
     refused(
         &["run", "case.toml", "--set", "run.0.name=figures"],
         folder.path(),

@@ -6,6 +6,7 @@ mod layout;
 mod page;
 mod sentence;
 mod study;
+pub mod text_table;
 mod trace;
 mod words;
 

@@ -15,6 +15,9 @@ use miette::Diagnostic;
 use std::path::PathBuf;
 use thiserror::Error;
 
+/// What to do with a checkpoint that was made otherwise than the run at hand.
+const MADE_OTHERWISE: &str = "it was made with other kinds of controllers, sensors or outputs: resume with the program that made it, or use --overwrite to make the run again";
+
 /// Why a study could not be made.
 #[derive(Debug, Error, Diagnostic)]
 pub enum StudyError {
@@ -47,9 +50,11 @@ pub enum StudyError {
     Assembly(#[from] AssemblyError),
     /// A checkpoint holds the state of another controller.
     #[error("the checkpoint does not fit the run's controllers")]
+    #[diagnostic(help("{}", MADE_OTHERWISE))]
     ForeignController(#[from] control::ForeignState),
     /// A checkpoint holds the state of another sensor.
     #[error("the checkpoint does not fit the run's sensors")]
+    #[diagnostic(help("{}", MADE_OTHERWISE))]
     ForeignSensor(#[from] sensing::ForeignState),
     /// A turbine's controller cannot be made.
     #[error("run {run}: the controller of {turbine} cannot be built")]
@@ -72,6 +77,7 @@ pub enum StudyError {
     Analysis(#[from] AnalysisError),
     /// A stored average does not fit the grid.
     #[error("the checkpoint does not fit the grid")]
+    #[diagnostic(help("{}", MADE_OTHERWISE))]
     PlaneSize(#[from] PlaneSizeError),
     /// The simulation broke down.
     #[error("run {run} diverged: {source}")]
@@ -115,8 +121,8 @@ pub enum StudyError {
         /// The folder.
         directory: PathBuf,
     },
-    /// There is nothing to go on with.
-    #[error("{} holds no run to go on with", directory.display())]
+    /// There is nothing to resume.
+    #[error("{} holds no run to resume", directory.display())]
     #[diagnostic(help("leave --resume out to begin, or name the folder of the results with -o"))]
     NothingToResume {
         /// The folder.
@@ -248,4 +254,20 @@ fn kept(source: &FarmError, checkpoint: &Option<PathBuf>, series: &Option<PathBu
         text += &format!("; last good checkpoint: {}", path.display());
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_checkpoint_that_does_not_fit_comes_with_a_fix() {
+        let sensor = sensing::ForeignState { sensor: "beam".to_owned() };
+        let errors =
+            [StudyError::from(sensor), StudyError::from(PlaneSizeError { expected: 4, found: 5 })];
+        for error in errors {
+            let help = error.help().expect("a fix").to_string();
+            assert!(help.contains("--overwrite"), "{error}: {help}");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Observing a study: what it will cost, how far it is, what it found.
 
+use crate::prepared::Prepared;
 use basis::records::{PitchResponse, Summary};
 use farm::self_check::SelfCheck;
 use std::cell::RefCell;
@@ -92,6 +93,8 @@ pub struct Progress<'a> {
 
 /// Observes a study; every method may be left out.
 pub trait Observer {
+    /// The case is read and checked, its turbines are loaded and its domain is laid out.
+    fn prepared(&mut self, _prepared: &Prepared) {}
     /// The cost, before the first step.
     fn estimated(&mut self, _estimate: &Estimate) {}
     /// Something is being prepared: `share` (–) of it is done.
@@ -101,7 +104,7 @@ pub trait Observer {
     /// An identification moved on.
     fn identifying(&mut self, _progress: &IdentificationProgress) {}
     /// It was found how the pitch of the turbine called `turbine`, and of those alike, acts; `again`: by an
-    /// earlier session.
+    /// earlier call.
     fn identified(&mut self, _turbine: &str, _response: &PitchResponse, _again: bool) {}
     /// A run moved on.
     fn advanced(&mut self, _progress: &Progress) {}

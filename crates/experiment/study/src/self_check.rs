@@ -4,7 +4,7 @@ use crate::StudyError;
 use crate::observer::Observer;
 use crate::prepared::Prepared;
 use farm::assemble::TurbineModel;
-use farm::self_check::{SelfCheck, SelfCheckError, Tunnel, self_check};
+use farm::self_check::{SelfCheck, SelfCheckError, Tunnel, self_check, updates_per_second};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -53,6 +53,24 @@ impl Prepared {
             found.updates_per_second = Some(slowest);
         }
         Ok(ControlFlow::Continue(found))
+    }
+
+    /// What can be known without a check: how fast this machine moves the air around the first turbine, timed
+    /// for a fraction of a second.
+    ///
+    /// # Errors
+    /// [`StudyError::SelfCheck`] when the flow cannot be set up.
+    pub(crate) fn timed(&self) -> Result<SelfChecked, StudyError> {
+        let mut found = SelfChecked::default();
+        if let Some(model) = self.models.first().filter(|_| self.case.flow.solver.needs_self_check)
+        {
+            let diameter = model.definition.rotor_diameter();
+            let tunnel = Tunnel::for_timing(diameter, self.plan.spacing, self.plan.interval);
+            let speed =
+                updates_per_second(model, &self.case.wind, &tunnel, self.case.flow.threads)?;
+            found.updates_per_second = Some(speed);
+        }
+        Ok(found)
     }
 
     /// One model alone in a tunnel with the study's cells and step.

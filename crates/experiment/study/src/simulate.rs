@@ -53,7 +53,7 @@ impl<'a> Job<'a> {
 pub(crate) enum Ending {
     /// All steps made.
     Complete {
-        /// What it cost, all its sessions together.
+        /// What it cost, all processes that made it together.
         cost: Cost,
         /// Share of instants at which a pitch limit held a command back, turbine by turbine (–).
         clipped_shares: Vec<f64>,
@@ -160,7 +160,7 @@ impl<'a> Simulation<'a> {
         checkpoint::write(writer, &mut self.farm, &mut self.outputs, made)
     }
 
-    /// What all sessions of the run have made and cost so far.
+    /// What all processes have made of the run so far, and what that cost.
     fn made(&self) -> Before {
         Before {
             step: self.farm.step(),

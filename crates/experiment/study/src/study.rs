@@ -1,9 +1,11 @@
 //! A study in its folder: from the case file to the records of every run. The stages that it goes through
 //! need no files.
 
+use crate::air;
 use crate::columns::Columns;
 use crate::cost::{check_disk, check_memory};
 use crate::gains::{self, Comparison};
+use crate::options::{Outcome, StudyOptions};
 use crate::outputs::Outputs;
 use crate::pitch_identification::PitchIdentifications;
 use crate::prepared::Prepared;
@@ -21,44 +23,6 @@ use formats::records::{self, Manifest, PitchResponseRecord, RunFolder, read_pitc
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-
-/// What to run, and where the results go.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StudyOptions {
-    /// Case file.
-    pub case: PathBuf,
-    /// Folder for the results; `runs/NAME-OF-THE-CASE` when absent.
-    pub output: Option<PathBuf>,
-    /// Runs to make; all when empty.
-    pub runs: Vec<String>,
-    /// Overrides of the case's keys, `key.path=value`.
-    pub overrides: Vec<String>,
-    /// Go on with what is there.
-    pub resume: bool,
-    /// Replace old results.
-    pub overwrite: bool,
-    /// Say what it would cost, and stop.
-    pub dry_run: bool,
-}
-
-/// How a study ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
-    /// All runs that were asked for are complete.
-    Done {
-        /// Their summaries, and those of runs that were complete before.
-        summaries: Vec<Summary>,
-        /// Folder of the results.
-        directory: PathBuf,
-    },
-    /// The cost was reported, nothing was run.
-    Estimated,
-    /// Stopped on request; it can be resumed.
-    Interrupted {
-        /// Folder of the results.
-        directory: PathBuf,
-    },
-}
 
 /// Runs the study that `options` name; `stop` asks it to leave a checkpoint and return.
 ///
@@ -83,6 +47,7 @@ pub fn run_with(
     observer: &mut dyn Observer,
 ) -> Result<Outcome, StudyError> {
     let prepared = Prepared::read(&options.case, &options.overrides)?;
+    observer.prepared(&prepared);
     let mut study = Study::open(options, outputs, &prepared)?;
     let _locks = if options.dry_run { Vec::new() } else { study.lock(options, observer)? };
     if options.resume {
@@ -93,7 +58,11 @@ pub fn run_with(
     let known = if options.resume { read_pitch_responses(&study.directory)? } else { Vec::new() };
     let identifications = prepared.identifications(&study.open, known);
     let interrupted = || Ok(Outcome::Interrupted { directory: study.directory.clone() });
-    let checked = match study.cost(&prepared, &identifications, stop, observer)? {
+    if options.dry_run {
+        air::try_recorded(&prepared)?;
+    }
+    let quick = options.dry_run && !options.check;
+    let checked = match study.cost(&prepared, &identifications, quick, stop, observer)? {
         ControlFlow::Break(()) => return interrupted(),
         ControlFlow::Continue(checked) => checked,
     };
@@ -178,20 +147,19 @@ impl<'a> Study<'a> {
         if options.resume && !options.dry_run && !records::is_begun(&directory) {
             return Err(StudyError::NothingToResume { directory });
         }
-        let wind = prepared.wind_digests()?;
-        if options.resume {
-            for &index in &wanted {
-                check_same(prepared, &wind, &runs[index], &folders[index])?;
-            }
-        }
-        for &index in &open {
-            // Gains are over a run of the same wind, or over none.
-            if let Some(other) = gains::compared(prepared, index)
-                && !open.contains(&other)
-                && folders[other].is_complete()
-            {
-                check_same(prepared, &wind, &runs[other], &folders[other])?;
-            }
+        let mut kept = if options.resume { wanted.clone() } else { Vec::new() };
+        // Gains are over a run of the same wind, or over none.
+        kept.extend(open.iter().filter_map(|&index| {
+            let other = gains::compared(prepared, index)?;
+            (!open.contains(&other) && folders[other].is_complete()).then_some(other)
+        }));
+        // To read long files of wind takes time, which a dry run of nothing kept can do without.
+        let wind = match options.dry_run && kept.is_empty() {
+            true => WindDigests::new(),
+            false => prepared.wind_digests()?,
+        };
+        for index in kept {
+            check_same(prepared, &wind, &runs[index], &folders[index])?;
         }
         Ok(Self { outputs, directory, folders, wanted, open, wind, resume: options.resume })
     }
@@ -237,8 +205,8 @@ impl<'a> Study<'a> {
         Ok(records::add_pitch_responses(&self.directory, found)?)
     }
 
-    /// Tells `observer` what the open runs will cost, and checks the rotors where there are such runs; a
-    /// break when `stop` asked for an end.
+    /// Tells `observer` what the open runs will cost, and checks the rotors where there are such runs, or only
+    /// times the machine where it has to be `quick`; a break when `stop` asked for an end.
     ///
     /// # Errors
     /// [`StudyError::Memory`], [`StudyError::Disk`], [`StudyError::SelfCheck`].
@@ -246,6 +214,7 @@ impl<'a> Study<'a> {
         &self,
         prepared: &Prepared,
         identifications: &PitchIdentifications,
+        quick: bool,
         stop: &AtomicBool,
         observer: &mut dyn Observer,
     ) -> Result<ControlFlow<(), SelfChecked>, StudyError> {
@@ -260,7 +229,11 @@ impl<'a> Study<'a> {
         if self.open.is_empty() {
             return Ok(ControlFlow::Continue(SelfChecked::default()));
         }
-        let checked = prepared.self_check(stop, observer)?;
+        let checked = if quick {
+            ControlFlow::Continue(prepared.timed()?)
+        } else {
+            prepared.self_check(stop, observer)?
+        };
         if let ControlFlow::Continue(checked) = &checked {
             estimate.updates_per_second = checked.updates_per_second;
             observer.estimated(&estimate);

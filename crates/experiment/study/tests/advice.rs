@@ -70,7 +70,7 @@ fn nothing_cannot_be_resumed() {
     assert!(matches!(dry, Ok(Outcome::Estimated)), "{dry:?}");
     let one = StudyOptions { runs: vec!["baseline".into()], ..first };
     assert!(matches!(run(&one), Ok(Outcome::Done { .. })));
-    // The other run begins, as there is a study to go on with.
+    // The other run begins, as there is a study to resume.
     assert!(matches!(run(&resumed), Ok(Outcome::Done { .. })));
 }
 

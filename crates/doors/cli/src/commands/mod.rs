@@ -2,10 +2,14 @@
 
 pub(crate) mod analyse;
 mod arguments;
+pub(crate) mod cases;
+pub(crate) mod definition;
 pub(crate) mod fatigue;
 pub(crate) mod inflow;
 mod inflow_info;
 mod inflow_sample;
+pub(crate) mod init;
+pub(crate) mod manner;
 pub(crate) mod output;
 pub(crate) mod report;
 pub(crate) mod run;

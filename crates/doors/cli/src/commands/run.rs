@@ -1,26 +1,29 @@
 //! `wakemix run`: one study from case file to report.
 
 mod again;
+mod stages;
 
-use super::output::{print, refuse, tell};
-use super::{BAD_INPUT, DIVERGED, INTERRUPTED};
+use super::output::{columns, detail, print, refuse, say, tell, warn};
+use super::{BAD_INPUT, DIVERGED, INTERRUPTED, manner};
 use crate::commands::table;
 use again::interrupted;
 use clap::Args;
-use indicatif::{HumanBytes, HumanDuration, ProgressBar, ProgressStyle};
+use indicatif::{HumanBytes, HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use miette::IntoDiagnostic;
+use stages::{Stages, say_prepared};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use wakemix::basis::records::{PitchResponse, Summary};
 use wakemix::farm::pitch_response::CalibrationError;
 use wakemix::farm::self_check::{SelfCheck, SelfCheckError, TOLERANCE};
 use wakemix::postprocessing;
 use wakemix::study::{
-    self, Estimate, IdentificationProgress, Observer, Outcome, Progress, StudyError, StudyOptions,
+    self, Estimate, IdentificationProgress, Observer, Outcome, Prepared, Progress, StudyError,
+    StudyOptions,
 };
 
 /// Longest time left that is shown (s): a year.
@@ -29,7 +32,7 @@ const LONGEST: f64 = 3.2e7;
 /// Arguments of `wakemix run`.
 #[derive(Args)]
 pub(crate) struct RunArguments {
-    /// Case file (TOML)
+    /// Case file (TOML), or the name of a case that `wakemix cases` lists
     case: PathBuf,
     /// Folder for the results; `runs/NAME-OF-THE-CASE` when left out
     #[arg(short, long)]
@@ -46,9 +49,13 @@ pub(crate) struct RunArguments {
     /// Replace old results
     #[arg(long, conflicts_with = "resume")]
     overwrite: bool,
-    /// Print what the study would cost, and stop
+    /// Print what the study would cost, and stop: every file that the case names is read, and the machine is
+    /// timed for a moment
     #[arg(long)]
     dry_run: bool,
+    /// With --dry-run: check the rotors against blade-element momentum as well, as a run does before it begins
+    #[arg(long, requires = "dry_run")]
+    check: bool,
     /// Print the summaries as JSON on stdout instead of the table
     #[arg(long)]
     json: bool,
@@ -63,10 +70,10 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
         if flag.swap(true, Ordering::SeqCst) {
             std::process::exit(i32::from(INTERRUPTED));
         }
-        tell("\nstopping after this step; press Ctrl-C again to stop now");
+        say("\nstopping after this step; press Ctrl-C again to stop now");
     });
     if let Err(error) = installed {
-        tell(&format!("warning: Ctrl-C will not write a checkpoint: {error}"));
+        warn(&format!("Ctrl-C will not write a checkpoint: {error}"));
     }
     let options = StudyOptions {
         case: arguments.case.clone(),
@@ -76,15 +83,17 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
         resume: arguments.resume,
         overwrite: arguments.overwrite,
         dry_run: arguments.dry_run,
+        check: arguments.check,
     };
-    let mut screen = Screen::new();
+    let mut screen = Screen::new(&arguments.case);
     let outcome = study::run(&options, &stop, &mut screen);
     screen.bar.finish_and_clear();
+    screen.enter("");
     match outcome {
         Ok(Outcome::Done { directory, .. }) => done(&directory, arguments.json),
         Ok(Outcome::Estimated) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted { directory }) => {
-            tell(&interrupted(arguments, &directory));
+            say(&interrupted(arguments, &directory));
             ExitCode::from(INTERRUPTED)
         }
         Err(error) => {
@@ -102,17 +111,17 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
 
 /// Makes the report of the complete study in `directory`, and prints its summaries.
 fn done(directory: &Path, as_json: bool) -> ExitCode {
+    let began = Instant::now();
     let (summaries, page) = match postprocessing::report(directory) {
         Ok(made) => made,
-        Err(error) => {
-            return refuse(&miette::Report::new(error));
-        }
+        Err(error) => return refuse(&miette::Report::new(error)),
     };
+    detail(&format!("time: {:.2} s report", began.elapsed().as_secs_f64()));
     tell(&format!("report: {}", page.display()));
     let text = if as_json {
         serde_json::to_string_pretty(&summaries).map(|text| text + "\n").into_diagnostic()
     } else {
-        Ok(table::render(&summaries))
+        Ok(table::render(&summaries, columns()))
     };
     match text.and_then(|text| print(&text)) {
         Ok(()) => ExitCode::SUCCESS,
@@ -180,17 +189,25 @@ struct Screen {
     drawn: bool,
     /// What was printed last where it is not drawn: of what, and which tenth of it.
     printed: Option<(String, u64)>,
+    stages: Stages,
+    case: PathBuf,
 }
 
 impl Screen {
-    fn new() -> Self {
+    /// What is shown of the study of the case at `case`.
+    fn new(case: &Path) -> Self {
         let bar = ProgressBar::new(1);
+        if !manner::says_remarks() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
         if let Ok(style) =
             ProgressStyle::with_template("{prefix:>24} [{bar:32}] {percent:>3} %  {msg}")
         {
             bar.set_style(style.progress_chars("=> "));
         }
-        Self { bar, last: None, drawn: std::io::stderr().is_terminal(), printed: None }
+        let drawn = std::io::stderr().is_terminal();
+        let (stages, case) = (Stages::new(), case.to_owned());
+        Self { bar, last: None, drawn, printed: None, stages, case }
     }
 
     /// Where the bar cannot be drawn, a line at every tenth of `what`, of which `done` of `all` are done.
@@ -210,9 +227,21 @@ impl Screen {
     fn say(&self, line: &str) {
         self.bar.suspend(|| tell(line));
     }
+
+    /// The stage called `name` begins, or goes on.
+    fn enter(&mut self, name: &str) {
+        if let Some(before) = self.stages.enter(name) {
+            self.bar.suspend(|| detail(&before));
+        }
+    }
 }
 
 impl Observer for Screen {
+    fn prepared(&mut self, prepared: &Prepared) {
+        self.enter("checking files and machine");
+        say_prepared(&self.case, prepared);
+    }
+
     fn estimated(&mut self, estimate: &Estimate) {
         let [n_x, n_y, n_z] = estimate.n_cells;
         match (estimate.updates_per_second, estimate.wall_time()) {
@@ -248,6 +277,7 @@ impl Observer for Screen {
     }
 
     fn preparing(&mut self, what: &str, share: f64) {
+        self.enter(what);
         if self.last.as_deref() != Some(what) {
             self.last = Some(what.to_owned());
             self.bar.set_prefix(what.to_owned());
@@ -274,6 +304,7 @@ impl Observer for Screen {
             *progress;
         let what =
             format!("identifying pitch response of {turbine} ({}/{n_identifications})", index + 1);
+        self.enter(&what);
         self.bar.set_prefix(what.clone());
         self.bar.set_length(1000);
         self.bar.set_position((1000.0 * share) as u64);
@@ -291,6 +322,7 @@ impl Observer for Screen {
     fn advanced(&mut self, progress: &Progress) {
         self.last = None;
         let what = format!("{} ({}/{})", progress.run, progress.run_index + 1, progress.n_runs);
+        self.enter(&what);
         self.bar.set_prefix(what.clone());
         self.bar.set_length(progress.n_steps);
         self.bar.set_position(progress.step);
@@ -315,7 +347,7 @@ impl Observer for Screen {
     }
 
     fn warned(&mut self, warning: &str) {
-        self.say(&format!("warning: {warning}"));
+        self.bar.suspend(|| warn(warning));
     }
 }
 

@@ -121,7 +121,7 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Takes the checkpoint away once the run is complete, and what else was there to go on with.
+    /// Takes the checkpoint away once the run is complete, and what else was there to resume from.
     ///
     /// # Errors
     /// [`FileError::System`].
@@ -190,7 +190,7 @@ impl RunFolder {
     }
 }
 
-/// Whether the study's folder `study` holds anything to go on with: a run that was begun, or what was
+/// Whether the study's folder `study` holds anything to resume: a run that was begun, or what was
 /// identified before the runs.
 pub fn is_begun(study: &Path) -> bool {
     let is_run = |path: PathBuf| RunFolder { path }.manifest_path().is_file();

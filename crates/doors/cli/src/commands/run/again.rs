@@ -76,6 +76,7 @@ mod tests {
             resume: false,
             overwrite: false,
             dry_run: true,
+            check: false,
             json: false,
         };
         assert!(!interrupted(&arguments, &directory).contains("wakemix run"));
