@@ -49,8 +49,8 @@ pub(crate) enum Carried {
     Own(&'static str),
 }
 
-/// Runs the `case` with `overrides` of its keys, or takes up what this very build of the program left of it in
-/// `runs/validate-NAME` of the current folder, and says where that is; gives summaries and that folder.
+/// Runs the `case` with `overrides` of its keys, or takes up what this very build of the program left of it
+/// in `runs/validate-NAME` of the current folder, and says where that is; gives summaries and that folder.
 ///
 /// No other process can do so at the same time: what is not of this build is taken away there.
 pub(crate) fn summaries(

@@ -35,8 +35,8 @@ pub(crate) fn begin(
     })
 }
 
-/// Begins the wind that `setup` reads from a file, where it does, and lets it go: what is wrong with the file,
-/// or does not fit the rotors, shows here and not when a run begins.
+/// Begins the wind that `setup` reads from a file, where it does, and lets it go: what is wrong with the
+/// file, or does not fit the rotors, shows here and not when a run begins.
 ///
 /// # Errors
 /// Those of [`begin`].

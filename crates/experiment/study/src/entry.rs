@@ -12,8 +12,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 impl Prepared {
-    /// Reads the case at `path`, or the shipped one of that name, with `overrides`, loads its turbines and lays
-    /// out its domain.
+    /// Reads the case at `path`, or the shipped one of that name, with `overrides`, loads its turbines and
+    /// lays out its domain.
     ///
     /// # Errors
     /// [`StudyError`] for a case, a turbine or a layout that cannot be used.

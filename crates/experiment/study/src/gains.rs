@@ -93,7 +93,8 @@ pub(crate) fn add(
     if is_alike {
         let interval = own.of(&[])?.interval;
         summary.array_power_gain = defined(gain(&own_array, &array, interval, BLOCK_LENGTH))?;
-        if summary.array_power_gain.is_none() {
+        // Where no turbine feels another nobody is shown a gain of all.
+        if summary.array_power_gain.is_none() && summary.has_wakes() {
             undefined.push(not_defined(run, other, None));
         }
     }

@@ -205,8 +205,8 @@ impl<'a> Study<'a> {
         Ok(records::add_pitch_responses(&self.directory, found)?)
     }
 
-    /// Tells `observer` what the open runs will cost, and checks the rotors where there are such runs, or only
-    /// times the machine where it has to be `quick`; a break when `stop` asked for an end.
+    /// Tells `observer` what the open runs will cost, and checks the rotors where there are such runs, or
+    /// only times the machine where it has to be `quick`; a break when `stop` asked for an end.
     ///
     /// # Errors
     /// [`StudyError::Memory`], [`StudyError::Disk`], [`StudyError::SelfCheck`].
@@ -236,7 +236,9 @@ impl<'a> Study<'a> {
         };
         if let ControlFlow::Continue(checked) = &checked {
             estimate.updates_per_second = checked.updates_per_second;
-            observer.estimated(&estimate);
+            if estimate.updates_per_second.is_some() {
+                observer.estimated(&estimate);
+            }
         }
         Ok(checked)
     }

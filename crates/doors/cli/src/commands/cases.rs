@@ -91,8 +91,8 @@ mod tests {
         assert_eq!([0.2, 3.0, 270.0].map(takes), ["12 s", "3 min", "4.5 h"]);
     }
 
-    /// What the list says of the cost is the cost, for a machine that moves 200 million cells a second: on the
-    /// lattice, where cells and steps are all there is to it.
+    /// What the list says of the cost is the cost, for a machine that moves 200 million cells a second: on
+    /// the lattice, where cells and steps are all there is to it.
     #[test]
     fn costs_are_those_of_the_cases() {
         for shipped in shipped::CASES.iter().filter(|case| case.after.is_none()) {

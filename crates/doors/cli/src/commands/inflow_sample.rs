@@ -16,8 +16,8 @@ const REACH: f64 = 1.2;
 /// Arguments of `wakemix inflow sample`.
 #[derive(Args)]
 pub(crate) struct SampleArguments {
-    /// Case file (TOML), or the name of a shipped case, with flow.solver = "uniform": shear, wind.veer_deg_per_m and wind.event are sampled
-    /// for time.duration
+    /// Case file (TOML), or the name of a shipped case, with flow.solver = "uniform": shear,
+    /// wind.veer_deg_per_m and wind.event are sampled for time.duration
     case: PathBuf,
     /// Override a key of the case, as in `--set wind.speed=8` (may be repeated)
     #[arg(long = "set", value_name = "KEY=VALUE")]

@@ -39,7 +39,12 @@ pub(crate) struct InitArguments {
     #[arg(long, value_name = "MODEL", default_value = "iea-15mw")]
     turbine: String,
     /// Turbines in the row
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=MOST_TURBINES))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 2,
+        value_parser = clap::value_parser!(u64).range(1..=MOST_TURBINES)
+    )]
     turbines: u64,
     /// Distance from turbine to turbine, in rotor diameters
     #[arg(long, value_name = "D", default_value_t = 5.0, value_parser = positive)]

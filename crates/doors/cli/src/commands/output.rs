@@ -87,7 +87,13 @@ pub(crate) fn refuse(report: &Report) -> ExitCode {
 
 /// Prints what the reader of arguments has to say: help or version, or what is wrong with them.
 pub(crate) fn usage(error: &clap::Error) -> ExitCode {
-    match error.print() {
+    let plain = error.render().to_string();
+    // Words of the command line may be names of files, which may hold anything.
+    let printed = match clean(&plain) {
+        Cow::Borrowed(_) => error.print(),
+        Cow::Owned(cleaned) => write!(stderr(), "{cleaned}"),
+    };
+    match printed {
         Ok(()) => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(BAD_INPUT)),
         Err(refused) if refused.kind() == ErrorKind::BrokenPipe => ExitCode::from(CLOSED_PIPE),
         Err(refused) => refuse(&miette!("cannot write: {refused}")),
@@ -95,7 +101,7 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
 }
 
 /// `text` with control characters, line ends and tabs aside, as escapes that can be read.
-fn clean(text: &str) -> Cow<'_, str> {
+pub(crate) fn clean(text: &str) -> Cow<'_, str> {
     let steers = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
     if !text.contains(steers) {
         return Cow::Borrowed(text);

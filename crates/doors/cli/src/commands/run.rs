@@ -3,7 +3,7 @@
 mod again;
 mod stages;
 
-use super::output::{columns, detail, print, refuse, say, tell, warn};
+use super::output::{clean, columns, detail, print, refuse, say, tell, warn};
 use super::{BAD_INPUT, DIVERGED, INTERRUPTED, manner};
 use crate::commands::table;
 use again::interrupted;
@@ -53,7 +53,8 @@ pub(crate) struct RunArguments {
     /// timed for a moment
     #[arg(long)]
     dry_run: bool,
-    /// With --dry-run: check the rotors against blade-element momentum as well, as a run does before it begins
+    /// With --dry-run: check the rotors against blade-element momentum as well, as a run does before it
+    /// begins
     #[arg(long, requires = "dry_run")]
     check: bool,
     /// Print the summaries as JSON on stdout instead of the table
@@ -280,7 +281,7 @@ impl Observer for Screen {
         self.enter(what);
         if self.last.as_deref() != Some(what) {
             self.last = Some(what.to_owned());
-            self.bar.set_prefix(what.to_owned());
+            self.bar.set_prefix(clean(what).into_owned());
             self.bar.set_message("");
         }
         self.bar.set_length(1000);
@@ -305,7 +306,7 @@ impl Observer for Screen {
         let what =
             format!("identifying pitch response of {turbine} ({}/{n_identifications})", index + 1);
         self.enter(&what);
-        self.bar.set_prefix(what.clone());
+        self.bar.set_prefix(clean(&what).into_owned());
         self.bar.set_length(1000);
         self.bar.set_position((1000.0 * share) as u64);
         let left = HumanDuration(Duration::from_secs_f64(time_left.clamp(0.0, LONGEST)));
@@ -323,7 +324,7 @@ impl Observer for Screen {
         self.last = None;
         let what = format!("{} ({}/{})", progress.run, progress.run_index + 1, progress.n_runs);
         self.enter(&what);
-        self.bar.set_prefix(what.clone());
+        self.bar.set_prefix(clean(&what).into_owned());
         self.bar.set_length(progress.n_steps);
         self.bar.set_position(progress.step);
         let left = HumanDuration(Duration::from_secs_f64(progress.time_left.clamp(0.0, LONGEST)));

@@ -34,16 +34,15 @@ pub(crate) fn render(summaries: &[Summary], width: usize) -> String {
             table.row(row(&summary.run, turbine, &loads));
         }
         // Without wakes no turbine feels another, so that a sum means nothing.
-        if !summary.has_wakes() && summary.turbines.len() > 1 {
-            continue;
+        if summary.has_wakes() {
+            table.row([
+                summary.run.clone(),
+                "all".to_owned(),
+                String::new(),
+                with_interval(&summary.array_power, 1e-3, 0),
+                percent(summary.array_power_gain.as_ref(), 2),
+            ]);
         }
-        table.row([
-            summary.run.clone(),
-            "all".to_owned(),
-            String::new(),
-            with_interval(&summary.array_power, 1e-3, 0),
-            percent(summary.array_power_gain.as_ref(), 2),
-        ]);
     }
     let head = format!("{}: {}\n", first.case, conditions(&first.conditions));
     let mut below = "± 95 % from blocks of the analysed time; gains and changes compare the same blocks of the same wind\n".to_owned();

@@ -79,8 +79,10 @@ fn turbines_without_wakes_are_not_added_up() {
     let mut alone = summary(vec![turbine("T1", &[]), turbine("T2", &[])]);
     assert!(render(std::slice::from_ref(&alone), 100).contains(" all "));
     alone.flow = Some(FlowSummary { solver: "turbulence".to_owned(), has_wakes: false });
-    let text = render(&[alone], 100);
+    let text = render(std::slice::from_ref(&alone), 100);
     assert!(!text.contains("all ") && !text.contains("20000"), "{text}");
+    alone.turbines.pop();
+    assert_eq!(render(&[alone], 100).matches("10000").count(), 1);
 }
 
 /// A staggered row of eight turbines with long names, in five runs with long names, everything in it large
