@@ -1,12 +1,13 @@
 //! Speed of the lattice against the limit that memory sets: `cargo bench -p wakemix-benches --bench lattice`.
 //!
 //! A cell update reads and writes each population once. The limit is the rate at which the same threads read
-//! and write back an array in place. Neighbours of a machine change both within seconds, by as much as half;
-//! so the limit is measured before and after every figure, and the share is the median of such pairs, with
-//! the least and the greatest. Options after `--`: `quick` for a small box, a number for the repeats.
+//! and write back an array in place, by the fastest of many loops (`benches::bandwidth`). Neighbours of a
+//! machine change both within seconds, by as much as half; so the limit is measured before and after every
+//! figure, and the share is the median of such pairs, with the least and the greatest. Options after `--`:
+//! `quick` for a small box, `best` for the fastest instructions alone, a number for the repeats.
 
 use basis::{PointForce, Vector3};
-use benches::in_place_bandwidth;
+use benches::bandwidth::Limit;
 use flow::lattice::{Backend, Ends, Ground, Lattice, LatticeSettings};
 use flow::{FlowSolver, Inflow};
 use std::sync::Arc;
@@ -15,6 +16,8 @@ use std::time::Instant;
 /// Bytes that a cell update moves (D3Q19 in f32, in and out).
 const BYTES_PER_UPDATE: f64 = 2.0 * 19.0 * 4.0;
 const STEPS: f64 = 20.0;
+/// Memory that the limit is measured on, as much as the box takes (MiB).
+const MEBIBYTES: usize = 192;
 
 struct Shear;
 
@@ -30,6 +33,7 @@ impl Inflow for Shear {
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let quick = arguments.iter().any(|argument| argument == "quick");
+    let best = arguments.iter().any(|argument| argument == "best");
     let n_repeats = arguments.iter().find_map(|argument| argument.parse().ok()).unwrap_or(7).max(1);
     let n_cells = if quick { [192, 64, 64] } else { [288, 96, 96] };
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -40,9 +44,13 @@ fn main() {
         n_cells.iter().product::<usize>() as f64 / 1e6
     );
     for n_threads in counts {
-        println!("{n_threads} threads");
-        for (name, backend, everything) in cases() {
-            let limit = || in_place_bandwidth(n_threads, 512, 3);
+        let limits = Limit::find(n_threads, MEBIBYTES, 3);
+        println!("{n_threads} threads; the fastest loops that read and write in place:");
+        for (one, rate) in &limits.loops {
+            println!("  {:.1} GB/s: {one:?}", rate / 1e9);
+        }
+        for (name, backend, everything) in cases(best) {
+            let limit = || limits.now(3);
             let mut before = limit();
             let (mut speeds, mut limits, mut shares) = (Vec::new(), Vec::new(), Vec::new());
             for _ in 0..n_repeats {
@@ -69,9 +77,9 @@ fn main() {
             );
         }
     }
-    // A box that stays in the cache tells what the arithmetic alone allows.
-    let cached = [256, 6, 6];
+    // A box that stays in each core's own cache tells what the arithmetic alone allows.
     for n_threads in [1, cores] {
+        let cached = [256, 8, 6 * n_threads];
         let speed = (0..n_repeats)
             .map(|_| updates_per_second(cached, n_threads, Backend::detect(), false))
             .fold(0.0, f64::max);
@@ -105,10 +113,10 @@ impl Spread {
 }
 
 /// Name, back-end, and whether everything is on.
-fn cases() -> Vec<(String, Backend, bool)> {
+fn cases(best: bool) -> Vec<(String, Backend, bool)> {
     Backend::ALL
         .into_iter()
-        .filter(|backend| backend.is_available())
+        .filter(|backend| backend.is_available() && (!best || *backend == Backend::detect()))
         .flat_map(|backend| {
             [
                 (format!("{backend:?} bare"), backend, false),

@@ -100,7 +100,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
         speed: wind_speed,
         turbulence_intensity: 0.0,
         shear: Shear::PowerLaw { exponent: 0.0 },
-        length_scale: 0.0,
+        length_scale: None,
         anisotropy: 0.0,
         seed: 0,
         air_density: 1.225,

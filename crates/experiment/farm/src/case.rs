@@ -40,8 +40,9 @@ pub struct Wind {
     pub turbulence_intensity: f64,
     /// How the mean speed grows with height.
     pub shear: Shear,
-    /// Length scale of Mann's tensor (m).
-    pub length_scale: f64,
+    /// Length scale of Mann's tensor (m); absent, it follows from the rest
+    /// ([`wind::length_scale`](crate::wind::length_scale)).
+    pub length_scale: Option<f64>,
     /// Anisotropy Γ of Mann's tensor (–).
     pub anisotropy: f64,
     /// Seed of the turbulence.

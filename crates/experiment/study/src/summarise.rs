@@ -18,7 +18,8 @@ use basis::records::{
 };
 use control::{MissingChannel, Pitching, TurbineRecord};
 use farm::assemble::controller;
-use farm::case::{Control, Run, Shear};
+use farm::case::{Control, Run, Shear, TurbulenceModel};
+use farm::solvers::WindSource;
 
 /// Channel of the wind that meets the first turbine.
 const WIND: &str = "wind.u_m_s";
@@ -334,6 +335,7 @@ fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, Study
     Ok(Conditions {
         target_wind_speed: case.wind.speed,
         target_turbulence_intensity: case.wind.turbulence_intensity,
+        turbulence_length_scale: turbulence_length_scale(setup),
         realised_wind_speed: realised.mean,
         realised_turbulence_intensity: realised.standard_deviation / realised.mean,
         shear_exponent,
@@ -345,6 +347,15 @@ fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, Study
         spin_up: case.time.spin_up,
         duration: case.time.duration,
     })
+}
+
+/// Length scale of Mann's tensor (m); none where the turbulence is not Mann's.
+fn turbulence_length_scale(setup: &Prepared) -> Option<f64> {
+    let (wind, made) = (&setup.case.wind, setup.case.flow.solver.wind);
+    let is_made = wind.turbulence_intensity > 0.0
+        && wind.turbulence_model == TurbulenceModel::Mann
+        && matches!(made, WindSource::AtInlet | WindSource::AroundRotors);
+    is_made.then(|| farm::wind::length_scale(wind, setup.plan.hub_height))
 }
 
 /// Cells per diameter of the first turbine (–), as the case says or else as they were laid out; none where

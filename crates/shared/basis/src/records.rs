@@ -229,6 +229,9 @@ pub struct Conditions {
     pub target_wind_speed: f64,
     /// Turbulence intensity that the case sets (–).
     pub target_turbulence_intensity: f64,
+    /// Length scale of the turbulence's tensor (m); absent where the turbulence has none.
+    #[serde(default)]
+    pub turbulence_length_scale: Option<f64>,
     /// Mean speed at hub height upstream of the first turbine (m/s).
     pub realised_wind_speed: f64,
     /// Turbulence intensity there (–).

@@ -27,7 +27,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             speed: 9.0,
             turbulence_intensity: 0.05,
             shear: Shear::PowerLaw { exponent: 0.1 },
-            length_scale: 33.6,
+            length_scale: None,
             anisotropy: 3.9,
             seed: 1,
             air_density: 1.225,

@@ -1,6 +1,6 @@
 //! Wind that is prescribed where the rotors stand: even, made turbulent, or read plane by plane.
 
-use super::{Site, Turbulence, profile};
+use super::{Site, Turbulence, length_scale, profile};
 use crate::assemble::TurbineModel;
 use crate::case::TurbulenceModel;
 use crate::solvers::WindSource;
@@ -155,7 +155,7 @@ fn made(
             &mann::MannSettings {
                 n_points,
                 spacing,
-                length_scale: wind.length_scale,
+                length_scale: length_scale(wind, site.plan.hub_height),
                 anisotropy: wind.anisotropy,
                 standard_deviation,
                 seed,

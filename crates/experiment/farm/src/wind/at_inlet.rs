@@ -1,6 +1,6 @@
 //! Turbulence that is carried into a domain through its inlet.
 
-use super::{Site, Turbulence, profile};
+use super::{Site, Turbulence, length_scale, profile};
 use crate::solvers::WindSource;
 use flow::Inflow;
 use flow::inflow::sizing::{Need, Size};
@@ -40,7 +40,7 @@ pub fn entering(
     let settings = mann::MannSettings {
         n_points: size.n_points,
         spacing: size.spacing,
-        length_scale: wind.length_scale,
+        length_scale: length_scale(wind, plan.hub_height),
         anisotropy: wind.anisotropy,
         standard_deviation: wind.turbulence_intensity * wind.speed,
         seed: wind.seed,
@@ -49,7 +49,7 @@ pub fn entering(
     let turbulence = mann::generate_until(&settings, progress)?;
     let profile = profile(case, plan);
     let inflow = TurbulentInflow::aligned(Arc::new(turbulence), profile, plan.origin)?;
-    let inflow = inflow.blocked(BLOCKING_HEIGHT * wind.length_scale);
+    let inflow = inflow.blocked(BLOCKING_HEIGHT * settings.length_scale);
     Ok(Some(Arc::new(inflow.veering(wind.veer, plan.hub_height))))
 }
 
@@ -67,7 +67,7 @@ fn size(site: &Site) -> Option<Size> {
         hub_speed: case.wind.speed,
         duration: case.time.duration,
         spacing: plan.spacing,
-        length_scale: case.wind.length_scale,
+        length_scale: length_scale(&case.wind, plan.hub_height),
         memory_limit: TURBULENCE_MEMORY,
     }))
 }

@@ -3,9 +3,11 @@
 
 mod around_rotors;
 mod at_inlet;
+mod length_scale;
 
 pub use around_rotors::prescribed;
 pub use at_inlet::entering;
+pub use length_scale::length_scale;
 
 use crate::assemble::TurbineModel;
 use crate::case::{Case, Ground, Shear, WindEvent};

@@ -58,7 +58,7 @@ pub(super) static WIND: Table = Table {
             .mistaken(&[Slip { unit: "percent", factor: 0.01 }]),
         key("shear_exponent", from(-0.5, 1.0), "–", Value("0.1"), "Power-law exponent of the mean profile."),
         key("roughness_length", above(0.0, 5.0), "m", Otherwise("a power law with `shear_exponent`"), "In place of `shear_exponent`: the mean profile is the logarithmic law, `speed` · ln(z/z₀) / ln(z_hub/z₀) with this roughness length z₀, zero at z₀ and below; at most a tenth of the hub height. A rough `flow.ground` keeps such a profile when it has the same z₀."),
-        key("length_scale", above(0.0, 1000.0), "m", Value("33.6"), "Length scale of Mann's tensor. The default is 0.8 Λ₁ of IEC 61400-1 with Λ₁ = 42 m, for hubs at 60 m and higher."),
+        key("length_scale", above(0.0, 1000.0), "m", Otherwise("standard deviation over shear at hub height, from 33.6 m to twice the hub height"), "Length scale of Mann's tensor. The default is σ_u / (dU/dz) at hub height of the first turbine (Kelly 2018, Wind Energ. Sci. 3, 533): `turbulence_intensity` · z_hub / `shear_exponent`, or `turbulence_intensity` · z_hub · ln(z_hub/z₀). It is at least 33.6 m, which is 0.8 Λ₁ of IEC 61400-1, and that where nothing shears; and at most twice the hub height."),
         key("anisotropy", from(0.0, 10.0), "–", Value("3.9"), "Anisotropy Γ of Mann's tensor; 0 is isotropic. The default is that of IEC 61400-1."),
         key("seed", Holds::Whole { least: 0, most: SEED_MOST }, "–", Value("1"), "Seed of the turbulence; another seed is another hour of the same climate."),
         key("air_density", above(0.0, 5.0), "kg/m³", Value("1.225"), "Air density.")

@@ -46,7 +46,7 @@ fn small(overrides: &[&str]) -> Result<Case, CaseError> {
 #[test]
 fn a_small_case_gets_the_documented_defaults() {
     let case = small(&[]).unwrap();
-    assert_eq!(case.wind.length_scale, 33.6);
+    assert_eq!(case.wind.length_scale, None);
     assert_eq!(case.wind.seed, 1);
     assert_eq!(case.flow.domain().cells_per_diameter, 16.0);
     let domain = case.flow.domain();

@@ -16,7 +16,7 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
         speed: number("speed"),
         turbulence_intensity: number("turbulence_intensity"),
         shear: shear_of(section),
-        length_scale: number("length_scale"),
+        length_scale: section.as_ref().and_then(|section| section.optional_number("length_scale")),
         anisotropy: number("anisotropy"),
         seed: section.as_ref().map_or(1, |section| section.whole("seed")),
         air_density: number("air_density"),
@@ -203,7 +203,9 @@ pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
             writeln!(text, "roughness_length = {roughness_length:?}")?;
         }
     }
-    writeln!(text, "length_scale = {:?}", wind.length_scale)?;
+    if let Some(length_scale) = wind.length_scale {
+        writeln!(text, "length_scale = {length_scale:?}")?;
+    }
     writeln!(text, "anisotropy = {:?}", wind.anisotropy)?;
     writeln!(text, "seed = {}", wind.seed)?;
     writeln!(text, "air_density = {:?}", wind.air_density)?;

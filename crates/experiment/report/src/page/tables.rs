@@ -18,6 +18,13 @@ fn mean_profile(conditions: &Conditions) -> String {
     }
 }
 
+/// Length scale of the turbulence, to be put behind its intensity; empty where it has none.
+fn length_scale(conditions: &Conditions) -> String {
+    conditions
+        .turbulence_length_scale
+        .map_or(String::new(), |length| format!(", length scale {}{SPACE}m", number(length, 0)))
+}
+
 /// The conditions that all runs share.
 pub(crate) fn conditions(study: &Study) -> Vec<Value> {
     let summary = &study.runs()[0].summary;
@@ -33,9 +40,10 @@ pub(crate) fn conditions(study: &Study) -> Vec<Value> {
             "Turbulence intensity",
             percent(conditions.target_turbulence_intensity),
             format!(
-                "{} realised upstream of {}",
+                "{} realised upstream of {}{}",
                 percent(conditions.realised_turbulence_intensity),
-                summary.turbines.first().map_or("the row", |turbine| turbine.name.as_str())
+                summary.turbines.first().map_or("the row", |turbine| turbine.name.as_str()),
+                length_scale(conditions)
             ),
         ),
         fact(

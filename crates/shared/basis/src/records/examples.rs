@@ -60,6 +60,7 @@ fn conditions() -> Conditions {
     Conditions {
         target_wind_speed: 9.0,
         target_turbulence_intensity: 0.05,
+        turbulence_length_scale: Some(75.0),
         realised_wind_speed: 8.9,
         realised_turbulence_intensity: 0.046,
         shear_exponent: Some(0.1),
