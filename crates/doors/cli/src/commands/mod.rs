@@ -9,6 +9,7 @@ mod inflow_sample;
 pub(crate) mod output;
 pub(crate) mod report;
 pub(crate) mod run;
+mod sweep_table;
 pub(crate) mod table;
 pub(crate) mod turbine;
 pub(crate) mod validate;

@@ -6,6 +6,6 @@ use std::path::Path;
 
 /// Rebuilds the report of the study in `directory`; its path goes to stdout.
 pub(crate) fn run(directory: &Path) -> Result<()> {
-    let (_, page) = wakemix::postprocessing::report(directory)?;
-    print(&format!("{}\n", page.display()))
+    let made = wakemix::postprocessing::report(directory)?;
+    print(&format!("{}\n", made.page.display()))
 }
