@@ -87,6 +87,7 @@ impl Prepared {
                 + passing
                 + REPORT,
             kept_checkpoints: kept().sum(),
+            passing_checkpoint: passing,
             n_studies: 1,
             n_jobs: 1,
             work: open.len() as f64 * plan.updates().max(plan.n_steps as f64),
@@ -104,8 +105,8 @@ pub(crate) fn together(of_studies: &[Estimate], n_jobs: usize) -> Estimate {
     let most = |part: fn(&Estimate) -> u64| of_studies.iter().map(part).max().unwrap_or(0);
     let speeds = of_studies.iter().filter_map(|estimate| estimate.updates_per_second);
     let first = &of_studies[0];
-    // Each reckons with one run whose checkpoint stands beside another; so many do at a time.
-    let passing = (n_jobs as u64 - 1) * most(|estimate| estimate.disk);
+    // Each reckons with one run under way; so many are at a time, and one report is over all.
+    let passing = (n_jobs as u64 - 1) * most(|estimate| estimate.passing_checkpoint);
     Estimate {
         n_runs: of_studies.iter().map(|estimate| estimate.n_runs).sum(),
         n_studies: of_studies.len(),

@@ -157,10 +157,12 @@ impl Observer for OfRun<'_, '_> {
     }
 
     fn preparing(&mut self, what: &str, share: f64) {
-        // Beside others, one may have been at it when another was told to stop.
-        if self.shared.n_jobs < 2 || !self.shared.stop.load(Ordering::Relaxed) {
-            self.tell(|observer| observer.preparing(what, share));
-        }
+        self.tell(|observer| {
+            // Beside others, one may have been at it when another was told to stop.
+            if self.shared.n_jobs < 2 || !self.shared.stop.load(Ordering::Relaxed) {
+                observer.preparing(what, share);
+            }
+        });
     }
 
     fn checked(&mut self, check: &SelfCheck) {

@@ -39,6 +39,8 @@ pub struct Estimate {
     pub disk_in_all: u64,
     /// How much of it are checkpoints that stay, so that runs can go on for longer (bytes).
     pub kept_checkpoints: u64,
+    /// Most that a run under way has of checkpoints beside what it keeps (bytes).
+    pub passing_checkpoint: u64,
     /// Cell updates a second, measured on this machine in the self-check; absent before it (1/s).
     pub updates_per_second: Option<f64>,
     /// Share of the domain's cross-section that a rotor takes (–).

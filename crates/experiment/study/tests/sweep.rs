@@ -41,7 +41,8 @@ fn names(found: &BTreeMap<PathBuf, Vec<u8>>) -> Vec<String> {
 
 #[test]
 fn keys_of_controllers_make_runs_of_the_one_study() {
-    let folder = written(&case(&(STROUHAL.to_owned() + "\"control.T1.amplitude_deg\" = [2, 3.5]\n")));
+    let folder =
+        written(&case(&(STROUHAL.to_owned() + "\"control.T1.amplitude_deg\" = [2, 3.5]\n")));
     let out = small::done(&options(folder.path()));
     let found = series(&out);
     let expected = [
@@ -66,8 +67,7 @@ fn other_keys_make_studies_and_any_number_of_jobs_gives_the_same_bits() {
     let text = case(&(STROUHAL.to_owned() + "wind.speed = [8, 9.5]\n"));
     let [one, three] = [1, 3].map(|jobs| {
         let folder = written(&text);
-        let out =
-            small::done(&StudyOptions { jobs: Some(jobs), ..options(folder.path()) });
+        let out = small::done(&StudyOptions { jobs: Some(jobs), ..options(folder.path()) });
         series(&out)
     });
     assert_eq!(
@@ -167,7 +167,10 @@ fn seeds_make_a_study_each_and_more_of_them_later() {
     let first = StudyOptions { seeds: Some(2), ..options(folder.path()) };
     let out = small::done(&first);
     let found = series(&out);
-    assert_eq!(names(&found), ["seed-7/baseline", "seed-7/helix", "seed-8/baseline", "seed-8/helix"]);
+    assert_eq!(
+        names(&found),
+        ["seed-7/baseline", "seed-7/helix", "seed-8/baseline", "seed-8/helix"]
+    );
     assert_ne!(found[Path::new("seed-7/baseline")], found[Path::new("seed-8/baseline")]);
     let more = StudyOptions { seeds: Some(3), resume: true, ..first };
     assert_eq!(told(&StudyOptions { dry_run: true, ..more.clone() }).n_runs, 2);

@@ -243,6 +243,8 @@ pub fn fingerprint_of_state(text: &str, run: &str) -> [u8; 32] {
 }
 
 #[cfg(test)]
+mod sweep_tests;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod wind_tests;
