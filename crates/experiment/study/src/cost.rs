@@ -39,7 +39,8 @@ impl Prepared {
         self.checkpoints_of_run(index) + outputs.disk_of_run(self, run) + records
     }
 
-    /// Bytes of the checkpoints of run number `index`: a new one stands beside the old one until it is whole.
+    /// Bytes of the checkpoints of run number `index`: a new one stands beside the old one until it is
+    /// whole.
     fn checkpoints_of_run(&self, index: usize) -> u64 {
         2 * self.checkpoint_of_run(index)
     }

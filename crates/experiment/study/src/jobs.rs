@@ -51,10 +51,9 @@ struct Tally {
 }
 
 impl Tally {
-    /// Takes in that run number `place` stands at `work`.
-    fn advance(&mut self, place: usize, work: f64) {
-        self.started.get_or_insert_with(Instant::now);
-        self.under_way.entry(place).or_insert([work, work])[1] = work;
+    /// Takes in that run number `place`, which this process took up at the work `before`, stands at `now`.
+    fn advance(&mut self, place: usize, before: f64, now: f64) {
+        self.under_way.insert(place, [before, now]);
     }
 
     /// Takes in that run number `place` of `work` in all is complete.
@@ -117,7 +116,7 @@ impl<'o> Shared<'o> {
     /// What the run number `place` of the study in the folder `study`, empty without a sweep of studies,
     /// tells; each of its steps is `work`.
     pub(crate) fn of_run<'s>(&'s self, study: &'s str, place: usize, work: f64) -> OfRun<'s, 'o> {
-        OfRun { shared: self, study, place, work, n_steps: 0 }
+        OfRun { shared: self, study, place, work }
     }
 }
 
@@ -128,7 +127,6 @@ pub(crate) struct OfRun<'s, 'o> {
     place: usize,
     /// Work of one step.
     work: f64,
-    n_steps: u64,
 }
 
 impl OfRun<'_, '_> {
@@ -143,6 +141,11 @@ impl OfRun<'_, '_> {
             inner.observer.in_study(self.study);
         }
         with(&mut inner);
+    }
+
+    /// Takes in that the run begins now.
+    pub(crate) fn begin(&self) {
+        held(&self.shared.inner).tally.started.get_or_insert_with(Instant::now);
     }
 
     /// Takes in that the run, of `n_steps`, is complete.
@@ -178,19 +181,16 @@ impl Observer for OfRun<'_, '_> {
     }
 
     fn advanced(&mut self, progress: &Progress) {
-        self.n_steps = progress.n_steps;
-        let (work, n_runs) = (self.work * progress.step as f64, self.shared.n_runs);
+        let work = |steps: u64| self.work * steps as f64;
+        let (before, now) = (work(progress.first_step), work(progress.step));
+        let Shared { n_runs, n_jobs, .. } = *self.shared;
         self.with(|inner| {
-            inner.tally.advance(self.place, work);
+            inner.tally.advance(self.place, before, now);
             let progress = Progress {
-                run_index: if self.shared.n_jobs > 1 {
-                    inner.tally.n_complete
-                } else {
-                    progress.run_index
-                },
+                run_index: if n_jobs > 1 { inner.tally.n_complete } else { progress.run_index },
                 n_runs,
                 time_left: inner.tally.time_left(),
-                n_beside: inner.tally.under_way.len() - 1,
+                n_at_a_time: n_jobs,
                 share_of_all: inner.tally.made() / inner.tally.all,
                 ..progress.clone()
             };
@@ -234,11 +234,10 @@ mod tests {
             under_way: BTreeMap::new(),
             started: Some(Instant::now() - std::time::Duration::from_secs(10)),
         };
-        tally.advance(0, 90.0);
-        tally.advance(0, 100.0);
+        tally.advance(0, 90.0, 95.0);
+        tally.advance(0, 90.0, 100.0);
         tally.complete(0, 100.0);
-        tally.advance(1, 0.0);
-        tally.advance(1, 10.0);
+        tally.advance(1, 0.0, 10.0);
         // 20 in 10 s, 290 to go.
         assert!((tally.time_left() - 145.0).abs() < 1.0, "{}", tally.time_left());
         assert_eq!(tally.made(), 110.0);

@@ -97,16 +97,18 @@ pub struct Progress<'a> {
     pub updates_per_second: f64,
     /// Wall time left for all runs to be made (s).
     pub time_left: f64,
-    /// Runs under way beside it (–).
-    pub n_beside: usize,
+    /// Steps of it that an earlier process made (–).
+    pub first_step: u64,
+    /// Runs that are made at a time (–).
+    pub n_at_a_time: usize,
     /// Share of all runs to be made that is done (–).
     pub share_of_all: f64,
 }
 
 /// Observes a study; every method may be left out.
 pub trait Observer {
-    /// What comes next is about the study of a sweep in this folder in that of the sweep; never called without
-    /// a sweep of studies.
+    /// What comes next is about the study of a sweep in this folder in that of the sweep; never called
+    /// without a sweep of studies.
     fn in_study(&mut self, _folder: &str) {}
     /// The cost, before the first step.
     fn estimated(&mut self, _estimate: &Estimate) {}

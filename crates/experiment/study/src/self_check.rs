@@ -55,8 +55,8 @@ impl Prepared {
         Ok(ControlFlow::Continue(found))
     }
 
-    /// Everything that decides what [`self_check`](Self::self_check) finds: equal for studies that are checked
-    /// alike.
+    /// Everything that decides what [`self_check`](Self::self_check) finds: equal for studies that are
+    /// checked alike.
     pub(crate) fn checked_alike(&self) -> String {
         let mut wind = self.case.wind.clone();
         wind.seed = 0;

@@ -196,7 +196,8 @@ impl<'a> Simulation<'a> {
             n_steps: plan.n_steps,
             updates_per_second: plan.cells() as f64 * steps_per_second,
             time_left: left / steps_per_second,
-            n_beside: 0,
+            first_step: self.before.step,
+            n_at_a_time: 1,
             share_of_all: 1.0 - left / (n_runs as f64 * plan.n_steps as f64),
         }
     }

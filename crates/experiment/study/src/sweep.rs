@@ -1,5 +1,5 @@
-//! All studies of a case file in a folder: one, or those of its sweep, each in a folder of its own; their runs
-//! one after the other or side by side.
+//! All studies of a case file in a folder: one, or those of its sweep, each in a folder of its own; their
+//! runs one after the other or side by side.
 
 mod parts;
 mod wanted;

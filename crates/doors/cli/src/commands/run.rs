@@ -42,8 +42,8 @@ pub(crate) struct RunArguments {
     /// Override a key of the case, as in `--set wind.speed=8` (may be repeated)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
-    /// Resume an interrupted or killed run, or go on with complete ones after `time.duration` is raised; the result
-    /// has the same bits
+    /// Resume an interrupted or killed run, or go on with complete ones after `time.duration` is raised; the
+    /// result has the same bits
     #[arg(long)]
     resume: bool,
     /// Replace old results

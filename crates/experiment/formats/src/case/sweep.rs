@@ -58,8 +58,8 @@ impl Axis {
     }
 }
 
-/// The cases of the file of `entries`, whose own text has `length` bytes; what comes after it in `sources` are
-/// overrides.
+/// The cases of the file of `entries`, whose own text has `length` bytes; what comes after it in `sources`
+/// are overrides.
 ///
 /// # Errors
 /// Everything that is wrong with the sweep.

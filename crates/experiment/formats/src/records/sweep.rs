@@ -37,6 +37,9 @@ pub fn write_sweep(folder: &Path, sweep: &Sweep) -> Result<(), FileError> {
 /// # Errors
 /// [`FileError::System`].
 pub fn remove_sweep(folder: &Path) -> Result<(), FileError> {
+    if !sweep_path(folder).is_file() {
+        return Ok(());
+    }
     let files = [sweep_path(folder), folder.join("table.json"), folder.join("table.csv")];
     files.iter().try_for_each(|file| super::gone(std::fs::remove_file(file), file))
 }

@@ -2,8 +2,9 @@
 
 use super::{D3, D3_LICENCES, SCRIPT, STYLE, drawing, inks};
 use crate::draw::Figure;
+use crate::figures::sweep::{key_name, settings};
 use crate::{ReportError, words};
-use basis::records::{Statistic, SweepPart, SweepRow, SweepTable};
+use basis::records::{Statistic, SweepPart, SweepRow, SweepTable, SweptKey};
 use minijinja::{Environment, Value, context};
 
 const TEMPLATE: &str = include_str!("sweep.html");
@@ -60,15 +61,7 @@ fn headline(table: &SweepTable) -> String {
     let best = gains.max_by(|a, b| a.1.1.mean.total_cmp(&b.1.1.mean));
     let Some((row, (name, gain))) = best else { return "No run compares with another.".to_owned() };
     let whose = if name == "all" { "all turbines together" } else { name.as_str() };
-    let settings: Vec<String> = row
-        .settings
-        .iter()
-        .map(|setting| {
-            let key = table.keys.iter().find(|key| key.key == setting.key);
-            let label = key.map_or(setting.key.as_str(), |key| key.label.as_str());
-            format!("{} {}", label.replace('_', " "), setting.value.words())
-        })
-        .collect();
+    let settings: Vec<String> = settings(table, row, |_| true).collect();
     let with = if settings.is_empty() {
         String::new()
     } else {
@@ -79,7 +72,8 @@ fn headline(table: &SweepTable) -> String {
         Some(half) if half >= gain.mean.abs() => "; the interval holds zero",
         _ => "",
     };
-    format!("The most power: {}{with}, {size} of {whose}{chance}.", row.base)
+    let what = if gain.mean > 0.0 { "The most power" } else { "No run gains; the least loss" };
+    format!("{what}: {}{with}; {whose}: {size}{chance}.", row.base)
 }
 
 fn convention(table: &SweepTable) -> String {
@@ -108,15 +102,18 @@ fn parts(table: &SweepTable) -> Vec<&str> {
 
 fn heads(table: &SweepTable, parts: &[&str]) -> Vec<String> {
     let mut heads = vec!["Run".to_owned()];
-    heads.extend(table.keys.iter().map(|key| key.label.clone()));
+    heads.extend(table.keys.iter().map(key_name));
     heads.extend(parts.iter().map(|name| format!("{name} (MW)")));
     heads.extend(parts.iter().map(|name| format!("{name} gain (%)")));
     heads
 }
 
 fn line(table: &SweepTable, row: &SweepRow, parts: &[&str]) -> Value {
-    let value = |key: &str| row.value(key).map_or("–".to_owned(), |value| value.words());
-    let mut cells: Vec<String> = table.keys.iter().map(|key| value(&key.key)).collect();
+    let cell = |key: &SweptKey| {
+        let degree = if key.label.ends_with("_deg") { "°" } else { "" };
+        row.value(&key.key).map_or("–".to_owned(), |value| value.words() + degree)
+    };
+    let mut cells: Vec<String> = table.keys.iter().map(cell).collect();
     let cell = |of: &dyn Fn(&SweepPart) -> Option<String>| -> Vec<String> {
         let cell = |name: &&str| row.part(name).and_then(of).unwrap_or_else(|| "–".to_owned());
         parts.iter().map(cell).collect()

@@ -174,6 +174,7 @@ impl Parts<'_> {
         if overwrite {
             self.clear()?;
         }
+        observer.begin();
         let made = part.study.make(&ready, task.index, place, stop, &mut observer)?;
         drop(ready);
         if made.is_continue() {
@@ -183,8 +184,8 @@ impl Parts<'_> {
         Ok(made)
     }
 
-    /// Takes away what was there before the first run, so that wherever this is stopped, what is left is of it
-    /// alone and can be resumed.
+    /// Takes away what was there before the first run, so that wherever this is stopped, what is left is of
+    /// it alone and can be resumed.
     fn clear(&self) -> Result<(), StudyError> {
         let mut cleared = held(&self.cleared);
         if !*cleared {

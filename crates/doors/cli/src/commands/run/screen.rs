@@ -216,9 +216,9 @@ impl Observer for Screen {
 
     fn advanced(&mut self, progress: &Progress) {
         self.last = None;
-        let Progress { run_index, n_runs, n_beside, .. } = *progress;
+        let Progress { run_index, n_runs, n_at_a_time, .. } = *progress;
         let what = format!("{}{} ({}/{n_runs})", self.study, progress.run, run_index + 1);
-        if n_beside == 0 {
+        if n_at_a_time == 1 {
             self.bar.set_prefix(what.clone());
             self.bar.set_length(progress.n_steps);
             self.bar.set_position(progress.step);
@@ -233,11 +233,11 @@ impl Observer for Screen {
             0.0 => format!("{left} left in all"),
             updates => format!("{updates:.0} Mups, {left} left in all"),
         };
-        if n_beside == 0 {
+        if n_at_a_time == 1 {
             self.tell(&what, progress.step, progress.n_steps, &message);
         } else {
             let done = (1000.0 * progress.share_of_all) as u64;
-            self.tell(&format!("{n_runs} runs, {} at a time", n_beside + 1), done, 1000, &message);
+            self.tell(&format!("{n_runs} runs, {n_at_a_time} at a time"), done, 1000, &message);
         }
         self.bar.set_message(message);
     }

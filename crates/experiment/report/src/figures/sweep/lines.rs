@@ -1,7 +1,7 @@
 //! Gain over one swept number, a line for each combination of the other keys.
 
 use super::super::WIDTH;
-use super::{axis_name, number, numeric, parts, series_name, title};
+use super::{axis_name, key_name, number, numeric, parts, series_name, title};
 use crate::draw::axes::{Frame, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::whisker::{self, Style, whisker};
@@ -53,7 +53,7 @@ pub(super) fn lines(table: &SweepTable) -> Option<Figure> {
     }
     Some(Figure {
         name: "sweep-lines".to_owned(),
-        title: format!("Power gain over {}", key.label.replace('_', " ")),
+        title: format!("Power gain over {}", key_name(key)),
         caption: "Gain of the mean power over the compared run in the same wind, with its 95\u{a0}% interval."
             .to_owned(),
         width: WIDTH,

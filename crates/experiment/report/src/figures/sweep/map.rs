@@ -2,7 +2,7 @@
 
 use super::super::WIDTH;
 use super::super::sheet::colour_bar;
-use super::{axis_name, number, numeric, parts, title};
+use super::{axis_name, key_name, number, numeric, parts, title};
 use crate::draw::axes::{LARGE, MEDIUM, SMALL};
 use crate::draw::colour::{Ink, Map};
 use crate::draw::field::Picture;
@@ -35,10 +35,12 @@ pub(super) fn map(table: &SweepTable) -> Option<Figure> {
     let panels = panels(table);
     let gains =
         || panels.iter().flat_map(|panel| panel.rows.iter().map(|row| gain(row, panel.part)));
-    let most = gains().flatten().map(f64::abs).fold(0.0, f64::max);
-    if most == 0.0 {
+    let greatest = gains().flatten().map(f64::abs).fold(0.0, f64::max);
+    if greatest == 0.0 {
         return None;
     }
+    // The darkest colours, on which no number can be read, are left out.
+    let most = 1.5 * greatest;
     let step = (WIDTH - LEFT - 70.0) / panels.len() as f64;
     let width = CELL[0].min((step - 60.0) / columns.len() as f64);
     let height = CELL[1] * rows.len() as f64;
@@ -64,21 +66,18 @@ pub(super) fn map(table: &SweepTable) -> Option<Figure> {
         let ticks = (left, width, height);
         labels(ticks, (rows, columns), (place == 0).then_some(first), second, &mut shapes);
     }
-    let bar = [WIDTH - 62.0, TOP, 14.0, height.max(110.0)];
+    let right = LEFT + step.min(width * columns.len() as f64 + 90.0) * panels.len() as f64;
+    let bar = [(right - 40.0).min(WIDTH - 62.0), TOP, 14.0, height.max(110.0)];
     colour_bar(bar, [-100.0 * most, 100.0 * most], Map::Diverging, 5, "%", &mut shapes);
     Some(Figure {
         name: "sweep-map".to_owned(),
-        title: format!("Power gain over {} and {}", words_of(first), words_of(second)),
+        title: format!("Power gain over {} and {}", key_name(first), key_name(second)),
         caption: "Gain of the mean power over the compared run in the same wind, in percent; white is none."
             .to_owned(),
         width: WIDTH,
         height: TOP + height.max(110.0) + 54.0,
         shapes,
     })
-}
-
-fn words_of(key: &SweptKey) -> String {
-    key.label.replace('_', " ")
 }
 
 /// A map for each swept run of the case file, or for several parts where only one was swept.

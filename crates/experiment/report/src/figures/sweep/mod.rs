@@ -51,10 +51,26 @@ fn number(row: &SweepRow, key: &SweptKey) -> Option<f64> {
 
 /// A key as a label of an axis.
 fn axis_name(key: &SweptKey) -> String {
-    match key.label.strip_suffix("_deg") {
-        Some(name) => format!("{} (°)", name.replace('_', " ")),
-        None => key.label.replace('_', " "),
-    }
+    let unit = if key.label.ends_with("_deg") { " (°)" } else { "" };
+    key_name(key) + unit
+}
+
+/// A key in words.
+pub(crate) fn key_name(key: &SweptKey) -> String {
+    let name = key.label.strip_suffix("_deg").unwrap_or(&key.label);
+    name.replace("strouhal", "Strouhal number").replace('_', " ")
+}
+
+/// What a row was made with, in words: "Strouhal number 0.25" and "amplitude 2°".
+pub(crate) fn settings<'a>(
+    table: &'a SweepTable,
+    row: &'a SweepRow,
+    is_told: impl Fn(&SweptKey) -> bool + 'a,
+) -> impl Iterator<Item = String> + 'a {
+    table.keys.iter().filter(move |key| is_told(key)).filter_map(|key| {
+        let degree = if key.label.ends_with("_deg") { "°" } else { "" };
+        Some(format!("{} {}{degree}", key_name(key), row.value(&key.key)?.words()))
+    })
 }
 
 /// What tells `row` from others beside the keys `but`: the run of the case file, where several were swept,
@@ -66,11 +82,7 @@ fn series_name(table: &SweepTable, row: &SweepRow, but: &[&SweptKey]) -> String 
     if several {
         words.push(row.base.clone());
     }
-    for key in table.keys.iter().filter(|key| !but.iter().any(|other| other.key == key.key)) {
-        if let Some(value) = row.value(&key.key) {
-            words.push(format!("{} {}", key.label.replace('_', " "), value.words()));
-        }
-    }
+    words.extend(settings(table, row, |key| !but.iter().any(|other| other.key == key.key)));
     if words.is_empty() { row.base.clone() } else { words.join(", ") }
 }
 

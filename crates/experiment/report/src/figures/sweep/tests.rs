@@ -80,7 +80,7 @@ fn each_table_has_the_figures_that_fit_it() {
 fn lines_go_over_the_amplitude_and_maps_have_a_number_in_every_cell() {
     let figures = all(&table(1));
     let of_lines = texts(&figures[0].shapes);
-    assert!(of_lines.iter().any(|text| text == "strouhal 0.25"), "{of_lines:?}");
+    assert!(of_lines.iter().any(|text| text == "Strouhal number 0.25"), "{of_lines:?}");
     assert!(of_lines.iter().any(|text| text == "amplitude (°)"), "{of_lines:?}");
     let of_map = texts(&figures[1].shapes);
     for gain in ["0.0", "+0.2", "+0.4", "+0.1", "+0.3", "+0.6"] {

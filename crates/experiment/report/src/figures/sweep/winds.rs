@@ -2,7 +2,7 @@
 
 use super::super::WIDTH;
 use super::lines::scale;
-use super::{parts, title};
+use super::{parts, settings, title};
 use crate::draw::axes::{Frame, MEDIUM, Readout, SMALL, Scale};
 use crate::draw::colour::Ink;
 use crate::draw::font::Face;
@@ -29,7 +29,7 @@ pub(super) fn winds(table: &SweepTable) -> Option<Figure> {
     rows.first()?;
     let face = Face::new(false);
     let width = rows.iter().map(|row| face.width(&row.name, MEDIUM)).fold(60.0, f64::max);
-    let left = 32.0 + width.min(420.0);
+    let left = 40.0 + 1.08 * width.min(420.0);
     let height = ROW * rows.len() as f64 + 14.0;
     let single = rows.iter().flat_map(|row| &row.part.gains);
     let single = single.map(|gain| Statistic {
@@ -76,19 +76,7 @@ fn rows(table: &SweepTable) -> Vec<Row<'_>> {
     let names = if names.first() == Some(&"all") { &names[..1] } else { &names[..] };
     let row = |row: &'_ SweepRow, name: &&str| -> Option<(String, Statistic)> {
         let gain = row.part(name)?.gain.filter(|gain| gain.mean.is_finite())?;
-        let values: Vec<String> = row
-            .settings
-            .iter()
-            .map(|setting| {
-                let label =
-                    table.keys.iter().find(|key| key.key == setting.key).map(|key| &key.label);
-                format!(
-                    "{} {}",
-                    label.map_or("", String::as_str).replace('_', " "),
-                    setting.value.words()
-                )
-            })
-            .collect();
+        let values: Vec<String> = settings(table, row, |_| true).collect();
         let of = if names.len() > 1 { format!("{}, ", title(name)) } else { String::new() };
         let with =
             if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
