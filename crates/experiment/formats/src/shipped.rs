@@ -1,7 +1,7 @@
 //! The cases that come with the program: each can be run by its name, anywhere.
 
 use crate::FileError;
-use crate::case::{self, CaseError, CaseFile};
+use crate::case::{self, CaseError, CaseFile, CaseFiles};
 use farm::case::Case;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -114,9 +114,26 @@ pub fn read(path: &Path, overrides: &[String]) -> Result<CaseFile, CaseError> {
     if let Some(shipped) = instead_of(path) {
         let text = shipped.text();
         let case = case::parse(shipped.name, &text, overrides)?;
-        return Ok(CaseFile { case, text, overrides: overrides.to_vec(), path: path.to_owned() });
+        let (overrides, path) = (overrides.to_vec(), path.to_owned());
+        return Ok(CaseFile { case, text, overrides, path, study: 0 });
     }
-    case::read(path, overrides).map_err(|error| match error {
+    case::read(path, overrides).map_err(with_advice)
+}
+
+/// The same of a case that may sweep keys which make studies.
+///
+/// # Errors
+/// Those of [`case::read_all`]; where there is no such file, with the shipped cases as a way on.
+pub fn read_all(path: &Path, overrides: &[String]) -> Result<CaseFiles, CaseError> {
+    match instead_of(path) {
+        Some(shipped) => case::of_text(path, shipped.text(), overrides),
+        None => case::read_all(path, overrides).map_err(with_advice),
+    }
+}
+
+/// `error`, and what to do where it is of a file that is not there.
+fn with_advice(error: CaseError) -> CaseError {
+    match error {
         CaseError::File(FileError::System { verb, what, path, source, .. })
             if source.kind() == ErrorKind::NotFound =>
         {
@@ -124,7 +141,7 @@ pub fn read(path: &Path, overrides: &[String]) -> Result<CaseFile, CaseError> {
             CaseError::File(FileError::System { verb, what, path, fix, source })
         }
         error => error,
-    })
+    }
 }
 
 /// What to do where there is no case file at `path`.

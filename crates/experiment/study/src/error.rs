@@ -9,7 +9,7 @@ use farm::self_check::SelfCheckError;
 use flow::inflow::InflowError;
 use flow::lattice::{LatticeError, PlaneSizeError};
 use formats::atomic::FileError;
-use formats::case::CaseError;
+use formats::case::{CaseError, Difference};
 use formats::turbine_file::TurbineFileError;
 use miette::Diagnostic;
 use std::path::PathBuf;
@@ -143,8 +143,8 @@ pub enum StudyError {
         /// Longest period (s).
         most: f64,
     },
-    /// Results of another case or of other turbines are to be resumed.
-    #[error("run {run} in {} was made with another version of the case or of a turbine", directory.display())]
+    /// Results of another case are to be resumed.
+    #[error("run {run} in {} was made with another version of the case{}", directory.display(), told(differences))]
     #[diagnostic(help(
         "repeat the --set of the first call, use --overwrite to make it again (with the runs that compare with it), or another folder with -o"
     ))]
@@ -153,6 +153,60 @@ pub enum StudyError {
         run: String,
         /// Its folder.
         directory: PathBuf,
+        /// What differs; empty where that cannot be told.
+        differences: Vec<Difference>,
+    },
+    /// A run is to go on for longer, and cannot.
+    #[error("run {run} in {} cannot go on from {before} s to {now} s: {reason}", directory.display())]
+    #[diagnostic(help(
+        "put time.duration back, use --overwrite to make the run again, or another folder with -o"
+    ))]
+    NotLengthened {
+        /// Run.
+        run: String,
+        /// Its folder.
+        directory: PathBuf,
+        /// Its duration (s).
+        before: f64,
+        /// The one asked for (s).
+        now: f64,
+        /// Why not.
+        reason: String,
+    },
+    /// A folder holds files of which nothing tells what they are.
+    #[error("{} holds files of a run, and no manifest.json that tells what made them", directory.display())]
+    #[diagnostic(help(
+        "put its manifest.json back to go on with --resume, use --overwrite to make the run in the place of what is there, or another folder with -o"
+    ))]
+    NoManifest {
+        /// Folder of the run.
+        directory: PathBuf,
+    },
+    /// A folder holds another sweep, or a study of its own where a sweep of studies is to be, or the reverse.
+    #[error("{} holds {found}, and the case makes {expected}", directory.display())]
+    #[diagnostic(help(
+        "give it another folder with -o; values may be added to the lists of [sweep], keys that make studies may not"
+    ))]
+    OtherSweep {
+        /// The folder.
+        directory: PathBuf,
+        /// What is there.
+        found: String,
+        /// What the case makes.
+        expected: String,
+    },
+    /// A run whose manifest does not tell the files of wind.
+    #[error("run {run} in {} does not tell which {file} it was made with: an earlier wakemix made it", directory.display())]
+    #[diagnostic(help(
+        "use --overwrite to make the run again (with the runs that compare with it), or another folder with -o"
+    ))]
+    UntoldWind {
+        /// Run.
+        run: String,
+        /// Its folder.
+        directory: PathBuf,
+        /// The file as the case names it.
+        file: String,
     },
     /// Results made with another turbine, controller's input or wind are to be resumed or compared with.
     #[error("run {run} in {} was made with another {file}", directory.display())]
@@ -196,7 +250,7 @@ pub enum StudyError {
     /// The machine has too little memory.
     #[error("the study needs {needed:.1} GiB of memory, {available:.1} GiB are free")]
     #[diagnostic(help(
-        "lower flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters"
+        "lower flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters; or make fewer runs at once with --jobs"
     ))]
     Memory {
         /// Needed (GiB).
@@ -226,6 +280,16 @@ pub enum StudyError {
         /// Channel.
         channel: String,
     },
+}
+
+/// What differs, in words behind a colon; the first few.
+fn told(differences: &[Difference]) -> String {
+    const MOST: usize = 4;
+    let mut words: Vec<String> = differences.iter().take(MOST).map(Difference::to_string).collect();
+    if differences.len() > MOST {
+        words.push(format!("and {} more", differences.len() - MOST));
+    }
+    if words.is_empty() { String::new() } else { format!(": {}", words.join("; ")) }
 }
 
 /// How to get the study going again where `file` is not the one of SHA-256 `sha256` any more.

@@ -22,6 +22,10 @@ pub struct StudyOptions {
     pub dry_run: bool,
     /// In a dry run, check the rotors as well, as a run does before it begins.
     pub check: bool,
+    /// Runs to make at a time; as many as cores and memory carry when absent, where each takes one thread.
+    pub jobs: Option<usize>,
+    /// Winds in which every run is made, of as many seeds of the turbulence: a sweep of `wind.seed`.
+    pub seeds: Option<usize>,
 }
 
 /// How a study ended.

@@ -73,6 +73,17 @@ impl Prepared {
         Ok(found)
     }
 
+    /// Everything that decides what [`self_check`](Self::self_check) finds: equal for studies that are
+    /// checked alike.
+    pub(crate) fn checked_alike(&self) -> String {
+        let mut wind = self.case.wind.clone();
+        wind.seed = 0;
+        let machines: Vec<String> =
+            self.case.turbines.iter().map(farm::case::Placement::machine).collect();
+        let (spacing, interval) = (self.plan.spacing, self.plan.interval);
+        format!("{wind:?} {machines:?} {spacing:?} {interval:?} {:?}", self.case.flow.solver)
+    }
+
     /// One model alone in a tunnel with the study's cells and step.
     fn check(
         &self,

@@ -13,6 +13,7 @@ pub(crate) mod manner;
 pub(crate) mod output;
 pub(crate) mod report;
 pub(crate) mod run;
+mod sweep_table;
 pub(crate) mod table;
 pub(crate) mod turbine;
 pub(crate) mod validate;

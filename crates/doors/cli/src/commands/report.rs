@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// Rebuilds the report of the study in `directory`; its path goes to stdout.
 pub(crate) fn run(directory: &Path) -> Result<()> {
-    let (summaries, page) = wakemix::postprocessing::report(directory)?;
-    detail(&format!("read: {} runs in {}", summaries.len(), directory.display()));
-    print(&format!("{}\n", page.display()))
+    let made = wakemix::postprocessing::report(directory)?;
+    detail(&format!("read: {} runs in {}", made.summaries.len(), directory.display()));
+    print(&format!("{}\n", made.page.display()))
 }
