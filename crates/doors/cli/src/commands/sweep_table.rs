@@ -3,6 +3,12 @@
 use wakemix::basis::records::{SweepRow, SweepTable};
 use wakemix::postprocessing::analyses::with_interval;
 
+/// Damage-equivalent loads whose changes are printed: heading, channel, what it is.
+const LOADS: [(&str, &str, &str); 2] = [
+    ("flap", "RootMyb1", "flapwise at the root of blade 1"),
+    ("tower", "TwrBsMyt", "fore-aft at the tower base"),
+];
+
 /// A line for each run: the swept values, power, and gains of each turbine and of all; below it what the
 /// intervals are and what else there is to know.
 pub(crate) fn render(table: &SweepTable) -> String {
@@ -23,6 +29,10 @@ pub(crate) fn render(table: &SweepTable) -> String {
         text.push('\n');
     }
     text += &convention(table);
+    if loads(table, &parts).next().is_some() {
+        let told = LOADS.map(|(heading, channel, what)| format!("{heading}: {what} ({channel})"));
+        text += &format!("changes of 1-Hz damage-equivalent loads; {}\n", told.join("; "));
+    }
     for remark in &table.remarks {
         text += &format!("{remark}\n");
     }
@@ -52,6 +62,18 @@ fn parts(table: &SweepTable) -> Vec<&str> {
     names
 }
 
+/// Turbines with those of their loads of which any row tells a change.
+fn loads<'t>(
+    table: &'t SweepTable,
+    parts: &'t [&'t str],
+) -> impl Iterator<Item = (&'t str, (&'static str, &'static str, &'static str))> + 't {
+    let all = parts.iter().flat_map(|name| LOADS.into_iter().map(move |load| (*name, load)));
+    all.filter(|(name, (_, channel, _))| {
+        let mut loads = table.rows.iter().filter_map(|row| row.load(name, channel));
+        loads.any(|load| load.change.is_some())
+    })
+}
+
 fn heads(table: &SweepTable, parts: &[&str]) -> Vec<String> {
     let mut heads = vec!["run".to_owned()];
     heads.extend(table.keys.iter().map(|key| key.label.clone()));
@@ -60,6 +82,7 @@ fn heads(table: &SweepTable, parts: &[&str]) -> Vec<String> {
     }
     heads.extend(parts.iter().map(|name| format!("{name} kW")));
     heads.extend(parts.iter().map(|name| format!("{name} gain %")));
+    heads.extend(loads(table, parts).map(|(name, (heading, ..))| format!("{name} {heading} %")));
     heads
 }
 
@@ -78,6 +101,10 @@ fn cells(table: &SweepTable, row: &SweepRow, parts: &[&str]) -> Vec<String> {
     };
     cells.extend(parts.iter().map(power));
     cells.extend(parts.iter().map(gain));
+    cells.extend(loads(table, parts).map(|(name, (_, channel, _))| {
+        let change = row.load(name, channel).and_then(|load| load.change.as_ref());
+        change.map_or(String::new(), |change| with_interval(change, 100.0, 1))
+    }));
     cells
 }
 
@@ -115,7 +142,13 @@ mod tests {
             settings: settings.into_iter().collect(),
             studies: vec!["seed-1".into(), "seed-2".into()],
             seeds: vec![1, 2],
-            parts: vec![SweepPart { name: "T1".into(), power, gain, gains: Vec::new() }],
+            parts: vec![SweepPart {
+                name: "T1".into(),
+                power,
+                gain,
+                gains: Vec::new(),
+                loads: Vec::new(),
+            }],
         }
     }
 
