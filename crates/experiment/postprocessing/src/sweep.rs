@@ -5,8 +5,8 @@ use crate::error::InRecords;
 use crate::seeds::{GainsQuestion, RunGains, gains_over_seeds};
 use analysis::statistics::independent;
 use basis::records::{
-    SWEEP_SCHEMA_VERSION, Setting, Statistic, Summary, Sweep, SweepPart, SweepRow, SweepTable,
-    SweptRun, SweptStudy,
+    Load, LoadKind, SWEEP_SCHEMA_VERSION, Setting, Statistic, Summary, Sweep, SweepLoad, SweepPart,
+    SweepRow, SweepTable, SweptRun, SweptStudy, TurbineSummary,
 };
 use formats::records::{self, RunFolder};
 use std::path::{Path, PathBuf};
@@ -164,19 +164,64 @@ fn gains(
 
 /// The turbines of the run of `summary`, and all together where they feel one another.
 fn of_one_wind(summary: &Summary) -> Vec<SweepPart> {
-    let part = |name: &str, power: &Statistic, gain: &Option<Statistic>| SweepPart {
-        name: name.to_owned(),
-        power: *power,
-        gain: *gain,
+    let of_turbine = |turbine: &TurbineSummary| SweepPart {
+        name: turbine.name.clone(),
+        power: turbine.power,
+        gain: turbine.power_gain,
         gains: Vec::new(),
+        loads: turbine
+            .loads
+            .iter()
+            .filter_map(|load| of_load(load, alone(load.value), load.change))
+            .collect(),
     };
-    let turbines = summary.turbines.iter();
-    let mut parts: Vec<SweepPart> =
-        turbines.map(|turbine| part(&turbine.name, &turbine.power, &turbine.power_gain)).collect();
+    let mut parts: Vec<SweepPart> = summary.turbines.iter().map(of_turbine).collect();
     if summary.has_wakes() && parts.len() > 1 {
-        parts.push(part("all", &summary.array_power, &summary.array_power_gain));
+        parts.push(SweepPart {
+            name: "all".to_owned(),
+            power: summary.array_power,
+            gain: summary.array_power_gain,
+            gains: Vec::new(),
+            loads: Vec::new(),
+        });
     }
     parts
+}
+
+/// A value of which no interval is known.
+fn alone(value: f64) -> Statistic {
+    Statistic { mean: value, standard_deviation: 0.0, half_width_95: None, n_blocks: 1 }
+}
+
+/// `load` with its `value` and `change`; none where it is no damage-equivalent one.
+fn of_load(load: &Load, value: Statistic, change: Option<Statistic>) -> Option<SweepLoad> {
+    let LoadKind::DamageEquivalent { slope, .. } = load.kind else { return None };
+    let (channel, unit) = (load.channel.clone(), load.unit.clone());
+    Some(SweepLoad { channel, unit, slope, value, change })
+}
+
+/// The damage-equivalent loads of the turbine called `name` over all `summaries`, those that it has in each.
+fn loads_of_winds(
+    name: &str,
+    summaries: &[&Summary],
+) -> Result<Vec<SweepLoad>, PostprocessingError> {
+    let turbine = |summary: &'_ &Summary| -> Option<TurbineSummary> {
+        summary.turbines.iter().find(|turbine| turbine.name == name).cloned()
+    };
+    let Some(turbines) = summaries.iter().map(turbine).collect::<Option<Vec<_>>>() else {
+        return Ok(Vec::new());
+    };
+    let mut loads = Vec::new();
+    for load in turbines[0].loads.iter().filter(|load| load.kind.is_damage_equivalent()) {
+        let same = turbines.iter().map(|turbine| turbine.damage_equivalent(&load.channel));
+        let Some(same) = same.collect::<Option<Vec<_>>>() else { continue };
+        let values: Vec<f64> = same.iter().map(|load| load.value).collect();
+        let changes = same.iter().map(|load| load.change.map(|change| change.mean));
+        let changes: Option<Vec<f64>> = changes.collect();
+        let change = changes.map(|changes| independent(&changes)).transpose()?;
+        loads.extend(of_load(load, independent(&values)?, change));
+    }
+    Ok(loads)
 }
 
 /// The same of a run that was `made` in several winds, with its `gains` over them.
@@ -202,8 +247,10 @@ fn of_winds(
     }
     let part = |(name, powers): (String, Vec<f64>)| {
         let part = gains.and_then(|gains| gains.parts.iter().find(|part| part.name == name));
+        let loads = loads_of_winds(&name, &summaries().collect::<Vec<_>>())?;
         Ok(SweepPart {
             name,
+            loads,
             power: independent(&powers)?,
             gain: part.map(|part| part.together),
             gains: part.map_or(Vec::new(), |part| part.gains.clone()),

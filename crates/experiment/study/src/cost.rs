@@ -56,8 +56,8 @@ impl Prepared {
         if self.case.output.keeps_checkpoint { self.checkpoint_of_run(index) } else { 0 }
     }
 
-    /// The cost of the `open` runs (their places in the case) with their `outputs`, and of the identifications
-    /// before them, which cost `costs`; the machine's speed is not known yet.
+    /// The cost of the `open` runs (their places in the case) with their `outputs`, and of the
+    /// identifications before them, which cost `costs`; the machine's speed is not known yet.
     pub(crate) fn estimate(
         &self,
         open: &[usize],

@@ -10,8 +10,8 @@ pub use control::{ControlSetting, ControlSummary, Finding, PitchExcitation, Sett
 pub use load::{Load, LoadKind};
 use serde::{Deserialize, Serialize};
 pub use sweep::{
-    SWEEP_SCHEMA_VERSION, Setting, Sweep, SweepPart, SweepRow, SweepTable, SweptKey, SweptRun,
-    SweptStudy, SweptValue,
+    SWEEP_SCHEMA_VERSION, Setting, Sweep, SweepLoad, SweepPart, SweepRow, SweepTable, SweptKey,
+    SweptRun, SweptStudy, SweptValue,
 };
 pub use warning::{Warning, WarningKind};
 

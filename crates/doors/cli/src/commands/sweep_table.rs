@@ -4,8 +4,15 @@ use wakemix::basis::records::{SweepRow, SweepTable};
 use wakemix::postprocessing::analyses::with_interval;
 use wakemix::report::text_table::{Column, TextTable, wrapped};
 
-/// A line for each run in `width` columns: the swept values, power, and in a further table where there is no
-/// room gains of each turbine and of all; below it what the intervals are and what else there is to know.
+/// Damage-equivalent loads whose changes are printed: heading, channel, what it is.
+const LOADS: [(&str, &str, &str); 2] = [
+    ("flap", "RootMyb1", "flapwise at the root of blade 1"),
+    ("tower", "TwrBsMyt", "fore-aft at the tower base"),
+];
+
+/// A line for each run in `width` columns: the swept values and power; in further tables, where there is no
+/// room, gains of each turbine and of all, and loads; below it what the intervals are and what else there is
+/// to know.
 pub(crate) fn render(table: &SweepTable, width: usize) -> String {
     let parts = parts(table);
     let (keys, columns) = heads(table, &parts);
@@ -16,6 +23,11 @@ pub(crate) fn render(table: &SweepTable, width: usize) -> String {
     let mut text = format!("{}: {}\n", table.case, what(table));
     text += &lines.fitted(width);
     text += &wrapped(&convention(table), width);
+    if loads(table, &parts).next().is_some() {
+        let told = LOADS.map(|(heading, channel, what)| format!("{heading}: {what} ({channel})"));
+        let told = format!("changes of 1-Hz damage-equivalent loads; {}\n", told.join("; "));
+        text += &wrapped(&told, width);
+    }
     for remark in &table.remarks {
         text += &wrapped(&format!("{remark}\n"), width);
     }
@@ -45,6 +57,18 @@ fn parts(table: &SweepTable) -> Vec<&str> {
     names
 }
 
+/// Turbines with those of their loads of which any row tells a change.
+fn loads<'t>(
+    table: &'t SweepTable,
+    parts: &'t [&'t str],
+) -> impl Iterator<Item = (&'t str, (&'static str, &'static str, &'static str))> + 't {
+    let all = parts.iter().flat_map(|name| LOADS.into_iter().map(move |load| (*name, load)));
+    all.filter(|(name, (_, channel, _))| {
+        let mut loads = table.rows.iter().filter_map(|row| row.load(name, channel));
+        loads.any(|load| load.change.is_some())
+    })
+}
+
 /// Columns of run and swept values, and those of what came of them.
 fn heads(table: &SweepTable, parts: &[&str]) -> (Vec<Column>, Vec<Column>) {
     let mut keys = vec![Column::words("run")];
@@ -54,7 +78,9 @@ fn heads(table: &SweepTable, parts: &[&str]) -> (Vec<Column>, Vec<Column>) {
     }
     let powers = parts.iter().map(|name| Column::number(format!("{name} kW")));
     let gains = parts.iter().map(|name| Column::number(format!("{name} gain %")));
-    (keys, powers.chain(gains).collect())
+    let loads = loads(table, parts);
+    let loads = loads.map(|(name, (heading, ..))| Column::number(format!("{name} {heading} %")));
+    (keys, powers.chain(gains).chain(loads).collect())
 }
 
 fn cells(table: &SweepTable, row: &SweepRow, parts: &[&str]) -> Vec<String> {
@@ -72,6 +98,10 @@ fn cells(table: &SweepTable, row: &SweepRow, parts: &[&str]) -> Vec<String> {
     };
     cells.extend(parts.iter().map(power));
     cells.extend(parts.iter().map(gain));
+    cells.extend(loads(table, parts).map(|(name, (_, channel, _))| {
+        let change = row.load(name, channel).and_then(|load| load.change.as_ref());
+        change.map_or(String::new(), |change| with_interval(change, 100.0, 1))
+    }));
     cells
 }
 
@@ -109,7 +139,13 @@ mod tests {
             settings: settings.into_iter().collect(),
             studies: vec!["seed-1".into(), "seed-2".into()],
             seeds: vec![1, 2],
-            parts: vec![SweepPart { name: "T1".into(), power, gain, gains: Vec::new() }],
+            parts: vec![SweepPart {
+                name: "T1".into(),
+                power,
+                gain,
+                gains: Vec::new(),
+                loads: Vec::new(),
+            }],
         }
     }
 

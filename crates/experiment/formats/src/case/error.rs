@@ -99,6 +99,11 @@ impl Problem {
         self
     }
 
+    /// Whether it stands in `place` of the case file.
+    pub(super) fn stands_in(&self, place: &Range<usize>) -> bool {
+        place.contains(&self.span.start)
+    }
+
     /// Line in the file, from 1.
     pub fn line(&self) -> usize {
         let before = &self.text.inner().as_bytes()[..self.span.start];

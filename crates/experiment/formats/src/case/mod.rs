@@ -171,6 +171,13 @@ pub fn parse_all(
     let check = |entries: &Vec<Entry>| check::check(entries, text.len(), &sources);
     let cases: Result<Vec<Case>, Vec<Problem>> = expanded.studies.iter().map(check).collect();
     let cases = cases.map_err(invalid)?;
+    let (base, replaced) = &expanded.replaced;
+    let mut problems =
+        if base.is_empty() { Vec::new() } else { check(base).err().unwrap_or_default() };
+    problems.retain(|problem| replaced.iter().any(|place| problem.stands_in(place)));
+    if !problems.is_empty() {
+        return Err(invalid(problems));
+    }
     if let Some(sweep) = &expanded.sweep {
         sweep::check_seeds(sweep, &cases, &sources).map_err(invalid)?;
     }

@@ -14,6 +14,7 @@ use basis::records::{SWEEP_SCHEMA_VERSION, Setting, Sweep, SweptKey, SweptStudy,
 use farm::case::{Case, Instruments, Placement};
 use farm::solvers::WindSource;
 use names::{labels, with_settings};
+use std::cell::RefCell;
 use std::ops::Range;
 
 /// Most studies of a sweep, and most runs of a study (–).
@@ -28,6 +29,9 @@ pub(super) struct Expanded {
     pub(super) studies: Vec<Vec<Entry>>,
     /// What is swept; none where nothing is.
     pub(super) sweep: Option<Sweep>,
+    /// The tree as it stands in the file, without the sweep, and the places of values in it that others
+    /// replace: they are in no study, and are to be sound all the same.
+    pub(super) replaced: (Vec<Entry>, Vec<Range<usize>>),
 }
 
 /// One swept key with its list.
@@ -69,10 +73,10 @@ pub(super) fn expand(
     sources: &Sources,
 ) -> Result<Expanded, Vec<Problem>> {
     let Some(place) = entries.iter().position(|entry| entry.key == "sweep") else {
-        return Ok(Expanded { studies: vec![entries], sweep: None });
+        return Ok(Expanded { studies: vec![entries], sweep: None, replaced: Default::default() });
     };
     let table = entries.remove(place);
-    let sweeping = Sweeping { sources, length };
+    let sweeping = Sweeping { sources, length, replaced: RefCell::default() };
     let axes = sweeping.axes(&table)?;
     sweeping.check_overrides(&axes, &entries)?;
     let (of_studies, of_runs): (Vec<&Axis>, Vec<&Axis>) =
@@ -103,7 +107,8 @@ pub(super) fn expand(
         studies: swept_studies,
         runs: swept_runs,
     };
-    Ok(Expanded { studies, sweep: Some(sweep) })
+    let replaced = (entries, sweeping.replaced.into_inner());
+    Ok(Expanded { studies, sweep: Some(sweep), replaced })
 }
 
 /// The `name` of the case of `entries`; empty where it has none, which is noted elsewhere.
@@ -119,6 +124,8 @@ struct Sweeping<'a> {
     sources: &'a Sources,
     /// Bytes of the file; what is beyond comes from overrides.
     length: usize,
+    /// Places of values that others replace.
+    replaced: RefCell<Vec<Range<usize>>>,
 }
 
 impl Sweeping<'_> {
@@ -257,6 +264,11 @@ impl Sweeping<'_> {
         place: usize,
     ) -> Result<(), Vec<Problem>> {
         let node = axis.items[place].1.clone();
+        let old = locate(tree, path).map(|node| node.span.clone());
+        let is_new = |span: &Range<usize>| !self.replaced.borrow().contains(span);
+        if let Some(span) = old.filter(is_new) {
+            self.replaced.borrow_mut().push(span);
+        }
         insert(tree, path, node, axis.span.clone()).map_err(|why| {
             let message = format!("`{}` cannot be swept: {why}", axis.key());
             let fix = "name tables under one heading by their number, from 0, or their name";

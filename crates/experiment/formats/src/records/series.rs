@@ -238,7 +238,9 @@ mod tests {
         assert!(error.to_string().contains("no row ends at byte"), "{error}");
         let error =
             SeriesWriter::resume(&folder.path().join("other.csv"), &names(), 5).unwrap_err();
-        assert!(error.to_string().contains("cannot read the series"), "{error}");
+        assert!(error.to_string().contains("it is gone"), "{error}");
+        let advice = miette::Diagnostic::help(&error).unwrap().to_string();
+        assert!(advice.contains("--overwrite"), "{advice}");
     }
 
     #[test]

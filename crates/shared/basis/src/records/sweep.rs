@@ -89,13 +89,19 @@ impl SweptValue {
     pub fn words(&self) -> String {
         match self {
             Self::Whole(number) => number.to_string(),
-            Self::Number(number) => number.to_string(),
+            Self::Number(number) => shortest(*number),
             Self::Text(text) => text.clone(),
             Self::Numbers(numbers) => {
-                numbers.iter().map(f64::to_string).collect::<Vec<_>>().join("-")
+                numbers.iter().map(|number| shortest(*number)).collect::<Vec<_>>().join("-")
             }
         }
     }
+}
+
+/// `number` with the fewest digits that tell it, with an exponent where it is far from one.
+fn shortest(number: f64) -> String {
+    let digits = format!("{number:?}");
+    digits.strip_suffix(".0").map_or(digits.clone(), str::to_owned)
 }
 
 /// What came of a sweep: a row for each run, all winds together that differ in their seed alone.
@@ -149,12 +155,34 @@ pub struct SweepPart {
     pub gain: Option<Statistic>,
     /// The gain in each wind (–); empty with one.
     pub gains: Vec<f64>,
+    /// Damage-equivalent loads of a turbine, by channel; none of several together.
+    pub loads: Vec<SweepLoad>,
+}
+
+/// A damage-equivalent load of a turbine in a sweep.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SweepLoad {
+    /// Channel.
+    pub channel: String,
+    /// Unit of the load.
+    pub unit: String,
+    /// Slope of the Wöhler line (–).
+    pub slope: f64,
+    /// The load, in its unit; over the winds where there are several.
+    pub value: Statistic,
+    /// Its change against the compared run in the same wind (–), with an interval as for the gain.
+    pub change: Option<Statistic>,
 }
 
 impl SweepRow {
     /// The value of `key`.
     pub fn value(&self, key: &str) -> Option<&SweptValue> {
         self.settings.iter().find(|setting| setting.key == key).map(|setting| &setting.value)
+    }
+
+    /// The damage-equivalent load of `channel` of the turbine called `turbine`.
+    pub fn load(&self, turbine: &str, channel: &str) -> Option<&SweepLoad> {
+        self.part(turbine)?.loads.iter().find(|load| load.channel == channel)
     }
 
     /// What came of the turbine, or of those together, called `name`.
@@ -173,5 +201,6 @@ mod tests {
         let values =
             [SweptValue::Whole(3), SweptValue::Number(0.25), SweptValue::Number(3.0), numbers];
         assert_eq!(values.map(|value| value.words()), ["3", "0.25", "3", "5--0.5"]);
+        assert_eq!(SweptValue::Number(1e308).words(), "1e308");
     }
 }

@@ -27,6 +27,7 @@ fn table(n_winds: usize) -> SweepTable {
             power: statistic(1e7),
             gain: gain.map(|gain| Statistic { half_width_95: Some(0.01), ..statistic(gain) }),
             gains: gain.filter(|_| n_winds > 1).map_or(Vec::new(), |gain| vec![gain; n_winds]),
+            loads: Vec::new(),
         }],
     };
     let mut rows = vec![row(Vec::new(), None)];
