@@ -15,6 +15,7 @@ pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod table;
 pub(crate) mod turbine;
+#[cfg(feature = "validate")]
 pub(crate) mod validate;
 
 /// Exit code of input that cannot be used.
