@@ -50,7 +50,15 @@ enum Command {
     #[command(subcommand)]
     Analyse(commands::analyse::AnalyseCommand),
     /// Repeat recorded validations and print measured against expected
+    #[cfg(feature = "validate")]
     Validate(commands::validate::ValidateArguments),
+    /// Not in this build
+    #[cfg(not(feature = "validate"))]
+    #[command(hide = true)]
+    Validate {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        words: Vec<String>,
+    },
     /// Print the JSON Schema of the case file, for editors
     Schema,
     /// Print completions of commands and options for a shell
@@ -96,7 +104,14 @@ fn run(command: Command) -> ExitCode {
         Command::Inflow(command) => commands::inflow::run(command),
         Command::Fatigue(arguments) => commands::fatigue::run(&arguments),
         Command::Analyse(command) => commands::analyse::run(&command),
+        #[cfg(feature = "validate")]
         Command::Validate(arguments) => return commands::validate::run(&arguments),
+        #[cfg(not(feature = "validate"))]
+        Command::Validate { words } => Err(miette::miette!(
+            help = "build it with its default features, without --no-default-features",
+            "this program was built without validations: `wakemix validate {}` is not in it",
+            words.join(" ")
+        )),
         Command::Schema => output::print(&(wakemix::formats::case::schema() + "\n")),
         Command::Completions { shell } => {
             commands::definition::completions(shell, Arguments::command())

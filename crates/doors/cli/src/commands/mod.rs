@@ -16,6 +16,7 @@ pub(crate) mod run;
 mod sweep_table;
 pub(crate) mod table;
 pub(crate) mod turbine;
+#[cfg(feature = "validate")]
 pub(crate) mod validate;
 
 /// Exit code of input that cannot be used.
