@@ -164,8 +164,8 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "meandering-disk",
-        about: "the flexible turbine in a rotating disk, in its middle and aside, loads amplified and attenuated, beside published tables",
-        cost: Cost::Minutes(4),
+        about: "the flexible turbine in a rotating disk, in its middle and aside, loads amplified and attenuated, led by both moments and by tilt alone, beside published tables",
+        cost: Cost::Minutes(6),
         run: meandering::disk,
         pictures: None,
         page: "meandering",
@@ -173,8 +173,8 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "meandering-wake",
-        about: "the flexible turbine in the recorded wake of a helix, loads amplified and attenuated, beside a published table",
-        cost: Cost::Minutes(12),
+        about: "the flexible turbine in the recorded wake of a helix, of one frequency and of one that rises, loads amplified and attenuated, led by both moments and by tilt alone, beside a published table",
+        cost: Cost::Minutes(20),
         run: meandering::wake,
         pictures: None,
         page: "meandering",

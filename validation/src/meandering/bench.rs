@@ -29,8 +29,9 @@ const STEP: Case = Case {
 const ATTENUATION: Case =
     Case { name: "attenuation (3-8)", figure: "3-8", factor: 0.1, strouhals: [0.2, 0.2], ..STEP };
 
-/// The source's figures, and attenuation by the way that the program takes by default. Their steps, jumps,
-/// offsets and references are not given in numbers; these are ours, within the band of St 0.15 to 0.25.
+/// The source's figures, a jump of the amplitude, which its section 3-2-1 tells of, and attenuation by the
+/// way that the program takes by default. Their steps, jumps, offsets and references are not given in
+/// numbers; these are ours, within the band of St 0.15 to 0.25.
 pub(super) const CASES: [Case; 7] = [
     STEP,
     Case {
@@ -42,8 +43,8 @@ pub(super) const CASES: [Case; 7] = [
     },
     Case { name: "offset and step (3-5)", figure: "3-5", offset: 0.5, ..STEP },
     Case {
-        name: "amplitude jump (3-6)",
-        figure: "3-6",
+        name: "amplitude jump (3-2-1)",
+        figure: "amplitude-jump",
         strouhals: [0.2, 0.2],
         amplitudes: [1.0, 1.4],
         ..STEP

@@ -69,9 +69,10 @@ pub fn disk() -> Vec<Row> {
         (Followed::Wake, "wake followed, its amplitude observed", observed, &DEEP_FACTORS),
     ] {
         let claimed: &[_] = if reference == given { &PUBLISHED } else { &[] };
-        let choice = LoopChoice { followed, reference, decoupling };
+        let choice = LoopChoice { following: following(), followed, reference, decoupling };
         rows.extend(full.table(name, factors, choice, Some(claimed)));
     }
+    rows.extend(tilt_leads(decoupling));
     // Pitch acts as it was found in full overlap: a turbine that is identified alone knows nothing of where
     // the wake will meet it.
     // Half a diameter aside the loop does not lock, nothing is pitched, and what then does not change is no
@@ -84,7 +85,7 @@ pub fn disk() -> Vec<Row> {
             ("load followed", Followed::Load, partial.given()),
             ("wake followed, observed", Followed::Wake, observed),
         ] {
-            let choice = LoopChoice { followed, reference, decoupling };
+            let choice = LoopChoice { following: following(), followed, reference, decoupling };
             let name = format!("{place}, {how}");
             rows.extend(partial.table(&name, &PARTIAL_FACTORS, choice, claimed));
         }
@@ -95,6 +96,28 @@ pub fn disk() -> Vec<Row> {
     let yaw_leads = TwoAxisSettings { leader: Leader::Yaw, ..following() };
     rows.extend(Bench::new(0.5, against).rows("½ D aside, the other sense followed"));
     rows.extend(Bench::new(0.5, yaw_leads).rows("½ D aside, yaw followed"));
+    rows
+}
+
+/// The same in full overlap with a loop that the tilt moment alone leads, as the source's figure 2-15 has it;
+/// yaw has the same phase a quarter period later.
+fn tilt_leads(decoupling: Decoupling) -> Vec<Row> {
+    let following = TwoAxisSettings { leader: Leader::Tilt, ..following() };
+    let bench = Bench::new(0.0, following);
+    let mut rows = bench.rows("full overlap, tilt leads");
+    for (followed, name, reference, factors) in [
+        (Followed::Load, "tilt leads, load followed", bench.given(), &FACTORS[3..]),
+        (
+            Followed::Wake,
+            "tilt leads, wake followed, its amplitude observed",
+            Reference::Observed,
+            &DEEP_FACTORS[..],
+        ),
+    ] {
+        let claimed: &[_] = if followed == Followed::Load { &PUBLISHED } else { &[] };
+        let choice = LoopChoice { following, followed, reference, decoupling };
+        rows.extend(bench.table(name, factors, choice, Some(claimed)));
+    }
     rows
 }
 
@@ -222,6 +245,7 @@ fn following() -> TwoAxisSettings {
 /// What the runs of a table have in common.
 #[derive(Clone, Copy)]
 struct LoopChoice {
+    following: TwoAxisSettings,
     followed: Followed,
     reference: Reference,
     decoupling: Decoupling,
@@ -229,9 +253,9 @@ struct LoopChoice {
 
 impl LoopChoice {
     fn settings(&self, factor: f64) -> MeanderingControlSettings {
-        let Self { followed, reference, decoupling } = *self;
+        let Self { following, followed, reference, decoupling } = *self;
         MeanderingControlSettings {
-            follower: following(),
+            follower: following,
             followed,
             factor,
             reference,

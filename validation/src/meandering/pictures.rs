@@ -14,16 +14,14 @@ use std::path::Path;
 /// # Errors
 /// Those of [`report::write_synchronisation`].
 pub fn pictures(folder: &Path) -> Result<Vec<String>, ReportError> {
-    let tracks = CASES.iter().map(figure).collect();
+    let offset = CASES.iter().find(|case| case.figure == "3-5").map(tracking_errors);
+    let tracks = CASES.iter().map(figure).chain(offset).collect();
     report::write_synchronisation(&Synchronisation { tracks, ..Synchronisation::default() }, folder)
 }
 
 /// What becomes of `case` from the start of control on.
 fn figure(case: &Case) -> TrackFigure {
-    let runs = kinds().map(|(name, kind)| {
-        let run = run(case, kind, true).expect("the bench's own settings are sound");
-        (name, run[(START / INTERVAL) as usize..].to_vec())
-    });
+    let runs = controlled(case);
     let mut rate = row("frequency (mHz)", &runs, |now| millihertz(now.estimate.rate));
     let mut amplitude = row("amplitude (m)", &runs, |now| now.amplitude);
     let error = row("phase error (°)", &runs, |now| {
@@ -46,6 +44,37 @@ fn figure(case: &Case) -> TrackFigure {
     }
 }
 
+/// The source's figure 3-6: what is left of amplitude and bias on `case` with each generator.
+///
+/// The errors are those of Eq. 2-38, reference minus estimated amplitude, and minus the estimated bias; a
+/// SOGI estimates no bias.
+fn tracking_errors(case: &Case) -> TrackFigure {
+    let runs = controlled(case);
+    let amplitude = row("amplitude error (m)", &runs, |now| now.reference - now.amplitude);
+    let mut bias = row("bias error (m)", &runs, |now| -now.estimate.offset);
+    bias.lines.retain(|line| line.name != NO_OFFSET);
+    TrackFigure {
+        name: "figure-3-6".to_owned(),
+        title: format!("Three masses on springs: tracking errors, {}", case.name),
+        caption: "What is lacking of the reference amplitude, and minus the bias, both as the loop estimates them. A SOGI estimates no bias, \
+                  and the offset makes its amplitude oscillate."
+            .to_owned(),
+        rows: vec![amplitude, bias],
+        mark: Some(0.5 * END),
+    }
+}
+
+/// Name of the generator that estimates no offset.
+const NO_OFFSET: &str = "SOGI";
+
+/// The runs of `case` with each generator from the start of control on.
+fn controlled(case: &Case) -> [(&'static str, Vec<Instant>); 3] {
+    kinds().map(|(name, kind)| {
+        let run = run(case, kind, true).expect("the bench's own settings are sound");
+        (name, run[(START / INTERVAL) as usize..].to_vec())
+    })
+}
+
 fn millihertz(rate: f64) -> f64 {
     1e3 * rate / TAU
 }
@@ -63,6 +92,7 @@ fn line(name: &str, colour: usize, run: &[Instant], of: fn(&Instant) -> f64) -> 
         colour,
         times: run.iter().map(|now| now.time).collect(),
         values: run.iter().map(of).collect(),
+        band: Vec::new(),
     }
 }
 
@@ -75,9 +105,9 @@ mod tests {
     /// true phase.
     #[test]
     fn a_picture_holds_what_its_labels_say() {
-        let case = CASES.iter().find(|case| case.figure == "3-6").expect("a case");
+        let case = CASES.iter().find(|case| case.figure == "amplitude-jump").expect("a case");
         let figure = figure(case);
-        assert_eq!(figure.name, "figure-3-6");
+        assert_eq!(figure.name, "figure-amplitude-jump");
         let [rate, amplitude, error, place] = &figure.rows[..] else { panic!("four rows") };
         let last = |row: &TrackRow, index: usize| *row.lines[index].values.last().expect("values");
         // St 0.2 in 7 m/s past 240 m.
@@ -92,5 +122,30 @@ mod tests {
         }
         let names: Vec<&str> = rate.lines.iter().map(|line| line.name.as_str()).collect();
         assert_eq!(names, ["true rate, reference", "SOGI", "ESOGI", "MSTOGI"]);
+    }
+
+    /// With an offset in the force: errors go to zero where a generator estimates it; one that does not has
+    /// no line of it, and its amplitude keeps oscillating.
+    #[test]
+    fn tracking_errors_vanish_where_the_offset_is_estimated() {
+        let case = CASES.iter().find(|case| case.figure == "3-5").expect("a case");
+        let figure = tracking_errors(case);
+        let [amplitude, bias] = &figure.rows[..] else { panic!("two rows") };
+        let names = |row: &TrackRow| -> Vec<String> {
+            row.lines.iter().map(|line| line.name.clone()).collect()
+        };
+        assert_eq!(names(amplitude), ["SOGI", "ESOGI", "MSTOGI"]);
+        assert_eq!(names(bias), ["ESOGI", "MSTOGI"]);
+        // The largest over the last 200 s; of the bias over its largest of all.
+        let last = |line: &TrackLine| {
+            let n = (200.0 / INTERVAL) as usize;
+            worst(line.values[line.values.len() - n..].iter().map(|value| value.abs()))
+        };
+        for line in &bias.lines {
+            let whole = worst(line.values.iter().map(|value| value.abs()));
+            assert!(last(line) < 0.1 * whole, "{}: {} of {whole}", line.name, last(line));
+        }
+        let [sogi, esogi, mstogi] = [0, 1, 2].map(|index| last(&amplitude.lines[index]));
+        assert!(sogi > esogi.max(mstogi), "{sogi} {esogi} {mstogi}");
     }
 }

@@ -29,6 +29,18 @@ const PUBLISHED: [Published; 7] = [
     ("factor-0-35", 0.35, None),
 ];
 
+/// Runs of the second, the baseline first.
+const RUNS: [&str; 8] = [
+    "baseline",
+    PUBLISHED[0].0,
+    PUBLISHED[1].0,
+    PUBLISHED[2].0,
+    PUBLISHED[3].0,
+    PUBLISHED[4].0,
+    PUBLISHED[5].0,
+    PUBLISHED[6].0,
+];
+
 /// Records the wake, runs the turbine in it; prints the table with intervals, gives what is claimed as rows.
 pub fn wake() -> Vec<Row> {
     made().unwrap_or_else(failure)
@@ -36,11 +48,33 @@ pub fn wake() -> Vec<Row> {
 
 fn made() -> Result<Vec<Row>, String> {
     let (_, folder) = summaries(WAKE, "wake-inflow", Vec::new())?;
-    let planes = folder.join("helix").join("inflow-T2.bts");
-    // A path in a case file counts from that file.
-    let planes = absolute(planes).map_err(|error| error.to_string())?;
-    let overrides = vec![format!("wind.planes={}", planes.display())];
-    let (summaries, _) = summaries(TURBINE, "meandering-in-wake", overrides)?;
+    let planes_of = |run: &str| {
+        // A path in a case file counts from that file.
+        let planes = absolute(folder.join(run).join("inflow-T2.bts"));
+        let planes = planes.map_err(|error| error.to_string())?;
+        Ok::<_, String>(format!("wind.planes={}", planes.display()))
+    };
+    let planes = planes_of("helix")?;
+    let mut rows = of_leader("wake of a helix", "meandering-in-wake", vec![planes.clone()])?;
+    // The same led by the tilt moment alone, as the source has it; and with a frequency that rises, as its
+    // section 4-1-4 has it.
+    let leaders = RUNS.iter().map(|run| format!("run.{run}.control.T2.leader=\"tilt\""));
+    let leaders: Vec<String> = leaders.collect();
+    let swept = planes_of("helix-sweep")?;
+    for (name, study, planes) in [
+        ("wake of a helix, tilt leads", "meandering-in-wake-tilt", planes),
+        ("wake of a helix that sweeps, tilt leads", "meandering-in-wake-sweep", swept),
+    ] {
+        let overrides = std::iter::once(planes).chain(leaders.iter().cloned()).collect();
+        rows.extend(of_leader(name, study, overrides)?);
+    }
+    Ok(rows)
+}
+
+/// The turbine in the recorded wake with `overrides` of its case, in the study `study`; rows begin with
+/// `name`.
+fn of_leader(name: &'static str, study: &str, overrides: Vec<String>) -> Result<Vec<Row>, String> {
+    let (summaries, _) = summaries(TURBINE, study, overrides)?;
     let turbine = |run: &str| {
         let summary = find(&summaries, run).ok_or_else(|| format!("the run {run} is missing"))?;
         Ok::<&TurbineSummary, String>(&summary.turbines[0])
@@ -48,12 +82,13 @@ fn made() -> Result<Vec<Row>, String> {
     let baseline = turbine("baseline")?;
     let mut runs = Vec::new();
     for (run, factor, published) in PUBLISHED {
-        runs.push(Run { factor, published, turbine: turbine(run)? });
+        runs.push(Run { name, factor, published, turbine: turbine(run)? });
     }
+    tell!("\n{name}:\n");
     print(baseline, &runs)?;
     let locked = baseline.meandering.map_or(f64::NAN, |found| found.locked_share);
     let mut rows = vec![Row {
-        what: "wake of a helix: share of the time in lock".to_owned(),
+        what: format!("{name}: share of the time in lock"),
         measured: locked,
         expected: 1.0,
         tolerance: Within(0.1),
@@ -68,6 +103,8 @@ fn made() -> Result<Vec<Row>, String> {
 
 /// A run beside the one without control.
 struct Run<'a> {
+    /// What its rows begin with.
+    name: &'static str,
     /// Target factor (–).
     factor: f64,
     published: Option<[f64; 8]>,
@@ -99,16 +136,15 @@ impl Run<'_> {
     }
 
     fn rows(&self) -> Result<Vec<Row>, String> {
-        const NAME: &str = "wake of a helix";
-        let factor = self.factor;
+        let Self { name: of, factor, .. } = *self;
         let mut rows: Vec<Row> = ["tilt", "yaw"]
             .into_iter()
             .zip(self.reached())
-            .map(|(axis, share)| reached(NAME, factor, axis, share))
+            .map(|(axis, share)| reached(of, factor, axis, share))
             .collect();
         if let Some(published) = self.published {
             for ((name, change), expected) in self.changes()?.iter().zip(published) {
-                let what = format!("{NAME}, factor {factor}: {name}, beside table 4-6");
+                let what = format!("{of}, factor {factor}: {name}, beside table 4-6");
                 rows.push(beside(what, name, change, expected));
             }
         }

@@ -4,6 +4,7 @@ pub mod fatigue;
 pub mod line;
 pub mod phase;
 pub mod pitch;
+pub mod smooth;
 pub mod spectra;
 pub mod statistics;
 pub mod wake;

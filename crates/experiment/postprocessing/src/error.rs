@@ -125,6 +125,17 @@ pub enum PostprocessingError {
         /// What to write.
         fix: &'static str,
     },
+    /// No run of a study holds what an analysis is about.
+    #[error("no run in {} {lacking}", directory.display())]
+    #[diagnostic(help("{fix}"))]
+    NoSignals {
+        /// Folder of the study.
+        directory: PathBuf,
+        /// What none of them does, such as `keeps the wind along lines`.
+        lacking: &'static str,
+        /// What to do.
+        fix: &'static str,
+    },
     /// A series lacks a channel.
     #[error("{} has no channel `{channel}`", told(path))]
     #[diagnostic(help(

@@ -9,8 +9,10 @@ mod lock;
 mod over_offset;
 mod phase;
 mod seeds;
+mod signals;
 mod sweep;
 mod synchronisation;
+mod winds;
 
 pub use analyses::{ANALYSES, Analysis};
 pub use error::PostprocessingError;
@@ -20,7 +22,11 @@ pub use phase::{
     PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, Replayed, phase, phases, tune,
 };
 pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
+pub use signals::blade_moments::{MomentsAnswer, MomentsLine, MomentsQuestion, moments};
+pub use signals::meandering::{MeanderingAxisNumbers, MeanderingNumbers, meandering};
+pub use signals::spectra::{SpectraAnswer, SpectraLine, spectra};
 pub use synchronisation::curve::offset_panel;
+pub use winds::{WindNumbers, wind_numbers};
 
 use basis::records::{Summary, SweepTable};
 use error::InRecords;
@@ -78,6 +84,7 @@ fn report_of_study(directory: &Path) -> Result<(Vec<Summary>, PathBuf), Postproc
     let study = records::read_study(directory)?;
     let synchronisation =
         synchronisation::synchronisation(&study, directory).in_records(directory)?;
+    let signals = signals::of_study(&study, directory).in_records(directory)?;
     let mut runs = Vec::with_capacity(study.runs.len());
     let mut summaries = Vec::with_capacity(study.runs.len());
     for run in study.runs {
@@ -98,6 +105,7 @@ fn report_of_study(directory: &Path) -> Result<(Vec<Summary>, PathBuf), Postproc
         case_text: study.case_text,
         runs,
         synchronisation,
+        signals,
         version: study.version,
     };
     report::write(&study, directory)?;

@@ -1,9 +1,11 @@
 //! How well the phase of a helix is estimated on the turbine that it meets: records in, agreement with the
 //! true wind out.
 
+mod estimates;
 pub(crate) mod query;
 mod replay;
 
+pub(crate) use estimates::recorded;
 pub use replay::{Replayed, tune};
 
 use crate::PostprocessingError;
@@ -12,10 +14,9 @@ use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
     fixed_frame_moments, ground_truth, uniform_interval,
 };
-use analysis::statistics::statistic;
 use basis::FixedFrame;
-use basis::angle::wrap_to_half_turn;
 use basis::records::{Series, Statistic};
+use estimates::{Estimates, Wave, consistency};
 use query::{Query, Records};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -61,8 +62,16 @@ pub struct PhaseAxis {
     /// blocks: one where the estimator knows its errors, more where it is too sure of itself. Absent where
     /// the series does not hold the variance.
     pub consistency: Option<Statistic>,
+    /// Estimated wind of the helix at each time (m/s).
+    pub wind: Vec<f64>,
+    /// Standard deviation that the estimator has of it (m/s); empty where the series does not hold it.
+    pub wind_deviation: Vec<f64>,
+    /// True wind of the helix at each time (m/s), in the band of the truth.
+    pub true_wind: Vec<f64>,
     /// Estimated phase at each time (rad).
     pub phase: Vec<f64>,
+    /// Standard deviation that the estimator has of it (rad); empty where the series does not hold it.
+    pub phase_deviation: Vec<f64>,
     /// True phase at each time (rad).
     pub true_phase: Vec<f64>,
 }
@@ -86,6 +95,12 @@ pub struct PhaseAnswer {
     pub times: Vec<f64>,
     /// Mean estimated and true wind over the disc (m/s).
     pub mean_winds: [f64; 2],
+    /// Estimated wind over the disc at each time (m/s).
+    pub wind: Vec<f64>,
+    /// Standard deviation that the estimator has of it (m/s); empty where the series does not hold it.
+    pub wind_deviation: Vec<f64>,
+    /// True wind over the disc at each time (m/s), not filtered.
+    pub true_wind: Vec<f64>,
     /// Tilt.
     pub tilt: PhaseAxis,
     /// Yaw.
@@ -108,22 +123,6 @@ pub struct PhaseAnswers {
     pub answers: Vec<PhaseAnswer>,
     /// Why others have none: no run kept the true wind at their place.
     pub without_truth: Vec<PostprocessingError>,
-}
-
-/// Estimates over the time of a series.
-pub(crate) struct Estimates {
-    wind: Vec<f64>,
-    tilt: Wave,
-    yaw: Wave,
-    trust: Vec<f64>,
-}
-
-#[derive(Default)]
-struct Wave {
-    amplitude: Vec<f64>,
-    phase: Vec<f64>,
-    /// Standard deviation that the estimator has of the phase (rad); empty where it is not known.
-    deviation: Vec<f64>,
 }
 
 /// The wind where the turbine would stand, in a run without it.
@@ -219,11 +218,12 @@ fn zero_phase(
     let filtered = ground_truth(&moments, times[0], uniform_interval(times)?, reference, band)?;
     let wave = |axis: AxisWind| {
         let AxisWind { amplitude, phase, .. } = axis;
-        Wave { amplitude, phase, deviation: Vec::new() }
+        Wave { amplitude, phase, ..Wave::default() }
     };
     Ok(Estimates {
         trust: vec![1.0; filtered.average.len()],
         wind: filtered.average,
+        wind_deviation: Vec::new(),
         tilt: wave(filtered.tilt),
         yaw: wave(filtered.yaw),
     })
@@ -257,6 +257,8 @@ pub(crate) fn compare(
         .filter(|(_, place)| truth.trusted.contains(place))
         .collect();
     let pick = |values: &[f64]| places.iter().map(|(row, _)| values[*row]).collect::<Vec<_>>();
+    // What is not known at any time is known at none.
+    let pick_known = |values: &[f64]| if values.is_empty() { Vec::new() } else { pick(values) };
     let pick_true = |values: &[f64]| places.iter().map(|(_, at)| values[*at]).collect::<Vec<_>>();
     let block = TAU / reference.rate * SEGMENT_PERIODS;
     let n_segment = (block / interval).round() as usize;
@@ -269,16 +271,15 @@ pub(crate) fn compare(
                 estimate.amplitude[*row] * angle.sin()
             })
             .collect();
+        let true_wind = pick_true(&truth.wind);
         let coherence = if wind.len() >= 2 * n_segment {
-            let true_wind = pick_true(&truth.wind);
             Some(coherence(&wind, &true_wind, interval, reference.frequency(), n_segment)?)
         } else {
             None
         };
-        let deviation =
-            if estimate.deviation.is_empty() { None } else { Some(pick(&estimate.deviation)) };
-        let consistency = deviation
-            .map(|deviation| consistency(&phase, &true_phase, &deviation, interval, block))
+        let phase_deviation = pick_known(&estimate.deviation);
+        let consistency = (!phase_deviation.is_empty())
+            .then(|| consistency(&phase, &true_phase, &phase_deviation, interval, block))
             .transpose()?;
         Ok::<PhaseAxis, PostprocessingError>(PhaseAxis {
             consistency,
@@ -286,7 +287,11 @@ pub(crate) fn compare(
             true_amplitude: mean(&pick_true(&truth.amplitude)),
             agreement: agreement(&phase, &true_phase, interval, block)?,
             coherence,
+            wind,
+            wind_deviation: pick_known(&estimate.wind_deviation),
+            true_wind,
             phase,
+            phase_deviation,
             true_phase,
         })
     };
@@ -300,30 +305,14 @@ pub(crate) fn compare(
         tilt: axis(&estimates.tilt, &truth.tilt, 0.0)?,
         yaw: axis(&estimates.yaw, &truth.yaw, reference.sense.yaw_lead())?,
         mean_winds: [mean(&pick(&estimates.wind)), mean(&pick_true(&truth.average))],
+        wind: pick(&estimates.wind),
+        wind_deviation: pick_known(&estimates.wind_deviation),
+        true_wind: pick_true(&truth.average),
         trust: mean(&pick(&estimates.trust)),
         times: pick(times),
         zero_phase: None,
         published_band: None,
     })
-}
-
-/// Mean of the squared errors of `phase` against `truth` (rad) over the square of their `deviation` (rad),
-/// one each `interval` (s), with its interval from blocks of `block` (s).
-///
-/// Source: Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, §5.4
-/// (normalised estimation error squared). Its bounds by chi-square take errors as independent from instant to
-/// instant; these last as long as the filter remembers, so that the interval is that of block means.
-fn consistency(
-    phase: &[f64],
-    truth: &[f64],
-    deviation: &[f64],
-    interval: f64,
-    block: f64,
-) -> Result<Statistic, PostprocessingError> {
-    let squares = phase.iter().zip(truth).zip(deviation).map(|((phase, truth), deviation)| {
-        (wrap_to_half_turn(phase - truth) / deviation.max(f64::MIN_POSITIVE)).powi(2)
-    });
-    Ok(statistic(&squares.collect::<Vec<_>>(), interval, block)?)
 }
 
 /// Whether `channel` of a series tells of the phase of a helix at turbine `name`; no other is asked for here.
@@ -371,24 +360,4 @@ pub(crate) fn truth(
         .collect();
     let wind = ground_truth(&winds, times[0], interval, reference, band)?;
     Ok(Some(Truth { run: run.to_owned(), band, wind }))
-}
-
-/// Estimate of turbine `name` during the run.
-pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, PostprocessingError> {
-    let channel = |what: &str| column(series, &format!("{name}.{what}")).map(<[f64]>::to_vec);
-    let wave = |axis: &str| {
-        Ok::<Wave, PostprocessingError>(Wave {
-            amplitude: channel(&format!("estimated_{axis}_amplitude_m_s"))?,
-            phase: channel(&format!("estimated_{axis}_phase_rad"))?,
-            // Earlier series do not hold it.
-            deviation: channel(&format!("estimated_{axis}_phase_deviation_rad"))
-                .unwrap_or_default(),
-        })
-    };
-    Ok(Estimates {
-        wind: channel("estimated_wind_m_s")?,
-        tilt: wave("tilt")?,
-        yaw: wave("yaw")?,
-        trust: channel("estimate_trust")?,
-    })
 }

@@ -50,7 +50,19 @@ fn energy(request: &Request) -> Result<Answer, PostprocessingError> {
 fn an_analysis_of_ones_own_answers_beside_the_others() {
     let list = [ANALYSES, &[ENERGY]].concat();
     let names: Vec<&str> = list.iter().map(|analysis| analysis.name).collect();
-    assert_eq!(names, ["phase", "tune", "offsets", "gains", "lock", "energy"]);
+    let expected = [
+        "phase",
+        "winds",
+        "spectra",
+        "moments",
+        "tune",
+        "offsets",
+        "gains",
+        "lock",
+        "meandering",
+        "energy",
+    ];
+    assert_eq!(names, expected);
     let run = "[[run]]\nname = \"baseline\"\n[output]\ninterval = 0.4\n";
     let folder = written(&small::case("own", "", [10.0, 60.0], &[NREL_5MW; 2], run));
     let run = done(&options(folder.path())).join("baseline");

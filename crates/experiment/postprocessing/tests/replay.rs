@@ -66,6 +66,7 @@ fn assert_same_phases(keys: &str) {
         Replayed::InRun(PhaseEstimator::Published),
         Replayed::InRun(PhaseEstimator::PublishedWithOffset),
         Replayed::Linear,
+        Replayed::Smoothed,
     ] {
         let found = ask(Some(form));
         assert_eq!(found.times, recorded.times, "{form:?}");

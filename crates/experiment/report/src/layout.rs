@@ -154,6 +154,7 @@ mod tests {
                 .into(),
             runs: vec![run],
             synchronisation: Vec::new(),
+            signals: Vec::new(),
             version: "0".into(),
         }
     }

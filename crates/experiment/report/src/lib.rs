@@ -12,9 +12,10 @@ mod words;
 
 use basis::records::{Plane, Series, Summary, SweepTable};
 pub use figures::synchronisation::{
-    CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure,
-    OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow, SliceFigure, SlicePanel, SliceRotor,
-    SpectrumFigure, SpectrumLine, Synchronisation, TrackFigure, TrackLine, TrackRow,
+    CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, DensityFigure,
+    DensityRow, OffsetFigure, OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow, Signals,
+    SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, Synchronisation,
+    TrackFigure, TrackLine, TrackRow,
 };
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -37,6 +38,8 @@ pub struct StudyRecords {
     pub runs: Vec<RunRecords>,
     /// What there is to show of phase synchronisation, for each turbine that joins a helix.
     pub synchronisation: Vec<Synchronisation>,
+    /// Further signals and their spectra, each under a heading of its own.
+    pub signals: Vec<Signals>,
     /// Version of the program that ran it.
     pub version: String,
 }
@@ -148,6 +151,17 @@ pub fn write_synchronisation(
     directory: &Path,
 ) -> Result<Vec<String>, ReportError> {
     let figures = figures::synchronisation::all(records);
+    write_figures(figures.iter(), directory)?;
+    Ok(figures.into_iter().map(|figure| figure.name).collect())
+}
+
+/// Writes the figures of `signals` into `directory`/figures, as SVG and PNG; gives their names.
+///
+/// # Errors
+/// [`ReportError::Write`] when the disk says no.
+pub fn write_signals(signals: &[Signals], directory: &Path) -> Result<Vec<String>, ReportError> {
+    let figures: Vec<draw::Figure> =
+        signals.iter().flat_map(figures::synchronisation::of_signals).collect();
     write_figures(figures.iter(), directory)?;
     Ok(figures.into_iter().map(|figure| figure.name).collect())
 }

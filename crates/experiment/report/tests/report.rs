@@ -270,7 +270,7 @@ fn phases() -> PhaseRow {
 fn joined(name: &str) -> Synchronisation {
     let times: Vec<f64> = (0..200).map(f64::from).collect();
     let values = times.iter().map(|time| (0.07 * time).sin()).collect();
-    let line = TrackLine { name: "true".into(), colour: 0, times, values };
+    let line = TrackLine { name: "true".into(), colour: 0, times, values, band: Vec::new() };
     let row = TrackRow { label: "tilt (m/s)".into(), is_angle: false, lines: vec![line] };
     let track = TrackFigure {
         name: "phases-helix-ccw".into(),

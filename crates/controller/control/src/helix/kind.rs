@@ -1,13 +1,14 @@
 //! `kind = "helix"`: its keys, and how it is built.
 
 use super::Helix;
+use super::sweep::{self, Sweep};
 use crate::Controller;
 use crate::excitation::Excitation;
 use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, sense, starts_too_late};
 use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site, stop_of};
 use basis::Sense;
-use basis::keys::LeftOut::{Required, Value};
-use basis::keys::{Holds, Objection, Table, Values, key};
+use basis::keys::LeftOut::{Otherwise, Required, Value};
+use basis::keys::{Holds, Objection, Table, Values, above, key};
 use basis::registry::Named;
 
 /// The helix.
@@ -29,6 +30,20 @@ static TABLE: Table = Table {
         ),
         AMPLITUDE,
         STROUHAL,
+        key(
+            "strouhal_last",
+            above(0.0, 2.0),
+            "–",
+            Otherwise("`strouhal` throughout"),
+            "Strouhal number to which the frequency goes evenly from `strouhal` at time zero, over `sweep`. No turbine downstream can join a helix whose frequency changes.",
+        ),
+        key(
+            "sweep",
+            above(0.0, 1e6),
+            "s",
+            Otherwise("needed with `strouhal_last`"),
+            "Time that the change of frequency takes, from time zero.",
+        ),
         key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero."),
         key(
             "azimuth_offset_deg",
@@ -54,7 +69,10 @@ impl ControllerKind for HelixKind {
     }
 
     fn check(&self, values: &mut Values, place: &Place) -> Vec<Objection> {
-        Vec::from_iter(starts_too_late(values, place.duration))
+        starts_too_late(values, place.duration)
+            .into_iter()
+            .chain(sweep::objections(values))
+            .collect()
     }
 
     fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
@@ -65,16 +83,20 @@ impl ControllerKind for HelixKind {
         helix.phase = values.angle("phase_deg");
         helix.azimuth_offset = values.angle("azimuth_offset_deg");
         helix.start = values.number("start");
+        helix.sweep = Sweep::of(values, site);
         helix.stop = stop_of(helix.start, values.optional_number("stop"), helix.rate)?;
         Ok(helix.on_top_of(site.baseline()))
     }
 
     fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
-        Some((sense(control.values()), control.values().number("strouhal")))
+        let values = control.values();
+        // One frequency is what others can be told of.
+        (!values.has("strouhal_last")).then(|| (sense(values), values.number("strouhal")))
     }
 
     fn pitching(&self, control: &Control) -> Option<Pitching> {
         let values = control.values();
-        Some(Pitching::open_loop(values, Motion::Cyclic, Some(sense(values))))
+        let pitching = Pitching::open_loop(values, Motion::Cyclic, Some(sense(values)));
+        Some(Pitching { is_steady: !values.has("strouhal_last"), ..pitching })
     }
 }

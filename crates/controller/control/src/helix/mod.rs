@@ -1,8 +1,10 @@
 //! The helix: tilt and yaw commands a quarter period apart, through the inverse multi-blade transformation.
 
 mod kind;
+mod sweep;
 
 pub use kind::HELIX;
+pub use sweep::Sweep;
 
 use crate::excitation::{Excitation, excitation_rate, share, words};
 use basis::mbc::to_blades;
@@ -28,6 +30,8 @@ pub struct Helix {
     pub start: f64,
     /// Time at which it fades out, over one excitation period (s); never when absent.
     pub stop: Option<f64>,
+    /// Change of the rate with time; `rate` throughout when absent.
+    pub sweep: Option<Sweep>,
 }
 
 impl Helix {
@@ -50,13 +54,18 @@ impl Helix {
             azimuth_offset: 0.0,
             start: 0.0,
             stop: None,
+            sweep: None,
         }
     }
 
     /// Tilt and yaw commands (rad) at `time` (s); the average is zero. van Vondelen et al. (2025), Eq. 2.
     pub fn commands(&self, time: f64) -> FixedFrame {
         let amplitude = self.amplitude * share(time, self.start, self.stop, self.rate);
-        let angle = self.rate * time + self.phase;
+        let turned = match self.sweep {
+            Some(sweep) => sweep.angle(self.rate, time),
+            None => self.rate * time,
+        };
+        let angle = turned + self.phase;
         FixedFrame {
             average: 0.0,
             tilt: amplitude * angle.sin(),

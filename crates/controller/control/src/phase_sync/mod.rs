@@ -186,7 +186,7 @@ impl PhaseSync {
 }
 
 /// Signals in the series.
-const SIGNALS: [&str; 11] = [
+const SIGNALS: [&str; 14] = [
     "estimated_wind_m_s",
     "estimated_tilt_wind_m_s",
     "estimated_yaw_wind_m_s",
@@ -196,6 +196,9 @@ const SIGNALS: [&str; 11] = [
     "estimated_yaw_phase_rad",
     "estimated_tilt_phase_deviation_rad",
     "estimated_yaw_phase_deviation_rad",
+    "estimated_wind_deviation_m_s",
+    "estimated_tilt_wind_deviation_m_s",
+    "estimated_yaw_wind_deviation_m_s",
     "estimate_trust",
     "sync_share",
 ];
@@ -236,6 +239,9 @@ impl Excitation for PhaseSync {
             estimate.yaw.phase,
             estimate.tilt.phase_variance.sqrt(),
             estimate.yaw.phase_variance.sqrt(),
+            estimate.mean_wind_variance.sqrt(),
+            estimate.helix_deviation[0],
+            estimate.helix_deviation[1],
             estimate.trust.overall(),
             self.share,
         ]);

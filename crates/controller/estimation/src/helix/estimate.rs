@@ -1,7 +1,7 @@
 //! Estimate of the helix in the wind.
 
 use super::filter::{Filter, FilterState};
-use super::state_estimate::{BIAS, MEAN_WIND, PASSING, RATE};
+use super::state_estimate::{BIAS, MEAN_WIND, N_STATES, PASSING, RATE, Vector, WAVE};
 use super::trust::Trust;
 use super::wave::{Axis, UNKNOWN_PHASE};
 use crate::{Oscillation, Quantity};
@@ -22,6 +22,8 @@ pub struct HelixEstimate {
     pub yaw: Axis,
     /// The helix's wind now; its average is zero (m/s).
     pub helix: FixedFrame,
+    /// Standard deviation of tilt and yaw of the helix's wind now (m/s), to first order in its states.
+    pub helix_deviation: [f64; 2],
     /// Tilt and yaw without the helix: shear, eddies and model error (m/s); average zero.
     pub other: FixedFrame,
     /// Instantaneous wind from the last moments alone (m/s).
@@ -63,6 +65,9 @@ impl HelixEstimate {
         let estimate = &state.estimate;
         let [tilt, yaw] = filter.axes(estimate);
         let (wind, _) = filter.wind(&estimate.mean, angle, [0.0; 2]);
+        let helix_deviation = filter
+            .helix_slopes(&estimate.mean, angle)
+            .map(|slopes| estimate.variance_along(&slopes).max(0.0).sqrt());
         let other = FixedFrame {
             average: 0.0,
             tilt: estimate.mean[BIAS] + estimate.mean[PASSING],
@@ -90,6 +95,7 @@ impl HelixEstimate {
                 tilt: wind.tilt - other.tilt,
                 yaw: wind.yaw - other.yaw,
             },
+            helix_deviation,
             other,
             instantaneous: state.instantaneous,
             sense: filter.sense,
@@ -99,6 +105,19 @@ impl HelixEstimate {
             trust,
             status,
         }
+    }
+}
+
+impl Filter {
+    /// Slopes of tilt and yaw of the helix's wind alone over the states, where those are `mean` and the
+    /// excitation's angle is `angle` (rad).
+    fn helix_slopes(&self, mean: &Vector, angle: f64) -> [Vector; 2] {
+        let swing = self.options.form.swing(self.sense, &mean[WAVE..WAVE + 4], angle);
+        [swing.tilt_slopes, swing.yaw_slopes].map(|of_wave| {
+            let mut slopes = [0.0; N_STATES];
+            slopes[WAVE..WAVE + 4].copy_from_slice(&of_wave);
+            slopes
+        })
     }
 }
 

@@ -69,6 +69,25 @@ impl HelixEstimator {
         &self.filter.options
     }
 
+    /// What the next update will use `measurements` for.
+    pub(super) fn looks_at(&self, measurements: &Measurements) -> Use {
+        let mut clock = self.state.clock;
+        let every = self.filter.options.update_every;
+        clock.look(measurements, every, self.interval, self.rated_speed)
+    }
+
+    pub(super) fn filter(&self) -> &Filter {
+        &self.filter
+    }
+
+    pub(super) fn filter_state(&self) -> &FilterState {
+        &self.state.filter
+    }
+
+    pub(super) fn status(&self) -> Status {
+        self.state.status
+    }
+
     /// Angle of the excitation (rad) at the time of the moments of `measurements`, reading delay included.
     fn angle(&self, measurements: &Measurements) -> f64 {
         self.filter.rate * (measurements.time - self.filter.options.rotor.reading_delay)

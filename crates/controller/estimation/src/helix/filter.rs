@@ -54,6 +54,8 @@ pub(super) struct FilterState {
     pub(super) instantaneous: FixedFrame,
     /// Wind equivalent of the rotor's own pitch at the last update, tilt and yaw (m/s).
     pub(super) pitch_wind: [f64; 2],
+    /// Which amplitudes the last correction turned over.
+    pub(super) turned: [bool; 2],
 }
 
 /// Slopes of the wind's average, tilt and yaw over the states.
@@ -93,6 +95,7 @@ impl Filter {
             process_noise: 1.0,
             instantaneous: FixedFrame::default(),
             pitch_wind: [0.0; 2],
+            turned: [false; 2],
         }
     }
 
@@ -148,8 +151,7 @@ impl Filter {
         incoming[BIAS..BIAS + 2].fill(bias.unwrap_or(0.0) * interval);
         incoming[RATE] = rate.unwrap_or(0.0) * interval;
         if let Some(eddies) = eddies {
-            let wind = state.estimate.mean[MEAN_WIND].max(WINDS[0]);
-            let kept = (-interval * wind / (eddies.time_constant * self.diameter)).exp();
+            let kept = self.kept(eddies, interval, state.estimate.mean[MEAN_WIND]);
             for index in [PASSING, PASSING + 1] {
                 state.estimate.mean[index] *= kept;
                 for other in 0..N_STATES {
@@ -205,7 +207,7 @@ impl Filter {
         readings: &Readings,
         state: &mut FilterState,
     ) -> usize {
-        state.pitch_wind = now.pitch_wind;
+        (state.pitch_wind, state.turned) = (now.pitch_wind, [false; 2]);
         let n_blades = readings.len();
         let mean_moment = expected.moments.mean().abs();
         let nominal = self.options.noise.measurement.variance(self.interval, mean_moment);
@@ -235,7 +237,7 @@ impl Filter {
         if n_used == 0 {
             return 0;
         }
-        self.options.form.tidy(&mut state.estimate);
+        state.turned = self.options.form.tidy(&mut state.estimate);
         state.estimate.mean[MEAN_WIND] = state.estimate.mean[MEAN_WIND].clamp(WINDS[0], WINDS[1]);
         if n_used == n_blades {
             self.record_instantaneous_wind(now, expected, readings, state);
@@ -363,32 +365,6 @@ impl Filter {
             *pair = (WAVE + a, WAVE + b, covariance);
         }
         pairs
-    }
-
-    /// Turns the wave ahead for `interval` (s) by the difference of its rate from the nominal one.
-    fn turn(&self, interval: f64, estimate: &mut StateEstimate) {
-        let form = self.options.form;
-        let angle = estimate.mean[RATE] * interval;
-        let mut transition = [[0.0; N_STATES]; N_STATES];
-        for (index, row) in transition.iter_mut().enumerate() {
-            row[index] = 1.0;
-        }
-        form.turn(&mut estimate.mean[WAVE..WAVE + 4], angle);
-        if form.is_phase(1) {
-            transition[WAVE + 1][RATE] = interval;
-            transition[WAVE + 2][RATE] = interval;
-        } else {
-            let (sine, cosine) = angle.sin_cos();
-            for first in [WAVE, WAVE + 2] {
-                transition[first][first] = cosine;
-                transition[first][first + 1] = -sine;
-                transition[first + 1][first] = sine;
-                transition[first + 1][first + 1] = cosine;
-                transition[first][RATE] = -estimate.mean[first + 1] * interval;
-                transition[first + 1][RATE] = estimate.mean[first] * interval;
-            }
-        }
-        estimate.carry(&transition);
     }
 }
 

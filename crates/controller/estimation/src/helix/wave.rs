@@ -105,23 +105,39 @@ impl Form {
         self != Self::SharedAmplitude || index < 3
     }
 
-    /// On return amplitudes are positive and phases in [−π, π), and the wave is the same.
-    pub(super) fn tidy(self, estimate: &mut StateEstimate) {
-        if self == Self::Quadrature {
-            return;
-        }
-        let turned: &[(usize, &[usize])] = match self {
-            Self::SharedAmplitude => &[(0, &[1, 2])],
-            _ => &[(0, &[1]), (3, &[2])],
-        };
-        for (amplitude, phases) in turned {
-            if estimate.mean[WAVE + amplitude] < 0.0 {
-                estimate.turn_sign(WAVE + amplitude);
-                phases.iter().for_each(|phase| estimate.mean[WAVE + phase] += PI);
+    /// On return amplitudes are positive and phases in [−π, π), and the wave is the same. Tells which of the
+    /// amplitudes were turned over, with their phases.
+    pub(super) fn tidy(self, estimate: &mut StateEstimate) -> [bool; 2] {
+        let turned: [bool; 2] = std::array::from_fn(|which| {
+            let amplitude = self.polar().get(which).map(|(amplitude, _)| WAVE + amplitude);
+            amplitude.is_some_and(|amplitude| estimate.mean[amplitude] < 0.0)
+        });
+        self.turn_over(turned, estimate);
+        for (_, phases) in self.polar() {
+            for phase in *phases {
+                estimate.mean[WAVE + phase] = wrap_to_half_turn(estimate.mean[WAVE + phase]);
             }
         }
-        for phase in [1, 2] {
-            estimate.mean[WAVE + phase] = wrap_to_half_turn(estimate.mean[WAVE + phase]);
+        turned
+    }
+
+    /// Amplitudes, each with its phases; none where the wave has components.
+    fn polar(self) -> &'static [(usize, &'static [usize])] {
+        match self {
+            Self::SharedAmplitude => &[(0, &[1, 2])],
+            Self::SeparateAmplitudes => &[(0, &[1]), (3, &[2])],
+            Self::Quadrature => &[],
+        }
+    }
+
+    /// On return the amplitudes for which `turned` holds have the other sign and their phases half a turn
+    /// more: the wave is the same.
+    pub(super) fn turn_over(self, turned: [bool; 2], estimate: &mut StateEstimate) {
+        for ((amplitude, phases), _) in
+            self.polar().iter().zip(turned).filter(|(_, turned)| *turned)
+        {
+            estimate.turn_sign(WAVE + amplitude);
+            phases.iter().for_each(|phase| estimate.mean[WAVE + phase] += PI);
         }
     }
 

@@ -5,19 +5,51 @@
 
 mod gains;
 mod lock;
+mod meandering;
+mod moments;
 mod offsets;
 mod phase;
+mod spectra;
 mod tune;
+mod winds;
 
 use crate::PostprocessingError;
 use basis::records::Statistic;
-use report::text_table;
+use report::{Signals, text_table};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// All analyses, in the order in which they are listed.
-pub const ANALYSES: &[Analysis] =
-    &[phase::ANALYSIS, tune::ANALYSIS, offsets::ANALYSIS, gains::ANALYSIS, lock::ANALYSIS];
+pub const ANALYSES: &[Analysis] = &[
+    phase::ANALYSIS,
+    winds::ANALYSIS,
+    spectra::ANALYSIS,
+    moments::ANALYSIS,
+    tune::ANALYSIS,
+    offsets::ANALYSIS,
+    gains::ANALYSIS,
+    lock::ANALYSIS,
+    meandering::ANALYSIS,
+];
+
+/// Where an analysis draws its figures.
+const FIGURES: AnalysisSetting = AnalysisSetting {
+    name: "figures",
+    value: "FOLDER",
+    takes: Takes::Text,
+    about: "Folder to draw the figures into, as SVG and PNG in its folder `figures`; nothing is drawn when left out",
+};
+
+/// Draws `signals` where `request` asks for it; says which figures those are.
+///
+/// # Errors
+/// [`PostprocessingError::Report`] where they cannot be written.
+fn drawn(request: &Request, signals: &[Signals]) -> Result<Option<String>, PostprocessingError> {
+    let Some(folder) = request.text(FIGURES.name) else { return Ok(None) };
+    let names = report::write_signals(signals, Path::new(folder))?;
+    let folder = Path::new(folder).join("figures");
+    Ok(Some(format!("drawn in {}: {}", folder.display(), names.join(", "))))
+}
 
 /// One analysis.
 #[derive(Clone, Copy, Debug)]

@@ -43,6 +43,10 @@ pub(super) const SETTINGS: &[AnalysisSetting] = &[
                 "published-with-offset",
                 "The same with the azimuth offset that was found before the run",
             ),
+            (
+                "smoothed",
+                "The robust one forward over the record and then back, after Rauch, Tung and Striebel: it knows the future, as no turbine does",
+            ),
             ("linear", "The linear filter of the earlier method, around the means of the record"),
         ]),
         about: "Run this estimator over the records, instead of reading the run's own estimate",
@@ -73,6 +77,7 @@ pub(super) fn question(request: &Request) -> Result<PhaseQuestion, Postprocessin
         estimator: request.text("estimator").map(|name| match name {
             "published" => Replayed::InRun(PhaseEstimator::Published),
             "published-with-offset" => Replayed::InRun(PhaseEstimator::PublishedWithOffset),
+            "smoothed" => Replayed::Smoothed,
             "linear" => Replayed::Linear,
             _ => Replayed::InRun(PhaseEstimator::Robust),
         }),
@@ -300,7 +305,11 @@ mod tests {
                 half_width_95: Some(0.75),
                 n_blocks: 4,
             }),
+            wind: vec![0.7],
+            wind_deviation: vec![0.2],
+            true_wind: vec![0.8],
             phase: vec![0.0],
+            phase_deviation: vec![0.3],
             true_phase: vec![0.0],
         }
     }
@@ -316,6 +325,9 @@ mod tests {
             block: 366.0,
             times: vec![600.0],
             mean_winds: [8.0, 8.1],
+            wind: vec![8.0],
+            wind_deviation: vec![0.1],
+            true_wind: vec![8.1],
             tilt: axis(Some(-12.34)),
             yaw: axis(None),
             trust: 0.5,

@@ -212,7 +212,7 @@ pub(crate) fn tells_truth(
 }
 
 /// The turbine called `model` as it was in the run of `manifest`, in `folder`.
-fn rotor(
+pub(crate) fn rotor(
     model: &str,
     manifest: &Manifest,
     folder: &RunFolder,

@@ -1,7 +1,8 @@
 //! An estimator run again over the records of a turbine, and tuned on them.
 
+use super::estimates::Estimates;
 use super::query::{Query, Records};
-use super::{Estimates, PhaseQuestion, Wave, column};
+use super::{PhaseQuestion, column};
 use crate::PostprocessingError;
 use crate::error::InRecords;
 use analysis::phase::uniform_interval;
@@ -9,8 +10,8 @@ use basis::{Measurements, PerBlade};
 use control::ControlError;
 use control::phase_sync::PhaseEstimator;
 use estimation::helix::tuning::{self, TrueWave, Tuned};
-use estimation::helix::{HelixOptions, HelixSettings, OperatingPoint};
-use estimation::{EstimationError, HelixEstimator, LinearEstimator};
+use estimation::helix::{self, HelixOptions, HelixSettings, OperatingPoint};
+use estimation::{EstimationError, HelixEstimate, HelixEstimator, LinearEstimator};
 use farm::assemble::AssemblyError;
 
 /// An estimator that can be run over records.
@@ -18,6 +19,8 @@ use farm::assemble::AssemblyError;
 pub enum Replayed {
     /// One that a turbine runs.
     InRun(PhaseEstimator),
+    /// The robust one forward over the record and back: it knows the future.
+    Smoothed,
     /// The linear filter of the earlier method, around the means of the record: true wind, rotor speed,
     /// pitch.
     Linear,
@@ -37,6 +40,11 @@ pub(super) fn replay(
             let estimator = HelixEstimator::new(&query.definition, &setting, options);
             tuning::replay(&mut estimator.map_err(not_estimated)?, &record, interval)
         }
+        Replayed::Smoothed => {
+            let options = options(query, PhaseEstimator::Robust)?;
+            let estimator = HelixEstimator::new(&query.definition, &setting, options);
+            helix::smooth(&mut estimator.map_err(not_estimated)?, &record, interval)
+        }
         Replayed::Linear => {
             let point = operating_point(query, &record);
             let options = HelixOptions::default();
@@ -44,24 +52,28 @@ pub(super) fn replay(
             tuning::replay(&mut estimator.map_err(not_estimated)?, &record, interval)
         }
     };
-    let mut estimates = Estimates {
-        wind: Vec::new(),
-        tilt: Wave::default(),
-        yaw: Wave::default(),
-        trust: Vec::new(),
-    };
-    for estimate in replayed.map_err(not_estimated)? {
+    Ok(over_time(&replayed.map_err(not_estimated)?))
+}
+
+/// `found` at each instant, quantity by quantity.
+fn over_time(found: &[HelixEstimate]) -> Estimates {
+    let mut estimates = Estimates::default();
+    for estimate in found {
         estimates.wind.push(estimate.mean_wind);
-        for (wave, axis) in
-            [(&mut estimates.tilt, estimate.tilt), (&mut estimates.yaw, estimate.yaw)]
-        {
+        estimates.wind_deviation.push(estimate.mean_wind_variance.sqrt());
+        let [of_tilt, of_yaw] = estimate.helix_deviation;
+        for (wave, axis, deviation) in [
+            (&mut estimates.tilt, estimate.tilt, of_tilt),
+            (&mut estimates.yaw, estimate.yaw, of_yaw),
+        ] {
             wave.amplitude.push(axis.amplitude);
             wave.phase.push(axis.phase);
             wave.deviation.push(axis.phase_variance.sqrt());
+            wave.wind_deviation.push(deviation);
         }
         estimates.trust.push(estimate.trust.overall());
     }
-    Ok(estimates)
+    estimates
 }
 
 /// Means over the `record` of rotor speed and pitch, and the true mean wind.
@@ -111,10 +123,11 @@ fn tuned(question: &PhaseQuestion, query: &Query<'_>) -> Result<Tuned, Postproce
     let estimator = match question.estimator {
         None => PhaseEstimator::Robust,
         Some(Replayed::InRun(estimator)) => estimator,
-        Some(Replayed::Linear) => {
+        Some(other @ (Replayed::Linear | Replayed::Smoothed)) => {
+            let given = if other == Replayed::Linear { "linear" } else { "smoothed" };
             return Err(PostprocessingError::Setting {
                 setting: "estimator",
-                given: "linear".to_owned(),
+                given: given.to_owned(),
                 expected: "one that a turbine runs, whose noise a case file can give",
                 fix: "name robust, published or published-with-offset",
             });

@@ -3,6 +3,7 @@
 use super::{Joined, Synchronised};
 use crate::PostprocessingError;
 use crate::phase::tells;
+use crate::winds;
 use analysis::phase::{Band, fixed_frame_moments, narrowband};
 use analysis::spectra::amplitude;
 use basis::PerBlade;
@@ -44,38 +45,18 @@ pub(super) fn table(study: &Synchronised) -> Vec<PhaseRow> {
 pub(super) fn tracks(study: &Synchronised) -> Result<Vec<TrackFigure>, PostprocessingError> {
     let name = &study.case.turbines[study.turbine].name;
     let mut figures: Vec<TrackFigure> =
-        study.runs.iter().filter_map(|run| estimate(study, run, name)).collect();
+        study.runs.iter().filter_map(|run| estimate(study, run)).collect();
     figures.extend(answer(study, name)?);
     Ok(figures)
 }
 
-fn estimate(study: &Synchronised, run: &Joined, name: &str) -> Option<TrackFigure> {
+/// Estimated and true wind and phases of `run`, where there is a truth.
+fn estimate(study: &Synchronised, run: &Joined) -> Option<TrackFigure> {
     let answer = run.answer.as_ref()?;
-    let row = |label: &str, axis: &crate::phase::PhaseAxis| {
-        let line = |name: &str, colour: usize, values: &[f64]| TrackLine {
-            name: name.to_owned(),
-            colour,
-            times: answer.times.clone(),
-            values: values.to_vec(),
-        };
-        let lines = vec![line("true", 0, &axis.true_phase), line("estimated", 1, &axis.phase)];
-        TrackRow { label: label.to_owned(), is_angle: true, lines }
-    };
     let start = (run.sync.amplitude > 0.0 && run.sync.start > answer.times.first().copied()?)
         .then_some(run.sync.start);
-    Some(TrackFigure {
-        name: format!("phases-{}", run.name),
-        title: format!("Phase of the helix at {name}, estimated and true: {}", run.name),
-        caption: format!(
-            "True phases are those of the wind at {name}'s place in the run {}, band-passed around the excitation.",
-            answer.truth
-        ),
-        rows: vec![
-            row("phase of tilt (deg)", &answer.tilt),
-            row("phase of yaw (deg)", &answer.yaw),
-        ],
-        mark: (study.case.time.spin_up < run.sync.start).then_some(start).flatten(),
-    })
+    let mark = (study.case.time.spin_up < run.sync.start).then_some(start).flatten();
+    Some(winds::figure(answer, mark))
 }
 
 /// Runs that signals are shown of: the monitoring one first, then offsets a quarter turn apart where there
@@ -124,7 +105,8 @@ fn answer(study: &Synchronised, name: &str) -> Result<Option<TrackFigure>, Postp
         for (row, values) in rows.iter_mut().zip([wind.to_vec(), tilt_pitch, tilt_moment]) {
             let wave = narrowband(&values, interval, band)?.wave;
             let times = times.to_vec();
-            row.lines.push(TrackLine { name: run.name.clone(), colour, times, values: wave });
+            let (name, band) = (run.name.clone(), Vec::new());
+            row.lines.push(TrackLine { name, colour, times, values: wave, band });
         }
     }
     Ok((!rows[0].lines.is_empty()).then(|| TrackFigure {

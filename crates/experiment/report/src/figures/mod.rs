@@ -28,12 +28,16 @@ pub(crate) struct Figures {
     pub(crate) study: Vec<Figure>,
     /// Of each turbine that joins a helix, below the title of its part of the page.
     pub(crate) joined: Vec<(String, Vec<Figure>)>,
+    /// Of further signals, below the title and the lead of their part.
+    pub(crate) signals: Vec<([String; 2], Vec<Figure>)>,
 }
 
 impl Figures {
     /// All of them, in order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Figure> {
-        self.study.iter().chain(self.joined.iter().flat_map(|(_, figures)| figures))
+        let joined = self.joined.iter().flat_map(|(_, figures)| figures);
+        let signals = self.signals.iter().flat_map(|(_, figures)| figures);
+        self.study.iter().chain(joined).chain(signals)
     }
 }
 
@@ -53,10 +57,18 @@ pub(crate) fn all(study: &Study) -> Figures {
     figures.extend(pitch::pitch(study));
     figures.extend(power::rotor_speed(study));
     let mut joined = joined(&study.records.synchronisation);
+    let mut signals: Vec<([String; 2], Vec<Figure>)> = study
+        .records
+        .signals
+        .iter()
+        .map(|of| ([of.title.clone(), of.lead.clone()], synchronisation::of_signals(of)))
+        .collect();
     let conditions = sentence::study_conditions(study);
     let of_turbines = joined.iter_mut().flat_map(|(_, figures)| figures);
-    figures.iter_mut().chain(of_turbines).for_each(|figure| sign(figure, &conditions));
-    Figures { study: figures, joined }
+    let of_signals = signals.iter_mut().flat_map(|(_, figures)| figures);
+    let all = figures.iter_mut().chain(of_turbines).chain(of_signals);
+    all.for_each(|figure| sign(figure, &conditions));
+    Figures { study: figures, joined, signals }
 }
 
 /// Title and figures of each of `found`; where there are several, title and files tell them apart.

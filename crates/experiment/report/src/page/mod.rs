@@ -232,6 +232,9 @@ fn parts(figures: &Figures, lead: Vec<&Figure>) -> Result<Vec<Value>, ReportErro
     for (index, (title, figures)) in figures.joined.iter().enumerate() {
         parts.extend(part(&format!("joined-{}", index + 1), title, JOINED, figures.iter())?);
     }
+    for (index, ([title, lead], figures)) in figures.signals.iter().enumerate() {
+        parts.extend(part(&format!("signals-{}", index + 1), title, lead, figures.iter())?);
+    }
     Ok(parts)
 }
 

@@ -90,7 +90,7 @@ fn times() -> Vec<f64> {
 fn line(name: &str, colour: usize, value: impl Fn(f64) -> f64) -> TrackLine {
     let times = times();
     let values = times.iter().map(|time| value(*time)).collect();
-    TrackLine { name: name.into(), colour, times, values }
+    TrackLine { name: name.into(), colour, times, values, band: Vec::new() }
 }
 
 /// Estimates converge from a wrong start to the truth, with a bias.

@@ -71,6 +71,7 @@ fn study(recipes: &[Recipe]) -> StudyRecords {
         ),
         runs,
         synchronisation: Vec::new(),
+        signals: Vec::new(),
         version: "0.1.0".into(),
     }
 }

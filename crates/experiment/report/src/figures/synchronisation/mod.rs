@@ -4,6 +4,7 @@
 //! first.
 
 mod deficits;
+mod densities;
 mod marks;
 mod offsets;
 mod slices;
@@ -166,6 +167,8 @@ pub struct TrackLine {
     pub times: Vec<f64>,
     /// Values (unit of the row; rad for angles), as many.
     pub values: Vec<f64>,
+    /// Half width of a band about the line (unit of the values), as many; none is drawn where empty.
+    pub band: Vec<f64>,
 }
 
 /// Amplitude over frequency, cases overlaid.
@@ -194,6 +197,54 @@ pub struct SpectrumLine {
     pub frequency_step: f64,
     /// Values (unit of the figure).
     pub values: Vec<f64>,
+}
+
+impl SpectrumLine {
+    /// Highest frequency that it holds (Hz).
+    pub fn last_frequency(&self) -> f64 {
+        self.frequency_step * self.values.len().saturating_sub(1) as f64
+    }
+}
+
+/// Power spectral densities on a logarithmic scale, one pair of axes below the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DensityFigure {
+    /// Name of the figure's files.
+    pub name: String,
+    /// Title.
+    pub title: String,
+    /// What to look for.
+    pub caption: String,
+    /// Highest frequency that is shown (Hz).
+    pub highest_frequency: f64,
+    /// Frequencies to mark (Hz), each with its name, which may be empty.
+    pub marks: Vec<(f64, String)>,
+    /// Frequencies to shade between (Hz).
+    pub band: Option<[f64; 2]>,
+    /// The rows.
+    pub rows: Vec<DensityRow>,
+}
+
+/// One pair of axes of densities.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DensityRow {
+    /// What it shows, with its unit.
+    pub label: String,
+    /// The spectra.
+    pub lines: Vec<SpectrumLine>,
+}
+
+/// Signals and their spectra under one heading; what is empty is left out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Signals {
+    /// The heading.
+    pub title: String,
+    /// What stands below it.
+    pub lead: String,
+    /// Signals over time.
+    pub tracks: Vec<TrackFigure>,
+    /// Their densities over frequency.
+    pub densities: Vec<DensityFigure>,
 }
 
 /// The wake at one phase of the excitation, from above, and the centre lines of all cases.
@@ -279,6 +330,12 @@ pub struct DeficitLine {
     pub offsets: Vec<f64>,
     /// Deficit (m/s), as many.
     pub deficits: Vec<f64>,
+}
+
+/// Every figure of `signals`, in the order of a page.
+pub(crate) fn of_signals(signals: &Signals) -> Vec<Figure> {
+    let densities = signals.densities.iter().filter_map(densities::densities);
+    signals.tracks.iter().filter_map(tracks::tracks).chain(densities).collect()
 }
 
 /// Every figure that `records` allow, in the order of a page.

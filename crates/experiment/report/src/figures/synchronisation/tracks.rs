@@ -3,7 +3,8 @@
 use super::marks::{case_line, degree_rows, named, names, upright};
 use super::{TrackFigure, TrackLine, TrackRow};
 use crate::draw::axes::{Frame, Readout, Scale, legend};
-use crate::draw::{Figure, Role, Shape};
+use crate::draw::colour::Ink;
+use crate::draw::{Figure, Look, Role, Shape};
 use crate::figures::WIDTH;
 use crate::trace::envelope;
 use basis::angle::wrap_to_half_turn;
@@ -45,6 +46,9 @@ pub(super) fn tracks(figure: &TrackFigure) -> Option<Figure> {
         if let Some(mark) = figure.mark {
             upright(&frame, mark, "", &mut inner);
         }
+        for (line, bands) in row.lines.iter().zip(&drawn.bands) {
+            inner.extend(bands.iter().map(|outline| band(outline, line.colour, &frame)));
+        }
         for (line, pieces) in row.lines.iter().zip(&drawn.pieces) {
             let look = case_line(line.colour, 1.6);
             let pieces = pieces.iter().map(|piece| frame.line(piece, look)).collect();
@@ -63,10 +67,32 @@ pub(super) fn tracks(figure: &TrackFigure) -> Option<Figure> {
     })
 }
 
-/// A row's lines as points, cut where an angle jumps, and the scale that holds them.
+/// A pale area within the `outline`, a closed line of values, in the colour of the case of index `colour`.
+fn band(outline: &[[f64; 2]], colour: usize, frame: &Frame) -> Shape {
+    let look = Look::fill(Ink::Run(colour)).opacity(0.2);
+    Shape::Path { points: frame.points(outline), closed: true, look }
+}
+
+/// A row's lines as points, cut where an angle jumps, and the scale that holds them; outlines of their bands,
+/// piece by piece.
 struct Drawn {
     pieces: Vec<Vec<Vec<[f64; 2]>>>,
+    bands: Vec<Vec<Vec<[f64; 2]>>>,
     scale: Scale,
+}
+
+/// The outline of the band of `line`: along its upper edge, and back along the lower one. Nothing where the
+/// line has none.
+fn outline(line: &TrackLine) -> Option<Vec<[f64; 2]>> {
+    if line.band.is_empty() {
+        return None;
+    }
+    let edge = |side: f64| -> Vec<f64> {
+        line.values.iter().zip(&line.band).map(|(value, half)| value + side * half).collect()
+    };
+    let mut outline = envelope(&line.times, &edge(1.0), N_BUCKETS);
+    outline.extend(envelope(&line.times, &edge(-1.0), N_BUCKETS).into_iter().rev());
+    Some(outline)
 }
 
 impl Drawn {
@@ -75,18 +101,40 @@ impl Drawn {
             let middle = row.lines.first().map_or(0.0, |line| direction(&line.values));
             // Whole quarter turns, so that the same angles stand at the same height in neighbouring rows.
             let middle = (middle.to_degrees() / 90.0).round() * 90.0;
+            let scale = Scale::linear(middle - 180.0, middle + 180.0);
             let pieces = row.lines.iter().map(|line| angles(line, middle)).collect();
-            return Self { pieces, scale: Scale::linear(middle - 180.0, middle + 180.0) };
+            let bands = row.lines.iter().map(|line| angle_bands(line, middle)).collect();
+            return Self { pieces, bands, scale };
         }
         let pieces: Vec<Vec<Vec<[f64; 2]>>> = row
             .lines
             .iter()
             .map(|line| vec![envelope(&line.times, &line.values, N_BUCKETS)])
             .collect();
-        let values = pieces.iter().flatten().flatten().map(|point| point[1]);
+        let bands: Vec<Vec<Vec<[f64; 2]>>> =
+            row.lines.iter().map(|line| Vec::from_iter(outline(line))).collect();
+        let values = pieces.iter().chain(&bands).flatten().flatten().map(|point| point[1]);
         let scale = Scale::around(values, 0.06);
-        Self { pieces, scale }
+        Self { pieces, bands, scale }
     }
+}
+
+/// Outlines (deg) of the band of the angles of `line` about `middle` (deg), one for each of its pieces; what
+/// reaches beyond the axes is cut there.
+fn angle_bands(line: &TrackLine, middle: f64) -> Vec<Vec<[f64; 2]>> {
+    if line.band.is_empty() {
+        return Vec::new();
+    }
+    let half = |time: f64| {
+        let index = line.times.partition_point(|other| *other < time);
+        line.band.get(index).copied().unwrap_or(0.0).to_degrees()
+    };
+    let outline = |piece: Vec<[f64; 2]>| {
+        let upper = piece.iter().map(|[time, angle]| [*time, angle + half(*time)]);
+        let lower = piece.iter().rev().map(|[time, angle]| [*time, angle - half(*time)]);
+        upper.chain(lower).collect()
+    };
+    angles(line, middle).into_iter().map(outline).collect()
 }
 
 /// Mean direction of angles (rad).
@@ -124,8 +172,16 @@ mod tests {
     fn an_angle_that_goes_round_is_cut_and_stays_inside() {
         let times: Vec<f64> = (0..100).map(f64::from).collect();
         let values = times.iter().map(|t| 0.2 * t).collect();
-        let line = TrackLine { name: "a".into(), colour: 0, times, values };
+        let band = vec![0.1; times.len()];
+        let line = TrackLine { name: "a".into(), colour: 0, times, values, band };
         let pieces = angles(&line, 90.0);
+        // A band around each piece, there and back.
+        let bands = angle_bands(&line, 90.0);
+        assert_eq!(bands.len(), pieces.len());
+        let (band, piece) = (&bands[0], &pieces[0]);
+        assert_eq!(band.len(), 2 * piece.len());
+        let width = band[0][1] - band[band.len() - 1][1];
+        assert!((width - 0.2_f64.to_degrees()).abs() < 1e-12, "{width}");
         // 19.8 rad are three turns and a bit.
         assert_eq!(pieces.len(), 4);
         assert!(pieces.iter().flatten().all(|point| (-90.0..=270.0).contains(&point[1])));
