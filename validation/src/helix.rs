@@ -7,9 +7,8 @@ pub use pitch::helix_pitch;
 
 use crate::Row;
 use crate::row::Tolerance::{AtLeast, Within};
-use crate::studies::{failure, find, summaries};
+use crate::studies::{Carried, failure, find, summaries};
 use basis::records::{Plane, PlaneAxes, Summary};
-use std::path::Path;
 
 /// Where the expected values come from.
 const RATIOS: &str = "published large-eddy tables";
@@ -45,11 +44,11 @@ fn positive(what: String, gain: f64) -> Row {
 /// `cases/helix-two-turbines.toml`: power ratio of the first turbine and gain of the array against amplitude
 /// and sense, and the delivered pitch of helix and pulse.
 pub fn helix() -> Vec<Row> {
-    let (summaries, _) =
-        match summaries(Path::new("cases/helix-two-turbines.toml"), "helix", Vec::new()) {
-            Ok(done) => done,
-            Err(problem) => return failure(problem),
-        };
+    let case = Carried::Shipped("helix-two-turbines");
+    let (summaries, _) = match summaries(case, "helix", Vec::new()) {
+        Ok(done) => done,
+        Err(problem) => return failure(problem),
+    };
     let mut rows = power_ratios(&summaries);
     rows.extend(array_gains(&summaries));
     rows.extend(delivered(&summaries));
@@ -129,8 +128,8 @@ fn delivered(summaries: &[Summary]) -> Vec<Row> {
 
 /// `validation/cases/centre-line.toml`: mean hub-height speed behind one turbine, baseline and helix.
 pub fn centre_line() -> Vec<Row> {
-    let path = Path::new("validation/cases/centre-line.toml");
-    let (summaries, folder) = match summaries(path, "centre-line", Vec::new()) {
+    let case = Carried::Own(include_str!("../cases/centre-line.toml"));
+    let (summaries, folder) = match summaries(case, "centre-line", Vec::new()) {
         Ok(done) => done,
         Err(problem) => return failure(problem),
     };

@@ -6,11 +6,13 @@
 // What is told goes through `tell!`: a closed pipe is no reason to panic.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
-/// A line on standard error; there is nobody to tell when that fails.
+/// A line on standard error, unless nothing is to be said; there is nobody to tell when that fails.
 macro_rules! tell {
     ($($text:tt)*) => {{
         use std::io::Write as _;
-        let _ = writeln!(std::io::stderr(), $($text)*);
+        if !$crate::IS_QUIET.load(std::sync::atomic::Ordering::Relaxed) {
+            let _ = writeln!(std::io::stderr(), $($text)*);
+        }
     }};
 }
 
@@ -42,6 +44,15 @@ pub use report::ReportError;
 pub use row::{Row, Tolerance};
 use std::fmt;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether remarks and progress are left out.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+/// On return validations give their rows and say nothing beside them.
+pub fn be_quiet() {
+    IS_QUIET.store(true, Ordering::Relaxed);
+}
 
 /// A validation that can be repeated by name.
 pub struct Validation {

@@ -15,8 +15,8 @@ use std::time::Duration;
 /// Where the expected values come from.
 const SOURCE: &str = "aim of the project, set before it was measured";
 
-/// The turbine, and the run of it.
-const CASE: &str = "cases/one-turbine.toml";
+/// The shipped case with the turbine, and the run of it.
+const CASE: &str = "one-turbine";
 const RUN: &str = "baseline";
 /// Simulated time of the runs (s), the shortest first.
 const DURATIONS: [u64; 3] = [600, 3600, 10_800];
@@ -80,7 +80,7 @@ fn most_of(run: &mut Command) -> Result<Option<u64>, String> {
     if status.success() {
         Ok(most)
     } else {
-        Err(format!("the run of {CASE} ended with {status}; call this where that file is"))
+        Err(format!("the run of {CASE} ended with {status}; `wakemix run {CASE}` says why"))
     }
 }
 
@@ -104,6 +104,8 @@ mod tests {
         assert_eq!(seen.is_some(), machine::peak_memory().is_some());
         assert!(seen.is_none_or(|seen| seen > 0 && seen < held.len() as u64 / 2), "{seen:?}");
         let refused = most_of(&mut Command::new("false"));
-        assert!(refused.is_err_and(|problem| problem.contains("call this where that file is")));
+        assert!(
+            refused.is_err_and(|problem| problem.contains("`wakemix run one-turbine` says why"))
+        );
     }
 }

@@ -4,12 +4,15 @@
 use crate::Row;
 use crate::row::Tolerance::Within;
 use basis::records::Summary;
+use formats::atomic;
+use formats::lock::Lock;
 use formats::records::sha256;
+use miette::Diagnostic;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::AtomicBool;
 use std::{env, fs, io};
-use study::{Observer, Outcome, StudyOptions};
+use study::{Observer, Outcome, StudyError, StudyOptions};
 
 /// Where the expected values come from.
 const SOURCE: &str = "–";
@@ -37,18 +40,41 @@ impl Observer for Lines {
 /// Name of the file in a study's folder that tells which build of the program made it.
 const MADE_BY: &str = "made-by.sha256";
 
-/// Runs the case at `path` with `overrides` of its keys, or takes up what this very build of the program left
-/// of it in `runs/validate-NAME`, and says where that is; gives summaries and that folder.
+/// The case of a validation, which the program carries with it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Carried {
+    /// The shipped case of this name.
+    Shipped(&'static str),
+    /// One of the validation's own, its text.
+    Own(&'static str),
+}
+
+/// Runs the `case` with `overrides` of its keys, or takes up what this very build of the program left of it
+/// in `runs/validate-NAME` of the current folder, and says where that is; gives summaries and that folder.
+///
+/// No other process can do so at the same time: what is not of this build is taken away there.
 pub(crate) fn summaries(
-    path: &Path,
+    case: Carried,
     name: &str,
     overrides: Vec<String>,
 ) -> Result<(Vec<Summary>, PathBuf), String> {
     let output = Path::new("runs").join(format!("validate-{name}"));
+    let lock = Path::new("runs").join(format!(".validate-{name}.lock"));
+    let what = format!("{} of this validation", output.display());
+    let _lock = Lock::take(&lock, &what).map_err(|error| words(&error))?;
     let there = claimed(&output, &this_build()?)?;
     tell!("{there} {}", output.display());
+    let path = match case {
+        Carried::Shipped(name) => PathBuf::from(name),
+        Carried::Own(text) => {
+            let path = output.join("case.toml");
+            atomic::write(&path, "the case file", text.as_bytes())
+                .map_err(|error| words(&error))?;
+            path
+        }
+    };
     let options = StudyOptions {
-        case: path.to_owned(),
+        case: path,
         output: Some(output.clone()),
         overrides,
         resume: formats::records::is_begun(&output),
@@ -58,7 +84,22 @@ pub(crate) fn summaries(
     match study::run(&options, &AtomicBool::new(false), &mut observer) {
         Ok(Outcome::Done { summaries, .. }) => Ok((summaries, output)),
         Ok(other) => Err(format!("the study ended early: {other:?}")),
-        Err(error) => Err(error.to_string()),
+        Err(StudyError::Case(error)) => Err(error.to_lines().trim_end().to_owned()),
+        Err(error) => Err(words(&error)),
+    }
+}
+
+/// `error` with its causes and its fix, on one line.
+fn words(error: &dyn Diagnostic) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(deeper) = cause {
+        text += &format!(": {deeper}");
+        cause = deeper.source();
+    }
+    match error.help() {
+        Some(help) => format!("{text}; {help}"),
+        None => text,
     }
 }
 
@@ -77,7 +118,7 @@ fn claimed(folder: &Path, build: &str) -> Result<&'static str, String> {
         format!("{}: {error}; take that folder away and repeat", folder.display())
     };
     let done = match fs::read_to_string(&mark) {
-        Ok(found) if found.trim() == build => return Ok("going on with what this build left in"),
+        Ok(found) if found.trim() == build => return Ok("continuing what this build left in"),
         _ if !folder.exists() => "running in",
         _ => {
             fs::remove_dir_all(folder).map_err(named)?;
@@ -89,7 +130,8 @@ fn claimed(folder: &Path, build: &str) -> Result<&'static str, String> {
     Ok(done)
 }
 
-/// `wakemix run`, silent, of the case at `path`: what is left of it in the folder `output`.
+/// `wakemix run`, silent, of the case at `path` or the shipped one of that name: what is left of it in the
+/// folder `output`.
 pub(crate) fn command(path: &Path, output: &Path) -> Command {
     let program = env::current_exe().unwrap_or_else(|_| PathBuf::from("wakemix"));
     let mut command = Command::new(program);
@@ -123,6 +165,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn who_else_validates_is_named_and_errors_keep_their_fix() {
+        let folder = env::temp_dir().join(format!("wakemix-held-{}", std::process::id()));
+        let lock = folder.join(".validate-a.lock");
+        let held = Lock::take(&lock, "a").unwrap();
+        let refused = words(&Lock::take(&lock, "a").unwrap_err());
+        assert!(refused.contains(&format!("process {}", std::process::id())), "{refused}");
+        assert!(refused.contains("; wait until that ends"), "{refused}");
+        drop(held);
+        fs::remove_dir_all(&folder).unwrap_or_default();
+        let gone = words(&atomic::read_text(Path::new("no/such/file"), "a case").unwrap_err());
+        assert!(gone.contains("No such file") && gone.contains("; "), "{gone}");
+    }
+
+    #[test]
     fn what_another_build_left_is_not_taken_up() {
         let folder = env::temp_dir().join(format!("wakemix-made-by-{}", std::process::id()));
         let summary = folder.join("baseline").join("summary.json");
@@ -132,7 +188,7 @@ mod tests {
         };
         assert_eq!(claimed(&folder, "one").unwrap(), "running in");
         leave();
-        assert!(claimed(&folder, "one").unwrap().starts_with("going on"));
+        assert!(claimed(&folder, "one").unwrap().starts_with("continuing"));
         assert!(summary.exists());
         assert!(claimed(&folder, "other").unwrap().starts_with("made by another build"));
         assert!(!summary.exists());
@@ -141,7 +197,7 @@ mod tests {
         fs::remove_file(folder.join(MADE_BY)).unwrap();
         assert!(claimed(&folder, "other").unwrap().starts_with("made by another build"));
         assert!(!summary.exists());
-        assert!(claimed(&folder, "other").unwrap().starts_with("going on"));
+        assert!(claimed(&folder, "other").unwrap().starts_with("continuing"));
         fs::remove_dir_all(&folder).unwrap();
         assert_eq!(this_build().unwrap().len(), 64);
     }

@@ -1,13 +1,12 @@
 //! What a helix does to the blades: nothing without amplitude, one line with it.
 
-use super::{failure, find, summaries};
+use super::{Carried, failure, find, summaries};
 use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Sense;
 use basis::records::Series;
 use std::f64::consts::TAU;
 use std::fs;
-use std::path::Path;
 
 /// Where the expected values come from.
 const SOURCE: &str = "the case itself";
@@ -25,8 +24,8 @@ const BESIDE: f64 = 0.02;
 
 /// `validation/cases/helix-pitch.toml`: bits of a helix without amplitude, lines of one with.
 pub fn helix_pitch() -> Vec<Row> {
-    let path = Path::new("validation/cases/helix-pitch.toml");
-    let (summaries, folder) = match summaries(path, "helix-pitch", Vec::new()) {
+    let case = Carried::Own(include_str!("../../cases/helix-pitch.toml"));
+    let (summaries, folder) = match summaries(case, "helix-pitch", Vec::new()) {
         Ok(done) => done,
         Err(problem) => return failure(problem),
     };

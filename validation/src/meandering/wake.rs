@@ -5,16 +5,16 @@ use super::judge::{beside, percent, print_line, reached};
 use super::rig::MOMENTS;
 use crate::Row;
 use crate::row::Tolerance::Within;
-use crate::studies::{failure, find, summaries};
+use crate::studies::{Carried, failure, find, summaries};
 use basis::records::{Load, LoadKind, Statistic, TurbineSummary};
-use std::path::{Path, absolute};
+use std::path::absolute;
 
 /// Where the expected values come from.
 const SOURCE: &str = "van Veldhoven (2024), section 4-2-2";
 
 /// Where the wake is recorded, and the turbine put into it.
-const WAKE: &str = "cases/wake-inflow.toml";
-const TURBINE: &str = "cases/meandering-in-wake.toml";
+const WAKE: Carried = Carried::Shipped("wake-inflow");
+const TURBINE: Carried = Carried::Shipped("meandering-in-wake");
 
 /// Runs of the second, factor, and changes (%) of the seven deviations and of power in the source's table
 /// 4-6.
@@ -35,12 +35,12 @@ pub fn wake() -> Vec<Row> {
 }
 
 fn made() -> Result<Vec<Row>, String> {
-    let (_, folder) = summaries(Path::new(WAKE), "wake-inflow", Vec::new())?;
+    let (_, folder) = summaries(WAKE, "wake-inflow", Vec::new())?;
     let planes = folder.join("helix").join("inflow-T2.bts");
     // A path in a case file counts from that file.
     let planes = absolute(planes).map_err(|error| error.to_string())?;
     let overrides = vec![format!("wind.planes={}", planes.display())];
-    let (summaries, _) = summaries(Path::new(TURBINE), "meandering-in-wake", overrides)?;
+    let (summaries, _) = summaries(TURBINE, "meandering-in-wake", overrides)?;
     let turbine = |run: &str| {
         let summary = find(&summaries, run).ok_or_else(|| format!("the run {run} is missing"))?;
         Ok::<&TurbineSummary, String>(&summary.turbines[0])

@@ -7,14 +7,19 @@ mod commands;
 #[cfg(test)]
 mod reference;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use commands::manner::{self, Manner};
+use commands::output;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// Wind-farm wake mixing, from wind to report.
 #[derive(Parser)]
 #[command(name = "wakemix", version, about, max_term_width = 100)]
 struct Arguments {
+    #[command(flatten)]
+    manner: Manner,
     #[command(subcommand)]
     command: Command,
 }
@@ -23,6 +28,10 @@ struct Arguments {
 enum Command {
     /// Run a study: prints the cost, simulates every run of the case, leaves tables, records and a report
     Run(commands::run::RunArguments),
+    /// Write a commented case file to begin with
+    Init(commands::init::InitArguments),
+    /// List the cases that come with the program, or write one of them out
+    Cases(commands::cases::CasesArguments),
     /// Rebuild report.html and its figures from the records of a study
     Report {
         /// Folder that `wakemix run` wrote
@@ -44,26 +53,75 @@ enum Command {
     Validate(commands::validate::ValidateArguments),
     /// Print the JSON Schema of the case file, for editors
     Schema,
+    /// Print completions of commands and options for a shell
+    Completions {
+        /// Shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page of the program or of a command, or write all of them
+    Man(commands::definition::ManArguments),
 }
 
 fn main() -> ExitCode {
+    let began = Instant::now();
     wakemix::study::outputs::announce();
-    let arguments = match Arguments::try_parse() {
+    let arguments = match arguments() {
         Ok(arguments) => arguments,
-        Err(error) => return commands::output::usage(&error),
+        Err(error) => return output::usage(&error),
     };
-    let done = match arguments.command {
+    arguments.manner.hold();
+    let code = run(arguments.command);
+    output::detail(&format!("time: {:.2} s in all", began.elapsed().as_secs_f64()));
+    code
+}
+
+/// The command line, read.
+///
+/// # Errors
+/// What is wrong with it; help and version, likewise.
+fn arguments() -> Result<Arguments, clap::Error> {
+    let mut program = Arguments::command().color(manner::color_of(std::env::args_os()));
+    let mut matches = program.try_get_matches_from_mut(std::env::args_os())?;
+    Arguments::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut program))
+}
+
+/// Does what `command` asks for; the exit code says how that ended.
+fn run(command: Command) -> ExitCode {
+    let done = match command {
         Command::Run(run) => return commands::run::run(&run),
+        Command::Init(arguments) => commands::init::run(&arguments),
+        Command::Cases(arguments) => commands::cases::run(&arguments),
         Command::Report { directory } => commands::report::run(&directory),
         Command::Turbine(command) => commands::turbine::run(command),
         Command::Inflow(command) => commands::inflow::run(command),
         Command::Fatigue(arguments) => commands::fatigue::run(&arguments),
         Command::Analyse(command) => commands::analyse::run(&command),
         Command::Validate(arguments) => return commands::validate::run(&arguments),
-        Command::Schema => commands::output::print(&(wakemix::formats::case::schema() + "\n")),
+        Command::Schema => output::print(&(wakemix::formats::case::schema() + "\n")),
+        Command::Completions { shell } => {
+            commands::definition::completions(shell, Arguments::command())
+        }
+        Command::Man(arguments) => commands::definition::man(&arguments, Arguments::command()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(report) => commands::output::refuse(&report),
+        Err(report) => output::refuse(&report),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_of_every_command_stand_before_and_behind_it() {
+        Arguments::command().debug_assert();
+        for words in [
+            &["wakemix", "-q", "turbine", "list"][..],
+            &["wakemix", "turbine", "list", "-v", "--color", "never"],
+            &["wakemix", "analyse", "lock", "a", "--quiet"],
+        ] {
+            assert!(Arguments::try_parse_from(words).is_ok(), "{words:?}");
+        }
     }
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 const PREFACE: &str = "\
 # Command line
 
-Every command and option, made from the program's own help: `wakemix COMMAND --help` prints the same. Data goes to
+Every command and option, made from the program's own help: `wakemix COMMAND --help` and `wakemix man COMMAND` print the same. Data goes to
 standard output, all else to standard error. [What a run leaves](outputs.md#exit-codes) has the exit codes.
 ";
 
@@ -20,6 +20,10 @@ fn page() -> String {
     let mut program = Arguments::command();
     program.build();
     let mut page = PREFACE.to_owned();
+    let globals: Vec<Arg> =
+        program.get_arguments().filter(|argument| argument.is_global_set()).cloned().collect();
+    page.push_str("\n## Options of every command\n");
+    write_table(&mut page, &globals.iter().collect::<Vec<_>>()).expect("a string takes all text");
     write_command(&mut page, &mut program).expect("a string takes all text");
     page
 }
@@ -43,9 +47,16 @@ fn write_command(page: &mut String, command: &mut Command) -> std::fmt::Result {
 }
 
 fn write_arguments(page: &mut String, command: &Command) -> std::fmt::Result {
-    let own = |argument: &&Arg| argument.get_id() != "help" && argument.get_id() != "version";
+    let own = |argument: &&Arg| {
+        let is_usual = argument.get_id() == "help" || argument.get_id() == "version";
+        !is_usual && !argument.is_global_set()
+    };
     let mut arguments: Vec<&Arg> = command.get_arguments().filter(own).collect();
     arguments.sort_by_key(|argument| !argument.is_positional());
+    write_table(page, &arguments)
+}
+
+fn write_table(page: &mut String, arguments: &[&Arg]) -> std::fmt::Result {
     if arguments.is_empty() {
         return Ok(());
     }

@@ -46,16 +46,16 @@ fn a_closed_pipe_ends_the_program_in_silence() {
         &["validate"],
         &["run", "case.toml", "--json"],
     ] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_wakemix"))
+        // Nobody reads, from the first byte on.
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = Command::new(env!("CARGO_BIN_EXE_wakemix"))
             .args(arguments)
             .current_dir(folder.path())
-            .stdout(Stdio::piped())
+            .stdout(writer)
             .stderr(Stdio::piped())
-            .spawn()
+            .output()
             .unwrap();
-        // Nobody reads.
-        drop(child.stdout.take());
-        let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(141), "{arguments:?}: {}", said(&output));
         assert!(!said(&output).contains("panicked"), "{arguments:?}: {}", said(&output));
     }
@@ -214,7 +214,7 @@ fn names_cannot_steer_the_terminal() {
 fn a_run_says_what_it_will_not_do() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("case.toml"), CASE).unwrap();
-    refused(&["run", "case.toml", "--resume"], folder.path(), "holds no run to go on with");
+    refused(&["run", "case.toml", "--resume"], folder.path(), "holds no run to resume");
     refused(
         &["run", "case.toml", "--set", "run.0.name=figures"],
         folder.path(),

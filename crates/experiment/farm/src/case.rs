@@ -298,6 +298,8 @@ pub struct Output {
     pub volume_interval: Option<f64>,
     /// Checkpoint every so many seconds of wall time (s).
     pub checkpoint_interval: f64,
+    /// Whether the checkpoint at the end of a run stays, from which it can go on for longer.
+    pub keeps_checkpoint: bool,
     /// Further outputs, each with a name of its own.
     pub further: Vec<Requested>,
 }

@@ -9,7 +9,7 @@ use flow::inflow::MeanProfile;
 use flow::lattice::{self, Lattice};
 use flow::{FlowError, FlowSolver, WindField};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use thiserror::Error;
 use turbine::aero::blade_element::Theory;
 use turbine::blockage::equivalent_speed_ratio;
@@ -41,6 +41,8 @@ pub struct SelfCheck {
 
 /// Difference beyond which the self-check warns (–).
 pub const TOLERANCE: f64 = 0.05;
+/// Wall time for which a machine is timed.
+const TIMED: Duration = Duration::from_millis(300);
 
 impl SelfCheck {
     /// Power over its expectation, minus one (–).
@@ -90,6 +92,15 @@ impl Tunnel {
     pub fn for_identification(spacing: f64, interval: f64) -> Self {
         let [upstream, downstream, width] = [3.0, 3.0, 5.0];
         Self { upstream, downstream, width, settling: 8.0, averaging: 0.0, spacing, interval }
+    }
+
+    /// The one in which a machine is timed around a rotor of `diameter` (m): of some 800 000 cells, more than
+    /// caches hold and few enough to be there at once.
+    pub fn for_timing(diameter: f64, spacing: f64, interval: f64) -> Self {
+        const CELLS_ACROSS: f64 = 84.0;
+        let width = (CELLS_ACROSS * spacing / diameter).max(1.5);
+        let [upstream, downstream] = [0.5 * width, 0.83 * width];
+        Self { upstream, downstream, width, settling: 0.0, averaging: 0.0, spacing, interval }
     }
 
     /// Cells along x, y and z around a rotor of `diameter` (m).
@@ -183,6 +194,39 @@ pub fn self_check(
         expected_thrust: expected.1,
         updates_per_second: n_cells.iter().product::<usize>() as f64 * n_steps as f64 / wall_time,
     })
+}
+
+/// Cell updates a second (1/s) of `model` in `tunnel`, everything included, timed for [`TIMED`].
+///
+/// # Errors
+/// Those of [`self_check`].
+pub fn updates_per_second(
+    model: &TurbineModel,
+    wind: &Wind,
+    tunnel: &Tunnel,
+    threads: Option<usize>,
+) -> Result<f64, SelfCheckError> {
+    let mut air = tunnel.air(wind, model.definition.rotor_diameter(), threads)?;
+    let mut rotor = bare_rotor(model, wind, tunnel)?;
+    let n_blades = model.definition.n_blades;
+    let pitch = PerBlade::splat(n_blades, model.constants.fine_pitch);
+    let commands = Commands { pitch, generator_torque: 0.0 };
+    let mut winds = vec![Vector3::ZERO; rotor.stations().len()];
+    let mut step = || -> Result<(), SelfCheckError> {
+        air.sample(rotor.stations(), &mut winds);
+        rotor.advance(tunnel.interval, &winds, &commands);
+        Ok(air.advance(tunnel.interval, rotor.forces())?)
+    };
+    // The first step touches memory for the first time.
+    step()?;
+    let started = Instant::now();
+    let mut n_steps = 0;
+    while n_steps == 0 || started.elapsed() < TIMED {
+        step()?;
+        n_steps += 1;
+    }
+    let wall_time = started.elapsed().as_secs_f64();
+    Ok(air.n_cells().iter().product::<usize>() as f64 * f64::from(n_steps) / wall_time)
 }
 
 /// The rotor of `model` at the origin of `tunnel`, stiff, with no tower or nacelle in the wind, at held

@@ -7,8 +7,8 @@
 
 mod problem;
 
-pub(crate) use problem::ANEW;
 pub use problem::CheckpointProblem;
+pub(crate) use problem::{ANEW, GONE};
 
 use crate::FileError;
 use crate::atomic::{self, AtomicFile};
@@ -54,7 +54,8 @@ impl Identity<'_> {
     fn kept(&self) -> Kept {
         Kept {
             run: self.run.to_owned(),
-            fingerprint: case::fingerprint(self.case_text, self.run),
+            // It may go on for longer than it was to when the checkpoint was written.
+            fingerprint: case::fingerprint_of_state(self.case_text, self.run),
             version: self.version.to_owned(),
             backend: self.backend.to_owned(),
         }

@@ -16,6 +16,7 @@ pub mod openfast;
 pub mod openfast_output;
 pub mod records;
 pub mod rosco;
+pub mod shipped;
 pub mod table;
 pub mod turbine_file;
 pub mod turbulence_box;

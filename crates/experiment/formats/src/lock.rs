@@ -196,7 +196,7 @@ mod tests {
     #[test]
     fn who_waits_gets_it_and_nobody_is_in_it_beside_another() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("study/.report.lock");
+        let path = folder.path().join("study/.lock.report");
         let inside = AtomicUsize::new(0);
         std::thread::scope(|scope| {
             for _ in 0..8 {

@@ -9,6 +9,7 @@ mod lock;
 mod over_offset;
 mod phase;
 mod seeds;
+mod sweep;
 mod synchronisation;
 
 pub use analyses::{ANALYSES, Analysis};
@@ -21,13 +22,24 @@ pub use phase::{
 pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
 pub use synchronisation::curve::offset_panel;
 
-use basis::records::Summary;
+use basis::records::{Summary, SweepTable};
 use error::InRecords;
-use formats::lock::Lock;
 use formats::{leftovers, records};
 use std::path::{Path, PathBuf};
 
-/// Makes the report of the study in `directory` from its records; gives the summaries and the report's path.
+/// What a report is made of, and where it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReportMade {
+    /// The runs' numbers, of all studies.
+    pub summaries: Vec<Summary>,
+    /// What came of the sweep, where it is one.
+    pub sweep: Option<SweepTable>,
+    /// The page.
+    pub page: PathBuf,
+}
+
+/// Makes the report of the study in `directory` from its records; of a sweep that of each of its studies,
+/// `sweep.html` over all of them, and its table.
 ///
 /// Where several processes do so at once, each waits for the one before: the last report tells of all runs
 /// that were complete when it began.
@@ -35,12 +47,29 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`PostprocessingError::File`] for records that cannot be read, [`PostprocessingError::Report`] for a
 /// report that cannot be written.
-pub fn report(directory: &Path) -> Result<(Vec<Summary>, PathBuf), PostprocessingError> {
+pub fn report(directory: &Path) -> Result<ReportMade, PostprocessingError> {
+    let Some(swept) = records::read_sweep(directory)? else {
+        let (summaries, page) = report_of_study(directory)?;
+        return Ok(ReportMade { summaries, sweep: None, page });
+    };
+    let mut summaries = Vec::new();
+    for study in sweep::studies_with_runs(directory, &swept) {
+        summaries.extend(report_of_study(&study)?.0);
+    }
+    let _lock = records::lock_shared(directory, "sweep")?;
+    let table = sweep::table(directory, &swept)?;
+    records::write_table(directory, &table)?;
+    let page = report::write_sweep(&table, env!("CARGO_PKG_VERSION"), directory)?;
+    Ok(ReportMade { summaries, sweep: Some(table), page })
+}
+
+/// Makes the report of the one study in `directory`; gives the summaries and the report's path.
+fn report_of_study(directory: &Path) -> Result<(Vec<Summary>, PathBuf), PostprocessingError> {
     if !directory.is_dir() {
         // The reader says what is wrong; a lock would make the folder.
         records::read_study(directory)?;
     }
-    let _lock = Lock::wait(&directory.join(".report.lock"))?;
+    let _lock = records::lock_shared(directory, "report")?;
     for folder in [directory.to_owned(), directory.join("figures")] {
         if folder.is_dir() {
             leftovers::remove_abandoned(&folder, None)?;

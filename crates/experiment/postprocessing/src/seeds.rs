@@ -250,10 +250,12 @@ fn run_gains(
         .filter(|name| there.contains(name))
         .map(|name| (name.clone(), vec![name.clone()]))
         .collect();
-    if behind(&here) == behind(&there) && behind(&here).len() > 1 {
+    // Without wakes no turbine feels another, so that a sum means nothing.
+    let is_summed = pairs.iter().all(|pair| pair.run.1.has_wakes());
+    if is_summed && behind(&here) == behind(&there) && behind(&here).len() > 1 {
         requested.push(("downstream".to_owned(), behind(&here)));
     }
-    if here == there {
+    if is_summed && here == there {
         requested.push(("all".to_owned(), here.clone()));
     }
     let mut parts = Vec::with_capacity(requested.len());

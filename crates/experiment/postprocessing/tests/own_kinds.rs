@@ -68,7 +68,8 @@ fn the_report_of_a_study_tells_of_kinds_of_ones_own() {
     let text = case("own", "", [10.0, 60.0], &[NREL_5MW], runs);
     let folder = written(&text.replace("solver = \"uniform\"", "solver = \"calm\""));
     let study = done(&options(folder.path()));
-    let (summaries, page) = postprocessing::report(&study).expect("sound records");
+    let postprocessing::ReportMade { summaries, page, .. } =
+        postprocessing::report(&study).expect("sound records");
     assert!(summaries.iter().all(|it| it.flow.as_ref().is_some_and(|flow| flow.solver == "calm")));
     let page = fs::read_to_string(page).expect("a page");
     for expected in ["half of the torque", "kind = &quot;half&quot;"] {

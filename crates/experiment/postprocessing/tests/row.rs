@@ -34,7 +34,8 @@ fn both(output: &Path) -> PhaseAnswers {
 fn every_turbine_that_estimates_a_phase_has_an_answer() {
     let folder = written(&case());
     let output = folder.path().join("out");
-    let (_, report) = postprocessing::report(&done(&options(folder.path()))).expect("a report");
+    let made = postprocessing::report(&done(&options(folder.path()))).expect("a report");
+    let report = made.page;
 
     let found = both(&output);
     assert!(found.without_truth.is_empty(), "{:?}", found.without_truth);

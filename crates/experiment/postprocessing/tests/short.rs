@@ -10,6 +10,7 @@ use std::fs;
 fn a_run_shorter_than_a_period_of_the_helix_gets_its_report() {
     let run = behind_helix("monitoring", &[MONITORING]);
     let folder = written(&case("short", "", [10.0, 40.0], &[NREL_5MW; 2], &run));
-    let (_, report) = postprocessing::report(&done(&options(folder.path()))).expect("a report");
+    let made = postprocessing::report(&done(&options(folder.path()))).expect("a report");
+    let report = made.page;
     assert!(fs::metadata(&report).is_ok_and(|found| found.len() > 0), "{}", report.display());
 }

@@ -6,10 +6,11 @@ mod layout;
 mod page;
 mod sentence;
 mod study;
+pub mod text_table;
 mod trace;
 mod words;
 
-use basis::records::{Plane, Series, Summary};
+use basis::records::{Plane, Series, Summary, SweepTable};
 pub use figures::synchronisation::{
     CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure,
     OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow, SliceFigure, SlicePanel, SliceRotor,
@@ -118,6 +119,24 @@ pub fn write(study: &StudyRecords, directory: &Path) -> Result<(), ReportError> 
     let page = page::render(&digest, &figures)?;
     write_figures(figures.iter(), directory)?;
     write_whole(&directory.join("report.html"), page.as_bytes())
+}
+
+/// Writes `sweep.html` and the figures of the sweep of `table` into `directory`, made by the program of
+/// `version`; gives the page's path.
+///
+/// # Errors
+/// [`ReportError::Write`] when the disk says no.
+pub fn write_sweep(
+    table: &SweepTable,
+    version: &str,
+    directory: &Path,
+) -> Result<PathBuf, ReportError> {
+    let figures = figures::sweep::all(table);
+    let page = page::sweep::render(table, &figures, version)?;
+    write_figures(figures.iter(), directory)?;
+    let path = directory.join("sweep.html");
+    write_whole(&path, page.as_bytes())?;
+    Ok(path)
 }
 
 /// Writes the figures of a phase synchronisation into `directory`/figures, as SVG and PNG; gives their names.

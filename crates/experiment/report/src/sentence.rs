@@ -40,10 +40,10 @@ pub(crate) fn confidence(study: &Study) -> String {
     }
 }
 
-/// Whether the sum over the turbines of `run` means something: not where several stand in wind without wakes,
-/// in which no turbine feels another.
+/// Whether the sum over the turbines of `run` means something: not in wind without wakes, in which no turbine
+/// feels another.
 pub(crate) fn is_summed(run: &RunRecords) -> bool {
-    run.summary.has_wakes() || run.summary.turbines.len() < 2
+    run.summary.has_wakes()
 }
 
 /// Gains of single turbines that do not print as zero.

@@ -127,7 +127,7 @@ impl<'a> Study<'a> {
         if speed > 0.0 { speed } else { 1.0 }
     }
 
-    /// Run with the largest gain of the array.
+    /// Run with the largest gain.
     pub(crate) fn best(&self) -> Option<&'a RunRecords> {
         self.runs()
             .iter()
@@ -224,9 +224,17 @@ pub(crate) fn sample(plane: &Plane, first: f64, second: f64) -> Option<f64> {
     Some(lower + share[1] * (upper - lower))
 }
 
-/// Gain of the array in a run.
+/// Gain of the array in a run (–); in wind without wakes, where there is no array, that of the turbine that
+/// gained most.
 pub(crate) fn gain_of(run: &RunRecords) -> Option<f64> {
-    run.summary.array_power_gain.map(|gain| gain.mean).filter(|gain| gain.is_finite())
+    let summary = &run.summary;
+    let gains = if summary.has_wakes() {
+        Vec::from_iter(summary.array_power_gain)
+    } else {
+        summary.turbines.iter().filter_map(|turbine| turbine.power_gain).collect()
+    };
+    let gains = gains.into_iter().map(|gain| gain.mean).filter(|gain| gain.is_finite());
+    gains.max_by(f64::total_cmp)
 }
 
 /// How `turbine` was set to be excited.

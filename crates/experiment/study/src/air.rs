@@ -34,3 +34,15 @@ pub(crate) fn begin(
         error @ SolverError::NoPlanes { .. } => StudyError::Solver(Box::new(error)),
     })
 }
+
+/// Begins the wind that `setup` reads from a file, where it does, and lets it go: what is wrong with the
+/// file, or does not fit the rotors, shows here and not when a run begins.
+///
+/// # Errors
+/// Those of [`begin`].
+pub(crate) fn try_recorded(setup: &Prepared) -> Result<(), StudyError> {
+    if setup.case.flow.solver.wind == WindSource::Planes {
+        begin(setup, &setup.mean_inflow, &|_| ControlFlow::Continue(()))?;
+    }
+    Ok(())
+}

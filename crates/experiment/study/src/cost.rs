@@ -3,9 +3,9 @@
 use crate::StudyError;
 use crate::observer::Estimate;
 use crate::outputs::{Outputs, series};
-use crate::pitch_identification::PitchIdentifications;
 use crate::prepared::Prepared;
 use crate::warnings::wall_gain;
+use farm::pitch_response::IdentificationCost;
 use formats::machine;
 use formats::records::RunFolder;
 use std::path::Path;
@@ -39,29 +39,39 @@ impl Prepared {
         self.checkpoints_of_run(index) + outputs.disk_of_run(self, run) + records
     }
 
-    /// Bytes of the checkpoints of run number `index`, which go when it is complete: a new one stands beside
-    /// the old one until it is whole.
+    /// Bytes of the checkpoints of run number `index`: a new one stands beside the old one until it is
+    /// whole.
     fn checkpoints_of_run(&self, index: usize) -> u64 {
-        let n_turbines = self.case.runs[index].present().count() as u64;
-        2 * ((self.case.flow.solver.memory)(&self.plan) + n_turbines * TURBINE_STATE)
+        2 * self.checkpoint_of_run(index)
     }
 
-    /// The cost of the `open` runs (their places in the case) with their `outputs`, and of `identifications`
-    /// before them; the machine's speed is not known yet.
+    /// Bytes of one checkpoint of run number `index`.
+    fn checkpoint_of_run(&self, index: usize) -> u64 {
+        let n_turbines = self.case.runs[index].present().count() as u64;
+        (self.case.flow.solver.memory)(&self.plan) + n_turbines * TURBINE_STATE
+    }
+
+    /// Bytes of the checkpoint that run number `index` keeps when it is complete.
+    fn kept_checkpoint(&self, index: usize) -> u64 {
+        if self.case.output.keeps_checkpoint { self.checkpoint_of_run(index) } else { 0 }
+    }
+
+    /// The cost of the `open` runs (their places in the case) with their `outputs`, and of the identifications
+    /// before them, which cost `costs`; the machine's speed is not known yet.
     pub(crate) fn estimate(
         &self,
         open: &[usize],
-        identifications: &PitchIdentifications,
+        costs: &[IdentificationCost],
         outputs: &Outputs,
     ) -> Estimate {
         let plan = &self.plan;
-        let costs = identifications.costs();
         let field = (self.case.flow.solver.memory)(plan);
         let turbulence = farm::wind::turbulence(&self.site());
         let checkpoints = || open.iter().map(|&index| self.checkpoints_of_run(index));
         let disks = || open.iter().map(|&index| self.disk_of_run(index, outputs));
-        // Of one run at a time.
-        let checkpoint = checkpoints().max().unwrap_or(0);
+        let kept = || open.iter().map(|&index| self.kept_checkpoint(index));
+        // What goes again, of one run at a time.
+        let passing = checkpoints().zip(kept()).map(|(all, kept)| all - kept).max().unwrap_or(0);
         Estimate {
             n_runs: open.len(),
             n_identifications: costs.len(),
@@ -73,12 +83,42 @@ impl Prepared {
             n_steps: plan.n_steps,
             memory: field + turbulence.map_or(0, |turbulence| turbulence.memory),
             disk: disks().max().unwrap_or(0),
-            disk_in_all: disks().sum::<u64>() - checkpoints().sum::<u64>() + checkpoint + REPORT,
+            disk_in_all: disks().sum::<u64>() - checkpoints().sum::<u64>()
+                + kept().sum::<u64>()
+                + passing
+                + REPORT,
+            kept_checkpoints: kept().sum(),
+            passing_checkpoint: passing,
+            n_studies: 1,
+            n_jobs: 1,
+            work: open.len() as f64 * plan.updates().max(plan.n_steps as f64),
             updates_per_second: None,
             blockage: plan.blockage,
             wall_gain: wall_gain(plan.blockage),
             lattice_speed: plan.lattice_speed,
         }
+    }
+}
+
+/// The cost of several studies, whose estimates are `of_studies`, with `n_jobs` runs at a time; one at least.
+pub(crate) fn together(of_studies: &[Estimate], n_jobs: usize) -> Estimate {
+    let sum = |part: fn(&Estimate) -> u64| of_studies.iter().map(part).sum::<u64>();
+    let most = |part: fn(&Estimate) -> u64| of_studies.iter().map(part).max().unwrap_or(0);
+    let speeds = of_studies.iter().filter_map(|estimate| estimate.updates_per_second);
+    let first = &of_studies[0];
+    // Each reckons with one run under way; so many are at a time, and one report is over all.
+    let passing = (n_jobs as u64 - 1) * most(|estimate| estimate.passing_checkpoint);
+    Estimate {
+        n_runs: of_studies.iter().map(|estimate| estimate.n_runs).sum(),
+        n_studies: of_studies.len(),
+        n_jobs,
+        work: of_studies.iter().map(|estimate| estimate.work).sum(),
+        memory: n_jobs as u64 * most(|estimate| estimate.memory),
+        disk: most(|estimate| estimate.disk),
+        disk_in_all: sum(|estimate| estimate.disk_in_all) + passing,
+        kept_checkpoints: sum(|estimate| estimate.kept_checkpoints),
+        updates_per_second: speeds.reduce(f64::min),
+        ..first.clone()
     }
 }
 

@@ -12,13 +12,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 impl Prepared {
-    /// Reads the case at `path` with `overrides`, loads its turbines and lays out its domain.
+    /// Reads the case at `path`, or the shipped one of that name, with `overrides`, loads its turbines and
+    /// lays out its domain.
     ///
     /// # Errors
     /// [`StudyError`] for a case, a turbine or a layout that cannot be used.
     pub fn read(path: &Path, overrides: &[String]) -> Result<Self, StudyError> {
         announce();
-        Self::of_file(&formats::case::read(path, overrides)?)
+        Self::of_file(&formats::shipped::read(path, overrides)?)
     }
 
     /// The same of a `case` that stands in no file; files that it names are relative to the current folder.

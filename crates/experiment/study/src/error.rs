@@ -9,11 +9,14 @@ use farm::self_check::SelfCheckError;
 use flow::inflow::InflowError;
 use flow::lattice::{LatticeError, PlaneSizeError};
 use formats::atomic::FileError;
-use formats::case::CaseError;
+use formats::case::{CaseError, Difference};
 use formats::turbine_file::TurbineFileError;
 use miette::Diagnostic;
 use std::path::PathBuf;
 use thiserror::Error;
+
+/// What to do with a checkpoint that was made otherwise than the run at hand.
+const MADE_OTHERWISE: &str = "it was made with other kinds of controllers, sensors or outputs: resume with the program that made it, or use --overwrite to make the run again";
 
 /// Why a study could not be made.
 #[derive(Debug, Error, Diagnostic)]
@@ -47,9 +50,11 @@ pub enum StudyError {
     Assembly(#[from] AssemblyError),
     /// A checkpoint holds the state of another controller.
     #[error("the checkpoint does not fit the run's controllers")]
+    #[diagnostic(help("{}", MADE_OTHERWISE))]
     ForeignController(#[from] control::ForeignState),
     /// A checkpoint holds the state of another sensor.
     #[error("the checkpoint does not fit the run's sensors")]
+    #[diagnostic(help("{}", MADE_OTHERWISE))]
     ForeignSensor(#[from] sensing::ForeignState),
     /// A turbine's controller cannot be made.
     #[error("run {run}: the controller of {turbine} cannot be built")]
@@ -72,6 +77,7 @@ pub enum StudyError {
     Analysis(#[from] AnalysisError),
     /// A stored average does not fit the grid.
     #[error("the checkpoint does not fit the grid")]
+    #[diagnostic(help("{}", MADE_OTHERWISE))]
     PlaneSize(#[from] PlaneSizeError),
     /// The simulation broke down.
     #[error("run {run} diverged: {source}")]
@@ -115,8 +121,8 @@ pub enum StudyError {
         /// The folder.
         directory: PathBuf,
     },
-    /// There is nothing to go on with.
-    #[error("{} holds no run to go on with", directory.display())]
+    /// There is nothing to resume.
+    #[error("{} holds no run to resume", directory.display())]
     #[diagnostic(help("leave --resume out to begin, or name the folder of the results with -o"))]
     NothingToResume {
         /// The folder.
@@ -137,8 +143,8 @@ pub enum StudyError {
         /// Longest period (s).
         most: f64,
     },
-    /// Results of another case or of other turbines are to be resumed.
-    #[error("run {run} in {} was made with another version of the case or of a turbine", directory.display())]
+    /// Results of another case are to be resumed.
+    #[error("run {run} in {} was made with another version of the case{}", directory.display(), told(differences))]
     #[diagnostic(help(
         "repeat the --set of the first call, use --overwrite to make it again (with the runs that compare with it), or another folder with -o"
     ))]
@@ -147,6 +153,60 @@ pub enum StudyError {
         run: String,
         /// Its folder.
         directory: PathBuf,
+        /// What differs; empty where that cannot be told.
+        differences: Vec<Difference>,
+    },
+    /// A run is to go on for longer, and cannot.
+    #[error("run {run} in {} cannot go on from {before} s to {now} s: {reason}", directory.display())]
+    #[diagnostic(help(
+        "put time.duration back, use --overwrite to make the run again, or another folder with -o"
+    ))]
+    NotLengthened {
+        /// Run.
+        run: String,
+        /// Its folder.
+        directory: PathBuf,
+        /// Its duration (s).
+        before: f64,
+        /// The one asked for (s).
+        now: f64,
+        /// Why not.
+        reason: String,
+    },
+    /// A folder holds files of which nothing tells what they are.
+    #[error("{} holds files of a run, and no manifest.json that tells what made them", directory.display())]
+    #[diagnostic(help(
+        "put its manifest.json back to go on with --resume, use --overwrite to make the run in the place of what is there, or another folder with -o"
+    ))]
+    NoManifest {
+        /// Folder of the run.
+        directory: PathBuf,
+    },
+    /// A folder holds another sweep, or a study of its own where a sweep of studies is to be, or the reverse.
+    #[error("{} holds {found}, and the case makes {expected}", directory.display())]
+    #[diagnostic(help(
+        "give it another folder with -o; values may be added to the lists of [sweep], keys that make studies may not"
+    ))]
+    OtherSweep {
+        /// The folder.
+        directory: PathBuf,
+        /// What is there.
+        found: String,
+        /// What the case makes.
+        expected: String,
+    },
+    /// A run whose manifest does not tell the files of wind.
+    #[error("run {run} in {} does not tell which {file} it was made with: an earlier wakemix made it", directory.display())]
+    #[diagnostic(help(
+        "use --overwrite to make the run again (with the runs that compare with it), or another folder with -o"
+    ))]
+    UntoldWind {
+        /// Run.
+        run: String,
+        /// Its folder.
+        directory: PathBuf,
+        /// The file as the case names it.
+        file: String,
     },
     /// Results made with another turbine, controller's input or wind are to be resumed or compared with.
     #[error("run {run} in {} was made with another {file}", directory.display())]
@@ -190,7 +250,7 @@ pub enum StudyError {
     /// The machine has too little memory.
     #[error("the study needs {needed:.1} GiB of memory, {available:.1} GiB are free")]
     #[diagnostic(help(
-        "lower flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters"
+        "lower flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters; or make fewer runs at once with --jobs"
     ))]
     Memory {
         /// Needed (GiB).
@@ -222,6 +282,16 @@ pub enum StudyError {
     },
 }
 
+/// What differs, in words behind a colon; the first few.
+fn told(differences: &[Difference]) -> String {
+    const MOST: usize = 4;
+    let mut words: Vec<String> = differences.iter().take(MOST).map(Difference::to_string).collect();
+    if differences.len() > MOST {
+        words.push(format!("and {} more", differences.len() - MOST));
+    }
+    if words.is_empty() { String::new() } else { format!(": {}", words.join("; ")) }
+}
+
 /// How to get the study going again where `file` is not the one of SHA-256 `sha256` any more.
 fn put_back(file: &str, sha256: &Option<String>) -> String {
     let before = match sha256 {
@@ -248,4 +318,20 @@ fn kept(source: &FarmError, checkpoint: &Option<PathBuf>, series: &Option<PathBu
         text += &format!("; last good checkpoint: {}", path.display());
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_checkpoint_that_does_not_fit_comes_with_a_fix() {
+        let sensor = sensing::ForeignState { sensor: "beam".to_owned() };
+        let errors =
+            [StudyError::from(sensor), StudyError::from(PlaneSizeError { expected: 4, found: 5 })];
+        for error in errors {
+            let help = error.help().expect("a fix").to_string();
+            assert!(help.contains("--overwrite"), "{error}: {help}");
+        }
+    }
 }

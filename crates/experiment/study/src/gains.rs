@@ -17,7 +17,7 @@ pub(crate) enum Comparison<'a> {
     None,
     /// With a run that is not made yet.
     Missing(&'a Run),
-    /// With a run that was made of another case or other turbines: no comparison.
+    /// With a run that was made of another case or other turbines, or by another program: no comparison.
     Other(&'a Run),
     /// With this run.
     Made(&'a Run, Columns),
@@ -48,11 +48,17 @@ pub(crate) fn comparison<'a>(
     if !folder.is_complete() {
         return Ok(Comparison::Missing(run));
     }
+    let [own, there] = [&folders[index], folder].map(records::read_manifest);
+    if own?.version != there?.version {
+        return Ok(Comparison::Other(run));
+    }
     match check_same(setup, wind, run, folder) {
         Ok(()) => Ok(Comparison::Made(run, Columns::open(folder, setup)?)),
-        Err(StudyError::OtherCase { .. } | StudyError::OtherFile { .. }) => {
-            Ok(Comparison::Other(run))
-        }
+        Err(
+            StudyError::OtherCase { .. }
+            | StudyError::OtherFile { .. }
+            | StudyError::UntoldWind { .. },
+        ) => Ok(Comparison::Other(run)),
         Err(error) => Err(error),
     }
 }
@@ -93,7 +99,8 @@ pub(crate) fn add(
     if is_alike {
         let interval = own.of(&[])?.interval;
         summary.array_power_gain = defined(gain(&own_array, &array, interval, BLOCK_LENGTH))?;
-        if summary.array_power_gain.is_none() {
+        // Where no turbine feels another nobody is shown a gain of all.
+        if summary.array_power_gain.is_none() && summary.has_wakes() {
             undefined.push(not_defined(run, other, None));
         }
     }
@@ -162,7 +169,7 @@ pub(crate) fn catch_up(
             run.name
         )),
         Comparison::Other(Run { name, .. }) => observer.warned(&format!(
-            "{} has no gains: the run {name} was made with another version of the case, of a turbine or of a file of wind",
+            "{} has no gains: the run {name} was made with another version of the case, of a turbine, of a file of wind or of the program",
             run.name
         )),
         Comparison::Made(other, mut there) => {

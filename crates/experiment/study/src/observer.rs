@@ -1,5 +1,6 @@
 //! Observing a study: what it will cost, how far it is, what it found.
 
+use crate::prepared::Prepared;
 use basis::records::{PitchResponse, Summary};
 use farm::self_check::SelfCheck;
 use std::cell::RefCell;
@@ -9,8 +10,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// What a study will cost, known before it starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// Runs still to be made (–).
+    /// Runs still to be made, in all studies (–).
     pub n_runs: usize,
+    /// Studies that a sweep makes; 1 without one (–). Grid, steps and wind are those of the first.
+    pub n_studies: usize,
+    /// Runs that are made at a time (–).
+    pub n_jobs: usize,
+    /// Cell updates of all runs together, steps in prescribed wind (–).
+    pub work: f64,
     /// Pitch-response identifications before them (–).
     pub n_identifications: usize,
     /// Steps of all identifications together (–).
@@ -25,12 +32,16 @@ pub struct Estimate {
     pub interval: f64,
     /// Steps of one run (–).
     pub n_steps: u64,
-    /// Memory of flow field and turbulence (bytes).
+    /// Memory of flow field and turbulence, of all runs that are made at a time (bytes).
     pub memory: u64,
     /// Disk that one run takes at most at any time, checkpoint included (bytes).
     pub disk: u64,
     /// The same of all runs still to be made, one after the other, and of the report (bytes).
     pub disk_in_all: u64,
+    /// How much of it are checkpoints that stay, so that runs can go on for longer (bytes).
+    pub kept_checkpoints: u64,
+    /// Most that a run under way has of checkpoints beside what it keeps (bytes).
+    pub passing_checkpoint: u64,
     /// Cell updates a second, measured on this machine in the self-check; absent before it (1/s).
     pub updates_per_second: Option<f64>,
     /// Share of the domain's cross-section that a rotor takes (–).
@@ -44,8 +55,7 @@ pub struct Estimate {
 impl Estimate {
     /// Wall time of identifications and runs together (s), once the machine's speed is known.
     pub fn wall_time(&self) -> Option<f64> {
-        let updates = self.n_cells.iter().product::<usize>() as f64 * self.n_steps as f64;
-        let all = self.n_runs as f64 * updates + self.identification_work;
+        let all = self.work + self.identification_work;
         self.updates_per_second.map(|speed| all / speed)
     }
 
@@ -88,10 +98,21 @@ pub struct Progress<'a> {
     pub updates_per_second: f64,
     /// Wall time left for all runs to be made (s).
     pub time_left: f64,
+    /// Steps of it that an earlier process made (–).
+    pub first_step: u64,
+    /// Runs that are made at a time (–).
+    pub n_at_a_time: usize,
+    /// Share of all runs to be made that is done (–).
+    pub share_of_all: f64,
 }
 
 /// Observes a study; every method may be left out.
 pub trait Observer {
+    /// The case is read and checked, its turbines are loaded and its domain is laid out.
+    fn prepared(&mut self, _prepared: &Prepared) {}
+    /// What comes next is about the study of a sweep in this folder in that of the sweep; never called
+    /// without a sweep of studies.
+    fn in_study(&mut self, _folder: &str) {}
     /// The cost, before the first step.
     fn estimated(&mut self, _estimate: &Estimate) {}
     /// Something is being prepared: `share` (–) of it is done.
@@ -101,7 +122,7 @@ pub trait Observer {
     /// An identification moved on.
     fn identifying(&mut self, _progress: &IdentificationProgress) {}
     /// It was found how the pitch of the turbine called `turbine`, and of those alike, acts; `again`: by an
-    /// earlier session.
+    /// earlier call.
     fn identified(&mut self, _turbine: &str, _response: &PitchResponse, _again: bool) {}
     /// A run moved on.
     fn advanced(&mut self, _progress: &Progress) {}

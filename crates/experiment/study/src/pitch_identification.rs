@@ -15,6 +15,7 @@ use farm::pitch_response::{
     individual_pitch_offset, individual_pitch_offset_cost, own_pitch, own_pitch_cost,
 };
 use formats::records::{PitchResponseRecord, sha256};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -53,9 +54,16 @@ impl PitchIdentifications {
         self.wanted.iter().filter(|identification| self.found(identification).is_none())
     }
 
-    /// What it costs to find what is not known yet, each.
-    pub(crate) fn costs(&self) -> Vec<IdentificationCost> {
-        self.open().map(|identification| identification.cost).collect()
+    /// What it costs to find what is not known yet, each; what is in `counted` already is left out, and on
+    /// return all of it is.
+    pub(crate) fn costs(&self, counted: &mut BTreeSet<String>) -> Vec<IdentificationCost> {
+        let new = self.open().filter(|identification| counted.insert(identification.key.clone()));
+        new.map(|identification| identification.cost).collect()
+    }
+
+    /// Whether nothing is to be found.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.open().next().is_none()
     }
 }
 

@@ -3,41 +3,142 @@
 use crate::StudyError;
 use crate::prepared::Prepared;
 use farm::case::Run;
-use formats::case;
-use formats::records::{self, RunFolder};
+use farm::wind::Site;
+use formats::case::{self, Difference};
+use formats::records::{self, Manifest, RunFolder};
 use std::collections::BTreeMap;
 
 /// SHA-256 of each file of wind that a case reads, by its path as the case names it.
 pub(crate) type WindDigests = BTreeMap<String, String>;
 
-/// Whether what is in `folder` was made with this very case, these very turbines and controllers, and files
-/// of `wind` like these.
+/// What is in the folder of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Standing {
+    /// Nothing that a manifest tells of, or what was made with this very case.
+    Same,
+    /// What was made with this very case, but for a shorter time (s).
+    Shorter(f64),
+}
+
+/// What is in `folder`, made with this very case, these very turbines and controllers, and files of `wind`
+/// like these, if for a shorter time.
 ///
 /// # Errors
-/// [`StudyError::OtherCase`], or [`StudyError::OtherFile`] names the file.
+/// [`StudyError::OtherCase`] names what differs, [`StudyError::OtherFile`] and [`StudyError::UntoldWind`] the
+/// file.
+pub(crate) fn standing(
+    prepared: &Prepared,
+    wind: &WindDigests,
+    run: &Run,
+    folder: &RunFolder,
+) -> Result<Standing, StudyError> {
+    if !folder.manifest_path().exists() {
+        return Ok(Standing::Same);
+    }
+    let manifest = records::read_manifest(folder)?;
+    let (name, directory) = (run.name.clone(), folder.path().to_owned());
+    let standing = match case_standing(prepared, &manifest, run) {
+        Ok(standing) => standing,
+        Err(differences) => {
+            return Err(StudyError::OtherCase { run: name, directory, differences });
+        }
+    };
+    let texts = prepared.turbine_texts.iter();
+    let texts = texts.map(|(name, text)| (name.clone(), records::sha256(text.as_bytes())));
+    if let Some((file, sha256)) = another(&manifest.turbines_sha256, &texts.collect()) {
+        return Err(StudyError::OtherFile { run: name, directory, file, sha256 });
+    }
+    match another(&manifest.wind_sha256, wind) {
+        None => Ok(standing),
+        Some((file, _)) if manifest.wind_sha256.is_empty() => {
+            Err(StudyError::UntoldWind { run: name, directory, file })
+        }
+        Some((file, sha256)) => Err(StudyError::OtherFile { run: name, directory, file, sha256 }),
+    }
+}
+
+/// How the case of `manifest` stands to that of `prepared`; errs with what differs.
+fn case_standing(
+    prepared: &Prepared,
+    manifest: &Manifest,
+    run: &Run,
+) -> Result<Standing, Vec<Difference>> {
+    let (before, now) = (&manifest.case_text, &prepared.case_text);
+    if case::fingerprint(before, &run.name) == case::fingerprint(now, &run.name) {
+        return Ok(Standing::Same);
+    }
+    let differences = case::differences(before, now, &run.name);
+    if let [Difference { key, before: Some(before), .. }] = differences.as_slice()
+        && key == "time.duration"
+        && let Ok(before) = before.parse::<f64>()
+        && before < prepared.case.time.duration
+    {
+        return Ok(Standing::Shorter(before));
+    }
+    Err(differences)
+}
+
+/// Nothing where what is in `folder` was made with this very case, these very turbines and controllers, and
+/// files of `wind` like these.
+///
+/// # Errors
+/// Those of [`standing`], [`StudyError::OtherCase`] for a shorter time, too.
 pub(crate) fn check_same(
     prepared: &Prepared,
     wind: &WindDigests,
     run: &Run,
     folder: &RunFolder,
 ) -> Result<(), StudyError> {
-    if !folder.manifest_path().exists() {
-        return Ok(());
-    }
-    let manifest = records::read_manifest(folder)?;
-    let same_case = case::fingerprint(&manifest.case_text, &run.name)
-        == case::fingerprint(&prepared.case_text, &run.name);
+    let Standing::Shorter(before) = standing(prepared, wind, run, folder)? else { return Ok(()) };
+    let words = |duration: f64| Some(duration.to_string());
+    let differences = vec![Difference {
+        key: "time.duration".to_owned(),
+        before: words(before),
+        now: words(prepared.case.time.duration),
+    }];
     let (run, directory) = (run.name.clone(), folder.path().to_owned());
-    if !same_case {
-        return Err(StudyError::OtherCase { run, directory });
-    }
-    let texts = prepared.turbine_texts.iter();
-    let texts = texts.map(|(name, text)| (name.clone(), records::sha256(text.as_bytes())));
-    let turbine = another(&manifest.turbines_sha256, &texts.collect());
-    match turbine.or_else(|| another(&manifest.wind_sha256, wind)) {
-        None => Ok(()),
-        Some((file, sha256)) => Err(StudyError::OtherFile { run, directory, file, sha256 }),
-    }
+    Err(StudyError::OtherCase { run, directory, differences })
+}
+
+/// Nothing where what is in `folder`, made for the time `before` (s), can go on to the end of `run`.
+///
+/// # Errors
+/// [`StudyError::NotLengthened`] says what prevents it.
+pub(crate) fn check_longer(
+    prepared: &Prepared,
+    run: &Run,
+    folder: &RunFolder,
+    before: f64,
+) -> Result<(), StudyError> {
+    let reason = if !folder.checkpoint_path().exists() {
+        if !folder.is_complete() {
+            // It begins at time zero.
+            return Ok(());
+        }
+        "it left no checkpoint at its end".to_owned()
+    } else {
+        let mut shorter = prepared.case.clone();
+        shorter.time.duration = before;
+        let site = prepared.site();
+        let boxes = [&shorter, site.case]
+            .map(|case| farm::wind::turbulence(&Site { case, ..site }).map(|t| t.n_points));
+        match boxes {
+            [Some(before), Some(now)] if before != now => format!(
+                "its turbulence is in a box that is as long as the run, of {} points, and that of the longer run, of {}, is another wind",
+                product(before),
+                product(now)
+            ),
+            _ => return Ok(()),
+        }
+    };
+    let (run, directory) = (run.name.clone(), folder.path().to_owned());
+    let now = prepared.case.time.duration;
+    Err(StudyError::NotLengthened { run, directory, before, now, reason })
+}
+
+/// Numbers of points along, across and up, in words.
+fn product([along, across, up]: [usize; 3]) -> String {
+    format!("{along} × {across} × {up}")
 }
 
 /// The first file of which `before` and `now` have not the same digest, with that of before; none where all

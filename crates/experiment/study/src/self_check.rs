@@ -4,7 +4,7 @@ use crate::StudyError;
 use crate::observer::Observer;
 use crate::prepared::Prepared;
 use farm::assemble::TurbineModel;
-use farm::self_check::{SelfCheck, SelfCheckError, Tunnel, self_check};
+use farm::self_check::{SelfCheck, SelfCheckError, Tunnel, self_check, updates_per_second};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -53,6 +53,35 @@ impl Prepared {
             found.updates_per_second = Some(slowest);
         }
         Ok(ControlFlow::Continue(found))
+    }
+
+    /// What can be known without a check: how fast this machine moves the air around the first turbine, timed
+    /// for a fraction of a second.
+    ///
+    /// # Errors
+    /// [`StudyError::SelfCheck`] when the flow cannot be set up.
+    pub(crate) fn timed(&self) -> Result<SelfChecked, StudyError> {
+        let mut found = SelfChecked::default();
+        if let Some(model) = self.models.first().filter(|_| self.case.flow.solver.needs_self_check)
+        {
+            let diameter = model.definition.rotor_diameter();
+            let tunnel = Tunnel::for_timing(diameter, self.plan.spacing, self.plan.interval);
+            let speed =
+                updates_per_second(model, &self.case.wind, &tunnel, self.case.flow.threads)?;
+            found.updates_per_second = Some(speed);
+        }
+        Ok(found)
+    }
+
+    /// Everything that decides what [`self_check`](Self::self_check) finds: equal for studies that are
+    /// checked alike.
+    pub(crate) fn checked_alike(&self) -> String {
+        let mut wind = self.case.wind.clone();
+        wind.seed = 0;
+        let machines: Vec<String> =
+            self.case.turbines.iter().map(farm::case::Placement::machine).collect();
+        let (spacing, interval) = (self.plan.spacing, self.plan.interval);
+        format!("{wind:?} {machines:?} {spacing:?} {interval:?} {:?}", self.case.flow.solver)
     }
 
     /// One model alone in a tunnel with the study's cells and step.

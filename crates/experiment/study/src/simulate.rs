@@ -53,7 +53,7 @@ impl<'a> Job<'a> {
 pub(crate) enum Ending {
     /// All steps made.
     Complete {
-        /// What it cost, all its sessions together.
+        /// What it cost, all processes that made it together.
         cost: Cost,
         /// Share of instants at which a pitch limit held a command back, turbine by turbine (–).
         clipped_shares: Vec<f64>,
@@ -160,7 +160,7 @@ impl<'a> Simulation<'a> {
         checkpoint::write(writer, &mut self.farm, &mut self.outputs, made)
     }
 
-    /// What all sessions of the run have made and cost so far.
+    /// What all processes have made of the run so far, and what that cost.
     fn made(&self) -> Before {
         Before {
             step: self.farm.step(),
@@ -196,10 +196,17 @@ impl<'a> Simulation<'a> {
             n_steps: plan.n_steps,
             updates_per_second: plan.cells() as f64 * steps_per_second,
             time_left: left / steps_per_second,
+            first_step: self.before.step,
+            n_at_a_time: 1,
+            share_of_all: 1.0 - left / (n_runs as f64 * plan.n_steps as f64),
         }
     }
 
     fn finish(mut self) -> Result<Ending, StudyError> {
+        if self.job.ready.prepared.case.output.keeps_checkpoint {
+            // Before the outputs complete their files: from here they can go on.
+            self.checkpoint()?;
+        }
         self.outputs.finish(&self.job.stage(&self.farm))?;
         let (plan, made) = (&self.job.ready.prepared.plan, self.made());
         let cost = cost(plan, &self.farm, made.wall_time, made.peak_memory);

@@ -70,7 +70,7 @@ fn nothing_cannot_be_resumed() {
     assert!(matches!(dry, Ok(Outcome::Estimated)), "{dry:?}");
     let one = StudyOptions { runs: vec!["baseline".into()], ..first };
     assert!(matches!(run(&one), Ok(Outcome::Done { .. })));
-    // The other run begins, as there is a study to go on with.
+    // The other run begins, as there is a study to resume.
     assert!(matches!(run(&resumed), Ok(Outcome::Done { .. })));
 }
 
@@ -140,12 +140,47 @@ fn a_run_that_is_named_twice_is_made_once() {
     assert!(matches!(run(&again), Ok(Outcome::Done { .. })));
 }
 
-/// The study's own locks bear these names.
+/// What the study has in its folder bears this name; its locks bear names that no run can have.
 #[test]
 fn no_run_takes_a_name_that_the_study_has_in_use() {
-    for name in ["figures", "probes", "report"] {
+    let named = |name: &str| {
         let text = case().replace("name = \"baseline\"", &format!("name = \"{name}\""));
         let folder = written(&text);
-        assert!(matches!(run(&options(folder.path())), Err(StudyError::Case(_))), "{name}");
+        let outcome = run(&options(folder.path()));
+        (outcome, folder)
+    };
+    assert!(matches!(named("figures").0, Err(StudyError::Case(_))));
+    for name in ["probes", "report", "lock.report"] {
+        let (outcome, folder) = named(name);
+        assert!(matches!(outcome, Ok(Outcome::Done { .. })), "{name}: {outcome:?}");
+        assert!(folder.path().join("out").join(name).join("summary.json").is_file());
     }
+    for name in [".report", "report.", "a/b"] {
+        assert!(matches!(named(name).0, Err(StudyError::Case(_))), "{name}");
+    }
+}
+
+/// A folder with files of a run and without its manifest is somebody's; every advice leads on.
+#[test]
+fn files_without_a_manifest_are_neither_taken_nor_taken_away() {
+    let folder = written(&case());
+    let first = options(folder.path());
+    let out = small::done(&first);
+    let manifest = out.join("baseline/manifest.json");
+    let kept = fs::read(&manifest).expect("a manifest");
+    fs::remove_file(&manifest).expect("a manifest");
+    fs::remove_file(out.join("baseline/summary.json")).expect("a summary");
+    let checkpoint = out.join("baseline/checkpoint");
+    for resume in [false, true] {
+        let error = run(&StudyOptions { resume, ..first.clone() }).expect_err("it is unknown");
+        assert!(matches!(error, StudyError::NoManifest { .. }), "{error:?}");
+        assert!(checkpoint.is_file(), "it was taken away");
+    }
+    // Each of the ways that the advice names.
+    fs::write(&manifest, kept).expect("a manifest");
+    let resumed = run(&StudyOptions { resume: true, ..first.clone() });
+    assert!(matches!(resumed, Ok(Outcome::Done { .. })), "{resumed:?}");
+    fs::remove_file(&manifest).expect("a manifest");
+    let replaced = run(&StudyOptions { overwrite: true, ..first });
+    assert!(matches!(replaced, Ok(Outcome::Done { .. })), "{replaced:?}");
 }

@@ -2,6 +2,7 @@
 
 mod small;
 
+use formats::records::{RunFolder, read_manifest, write_manifest};
 use small::{NREL_5MW, written};
 use std::fs;
 use std::path::Path;
@@ -70,4 +71,21 @@ fn another_wind_is_no_comparison() {
     assert!(refused, "{outcome:?}");
     let after = fs::read(folder.path().join("out/pulse/summary.json")).expect("a summary");
     assert!(before == after, "a refused study has touched a run");
+}
+
+#[test]
+fn another_version_of_the_program_is_no_comparison() {
+    let folder = written(&case());
+    small::done(&options(folder.path(), &["baseline"]));
+    let baseline = RunFolder::new(&folder.path().join("out"), "baseline");
+    let mut manifest = read_manifest(&baseline).expect("a manifest");
+    manifest.version = "0.0.1".to_owned();
+    write_manifest(&baseline, &manifest).expect("a manifest");
+    let mut told = Warned::default();
+    let pulse = StudyOptions { resume: true, ..options(folder.path(), &["pulse"]) };
+    let outcome = study::run(&pulse, &AtomicBool::new(false), &mut told);
+    let Ok(Outcome::Done { summaries, .. }) = outcome else { panic!("{outcome:?}") };
+    let pulse = summaries.iter().find(|summary| summary.run == "pulse").expect("its summary");
+    assert_eq!(pulse.array_power_gain, None);
+    assert!(told.0.iter().any(|warning| warning.contains("or of the program")), "{:?}", told.0);
 }

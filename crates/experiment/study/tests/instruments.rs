@@ -229,7 +229,7 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
         }
         read(&output)
     };
-    let run = |stop: &AtomicBool, options: &StudyOptions, observer: &mut dyn Observer| {
+    let run = |stop: &AtomicBool, options: &StudyOptions, observer: &mut (dyn Observer + Send)| {
         study::run(options, stop, observer).expect("the study runs")
     };
     let whole = series("whole", &mut |stop, options| run(stop, options, &mut Silent));

@@ -46,6 +46,9 @@ fn options(folder: &Path, output: &str) -> StudyOptions {
     StudyOptions { output: Some(folder.join(output)), ..small::options(folder) }
 }
 
+/// What tells of the machine and the hour, with how long a run took.
+const OF_THE_HOUR: [&str; 3] = ["manifest.json", "summary.json", "checkpoint"];
+
 /// Everything that a run left but what tells of the machine and the hour, by its place in the run's folder.
 fn left(run: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut files = Vec::new();
@@ -53,7 +56,7 @@ fn left(run: &Path) -> Vec<(PathBuf, Vec<u8>)> {
         for entry in fs::read_dir(&folder).expect("a folder") {
             let path = entry.expect("an entry").path();
             let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-            if path.is_file() && name != "manifest.json" && name != "summary.json" {
+            if path.is_file() && !OF_THE_HOUR.contains(&name.as_str()) {
                 let place = path.strip_prefix(run).expect("in the run").to_owned();
                 files.push((place, fs::read(&path).expect("a file")));
             }
@@ -61,6 +64,41 @@ fn left(run: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     }
     files.sort();
     files
+}
+
+/// Whether the runs in both folders have left the same files with the same bits.
+fn assert_alike(whole: &Path, other: &Path) {
+    let (whole, other) = (left(whole), left(other));
+    let names = |files: &[(PathBuf, Vec<u8>)]| -> Vec<PathBuf> {
+        files.iter().map(|(name, _)| name.clone()).collect()
+    };
+    assert_eq!(names(&whole), names(&other));
+    assert!(whole.len() > 10, "{:?}", names(&whole));
+    for ((name, before), (_, after)) in whole.iter().zip(&other) {
+        assert!(before == after, "{} has other bits", name.display());
+    }
+}
+
+#[test]
+fn a_lengthened_run_leaves_what_one_of_the_full_length_does() {
+    // Turbulence is in a box that is as long as the run.
+    let calm = CASE.replace("turbulence_intensity = 0.08", "turbulence_intensity = 0.0");
+    let folder = written(&calm.replace("duration = 160.0", "duration = 90.0"));
+    let mut lengthened = options(folder.path(), "lengthened");
+    small::done(&lengthened);
+    let run = folder.path().join("lengthened/helix");
+    assert!(run.join("checkpoint").is_file());
+    let short = left(&run);
+    fs::write(folder.path().join("case.toml"), &calm).expect("a case");
+    small::done(&options(folder.path(), "whole"));
+    lengthened.resume = true;
+    small::done(&lengthened);
+    assert_alike(&folder.path().join("whole/helix"), &run);
+    assert_ne!(short, left(&run));
+    // What is complete at that length is left alone.
+    let before = fs::read(run.join("summary.json")).expect("a summary");
+    small::done(&lengthened);
+    assert_eq!(before, fs::read(run.join("summary.json")).expect("a summary"));
 }
 
 #[test]
@@ -88,15 +126,8 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
     // The air is not all that is held.
     assert!(cost.peak_memory.is_none_or(|peak_memory| peak_memory > cost.memory), "{cost:?}");
 
-    let (whole, stopped) = (left(&folder.path().join("whole/helix")), left(&run));
-    let names = |files: &[(PathBuf, Vec<u8>)]| -> Vec<PathBuf> {
-        files.iter().map(|(name, _)| name.clone()).collect()
-    };
-    assert_eq!(names(&whole), names(&stopped));
-    assert!(whole.len() > 10, "{:?}", names(&whole));
-    for ((name, before), (_, after)) in whole.iter().zip(&stopped) {
-        assert!(before == after, "{} has other bits", name.display());
-    }
+    assert_alike(&folder.path().join("whole/helix"), &run);
+    let whole = left(&folder.path().join("whole/helix"));
 
     // What it takes on the disk was known beforehand, what goes with the checkpoint included.
     let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");

@@ -106,6 +106,25 @@ fn another_wind_is_not_gone_on_with() {
     check_told(&error, &digest);
 }
 
+/// Records of a program that kept no digests of winds do not tell that there was none.
+#[test]
+fn a_run_that_does_not_tell_its_wind_is_made_again() {
+    let folder = study();
+    small::done(&options(folder.path()));
+    let run = RunFolder::new(&folder.path().join("out"), "baseline");
+    let mut manifest = read_manifest(&run).expect("a manifest");
+    manifest.wind_sha256.clear();
+    formats::records::write_manifest(&run, &manifest).expect("a manifest");
+    let resumed = StudyOptions { resume: true, ..options(folder.path()) };
+    let error = small::run(&resumed).expect_err("nobody knows its wind");
+    assert!(
+        matches!(&error, StudyError::UntoldWind { file, .. } if file == "wind/w.bts"),
+        "{error:?}"
+    );
+    let help = error.help().expect("a fix").to_string();
+    assert!(help.contains("--overwrite") && !help.contains("away"), "{help}");
+}
+
 /// Whether the wind has been replaced.
 static REPLACED: AtomicBool = AtomicBool::new(false);
 
@@ -140,7 +159,9 @@ fn a_wind_that_changes_between_two_runs_is_noticed() {
     let digest = sha256(&fs::read(folder.path().join("wind/w.bts")).expect("a file"));
     let outputs = Outputs::standard().with(&REPLACING);
     let never = AtomicBool::new(false);
-    let outcome = study::run_with(&options(folder.path()), &outputs, &never, &mut Silent);
+    // One after the other: side by side both would begin in the same wind.
+    let one_by_one = StudyOptions { jobs: Some(1), ..options(folder.path()) };
+    let outcome = study::run_with(&one_by_one, &outputs, &never, &mut Silent);
     let error = outcome.expect_err("another wind");
     assert!(matches!(&error, StudyError::ChangedWind { run, .. } if run == "pulse"), "{error:?}");
     check_told(&error, &digest);

@@ -45,6 +45,8 @@ pub enum Holds {
     Text,
     /// Letters, digits, `-` and `_`: it names folders, channels and keys.
     Name,
+    /// The same, and `.` inside: it names folders alone.
+    Folder,
     /// A turbine of the library, or a file.
     Model,
     /// A number in a range.
@@ -80,6 +82,8 @@ pub enum Holds {
     Flow,
     /// A table for each further output, by the output's name.
     Outputs,
+    /// A list of values for each of any keys of the file.
+    Sweep,
 }
 
 /// Numbers from `low` to `high`, `high` included, `low` only when not `open`.
@@ -156,7 +160,7 @@ impl Holds {
             (Self::Number(range), Value::Whole(number)) => range.contains(*number as f64),
             (Self::Whole { least, most }, Value::Whole(number)) => (least..=most).contains(&number),
             (Self::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
-            (Self::Text | Self::Name | Self::Model, Value::Text(_)) => true,
+            (Self::Text | Self::Name | Self::Folder | Self::Model, Value::Text(_)) => true,
             (Self::Numbers(range), Value::Numbers(numbers)) => {
                 numbers.iter().all(|number| range.contains(*number))
             }
@@ -183,9 +187,12 @@ impl Key {
         let value = match self.holds {
             Holds::Number(_) => Value::Number(text.parse().ok()?),
             Holds::Whole { .. } => Value::Whole(text.parse().ok()?),
-            Holds::Choice(_) | Holds::Text | Holds::Name | Holds::Model | Holds::Ground(_) => {
-                Value::Text(text.trim_matches('"').to_owned())
-            }
+            Holds::Choice(_)
+            | Holds::Text
+            | Holds::Name
+            | Holds::Folder
+            | Holds::Model
+            | Holds::Ground(_) => Value::Text(text.trim_matches('"').to_owned()),
             Holds::Numbers(_) | Holds::Pair(_) => {
                 let numbers = items_of(text).map(str::parse).collect::<Result<_, _>>();
                 Value::Numbers(numbers.ok()?)

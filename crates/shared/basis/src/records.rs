@@ -3,11 +3,16 @@
 mod control;
 pub mod examples;
 mod load;
+mod sweep;
 mod warning;
 
 pub use control::{ControlSetting, ControlSummary, Finding, PitchExcitation, SettingValue};
 pub use load::{Load, LoadKind};
 use serde::{Deserialize, Serialize};
+pub use sweep::{
+    SWEEP_SCHEMA_VERSION, Setting, Sweep, SweepPart, SweepRow, SweepTable, SweptKey, SweptRun,
+    SweptStudy, SweptValue,
+};
 pub use warning::{Warning, WarningKind};
 
 /// Version of the layout of [`Summary`]; raised when a field changes its name, its place or its meaning.

@@ -1,7 +1,7 @@
 //! `wakemix analyse`: what the records of runs tell. Arguments and help come from the list of analyses.
 
 use super::arguments::finite;
-use super::output::{print, tell};
+use super::output::{columns, detail, print, print_text, tell};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
@@ -88,7 +88,8 @@ fn requested(
     let (name, matches) = matches.subcommand().ok_or_else(missing)?;
     let analysis = analyses.iter().find(|analysis| analysis.name == name).ok_or_else(missing)?;
     let folders = matches.get_many::<PathBuf>(FOLDERS).into_iter().flatten().cloned();
-    let mut request = Request { folders: folders.collect(), ..Request::default() };
+    let mut request =
+        Request { folders: folders.collect(), columns: Some(columns()), ..Request::default() };
     for setting in analysis.settings {
         for value in matches.get_raw(setting.name).into_iter().flatten() {
             request = request.with(setting.name, &value.to_string_lossy());
@@ -102,6 +103,9 @@ fn requested(
 /// # Errors
 /// Records that cannot be read or lack what is needed.
 pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
+    for folder in &command.request.folders {
+        detail(&format!("reading: {}", folder.display()));
+    }
     let answer = (command.analysis.run)(&command.request)?;
     for remark in &answer.remarks {
         tell(remark);
@@ -109,7 +113,7 @@ pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
     if command.json {
         print(&(serde_json::to_string_pretty(&answer.json).into_diagnostic()? + "\n"))
     } else {
-        print(&answer.text)
+        print_text(&answer.text)
     }
 }
 

@@ -30,6 +30,26 @@ pub(crate) fn bins(text: &str) -> Result<NonZeroUsize, String> {
     })
 }
 
+/// Most winds that one command makes (–): a study each.
+const MOST_SEEDS: usize = 1000;
+/// Most runs at a time (–).
+const MOST_JOBS: usize = 1024;
+
+/// A number of winds.
+pub(crate) fn seeds(text: &str) -> Result<usize, String> {
+    count(text, 2, MOST_SEEDS, "winds")
+}
+
+/// A number of runs at a time.
+pub(crate) fn jobs(text: &str) -> Result<usize, String> {
+    count(text, 1, MOST_JOBS, "runs at a time")
+}
+
+fn count(text: &str, least: usize, most: usize, what: &str) -> Result<usize, String> {
+    let count = text.trim().parse().ok().filter(|count| (least..=most).contains(count));
+    count.ok_or_else(|| format!("\"{text}\" is no number of {what}: give {least} to {most}"))
+}
+
 /// Nothing when each of `files` can be made where it is to stand: there is none yet, or `overwrite` gives it
 /// up, and its folder is there.
 ///
@@ -72,6 +92,8 @@ mod tests {
         }
         assert!(positive("0").is_err() && positive("-1").is_err());
         assert_eq!(bins("200").map(NonZeroUsize::get), Ok(200));
+        assert_eq!((seeds("5"), jobs("1")), (Ok(5), Ok(1)));
+        assert!(seeds("1").unwrap_err().contains("2 to 1000") && jobs("0").is_err());
         for text in ["0", "4000000000", "-1", "few"] {
             assert!(bins(text).unwrap_err().contains("1 to 1000000"), "{text}");
         }

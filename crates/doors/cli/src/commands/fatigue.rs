@@ -3,17 +3,17 @@
 mod bearing;
 
 use super::arguments::{bins, finite};
-use super::output::print;
+use super::output::{columns, detail, print, print_text};
 use clap::Args;
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
-use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use wakemix::analysis::fatigue::{
     self, Cycle, EquivalentLoad, Fatigue, LoadCounter, Rainflow, RangeBins,
 };
-use wakemix::formats::table::{Column, TableReader};
+use wakemix::formats::table::{self, TableReader};
+use wakemix::report::text_table::{Column, TextTable};
 
 /// Arguments of `wakemix fatigue`.
 #[derive(Args)]
@@ -66,7 +66,7 @@ pub(crate) struct FatigueArguments {
 /// What was counted of a file.
 struct Count {
     span: Span,
-    channels: Vec<(Column, Fatigue)>,
+    channels: Vec<(table::Column, Fatigue)>,
 }
 
 /// The rows that were taken of a file.
@@ -116,7 +116,7 @@ pub(crate) fn run(arguments: &FatigueArguments) -> Result<()> {
         let count = count(arguments)?;
         if arguments.json { lines(&json(arguments, &count))? } else { text(arguments, &count) }
     };
-    print(&text)
+    if arguments.json { print(&text) } else { print_text(&text) }
 }
 
 /// `value` as text that ends its last line.
@@ -169,8 +169,18 @@ impl Counter {
     }
 }
 
+/// The table that `arguments` name.
+///
+/// # Errors
+/// A file that is none.
+fn open(arguments: &FatigueArguments) -> Result<TableReader> {
+    let table = TableReader::open(&arguments.file)?;
+    detail(&format!("read: {}, of {} channels", table.path().display(), table.channels().count()));
+    Ok(table)
+}
+
 fn count(arguments: &FatigueArguments) -> Result<Count> {
-    let mut table = TableReader::open(&arguments.file)?;
+    let mut table = open(arguments)?;
     let names: Vec<&str> = arguments.channel.iter().map(|name| name.trim()).collect();
     table.select(&names)?;
     let mut counters: Vec<Counter> = names
@@ -250,34 +260,27 @@ fn too_few(path: &Path, n_samples: u64, rows: Option<(f64, f64)>, is_cut: bool) 
 
 fn text(arguments: &FatigueArguments, count: &Count) -> String {
     let Count { span, channels } = count;
-    let width = channels.iter().map(|(column, _)| name(column).chars().count()).max();
-    let width = width.unwrap_or(0).max("channel".len());
-    let mut text = span.line(&arguments.file);
-    // Writing to a string cannot fail.
-    let _ = writeln!(
-        text,
-        "{:<width$}  slope    equivalent load     cycles      largest range",
-        "channel",
-    );
+    let numbers = ["slope", "equivalent load", "cycles", "largest range"].map(Column::number);
+    let mut table = TextTable::new([Column::words("channel")], numbers);
     for (column, fatigue) in channels {
         for EquivalentLoad { slope, load } in &fatigue.loads {
-            let _ = writeln!(
-                text,
-                "{:<width$} {slope:>6} {:>18} {:>10.1} {:>18}",
+            table.row([
                 name(column),
+                slope.to_string(),
                 six_digits(*load),
-                fatigue.n_cycles,
+                format!("{:.1}", fatigue.n_cycles),
                 six_digits(fatigue.largest_range),
-            );
+            ]);
         }
     }
+    let mut text = span.line(&arguments.file) + &table.fitted(columns());
     text.push_str(&fatigue::convention(arguments.bins.map(NonZeroUsize::get)));
     text.push('\n');
     text
 }
 
 /// A column's name, with its unit where the file tells it apart.
-fn name(column: &Column) -> String {
+fn name(column: &table::Column) -> String {
     match column.unit.as_str() {
         "" => column.name.clone(),
         unit => format!("{} ({unit})", column.name),

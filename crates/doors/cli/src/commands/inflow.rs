@@ -1,7 +1,8 @@
 //! `wakemix inflow`: turbulence boxes made, looked at, converted.
 
 use super::arguments::{check_free, finite, positive};
-use super::output::tell;
+use super::manner;
+use super::output::{detail, tell};
 use clap::{Args, Subcommand, ValueEnum};
 use indicatif::{HumanBytes, ProgressBar};
 use miette::{IntoDiagnostic, miette};
@@ -137,6 +138,7 @@ pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
         InflowCommand::Convert { from, to, overwrite } => {
             check_free(&turbulence_box::files_of(&to)?, overwrite)?;
             turbulence_box::convert(&from, &to)?;
+            detail(&format!("read: {}", from.display()));
             tell(&format!("wrote {}", to.display()));
             Ok(())
         }
@@ -165,13 +167,15 @@ fn generate(arguments: &GenerateArguments) -> miette::Result<()> {
             HumanBytes(free)
         ));
     }
-    let bar = ProgressBar::new(1000);
+    let shown = manner::says_remarks();
+    let bar = if shown { ProgressBar::new(1000) } else { ProgressBar::hidden() };
     let progress = |share: f64| bar.set_position((1000.0 * share) as u64);
     let turbulence = match &plan.settings {
         BoxSettings::Mann(settings) => mann::generate(settings, progress),
         BoxSettings::Kaimal(settings) => kaimal::generate(settings, progress),
     };
     bar.finish_and_clear();
+    detail(&format!("built: {}", plan.description));
     let stored = StoredBox {
         turbulence: turbulence.into_diagnostic()?,
         hub_speed: arguments.speed,

@@ -1,6 +1,6 @@
 //! `wakemix inflow info`: what a turbulence box holds.
 
-use super::output::print;
+use super::output::{detail, print, print_text};
 use miette::IntoDiagnostic;
 use std::path::Path;
 use wakemix::flow::inflow::statistics::{BoxStatistics, line_deviations, statistics};
@@ -12,6 +12,7 @@ use wakemix::formats::turbulence_box::{self, StoredBox};
 /// A box that cannot be read, an output that cannot be written.
 pub(crate) fn run(file: &Path, json: bool) -> miette::Result<()> {
     let stored = turbulence_box::read(file)?;
+    detail(&format!("read: {}", file.display()));
     let numbers = statistics(&stored.turbulence);
     if json {
         let [u, ..] = numbers.standard_deviations;
@@ -30,7 +31,7 @@ pub(crate) fn run(file: &Path, json: bool) -> miette::Result<()> {
         });
         print(&(serde_json::to_string_pretty(&value).into_diagnostic()? + "\n"))
     } else {
-        print(&text(&stored, &numbers))
+        print_text(&text(&stored, &numbers))
     }
 }
 

@@ -1,7 +1,7 @@
 //! `wakemix inflow sample`: the wind of a case without turbulence as a file that other programs read.
 
 use super::arguments::{check_free, positive};
-use super::output::tell;
+use super::output::{detail, tell};
 use clap::Args;
 use miette::{IntoDiagnostic, miette};
 use std::path::PathBuf;
@@ -16,8 +16,8 @@ const REACH: f64 = 1.2;
 /// Arguments of `wakemix inflow sample`.
 #[derive(Args)]
 pub(crate) struct SampleArguments {
-    /// Case file (TOML) with flow.solver = "uniform": shear, wind.veer_deg_per_m and wind.event are sampled
-    /// for time.duration
+    /// Case file (TOML), or the name of a shipped case, with flow.solver = "uniform": shear,
+    /// wind.veer_deg_per_m and wind.event are sampled for time.duration
     case: PathBuf,
     /// Override a key of the case, as in `--set wind.speed=8` (may be repeated)
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -48,6 +48,7 @@ pub(crate) struct SampleArguments {
 pub(crate) fn run(arguments: &SampleArguments) -> miette::Result<()> {
     check_free(&turbulence_box::files_of(&arguments.output)?, arguments.overwrite)?;
     let setup = Prepared::read(&arguments.case, &arguments.overrides)?;
+    detail(&format!("read: case {}", arguments.case.display()));
     if setup.case.flow.solver != Solver::UNIFORM {
         return Err(miette!(
             help = "use --set flow.solver=uniform; turbulence is made by `wakemix inflow generate`",

@@ -2,13 +2,18 @@
 
 pub(crate) mod analyse;
 mod arguments;
+pub(crate) mod cases;
+pub(crate) mod definition;
 pub(crate) mod fatigue;
 pub(crate) mod inflow;
 mod inflow_info;
 mod inflow_sample;
+pub(crate) mod init;
+pub(crate) mod manner;
 pub(crate) mod output;
 pub(crate) mod report;
 pub(crate) mod run;
+mod sweep_table;
 pub(crate) mod table;
 pub(crate) mod turbine;
 pub(crate) mod validate;

@@ -3,22 +3,24 @@
 //! A pipe that its reader has closed ends the program in silence, as it does other programs; a device that is
 //! full is an error. Names come from files and may hold anything: what would steer a terminal is escaped.
 
-use super::{BAD_INPUT, CLOSED_PIPE};
+use super::{BAD_INPUT, CLOSED_PIPE, manner};
 use miette::{
-    Diagnostic, LabeledSpan, MietteHandler, Report, ReportHandler, Result, SourceCode, miette,
+    Diagnostic, LabeledSpan, MietteHandlerOpts, Report, ReportHandler, Result, SourceCode, miette,
 };
 use std::borrow::Cow;
 use std::error::Error;
 use std::fmt::{self, Display};
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, Write, stderr, stdout};
 use std::process::ExitCode;
+use terminal_size::{Width, terminal_size_of};
+use wakemix::report::text_table::{WIDTH, wrapped};
 
 /// Writes `text`, as it is but for what steers terminals, to standard output.
 ///
 /// # Errors
 /// An output that takes no more, such as a full disk. Where nobody reads it any more the program ends.
 pub(crate) fn print(text: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = stdout().lock();
     match out.write_all(clean(text).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => {
             std::process::exit(i32::from(CLOSED_PIPE))
@@ -31,20 +33,67 @@ pub(crate) fn print(text: &str) -> Result<()> {
     }
 }
 
-/// Writes the line `text` to standard error; there is nobody to tell when that fails.
+/// Columns for tables and sentences on standard output (–): those of the terminal where it is a narrow one.
+pub(crate) fn columns() -> usize {
+    terminal_size_of(stdout()).map_or(WIDTH, |(Width(width), _)| WIDTH.min(usize::from(width)))
+}
+
+/// Writes `text`, made for people, to standard output: long sentences wrap.
+///
+/// # Errors
+/// Those of [`print`].
+pub(crate) fn print_text(text: &str) -> Result<()> {
+    print(&wrapped(text, columns()))
+}
+
+/// Writes the line `text`, a remark, to standard error, unless less is to be said.
 pub(crate) fn tell(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", clean(text));
+    if manner::says_remarks() {
+        say(text);
+    }
+}
+
+/// Writes `text`, which a reader of the numbers must know, to standard error, unless not even that is to be
+/// said.
+pub(crate) fn warn(text: &str) {
+    if manner::says_warnings() {
+        say(&format!("warning: {text}"));
+    }
+}
+
+/// Writes the line `text` to standard error where more is to be said.
+pub(crate) fn detail(text: &str) {
+    if manner::says_details() {
+        say(text);
+    }
+}
+
+/// Writes the line `text` to standard error; nobody can be reached when that fails.
+pub(crate) fn say(text: &str) {
+    let text = clean(text);
+    // What goes into a file stays one line, which can be searched for.
+    let text = match terminal_size_of(stderr()) {
+        Some((Width(width), _)) => Cow::Owned(wrapped(&text, usize::from(width).max(20))),
+        None => text,
+    };
+    let _ = writeln!(stderr(), "{text}");
 }
 
 /// Draws `report` on standard error; gives the exit code of bad input.
 pub(crate) fn refuse(report: &Report) -> ExitCode {
-    let _ = writeln!(std::io::stderr(), "{}", Drawn(Cleaned::of(&**report)));
+    let _ = writeln!(stderr(), "{}", Drawn(Cleaned::of(&**report)));
     ExitCode::from(BAD_INPUT)
 }
 
 /// Prints what the reader of arguments has to say: help or version, or what is wrong with them.
 pub(crate) fn usage(error: &clap::Error) -> ExitCode {
-    match error.print() {
+    let plain = error.render().to_string();
+    // Words of the command line may be names of files, which may hold anything.
+    let printed = match clean(&plain) {
+        Cow::Borrowed(_) => error.print(),
+        Cow::Owned(cleaned) => write!(stderr(), "{cleaned}"),
+    };
+    match printed {
         Ok(()) => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(BAD_INPUT)),
         Err(refused) if refused.kind() == ErrorKind::BrokenPipe => ExitCode::from(CLOSED_PIPE),
         Err(refused) => refuse(&miette!("cannot write: {refused}")),
@@ -52,7 +101,7 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
 }
 
 /// `text` with control characters, line ends and tabs aside, as escapes that can be read.
-fn clean(text: &str) -> Cow<'_, str> {
+pub(crate) fn clean(text: &str) -> Cow<'_, str> {
     let steers = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
     if !text.contains(steers) {
         return Cow::Borrowed(text);
@@ -157,7 +206,12 @@ struct Drawn<'d>(Cleaned<'d>);
 
 impl Display for Drawn<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        MietteHandler::default().debug(&self.0, f)
+        let asked = manner::color();
+        let opts = asked.map_or_else(MietteHandlerOpts::new, |color| {
+            let opts = MietteHandlerOpts::new().color(color);
+            if color { opts } else { opts.terminal_links(false) }
+        });
+        opts.build().debug(&self.0, f)
     }
 }
 

@@ -1,11 +1,12 @@
 //! `wakemix report`: the page and figures of a study, made anew from its records.
 
-use super::output::print;
+use super::output::{detail, print};
 use miette::Result;
 use std::path::Path;
 
 /// Rebuilds the report of the study in `directory`; its path goes to stdout.
 pub(crate) fn run(directory: &Path) -> Result<()> {
-    let (_, page) = wakemix::postprocessing::report(directory)?;
-    print(&format!("{}\n", page.display()))
+    let made = wakemix::postprocessing::report(directory)?;
+    detail(&format!("read: {} runs in {}", made.summaries.len(), directory.display()));
+    print(&format!("{}\n", made.page.display()))
 }

@@ -1,7 +1,7 @@
 //! `wakemix turbine`: the library of turbines, and what blade-element momentum says of them.
 
 use super::arguments::{check_free, finite, positive};
-use super::output::{print, tell};
+use super::output::{columns, detail, print, print_text, say, tell};
 use clap::Subcommand;
 use miette::{IntoDiagnostic, Result, miette};
 use std::io::{BufWriter, Write};
@@ -10,6 +10,7 @@ use std::str::FromStr;
 use wakemix::control::baseline::Constants;
 use wakemix::formats::turbine_file::{self, TurbineFile};
 use wakemix::formats::{atomic, library, openfast, windio};
+use wakemix::report::text_table::{Column, TextTable};
 use wakemix::study::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 use wakemix::turbine::Definition;
 use wakemix::turbine::aero::blade_element::Theory;
@@ -123,7 +124,7 @@ impl FromStr for Range {
 pub(crate) fn run(command: TurbineCommand) -> Result<()> {
     match command {
         TurbineCommand::List => list(),
-        TurbineCommand::Show { name, file: false } => show(&library::load(&name)?),
+        TurbineCommand::Show { name, file: false } => show(&load(&name)?),
         TurbineCommand::Show { name, file: true } => {
             let text = library::text(&name).map_or_else(
                 || {
@@ -142,26 +143,37 @@ pub(crate) fn run(command: TurbineCommand) -> Result<()> {
             let options = openfast::ImportOptions { name: name.or(stem), title, source };
             import(&file, &output, &options)
         }
-        TurbineCommand::Steady { name, tsr, pitch } => steady(&library::load(&name)?, tsr, pitch),
+        TurbineCommand::Steady { name, tsr, pitch } => steady(&load(&name)?, tsr, pitch),
         TurbineCommand::Offset { name, wind, strouhal, rigid } => {
             offset(&name, wind, strouhal, !rigid)
         }
     }
 }
 
+/// The turbine of the library called `name`, or that of the file at that path.
+fn load(name: &str) -> Result<TurbineFile> {
+    let turbine = library::load(name)?;
+    let of_library = library::text(name).is_some();
+    let place = if of_library { ", which comes with the program" } else { "" };
+    detail(&format!("read: turbine {name}{place}"));
+    Ok(turbine)
+}
+
 fn list() -> Result<()> {
-    let mut text =
-        format!("{:10} {:>9} {:>10} {:>8}  {}\n", "name", "rated MW", "diameter m", "hub m", "");
+    let numbers = ["rated MW", "diameter m", "hub m"].map(Column::number);
+    let headings = numbers.into_iter().chain([Column::words("")]);
+    let mut table = TextTable::new([Column::words("name")], headings);
     for name in library::names() {
         let TurbineFile { title, definition, .. } = library::load(name)?;
-        text += &format!(
-            "{name:10} {:9.1} {:10.1} {:8.1}  {title}\n",
-            1e-6 * definition.rated_power,
-            definition.rotor_diameter(),
-            definition.rotor.hub_height,
-        );
+        table.row([
+            name.to_owned(),
+            format!("{:.1}", 1e-6 * definition.rated_power),
+            format!("{:.1}", definition.rotor_diameter()),
+            format!("{:.1}", definition.rotor.hub_height),
+            title,
+        ]);
     }
-    print(&text)
+    print(&table.fitted(columns()))
 }
 
 fn show(file: &TurbineFile) -> Result<()> {
@@ -177,7 +189,7 @@ fn show(file: &TurbineFile) -> Result<()> {
     for (group, source) in sources {
         text += &format!("{group:16} {source}\n");
     }
-    print(&text)
+    print_text(&text)
 }
 
 /// What there is to know of a turbine at a glance; `best` are its coefficients at the optimal tip-speed
@@ -290,6 +302,7 @@ fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Resu
             ));
         }
     };
+    detail(&format!("read: {}", file.display()));
     let written = turbine_file::write(&document);
     atomic::write(output, "the turbine file", written.text.as_bytes())?;
     tell(&format!("wrote {}", output.display()));
@@ -297,9 +310,9 @@ fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Resu
         turbine_file::read(output)?;
         return Ok(());
     }
-    tell(&format!("{} lacks these groups and keys:", file.display()));
+    say(&format!("{} lacks these groups and keys:", file.display()));
     for key in &written.missing {
-        tell(&format!("  {key}"));
+        say(&format!("  {key}"));
     }
     let place = output.display();
     Err(miette!(
@@ -329,7 +342,7 @@ fn steady(file: &TurbineFile, tsr: Range, pitch: Range) -> Result<()> {
 
 /// Nothing when the turbine called `name` works in all of `wind`.
 fn check_wind(name: &str, wind: Range) -> Result<()> {
-    let Some(operation) = library::load(name)?.definition.operation else { return Ok(()) };
+    let Some(operation) = load(name)?.definition.operation else { return Ok(()) };
     let works = operation.cut_in..=operation.cut_out;
     match [wind.from, wind.to].into_iter().find(|speed| !works.contains(speed)) {
         Some(speed) => Err(miette!(

@@ -4,11 +4,13 @@ mod print;
 mod record;
 
 use super::BAD_INPUT;
-use super::output::{print, refuse, tell};
+use super::manner;
+use super::output::{columns, detail, print, print_text, refuse, say, tell};
 use clap::Args;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 use validation::gate::{Judgement, holds, judge};
 use validation::record::{Record, Worse};
 use validation::{Cost, Pictures, VALIDATIONS, Validation, pages};
@@ -52,6 +54,9 @@ struct Done {
 /// Prints each row beside its record, and draws it on request; exit code 1 when a row is not as recorded, 2
 /// for an unknown name, for pictures of what has none, and for what cannot be read or written.
 pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
+    if !manner::says_remarks() {
+        validation::be_quiet();
+    }
     if arguments.pages {
         return renew_pages();
     }
@@ -63,7 +68,7 @@ pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
         return if arguments.json || arguments.record {
             refused("no validation is named\nhint: name validations, or use --quick")
         } else {
-            printed(&print::list())
+            printed(&print::list(columns()))
         };
     }
     if let Some(folder) = arguments.pictures.as_ref().filter(|_| !arguments.overwrite)
@@ -92,7 +97,7 @@ pub(crate) fn run(arguments: &ValidateArguments) -> ExitCode {
     }
     let code = code_of(&done);
     if code != 0 {
-        tell(
+        say(
             "not all is as recorded\nhint: fix what got worse; where a change is meant, renew the record with --record",
         );
     }
@@ -111,7 +116,7 @@ fn printed(text: &str) -> ExitCode {
 
 /// Says what is wrong with the call.
 fn refused(problem: &str) -> ExitCode {
-    tell(&format!("error: {problem}"));
+    say(&format!("error: {problem}"));
     ExitCode::from(BAD_INPUT)
 }
 
@@ -148,11 +153,14 @@ fn listed(counts: impl Fn(&Validation) -> bool) -> String {
 /// Repeats `validation`, and prints or records what came out.
 fn repeat(validation: &'static Validation, arguments: &ValidateArguments) -> Result<Done, String> {
     let record = validation.record().map_err(|error| error.to_string())?;
+    let began = Instant::now();
     let rows = (validation.run)();
+    let seconds = began.elapsed().as_secs_f64();
+    detail(&format!("time: {seconds:.2} s validation {}", validation.name));
     let judgements = judge(&rows, &record);
     let done = Done { validation, record, judgements };
     if !arguments.json {
-        print(&print::table(&done)).map_err(|error| error.to_string())?;
+        print_text(&print::table(&done, columns())).map_err(|error| error.to_string())?;
     }
     if arguments.record {
         let worse = if arguments.accept_worse { Worse::Accepted } else { Worse::Refused };

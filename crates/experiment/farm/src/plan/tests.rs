@@ -59,6 +59,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             crosswind_diameters: Vec::new(),
             volume_interval: None,
             checkpoint_interval: 60.0,
+            keeps_checkpoint: true,
             further: Vec::new(),
         },
     }

@@ -57,7 +57,7 @@ pub(super) fn turbulence(site: &Site) -> Option<Turbulence> {
              write a file with `wakemix inflow generate` and read it with flow.solver = \"planes\""
         )
     });
-    Some(Turbulence { memory: grid.memory, warning })
+    Some(Turbulence { memory: grid.memory, n_points: grid.n_points, warning })
 }
 
 /// Grid of the turbulence that is made around all rotors.

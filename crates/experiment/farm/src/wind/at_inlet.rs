@@ -23,7 +23,7 @@ pub(super) fn turbulence(site: &Site) -> Option<Turbulence> {
         )
     };
     let warning = (!size.covers).then(returns);
-    Some(Turbulence { memory: size.peak_memory, warning })
+    Some(Turbulence { memory: size.peak_memory, n_points: size.n_points, warning })
 }
 
 /// The wind with turbulence that enters the domain of `site`, made now; none where no turbulence enters so.

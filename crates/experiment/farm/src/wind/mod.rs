@@ -34,6 +34,8 @@ pub struct Site<'a> {
 pub struct Turbulence {
     /// Most memory that making it takes (bytes).
     pub memory: u64,
+    /// Points of its box along, across and up (–); another box holds another wind, whatever the seed.
+    pub n_points: [usize; 3],
     /// What a reader of the numbers must know of it.
     pub warning: Option<String>,
 }

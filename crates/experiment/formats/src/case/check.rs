@@ -21,7 +21,7 @@ use farm::outputs::{OUTPUTS, OutputKeys};
 use sensing::{SENSORS, SensorKind};
 
 /// Names of folders that a study has for itself beside those of its runs.
-const OWN_FOLDERS: [&str; 3] = ["figures", "probes", "report"];
+const OWN_FOLDERS: [&str; 1] = ["figures"];
 
 /// The case that `entries` describe.
 ///
@@ -278,6 +278,7 @@ fn output_of(section: &Section, turbines: &[Placement], solver: Solver) -> Outpu
         crosswind_diameters: section.numbers("crosswind_diameters"),
         volume_interval: section.optional_number("volume_interval"),
         checkpoint_interval: section.number("checkpoint_interval"),
+        keeps_checkpoint: section.choice("last_checkpoint") == "keep",
         further: further_of(section, solver),
     }
 }

@@ -148,7 +148,9 @@ fn apply(root: &mut Vec<Entry>, text: &str, start: usize) -> Result<(), ProblemK
     insert(root, &segments, node, start..start + path.len()).map_err(refuse)
 }
 
-fn insert(
+/// Puts `node` at `path` below `entries`, where tables that are not there are made; `span` is that of the
+/// key.
+pub(super) fn insert(
     entries: &mut Vec<Entry>,
     path: &[&str],
     node: Node,

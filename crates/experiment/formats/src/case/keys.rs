@@ -44,6 +44,13 @@ pub(super) static ROOT: Table = Table {
             Otherwise("all defaults"),
             "What is kept beside series and summary.",
         ),
+        key(
+            "sweep",
+            Holds::Sweep,
+            "",
+            Otherwise("nothing is swept"),
+            "Lists of values for any keys, by the key in quotes: `\"control.T1.strouhal\" = [0.2, 0.25]`. Every combination is made. Keys of `control.TURBINE` make more runs, of each [[run]] whose controller has the key; `run.NAME.control.TURBINE` of one [[run]] alone. All other keys, such as `wind.speed`, `wind.seed` or `turbine.T2.position_diameters`, make more studies, each in a folder of its own. Names tell the values: `helix-strouhal-0.25`, `speed-8`.",
+        ),
     ],
 };
 
@@ -190,14 +197,14 @@ pub(super) static RUN: Table = Table {
     keys: &[
         key(
             "name",
-            Holds::Name,
+            Holds::Folder,
             "",
             Required,
-            "Its name, and that of the folder it leaves: letters, digits, `-` and `_`.",
+            "Its name, and that of the folder it leaves: letters, digits, `-`, `_`, and `.` inside.",
         ),
         key(
             "compare_with",
-            Holds::Name,
+            Holds::Folder,
             "",
             Otherwise("the first run; the first compares with none"),
             "Run that its gains compare with; it stands before this one.",
@@ -272,6 +279,13 @@ pub(super) static OUTPUT: Table = Table {
             "s",
             Value("300"),
             "Checkpoint every so many seconds of wall time.",
+        ),
+        key(
+            "last_checkpoint",
+            Holds::Choice(&["keep", "remove"]),
+            "",
+            Value("\"keep\""),
+            "The checkpoint at the end of a run: with it a run goes on when `time.duration` is raised. `keep` takes the disk that `--dry-run` says, mainly the lattice; `remove` takes none.",
         ),
         key(
             "further",

@@ -3,6 +3,7 @@
 use super::CaseFile;
 use super::document::{self, Entry, Node, Value, find, named};
 use super::error::{CaseError, Problem, ProblemKind};
+use super::sweep;
 use std::ops::Range;
 
 /// That the case of `file` cannot be run for the reason in `message`, which the key at `path` decides: keys
@@ -11,7 +12,9 @@ use std::ops::Range;
 pub fn objection(file: &CaseFile, path: &[&str], message: String) -> CaseError {
     let name = file.path.display().to_string();
     let (sources, document) = document::parse(&name, &file.text, &file.overrides);
-    let span = document.map_or(0..0, |entries| place(&entries, path).unwrap_or(0..0));
+    let expanded = document.and_then(|entries| sweep::expand(entries, file.text.len(), &sources));
+    let tree = expanded.ok().and_then(|expanded| expanded.studies.into_iter().nth(file.study));
+    let span = tree.and_then(|entries| place(&entries, path)).unwrap_or(0..0);
     let problem = Problem::new(&sources, span, ProblemKind::Unfit { message });
     CaseError::Invalid { name, problems: vec![problem] }
 }

@@ -91,6 +91,7 @@ fn holds(key: &Key) -> String {
     match key.holds {
         Holds::Text => "text".into(),
         Holds::Name => "name".into(),
+        Holds::Folder => "name, `.` inside".into(),
         Holds::Model => "model or path".into(),
         Holds::Number(range) => range.describe("x", "–"),
         Holds::Whole { least, most } if most > 1 << 32 => format!("whole, {least} or more"),
@@ -107,6 +108,7 @@ fn holds(key: &Key) -> String {
         Holds::Event => "a table".into(),
         Holds::Control => "tables by turbine".into(),
         Holds::Sensors | Holds::Outputs => "tables by name".into(),
+        Holds::Sweep => "lists by key".into(),
     }
 }
 
@@ -146,6 +148,10 @@ fn schema_of_key(key: &Key) -> Value {
     let mut schema = match key.holds {
         Holds::Text | Holds::Model => json!({ "type": "string" }),
         Holds::Name => json!({ "type": "string", "pattern": "^[A-Za-z0-9_-]{1,64}$" }),
+        Holds::Folder => {
+            let pattern = "^(?=.{1,64}$)[A-Za-z0-9_-]([A-Za-z0-9_.-]*[A-Za-z0-9_-])?$";
+            json!({ "type": "string", "pattern": pattern })
+        }
         Holds::Number(range) => number(range),
         Holds::Whole { least, most } => {
             json!({ "type": "integer", "minimum": least, "maximum": most })
@@ -168,6 +174,11 @@ fn schema_of_key(key: &Key) -> Value {
         Holds::Control => {
             let all = CONTROLLERS.all();
             tables_of_kinds(all.iter().map(|kind| (kind.name(), kind.table())))
+        }
+        Holds::Sweep => {
+            let lists =
+                json!({ "anyOf": [{ "type": "array", "minItems": 1 }, { "type": "object" }] });
+            json!({ "type": "object", "additionalProperties": lists })
         }
         Holds::Sensors => {
             let all = SENSORS.all();

@@ -10,6 +10,8 @@ use std::ops;
 /// Tables under one heading at most (–): what the turbines do in the runs takes memory by the product of
 /// both.
 const MOST_TABLES: usize = 1000;
+/// Characters of a name at most (–).
+pub(super) const LONGEST_NAME: usize = 64;
 
 /// One table of the file. Reading notes what is wrong and goes on with a value that passes every check.
 pub(super) struct Section<'a> {
@@ -190,7 +192,12 @@ impl<'a> Section<'a> {
             self.wrong_type(key, &entry.node, "text in quotes");
             return None;
         };
-        if matches!(self.key(key).holds, Holds::Name) && !is_name(text) {
+        let is_bad = match self.key(key).holds {
+            Holds::Name => !is_name(text),
+            Holds::Folder => !is_folder(text),
+            _ => false,
+        };
+        if is_bad {
             let kind = ProblemKind::BadName { key: self.key_path(key), name: text.clone() };
             let fix = Some(format!("try \"{}\"", tidied(text)));
             self.findings.note(entry.node.span.clone(), kind, fix);
@@ -351,8 +358,13 @@ fn digits_of(text: &str) -> Option<&str> {
 
 /// Whether `text` may name folders, channels and keys.
 pub(super) fn is_name(text: &str) -> bool {
-    (1..=64).contains(&text.len())
+    (1..=LONGEST_NAME).contains(&text.len())
         && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '_')
+}
+
+/// Whether `text` may name folders: a name that may have points inside.
+fn is_folder(text: &str) -> bool {
+    is_name(&text.replace('.', "-")) && !text.starts_with('.') && !text.ends_with('.')
 }
 
 fn tidied(text: &str) -> String {

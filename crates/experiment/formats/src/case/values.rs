@@ -25,7 +25,9 @@ fn value_of(section: &Section, key: &Key) -> Option<Value> {
     match key.holds {
         Holds::Number(_) => section.optional_number(name).map(Value::Number),
         Holds::Whole { .. } => section.optional_whole(name).map(Value::Whole),
-        Holds::Text | Holds::Name | Holds::Model => section.optional_text(name).map(Value::Text),
+        Holds::Text | Holds::Name | Holds::Folder | Holds::Model => {
+            section.optional_text(name).map(Value::Text)
+        }
         Holds::Choice(_) if !section.has(name) => {
             // Where it must not be left out, that is noted.
             section.entry(name);

@@ -92,6 +92,10 @@ fn write_output(text: &mut String, output: &Output, turbines: &[Placement]) -> s
         writeln!(text, "volume_interval = {interval:?}")?;
     }
     writeln!(text, "checkpoint_interval = {:?}", output.checkpoint_interval)?;
+    // Only where it is used, so that the text of a case without it stays what it was.
+    if !output.keeps_checkpoint {
+        writeln!(text, "last_checkpoint = \"remove\"")?;
+    }
     for further in &output.further {
         let table = kinds::text(further.kind.name(), &further.values);
         writeln!(text, "further.{} = {table}", further.name)?;

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 /// Version of the layout.
-pub(super) const VERSION: u32 = 4;
+pub(super) const VERSION: u32 = 5;
 /// The advice to begin a run again, as a literal, so that others can be put together with it.
 macro_rules! anew {
     () => {
@@ -13,6 +13,9 @@ macro_rules! anew {
 
 /// What to do where a run cannot go on from what it left.
 pub(crate) const ANEW: &str = anew!();
+/// What is wrong where a file that a checkpoint goes on with is not there.
+pub(crate) const GONE: &str =
+    "it is gone, and without it the run cannot go on from the checkpoint beside it";
 
 /// What is wrong with a checkpoint.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]

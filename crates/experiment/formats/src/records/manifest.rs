@@ -120,6 +120,13 @@ impl Manifest {
         }
     }
 
+    /// The manifest of the same run, number `run_index` of the case in `case_text`, that goes on.
+    pub fn going_on(self, case_text: &str, run_index: usize) -> Self {
+        let case_sha256 = sha256(case_text.as_bytes());
+        let case_text = case_text.to_owned();
+        Self { case_text, case_sha256, run_index, finished: None, ..self }
+    }
+
     /// The manifest of the same run in the wind of files with these SHA-256.
     pub fn in_wind(self, wind_sha256: BTreeMap<String, String>) -> Self {
         Self { wind_sha256, ..self }

@@ -10,6 +10,7 @@ mod series_file;
 mod study;
 #[cfg(test)]
 mod summary_page;
+mod sweep;
 
 pub use crate::clock::now;
 pub use manifest::{Machine, Manifest, read_manifest, sha256, sha256_of_file, write_manifest};
@@ -19,6 +20,7 @@ pub use pitch_responses::{
 pub use series::SeriesWriter;
 pub use series_file::{SeriesFile, read_series};
 pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
+pub use sweep::{read_sweep, remove_sweep, sweep_path, write_sweep, write_table};
 
 use crate::lock::Lock;
 use crate::{FileError, atomic, leftovers, netcdf, vtk};
@@ -92,6 +94,11 @@ impl RunFolder {
         Lock::take(&study.join(format!(".{run}.lock")), &what)
     }
 
+    /// Whether there is something in it of which no manifest tells what it is.
+    pub fn is_unknown(&self) -> bool {
+        !self.manifest_path().exists() && self.holds_results()
+    }
+
     /// Whether there is anything in it that a run has made: more than a manifest and empty folders, which one
     /// leaves that fails before its first step.
     pub fn holds_results(&self) -> bool {
@@ -121,7 +128,15 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Takes the checkpoint away once the run is complete, and what else was there to go on with.
+    /// Makes the run one that is under way again, where it was complete; what it has left stays.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn reopen(&self) -> Result<(), FileError> {
+        gone(fs::remove_file(self.summary_path()), &self.summary_path())
+    }
+
+    /// Takes the checkpoint away once the run is complete, and what else was there to resume from.
     ///
     /// # Errors
     /// [`FileError::System`].
@@ -190,18 +205,41 @@ impl RunFolder {
     }
 }
 
-/// Whether the study's folder `study` holds anything to go on with: a run that was begun, or what was
-/// identified before the runs.
-pub fn is_begun(study: &Path) -> bool {
-    let is_run = |path: PathBuf| RunFolder { path }.manifest_path().is_file();
-    pitch_responses::path_in(study).is_file()
-        || study::entries(study).is_ok_and(|entries| entries.into_iter().any(is_run))
+/// The lock on what all runs of the study in the folder `study` share under the name `what`, once whoever
+/// holds it has let it go. No run can have the name of its file.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn lock_shared(study: &Path, what: &str) -> Result<Lock, FileError> {
+    Lock::wait(&study.join(format!(".lock.{what}")))
 }
 
-/// Whether a run in the study's folder `study` left a checkpoint.
-pub fn has_checkpoint(study: &Path) -> bool {
-    let left = |path: PathBuf| RunFolder { path }.checkpoint_path().is_file();
-    study::entries(study).is_ok_and(|entries| entries.into_iter().any(left))
+/// Whether the folder `folder` of a study, or of a sweep of studies, holds anything to go on with: a run that
+/// was begun, or what was identified before the runs.
+pub fn is_begun(folder: &Path) -> bool {
+    let is_run = |path: &PathBuf| RunFolder { path: path.clone() }.manifest_path().is_file();
+    let is_study = |folder: &Path| {
+        pitch_responses::path_in(folder).is_file()
+            || study::entries(folder).is_ok_and(|entries| entries.iter().any(is_run))
+    };
+    any_study(folder, is_study)
+}
+
+/// Whether a run in the folder `folder` of a study, or of a sweep of studies, was stopped with a checkpoint.
+pub fn has_checkpoint(folder: &Path) -> bool {
+    let left = |path: PathBuf| {
+        let folder = RunFolder { path };
+        folder.checkpoint_path().is_file() && !folder.is_complete()
+    };
+    let has =
+        |study: &Path| study::entries(study).is_ok_and(|entries| entries.into_iter().any(left));
+    any_study(folder, has)
+}
+
+/// Whether `is_so` of the study in `folder`, or of one of those in it where that is the folder of a sweep.
+fn any_study(folder: &Path, is_so: impl Fn(&Path) -> bool) -> bool {
+    let inner = || study::entries(folder).unwrap_or_default();
+    is_so(folder) || sweep_path(folder).is_file() && inner().iter().any(|inner| is_so(inner))
 }
 
 /// On return the file or folder is not there.

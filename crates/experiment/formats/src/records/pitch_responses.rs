@@ -1,7 +1,6 @@
 //! Pitch responses identified before the runs of a study: `DIR/probes.json`, so that a resumed study need
 //! not identify them again.
 
-use crate::lock::Lock;
 use crate::{FileError, atomic};
 use basis::records::PitchResponse;
 use serde::{Deserialize, Serialize};
@@ -33,7 +32,7 @@ pub fn read_pitch_responses(study: &Path) -> Result<Vec<PitchResponseRecord>, Fi
     if path.is_file() { super::read_json(&path, WHAT) } else { Ok(Vec::new()) }
 }
 
-/// Writes `records`, all that was identified, into the folder `study`.
+/// Writes `records`, all that was identified, into the folder `study`, once nobody else does.
 ///
 /// # Errors
 /// [`FileError::System`].
@@ -41,6 +40,11 @@ pub fn write_pitch_responses(
     study: &Path,
     records: &[PitchResponseRecord],
 ) -> Result<(), FileError> {
+    let _lock = super::lock_shared(study, "probes")?;
+    put(study, records)
+}
+
+fn put(study: &Path, records: &[PitchResponseRecord]) -> Result<(), FileError> {
     atomic::create_folder(study)?;
     super::write_json(&path_in(study), WHAT, &records)
 }
@@ -51,7 +55,7 @@ pub fn write_pitch_responses(
 /// # Errors
 /// Those of [`read_pitch_responses`] and [`write_pitch_responses`].
 pub fn add_pitch_responses(study: &Path, records: &[PitchResponseRecord]) -> Result<(), FileError> {
-    let _lock = Lock::wait(&study.join(".probes.lock"))?;
+    let _lock = super::lock_shared(study, "probes")?;
     let mut all = read_pitch_responses(study)?;
     for record in records {
         match all.iter_mut().find(|known| known.key == record.key) {
@@ -59,7 +63,7 @@ pub fn add_pitch_responses(study: &Path, records: &[PitchResponseRecord]) -> Res
             None => all.push(record.clone()),
         }
     }
-    write_pitch_responses(study, &all)
+    put(study, &all)
 }
 
 #[cfg(test)]

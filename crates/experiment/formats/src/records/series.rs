@@ -1,6 +1,6 @@
 //! The series of a run: one row a control instant, as CSV that pandas and spreadsheets open.
 
-use crate::checkpoint::ANEW;
+use crate::checkpoint::{ANEW, GONE};
 use crate::{FileError, atomic};
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
@@ -50,6 +50,9 @@ impl SeriesWriter {
         if !part.exists() && path.exists() {
             // Completed, but its run was killed before it could say so.
             fs::rename(path, &part).map_err(failed)?;
+        }
+        if !part.exists() {
+            return Err(FileError::content(WHAT, &part, GONE.to_owned(), ANEW));
         }
         let mut file = File::options().read(true).write(true).open(&part).map_err(failed)?;
         let length = file.metadata().map_err(failed)?.len();

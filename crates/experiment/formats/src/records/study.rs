@@ -1,8 +1,9 @@
 //! A study read back from its folder.
 
 use super::{Manifest, RunFolder, SeriesFile, read_manifest, read_summary};
-use crate::{FileError, netcdf};
+use crate::{FileError, case, netcdf};
 use basis::records::{Plane, Summary, Warning, WarningKind};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -109,9 +110,29 @@ fn find_runs(path: &Path) -> Result<Found, FileError> {
             incomplete.push((manifest.run_index, manifest.run));
         }
     }
-    complete.sort_by(|(_, a), (_, b)| place(a).cmp(&place(b)));
-    incomplete.sort();
+    let order = order(complete.iter().map(|(_, manifest)| manifest));
+    let place = |name: &str| order.iter().position(|run| run == name).unwrap_or(order.len());
+    let key = |run: &Manifest| (place(&run.run), run.run_index, run.run.clone());
+    complete.sort_by_cached_key(|(_, manifest)| key(manifest));
+    incomplete
+        .sort_by_cached_key(|(index, run): &(usize, String)| (place(run), *index, run.clone()));
     Ok(Found { complete, incomplete: incomplete.into_iter().map(|(_, run)| run).collect() })
+}
+
+/// Names of the runs in the case of the one of `runs` that started last: those made before it may have had
+/// fewer beside them.
+fn order<'m>(runs: impl Iterator<Item = &'m Manifest> + Clone) -> Vec<String> {
+    let indices: BTreeSet<usize> = runs.clone().map(|run| run.run_index).collect();
+    if indices.len() == runs.clone().count() {
+        let texts: BTreeSet<&str> = runs.clone().map(|run| run.case_sha256.as_str()).collect();
+        if texts.len() < 2 {
+            // Their places tell.
+            return Vec::new();
+        }
+    }
+    let Some(latest) = runs.max_by_key(|run| &run.started) else { return Vec::new() };
+    let case = case::parse("", &latest.case_text, &[]);
+    case.map_or(Vec::new(), |case| case.runs.into_iter().map(|run| run.name).collect())
 }
 
 /// No run in the study's folder `path` is complete; those in `incomplete` are not.
@@ -126,14 +147,21 @@ fn no_run(path: &Path, incomplete: &[String]) -> FileError {
     FileError::content("a study", path, problem, fix)
 }
 
-fn place(run: &Manifest) -> (usize, &str) {
-    (run.run_index, &run.run)
+/// Whether the case of `run` is that of `latest`, in what decides the run's result: other runs may have come
+/// or gone since.
+fn is_of_same_case(run: &Manifest, latest: &Manifest) -> bool {
+    if run.case_sha256 == latest.case_sha256 {
+        return true;
+    }
+    let of = |manifest: &Manifest, run: &str| case::fingerprint(&manifest.case_text, run);
+    let now = of(latest, &run.run);
+    of(run, &run.run) == now || of(run, "") == now
 }
 
 fn warnings(runs: &[RunRecords], latest: &Manifest) -> Vec<Warning> {
     let differs = |run: &&RunRecords| {
         let run = &run.manifest;
-        run.case_sha256 != latest.case_sha256
+        !is_of_same_case(run, latest)
             || run.turbines_sha256 != latest.turbines_sha256
             || run.wind_sha256 != latest.wind_sha256
     };

@@ -6,7 +6,7 @@
 //! break.
 
 use super::turbsim;
-use crate::checkpoint::ANEW;
+use crate::checkpoint::{ANEW, GONE};
 use crate::{FileError, atomic};
 use flow::inflow::PlaneGrid;
 use std::fs::File;
@@ -47,6 +47,9 @@ impl WindRecorder {
     pub fn resume(path: &Path, n_points: usize, n_bytes: u64) -> Result<Self, FileError> {
         let part = atomic::part_of(path);
         let failed = |source| FileError::system("read", WHAT, &part, source);
+        if !part.exists() {
+            return Err(FileError::content(WHAT, &part, GONE.to_owned(), ANEW));
+        }
         let mut file = File::options().write(true).open(&part).map_err(failed)?;
         let length = file.metadata().map_err(failed)?.len();
         if length < n_bytes || !n_bytes.is_multiple_of(12 * n_points as u64) {
@@ -202,6 +205,12 @@ mod tests {
         recorder.write(&plane(40)).unwrap();
         drop(recorder);
         assert!(WindRecorder::resume(&path, 12, kept + 1).is_err());
+        let gone = WindRecorder::resume(&folder.path().join("none.bts"), 12, kept).unwrap_err();
+        let advice = miette::Diagnostic::help(&gone).unwrap().to_string();
+        assert!(
+            gone.to_string().contains("it is gone") && advice.contains("--overwrite"),
+            "{gone}"
+        );
         assert!(WindRecorder::resume(&path, 12, 100 * kept).is_err());
         let mut recorder = WindRecorder::resume(&path, 12, kept).unwrap();
         (5..14).for_each(|step| recorder.write(&plane(step)).unwrap());

@@ -2,6 +2,7 @@
 
 use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes, with_interval};
 use crate::{GainsAnswer, GainsQuestion, PartGains, PostprocessingError, gains_over_seeds};
+use report::text_table::{Column, TextTable};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -24,33 +25,26 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
         GainsQuestion { studies: request.folders.clone(), runs: request.texts("run").to_vec() };
     let answer = gains_over_seeds(&question)?;
     let json = json(&answer, &question.studies);
-    Ok(Answer { text: text(&answer), json, remarks: answer.undefined })
+    Ok(Answer { text: text(&answer, request.width()), json, remarks: answer.undefined })
 }
 
-/// Runs × turbines: gain in each wind and in all of them, in percent; the conventions below.
-fn text(answer: &GainsAnswer) -> String {
-    let heading = |seed: &u64| {
-        let heading = format!("seed {seed}");
-        format!(" {heading:>9}")
-    };
-    let seeds: String = answer.seeds.iter().map(heading).collect();
-    let mut text = format!(
-        "{}: gains of power, %\n{:<14} {:<14} {:<11}{seeds} {:>16}\n",
-        answer.case, "run", "over", "", "all"
-    );
+/// Runs × turbines: gain in each wind and in all of them, in percent, in `width` columns; the conventions
+/// below.
+fn text(answer: &GainsAnswer, width: usize) -> String {
+    let seeds = answer.seeds.iter().map(|seed| Column::number(format!("seed {seed}")));
+    // What all winds say comes first: it is what was asked.
+    let columns = [Column::number("all")].into_iter().chain(seeds);
+    let keys = [Column::words("run"), Column::words("over"), Column::words("")];
+    let mut table = TextTable::new(keys, columns);
     for run in &answer.runs {
         for part in &run.parts {
-            let gains: String =
-                part.gains.iter().map(|gain| format!(" {:>9.2}", 100.0 * gain)).collect();
-            text += &format!(
-                "{:<14} {:<14} {:<11}{gains} {:>16}\n",
-                run.run,
-                run.compare_with,
-                part.name,
-                with_interval(&part.together, 100.0, 2),
-            );
+            let names = [run.run.clone(), run.compare_with.clone(), part.name.clone()];
+            let all = with_interval(&part.together, 100.0, 2);
+            let gains = part.gains.iter().map(|gain| format!("{:.2}", 100.0 * gain));
+            table.row(names.into_iter().chain([all]).chain(gains));
         }
     }
+    let mut text = format!("{}: gains of power, %\n{}", answer.case, table.fitted(width));
     text += &format!(
         "± 95 % by Student's t from {} winds, taken as independent; each gain is over the other run in the same wind\n",
         answer.seeds.len()
@@ -120,19 +114,35 @@ mod tests {
 
     #[test]
     fn gains_stand_beside_each_other_and_together() {
-        let text = text(&answer());
+        let text = text(&answer(), 100);
         let lines: Vec<&str> = text.lines().collect();
         let cells = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(lines[0], "row: gains of power, %");
-        assert_eq!(cells(lines[1]), ["run", "over", "seed", "1", "seed", "12", "all"]);
-        let own = ["offset-090", "bl-helix", "T2", "-1.80", "-1.90", "-1.85", "±", "0.64"];
+        assert_eq!(cells(lines[1]), ["run", "over", "all", "seed", "1", "seed", "12"]);
+        let own = ["offset-090", "bl-helix", "T2", "-1.85", "±", "0.64", "-1.80", "-1.90"];
         assert_eq!(cells(lines[2]), own);
-        assert_eq!(cells(lines[3])[2..], ["downstream", "4.70", "4.30", "4.50", "±", "2.54"]);
+        assert_eq!(cells(lines[3])[2..], ["downstream", "4.50", "±", "2.54", "4.70", "4.30"]);
         // Cells stand under their headings.
         let width = |line: &str| line.chars().count();
         assert_eq!([width(lines[2]), width(lines[3])], [width(lines[1]); 2], "{text}");
         assert!(lines[4].starts_with("± 95 % by Student's t from 2 winds"), "{text}");
         assert_eq!(lines[5], "downstream: T2 + T3 together");
+    }
+
+    #[test]
+    fn many_winds_go_below() {
+        let mut many = answer();
+        many.seeds = (1..=12).collect();
+        for part in &mut many.runs[0].parts {
+            part.gains = vec![-0.0123; 12];
+        }
+        for width in [100, 60] {
+            let text = text(&many, width);
+            let table = text.lines().filter(|line| !line.starts_with('±'));
+            assert!(table.clone().all(|line| line.chars().count() <= width), "{text}");
+            assert_eq!(text.matches("-1.23").count(), 24, "{text}");
+            assert!(table.filter(|line| line.starts_with("run")).count() > 1, "{text}");
+        }
     }
 
     #[test]

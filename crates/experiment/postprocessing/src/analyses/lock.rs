@@ -3,6 +3,7 @@
 use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes};
 use crate::{LockAnswer, LockQuestion, PostprocessingError, lock};
 use basis::Sense;
+use report::text_table::{Column, TextTable};
 use serde_json::json;
 
 /// The analysis.
@@ -57,33 +58,32 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
         from: request.number("from"),
     })?;
     Ok(Answer {
-        text: text(&answers),
+        text: text(&answers, request.width()),
         json: answers.iter().map(json).collect(),
         remarks: Vec::new(),
     })
 }
 
-/// Turbine by turbine: what was followed, the median phase error, how often it was locked; the convention
-/// below.
-fn text(answers: &[LockAnswer]) -> String {
-    let mut text = format!(
-        "{:<8} {:<5} {:<14} {:<16} {:>15} {:>9} {:>9}\n",
-        "turbine", "sense", "Strouhal", "time s", "phase error rad", "locked %", "found St"
-    );
+/// Turbine by turbine: what was followed, the median phase error, how often it was locked, in `width`
+/// columns; the convention below.
+fn text(answers: &[LockAnswer], width: usize) -> String {
+    let words = ["sense", "Strouhal", "time s"].map(Column::words);
+    let numbers = ["phase error rad", "locked %", "found St"].map(Column::number);
+    let mut table = TextTable::new([Column::words("turbine")], words.into_iter().chain(numbers));
     for answer in answers {
         let [low, high] = answer.strouhal_range;
         let [first, last] = answer.times;
-        let sense = answer.sense.to_string();
-        let (range, span) = (format!("{low} to {high}"), format!("{first:.0} to {last:.0}"));
-        text += &format!(
-            "{:<8} {:<5} {range:<14} {span:<16} {:>15.2} {:>9.1} {:>9.3}\n",
-            answer.turbine,
-            sense,
-            answer.phase_error,
-            100.0 * answer.locked_share,
-            answer.strouhal,
-        );
+        table.row([
+            answer.turbine.clone(),
+            answer.sense.to_string(),
+            format!("{low} to {high}"),
+            format!("{first:.0} to {last:.0}"),
+            format!("{:.2}", answer.phase_error),
+            format!("{:.1}", 100.0 * answer.locked_share),
+            format!("{:.3}", answer.strouhal),
+        ]);
     }
+    let text = table.fitted(width);
     text + "phase error: median of its root mean square over a period; a loop locks below 0.7 and loses it above 1.2\n"
 }
 
@@ -115,7 +115,7 @@ mod tests {
             locked_share: 0.924,
             strouhal: 0.2034,
         };
-        let text = text(std::slice::from_ref(&answer));
+        let text = text(std::slice::from_ref(&answer), 100);
         let lines: Vec<&str> = text.lines().collect();
         let cells: Vec<&str> = lines[1].split_whitespace().collect();
         let own = ["T2", "ccw", "0.15", "to", "0.3", "600", "to", "3200", "0.51", "92.4", "0.203"];

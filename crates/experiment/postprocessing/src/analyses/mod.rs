@@ -11,6 +11,7 @@ mod tune;
 
 use crate::PostprocessingError;
 use basis::records::Statistic;
+use report::text_table;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -75,18 +76,25 @@ pub struct Request {
     pub folders: Vec<PathBuf>,
     /// What is set, as text, by the name of the setting.
     pub values: BTreeMap<String, Vec<String>>,
+    /// Columns that tables of the text may take (–); those of [`text_table::WIDTH`] when left out.
+    pub columns: Option<usize>,
 }
 
 impl Request {
     /// The records in `folder`, nothing set.
     pub fn of(folder: impl Into<PathBuf>) -> Self {
-        Self { folders: vec![folder.into()], values: BTreeMap::new() }
+        Self { folders: vec![folder.into()], ..Self::default() }
     }
 
     /// The same with the setting called `name`.
     pub fn with(mut self, name: &str, value: &str) -> Self {
         self.values.entry(name.to_owned()).or_default().push(value.to_owned());
         self
+    }
+
+    /// Columns that tables of the text may take (–).
+    pub(crate) fn width(&self) -> usize {
+        self.columns.unwrap_or(text_table::WIDTH)
     }
 
     /// Folder of the run, the first of the folders.

@@ -4,6 +4,7 @@ use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes};
 use crate::{PhaseAnswer, PhaseAxis, PhaseQuestion, PostprocessingError, Replayed, phases};
 use analysis::phase::{Agreement, Band};
 use control::phase_sync::PhaseEstimator;
+use report::text_table::{Column, TextTable};
 use serde_json::json;
 
 /// The analysis.
@@ -97,7 +98,8 @@ fn band(given: &str) -> Result<Band, PostprocessingError> {
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let found = phases(&question(request)?)?;
-    let texts: Vec<String> = found.answers.iter().map(text).collect();
+    let texts: Vec<String> =
+        found.answers.iter().map(|answer| text(answer, request.width())).collect();
     Ok(Answer {
         text: texts.join("\n"),
         json: all_json(&found.answers),
@@ -113,7 +115,7 @@ fn all_json(answers: &[PhaseAnswer]) -> serde_json::Value {
     }
 }
 
-fn text(answer: &PhaseAnswer) -> String {
+fn text(answer: &PhaseAnswer, width: usize) -> String {
     let [estimated, truth] = answer.mean_winds;
     let span = match (answer.times.first(), answer.times.last()) {
         (Some(first), Some(last)) => format!("{first:.0} to {last:.0} s"),
@@ -123,26 +125,22 @@ fn text(answer: &PhaseAnswer) -> String {
         "{} in {}, against the wind of {} at its place, {:.4} to {:.4} Hz; {span}\nmean wind {estimated:.2} m/s estimated, {truth:.2} m/s true; trust {:.2}\n",
         answer.turbine, answer.run, answer.truth, answer.band.low, answer.band.high, answer.trust
     );
-    text += &format!(
-        "{:<6} {:>14} {:>10} {:>20} {:>16} {:>10} {:>9} {:>11} {:>18} {:>15}\n",
-        "axis",
-        "amplitude m/s",
-        "true m/s",
-        "RMSE deg",
-        "bias deg",
-        "spread deg",
-        "locking",
-        "coherence",
-        "phase error deg",
-        "consistency"
-    );
-    text += &line("tilt", &answer.tilt);
-    text += &line("yaw", &answer.yaw);
+    let errors = ["amplitude m/s", "true m/s", "RMSE deg", "bias deg", "spread deg", "locking"];
+    let at_helix = [
+        Column::number("coherence").in_new_table(),
+        Column::number("phase error deg"),
+        Column::number("consistency"),
+    ];
+    let columns = errors.map(Column::number).into_iter().chain(at_helix);
+    let mut table = TextTable::new([Column::words("axis")], columns);
+    table.row(row("tilt", &answer.tilt));
+    table.row(row("yaw", &answer.yaw));
+    text += &table.fitted(width);
     text + &below(answer)
 }
 
-/// The line of the axis called `name`.
-fn line(name: &str, axis: &PhaseAxis) -> String {
+/// The row of the axis called `name`.
+fn row(name: &str, axis: &PhaseAxis) -> [String; 10] {
     let agreement = &axis.agreement;
     let bias = match agreement.bias_half_width_95 {
         Some(half) => with_interval(agreement.bias, half),
@@ -153,17 +151,22 @@ fn line(name: &str, axis: &PhaseAxis) -> String {
     let error = axis.coherence.map_or("–".to_owned(), |found| {
         with_interval(found.phase_error, found.phase_error_half_width_95)
     });
-    format!(
-        "{name:<6} {:>14.2} {:>10.2} {:>20} {bias:>16} {:>10.1} {:>9.3} {coherence:>11} {error:>18} {:>15}\n",
-        axis.amplitude,
-        axis.true_amplitude,
+    let consistency = axis
+        .consistency
+        .as_ref()
+        .map_or("–".to_owned(), |found| super::with_interval(found, 1.0, 2));
+    [
+        name.to_owned(),
+        format!("{:.2}", axis.amplitude),
+        format!("{:.2}", axis.true_amplitude),
         rmse(agreement),
-        agreement.spread.to_degrees(),
-        agreement.locking,
-        axis.consistency
-            .as_ref()
-            .map_or("–".to_owned(), |found| super::with_interval(found, 1.0, 2)),
-    )
+        bias,
+        format!("{:.1}", agreement.spread.to_degrees()),
+        format!("{:.3}", agreement.locking),
+        coherence,
+        error,
+        consistency,
+    ]
 }
 
 /// Conventions, and what else the records tell, below the table.
@@ -319,22 +322,22 @@ mod tests {
             zero_phase: None,
             published_band: Some([axis(None).agreement; 2]),
         };
-        let text = text(&answer);
+        let text = text(&answer, 100);
         let lines: Vec<&str> = text.lines().collect();
-        assert!(lines[2].ends_with("coherence    phase error deg     consistency"), "{text}");
-        assert!(lines[3].starts_with("tilt") && lines[3].contains(" -12.3 ± 4.6 "), "{text}");
+        assert!(lines[2].ends_with("bias deg  spread deg  locking"), "{text}");
+        assert!(lines[3].starts_with("tilt") && lines[3].contains(" 11.5 (10 to 13) "), "{text}");
+        assert!(lines[6].ends_with("coherence  phase error deg  consistency"), "{text}");
+        assert!(lines[7].starts_with("tilt") && lines[7].contains(" -12.3 ± 4.6 "), "{text}");
+        assert!(lines[7].ends_with(" 1.50 ± 0.75"), "{text}");
+        assert!(lines[8].starts_with("yaw") && lines[8].ends_with(" –"), "{text}");
+        assert!(lines[9].contains("from 4 blocks of 366 s"), "{text}");
         assert!(
-            lines[3].contains(" 11.5 (10 to 13) ") && lines[3].ends_with(" 1.50 ± 0.75"),
-            "{text}"
-        );
-        assert!(lines[4].starts_with("yaw") && lines[4].ends_with(" –"), "{text}");
-        assert!(lines[5].contains("from 4 blocks of 366 s"), "{text}");
-        assert!(
-            lines[7].contains("0.0073 to 0.15 Hz") && lines[7].contains("11.5 (10 to 13)°"),
+            lines[11].contains("0.0073 to 0.15 Hz") && lines[11].contains("11.5 (10 to 13)°"),
             "{text}"
         );
         let width = |line: &str| line.chars().count();
         assert_eq!([width(lines[3]), width(lines[4])], [width(lines[2]); 2], "{text}");
+        assert_eq!([width(lines[7]), width(lines[8])], [width(lines[6]); 2], "{text}");
         let json = json(&answer);
         let half_width = json["tilt"]["phase_error_half_width_95_deg"].as_f64().expect("a number");
         assert!((half_width - 4.56).abs() < 1e-9, "{half_width}");

@@ -7,6 +7,7 @@ mod profiles;
 mod rotors;
 mod sheet;
 mod slices;
+pub(crate) mod sweep;
 pub(crate) mod synchronisation;
 
 use crate::draw::colour::Ink;

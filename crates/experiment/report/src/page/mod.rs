@@ -2,6 +2,7 @@
 
 mod control;
 mod loads;
+pub(crate) mod sweep;
 mod tables;
 
 use crate::ReportError;

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Keys that the run itself follows, or that stand for outputs asked for by name.
-const OF_THE_RUN: [&str; 2] = ["checkpoint_interval", "further"];
+const OF_THE_RUN: [&str; 3] = ["checkpoint_interval", "last_checkpoint", "further"];
 
 /// Keys of `[output]` that `kind` follows.
 fn followed(kind: &OutputKind) -> &'static [&'static str] {

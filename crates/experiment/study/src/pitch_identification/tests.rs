@@ -155,7 +155,7 @@ fn a_resumed_study_is_given_the_same_to_the_last_bit() {
             Vec::new()
         };
         let identifications = setup.identifications(&[0], known);
-        let n_identifications = identifications.costs().len();
+        let n_identifications = identifications.costs(&mut BTreeSet::new()).len();
         let keep = &mut |found: &[_]| Ok(write_pitch_responses(folder.path(), found)?);
         let ended = setup.calibrate(identifications, keep, &AtomicBool::new(false), &mut Silent);
         assert!(ended.expect("a sound turbine").is_continue());

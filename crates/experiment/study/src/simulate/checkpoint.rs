@@ -13,7 +13,7 @@ const AIR: &str = "air";
 /// Checkpoints of earlier programs have none.
 const PEAK_MEMORY: &str = "peak memory";
 
-/// What the sessions of a run before this one have made and cost.
+/// What the processes before this one have made of a run, and what that cost.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Before {
     /// Steps made (–).
@@ -38,8 +38,8 @@ fn has_instruments(farm: &Farm<Air>) -> bool {
     farm.machines().iter().any(|machine| machine.sensing.has_state())
 }
 
-/// Writes `farm` as it stands and the state of its `outputs`; `made` holds what all sessions have cost so
-/// far.
+/// Writes `farm` as it stands and the state of its `outputs`; `made` holds what all processes have
+/// made so far and what that cost.
 ///
 /// # Errors
 /// [`StudyError`] when a file cannot be written.
@@ -67,8 +67,8 @@ pub(super) fn write(
     Ok(writer.finish()?)
 }
 
-/// On return `farm` stands where the checkpoint of `reader` was written; gives it with what the sessions
-/// before have cost.
+/// On return `farm` stands where the checkpoint of `reader` was written; gives it with what the
+/// processes before have cost.
 ///
 /// # Errors
 /// [`StudyError::File`] when the checkpoint does not fit.

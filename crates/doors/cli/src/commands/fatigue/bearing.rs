@@ -1,6 +1,6 @@
 //! `wakemix fatigue --bearing`: the load of a blade's pitch bearing, all round its ring.
 
-use super::{FatigueArguments, Span, name, read_span, six_digits};
+use super::{FatigueArguments, Span, name, open, read_span, six_digits};
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -39,7 +39,7 @@ pub(super) fn count(arguments: &FatigueArguments) -> Result<Duty> {
             ));
         }
     };
-    let mut table = TableReader::open(&arguments.file)?;
+    let mut table = open(arguments)?;
     let columns = select(&mut table, arguments)?;
     let radians = radians(&columns[0])?;
     let [flapwise, edgewise] = [1, 2].map(|moment| unit(&columns[moment]));

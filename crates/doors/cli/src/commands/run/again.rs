@@ -32,7 +32,9 @@ pub(super) fn interrupted(arguments: &RunArguments, directory: &Path) -> String 
 fn repeated(arguments: &RunArguments) -> String {
     let runs = arguments.runs.iter().map(|name| format!(" --run {}", shell_word(name)));
     let overrides = arguments.overrides.iter().map(|text| format!(" --set {}", shell_word(text)));
-    runs.chain(overrides).collect()
+    let seeds = arguments.seeds.map(|n| format!(" --seeds {n}"));
+    let jobs = arguments.jobs.map(|n| format!(" --jobs {n}"));
+    runs.chain(overrides).chain(seeds).chain(jobs).collect()
 }
 
 /// `text` as one word of a shell.
@@ -72,10 +74,13 @@ mod tests {
             case: PathBuf::from("my case.toml"),
             output: None,
             runs: vec!["helix".to_owned()],
+            seeds: None,
+            jobs: None,
             overrides: Vec::new(),
             resume: false,
             overwrite: false,
             dry_run: true,
+            check: false,
             json: false,
         };
         assert!(!interrupted(&arguments, &directory).contains("wakemix run"));

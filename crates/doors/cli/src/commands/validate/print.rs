@@ -5,41 +5,53 @@ use super::record::Made;
 use validation::gate::{Finding, holds};
 use validation::record::Verdict;
 use validation::{Tolerance, VALIDATIONS, Validation};
+use wakemix::report::text_table::{Column, TextTable};
 
-/// All validations by name.
-pub(super) fn list() -> String {
-    let mut text = format!("{:<20} {:>8}  what\n", "name", "minutes");
+/// All validations by name, in `width` columns.
+pub(super) fn list(width: usize) -> String {
+    let columns = [Column::number("minutes"), Column::words("what")];
+    let mut table = TextTable::new([Column::words("name")], columns);
     for Validation { name, cost, about, .. } in VALIDATIONS {
-        text += &format!("{name:<20} {cost:>8}  {about}\n");
+        table.row([(*name).to_owned(), cost.to_string(), (*about).to_owned()]);
     }
-    text
+    table.fitted(width)
 }
 
-/// The rows of a validation, how many are met, fall short, and are not as recorded, and on what day and
-/// machine they were recorded and are made.
-pub(super) fn table(done: &Done) -> String {
+/// The rows of a validation in `width` columns, how many are met, fall short, and are not as recorded, and on
+/// what day and machine they were recorded and are made.
+pub(super) fn table(done: &Done, width: usize) -> String {
     let Done { validation, record, judgements } = done;
-    let mut text = format!(
-        "{:<64} {:>12} {:>12} {:>10} {:<6} {:<5} record\n",
-        "what", "measured", "expected", "tolerance", "unit", "met"
-    );
+    let columns = [
+        Column::number("measured"),
+        Column::number("expected"),
+        Column::number("tolerance"),
+        Column::words("unit"),
+        Column::words("met"),
+        Column::words("record"),
+    ];
+    let mut table = TextTable::new([Column::words("what")], columns);
     for row in judgements {
         let tolerance = match row.tolerance {
             Tolerance::Within(most) => format!("{most:.2e}"),
             Tolerance::AtMost => "at most".to_owned(),
             Tolerance::AtLeast => "at least".to_owned(),
         };
-        let measured = row.measured.unwrap_or(f64::NAN);
         let met = if row.verdict == Verdict::Met { "yes" } else { "NO" };
         let mut record = row.finding.words().to_owned();
         if let (Some(then), Finding::Worse) = (row.recorded, row.finding) {
             record.push_str(&format!(", then {then}"));
         }
-        text += &format!(
-            "{:<64} {measured:>12.6} {:>12.6} {tolerance:>10} {:<6} {met:<5} {record}\n",
-            row.claim, row.expected, row.unit
-        );
+        table.row([
+            row.claim.clone(),
+            format!("{:.6}", row.measured.unwrap_or(f64::NAN)),
+            format!("{:.6}", row.expected),
+            tolerance,
+            row.unit.to_string(),
+            met.to_owned(),
+            record,
+        ]);
     }
+    let mut text = table.fitted(width);
     let short = judgements.iter().filter(|row| row.verdict == Verdict::Short).count();
     let other = judgements.iter().filter(|row| row.finding != Finding::AsRecorded).count();
     let name = validation.name;

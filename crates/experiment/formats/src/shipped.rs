@@ -1,0 +1,202 @@
+//! The cases that come with the program: each can be run by its name, anywhere.
+
+use crate::FileError;
+use crate::case::{self, CaseError, CaseFile, CaseFiles};
+use farm::case::Case;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// A case that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShippedCase {
+    /// Its name, which stands for its file.
+    pub name: &'static str,
+    /// The file in the repository.
+    file: &'static str,
+    /// Wall time of all its runs on two cores (min), about.
+    pub minutes: f64,
+    /// The shipped case that has to be run before, where it reads what another one leaves.
+    pub after: Option<&'static str>,
+}
+
+/// All of them, those to begin with first.
+pub const CASES: &[ShippedCase] = &[
+    ShippedCase {
+        name: "quickstart",
+        file: include_str!("../../../../cases/quickstart.toml"),
+        minutes: 3.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "one-turbine",
+        file: include_str!("../../../../cases/one-turbine.toml"),
+        minutes: 0.2,
+        after: None,
+    },
+    ShippedCase {
+        name: "helix-two-turbines",
+        file: include_str!("../../../../cases/helix-two-turbines.toml"),
+        minutes: 35.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "helix-three-turbines",
+        file: include_str!("../../../../cases/helix-three-turbines.toml"),
+        minutes: 270.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "synchronised-helix",
+        file: include_str!("../../../../cases/synchronised-helix.toml"),
+        minutes: 60.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "meandering",
+        file: include_str!("../../../../cases/meandering.toml"),
+        minutes: 31.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "wake-inflow",
+        file: include_str!("../../../../cases/wake-inflow.toml"),
+        minutes: 15.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "meandering-in-wake",
+        file: include_str!("../../../../cases/meandering-in-wake.toml"),
+        minutes: 2.0,
+        after: Some("wake-inflow"),
+    },
+];
+
+impl ShippedCase {
+    /// Its text for any folder. In the repository a case stands in `cases/`, beside the schema and with
+    /// `runs/` one folder up; here `runs/` is in the current folder, and cases are called by their names.
+    pub fn text(&self) -> String {
+        let mut text = String::with_capacity(self.file.len());
+        for line in self.file.lines().filter(|line| !line.starts_with("#:schema")) {
+            text += line;
+            text.push('\n');
+        }
+        text = text.replace("../runs/", "runs/");
+        for case in CASES {
+            text = text.replace(&format!("cases/{}.toml", case.name), case.name);
+        }
+        text
+    }
+
+    /// The case itself.
+    ///
+    /// # Errors
+    /// [`CaseError`] where a kind of output that it asks for is not known yet.
+    pub fn case(&self) -> Result<Case, CaseError> {
+        case::parse(self.name, &self.text(), &[])
+    }
+}
+
+/// The shipped case called `name`.
+pub fn find(name: &str) -> Option<&'static ShippedCase> {
+    CASES.iter().find(|case| case.name == name)
+}
+
+/// The shipped case that `path` stands for: one of this name, where there is no file of it.
+pub fn instead_of(path: &Path) -> Option<&'static ShippedCase> {
+    find(path.to_str()?).filter(|_| !path.is_file())
+}
+
+/// Reads the case file at `path`, or the shipped case that it stands for, and applies `overrides`.
+///
+/// # Errors
+/// Those of [`case::read`]; where there is no such file, with the shipped cases as a way on.
+pub fn read(path: &Path, overrides: &[String]) -> Result<CaseFile, CaseError> {
+    if let Some(shipped) = instead_of(path) {
+        let text = shipped.text();
+        let case = case::parse(shipped.name, &text, overrides)?;
+        let (overrides, path) = (overrides.to_vec(), path.to_owned());
+        return Ok(CaseFile { case, text, overrides, path, study: 0 });
+    }
+    case::read(path, overrides).map_err(with_advice)
+}
+
+/// The same of a case that may sweep keys which make studies.
+///
+/// # Errors
+/// Those of [`case::read_all`]; where there is no such file, with the shipped cases as a way on.
+pub fn read_all(path: &Path, overrides: &[String]) -> Result<CaseFiles, CaseError> {
+    match instead_of(path) {
+        Some(shipped) => case::of_text(path, shipped.text(), overrides),
+        None => case::read_all(path, overrides).map_err(with_advice),
+    }
+}
+
+/// `error`, and what to do where it is of a file that is not there.
+fn with_advice(error: CaseError) -> CaseError {
+    match error {
+        CaseError::File(FileError::System { verb, what, path, source, .. })
+            if source.kind() == ErrorKind::NotFound =>
+        {
+            let fix = advice(&path);
+            CaseError::File(FileError::System { verb, what, path, fix, source })
+        }
+        error => error,
+    }
+}
+
+/// What to do where there is no case file at `path`.
+fn advice(path: &Path) -> String {
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(find);
+    match stem {
+        Some(case) => format!("a case of that name comes with the program: give its name, {}", case.name),
+        None => "correct the path, write a case with `wakemix init`, or give the name of one that `wakemix cases` lists".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_case_of_the_repository_is_shipped_under_its_name() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../cases");
+        let mut files: Vec<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
+            .collect();
+        files.sort();
+        let mut names: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+        names.sort();
+        assert_eq!(names, files);
+        for shipped in CASES {
+            let case = shipped.case().unwrap();
+            assert_eq!(case.name, shipped.name);
+            assert!(case.description.is_some_and(|words| words.len() > 20), "{}", shipped.name);
+            // It needs nothing beside it: turbines of the library, and wind that a shipped case leaves.
+            for turbine in &case.turbines {
+                assert!(crate::library::names().any(|name| name == turbine.model));
+                assert_eq!(turbine.discon, None);
+            }
+            let planes = case.wind.planes.as_deref();
+            let before = shipped.after.map(|name| format!("runs/{name}/"));
+            assert_eq!(planes.is_some(), before.is_some());
+            assert!(planes.zip(before).is_none_or(|(file, folder)| file.starts_with(&folder)));
+            let text = shipped.text();
+            assert!(!text.contains("../") && !text.contains("cases/"), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_name_stands_for_a_case_where_no_file_has_it() {
+        assert_eq!(instead_of(Path::new("quickstart")).map(|case| case.name), Some("quickstart"));
+        assert_eq!(instead_of(Path::new("quickstart.toml")), None);
+        assert_eq!(instead_of(Path::new("no-such-case")), None);
+        assert!(advice(Path::new("cases/quickstart.toml")).ends_with("quickstart"));
+        assert!(advice(Path::new("mine.toml")).contains("wakemix cases"));
+        let case = read(Path::new("quickstart"), &["wind.speed=8".to_owned()]).unwrap();
+        assert_eq!((case.case.wind.speed, case.folder()), (8.0, Path::new("")));
+        let error = read(Path::new("quick.toml"), &[]).unwrap_err();
+        let help = miette::Diagnostic::help(&error).unwrap().to_string();
+        assert!(help.contains("wakemix init"), "{help}");
+    }
+}
