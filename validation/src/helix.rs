@@ -2,8 +2,10 @@
 //! published large-eddy figures.
 
 mod pitch;
+mod profile;
 
 pub use pitch::helix_pitch;
+pub use profile::wake_profile;
 
 use crate::Row;
 use crate::row::Tolerance::{AtLeast, Within};

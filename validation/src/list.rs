@@ -109,6 +109,15 @@ pub const VALIDATIONS: &[Validation] = &[
         recorded: include_str!("../recorded/centre-line.toml"),
     },
     Validation {
+        name: "wake-profile",
+        about: "the wind across a wake without and with a helix, in three winds, beside a published large-eddy simulation",
+        cost: Cost::Minutes(14),
+        run: helix::wake_profile,
+        pictures: None,
+        page: "helix",
+        recorded: include_str!("../recorded/wake-profile.toml"),
+    },
+    Validation {
         name: "structure",
         about: "natural frequencies beside published ones, energy of free motion, loads of a spinning rotor in closed form",
         cost: Cost::UnderAMinute,

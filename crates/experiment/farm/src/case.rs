@@ -1,6 +1,6 @@
 //! One study as plain data: what the case file says, in SI units.
 
-pub use crate::domain::{Domain, Ground, Sides};
+pub use crate::domain::{Blockage, Domain, Ground, Sides};
 pub use crate::outputs::Requested;
 pub use crate::solvers::Solver;
 pub use control::{Control, Sense};

@@ -4,7 +4,7 @@ use basis::keys::LeftOut::{Required, Value};
 use basis::keys::{Holds, Key, Slip, Table, Values, above, from, key};
 
 /// Keys of `[flow]` for a box of cells.
-pub static KEYS: [Key; 7] = [
+pub static KEYS: [Key; 8] = [
     key(
         "cells_per_diameter",
         from(8.0, 200.0),
@@ -48,6 +48,13 @@ pub static KEYS: [Key; 7] = [
         Value("\"periodic\""),
         "`periodic`: what leaves on one side enters on the other. `slip`: the air slips along them.",
     ),
+    key(
+        "blockage",
+        Holds::Choice(&["felt", "corrected"]),
+        "",
+        Value("\"felt\""),
+        "The walls hold the air together, so that a rotor meets more wind than in the open. `felt`: `wind.speed` blows in. `corrected`: so much less blows in that a rotor of thrust coefficient 0.8 works as in open air of `wind.speed` (axial momentum theory of a disc in a channel, Glauert 1935); for rotors below their rated wind.",
+    ),
 ];
 
 /// `flow.ground` of a rough ground.
@@ -81,6 +88,8 @@ pub struct Domain {
     pub ground: Ground,
     /// What it meets at the sides.
     pub sides: Sides,
+    /// What becomes of the walls' effect on the rotors.
+    pub blockage: Blockage,
 }
 
 impl Domain {
@@ -97,6 +106,10 @@ impl Domain {
             height_diameters: all.number("height_diameters"),
             ground: rough.map_or(Ground::Slip, |length| Ground::Rough { roughness_length: length }),
             sides: if all.word("sides") == "slip" { Sides::Slip } else { Sides::Periodic },
+            blockage: match all.word("blockage") {
+                "corrected" => Blockage::Corrected,
+                _ => Blockage::Felt,
+            },
         }
     }
 }
@@ -120,4 +133,13 @@ pub enum Sides {
     Periodic,
     /// Air slips along them.
     Slip,
+}
+
+/// What becomes of the walls' effect on the rotors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blockage {
+    /// The case's wind blows in, and rotors feel the walls.
+    Felt,
+    /// So much less blows in that a rotor works as in open air of the case's wind.
+    Corrected,
 }

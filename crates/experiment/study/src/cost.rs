@@ -4,7 +4,6 @@ use crate::StudyError;
 use crate::observer::Estimate;
 use crate::outputs::{Outputs, series};
 use crate::prepared::Prepared;
-use crate::warnings::wall_gain;
 use farm::pitch_response::IdentificationCost;
 use formats::machine;
 use formats::records::RunFolder;
@@ -94,7 +93,7 @@ impl Prepared {
             work: open.len() as f64 * plan.updates().max(plan.n_steps as f64),
             updates_per_second: None,
             blockage: plan.blockage,
-            wall_gain: wall_gain(plan.blockage),
+            wall_gain: farm::wind::wall_gain(&self.case, plan),
             lattice_speed: plan.lattice_speed,
         }
     }

@@ -4,13 +4,11 @@ use crate::threads::cores;
 use farm::Plan;
 use farm::assemble::TurbineModel;
 use farm::case::{Case, Placement, Run};
+use farm::wind::wall_gain;
 use std::fmt;
-use turbine::blockage::equivalent_speed_ratio;
 
 /// Rise of a rotor's power by the walls of the domain beyond which a reader must know (–).
 const WALL_GAIN_TO_WARN: f64 = 0.05;
-/// Thrust coefficient of a rotor below rated, with which that rise is estimated (–).
-const USUAL_THRUST: f64 = 0.8;
 /// Blocks below which an interval says little (–).
 const BLOCKS_TO_WARN: f64 = 3.0;
 /// Steps of a run beyond which somebody should know (–): ten million take hours of prescribed wind.
@@ -46,11 +44,6 @@ impl fmt::Display for SetupWarning {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&self.message)
     }
-}
-
-/// Rise of a rotor's power (–) in a domain of which it takes `blockage` (–), over that in unbounded air.
-pub(crate) fn wall_gain(blockage: f64) -> f64 {
-    equivalent_speed_ratio(USUAL_THRUST, blockage).powi(3) - 1.0
 }
 
 /// All warnings of `case` as it is laid out in `plan`.
@@ -104,11 +97,11 @@ pub(crate) fn of_operation(case: &Case, models: &[TurbineModel]) -> Option<Strin
 /// Of walls that are near, and cells that are coarse.
 fn of_domain(case: &Case, plan: &Plan) -> Vec<String> {
     let mut warnings = Vec::new();
-    let gain = wall_gain(plan.blockage);
+    let gain = wall_gain(case, plan);
     if gain > WALL_GAIN_TO_WARN {
         warnings.push(format!(
             "a rotor takes {:.1} % of the domain's cross-section: the walls raise its power by about {:.0} %, in every run alike; \
-             raise flow.width_diameters or flow.height_diameters",
+             raise flow.width_diameters or flow.height_diameters, or write flow.blockage = \"corrected\"",
             100.0 * plan.blockage,
             100.0 * gain
         ));

@@ -4,10 +4,12 @@
 mod around_rotors;
 mod at_inlet;
 mod length_scale;
+mod walls;
 
 pub use around_rotors::prescribed;
 pub use at_inlet::entering;
 pub use length_scale::length_scale;
+pub use walls::{inflow_share, wall_gain};
 
 use crate::assemble::TurbineModel;
 use crate::case::{Case, Ground, Shear, WindEvent};
@@ -59,9 +61,10 @@ pub fn without_turbulence(case: &Case, plan: &Plan) -> Result<Arc<dyn Inflow>, I
     Ok(Arc::new(wind))
 }
 
-/// The mean profile of `case`, with the hub height that `plan` found for its first turbine.
+/// The mean profile that blows into the air of `case`, with the hub height that `plan` found for its first
+/// turbine.
 pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
-    let (hub_height, speed) = (plan.hub_height, case.wind.speed);
+    let (hub_height, speed) = (plan.hub_height, case.wind.speed * inflow_share(case, plan));
     match case.wind.shear {
         Shear::PowerLaw { exponent } => MeanProfile::PowerLaw { hub_height, speed, exponent },
         Shear::LogLaw { roughness_length } => {
