@@ -1,7 +1,7 @@
 //! What the program knows of a kind of controller: its keys, its checks, how it is built, what the summary
 //! says of it.
 
-use crate::baseline::Constants;
+use crate::baseline::{CoefficientTable, Constants};
 use crate::excitation::excitation_rate;
 use crate::meandering::MeanderingError;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
@@ -119,6 +119,9 @@ pub struct Site<'a> {
     pub constants: &'a Constants,
     /// The machine, as estimators model it.
     pub rotor: &'a Arc<Definition>,
+    /// Power and thrust coefficient of a machine, for controllers that must know them; takes a fraction of a
+    /// second.
+    pub coefficients: fn(&Definition) -> CoefficientTable,
     /// Mean speed at hub height of the first turbine (m/s): Strouhal numbers are taken with it.
     pub wind_speed: f64,
     /// Rotor diameter of the first turbine (m), likewise.
