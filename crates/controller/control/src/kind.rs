@@ -45,6 +45,11 @@ pub trait ControllerKind: Named + Sync {
         true
     }
 
+    /// Whether it turns the nacelle.
+    fn turns_nacelle(&self) -> bool {
+        false
+    }
+
     /// Sense and Strouhal number (–) of the helix that it makes, or joins.
     fn helix(&self, _control: &Control) -> Option<(Sense, f64)> {
         None
@@ -378,22 +383,5 @@ impl fmt::Debug for Control {
 impl PartialEq for Control {
     fn eq(&self, other: &Self) -> bool {
         self.is(other.kind) && self.values == other.values && self.response == other.response
-    }
-}
-
-/// The `stop` (s) of an excitation of `rate` (rad/s) that begins at `start` (s), which is to be whole before
-/// it ends.
-pub(crate) fn stop_of(
-    start: f64,
-    stop: Option<f64>,
-    rate: f64,
-) -> Result<Option<f64>, ControlError> {
-    let period = std::f64::consts::TAU / rate;
-    match stop {
-        Some(stop) if stop < start + period => {
-            let earliest = (start + period).ceil();
-            Err(ControlError::StopsTooEarly { stop, start, period, earliest })
-        }
-        stop => Ok(stop),
     }
 }

@@ -1,13 +1,14 @@
 //! One study as plain data: what the case file says, in SI units.
 
 pub use crate::domain::{Domain, Ground, Sides};
-pub use crate::layout::{FROM_WEST, Position, places};
+pub use crate::layout::{FROM_WEST, Position};
 pub use crate::outputs::Requested;
 pub use crate::solvers::Solver;
 pub use control::{Control, Sense};
 pub use flow::inflow::deterministic::Change;
 pub use sensing::{Instrument, Instruments, Lag, Mounted};
 
+use crate::layout;
 use basis::keys::Values;
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +38,8 @@ pub struct Case {
 pub struct Wind {
     /// Mean speed at hub height of the first turbine (m/s).
     pub speed: f64,
-    /// Where the mean wind comes from on the map (rad, clockwise from north): [`FROM_WEST`] blows to the east.
+    /// Where the mean wind comes from on the map (rad, clockwise from north); [`FROM_WEST`] blows to the
+    /// east.
     /// The wind's frame follows it, see [`Case::places`].
     pub direction: f64,
     /// Turbulence intensity, standard deviation of the streamwise component over `speed` (–).
@@ -266,7 +268,37 @@ impl Run {
     }
 }
 
+/// Feet of the towers of `turbines` in the frame of wind from `direction` (rad, clockwise from north), in the
+/// layout's own unit: x downwind, y to the left.
+pub fn places(turbines: &[Placement], direction: f64) -> Vec<[f64; 2]> {
+    let positions: Vec<Position> = turbines.iter().map(|turbine| turbine.position).collect();
+    layout::places(&positions, direction)
+}
+
 impl Case {
+    /// Feet of the towers in the wind's frame, in the layout's own unit: x downwind, y to the left.
+    pub fn places(&self) -> Vec<[f64; 2]> {
+        places(&self.turbines, self.wind.direction)
+    }
+
+    /// The same (m); `diameter` (m) is that of the first turbine.
+    pub fn feet(&self, diameter: f64) -> Vec<[f64; 2]> {
+        let units = self.turbines.iter().map(|turbine| turbine.position.unit(diameter));
+        let places = self.places().into_iter().zip(units);
+        places.map(|(place, unit)| place.map(|length| length * unit)).collect()
+    }
+
+    /// The same in diameters of the first turbine, whose is `diameter` (m).
+    pub fn places_in_diameters(&self, diameter: f64) -> Vec<[f64; 2]> {
+        let places = self.places().into_iter().zip(&self.turbines);
+        places
+            .map(|(place, turbine)| match turbine.position {
+                Position::Diameters(_) => place,
+                Position::Metres(_) => place.map(|length| length / diameter),
+            })
+            .collect()
+    }
+
     /// Sense and Strouhal number of the helix furthest upstream in `run`.
     pub fn first_helix(&self, run: &Run) -> Option<(Sense, f64)> {
         let places = self.places();

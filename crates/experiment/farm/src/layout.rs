@@ -1,7 +1,5 @@
 //! From the map to the wind's frame: places of turbines, and the direction that the wind comes from.
 
-use crate::case::{Case, Placement};
-
 /// Wind from the west (rad): its frame is the map's, x to the east and y to the north.
 pub const FROM_WEST: f64 = 270.0_f64.to_radians();
 
@@ -28,7 +26,7 @@ impl Position {
     }
 
     /// Metres in its unit, `diameter` (m) that of the first turbine.
-    fn unit(self, diameter: f64) -> f64 {
+    pub fn unit(self, diameter: f64) -> f64 {
         match self {
             Self::Diameters(_) => diameter,
             Self::Metres(_) => 1.0,
@@ -36,21 +34,21 @@ impl Position {
     }
 }
 
-/// Feet of the towers of `turbines` in the frame of wind from `direction` (rad, clockwise from north), in the
-/// layout's own unit: x downwind, y to the left. The first turbine is where the map has it, of a map in metres
-/// at the origin, and the others are turned about it; with wind from the west those of a map in diameters are
-/// where it has them, bit for bit.
-pub fn places(turbines: &[Placement], direction: f64) -> Vec<[f64; 2]> {
-    let map = turbines.iter().map(|turbine| turbine.position.own());
-    let Some(turbine) = turbines.first() else { return Vec::new() };
-    let first = turbine.position.own();
-    let origin = match turbine.position {
+/// `positions` in the frame of wind from `direction` (rad, clockwise from north), in the layout's own unit: x
+/// downwind, y to the left. The first turbine is where the map has it, of a map in metres at the origin, and
+/// the others are turned about it; with wind from the west those of a map in diameters are where it has them,
+/// bit for bit.
+pub(crate) fn places(positions: &[Position], direction: f64) -> Vec<[f64; 2]> {
+    let map = positions.iter().map(|position| position.own());
+    let Some(&turbine) = positions.first() else { return Vec::new() };
+    let first = turbine.own();
+    let origin = match turbine {
         Position::Diameters(first) => first,
         // Of a map in metres the origin may be far away.
         Position::Metres(_) => [0.0; 2],
     };
     if direction == FROM_WEST {
-        let moved = |[east, north]: [f64; 2]| match turbine.position {
+        let moved = |[east, north]: [f64; 2]| match turbine {
             Position::Diameters(_) => [east, north],
             Position::Metres(_) => [east - first[0], north - first[1]],
         };
@@ -68,39 +66,13 @@ pub fn places(turbines: &[Placement], direction: f64) -> Vec<[f64; 2]> {
     .collect()
 }
 
-impl Case {
-    /// Feet of the towers in the wind's frame, in the layout's own unit: x downwind, y to the left.
-    pub fn places(&self) -> Vec<[f64; 2]> {
-        places(&self.turbines, self.wind.direction)
-    }
-
-    /// The same in diameters of the first turbine, whose is `diameter` (m).
-    pub fn places_in_diameters(&self, diameter: f64) -> Vec<[f64; 2]> {
-        let places = self.places().into_iter().zip(&self.turbines);
-        places
-            .map(|(place, turbine)| match turbine.position {
-                Position::Diameters(_) => place,
-                Position::Metres(_) => place.map(|length| length / diameter),
-            })
-            .collect()
-    }
-
-    /// The same (m); `diameter` (m) is that of the first turbine.
-    pub fn feet(&self, diameter: f64) -> Vec<[f64; 2]> {
-        let places = self.places().into_iter().zip(&self.turbines);
-        places
-            .map(|(place, turbine)| place.map(|length| length * turbine.position.unit(diameter)))
-            .collect()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn turned(positions: &[[f64; 2]], degrees: f64) -> Vec<[f64; 2]> {
-        let case = crate::plan::tests::case(positions);
-        places(&case.turbines, degrees.to_radians())
+        let positions: Vec<Position> = positions.iter().copied().map(Position::Diameters).collect();
+        places(&positions, degrees.to_radians())
     }
 
     #[test]
@@ -142,19 +114,11 @@ mod tests {
     }
 
     #[test]
-    fn metres_and_diameters_are_told_apart() {
-        let mut case = crate::plan::tests::case(&[[0.0, 0.0], [5.0, 1.0]]);
-        assert_eq!(case.feet(240.0), [[0.0, 0.0], [1200.0, 240.0]]);
-        for turbine in &mut case.turbines {
-            turbine.position = Position::Metres(turbine.position.own());
-        }
-        assert_eq!(case.feet(240.0), [[0.0, 0.0], [5.0, 1.0]]);
-        // From wherever the map counts.
-        case.turbines[0].position = Position::Metres([4e5, 5e6]);
-        case.turbines[1].position = Position::Metres([4e5 + 1000.0, 5e6]);
-        assert_eq!(case.feet(240.0), [[0.0, 0.0], [1000.0, 0.0]]);
-        assert_eq!(case.places_in_diameters(250.0)[1], [4.0, 0.0]);
-        case.wind.direction = 0.0;
-        assert_eq!(case.feet(240.0), [[0.0, 0.0], [0.0, 1000.0]]);
+    fn a_map_in_metres_counts_from_its_first_turbine() {
+        let map = [[4e5, 5e6], [4e5 + 1000.0, 5e6]].map(Position::Metres);
+        assert_eq!(places(&map, FROM_WEST), [[0.0, 0.0], [1000.0, 0.0]]);
+        assert_eq!(places(&map, 0.0), [[0.0, 0.0], [0.0, 1000.0]]);
+        assert_eq!((map[0].unit(240.0), Position::Diameters([0.0; 2]).unit(240.0)), (1.0, 240.0));
+        assert!(places(&[], 1.0).is_empty());
     }
 }

@@ -354,4 +354,4 @@ impl Plan {
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;

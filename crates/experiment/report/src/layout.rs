@@ -20,8 +20,8 @@ pub(crate) struct Rotor {
 }
 
 impl Rotor {
-    /// Half of what a plane along the wind `distance` (m) to the left of the hub cuts out of the disc (m); none
-    /// where it passes by.
+    /// Half of what a plane along the wind `distance` (m) to the left of the hub cuts out of the disc (m);
+    /// none where it passes by.
     pub(crate) fn half_chord(&self, distance: f64) -> Option<f64> {
         let (radius, distance) = (0.5 * self.diameter, distance / self.yaw.cos());
         (distance.abs() < radius).then(|| (radius * radius - distance * distance).sqrt())

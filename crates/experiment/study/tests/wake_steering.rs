@@ -46,8 +46,7 @@ name = "baseline"
 /// Distance behind the rotor at which the wake is looked at (diameters).
 const BEHIND: f64 = 4.0;
 
-/// Where the wake is `BEHIND` the turbine, to the left (diameters), and thrust coefficient and lateral place of
-/// the hub in the run (–, diameters).
+/// Where the wake is `BEHIND` the turbine, to the left (diameters), and its thrust coefficient (–).
 fn deflection(run: &RunResult) -> [f64; 2] {
     let turbine = &run.summary.turbines[0];
     let rotor = turbine.rotor.expect("it is told");
@@ -134,6 +133,14 @@ control.T1 = { kind = "steering", yaw_deg = 15.0, rate_deg_per_s = 0.5, start = 
     assert_eq!(turbine.control.kind, "steering");
     assert_eq!(turbine.control.description, "steering +15.0°");
     assert!((turbine.rotor.expect("it is told").yaw_deg - 15.0).abs() < 0.05);
+    let told = |run: &RunResult, what: &str| {
+        run.summary.warnings.iter().any(|warning| warning.message.contains(what))
+    };
+    assert!(!told(&run, "stood up to"), "{:?}", run.summary.warnings);
+    // With a spin-up that ends while it turns, a reader is told.
+    let text = case("steering", "", [30.0, 120.0], &[NREL_5MW], rest);
+    let early = runs(&text, &[]).remove(0);
+    assert!(told(&early, "T1 stood up to 15.5° away"), "{:?}", early.summary.warnings);
     // OpenFAST's channel tells the same.
     let nac_yaw = column(&run.series, "T1.NacYaw_deg");
     assert!((nac_yaw[nac_yaw.len() - 1] - 15.0).abs() < 0.01);

@@ -5,6 +5,7 @@ use crate::Controller;
 use crate::excitation::Excitation;
 use crate::keys::starts_too_late;
 use crate::kind::{Control, ControlError, ControllerKind, Place, Site};
+use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::keys::LeftOut::{Required, Value};
 use basis::keys::{Objection, Table, Values, above, from, key};
 use basis::registry::Named;
@@ -14,6 +15,11 @@ pub struct SteeringKind;
 
 /// The kind.
 pub static STEERING: SteeringKind = SteeringKind;
+
+/// Channel of the nacelle's turn.
+const YAW: &str = "yaw_rad";
+/// A nacelle that is farther away from where it is steered to is still on its way (rad): a degree.
+const STILL_TURNING: f64 = std::f64::consts::PI / 180.0;
 
 static TABLE: Table = Table {
     heading: "control.T1 = { kind = \"steering\", … }",
@@ -70,5 +76,29 @@ impl ControllerKind for SteeringKind {
 
     fn pitches_individually(&self) -> bool {
         false
+    }
+
+    fn turns_nacelle(&self) -> bool {
+        true
+    }
+
+    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<String> {
+        vec![YAW.to_owned()]
+    }
+
+    fn outcome(
+        &self,
+        control: &Control,
+        record: &dyn TurbineRecord,
+    ) -> Result<Outcome, MissingChannel> {
+        let target = control.values().angle("yaw_deg");
+        let away = record.column(YAW)?.iter().map(|yaw| (yaw - target).abs()).fold(0.0, f64::max);
+        let warning = (away > STILL_TURNING).then(|| {
+            format!(
+                " stood up to {:.1}° away from the yaw that it was steered to while the run was analysed; raise time.spin_up, or start earlier",
+                away.to_degrees()
+            )
+        });
+        Ok(Outcome { warnings: Vec::from_iter(warning), ..Outcome::default() })
     }
 }

@@ -7,7 +7,7 @@ use crate::case::{
     Solver, Time, TowerInfluence, TurbulenceModel, Wind,
 };
 
-pub(crate) fn case(positions: &[[f64; 2]]) -> Case {
+fn case(positions: &[[f64; 2]]) -> Case {
     let placement = |(index, &position): (usize, &[f64; 2])| Placement {
         name: format!("T{}", index + 1),
         model: "model".to_owned(),
@@ -99,6 +99,17 @@ fn the_domain_follows_the_wind() {
     case.output.crosswind_diameters = vec![5.0];
     let beyond = super::plan(&case, &footprints()).unwrap_err().to_string();
     assert!(beyond.contains("5 diameters behind"), "{beyond}");
+}
+
+#[test]
+fn metres_and_diameters_are_told_apart() {
+    let mut case = case(&[[0.0, 0.0], [5.0, 1.0]]);
+    assert_eq!(case.feet(240.0), [[0.0, 0.0], [1200.0, 240.0]]);
+    assert_eq!(case.places_in_diameters(240.0), case.places());
+    case.turbines[0].position = Position::Metres([4e5, 5e6]);
+    case.turbines[1].position = Position::Metres([4e5 + 1200.0, 5e6]);
+    assert_eq!(case.feet(240.0), [[0.0, 0.0], [1200.0, 0.0]]);
+    assert_eq!(case.places_in_diameters(240.0)[1], [5.0, 0.0]);
 }
 
 #[test]

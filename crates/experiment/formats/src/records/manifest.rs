@@ -43,8 +43,8 @@ pub struct Manifest {
     /// anew without its file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub own_turbines: BTreeMap<String, String>,
-    /// Where the mean wind of the case comes from (deg, clockwise from north); absent in manifests that do not
-    /// tell, whose wind is from the west.
+    /// Where the mean wind of the case comes from (deg, clockwise from north); absent in manifests that do
+    /// not tell, whose wind is from the west.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wind_direction_deg: Option<f64>,
     /// The machine.
