@@ -71,6 +71,7 @@ fn machine(definition: &Arc<Definition>, induction: Induction) -> Turbine {
         induction,
         flexible: true,
         air_density: AIR_DENSITY,
+        yaw: 0.0,
         rotor_speed: ROTOR_SPEED,
         azimuth: 0.0,
         pitch: 0.0,
@@ -173,7 +174,8 @@ impl BladesAlone {
 /// The whole turbine in the wind, its generator held at a torque.
 fn whole(turbine: &mut Turbine) -> f64 {
     let n_blades = turbine.definition().n_blades;
-    let commands = Commands { pitch: PerBlade::splat(n_blades, 0.0), generator_torque: 1.5e7 };
+    let commands =
+        Commands { pitch: PerBlade::splat(n_blades, 0.0), generator_torque: 1.5e7, yaw_rate: 0.0 };
     let before = turbine.state().clone();
     let mut winds = vec![Vector3::ZERO; turbine.stations().len()];
     let cost = per_step(N_STEPS, |_| {

@@ -28,7 +28,8 @@ impl Controller for HoldSpeed {
         let error = measurements.generator_speed - SPEED;
         self.integral += error * measurements.interval;
         let generator_torque = (2e6 + 2e7 * error + 3e6 * self.integral).max(0.0);
-        Commands { pitch: PerBlade::splat(measurements.pitch.len(), 0.0), generator_torque }
+        let pitch = PerBlade::splat(measurements.pitch.len(), 0.0);
+        Commands { pitch, generator_torque, yaw_rate: 0.0 }
     }
 
     fn describe(&self) -> String {

@@ -98,6 +98,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
     };
     let wind = Wind {
         speed: wind_speed,
+        direction: farm::case::FROM_WEST,
         turbulence_intensity: 0.0,
         shear: Shear::PowerLaw { exponent: 0.0 },
         length_scale: None,

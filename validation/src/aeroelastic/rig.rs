@@ -199,6 +199,7 @@ fn machine(conditions: &Conditions<'_>) -> Machine {
         }),
         flexible: true,
         air_density: AIR_DENSITY,
+        yaw: 0.0,
         rotor_speed: conditions.rotor_speed * std::f64::consts::PI / 30.0,
         azimuth: 0.0,
         pitch: 0.0,

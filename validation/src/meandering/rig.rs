@@ -74,6 +74,7 @@ impl Rig {
             }),
             flexible: true,
             air_density: AIR_DENSITY,
+            yaw: 0.0,
             rotor_speed,
             azimuth: 0.0,
             pitch: 0.0,

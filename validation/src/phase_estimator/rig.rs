@@ -176,6 +176,7 @@ pub(super) fn fly(
         }),
         flexible: trial.flexible,
         air_density: AIR_DENSITY,
+        yaw: 0.0,
         rotor_speed: trial.rotor_speed,
         azimuth: 0.0,
         pitch: constants.fine_pitch,

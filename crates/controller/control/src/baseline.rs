@@ -21,7 +21,8 @@ pub use constants::{
 use individual_pitch::Individual;
 pub use kind::BASELINE;
 use lti::LowPass;
-use pitch::{Pitch, least_pitch};
+use pitch::Pitch;
+pub(crate) use pitch::least_pitch;
 use serde::{Deserialize, Serialize};
 use speed::{SpeedFilter, Wind};
 use torque::Torque;
@@ -97,7 +98,7 @@ impl Controller for Baseline {
         let collective =
             state.pitch.update(interval, rotor_speed, pitch_reference, least_pitch, constants);
         let pitch = state.add_damping(measurements, wind_speed, collective, least_pitch, constants);
-        Commands { pitch, generator_torque }
+        Commands { pitch, generator_torque, yaw_rate: 0.0 }
     }
 
     fn describe(&self) -> String {

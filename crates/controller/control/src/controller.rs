@@ -17,7 +17,8 @@ use thiserror::Error;
 /// impl Controller for Square {
 ///     fn update(&mut self, measurements: &Measurements) -> Commands {
 ///         let pitch = PerBlade::splat(measurements.pitch.len(), 0.0);
-///         Commands { pitch, generator_torque: self.0 * measurements.rotor_speed.powi(2) }
+///         let generator_torque = self.0 * measurements.rotor_speed.powi(2);
+///         Commands { pitch, generator_torque, yaw_rate: 0.0 }
 ///     }
 ///     fn describe(&self) -> String {
 ///         "k ω² alone".to_owned()

@@ -1,4 +1,5 @@
-//! Pitch on top of what another controller decides, to mix the wake.
+//! Pitch, or a turn of the nacelle, on top of what another controller decides, to mix the wake or to take it
+//! elsewhere.
 //!
 //! # The sense of the helix
 //!
@@ -24,11 +25,17 @@ use crate::controller::{Controller, ForeignState, from_bytes, to_bytes};
 use basis::{Commands, Measurements, PerBlade};
 use std::f64::consts::{PI, TAU};
 
-/// Pitch on top of what another controller decides.
+/// Pitch, or a turn of the nacelle, on top of what another controller decides.
 pub trait Excitation: Send {
     /// Adds the excitation at the instant of `measurements` to `pitch` (rad); amplitude zero leaves every bit
     /// as it was. Must not allocate, block or fail.
     fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements);
+
+    /// Rate at which it turns the nacelle at the instant of `measurements`, counter-clockwise seen from above
+    /// (rad/s), on top of what turns it already. Must not allocate, block or fail.
+    fn yaw_rate(&self, _measurements: &Measurements) -> f64 {
+        0.0
+    }
 
     /// What it is, in a few words: "helix ccw 4.0° St 0.25".
     fn describe(&self) -> String;
@@ -76,6 +83,7 @@ impl<E: Excitation> Controller for OnTop<E> {
     fn update(&mut self, measurements: &Measurements) -> Commands {
         let mut commands = self.inner.update(measurements);
         self.excitation.add_to(&mut commands.pitch, measurements);
+        commands.yaw_rate += self.excitation.yaw_rate(measurements);
         commands
     }
 

@@ -1,7 +1,7 @@
 //! What the program knows of a kind of controller: its keys, its checks, how it is built, what the summary
 //! says of it.
 
-use crate::baseline::Constants;
+use crate::baseline::{CoefficientTable, Constants};
 use crate::excitation::excitation_rate;
 use crate::meandering::MeanderingError;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
@@ -43,6 +43,11 @@ pub trait ControllerKind: Named + Sync {
     /// Whether it pitches blades apart from each other, which takes three of them.
     fn pitches_individually(&self) -> bool {
         true
+    }
+
+    /// Whether it turns the nacelle.
+    fn turns_nacelle(&self) -> bool {
+        false
     }
 
     /// Sense and Strouhal number (–) of the helix that it makes, or joins.
@@ -119,6 +124,9 @@ pub struct Site<'a> {
     pub constants: &'a Constants,
     /// The machine, as estimators model it.
     pub rotor: &'a Arc<Definition>,
+    /// Power and thrust coefficient of a machine, for controllers that must know them; takes a fraction of a
+    /// second.
+    pub coefficients: fn(&Definition) -> CoefficientTable,
     /// Mean speed at hub height of the first turbine (m/s): Strouhal numbers are taken with it.
     pub wind_speed: f64,
     /// Rotor diameter of the first turbine (m), likewise.
@@ -375,22 +383,5 @@ impl fmt::Debug for Control {
 impl PartialEq for Control {
     fn eq(&self, other: &Self) -> bool {
         self.is(other.kind) && self.values == other.values && self.response == other.response
-    }
-}
-
-/// The `stop` (s) of an excitation of `rate` (rad/s) that begins at `start` (s), which is to be whole before
-/// it ends.
-pub(crate) fn stop_of(
-    start: f64,
-    stop: Option<f64>,
-    rate: f64,
-) -> Result<Option<f64>, ControlError> {
-    let period = std::f64::consts::TAU / rate;
-    match stop {
-        Some(stop) if stop < start + period => {
-            let earliest = (start + period).ceil();
-            Err(ControlError::StopsTooEarly { stop, start, period, earliest })
-        }
-        stop => Ok(stop),
     }
 }

@@ -9,6 +9,7 @@
 mod absent;
 pub mod baseline;
 mod controller;
+pub mod derate;
 mod excitation;
 pub mod helix;
 mod keys;
@@ -17,11 +18,13 @@ pub mod meandering;
 mod outcome;
 pub mod phase_sync;
 pub mod pulse;
+pub mod steering;
 
 pub use absent::ABSENT;
 pub use baseline::Baseline;
 pub use basis::Sense;
 pub use controller::{Controller, ForeignState, from_bytes, to_bytes};
+pub use derate::Derate;
 pub use excitation::{Excitation, OnTop, excitation_rate};
 pub use helix::Helix;
 pub use kind::{
@@ -31,6 +34,7 @@ pub use meandering::Meandering;
 pub use outcome::{MissingChannel, Outcome, TurbineRecord};
 pub use phase_sync::PhaseSync;
 pub use pulse::Pulse;
+pub use steering::Steering;
 
 use basis::registry::Registry;
 
@@ -42,5 +46,7 @@ pub static CONTROLLERS: Registry<dyn ControllerKind> = Registry::new(&[
     &pulse::PULSE,
     &phase_sync::PHASE_SYNC,
     &meandering::MEANDERING,
+    &steering::STEERING,
+    &derate::DERATE,
     &ABSENT,
 ]);

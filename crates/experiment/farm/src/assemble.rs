@@ -5,6 +5,7 @@ use crate::case::TowerInfluence as AskedInfluence;
 use crate::case::{Case, Control, DynamicInflow, Ground, Placement, Run, Sides};
 use crate::plan::{Footprint, Plan};
 use crate::solvers::{Smearing, Solver};
+use crate::tracking::coefficient_table;
 use crate::{Farm, Machine};
 use basis::Vector3;
 use control::baseline::Constants;
@@ -144,6 +145,7 @@ pub fn site<'a>(model: &'a TurbineModel, case: &Case, plan: &Plan) -> Site<'a> {
     Site {
         constants: &model.constants,
         rotor: &model.definition,
+        coefficients: coefficient_table,
         wind_speed: case.wind.speed,
         diameter: plan.diameter,
         air_density: case.wind.air_density,
@@ -165,6 +167,7 @@ pub(crate) fn turbine_settings(
         induction: induction(case, plan, placement, tower),
         flexible: placement.flexible,
         air_density: case.wind.air_density,
+        yaw: placement.yaw,
         rotor_speed: model.rotor_speed(case.wind.speed),
         azimuth: 0.0,
         pitch: model.constants.fine_pitch,

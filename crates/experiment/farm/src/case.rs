@@ -1,12 +1,14 @@
 //! One study as plain data: what the case file says, in SI units.
 
 pub use crate::domain::{Blockage, Domain, Ground, Sides};
+pub use crate::layout::{FROM_WEST, Position};
 pub use crate::outputs::Requested;
 pub use crate::solvers::Solver;
 pub use control::{Control, Sense};
 pub use flow::inflow::deterministic::Change;
 pub use sensing::{Instrument, Instruments, Lag, Mounted};
 
+use crate::layout;
 use basis::keys::Values;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +38,10 @@ pub struct Case {
 pub struct Wind {
     /// Mean speed at hub height of the first turbine (m/s).
     pub speed: f64,
+    /// Where the mean wind comes from on the map (rad, clockwise from north); [`FROM_WEST`] blows to the
+    /// east.
+    /// The wind's frame follows it, see [`Case::places`].
+    pub direction: f64,
     /// Turbulence intensity, standard deviation of the streamwise component over `speed` (–).
     pub turbulence_intensity: f64,
     /// How the mean speed grows with height.
@@ -60,6 +66,14 @@ pub struct Wind {
     pub veer: f64,
     /// What happens in time, with [`Solver::UNIFORM`]; nothing when absent.
     pub event: Option<WindEvent>,
+}
+
+impl Wind {
+    /// Where the mean wind comes from, for records and readers (deg, clockwise from north).
+    pub fn direction_deg(&self) -> f64 {
+        // Without what the change of units leaves at its end.
+        (1e9 * self.direction.to_degrees()).round() / 1e9
+    }
 }
 
 /// How the mean speed grows with height; it meets [`Wind::speed`] at hub height of the first turbine.
@@ -171,8 +185,11 @@ pub struct Placement {
     /// Path to a ROSCO input file (DISCON.IN) with the constants of its controller; the model's own when
     /// absent.
     pub discon: Option<String>,
-    /// Position of the tower's foot, farm frame x and y (diameters of the first turbine).
-    pub position_diameters: [f64; 2],
+    /// Foot of the tower on the map.
+    pub position: Position,
+    /// Turn of the nacelle from facing the mean wind when time begins, counter-clockwise seen from above
+    /// (rad).
+    pub yaw: f64,
     /// Whether blades, tower and drive train bend.
     pub flexible: bool,
     /// Whether flow about the blades' sections separates with delay; otherwise their polars hold at once.
@@ -252,25 +269,56 @@ impl Run {
     }
 }
 
+/// Feet of the towers of `turbines` in the frame of wind from `direction` (rad, clockwise from north), in the
+/// layout's own unit: x downwind, y to the left.
+pub fn places(turbines: &[Placement], direction: f64) -> Vec<[f64; 2]> {
+    let positions: Vec<Position> = turbines.iter().map(|turbine| turbine.position).collect();
+    layout::places(&positions, direction)
+}
+
 impl Case {
+    /// Feet of the towers in the wind's frame, in the layout's own unit: x downwind, y to the left.
+    pub fn places(&self) -> Vec<[f64; 2]> {
+        places(&self.turbines, self.wind.direction)
+    }
+
+    /// The same (m); `diameter` (m) is that of the first turbine.
+    pub fn feet(&self, diameter: f64) -> Vec<[f64; 2]> {
+        let units = self.turbines.iter().map(|turbine| turbine.position.unit(diameter));
+        let places = self.places().into_iter().zip(units);
+        places.map(|(place, unit)| place.map(|length| length * unit)).collect()
+    }
+
+    /// The same in diameters of the first turbine, whose is `diameter` (m).
+    pub fn places_in_diameters(&self, diameter: f64) -> Vec<[f64; 2]> {
+        let places = self.places().into_iter().zip(&self.turbines);
+        places
+            .map(|(place, turbine)| match turbine.position {
+                Position::Diameters(_) => place,
+                Position::Metres(_) => place.map(|length| length / diameter),
+            })
+            .collect()
+    }
+
     /// Sense and Strouhal number of the helix furthest upstream in `run`.
     pub fn first_helix(&self, run: &Run) -> Option<(Sense, f64)> {
-        let x = |index: usize| self.turbines[index].position_diameters[0];
+        let places = self.places();
+        let x = |index: usize| places[index][0];
         let helices = run.control.iter().enumerate();
         let helices = helices.filter_map(|(index, control)| Some((x(index), control.helix()?)));
         helices.min_by(|a, b| a.0.total_cmp(&b.0)).map(|found| found.1)
     }
 }
 
-/// Sense and Strouhal number of the helix on the nearest of `turbines` upstream of turbine `index` that has
-/// one under `controls`.
+/// Sense and Strouhal number of the helix on the nearest turbine upstream of turbine `index` that has one
+/// under `controls`; `places` are those of the turbines in the wind's frame.
 pub fn helix_upstream(
     index: usize,
-    turbines: &[Placement],
+    places: &[[f64; 2]],
     controls: &[Control],
 ) -> Option<(Sense, f64)> {
-    let x = |index: usize| turbines[index].position_diameters[0];
-    (0..turbines.len())
+    let x = |index: usize| places[index][0];
+    (0..places.len())
         .filter(|&other| x(other) < x(index))
         .filter_map(|other| Some((x(other), controls[other].helix()?)))
         .max_by(|a, b| a.0.total_cmp(&b.0))

@@ -66,7 +66,7 @@ impl Machine {
     pub fn new(turbine: Turbine, controller: Box<dyn Controller>) -> Self {
         let winds = vec![Vector3::ZERO; turbine.stations().len()];
         let pitch = PerBlade::splat(turbine.definition().n_blades, 0.0);
-        let commands = Commands { pitch, generator_torque: 0.0 };
+        let commands = Commands { pitch, generator_torque: 0.0, yaw_rate: 0.0 };
         let (name, sensing) = (String::new(), Sensing::perfect());
         Self { name, turbine, sensing, controller, winds, commands }
     }

@@ -5,6 +5,7 @@ pub mod assemble;
 pub mod case;
 pub mod domain;
 pub mod farm;
+mod layout;
 pub mod operation;
 pub mod outputs;
 pub mod pitch_response;

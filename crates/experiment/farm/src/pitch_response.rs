@@ -24,7 +24,7 @@ use estimation::EstimationError;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use thiserror::Error;
-use turbine::Turbine;
+use turbine::{Turbine, TurbineSettings};
 
 /// Wind of the record over the case's (–): about what is left in a wake.
 const WAKE_SPEED: f64 = 0.75;
@@ -219,8 +219,8 @@ struct Pitching {
     periods: f64,
 }
 
-/// What a turbine of `model` measures, alone in a steady wind as turbine number `index` of `case`, while it
-/// pitches as `pitch` has it, after the near wake has settled.
+/// What a turbine of `model` measures, alone in a steady wind as turbine number `index` of `case` but facing
+/// it, while it pitches as `pitch` has it, after the near wake has settled.
 fn pitching(
     case: &Case,
     plan: &Plan,
@@ -238,8 +238,10 @@ fn pitching(
     let mut helix =
         Helix::new(pitch.sense, pitch.amplitude, strouhal, alone.wind.speed, plan.diameter);
     helix.azimuth_offset = pitch.azimuth_offset;
-    // The rotor alone: no tower stands in its wind.
-    let settings = assemble::turbine_settings(&alone, plan, model, &alone.turbines[index], None);
+    // The rotor alone, facing the wind: no tower stands in its wind.
+    let placement = &alone.turbines[index];
+    let settings = assemble::turbine_settings(&alone, plan, model, placement, None);
+    let settings = TurbineSettings { yaw: 0.0, ..settings };
     let foot = Vector3::new(0.0, 0.0, -model.definition.rotor.hub_height);
     let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)
         .map_err(AssemblyError::from)?

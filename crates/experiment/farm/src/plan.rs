@@ -104,16 +104,8 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
     }
     check_roughness(case.wind.shear, machines[0].1.hub_height)?;
     let diameter = machines[0].1.diameter;
-    let positions: Vec<Vector3> = machines
-        .iter()
-        .map(|(p, _)| {
-            Vector3::new(
-                p.position_diameters[0] * diameter,
-                p.position_diameters[1] * diameter,
-                0.0,
-            )
-        })
-        .collect();
+    let feet = case.feet(diameter);
+    let positions: Vec<Vector3> = feet.iter().map(|&[x, y]| Vector3::new(x, y, 0.0)).collect();
     check_distances(&machines, &positions)?;
     (case.flow.solver.plan)(case, &Layout { machines, positions })
 }

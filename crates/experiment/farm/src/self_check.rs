@@ -156,8 +156,11 @@ pub fn self_check(
     let pitch = model.constants.fine_pitch;
     let rotor_speed = model.rotor_speed(wind.speed);
     let mut rotor = bare_rotor(model, wind, tunnel)?;
-    let commands =
-        Commands { pitch: PerBlade::splat(definition.n_blades, pitch), generator_torque: 0.0 };
+    let commands = Commands {
+        pitch: PerBlade::splat(definition.n_blades, pitch),
+        generator_torque: 0.0,
+        yaw_rate: 0.0,
+    };
 
     let steps = |diameters: f64| (diameters * diameter / wind.speed / interval).ceil() as u64;
     let (n_settling, n_averaging) = (steps(tunnel.settling), steps(tunnel.averaging));
@@ -248,6 +251,7 @@ fn bare_rotor(
             },
             flexible: false,
             air_density: wind.air_density,
+            yaw: 0.0,
             rotor_speed: model.rotor_speed(wind.speed),
             azimuth: 0.0,
             pitch: model.constants.fine_pitch,

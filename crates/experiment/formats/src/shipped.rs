@@ -40,6 +40,18 @@ pub const CASES: &[ShippedCase] = &[
         after: None,
     },
     ShippedCase {
+        name: "sweep-helix",
+        file: include_str!("../../../../cases/sweep-helix.toml"),
+        minutes: 30.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "wake-steering",
+        file: include_str!("../../../../cases/wake-steering.toml"),
+        minutes: 15.0,
+        after: None,
+    },
+    ShippedCase {
         name: "helix-three-turbines",
         file: include_str!("../../../../cases/helix-three-turbines.toml"),
         minutes: 270.0,
@@ -55,6 +67,12 @@ pub const CASES: &[ShippedCase] = &[
         name: "meandering",
         file: include_str!("../../../../cases/meandering.toml"),
         minutes: 31.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "meandering-disk",
+        file: include_str!("../../../../cases/meandering-disk.toml"),
+        minutes: 1.0,
         after: None,
     },
     ShippedCase {

@@ -228,10 +228,10 @@ fn seeds(studies: &[Study<'_>], pairs: &[Pair<'_>]) -> Result<Vec<u64>, SeedsErr
 
 /// Names of the turbines of `case` that stand downstream of the first.
 fn downstream(case: &Case) -> Vec<String> {
-    let x = case.turbines.iter().map(|turbine| turbine.position_diameters[0]);
-    let first = x.fold(f64::INFINITY, f64::min);
-    let behind = case.turbines.iter().filter(|turbine| turbine.position_diameters[0] > first);
-    behind.map(|turbine| turbine.name.clone()).collect()
+    let places = case.places();
+    let first = places.iter().map(|[x, _]| *x).fold(f64::INFINITY, f64::min);
+    let behind = case.turbines.iter().zip(&places).filter(|(_, [x, _])| *x > first);
+    behind.map(|(turbine, _)| turbine.name.clone()).collect()
 }
 
 /// Gains of the run of `pairs`, wind by wind; `downstream` holds the turbines downstream of the first. What

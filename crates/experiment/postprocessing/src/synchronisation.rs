@@ -98,7 +98,8 @@ fn pairings(case: &Case, run_indices: &[usize]) -> Vec<Pairing> {
             }
         }
     }
-    let x = |pairing: &Pairing| case.turbines[pairing.turbine].position_diameters[0];
+    let places = case.places();
+    let x = |pairing: &Pairing| places[pairing.turbine][0];
     found.sort_by(|a, b| x(a).total_cmp(&x(b)));
     found
 }

@@ -15,13 +15,21 @@ pub(crate) struct Rotor {
     pub(crate) hub: [f64; 3],
     /// Its diameter (m).
     pub(crate) diameter: f64,
+    /// Turn of its nacelle from facing the wind, counter-clockwise seen from above (rad).
+    pub(crate) yaw: f64,
 }
 
 impl Rotor {
-    /// Half of what a plane `distance` (m) beside the hub cuts out of the disc (m); none where it passes by.
+    /// Half of what a plane along the wind `distance` (m) to the left of the hub cuts out of the disc (m);
+    /// none where it passes by.
     pub(crate) fn half_chord(&self, distance: f64) -> Option<f64> {
-        let radius = 0.5 * self.diameter;
+        let (radius, distance) = (0.5 * self.diameter, distance / self.yaw.cos());
         (distance.abs() < radius).then(|| (radius * radius - distance * distance).sqrt())
+    }
+
+    /// How far downwind of the hub such a plane cuts the disc (m).
+    pub(crate) fn downwind(&self, distance: f64) -> f64 {
+        -distance * self.yaw.tan()
     }
 }
 
@@ -49,6 +57,7 @@ pub(crate) fn rotors(records: &StudyRecords) -> Vec<Rotor> {
                 name: turbine.name.clone(),
                 hub: rotor.hub,
                 diameter: rotor.diameter,
+                yaw: rotor.yaw_deg.to_radians(),
             }),
             _ => return of_the_case(&places, records),
         }
@@ -67,6 +76,7 @@ fn of_the_case(places: &[(String, [f64; 2])], records: &StudyRecords) -> Vec<Rot
         name: name.clone(),
         hub: [x * diameter, y * diameter, hub_height],
         diameter,
+        yaw: 0.0,
     };
     places.iter().map(rotor).collect()
 }
@@ -101,12 +111,14 @@ pub(crate) fn lanes(rotors: &[Rotor]) -> Vec<Lane> {
     lanes
 }
 
-/// Where the case file puts the turbines (diameters of the first); empty when it does not tell of all.
+/// Where the case file puts the turbines, which is in diameters of the first and in wind from the west in all
+/// records whose summaries do not tell; empty when it does not tell of all.
 fn places(case_text: &str) -> Vec<(String, [f64; 2])> {
     let Ok(case) = case_text.parse::<toml::Table>() else { return Vec::new() };
     let turbines = case.get("turbine").and_then(toml::Value::as_array);
     let place = |turbine: &toml::Value| {
-        let pair = turbine.get("position_diameters")?.as_array()?;
+        let pair = turbine.get("position_diameters").or_else(|| turbine.get("position"));
+        let pair = pair?.as_array()?;
         let value = |index: usize| {
             let value: &toml::Value = pair.get(index)?;
             value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64))
@@ -161,7 +173,8 @@ mod tests {
 
     #[test]
     fn each_rotor_has_its_own_size_and_older_records_that_of_the_first() {
-        let of = |diameter: f64, hub: [f64; 3]| Some(records::Rotor { diameter, hub });
+        let of =
+            |diameter: f64, hub: [f64; 3]| Some(records::Rotor { diameter, hub, yaw_deg: 0.0 });
         let own = rotors(&study([of(240.0, [0.0, 0.0, 150.0]), of(126.0, [1200.0, 240.0, 90.0])]));
         assert_eq!((own[1].diameter, own[1].hub), (126.0, [1200.0, 240.0, 90.0]));
         let older = rotors(&study([of(240.0, [0.0, 0.0, 150.0]), None]));
@@ -169,11 +182,17 @@ mod tests {
         // A plane at 3/5 of the radius cuts 4/5 of the diameter out of the disc.
         assert_eq!(own[0].half_chord(72.0), Some(96.0));
         assert_eq!(own[0].half_chord(-120.0), None);
+        // Turned by 60° it is half as wide, and cut where it has come to.
+        let turned = Rotor { yaw: 60_f64.to_radians(), ..own[0].clone() };
+        assert!((turned.half_chord(36.0).unwrap() - 96.0).abs() < 1e-9);
+        assert!(turned.half_chord(61.0).is_none());
+        assert!((turned.downwind(36.0) + 36.0 * 3_f64.sqrt()).abs() < 1e-9);
     }
 
     #[test]
     fn rotors_in_line_share_a_lane() {
-        let rotor = |y: f64| Rotor { name: String::new(), hub: [0.0, y, 100.0], diameter: 100.0 };
+        let rotor =
+            |y: f64| Rotor { name: String::new(), hub: [0.0, y, 100.0], diameter: 100.0, yaw: 0.0 };
         let found = lanes(&[rotor(0.0), rotor(100.0), rotor(4.0), rotor(-100.0), rotor(96.0)]);
         let places: Vec<(f64, &[usize])> =
             found.iter().map(|lane| (lane.y, lane.rotors.as_slice())).collect();

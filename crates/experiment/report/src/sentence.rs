@@ -4,7 +4,7 @@ use crate::RunRecords;
 use crate::study::{Excitation, ExcitationKind, Study, gain_of};
 use crate::words::{self, SPACE, number, percent};
 use basis::Sense;
-use basis::records::{Statistic, Summary, TurbineSummary};
+use basis::records::{Conditions, Statistic, Summary, TurbineSummary};
 
 /// Changes of power below this (–) are not stated: they print as zero.
 const LEAST_STATED: f64 = 5e-4;
@@ -191,8 +191,9 @@ fn amplitude(degrees: f64) -> String {
 pub(crate) fn shared_conditions(study: &Study) -> Vec<String> {
     let summary = &study.runs()[0].summary;
     let conditions = &summary.conditions;
+    let from = direction(conditions).map_or(String::new(), |degrees| format!(" from {degrees}"));
     let mut items = vec![
-        format!("{}{SPACE}m/s", number(conditions.target_wind_speed, 1)),
+        format!("{}{SPACE}m/s{from}", number(conditions.target_wind_speed, 1)),
         format!(
             "TI {} target, {} realised",
             percent(conditions.target_turbulence_intensity),
@@ -205,6 +206,15 @@ pub(crate) fn shared_conditions(study: &Study) -> Vec<String> {
     items.push(length(&summary.array_power, conditions.duration - conditions.spin_up));
     items.push(air(summary));
     items
+}
+
+/// Where the wind comes from, "241.5°"; none from the west, where wind comes from unless a case says so.
+pub(crate) fn direction(conditions: &Conditions) -> Option<String> {
+    let degrees = conditions.direction_deg;
+    (degrees != 270.0).then(|| {
+        let text = number(degrees, 1);
+        format!("{}°", text.strip_suffix(".0").unwrap_or(&text))
+    })
 }
 
 /// What moves the air: "lattice, 16 cells per diameter", or "uniform wind, no wakes".

@@ -104,11 +104,14 @@ impl<'a> Study<'a> {
         layout::diameter(&self.runs()[0].summary)
     }
 
-    /// The rotors that are there in `run`.
-    pub(crate) fn rotors_of(&self, run: &RunRecords) -> impl Iterator<Item = &Rotor> {
+    /// The rotors that are there in `run`, turned as they are in it.
+    pub(crate) fn rotors_of(&self, run: &RunRecords) -> impl Iterator<Item = Rotor> {
         let turbines = &run.summary.turbines;
-        let is_there = |rotor: &&Rotor| turbines.iter().any(|turbine| turbine.name == rotor.name);
-        self.rotors.iter().filter(is_there)
+        self.rotors.iter().filter_map(|rotor| {
+            let turbine = turbines.iter().find(|turbine| turbine.name == rotor.name)?;
+            let yaw = turbine.rotor.map_or(0.0, |rotor| rotor.yaw_deg.to_radians());
+            Some(Rotor { yaw, ..rotor.clone() })
+        })
     }
 
     /// Names of the rotors in `lane`.

@@ -38,7 +38,7 @@ pub(crate) const LOADS: [&str; 18] = [
 /// Channels of the wind along lines at one place (–).
 const LINES: [&str; 3] = ["average", "tilt", "yaw"];
 /// Channels of a turbine beside its loads and signals: of the machine, and of each blade (–).
-const N_SCALARS: usize = 7;
+const N_SCALARS: usize = 8;
 const N_PER_BLADE: usize = 3;
 
 /// Loads that the series of a run of `setup` keeps of turbine number `index` (–).
@@ -109,6 +109,7 @@ impl Row {
                 "thrust_n",
                 "rotor_speed_rad_s",
                 "azimuth_rad",
+                "yaw_rad",
                 "generator_torque_nm",
                 "aerodynamic_torque_nm",
                 "rotor_wind_speed_m_s",
@@ -201,6 +202,7 @@ impl Recorder for Row {
             truth.thrust,
             truth.rotor_speed,
             truth.azimuth,
+            truth.yaw,
             truth.generator_torque,
             truth.aerodynamic_torque,
             truth.rotor_wind_speed,

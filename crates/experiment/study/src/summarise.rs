@@ -10,7 +10,7 @@ use crate::tips::Outrun;
 use crate::warnings::SetupWarning;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
-use analysis::statistics::{BLOCK_LENGTH, statistic};
+use analysis::statistics::{BLOCK_LENGTH, mean, statistic};
 use basis::records::{
     Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding, FlowSummary, Load,
     PitchExcitation, Rotor, SCHEMA_VERSION, Statistic, Summary, TurbineSummary, Warning,
@@ -107,6 +107,7 @@ impl<'a> Turbine<'a> {
         let power = analysed.statistic(&power_channel)?;
         let thrust = analysed.statistic(&format!("{name}.thrust_n"))?;
         let rotor_speed = analysed.statistic(&format!("{name}.rotor_speed_rad_s"))?;
+        let yaw = mean(analysed.column(&format!("{name}.yaw_rad"))?);
         let outrun = outrun(&analysed, index, setup)?;
         warnings.extend(self.warning_of_overspeed(&analysed)?);
         add_to(array, analysed.column(&power_channel)?);
@@ -131,7 +132,7 @@ impl<'a> Turbine<'a> {
         Ok(TurbineSummary {
             name: name.to_owned(),
             model: setup.case.turbines[index].model.clone(),
-            rotor: Some(self.rotor()),
+            rotor: Some(self.rotor(yaw)),
             control: self.control_summary(outcome.findings)?,
             power,
             thrust,
@@ -147,12 +148,12 @@ impl<'a> Turbine<'a> {
         })
     }
 
-    /// Its rotor in its place.
-    fn rotor(&self) -> Rotor {
+    /// Its rotor in its place, turned by `yaw` (rad) on average.
+    fn rotor(&self, yaw: f64) -> Rotor {
         let foot = self.setup.plan.positions[self.index];
         let definition = &self.setup.models[self.index].definition;
         let hub = [foot.x, foot.y, foot.z + definition.rotor.hub_height];
-        Rotor { diameter: definition.rotor_diameter(), hub }
+        Rotor { diameter: definition.rotor_diameter(), hub, yaw_deg: yaw.to_degrees() }
     }
 
     /// What ran on it.
@@ -269,7 +270,7 @@ fn parts(setup: &Prepared, run: &Run, names: &[String]) -> Vec<Vec<String>> {
 
 /// What tells how `turbine` ran.
 fn operation(turbine: &str) -> Vec<String> {
-    let mut channels = names_of(turbine, &["power_w", "thrust_n", "rotor_speed_rad_s"]);
+    let mut channels = names_of(turbine, &["power_w", "thrust_n", "rotor_speed_rad_s", "yaw_rad"]);
     channels.push("time_s".to_owned());
     channels
 }
@@ -334,6 +335,7 @@ fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, Study
     };
     Ok(Conditions {
         target_wind_speed: case.wind.speed,
+        direction_deg: case.wind.direction_deg(),
         target_turbulence_intensity: case.wind.turbulence_intensity,
         turbulence_length_scale: turbulence_length_scale(setup),
         realised_wind_speed: realised.mean,

@@ -3,6 +3,7 @@
 mod small;
 
 use basis::records::{Cost, Summary};
+use farm::case::Position;
 use small::{NREL_5MW, behind_helix, options, written};
 use study::{Outcome, Prepared, StudyError};
 
@@ -52,5 +53,5 @@ fn a_value_that_no_file_could_hold_is_refused_as_a_file_would_be() {
     refused(&|case| case.wind.speed = -1.0, "speed");
     refused(&|case| case.output.lines_at = vec![7], "turbine number 7");
     refused(&|case| drop(case.runs[1].control.pop()), "1 controls for 2 turbines");
-    refused(&|case| case.turbines[1].position_diameters = [0.1, 0.0], "T2");
+    refused(&|case| case.turbines[1].position = Position::Diameters([0.1, 0.0]), "T2");
 }

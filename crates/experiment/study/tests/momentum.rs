@@ -121,7 +121,11 @@ fn thrusts(overrides: &[&str]) -> Vec<f64> {
     for step in 0..((STEP_AT + OBSERVED) / interval) as usize {
         let pitch = if step as f64 * interval < STEP_AT { 0.0 } else { STEP };
         let pitch = PerBlade::splat(turbine.definition().n_blades, pitch);
-        turbine.advance(interval, &winds, &Commands { pitch, generator_torque: 0.0 });
+        turbine.advance(
+            interval,
+            &winds,
+            &Commands { pitch, generator_torque: 0.0, yaw_rate: 0.0 },
+        );
         thrusts.push(turbine.truth(0.0, interval).thrust);
     }
     thrusts

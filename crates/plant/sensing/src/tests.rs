@@ -13,6 +13,7 @@ fn truth(time: f64) -> Truth {
         rotor_speed: 0.7,
         generator_speed: 0.7 + 0.1 * (0.5 * time).sin(),
         pitch: PerBlade::from_fn(3, |blade| 0.1 + 0.01 * blade as f64),
+        yaw: 0.1,
         generator_torque: 1.2e7,
         power: 8e6,
         thrust: 2e6,

@@ -2,6 +2,7 @@
 //! the flow.
 
 mod aerodynamics;
+mod nacelle;
 mod separation;
 mod settings;
 mod state;
@@ -20,6 +21,7 @@ use crate::structure::{
 };
 use aerodynamics::Aerodynamics;
 use basis::{Commands, PerBlade, PointForce, Truth, Vector3};
+use nacelle::Facing;
 use state::Readings;
 use std::sync::Arc;
 use workspace::Workspace;
@@ -40,6 +42,7 @@ pub struct Turbine {
     structure: Structure,
     bodies: Vec<Body>,
     held: Vec<DegreeOfFreedom>,
+    facing: Facing,
     frame: Frame,
     air_density: f64,
     smearing_length: f64,
@@ -48,7 +51,7 @@ pub struct Turbine {
 }
 
 impl Turbine {
-    /// A turbine of `definition` with the foot of its tower at `position` (m), facing the wind, undeflected.
+    /// A turbine of `definition` with the foot of its tower at `position` (m), undeflected.
     ///
     /// # Errors
     /// [`StructureError`] when the definition's masses, stiffnesses or mode shapes do not make a structure.
@@ -79,7 +82,7 @@ impl Turbine {
             &definition,
             &crate::structure::StructureSettings {
                 position,
-                yaw: 0.0,
+                yaw: settings.yaw,
                 gravity: GRAVITY,
                 rotor_speed: settings.rotor_speed,
                 azimuth: settings.azimuth,
@@ -89,7 +92,8 @@ impl Turbine {
             },
         )?;
         let pitch = PerBlade::splat(definition.n_blades, settings.pitch);
-        let state = TurbineState::at_start(structure.state().clone(), pitch, aerodynamics.start());
+        let start = structure.state().clone();
+        let state = TurbineState::at_start(start, pitch, settings.yaw, aerodynamics.start());
         let n_points = definition.n_blades * N_ELEMENTS;
         let workspace = Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0));
         let held = if settings.flexible { Vec::new() } else { all_but_the_generator() };
@@ -100,6 +104,7 @@ impl Turbine {
             structure,
             bodies,
             held,
+            facing: Facing { axis: position, rotor: frame, drag: frame.hub },
             frame,
             air_density: settings.air_density,
             smearing_length,
@@ -107,7 +112,7 @@ impl Turbine {
             workspace,
         };
         turbine.structure.hold(&turbine.held);
-        turbine.frame = turbine.structure.frame(0.0);
+        turbine.facing.rotor = turbine.structure.frame(0.0).turned(position, -settings.yaw);
         turbine.place_stations();
         Ok(turbine)
     }
@@ -175,6 +180,7 @@ impl Turbine {
         let mut limited = false;
         for index in 0..n_steps {
             let pitch = self.pitch_blades(step, commands, &mut limited);
+            self.structure.turn(self.state.nacelle.advance(step, commands.yaw_rate));
             let Workspace { motions, loads, sums, circulations, tower, .. } = &mut self.workspace;
             self.structure.observe(0.5 * step, &pitch, motions);
             let frame = self.structure.frame(0.5 * step);
@@ -218,7 +224,7 @@ impl Turbine {
     ///
     /// Azimuth, speed and pitch are those of the instant; loads and power those of the interval before it.
     pub fn truth(&self, time: f64, interval: f64) -> Truth {
-        let TurbineState { pitch, readings, .. } = &self.state;
+        let TurbineState { pitch, nacelle, readings, .. } = &self.state;
         let loads = self.structure.loads();
         let low_speed = self.structure.generator_speed() / self.definition.drive_train.gear_ratio;
         Truth {
@@ -228,6 +234,7 @@ impl Turbine {
             rotor_speed: self.structure.rotor_speed(),
             generator_speed: low_speed,
             pitch: pitch.map(|actuator| actuator.pitch),
+            yaw: nacelle.angle,
             generator_torque: readings.generator_torque,
             power: self.definition.efficiency() * readings.generator_torque * low_speed,
             thrust: readings.thrust,
@@ -244,13 +251,14 @@ impl Turbine {
     /// # Errors
     /// [`Breakdown`] names what is not. Nothing that follows from such a turbine means anything.
     pub fn check(&self) -> Result<(), Breakdown> {
-        let TurbineState { structure, pitch, readings, .. } = &self.state;
+        let TurbineState { structure, pitch, nacelle, readings, .. } = &self.state;
         let first = [
             ("rotor speed", self.structure.rotor_speed(), "rad/s"),
             ("thrust", readings.thrust, "N"),
             ("aerodynamic torque", readings.aerodynamic_torque, "N m"),
             ("generator torque", readings.generator_torque, "N m"),
             ("wind at the rotor", readings.rotor_wind_speed, "m/s"),
+            ("yaw", nacelle.angle, "rad"),
         ];
         let motions = [
             ("deflection", &structure.coordinates, "m"),
@@ -274,7 +282,7 @@ impl Turbine {
         &self.definition
     }
 
-    /// Centre and attitude of the rotor at the beginning.
+    /// Centre and attitude of the undeflected rotor, as the nacelle stands now.
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -341,6 +349,12 @@ impl Turbine {
             rate: blade.rate,
             acceleration: 0.0,
         });
+        let (frame, drag) = self.facing.turned(self.state.nacelle.angle);
+        self.frame = frame;
+        if let Some(nacelle) = self.bodies.last_mut() {
+            nacelle.position = drag;
+        }
+        self.structure.turn(self.state.nacelle.now());
         let Workspace { stations, axes, motions, .. } = &mut self.workspace;
         self.structure.observe(0.0, &pitch, motions);
         for (axes, motion) in axes.iter_mut().zip(&*motions) {
@@ -384,3 +398,5 @@ fn all_but_the_generator() -> Vec<DegreeOfFreedom> {
 mod circulation_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod yaw_tests;

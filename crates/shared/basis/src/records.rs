@@ -155,6 +155,10 @@ pub struct Rotor {
     pub diameter: f64,
     /// Where its hub is: hub height above the foot of the tower (m, farm frame).
     pub hub: [f64; 3],
+    /// Mean turn of its nacelle from facing the wind, counter-clockwise seen from above (deg); zero in records
+    /// that do not tell.
+    #[serde(default)]
+    pub yaw_deg: f64,
 }
 
 /// One turbine over one run's analysed time.
@@ -232,6 +236,9 @@ pub struct Cost {
 pub struct Conditions {
     /// Free-stream speed at hub height of the first turbine that the case sets (m/s).
     pub target_wind_speed: f64,
+    /// Where the mean wind comes from, clockwise from north (deg); from the west in records that do not tell.
+    #[serde(default = "from_west")]
+    pub direction_deg: f64,
     /// Turbulence intensity that the case sets (–).
     pub target_turbulence_intensity: f64,
     /// Length scale of the turbulence's tensor (m); absent where the turbulence has none.
@@ -257,6 +264,11 @@ pub struct Conditions {
     pub spin_up: f64,
     /// Total simulated time (s).
     pub duration: f64,
+}
+
+/// Direction of the wind in records that do not tell (deg).
+fn from_west() -> f64 {
+    270.0
 }
 
 /// What moved the air.

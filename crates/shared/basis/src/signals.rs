@@ -19,6 +19,8 @@ pub struct Truth {
     pub generator_speed: f64,
     /// Blade pitch angles, positive to feather (rad).
     pub pitch: PerBlade<f64>,
+    /// Turn of the nacelle from facing the mean wind, counter-clockwise seen from above (rad).
+    pub yaw: f64,
     /// Generator torque on the low-speed side (N m).
     pub generator_torque: f64,
     /// Electrical power (W).
@@ -49,6 +51,7 @@ impl Truth {
             rotor_speed: 0.0,
             generator_speed: 0.0,
             pitch: none,
+            yaw: 0.0,
             generator_torque: 0.0,
             power: 0.0,
             thrust: 0.0,
@@ -69,6 +72,7 @@ impl Truth {
             rotor_speed: self.rotor_speed,
             generator_speed: self.generator_speed,
             pitch: self.pitch,
+            yaw: self.yaw,
             generator_torque: self.generator_torque,
             power: self.power,
             flap_moments: self.flap_moments,
@@ -96,6 +100,8 @@ pub struct Measurements<'a> {
     pub generator_speed: f64,
     /// Blade pitch angles, positive to feather (rad).
     pub pitch: PerBlade<f64>,
+    /// Turn of the nacelle from facing the mean wind, counter-clockwise seen from above (rad); always as it is.
+    pub yaw: f64,
     /// Generator torque on the low-speed side (N m).
     pub generator_torque: f64,
     /// Electrical power (W).
@@ -139,4 +145,6 @@ pub struct Commands {
     pub pitch: PerBlade<f64>,
     /// Generator torque on the low-speed side (N m).
     pub generator_torque: f64,
+    /// Rate at which the nacelle turns, counter-clockwise seen from above (rad/s); zero lets it stand.
+    pub yaw_rate: f64,
 }

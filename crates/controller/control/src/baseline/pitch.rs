@@ -71,7 +71,7 @@ fn scheduled(rows: &[PitchGains], pitch: f64) -> PitchGains {
 }
 
 /// Least collective pitch (rad) at `wind_speed` (m/s), linear between rows and constant beyond them.
-pub(super) fn least_pitch(wind_speed: f64, constants: &Constants) -> f64 {
+pub(crate) fn least_pitch(wind_speed: f64, constants: &Constants) -> f64 {
     let rows = &constants.minimum_pitch;
     let above = rows.partition_point(|row| row.wind_speed <= wind_speed);
     match (above.checked_sub(1).map(|below| rows[below]), rows.get(above)) {

@@ -61,8 +61,12 @@ fn conditions(wind: &Conditions) -> String {
     let grid = wind
         .cells_per_diameter
         .map_or("prescribed wind".to_owned(), |cells| format!("{cells:.0} cells per diameter"));
+    let from = match wind.direction_deg {
+        270.0 => String::new(),
+        degrees => format!(" from {degrees}°"),
+    };
     format!(
-        "{:.1} m/s, turbulence intensity {:.1} % target, {:.1} % realised; {:.0} min analysed after {:.0} s; {grid}",
+        "{:.1} m/s{from}, turbulence intensity {:.1} % target, {:.1} % realised; {:.0} min analysed after {:.0} s; {grid}",
         wind.target_wind_speed,
         100.0 * wind.target_turbulence_intensity,
         100.0 * wind.realised_turbulence_intensity,

@@ -3,8 +3,8 @@
 use super::step::FASTEST_TIP;
 use super::*;
 use crate::case::{
-    Control, DynamicInflow, Flow, Instruments, Output, Placement, Run, Shear, Solver, Time,
-    TowerInfluence, TurbulenceModel, Wind,
+    Control, DynamicInflow, FROM_WEST, Flow, Instruments, Output, Placement, Position, Run, Shear,
+    Solver, Time, TowerInfluence, TurbulenceModel, Wind,
 };
 
 fn case(positions: &[[f64; 2]]) -> Case {
@@ -12,7 +12,8 @@ fn case(positions: &[[f64; 2]]) -> Case {
         name: format!("T{}", index + 1),
         model: "model".to_owned(),
         discon: None,
-        position_diameters: position,
+        position: Position::Diameters(position),
+        yaw: 0.0,
         flexible: true,
         dynamic_stall: false,
         dynamic_inflow: DynamicInflow::default(),
@@ -25,6 +26,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         description: None,
         wind: Wind {
             speed: 9.0,
+            direction: FROM_WEST,
             turbulence_intensity: 0.05,
             shear: Shear::PowerLaw { exponent: 0.1 },
             length_scale: None,
@@ -80,6 +82,35 @@ fn the_domain_follows_the_layout() {
     assert_eq!(plan.positions[1], Vector3::new(1200.0, 240.0, 0.0));
     let blockage = std::f64::consts::PI / 4.0 / 28.0;
     assert!((plan.blockage - blockage).abs() < 1e-12);
+}
+
+#[test]
+fn the_domain_follows_the_wind() {
+    // From the north T2, 5 D east of T1, stands 5 D to the left of it; T3, south of T1, downwind.
+    let mut case = case(&[[0.0, 0.0], [5.0, 0.0], [0.0, -4.0]]);
+    case.wind.direction = 0.0;
+    let plan = plan(&case, &footprints()).unwrap();
+    assert_eq!(plan.positions[1], Vector3::new(0.0, 1200.0, 0.0));
+    assert_eq!(plan.positions[2], Vector3::new(960.0, 0.0, 0.0));
+    // 3 + 4 + 4 D along, 6 + 5 D across.
+    assert_eq!(plan.n_cells, [176, 176, 64]);
+    assert_eq!(plan.origin, Vector3::new(-720.0, -720.0, 0.0));
+    // From the south T3 is the foremost, and planes behind T1 reach its wake no more.
+    case.wind.direction = std::f64::consts::PI;
+    case.output.crosswind_diameters = vec![5.0];
+    let beyond = super::plan(&case, &footprints()).unwrap_err().to_string();
+    assert!(beyond.contains("5 diameters behind"), "{beyond}");
+}
+
+#[test]
+fn metres_and_diameters_are_told_apart() {
+    let mut case = case(&[[0.0, 0.0], [5.0, 1.0]]);
+    assert_eq!(case.feet(240.0), [[0.0, 0.0], [1200.0, 240.0]]);
+    assert_eq!(case.places_in_diameters(240.0), case.places());
+    case.turbines[0].position = Position::Metres([4e5, 5e6]);
+    case.turbines[1].position = Position::Metres([4e5 + 1200.0, 5e6]);
+    assert_eq!(case.feet(240.0), [[0.0, 0.0], [1200.0, 0.0]]);
+    assert_eq!(case.places_in_diameters(240.0)[1], [5.0, 0.0]);
 }
 
 #[test]

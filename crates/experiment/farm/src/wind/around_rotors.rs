@@ -2,7 +2,7 @@
 
 use super::{Site, Turbulence, length_scale, profile};
 use crate::assemble::TurbineModel;
-use crate::case::TurbulenceModel;
+use crate::case::{Case, TurbulenceModel};
 use crate::solvers::WindSource;
 use basis::Vector3;
 use flow::Inflow;
@@ -23,7 +23,8 @@ const PLANE_INTERVAL: f64 = 0.1;
 /// stay below 200 MB (docs/validation/memory.md), the columns of its series included that summary and report
 /// hold.
 const MEMORY_LIMIT: u64 = 128 << 20;
-/// Places upstream and downstream of the outermost towers at which turbines may sample the wind (m).
+/// Places upstream and downstream of the outermost towers at which turbines that face the wind may sample it
+/// (m).
 const REACH: f64 = 50.0;
 
 /// The wind of `site`, prescribed: `planes` where there are any, else `inflow`, with turbulence on it where
@@ -89,7 +90,7 @@ fn made_grid(site: &Site) -> Option<MadeGrid> {
     let points = |length: f64| (length / across).ceil() as usize + 1;
     let along = wind.speed * PLANE_INTERVAL;
     let [n_y, n_z] = [points(2.0 * half_width), points(height)];
-    let length = (high.x - low.x) + 2.0 * REACH;
+    let length = (high.x - low.x) + 2.0 * reach_along(site);
     // Whole records only: 2, 3 and 5 are the only factors, which transforms like best.
     let whole = smooth((case.time.duration / PLANE_INTERVAL + length / along).ceil() as usize);
     let (along, whole, n_across) = match wind.turbulence_model {
@@ -173,11 +174,23 @@ fn over_rotors(site: &Site, planes: Box<dyn Planes>) -> Result<PrescribedWind, I
     // As OpenFAST has it: a record that does not repeat starts half its width upwind of the first turbine.
     let [left, right] = grid.across();
     let origin_x = if grid.repeats { 0.0 } else { 0.5 * (right - left) };
-    let extent = [low.x - REACH, high.x + REACH];
+    let reach = reach_along(site);
+    let extent = [low.x - reach, high.x + reach];
     let placement = Placement { origin_x, shift_y: 0.0, extent };
     let wind = PrescribedWind::over_planes(planes, placement)?;
     wind.covers(low, high, site.case.time.duration)?;
     Ok(wind)
+}
+
+/// Places upstream and downstream of the outermost towers at which turbines may sample the wind (m): a rotor
+/// that is turned reaches farther, however far it is turned.
+fn reach_along(site: &Site) -> f64 {
+    let Case { turbines, runs, .. } = site.case;
+    let mut controls = runs.iter().flat_map(|run| &run.control);
+    let turns = turbines.iter().any(|turbine| turbine.yaw != 0.0)
+        || controls.any(|control| control.kind().turns_nacelle());
+    let radii = site.models.iter().map(|model| model.definition.rotor_radius());
+    if turns { REACH + radii.fold(0.0, f64::max) } else { REACH }
 }
 
 /// Corners of the box around all rotors (m).

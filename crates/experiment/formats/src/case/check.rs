@@ -7,6 +7,7 @@ use super::instruments::instruments_of;
 use super::keys;
 use super::kinds;
 use super::momentum::{dynamic_inflow_of, tower_influence_of};
+use super::position::{check_overlap, position_of};
 use super::section::Section;
 use super::solver::flow_of;
 use super::sources::Sources;
@@ -15,7 +16,7 @@ use super::wind::{check_together, wind_of};
 use basis::keys::Table;
 use control::{CONTROLLERS, ControllerKind, Place};
 use farm::case::{
-    Case, Control, Mounted, Output, Placement, Requested, Run, Solver, Time, helix_upstream,
+    Case, Control, Mounted, Output, Placement, Requested, Run, Solver, Time, helix_upstream, places,
 };
 use farm::outputs::{OUTPUTS, OutputKeys};
 use sensing::{SENSORS, SensorKind};
@@ -53,7 +54,8 @@ fn case_of(root: &Section) -> Case {
         check_together(section, &wind, &flow, time.duration);
     }
     let turbines = turbines_of(root, flow.solver);
-    let runs = runs_of(root, &turbines, time);
+    let places = places(&turbines, wind.direction);
+    let runs = runs_of(root, &turbines, &places, time);
     let output = output_of(&root.section("output", &keys::OUTPUT), &turbines, flow.solver);
     Case { name, description, wind, flow, time, turbines, runs, output }
 }
@@ -86,7 +88,8 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
             name: section.text("name"),
             model: section.text("model"),
             discon: section.optional_text("discon"),
-            position_diameters: section.pair("position_diameters"),
+            position: position_of(section, &turbines),
+            yaw: section.number("yaw_deg").to_radians(),
             flexible: section.choice("structure") != "rigid",
             dynamic_stall: if section.has("stall") {
                 section.choice("stall") == "dynamic"
@@ -101,18 +104,7 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
         if section.has("name") && turbines.iter().any(|other| other.name == placement.name) {
             note_duplicate(section, "turbine", &placement.name);
         }
-        for other in &turbines {
-            let [x, y] = placement.position_diameters;
-            let distance = (x - other.position_diameters[0]).hypot(y - other.position_diameters[1]);
-            if distance < 1.0 {
-                let (first, second) = (other.name.clone(), placement.name.clone());
-                let kind = ProblemKind::Overlap { first, second, distance };
-                let fix = "move one of them; positions are in diameters of the first turbine";
-                let span = section.span_of("position_diameters");
-                section.findings().note(span, kind, Some(fix.into()));
-                break;
-            }
-        }
+        check_overlap(section, &placement.name, placement.position, &turbines);
         turbines.push(placement);
     }
     turbines
@@ -147,7 +139,7 @@ fn further_of(output: &Section, solver: Solver) -> Vec<Requested> {
     requested.collect()
 }
 
-fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
+fn runs_of(root: &Section, turbines: &[Placement], places: &[[f64; 2]], time: Time) -> Vec<Run> {
     let sections = root.sections("run", &keys::RUN);
     let mut runs: Vec<Run> = Vec::with_capacity(sections.len());
     for section in &sections {
@@ -163,7 +155,7 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
             section.findings().note(section.span_of("name"), ProblemKind::Taken { key, why }, fix);
         }
         let compare_with = section.optional_text("compare_with");
-        let control = controls_of(section, turbines, time);
+        let control = controls_of(section, turbines, places, time);
         if !control.is_empty() && !control.iter().any(Control::is_there) {
             let kind = ProblemKind::NobodyThere { name: name.clone() };
             section.findings().note(section.span_of("control"), kind, None);
@@ -196,7 +188,12 @@ fn runs_of(root: &Section, turbines: &[Placement], time: Time) -> Vec<Run> {
     runs
 }
 
-fn controls_of(run: &Section, turbines: &[Placement], time: Time) -> Vec<Control> {
+fn controls_of(
+    run: &Section,
+    turbines: &[Placement],
+    places: &[[f64; 2]],
+    time: Time,
+) -> Vec<Control> {
     let mut controls = vec![Control::baseline(); turbines.len()];
     let Some(entry) = run.entry("control") else { return controls };
     let Value::Table(entries) = &entry.node.value else {
@@ -212,9 +209,7 @@ fn controls_of(run: &Section, turbines: &[Placement], time: Time) -> Vec<Control
         .iter()
         .map(|entry| (entry, turbines.iter().position(|turbine| turbine.name == entry.key)))
         .collect();
-    let downwind = |index: Option<usize>| {
-        index.map_or(f64::NEG_INFINITY, |i| turbines[i].position_diameters[0])
-    };
+    let downwind = |index: Option<usize>| index.map_or(f64::NEG_INFINITY, |i| places[i][0]);
     entries.sort_by(|a, b| downwind(a.1).total_cmp(&downwind(b.1)));
     for (entry, index) in entries {
         let path = format!("{}.{}", run.key_path("control"), entry.key);
@@ -224,7 +219,7 @@ fn controls_of(run: &Section, turbines: &[Placement], time: Time) -> Vec<Control
         };
         match &entry.node.value {
             Value::Table(inner) => {
-                let upstream = helix_upstream(index, turbines, &controls);
+                let upstream = helix_upstream(index, places, &controls);
                 let turbine = &turbines[index].name;
                 let place = Place { turbine, upstream, duration: time.duration };
                 controls[index] = control_of(run.findings(), inner, &entry.node, path, &place);

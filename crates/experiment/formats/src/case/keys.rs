@@ -61,6 +61,7 @@ pub(super) static WIND: Table = Table {
     keys: &[
         key("speed", above(0.0, 40.0), "m/s", Required, "Mean speed at hub height of the first turbine. At every hub it lies between the cut-in and cut-out wind speeds that the turbine's file states under `[operation]`.")
             .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }, Slip { unit: "cm/s", factor: 0.01 }]),
+        key("direction_deg", from(0.0, 360.0), "deg", Value("270"), "Where the mean wind at hub height comes from, clockwise from north as meteorology has it: 270 is from the west, along x of the layout. With another one the layout is turned about the first turbine into the wind's frame, x downwind, where everything is simulated and shown."),
         key("turbulence_intensity", from(0.0, 0.5), "–", Required, "Standard deviation of the streamwise component over `speed`, at hub height; 0 switches the turbulence off.")
             .mistaken(&[Slip { unit: "percent", factor: 0.01 }]),
         key("shear_exponent", from(-0.5, 1.0), "–", Value("0.1"), "Power-law exponent of the mean profile."),
@@ -135,8 +136,22 @@ pub(super) static TURBINE: Table = Table {
             "position_diameters",
             Holds::Pair(Range { low: -500.0, open: false, high: 500.0 }),
             "D",
-            Required,
-            "Foot of the tower, x downwind and y to the left looking downwind, in diameters of the first turbine. From every other turbine at least the mean of both diameters.",
+            Otherwise("`position` must be given"),
+            "Foot of the tower on the map, to the east and to the north, in diameters of the first turbine: with wind from the west, `wind.direction_deg = 270`, x is downwind and y to the left looking downwind. From every other turbine at least the mean of both diameters.",
+        ),
+        key(
+            "position",
+            Holds::Pair(Range { low: -1e7, open: false, high: 1e7 }),
+            "m",
+            Otherwise("`position_diameters` must be given"),
+            "In place of `position_diameters`: the same in metres, to the east and to the north of any point, as maps have it. All turbines of a layout have the one or the other.",
+        ),
+        key(
+            "yaw_deg",
+            from(-60.0, 60.0),
+            "deg",
+            Value("0"),
+            "Yaw misalignment: turn of the nacelle from facing the mean wind, positive counter-clockwise seen from above, which takes the wake to the right looking downwind. It stays so unless `kind = \"steering\"` turns it.",
         ),
         key(
             "structure",

@@ -13,6 +13,7 @@ mod keys;
 mod kinds;
 mod momentum;
 mod objection;
+mod position;
 mod reference;
 mod section;
 mod solver;

@@ -6,7 +6,7 @@ mod numbers;
 use super::*;
 use control::meandering::{Followed, Leader, MeanderingSettings, Reference};
 use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
-use farm::case::{Control, Ground, Sense, Sides};
+use farm::case::{Control, Ground, Position, Sense, Sides};
 use proptest::prelude::*;
 use std::fs;
 
@@ -205,7 +205,7 @@ fn overrides_reach_every_key() {
     assert_eq!(case.flow.domain().sides, Sides::Slip);
     assert_eq!(case.flow.domain().ground, Ground::Rough { roughness_length: 0.001 });
     assert_eq!(case.turbines[0].model, "iea-22mw");
-    assert_eq!(case.turbines[1].position_diameters, [7.0, 0.0]);
+    assert_eq!(case.turbines[1].position, Position::Diameters([7.0, 0.0]));
     let helix = &case.runs[1].control[0];
     assert_eq!(helix.values().angle("amplitude_deg"), 3f64.to_radians());
     assert!(case.runs[0].control[1].is(&control::pulse::PULSE));

@@ -5,7 +5,9 @@ use super::error::ProblemKind;
 use super::keys::{self, EVENTS};
 use super::section::Section;
 use super::text::{degrees, quoted};
-use farm::case::{Change, CirclingDisk, Flow, Sense, Shear, TurbulenceModel, Wind, WindEvent};
+use farm::case::{
+    Change, CirclingDisk, FROM_WEST, Flow, Sense, Shear, TurbulenceModel, Wind, WindEvent,
+};
 use farm::solvers::{Fault, Objection};
 use std::fmt::Write;
 
@@ -14,6 +16,7 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
     let number = |key| section.as_ref().map_or(f64::NAN, |section| section.number(key));
     Wind {
         speed: number("speed"),
+        direction: number("direction_deg").to_radians(),
         turbulence_intensity: number("turbulence_intensity"),
         shear: shear_of(section),
         length_scale: section.as_ref().and_then(|section| section.optional_number("length_scale")),
@@ -196,6 +199,9 @@ fn start_of(event: &WindEvent) -> f64 {
 pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
     writeln!(text, "\n[wind]")?;
     writeln!(text, "speed = {:?}", wind.speed)?;
+    if wind.direction != FROM_WEST {
+        writeln!(text, "direction_deg = {:?}", degrees(wind.direction))?;
+    }
     writeln!(text, "turbulence_intensity = {:?}", wind.turbulence_intensity)?;
     match wind.shear {
         Shear::PowerLaw { exponent } => writeln!(text, "shear_exponent = {exponent:?}")?,

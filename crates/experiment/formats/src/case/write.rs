@@ -3,6 +3,7 @@
 use super::instruments::instruments_text;
 use super::kinds;
 use super::momentum::momentum_text;
+use super::position::{position_text, yaw_text};
 use super::solver::write_flow;
 use super::text::quoted;
 use super::wind::write_wind;
@@ -36,9 +37,9 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
 }
 
 fn write_turbine(text: &mut String, turbine: &Placement) -> std::fmt::Result {
-    let [x, y] = turbine.position_diameters;
     writeln!(text, "\n[[turbine]]\nname = {}", quoted(&turbine.name))?;
-    writeln!(text, "model = {}\nposition_diameters = [{x:?}, {y:?}]", quoted(&turbine.model))?;
+    writeln!(text, "model = {}\n{}", quoted(&turbine.model), position_text(turbine))?;
+    text.push_str(&yaw_text(turbine));
     // Only where it is used, so that the fingerprint of a case without it stays what it was.
     if let Some(discon) = &turbine.discon {
         writeln!(text, "discon = {}", quoted(discon))?;

@@ -43,6 +43,10 @@ pub struct Manifest {
     /// anew without its file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub own_turbines: BTreeMap<String, String>,
+    /// Where the mean wind of the case comes from (deg, clockwise from north); absent in manifests that do
+    /// not tell, whose wind is from the west.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wind_direction_deg: Option<f64>,
     /// The machine.
     pub machine: Machine,
     /// What of the machine decides the bits of the run, in words; absent until it is complete.
@@ -113,6 +117,7 @@ impl Manifest {
             turbines_sha256,
             wind_sha256: BTreeMap::new(),
             own_turbines,
+            wind_direction_deg: Some(case.wind.direction_deg()),
             backend: None,
             machine: Machine::here(),
             started: now(),

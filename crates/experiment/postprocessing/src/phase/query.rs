@@ -81,7 +81,7 @@ impl<'q> Records<'q> {
         let turbines = &self.turbines;
         let turbine = &case.turbines[index];
         let control = &case.runs[manifest.run_index].control;
-        let helix = control[index].helix().or(helix_upstream(index, &case.turbines, control));
+        let helix = control[index].helix().or(helix_upstream(index, &case.places(), control));
         let (sense, strouhal) = helix.ok_or_else(|| PostprocessingError::NoHelix {
             run: manifest.run.clone(),
             turbine: turbine.name.clone(),
@@ -205,7 +205,8 @@ pub(crate) fn tells_truth(
     with: &[Control],
     index: usize,
 ) -> bool {
-    let x = |turbine: usize| case.turbines[turbine].position_diameters[0];
+    let places = case.places();
+    let x = |turbine: usize| places[turbine][0];
     let mut upstream = (0..case.turbines.len()).filter(|&other| x(other) < x(index));
     let is_away = without.get(index).is_some_and(|control| !control.is_there());
     is_away && upstream.all(|other| without.get(other) == with.get(other))

@@ -28,7 +28,8 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, Postpro
     }
     let against =
         compared(study, joined[0]).map(|run| run.manifest.run.clone()).unwrap_or_default();
-    let x = |index: usize| study.case.turbines[index].position_diameters[0];
+    let in_wind = study.case.places();
+    let x = |index: usize| in_wind[index][0];
     let own = x(study.turbine);
     let mut places: Vec<usize> =
         (0..study.case.turbines.len()).filter(|&index| x(index) >= own).collect();

@@ -46,7 +46,8 @@ pub(super) fn wake(
     let free_stream = |_: f64| study.case.wind.speed;
     let width = WIDTH * study.diameter;
     // Ends of the plane are left out: upstream of the first rotor there is no wake.
-    let x = |index: usize| study.case.turbines[index].position_diameters[0] * study.diameter;
+    let feet = study.case.feet(study.diameter);
+    let x = |index: usize| feet[index][0];
     let line_of = |plane: &Plane| -> Result<Vec<[f64; 2]>, AnalysisError> {
         let line = centre_line(plane, free_stream, width)?;
         Ok(line.into_iter().filter(|[at, _]| *at > x(0) + 0.5 * study.diameter).collect())
@@ -86,15 +87,15 @@ fn rotors(study: &Synchronised) -> Vec<SliceRotor> {
     let runs = || study.records.runs.iter();
     let turbines = || runs().flat_map(|run| &run.summary.turbines);
     let height = runs().flat_map(|run| &run.phase_planes).map(|(_, plane)| plane.origin[2]).next();
-    let rotor = |placed: &Placement| {
+    let rotor = |(placed, [x, y]): (&Placement, [f64; 2])| {
         let told = turbines().filter(|turbine| turbine.name == placed.name);
-        let [x, y] = placed.position_diameters.map(|d| d * study.diameter);
-        let alike = Rotor { diameter: study.diameter, hub: [x, y, height.unwrap_or(0.0)] };
-        let Rotor { diameter, hub } =
+        let hub = [x, y, height.unwrap_or(0.0)];
+        let alike = Rotor { diameter: study.diameter, hub, yaw_deg: 0.0 };
+        let Rotor { diameter, hub, yaw_deg } =
             told.filter_map(|turbine| turbine.rotor).next().unwrap_or(alike);
-        SliceRotor { name: placed.name.clone(), hub, diameter }
+        SliceRotor { name: placed.name.clone(), hub, diameter, yaw: yaw_deg.to_radians() }
     };
-    study.case.turbines.iter().map(rotor).collect()
+    study.case.turbines.iter().zip(study.case.feet(study.diameter)).map(rotor).collect()
 }
 
 fn deficits(
@@ -102,13 +103,13 @@ fn deficits(
     cases: &[Shown],
     width: f64,
 ) -> Result<Option<DeficitFigure>, PostprocessingError> {
-    let turbine = &study.case.turbines[study.turbine];
+    let [own, _] = study.case.places_in_diameters(study.diameter)[study.turbine];
     let half = HALF_WIDTH * study.diameter;
     let offsets: Vec<f64> =
         (0..N_POINTS).map(|k| half * (2.0 * k as f64 / (N_POINTS - 1) as f64 - 1.0)).collect();
     let mut panels = Vec::new();
     for distance in DISTANCES {
-        let x = (turbine.position_diameters[0] + distance) * study.diameter;
+        let x = (own + distance) * study.diameter;
         let mut lines = Vec::new();
         for Shown { colour, name, planes } in cases {
             let planes: Vec<PhasePlane> = planes
@@ -134,7 +135,7 @@ fn deficits(
         }
         if !lines.is_empty() {
             panels.push(DeficitPanel {
-                title: format!("{distance} D behind {}", turbine.name),
+                title: format!("{distance} D behind {}", study.case.turbines[study.turbine].name),
                 lines,
             });
         }
@@ -145,12 +146,12 @@ fn deficits(
 
 /// The joined run with the greatest, or least, gain of the turbines downstream.
 fn ranked<'a>(study: &'a Synchronised, best: bool) -> Option<&'a Joined> {
-    let own = study.case.turbines[study.turbine].position_diameters[0];
+    let places = study.case.places();
+    let [own, _] = places[study.turbine];
     let gain = |run: &Joined| -> Option<f64> {
         let turbines = &study.records.runs[run.run].summary.turbines;
-        let last = study.case.turbines.iter().filter(|turbine| turbine.position_diameters[0] > own);
-        let last =
-            last.max_by(|a, b| a.position_diameters[0].total_cmp(&b.position_diameters[0]))?;
+        let behind = study.case.turbines.iter().zip(&places).filter(|(_, [x, _])| *x > own);
+        let (last, _) = behind.max_by(|a, b| a.1[0].total_cmp(&b.1[0]))?;
         turbines.iter().find(|turbine| turbine.name == last.name)?.power_gain.map(|gain| gain.mean)
     };
     let ranked = study.runs.iter().filter(|run| run.offset().is_some());

@@ -21,22 +21,28 @@ pub(super) fn on_plane<'a>(
     match plane.axes {
         PlaneAxes::Crosswind => circles(rotors, plane.origin[0], frame, unit),
         PlaneAxes::Horizontal => {
-            let ends = rotors.map(|rotor| (rotor, rotor.hub[1], 0.5 * rotor.diameter));
+            let ends = rotors.map(|rotor| {
+                let (sine, cosine) = rotor.yaw.sin_cos();
+                let half = 0.5 * rotor.diameter;
+                let arm = [-half * sine, half * cosine];
+                (rotor, [rotor.hub[0], rotor.hub[1]], arm)
+            });
             lines(ends, frame, unit)
         }
         PlaneAxes::Streamwise => {
             let cut = rotors.filter_map(|rotor| {
-                let half = rotor.half_chord(plane.origin[1] - rotor.hub[1])?;
-                Some((rotor, rotor.hub[2], half))
+                let distance = plane.origin[1] - rotor.hub[1];
+                let half = rotor.half_chord(distance)?;
+                Some((rotor, [rotor.hub[0] + rotor.downwind(distance), rotor.hub[2]], [0.0, half]))
             });
             lines(cut, frame, unit)
         }
     }
 }
 
-/// Rotors, each with the middle and the half length (m) of its line, upright in `frame`.
+/// Rotors, each with the middle of its line in `frame` and the way from there to its upper end (m).
 fn lines<'a>(
-    rotors: impl Iterator<Item = (&'a Rotor, f64, f64)>,
+    rotors: impl Iterator<Item = (&'a Rotor, [f64; 2], [f64; 2])>,
     frame: &Frame,
     unit: f64,
 ) -> Vec<Shape> {
@@ -44,15 +50,17 @@ fn lines<'a>(
     let core = Look::line(Ink::OnField, 2.4);
     let mut shapes = Vec::new();
     let mut ends = Vec::new();
-    for (rotor, middle, half) in rotors {
-        let place = |at: f64| frame.point([rotor.hub[0] / unit, at / unit]);
-        let [low, high] = [place(middle - half), place(middle + half)];
+    for (rotor, middle, arm) in rotors {
+        let place =
+            |sign: f64| frame.point([0, 1].map(|axis| (middle[axis] + sign * arm[axis]) / unit));
+        let [low, high] = [place(-1.0), place(1.0)];
         shapes.extend([halo, core].map(|look| segment(low, high, look)));
         ends.push((rotor.name.as_str(), low, high));
     }
     let mut names = Names::new(frame.area, on_field());
     for (_, low, high) in &ends {
-        names.taken.push([low[0] - 2.0, high[1], 4.0, low[1] - high[1]]);
+        let (left, right) = (low[0].min(high[0]), low[0].max(high[0]));
+        names.taken.push([left - 2.0, high[1], right - left + 4.0, low[1] - high[1]]);
     }
     for (name, low, high) in ends {
         let beside = [
@@ -185,7 +193,7 @@ mod tests {
     use crate::draw::axes::Scale;
 
     fn rotor(name: &str, hub: [f64; 3], diameter: f64) -> Rotor {
-        Rotor { name: name.into(), hub, diameter }
+        Rotor { name: name.into(), hub, diameter, yaw: 0.0 }
     }
 
     /// A plane at 800 m along the third axis; what is on it does not matter here.
@@ -241,6 +249,21 @@ mod tests {
         }
         let above = plane(PlaneAxes::Horizontal, [0.0, 0.0, 150.0]);
         assert_eq!(names(&on_plane(rotors.iter(), &above, &frame(), 100.0)), ["A", "B", "C"]);
+    }
+
+    #[test]
+    fn a_yawed_rotor_is_turned_counter_clockwise_seen_from_above() {
+        let turned = Rotor { yaw: 0.5, ..rotor("A", [500.0, 500.0, 150.0], 200.0) };
+        let above = plane(PlaneAxes::Horizontal, [0.0, 0.0, 150.0]);
+        let shapes = on_plane([turned].iter(), &above, &frame(), 100.0);
+        let Shape::Path { points, .. } = &shapes[0] else { panic!("no line") };
+        // On the sheet y grows upwards, so the left end, with the greater y, has the lesser height.
+        let arm = [100.0 * 0.5_f64.sin(), 100.0 * 0.5_f64.cos()];
+        let expected = [[500.0 + arm[0], 500.0 + arm[1]], [500.0 - arm[0], 500.0 - arm[1]]];
+        for (point, expected) in points.iter().zip(expected) {
+            let apart = (point[0] - expected[0]).hypot(point[1] - expected[1]);
+            assert!(apart < 1e-9, "{points:?}");
+        }
     }
 
     #[test]

@@ -7,6 +7,8 @@ use crate::draw::colour::{Ink, Map};
 use crate::draw::field::Picture;
 use crate::draw::font::{Face, wrapped};
 use crate::draw::{Figure, Look, Role, Shape, TextStyle, rectangle, segment, text};
+use crate::layout::Rotor;
+use crate::sentence::direction;
 use crate::study::{Study, sample};
 use crate::words::{SPACE, number};
 use basis::records::{Plane, PlaneAxes};
@@ -85,11 +87,13 @@ impl Sheet<'_> {
         colour_bar(bar, self.range, self.map, 6, self.bar, &mut shapes);
         let free_stream = number(self.study.free_stream(), 1);
         let stretched = stretched(height / true_height);
+        let from = direction(&self.study.runs()[0].summary.conditions)
+            .map_or(String::new(), |degrees| format!(" The wind comes from {degrees}, along x."));
         Figure {
             name: name.to_owned(),
             title: title.to_owned(),
             caption: format!(
-                "{caption}{stretched} U∞ = {free_stream}{SPACE}m/s, the target at hub height."
+                "{caption}{stretched} U∞ = {free_stream}{SPACE}m/s, the target at hub height.{from}"
             ),
             width: WIDTH,
             height: base + 48.0,
@@ -134,8 +138,8 @@ impl Sheet<'_> {
             value.map_or(f64::NAN, |value| value / self.study.free_stream())
         });
         let mut inner = vec![Shape::Field { area: frame.area, picture }];
-        let there = self.study.rotors_of(panel.run);
-        inner.extend(rotors::on_plane(there, panel.plane, frame, diameter));
+        let there: Vec<Rotor> = self.study.rotors_of(panel.run).collect();
+        inner.extend(rotors::on_plane(there.iter(), panel.plane, frame, diameter));
         let field = FieldValues {
             name: panel.title.clone(),
             run: panel.colour,

@@ -16,7 +16,7 @@ const MOST_STACKED: usize = 3;
 pub(crate) fn mean(study: &Study) -> Option<Figure> {
     let panels = mean_panels(study, "hub-height");
     let caption = "Mean streamwise velocity at hub height, seen from above. Black lines are rotors, as long as those \
-         are wide.";
+         are wide and turned as they were on average.";
     along(study, "mean-hub-height", "Mean wake at hub height", caption, &panels, mean_range(study))
 }
 
@@ -78,12 +78,11 @@ fn through(study: &Study, run: &RunRecords, plane: &Plane) -> String {
     /// Share of a diameter that a rotor is cut in at least for the plane to go through it (–).
     const LEAST_CUT: f64 = 0.95;
     let y = plane.origin[1];
-    let is_cut = |rotor: &&Rotor| {
+    let is_cut = |rotor: &Rotor| {
         let half = rotor.half_chord(y - rotor.hub[1]).unwrap_or(0.0);
         2.0 * half >= LEAST_CUT * rotor.diameter
     };
-    let names: Vec<String> =
-        study.rotors_of(run).filter(is_cut).map(|rotor| rotor.name.clone()).collect();
+    let names: Vec<String> = study.rotors_of(run).filter(is_cut).map(|rotor| rotor.name).collect();
     match names.len() {
         0 => format!("y = {}{SPACE}D", number(y / study.diameter(), 1)),
         n if n > MOST_NAMED => format!("through {} and {} others", names[0], n - 1),

@@ -52,6 +52,9 @@ pub(crate) fn conditions(study: &Study) -> Vec<Value> {
             format!("turbulence seed {}", conditions.seed),
         ),
     ];
+    if let Some(degrees) = sentence::direction(conditions) {
+        facts.push(fact("Wind direction", degrees, "x is downwind".to_owned()));
+    }
     // A run may leave turbines out.
     let turbines = |run: &&RunRecords| run.summary.turbines.len();
     let fullest = study.runs().iter().max_by_key(turbines).map_or(summary, |run| &run.summary);

@@ -245,6 +245,7 @@ fn wake() -> SliceFigure {
                 name: format!("T{}", index + 1),
                 hub: [x, 0.0, 150.0],
                 diameter: DIAMETER,
+                yaw: 0.0,
             })
             .collect(),
         planes: panels.collect(),

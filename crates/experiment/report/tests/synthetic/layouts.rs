@@ -89,7 +89,7 @@ fn turbine(index: usize, &([diameter, height], [x, y]): &Placed, is_helix: bool)
     let power = power * (1.0 + if is_helix { change } else { 0.0 });
     TurbineSummary {
         model: if diameter > 200.0 { "iea-15mw" } else { "nrel-5mw" }.into(),
-        rotor: Some(Rotor { diameter, hub: [240.0 * x, 240.0 * y, height] }),
+        rotor: Some(Rotor { diameter, hub: [240.0 * x, 240.0 * y, height], yaw_deg: 0.0 }),
         power: statistic(power, 0.02),
         power_gain: is_helix.then(|| statistic(change, 0.25)),
         ..examples::turbine(&name, power)

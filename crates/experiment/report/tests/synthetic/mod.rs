@@ -128,6 +128,7 @@ fn run(recipe: &Recipe) -> RunRecords {
             compare_with: (!is_baseline).then(|| "baseline".into()),
             conditions: Conditions {
                 target_wind_speed: WIND_SPEED,
+                direction_deg: 270.0,
                 realised_wind_speed: 8.94,
                 rotor_diameter: DIAMETER,
                 spin_up: SPIN_UP,

@@ -57,16 +57,19 @@ struct Series {
     writer: SeriesWriter,
 }
 
-/// Point at hub height where the realised wind is measured (m): upstream of the first turbine, in prescribed
-/// wind at it.
+/// Point at hub height where the realised wind is measured (m): upstream of the first turbine, and of those
+/// in whose wakes it may stand; in prescribed wind at it.
 fn probe(setup: &Prepared) -> Vector3 {
     let plan = &setup.plan;
     let foot = plan.positions[0];
     if !setup.case.flow.solver.resolves_induction {
         return Vector3::new(foot.x, foot.y, plan.hub_height);
     }
-    let distance = (PROBE_DISTANCE * plan.diameter).min(0.5 * (foot.x - plan.origin.x));
-    Vector3::new(foot.x - distance, foot.y, plan.hub_height)
+    // With another direction of the wind another turbine is the foremost.
+    let beside = |other: &&Vector3| (other.y - foot.y).abs() < plan.diameter;
+    let foremost = plan.positions.iter().filter(beside).map(|other| other.x).fold(foot.x, f64::min);
+    let distance = (PROBE_DISTANCE * plan.diameter).min(0.5 * (foremost - plan.origin.x));
+    Vector3::new(foremost - distance, foot.y, plan.hub_height)
 }
 
 /// The rows of a series, one at a time.

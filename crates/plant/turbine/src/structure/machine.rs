@@ -30,7 +30,18 @@ pub struct Pitch {
     pub acceleration: f64,
 }
 
-/// Parameters of the structure, constant in time.
+/// How the nacelle is turned on the tower, prescribed; counter-clockwise seen from above.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Yaw {
+    /// Angle from facing −x (rad).
+    pub angle: f64,
+    /// Rate (rad/s).
+    pub rate: f64,
+    /// Acceleration (rad/s²).
+    pub acceleration: f64,
+}
+
+/// Parameters of the structure, constant in time but for the nacelle's turn.
 #[derive(Clone, Debug)]
 pub(super) struct Machine {
     pub(super) n_blades: usize,
@@ -58,6 +69,7 @@ pub(super) struct Machine {
     pub(super) generator_inertia: f64,
     pub(super) shaft_stiffness: f64,
     pub(super) shaft_damping: f64,
+    yaw: Yaw,
     top_from_nacelle: Matrix3,
     nacelle_from_shaft: Matrix3,
     /// Axes of each blade, coned but not pitched, in the hub at azimuth zero.
@@ -134,6 +146,7 @@ impl Machine {
             generator_inertia: definition.drive_train.generator_inertia,
             shaft_stiffness: definition.drive_train.stiffness,
             shaft_damping: definition.drive_train.damping,
+            yaw: Yaw { angle: yaw, ..Yaw::default() },
             top_from_nacelle: Matrix3::from_rotation_z(yaw),
             nacelle_from_shaft,
             hub_from_cone: PerBlade::from_fn(n_blades, |blade| {
@@ -143,10 +156,32 @@ impl Machine {
         Ok((machine, ModeTables { tower: tower_table, blade: blade_table }))
     }
 
+    /// From now on the nacelle is turned as `yaw` says.
+    pub(super) fn turn(&mut self, yaw: Yaw) {
+        if yaw.angle != self.yaw.angle {
+            self.top_from_nacelle = Matrix3::from_rotation_z(yaw.angle);
+        }
+        self.yaw = yaw;
+    }
+
+    /// How the nacelle is turned.
+    pub(super) fn yaw(&self) -> Yaw {
+        self.yaw
+    }
+
+    /// The nacelle at the tower top, which is at `top`: turned about the axis of the yaw bearing.
+    fn nacelle(&self, top: &MovingFrame) -> MovingFrame {
+        let Yaw { rate, acceleration, .. } = self.yaw;
+        if rate == 0.0 && acceleration == 0.0 {
+            return top.with_axes(&self.top_from_nacelle);
+        }
+        top.turning(top.axes.z_axis, rate, acceleration, &[]).with_axes(&self.top_from_nacelle)
+    }
+
     /// Where everything is at the coordinates `q` with rates `v`, blades pitched by `pitch`.
     pub(super) fn motion(&self, q: &Coordinates, v: &Coordinates, pitch: &[Pitch]) -> Motion {
         let top = self.top(&q.tower(), &v.tower());
-        let body = top.with_axes(&self.top_from_nacelle);
+        let body = self.nacelle(&top);
         let shaft = body.at(self.apex).with_axes(&self.nacelle_from_shaft);
         let speed = v.shared[GENERATOR] + v.shared[TORSION];
         let azimuth = q.shared[GENERATOR] + q.shared[TORSION];

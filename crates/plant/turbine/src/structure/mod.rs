@@ -47,7 +47,7 @@ pub use coordinates::{Coordinates, DegreeOfFreedom};
 pub use energy::Energy;
 pub use error::StructureError;
 pub use loads::{BladeLoads, Loads, N_GAUGES};
-pub use machine::Pitch;
+pub use machine::{Pitch, Yaw};
 pub use modes::NaturalMode;
 pub use projection::Projection;
 pub use stations::{AppliedLoads, ElementLoad};
@@ -76,7 +76,8 @@ pub const GRAVITY: f64 = 9.806_65;
 pub struct StructureSettings<'a> {
     /// Foot of the turbine on the ground or mean sea level, farm frame (m).
     pub position: Vector3,
-    /// Turn of the nacelle about the vertical, from facing −x, counter-clockwise from above (rad).
+    /// Turn of the nacelle about the vertical at the beginning, from facing −x, counter-clockwise from above
+    /// (rad).
     pub yaw: f64,
     /// Acceleration of gravity (m/s²), see [`GRAVITY`].
     pub gravity: f64,
@@ -112,7 +113,6 @@ pub struct Structure {
     machine: Machine,
     stations: Stations,
     locks: Locks,
-    yaw: f64,
     channels: Vec<Channel>,
     state: StructureState,
     equations: EquationsOfMotion,
@@ -131,6 +131,8 @@ pub struct StructureState {
     pub earlier_accelerations: Coordinates,
     /// Pitch during the last step.
     pub pitch: PerBlade<Pitch>,
+    /// Turn of the nacelle in the middle of the last step.
+    pub yaw: Yaw,
     /// Loads at the middle of the last step.
     pub loads: Loads,
 }
@@ -173,11 +175,12 @@ impl Structure {
             accelerations: phase.a,
             earlier_accelerations: phase.earlier,
             pitch,
+            yaw: machine.yaw(),
             loads,
         };
         let channels = channels::table(machine.n_blades);
         let locks = Locks::default();
-        Ok(Self { machine, stations, locks, yaw: settings.yaw, channels, state, equations })
+        Ok(Self { machine, stations, locks, channels, state, equations })
     }
 
     /// Locks exactly `degrees`: no acceleration from now on. A locked mode stops where it is; a locked
@@ -205,6 +208,12 @@ impl Structure {
     /// From now on blade elements are projected as `projection` says.
     pub fn project(&mut self, projection: Projection) {
         self.stations.projection = projection;
+    }
+
+    /// From now on the nacelle is turned as `yaw` says: prescribed, as pitch is. For a step it is its turn in
+    /// the middle of it.
+    pub fn turn(&mut self, yaw: Yaw) {
+        self.machine.turn(yaw);
     }
 
     /// On return `elements` holds the motion of each blade element `ahead` (s) after now, blade after blade.
@@ -266,6 +275,7 @@ impl Structure {
         self.state.accelerations = after.a;
         self.state.earlier_accelerations = after.earlier;
         self.state.pitch.copy_from_slice(pitch);
+        self.state.yaw = machine.yaw();
         self.state.loads = machine.loads(&middle, &self.equations, &applied);
     }
 
@@ -280,6 +290,7 @@ impl Structure {
     /// When `state` is that of a turbine with another number of blades.
     pub fn restore(&mut self, state: StructureState) {
         assert_eq!(state.pitch.len(), self.machine.n_blades, "a state of as many blades");
+        self.machine.turn(state.yaw);
         self.state = state;
     }
 
@@ -317,7 +328,7 @@ impl Structure {
     /// On return `values` holds the channels in the middle of the last step, in SI units; times their scale
     /// they are in OpenFAST's units.
     pub fn write_channels(&self, values: &mut [f64]) {
-        channels::write(&self.state.loads, self.yaw, &self.state.pitch, values);
+        channels::write(&self.state.loads, self.state.yaw.angle, &self.state.pitch, values);
     }
 
     /// Mechanical energy now.

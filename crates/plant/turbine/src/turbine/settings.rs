@@ -11,6 +11,8 @@ pub struct TurbineSettings {
     pub flexible: bool,
     /// Air density (kg/m³).
     pub air_density: f64,
+    /// Turn of the nacelle about the vertical, from facing −x, counter-clockwise seen from above (rad).
+    pub yaw: f64,
     /// Rotor speed (rad/s).
     pub rotor_speed: f64,
     /// Azimuth of blade 1 (rad).

@@ -1,6 +1,7 @@
 //! What a turbine remembers from one interval to the next, as checkpoints keep it.
 
 use super::aerodynamics::AerodynamicState;
+use super::nacelle::NacelleState;
 use crate::actuators::PitchState;
 use crate::structure::StructureState;
 use basis::PerBlade;
@@ -11,6 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct TurbineState {
     pub(super) structure: StructureState,
     pub(super) pitch: PerBlade<PitchState>,
+    pub(super) nacelle: NacelleState,
     pub(super) aerodynamics: AerodynamicState,
     pub(super) readings: Readings,
     pub(super) n_instants: u64,
@@ -27,16 +29,18 @@ pub(super) struct Readings {
 }
 
 impl TurbineState {
-    /// Of a turbine that has not run yet, its blades at rest at `pitch` (rad).
+    /// Of a turbine that has not run yet, its blades at rest at `pitch` (rad), its nacelle at `yaw` (rad).
     pub(super) fn at_start(
         structure: StructureState,
         pitch: PerBlade<f64>,
+        yaw: f64,
         aerodynamics: AerodynamicState,
     ) -> Self {
         let pitch = pitch.map(|pitch| PitchState { pitch, rate: 0.0 });
         Self {
             structure,
             pitch,
+            nacelle: NacelleState { angle: yaw, rate: 0.0 },
             aerodynamics,
             readings: Readings::default(),
             n_instants: 0,

@@ -91,11 +91,22 @@ fn turbine() -> Turbine {
 }
 
 pub(super) fn built(flexible: bool, induction: Induction) -> Turbine {
+    built_yawed(flexible, induction, 0.0, 1.3)
+}
+
+/// The same with its nacelle turned by `yaw` (rad), at `rotor_speed` (rad/s).
+pub(super) fn built_yawed(
+    flexible: bool,
+    induction: Induction,
+    yaw: f64,
+    rotor_speed: f64,
+) -> Turbine {
     let settings = TurbineSettings {
         induction,
         flexible,
         air_density: DENSITY,
-        rotor_speed: 1.3,
+        yaw,
+        rotor_speed,
         azimuth: 0.3,
         pitch: 0.0,
     };
@@ -103,7 +114,7 @@ pub(super) fn built(flexible: bool, induction: Induction) -> Turbine {
 }
 
 pub(super) fn commands(pitch: f64) -> Commands {
-    Commands { pitch: PerBlade::splat(3, pitch), generator_torque: 1e6 }
+    Commands { pitch: PerBlade::splat(3, pitch), generator_torque: 1e6, yaw_rate: 0.0 }
 }
 
 /// Wind that varies from place to place, a sheared wake of some sort.

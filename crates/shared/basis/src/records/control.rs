@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// What ran on a turbine, what it was set to do and what it found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ControlSummary {
-    /// Kind, as the case file names it: `baseline`, `helix`, `pulse`, `phase-sync`, `meandering`, or one of
-    /// your own.
+    /// Kind, as the case file names it: `baseline`, `helix`, `pulse`, `phase-sync`, `meandering`, `steering`,
+    /// `derate`, or one of your own.
     pub kind: String,
     /// The same with its settings in words, for people: `helix ccw 4.0° St 0.25`.
     pub description: String,

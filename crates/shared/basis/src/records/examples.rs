@@ -59,6 +59,7 @@ pub fn summary(run: &str, turbines: Vec<TurbineSummary>) -> Summary {
 fn conditions() -> Conditions {
     Conditions {
         target_wind_speed: 9.0,
+        direction_deg: 270.0,
         target_turbulence_intensity: 0.05,
         turbulence_length_scale: Some(75.0),
         realised_wind_speed: 8.9,
@@ -163,7 +164,7 @@ fn full_turbine(name: &str, gain: Statistic) -> TurbineSummary {
     let kinds = [LoadKind::Deviation, damage_equivalent(10.0)];
     let loads = kinds.map(|kind| Load { change: Some(gain), ..load("RootMyb1", kind, 12_340.0) });
     TurbineSummary {
-        rotor: Some(Rotor { diameter: 240.0, hub: [0.0, 0.0, 150.0] }),
+        rotor: Some(Rotor { diameter: 240.0, hub: [0.0, 0.0, 150.0], yaw_deg: 0.0 }),
         control: ControlSummary {
             settings: Some(vec![ControlSetting {
                 key: "amplitude_deg".to_owned(),

@@ -7,11 +7,12 @@ use crate::fuzz::numbers::{NEVER, numbers_of};
 use std::fs;
 
 /// Keys whose numbers may be negative: places, angles, exponents.
-const SIGNED: [&str; 4] = [
+const SIGNED: [&str; 5] = [
     "turbine.position_diameters",
     "output.crosswind_diameters",
     "wind.shear_exponent",
     "offset_deg",
+    "yaw_deg",
 ];
 
 #[test]

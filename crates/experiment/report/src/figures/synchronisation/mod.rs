@@ -273,6 +273,8 @@ pub struct SliceRotor {
     pub hub: [f64; 3],
     /// Its diameter (m).
     pub diameter: f64,
+    /// Turn of its nacelle from facing the wind, counter-clockwise seen from above (rad).
+    pub yaw: f64,
 }
 
 /// One case from above.

@@ -163,6 +163,7 @@ fn there(figure: &SliceFigure) -> Vec<Rotor> {
         name: rotor.name.clone(),
         hub: rotor.hub,
         diameter: rotor.diameter,
+        yaw: rotor.yaw,
     };
     figure.rotors.iter().map(rotor).collect()
 }

@@ -3,7 +3,7 @@
 use super::samples::*;
 use crate::definition::Definition;
 use crate::structure::{
-    AppliedLoads, DegreeOfFreedom, ElementLoad, Pitch, Structure, StructureSettings, Wrench,
+    AppliedLoads, DegreeOfFreedom, ElementLoad, Pitch, Structure, StructureSettings, Wrench, Yaw,
 };
 use basis::Vector3;
 
@@ -59,6 +59,87 @@ fn of_points(mut definition: Definition) -> Definition {
     definition.hub.inertia = 0.0;
     definition.drive_train.generator_inertia = 0.0;
     definition
+}
+
+/// A nacelle that turns at a rate that grows: its turn at `time` (s).
+fn turning(time: f64) -> Yaw {
+    let (rate, acceleration) = (0.03, 0.01);
+    let growth = 0.5 * acceleration * time;
+    Yaw { angle: 0.2 + (rate + growth) * time, rate: rate + 2.0 * growth, acceleration }
+}
+
+/// What turns the nacelle shows in the loads of all that it carries, gyroscopic moments of the rotor included:
+/// tower base and yaw bearing against the momentum of everything above.
+#[test]
+fn loads_of_a_turning_nacelle_are_the_rate_of_momentum_too() {
+    for text in [NREL_5, IEA_15] {
+        let definition = of_points(published(text));
+        let settings = StructureSettings {
+            rotor_speed: definition.rated_rotor_speed,
+            yaw: 0.2,
+            azimuth: 0.5,
+            ..StructureSettings::AT_REST
+        };
+        let mut structure = structure(&definition, &settings);
+        structure.hold(&[DegreeOfFreedom::DriveTrain]);
+        let pitch = [Pitch { angle: 0.05, ..Pitch::default() }; 3];
+        let n_steps = 1000;
+        let push = Vector3::new(1e6, 1e5, 0.0);
+        let applied = AppliedLoads { nacelle: push, ..AppliedLoads::NONE };
+        let (mut history, mut loads, mut axes) = (Vec::new(), Vec::new(), Vec::new());
+        for step in 0..n_steps {
+            let time = f64::from(step) * STEP;
+            structure.turn(turning(time + 0.5 * STEP));
+            structure.advance(STEP, &applied, &pitch);
+            structure.turn(turning(time + STEP));
+            if step >= n_steps - 3 {
+                let (machine, state) = (&structure.machine, structure.state());
+                let motion = machine.motion(&state.coordinates, &state.velocities, &pitch);
+                axes.push(motion.top.axes);
+                history.push(points(&structure, &pitch));
+                loads.push(*structure.loads());
+            }
+        }
+        // Middles of the last two steps, on either side of the instant in the middle of the history.
+        let mean = |of: fn(&crate::structure::Loads) -> Wrench| {
+            let [a, b] = [of(&loads[1]), of(&loads[2])];
+            Wrench { force: 0.5 * (a.force + b.force), moment: 0.5 * (a.moment + b.moment) }
+        };
+        // What is pushed is the nacelle at the rotor apex, where the hub is.
+        let n_rotor = 3 * structure.machine.blade.points.len() + 1;
+        let [hub, top] = [n_rotor - 1, n_rotor + 1].map(|point| history[1][point].1);
+        let expected = |n_points: usize, centre: Vector3| {
+            let mut sum = wrench(&history, 0..n_points, centre);
+            sum.add(Wrench { force: push, moment: (hub - centre).cross(push) });
+            sum
+        };
+        let near = |found: Wrench, expected: Wrench, what: &str| {
+            let force = (found.force - expected.force).length() / expected.force.length();
+            let moment = (found.moment - expected.moment).length() / expected.moment.length();
+            assert!(force < 2e-4 && moment < 5e-4, "{what}: {force} {moment}");
+        };
+        let base = structure.machine.base;
+        near(mean(|l| l.tower_base), expected(history[0].len(), base), "tower base");
+        let above = expected(n_rotor + 1, top).turned(&axes[1].transpose());
+        near(mean(|l| l.yaw_bearing), above, "yaw bearing");
+        // With nothing that bends, what turns with the nacelle is a gyroscope.
+        let all = DegreeOfFreedom::ALL.into_iter();
+        let modes: Vec<_> = all.filter(|degree| *degree != DegreeOfFreedom::Generator).collect();
+        structure.hold(&modes);
+        let angle = turning(f64::from(n_steps) * STEP).angle;
+        let moment = |rate: f64| {
+            let mut structure = structure.clone();
+            structure.turn(Yaw { angle, rate, acceleration: 0.0 });
+            structure.advance(STEP, &applied, &pitch);
+            structure.loads().yaw_bearing.moment
+        };
+        let rate = 0.05;
+        let spin = definition.rotor_inertia() * structure.rotor_speed();
+        let expected = -2.0 * rate * spin * definition.rotor.shaft_tilt.cos();
+        let lateral = Vector3::new(-angle.sin(), angle.cos(), 0.0);
+        let found = (moment(rate) - moment(-rate)).dot(lateral);
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+    }
 }
 
 #[test]
