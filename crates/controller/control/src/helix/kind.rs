@@ -3,8 +3,9 @@
 use super::Helix;
 use crate::Controller;
 use crate::excitation::Excitation;
-use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, sense, starts_too_late, stop_of};
+use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, sense, starts_too_late};
 use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site};
+use crate::stop::stop_of;
 use basis::Sense;
 use basis::keys::LeftOut::{Required, Value};
 use basis::keys::{Holds, Objection, Table, Values, key};
