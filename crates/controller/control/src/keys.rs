@@ -1,6 +1,5 @@
 //! Keys that several kinds of controllers have.
 
-use crate::kind::ControlError;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Key, Objection, Values, above, from, key};
 
@@ -54,22 +53,5 @@ pub(crate) fn sense(values: &Values) -> basis::Sense {
         basis::Sense::Clockwise
     } else {
         basis::Sense::CounterClockwise
-    }
-}
-
-/// The `stop` (s) of an excitation of `rate` (rad/s) that begins at `start` (s), which is to be whole before
-/// it ends.
-pub(crate) fn stop_of(
-    start: f64,
-    stop: Option<f64>,
-    rate: f64,
-) -> Result<Option<f64>, ControlError> {
-    let period = std::f64::consts::TAU / rate;
-    match stop {
-        Some(stop) if stop < start + period => {
-            let earliest = (start + period).ceil();
-            Err(ControlError::StopsTooEarly { stop, start, period, earliest })
-        }
-        stop => Ok(stop),
     }
 }

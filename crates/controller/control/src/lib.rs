@@ -19,6 +19,7 @@ mod outcome;
 pub mod phase_sync;
 pub mod pulse;
 pub mod steering;
+mod stop;
 
 pub use absent::ABSENT;
 pub use baseline::Baseline;

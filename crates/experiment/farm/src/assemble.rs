@@ -3,9 +3,9 @@
 use crate::air::Air;
 use crate::case::TowerInfluence as AskedInfluence;
 use crate::case::{Case, Control, DynamicInflow, Ground, Placement, Run, Sides};
+use crate::coefficients::coefficient_table;
 use crate::plan::{Footprint, Plan};
 use crate::solvers::{Smearing, Solver};
-use crate::tracking::coefficient_table;
 use crate::{Farm, Machine};
 use basis::Vector3;
 use control::baseline::Constants;

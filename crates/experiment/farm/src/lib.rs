@@ -3,6 +3,7 @@
 pub mod air;
 pub mod assemble;
 pub mod case;
+mod coefficients;
 pub mod domain;
 pub mod farm;
 mod layout;

@@ -91,9 +91,7 @@ impl Turbine {
                 heights: &heights,
             },
         )?;
-        let pitch = PerBlade::splat(definition.n_blades, settings.pitch);
-        let start = structure.state().clone();
-        let state = TurbineState::at_start(start, pitch, settings.yaw, aerodynamics.start());
+        let state = TurbineState::at_start(structure.state().clone(), aerodynamics.start());
         let n_points = definition.n_blades * N_ELEMENTS;
         let workspace = Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0));
         let held = if settings.flexible { Vec::new() } else { all_but_the_generator() };

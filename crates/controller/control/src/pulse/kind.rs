@@ -3,8 +3,9 @@
 use super::Pulse;
 use crate::Controller;
 use crate::excitation::Excitation;
-use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, starts_too_late, stop_of};
+use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, starts_too_late};
 use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site};
+use crate::stop::stop_of;
 use basis::keys::LeftOut::Value;
 use basis::keys::{Objection, Table, Values, key};
 use basis::registry::Named;

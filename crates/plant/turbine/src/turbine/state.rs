@@ -29,18 +29,14 @@ pub(super) struct Readings {
 }
 
 impl TurbineState {
-    /// Of a turbine that has not run yet, its blades at rest at `pitch` (rad), its nacelle at `yaw` (rad).
-    pub(super) fn at_start(
-        structure: StructureState,
-        pitch: PerBlade<f64>,
-        yaw: f64,
-        aerodynamics: AerodynamicState,
-    ) -> Self {
-        let pitch = pitch.map(|pitch| PitchState { pitch, rate: 0.0 });
+    /// Of a turbine that has not run yet, its blades and its nacelle at rest as `structure` has them.
+    pub(super) fn at_start(structure: StructureState, aerodynamics: AerodynamicState) -> Self {
+        let pitch = structure.pitch.map(|blade| PitchState { pitch: blade.angle, rate: 0.0 });
+        let nacelle = NacelleState { angle: structure.yaw.angle, rate: 0.0 };
         Self {
             structure,
             pitch,
-            nacelle: NacelleState { angle: yaw, rate: 0.0 },
+            nacelle,
             aerodynamics,
             readings: Readings::default(),
             n_instants: 0,
