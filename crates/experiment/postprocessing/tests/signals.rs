@@ -158,3 +158,16 @@ fn meandering_is_followed_at_the_rate_of_the_disk() {
     let refused = spectra(&output).expect_err("no lines, no helix");
     assert!(refused.to_string().contains("kept the wind"), "{refused}");
 }
+
+/// Rows too far apart for the loads that a loop follows take nothing else from the report.
+#[test]
+fn rows_far_apart_still_have_their_report() {
+    let run = "[[run]]\nname = \"baseline\"\ncontrol.T1 = { kind = \"meandering\", factor = 1.0, amplitude_deg = 0.0 }\n[output]\ninterval = 20.0\n";
+    let folder = written(&small::case("coarse", "", [40.0, 200.0], &[NREL_5MW], run));
+    let output = done(&options(folder.path()));
+    let (_, report) = postprocessing::report(&output).expect("a report");
+    let page = fs::read_to_string(report).expect("a page");
+    assert!(page.contains("<figure id=\"power\">") && !page.contains("meandering-loads"), "{page}");
+    // Who asks for them is told.
+    assert!(matches!(meandering(&output), Err(PostprocessingError::Analysis { .. })));
+}

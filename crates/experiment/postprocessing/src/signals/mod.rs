@@ -9,7 +9,7 @@ use crate::error::case_in;
 use analysis::AnalysisError;
 use analysis::spectra::{Spectrum, power_density};
 use basis::records::Series;
-use farm::case::{Case, Control};
+use farm::case::{Case, Control, Sense, helix_upstream};
 use formats::records::{RunRecords, StudyRecords};
 use report::{Signals, SpectrumLine};
 use std::path::Path;
@@ -17,7 +17,8 @@ use std::path::Path;
 /// Periods of the slow frequency in a segment of a density (–): so many values lie below that frequency.
 const SEGMENT_PERIODS: f64 = 8.0;
 
-/// All signals that the report of the study in `directory` shows; `records` are its own.
+/// All signals that the report of the study in `directory` shows; `records` are its own. What the rows are
+/// too few or too far apart for is no reason to withhold the rest of a report.
 ///
 /// # Errors
 /// [`PostprocessingError`] for records that cannot be analysed.
@@ -27,19 +28,40 @@ pub(crate) fn of_study(
 ) -> Result<Vec<Signals>, PostprocessingError> {
     let case = case_in(directory, &records.case_text)?;
     let mut signals = Vec::new();
-    for answer in spectra::of_study(&case, records)? {
+    for answer in unless_coarse(spectra::of_study(&case, records))? {
         signals.push(answer.signals());
     }
-    for found in meandering::of_study(&case, records)? {
+    for found in unless_coarse(meandering::of_study(&case, records))? {
         signals.push(found.signals());
     }
     Ok(signals)
+}
+
+/// `found`, or nothing where rows are too few or too far apart.
+fn unless_coarse<T: Default>(
+    found: Result<T, PostprocessingError>,
+) -> Result<T, PostprocessingError> {
+    use AnalysisError::{AboveNyquist, TooShort};
+    match found {
+        Err(PostprocessingError::Analysis {
+            source: AboveNyquist { .. } | TooShort { .. },
+            ..
+        }) => Ok(T::default()),
+        found => found,
+    }
 }
 
 /// What controls the turbines of `case` in `run`; nothing where that is of another version of the case.
 fn control_of<'c>(case: &'c Case, run: &RunRecords) -> &'c [Control] {
     let found = case.runs.get(run.manifest.run_index);
     found.map(|run| run.control.as_slice()).unwrap_or_default()
+}
+
+/// Sense and Strouhal number of the helix from upstream that meets turbine `index` of `case` in `run`.
+fn helix_in(case: &Case, run: &RunRecords, index: usize) -> Option<(Sense, f64)> {
+    let control = control_of(case, run);
+    let is_whole = control.len() == case.turbines.len();
+    is_whole.then(|| helix_upstream(index, &case.turbines, control)).flatten()
 }
 
 /// First row of `series` from `from` (s) on, the times from there, and their distance (s); nothing where

@@ -1,7 +1,7 @@
 //! Spectra of the wind where a turbine would stand, with a helix and without (figure 3 of van Vondelen et
 //! al., 2025), and of the tilt moment of a turbine that looks for a helix (their figure 5).
 
-use super::{analysed, control_of, density, line};
+use super::{analysed, control_of, density, helix_in, line};
 use crate::PostprocessingError;
 use crate::error::case_in;
 use crate::phase::{column, moments, tells};
@@ -9,7 +9,7 @@ use analysis::spectra::Spectrum;
 use control::excitation_rate;
 use control::phase_sync::PhaseSyncSettings;
 use estimation::helix::tuning::high_passed_variance;
-use farm::case::{Case, helix_upstream};
+use farm::case::Case;
 use formats::records::{self, RunRecords, StudyRecords};
 use report::{DensityFigure, DensityRow, Signals, SpectrumLine};
 use std::f64::consts::TAU;
@@ -117,7 +117,7 @@ pub(super) fn of_study(
 
 /// Frequency (Hz) of the first helix that meets turbine `index` in a run.
 fn excitation(case: &Case, records: &StudyRecords, index: usize) -> Option<f64> {
-    let upstream = |run: &RunRecords| helix_upstream(index, &case.turbines, control_of(case, run));
+    let upstream = |run: &RunRecords| helix_in(case, run, index);
     let (run, (_, strouhal)) = records.runs.iter().find_map(|run| Some((run, upstream(run)?)))?;
     let diameter = run.summary.conditions.rotor_diameter;
     Some(excitation_rate(strouhal, case.wind.speed, diameter) / TAU)
@@ -136,7 +136,7 @@ struct Place<'a> {
 impl Place<'_> {
     /// Whether a helix comes from upstream in `run`.
     fn has_helix(&self, run: &RunRecords) -> bool {
-        helix_upstream(self.index, &self.case.turbines, control_of(self.case, run)).is_some()
+        helix_in(self.case, run, self.index).is_some()
     }
 
     /// Runs for which `wanted`, with their colours: those without a helix first.
