@@ -174,41 +174,46 @@ impl Sweeping<'_> {
         for ((path, entry), label) in axes {
             match self.axis(path, entry, label) {
                 Ok(axis) => good.push(axis),
-                Err(problem) => problems.push(problem),
+                Err(found) => problems.extend(found),
             }
         }
         if problems.is_empty() { Ok(good) } else { Err(problems) }
     }
 
-    fn axis(&self, path: Vec<String>, entry: &Entry, label: String) -> Result<Axis, Problem> {
+    fn axis(&self, path: Vec<String>, entry: &Entry, label: String) -> Result<Axis, Vec<Problem>> {
         let key = path.join(".");
         if matches!(path[0].as_str(), "name" | "description") || path.last().is_some_and(is_name) {
             let fix = "leave it out: runs and studies of a sweep are named by their values";
             let message = format!("`{key}` cannot be swept");
-            return Err(self.problem(&entry.key_span, message, "a name", fix));
+            return Err(vec![self.problem(&entry.key_span, message, "a name", fix)]);
         }
         let Value::List(items) = &entry.node.value else {
             let message = format!("`sweep.{key}` must be a list, found {}", entry.node.kind());
             let fix = format!("write \"{key}\" = [ ... ] with the values to be taken");
-            return Err(self.problem(&entry.node.span, message, "must be a list", fix));
+            return Err(vec![self.problem(&entry.node.span, message, "must be a list", fix)]);
         };
         let mut values: Vec<(SweptValue, Node)> = Vec::with_capacity(items.len());
         for item in items {
             let Some(value) = value_of(item) else {
                 let message = format!("`sweep.{key}` holds {}", item.kind());
                 let fix = "give numbers, texts or lists of numbers";
-                return Err(self.problem(&item.span, message, "cannot be swept", fix));
+                return Err(vec![self.problem(&item.span, message, "cannot be swept", fix)]);
             };
             if values.iter().any(|(other, _)| other.words() == value.words()) {
                 let message = format!("`sweep.{key}` holds {} twice", value.words());
-                return Err(self.problem(&item.span, message, "again", "leave one of them out"));
+                return Err(vec![self.problem(
+                    &item.span,
+                    message,
+                    "again",
+                    "leave one of them out",
+                )]);
             }
             values.push((value, item.clone()));
         }
         if values.is_empty() {
             let message = format!("`sweep.{key}` holds no value");
             let fix = "give one value or more, or leave the key out";
-            return Err(self.problem(&entry.node.span, message, "empty", fix));
+            return Err(vec![self.problem(&entry.node.span, message, "empty", fix)]);
         }
         Ok(Axis { path, span: entry.key_span.clone(), label, items: values })
     }
