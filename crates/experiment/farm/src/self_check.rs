@@ -213,7 +213,7 @@ pub fn updates_per_second(
     let mut rotor = bare_rotor(model, wind, tunnel)?;
     let n_blades = model.definition.n_blades;
     let pitch = PerBlade::splat(n_blades, model.constants.fine_pitch);
-    let commands = Commands { pitch, generator_torque: 0.0 };
+    let commands = Commands { pitch, generator_torque: 0.0, yaw_rate: 0.0 };
     let mut winds = vec![Vector3::ZERO; rotor.stations().len()];
     let mut step = || -> Result<(), SelfCheckError> {
         air.sample(rotor.stations(), &mut winds);

@@ -280,7 +280,7 @@ mod tests {
             let prepared = Prepared::read(&wanted.file, &[]).unwrap();
             let says = |words: String| assert!(text.contains(&words), "{words}: {text}");
             says(format!("coarse, {:.1} m", prepared.plan.spacing));
-            let last = case.turbines.iter().map(|turbine| turbine.position_diameters[0]);
+            let last = case.turbines.iter().map(|turbine| turbine.position.own()[0]);
             let length = last.fold(0.0, f64::max) * prepared.plan.diameter;
             let passage = length / (WAKE_SPEED * speed);
             says(format!("a wake takes {passage:.0} s to the last turbine"));

@@ -29,11 +29,12 @@ pub fn length_scale(wind: &Wind, hub_height: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::TurbulenceModel;
+    use crate::case::{FROM_WEST, TurbulenceModel};
 
     fn wind(turbulence_intensity: f64, shear: Shear) -> Wind {
         Wind {
             speed: 9.0,
+            direction: FROM_WEST,
             turbulence_intensity,
             shear,
             length_scale: None,

@@ -86,7 +86,7 @@ fn other_keys_make_studies_named_by_their_values() {
         ]
     );
     assert_eq!(cases[2].wind.speed, 9.5);
-    assert_eq!(cases[1].turbines[1].position_diameters, [7.0, 0.5]);
+    assert_eq!(cases[1].turbines[1].position, farm::case::Position::Diameters([7.0, 0.5]));
     // Who wants one case is told that there are several.
     let error = parse("case.toml", &with(sweep), &[]).unwrap_err().to_lines();
     assert!(error.contains("wind.speed, turbine.T2.position_diameters makes several"), "{error}");

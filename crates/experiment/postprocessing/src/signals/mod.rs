@@ -61,7 +61,7 @@ fn control_of<'c>(case: &'c Case, run: &RunRecords) -> &'c [Control] {
 fn helix_in(case: &Case, run: &RunRecords, index: usize) -> Option<(Sense, f64)> {
     let control = control_of(case, run);
     let is_whole = control.len() == case.turbines.len();
-    is_whole.then(|| helix_upstream(index, &case.turbines, control)).flatten()
+    is_whole.then(|| helix_upstream(index, &case.places(), control)).flatten()
 }
 
 /// First row of `series` from `from` (s) on, the times from there, and their distance (s); nothing where
