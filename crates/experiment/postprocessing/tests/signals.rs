@@ -40,7 +40,7 @@ fn assert_drawn(figures: &Path, name: &str) {
 fn winds_and_spectra_of_a_row_stand_in_numbers_figures_and_report() {
     let folder = written(&row());
     let output = done(&options(folder.path()));
-    let (_, report) = postprocessing::report(&output).expect("a report");
+    let report = postprocessing::report(&output).expect("a report").page;
     let figures = folder.path().join("drawn");
 
     let question = PhaseQuestion { run: output.join("joined"), ..PhaseQuestion::default() };
@@ -165,7 +165,7 @@ fn rows_far_apart_still_have_their_report() {
     let run = "[[run]]\nname = \"baseline\"\ncontrol.T1 = { kind = \"meandering\", factor = 1.0, amplitude_deg = 0.0 }\n[output]\ninterval = 20.0\n";
     let folder = written(&small::case("coarse", "", [40.0, 200.0], &[NREL_5MW], run));
     let output = done(&options(folder.path()));
-    let (_, report) = postprocessing::report(&output).expect("a report");
+    let report = postprocessing::report(&output).expect("a report").page;
     let page = fs::read_to_string(report).expect("a page");
     assert!(page.contains("<figure id=\"power\">") && !page.contains("meandering-loads"), "{page}");
     // Who asks for them is told.
