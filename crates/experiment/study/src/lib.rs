@@ -21,6 +21,7 @@ mod cost;
 mod entry;
 mod error;
 mod gains;
+mod hosting;
 mod in_memory;
 mod loads;
 mod models;

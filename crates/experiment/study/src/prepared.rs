@@ -2,6 +2,7 @@
 //! yet.
 
 use crate::StudyError;
+use crate::hosting;
 use crate::models::{self, Machines};
 use crate::threads;
 use crate::warnings::{self, SetupWarning};
@@ -31,6 +32,8 @@ pub struct Prepared {
     /// Text of each turbine model's file, and of each controller's own input file with its table; none of
     /// models that were given as values.
     pub turbine_texts: BTreeMap<String, String>,
+    /// SHA-256 of each shared library that controls a turbine, and of its input file, by their names.
+    pub libraries: BTreeMap<String, String>,
     /// Domain and steps.
     pub plan: Plan,
     /// The wind that enters, its turbulence left out.
@@ -59,7 +62,8 @@ impl Prepared {
     }
 
     fn new(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
-        let case = file.case.clone();
+        let mut case = file.case.clone();
+        hosting::attach(&mut case, file.folder());
         let plan = plan(&case, &machines.footprints(case.wind.speed))?;
         let models = machines.equipped(&case);
         threads::check(file)?;
@@ -76,6 +80,7 @@ impl Prepared {
         Ok(Self {
             case_text: formats::case::write(&case),
             turbine_texts: machines.texts,
+            libraries: hosting::digests(&case, file.folder()),
             folder: file.folder().to_owned(),
             case,
             models,
@@ -155,7 +160,9 @@ fn check_control(case: &Case, plan: &Plan, models: &[TurbineModel]) -> Result<()
             let model = model.clone().without_individual_pitch();
             let mut control = control.clone();
             control.response = control.response.or(control.kind().any_response());
-            if let Err(source) = controller(&control, &model, case, plan) {
+            let built = controller(&control, &model, case, plan).map(|_| ());
+            let begun = || hosting::check(&control, placement, &model, (case, plan));
+            if let Err(source) = built.and_then(|()| begun()) {
                 let (run, turbine) = (run.name.clone(), placement.name.clone());
                 return Err(StudyError::Control { run, turbine, source: Box::new(source) });
             }

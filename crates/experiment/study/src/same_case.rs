@@ -31,9 +31,7 @@ pub(crate) fn check_same(
     if !same_case {
         return Err(StudyError::OtherCase { run, directory });
     }
-    let texts = prepared.turbine_texts.iter();
-    let texts = texts.map(|(name, text)| (name.clone(), records::sha256(text.as_bytes())));
-    let turbine = another(&manifest.turbines_sha256, &texts.collect());
+    let turbine = another(&manifest.turbines_sha256, &prepared.machine_digests());
     match turbine.or_else(|| another(&manifest.wind_sha256, wind)) {
         None => Ok(()),
         Some((file, sha256)) => Err(StudyError::OtherFile { run, directory, file, sha256 }),

@@ -2,9 +2,11 @@
 
 use super::Helix;
 use crate::Controller;
+use crate::discon::base;
 use crate::excitation::Excitation;
-use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, sense, starts_too_late};
+use crate::keys::{AMPLITUDE, BASE, PHASE_RANGE, START, STOP, STROUHAL, sense, starts_too_late};
 use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site, stop_of};
+use crate::library::Hosted;
 use basis::Sense;
 use basis::keys::LeftOut::{Required, Value};
 use basis::keys::{Holds, Objection, Table, Values, key};
@@ -39,6 +41,11 @@ static TABLE: Table = Table {
         ),
         START,
         STOP,
+        BASE[0],
+        BASE[1],
+        BASE[2],
+        BASE[3],
+        BASE[4],
     ],
 };
 
@@ -66,11 +73,15 @@ impl ControllerKind for HelixKind {
         helix.azimuth_offset = values.angle("azimuth_offset_deg");
         helix.start = values.number("start");
         helix.stop = stop_of(helix.start, values.optional_number("stop"), helix.rate)?;
-        Ok(helix.on_top_of(site.baseline()))
+        Ok(helix.on_top_of(base(control, site)?))
     }
 
     fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
         Some((sense(control.values()), control.values().number("strouhal")))
+    }
+
+    fn hosted(&self, control: &Control) -> Option<Hosted> {
+        Hosted::of(control.values())
     }
 
     fn pitching(&self, control: &Control) -> Option<Pitching> {

@@ -178,7 +178,7 @@ pub(super) static TURBINE: Table = Table {
             Holds::Sensors,
             "",
             Otherwise("none"),
-            "Further sensors, each with a name of its own: `sensors.NAME = { kind = … }`. None comes with the program yet; programs built on it add theirs.",
+            "Further sensors, each with a name of its own: `sensors.NAME = { kind = … }`; programs built on this one add kinds of their own.",
         ),
     ],
 };
