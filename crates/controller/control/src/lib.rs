@@ -20,6 +20,7 @@ pub mod meandering;
 mod outcome;
 pub mod phase_sync;
 pub mod pulse;
+mod stop;
 
 pub use absent::ABSENT;
 pub use baseline::Baseline;

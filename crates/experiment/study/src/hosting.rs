@@ -1,6 +1,5 @@
 //! Shared libraries as controllers in a study: who opens them, and whether they can begin.
 
-use crate::prepared::Prepared;
 use control::ControlError;
 use control::library::{ANEMOMETER, LibraryError};
 use farm::assemble::{AssemblyError, TurbineModel, site};
@@ -23,12 +22,12 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) {
     }
 }
 
-/// `run` of the case of `setup` with what its libraries write in `folder`.
-pub(crate) fn recorded(setup: &Prepared, run: &Run, folder: &RunFolder) -> Run {
+/// `run` of `case`, whose paths are relative to `at`, with what its libraries write in `folder`.
+pub(crate) fn recorded(case: &Case, at: &Path, run: &Run, folder: &RunFolder) -> Run {
     let mut run = run.clone();
-    for (control, placement) in run.control.iter_mut().zip(&setup.case.turbines) {
+    for (control, placement) in run.control.iter_mut().zip(&case.turbines) {
         if control.libraries.is_some() {
-            let host = Host::new(setup.folder(), &placement.name).with_outputs(folder.path());
+            let host = Host::new(at, &placement.name).with_outputs(folder.path());
             control.libraries = Some(Arc::new(host));
         }
     }
@@ -74,13 +73,4 @@ pub(crate) fn check(
         return Err(ControlError::Library(LibraryError(message)).into());
     }
     Ok(control::discon::trial(&hosted, libraries, &site(model, case, plan))?)
-}
-
-impl Prepared {
-    /// SHA-256 of turbine files, of controllers' inputs and of shared libraries, by their names.
-    pub(crate) fn machine_digests(&self) -> BTreeMap<String, String> {
-        let texts = self.turbine_texts.iter();
-        let texts = texts.map(|(name, text)| (name.clone(), records::sha256(text.as_bytes())));
-        texts.chain(self.libraries.clone()).collect()
-    }
 }

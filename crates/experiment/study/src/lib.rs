@@ -20,6 +20,7 @@ mod columns;
 mod cost;
 mod entry;
 mod error;
+mod file_of_wind;
 mod gains;
 mod hosting;
 mod in_memory;

@@ -2,6 +2,7 @@
 //! yet.
 
 use crate::StudyError;
+use crate::file_of_wind;
 use crate::hosting;
 use crate::models::{self, Machines};
 use crate::threads;
@@ -9,7 +10,6 @@ use crate::warnings::{self, SetupWarning};
 use farm::assemble::{TurbineModel, controller};
 use farm::case::Case;
 use farm::operation::check_operation;
-use farm::solvers::WindSource;
 use farm::wind::{self, Site};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -67,15 +67,21 @@ impl Prepared {
         let plan = plan(&case, &machines.footprints(case.wind.speed))?;
         let models = machines.equipped(&case);
         threads::check(file)?;
-        let recorded = recorded_speed(file)?;
+        let table = file_of_wind::table(file, &plan)?;
+        let recorded = file_of_wind::recorded_speed(file, table.as_deref())?;
         check_operation(&case, &plan, &models, recorded)?;
         check_control(&case, &plan, &models)?;
-        let mean_inflow = wind::without_turbulence(&case, &plan)?;
+        let warned = file_of_wind::warning(&case, table.as_deref());
+        let mean_inflow = match table {
+            Some(table) => table as Arc<dyn Inflow>,
+            None => wind::without_turbulence(&case, &plan)?,
+        };
         let mut warnings = warnings::of(&case, &plan);
         let site = Site { case: &case, plan: &plan, models: &models };
         let turbulence = wind::turbulence(&site).and_then(|turbulence| turbulence.warning);
         let operation = warnings::of_operation(&case, &models);
-        let further = turbulence.into_iter().chain(machines.warnings).chain(operation);
+        let further =
+            turbulence.into_iter().chain(machines.warnings).chain(operation).chain(warned);
         warnings.extend(further.map(SetupWarning::from));
         Ok(Self {
             case_text: formats::case::write(&case),
@@ -98,28 +104,6 @@ impl Prepared {
     /// What the wind is made for.
     pub(crate) fn site(&self) -> Site<'_> {
         Site { case: &self.case, plan: &self.plan, models: &self.models }
-    }
-}
-
-/// Mean speed (m/s) of the wind that the case of `file` reads, where it reads one; that it can be read shows
-/// here, not when a run begins.
-///
-/// # Errors
-/// [`StudyError::Case`] at `wind.planes`.
-fn recorded_speed(file: &CaseFile) -> Result<Option<f64>, StudyError> {
-    if file.case.flow.solver.wind != WindSource::Planes {
-        return Ok(None);
-    }
-    let name = file.case.wind.planes.as_deref().unwrap_or_default();
-    match formats::turbulence_box::open(&file.folder().join(name)) {
-        Ok(planes) => Ok(Some(planes.grid().speed)),
-        Err(error) => {
-            let mut message = format!("the wind cannot be read: {error}");
-            if let Some(cause) = error.source() {
-                message += &format!(": {cause}");
-            }
-            Err(StudyError::Case(objection(file, &["wind", "planes"], message)))
-        }
     }
 }
 

@@ -88,7 +88,8 @@ pub(crate) fn simulate(
 ) -> Result<Ending, StudyError> {
     let farm = {
         let observer: RefCell<&mut dyn Observer> = RefCell::new(&mut *observer);
-        let run = hosting::recorded(&job.ready.prepared, job.run, job.folder);
+        let setup = &job.ready.prepared;
+        let run = hosting::recorded(&setup.case, setup.folder(), job.run, job.folder);
         job.ready.farm_until(&run, &making_turbulence(stop, &observer))
     };
     let farm = match farm {
