@@ -52,6 +52,17 @@ pub trait Controller: Send {
     /// signal that is not known yet is left as it is.
     fn write_signals(&self, _values: &mut [f64]) {}
 
+    /// Why it cannot go on, after an update or once it is restored; nothing of this house ever fails, a
+    /// controller of others may. The run ends there.
+    fn failure(&self) -> Option<&str> {
+        None
+    }
+
+    /// What a reader of the run's numbers must know of it, each as what follows "run R: T".
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Everything that time changes, for a checkpoint; [`to_bytes`] makes it of plain data.
     fn save(&self) -> Vec<u8>;
 

@@ -103,6 +103,14 @@ impl<E: Excitation> Controller for OnTop<E> {
         self.excitation.write_signals(own);
     }
 
+    fn failure(&self) -> Option<&str> {
+        self.inner.failure()
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.inner.remarks()
+    }
+
     fn save(&self) -> Vec<u8> {
         to_bytes(&[self.inner.save(), self.excitation.save()])
     }

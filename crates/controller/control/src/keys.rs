@@ -31,6 +31,44 @@ pub(crate) const STOP: Key = key(
     Otherwise("never"),
     "Time at which it fades out again, over one excitation period as it fades in; at least one period after `start`. After the end of the run it changes nothing.",
 );
+/// A shared library under an excitation.
+pub(crate) const BASE: [Key; 5] = [
+    key(
+        "library",
+        Holds::Text,
+        "",
+        Otherwise("baseline, the built-in controller"),
+        "Shared library that decides pitch and torque, on top of which the excitation goes; as for `kind = \"discon\"`.",
+    ),
+    key(
+        "input",
+        Holds::Text,
+        "",
+        Otherwise("none"),
+        "Input file of the library, such as ROSCO's `DISCON.IN`; a path relative to the case file.",
+    ),
+    key(
+        "procedure",
+        Holds::Text,
+        "",
+        Otherwise("`DISCON`"),
+        "Name of the procedure in the library.",
+    ),
+    key(
+        "pitch_control",
+        Holds::Choice(&["individual", "collective"]),
+        "",
+        Otherwise("`individual`"),
+        "Which pitch the library is asked for: that of each blade (records 42 to 44), or one for all (record 45).",
+    ),
+    key(
+        "anemometer",
+        Holds::Name,
+        "",
+        Otherwise("the turbine's sensor called `anemometer`"),
+        "Sensor of the turbine that shows the library the wind: speed (record 27), and yaw error where it has a second channel (record 24); `none` for a library that looks at no wind.",
+    ),
+];
 pub(crate) const PHASE_RANGE: Holds = from(-360.0, 360.0);
 
 /// What about the key `start` in `values` cannot be in a run of `duration` (s).

@@ -3,6 +3,7 @@
 
 use crate::baseline::{CoefficientTable, Constants};
 use crate::excitation::excitation_rate;
+use crate::library::{Hosted, Libraries, LibraryError};
 use crate::meandering::MeanderingError;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use crate::phase_sync::PhaseSyncSettings;
@@ -34,6 +35,11 @@ pub trait ControllerKind: Named + Sync {
     /// # Errors
     /// [`ControlError`] for a controller that cannot be built.
     fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError>;
+
+    /// The shared library that it runs, or goes on top of.
+    fn hosted(&self, _control: &Control) -> Option<Hosted> {
+        None
+    }
 
     /// Whether the turbine is there at all.
     fn is_there(&self) -> bool {
@@ -135,6 +141,8 @@ pub struct Site<'a> {
     pub air_density: f64,
     /// Control interval (s).
     pub interval: f64,
+    /// Duration of the run (s).
+    pub duration: f64,
     /// Whether the flow resolves the rotor's induction; otherwise momentum theory makes it, with the blades.
     pub flow_resolves_induction: bool,
 }
@@ -241,6 +249,9 @@ pub enum ControlError {
         /// Earliest stop, in whole seconds (s).
         earliest: f64,
     },
+    /// A shared library that cannot serve.
+    #[error(transparent)]
+    Library(LibraryError),
     /// Nothing runs on a turbine that is not there.
     #[error("the turbine is not there in this run")]
     NotThere,
@@ -273,13 +284,15 @@ pub struct Control {
     values: Values,
     /// What was found of how the turbine's pitch acts, before the runs.
     pub response: Option<PitchResponse>,
+    /// Who opens the shared library that it runs; a study sets it where there is one.
+    pub libraries: Option<Arc<dyn Libraries>>,
 }
 
 impl Control {
     /// `kind` with `values` as they were read and checked.
     pub fn checked(kind: &'static dyn ControllerKind, values: Values) -> Self {
         let values = values.in_order_of(kind.table());
-        Self { kind, values, response: None }
+        Self { kind, values, response: None, libraries: None }
     }
 
     /// `kind` with the values `given`, in the units of the case file; the others have their defaults.
@@ -375,7 +388,7 @@ impl Control {
 
 impl fmt::Debug for Control {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, values, response } = self;
+        let Self { kind, values, response, .. } = self;
         write!(formatter, "{} {values:?} {response:?}", kind.name())
     }
 }

@@ -4,16 +4,19 @@
 //! top](OnTop) of what another controller decides, in the end of [`Baseline`]. Each kind of controller has a
 //! folder of its own with its law and its
 //! [`ControllerKind`]: its keys in the case file, its checks, how it is built, what the summary says of it.
-//! The list of kinds is [`CONTROLLERS`]. Nothing here allocates, blocks or fails in [`Controller::update`].
+//! The list of kinds is [`CONTROLLERS`]. Nothing here allocates, blocks or fails in [`Controller::update`];
+//! what a shared library of others does in it is behind [`library`].
 
 mod absent;
 pub mod baseline;
 mod controller;
 pub mod derate;
+pub mod discon;
 mod excitation;
 pub mod helix;
 mod keys;
 mod kind;
+pub mod library;
 pub mod meandering;
 mod outcome;
 pub mod phase_sync;
@@ -26,6 +29,7 @@ pub use baseline::Baseline;
 pub use basis::Sense;
 pub use controller::{Controller, ForeignState, from_bytes, to_bytes};
 pub use derate::Derate;
+pub use discon::Discon;
 pub use excitation::{Excitation, OnTop, excitation_rate};
 pub use helix::Helix;
 pub use kind::{
@@ -49,5 +53,6 @@ pub static CONTROLLERS: Registry<dyn ControllerKind> = Registry::new(&[
     &meandering::MEANDERING,
     &steering::STEERING,
     &derate::DERATE,
+    &discon::DISCON,
     &ABSENT,
 ]);

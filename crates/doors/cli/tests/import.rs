@@ -34,3 +34,59 @@ fn a_file_without_all_figures_is_written_and_reported_as_incomplete() {
     let output = wakemix(&["turbine", "show", "small.toml"]);
     assert_eq!(output.status.code(), Some(2));
 }
+
+/// Lacks the generator's inertia alone.
+const WHOLE: &str = include_str!("../../../experiment/formats/src/windio/whole.yaml");
+const CASE: &str = r#"
+name = "imported"
+[wind]
+speed = 11.0
+turbulence_intensity = 0.0
+[flow]
+solver = "uniform"
+[time]
+spin_up = 60.0
+duration = 120.0
+[[turbine]]
+name = "T1"
+model = "whole.toml"
+position_diameters = [0.0, 0.0]
+[[run]]
+name = "baseline"
+"#;
+
+#[test]
+fn a_template_that_is_filled_in_makes_a_turbine_that_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("whole.yaml"), WHOLE).unwrap();
+    fs::write(at("case.toml"), CASE).unwrap();
+    let wakemix = |arguments: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_wakemix"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .output()
+            .unwrap()
+    };
+    let output = wakemix(&["turbine", "import", "whole.yaml", "-o", "whole.toml"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("polars: \"Clean\" at Re 3.000e6"), "{message}");
+    let template = fs::read_to_string(at("whole.missing.toml")).unwrap();
+    let filled = template
+        .replace("# [drive_train]", "[drive_train]")
+        .replace("# generator_inertia = ?", "generator_inertia = 50000.0");
+    assert_ne!(filled, template);
+    fs::write(at("whole.missing.toml"), filled).unwrap();
+    let import = ["turbine", "import", "whole.yaml", "-o", "whole.toml", "--overwrite"];
+    let output = wakemix(&[&import[..], &["--complete", "whole.missing.toml"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = wakemix(&["run", "case.toml"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    // At rated: 2 MW of electrical power, within the last of the settling.
+    let summary = fs::read_to_string(at("runs/imported/baseline/summary.json")).unwrap();
+    let (_, power) = summary.split_once("\"power\"").unwrap();
+    let (_, mean) = power.split_once("\"mean\":").unwrap();
+    let mean: f64 = mean.split([',', '}']).next().unwrap().trim().parse().unwrap();
+    assert!((mean / 2e6 - 1.0).abs() < 0.02, "{mean} W");
+}

@@ -150,6 +150,7 @@ pub fn site<'a>(model: &'a TurbineModel, case: &Case, plan: &Plan) -> Site<'a> {
         diameter: plan.diameter,
         air_density: case.wind.air_density,
         interval: plan.interval,
+        duration: case.time.duration,
         flow_resolves_induction: case.flow.solver.resolves_induction,
     }
 }

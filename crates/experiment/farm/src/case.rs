@@ -61,6 +61,8 @@ pub struct Wind {
     pub turbulence_model: TurbulenceModel,
     /// File with the planes of wind that [`Solver::PLANES`] reads, relative to the case file.
     pub planes: Option<String>,
+    /// File with the wind over time for a solver of deterministic wind, relative to the case file.
+    pub table: Option<String>,
     /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at
     /// hub height.
     pub veer: f64,

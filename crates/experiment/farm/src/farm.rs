@@ -30,6 +30,16 @@ pub enum FarmError {
         /// What is no longer finite.
         breakdown: Breakdown,
     },
+    /// A turbine's controller could not.
+    #[error("the controller of {turbine} stopped the run at {time:.2} s: {message}")]
+    Controller {
+        /// Name of the turbine.
+        turbine: String,
+        /// Simulated time (s).
+        time: f64,
+        /// What it says.
+        message: String,
+    },
 }
 
 /// Observes a run: files, statistics, live plots.
@@ -96,10 +106,22 @@ impl Machine {
         self.turbine.advance(interval, &self.winds, &self.commands);
     }
 
+    fn shown_name(&self) -> String {
+        if self.name.is_empty() { "a turbine" } else { &self.name }.to_owned()
+    }
+
+    /// Whether its controller can go on at `time` (s).
+    fn check_controller(&self, time: f64) -> Result<(), FarmError> {
+        self.controller.failure().map_or(Ok(()), |message| {
+            let (turbine, message) = (self.shown_name(), message.to_owned());
+            Err(FarmError::Controller { turbine, time, message })
+        })
+    }
+
     /// Whether it is still a machine at `time` (s).
     fn check(&self, time: f64) -> Result<(), FarmError> {
         self.turbine.check().map_err(|breakdown| FarmError::Turbine {
-            turbine: if self.name.is_empty() { "a turbine" } else { &self.name }.to_owned(),
+            turbine: self.shown_name(),
             time,
             position: self.turbine.frame().hub,
             breakdown,
@@ -156,12 +178,14 @@ impl<Flow: FlowSolver + Sync> Farm<Flow> {
     /// Moves everything on by one control interval.
     ///
     /// # Errors
-    /// [`FarmError`] when the flow solver or a turbine breaks down; the step is then not counted.
+    /// [`FarmError`] when the flow solver or a turbine breaks down, or a controller cannot go on; the step is
+    /// then not counted.
     pub fn advance(&mut self, recorder: &mut impl Recorder) -> Result<(), FarmError> {
         let time = self.time();
         self.forces.clear();
         for (index, machine) in self.machines.iter_mut().enumerate() {
             let truth = machine.decide(time, self.interval, &self.flow);
+            machine.check_controller(time)?;
             recorder.record(index, &truth, &machine.commands);
         }
         let (flow, interval) = (&self.flow, self.interval);

@@ -10,8 +10,8 @@ const FIX: &str =
 
 /// Nothing when the mean wind at the hub of every turbine of `case` lies between its cut-in and cut-out wind
 /// speeds, where its `models` state them, before and after a lasting change. What comes and goes, gusts and
-/// turbulence, may lead beyond. `recorded` is the mean speed of the wind at hub height where that comes from
-/// a file (m/s).
+/// turbulence, may lead beyond. `recorded` is the key of the file that the wind comes from, if
+/// it does, and its mean speed at hub height (m/s).
 ///
 /// # Errors
 /// [`PlanError::NotInOperation`].
@@ -19,12 +19,12 @@ pub fn check_operation(
     case: &Case,
     plan: &Plan,
     models: &[TurbineModel],
-    recorded: Option<f64>,
+    recorded: Option<(&'static str, f64)>,
 ) -> Result<(), PlanError> {
     let (speed, profile) = (case.wind.speed, profile(case, plan));
     let mut winds = vec![(format!("wind.speed = {speed} m/s"), "speed", speed)];
-    if let Some(speed) = recorded {
-        winds.push((format!("the file of wind.planes, with {speed} m/s,"), "planes", speed));
+    if let Some((key, speed)) = recorded {
+        winds.push((format!("the file of wind.{key}, with {speed} m/s,"), key, speed));
     }
     if let Some(last) = last_speed(case) {
         winds.push((format!("wind.event, which leads to {last} m/s,"), "event", last));

@@ -21,6 +21,7 @@ pub mod table;
 pub mod turbine_file;
 pub mod turbulence_box;
 pub mod vtk;
+pub mod wind_table;
 pub mod windio;
 
 pub use atomic::FileError;

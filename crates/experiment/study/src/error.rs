@@ -79,8 +79,8 @@ pub enum StudyError {
     #[error("the checkpoint does not fit the grid")]
     #[diagnostic(help("{}", MADE_OTHERWISE))]
     PlaneSize(#[from] PlaneSizeError),
-    /// The simulation broke down.
-    #[error("run {run} diverged: {source}")]
+    /// The simulation broke down, or a controller ended it.
+    #[error("run {run} {}: {source}", verb(source))]
     #[diagnostic(help("{}", kept(source, checkpoint, series)))]
     Diverged {
         /// Run.
@@ -303,10 +303,21 @@ fn put_back(file: &str, sha256: &Option<String>) -> String {
     )
 }
 
+/// How `source` ended a run.
+fn verb(source: &FarmError) -> &'static str {
+    match source {
+        FarmError::Controller { .. } => "ended early",
+        _ => "diverged",
+    }
+}
+
 /// What to do after `source`, and what is left.
 fn kept(source: &FarmError, checkpoint: &Option<PathBuf>, series: &Option<PathBuf>) -> String {
     let mut text = String::from(match source {
         FarmError::Flow(_) => "a shorter flow.step or more cells may carry it",
+        FarmError::Controller { .. } => {
+            "the message is the controller's own: look into its input, and at what it saw before"
+        }
         FarmError::Turbine { .. } => {
             "look at wind, rotor speed and loads before it: a shorter flow.step may carry the turbine, and no step does where wind or numbers of the case are beyond what a turbine is made for"
         }

@@ -5,7 +5,7 @@ use crate::gains;
 use crate::outputs::series::{self, Rows};
 use crate::outputs::{mean_planes, slices};
 use crate::ready::Ready;
-use crate::simulate::{clipped_shares, cost};
+use crate::simulate::{cost, left};
 use crate::summarise::summarise;
 use crate::{Prepared, StudyError};
 use basis::records::{Plane, Series, Summary};
@@ -79,7 +79,7 @@ impl Ready {
         let peak_memory = formats::machine::peak_memory();
         let cost = cost(&prepared.plan, &farm, started.elapsed().as_secs_f64(), peak_memory);
         let mut columns = Columns::of_series(series, prepared);
-        let summary = summarise(prepared, run, &mut columns, &clipped_shares(&farm), cost)?;
+        let summary = summarise(prepared, run, &mut columns, &left(&farm), cost)?;
         let last_planes = match farm.flow().fields() {
             Some(fields) => slices::of(prepared).iter().map(|slice| slice.plane(fields)).collect(),
             None => Vec::new(),

@@ -2,13 +2,14 @@
 //! yet.
 
 use crate::StudyError;
+use crate::file_of_wind;
+use crate::hosting;
 use crate::models::{self, Machines};
 use crate::threads;
 use crate::warnings::{self, SetupWarning};
 use farm::assemble::{TurbineModel, controller};
 use farm::case::Case;
 use farm::operation::check_operation;
-use farm::solvers::WindSource;
 use farm::wind::{self, Site};
 use farm::{Plan, plan};
 use flow::Inflow;
@@ -31,6 +32,8 @@ pub struct Prepared {
     /// Text of each turbine model's file, and of each controller's own input file with its table; none of
     /// models that were given as values.
     pub turbine_texts: BTreeMap<String, String>,
+    /// SHA-256 of each shared library that controls a turbine, and of its input file, by their names.
+    pub libraries: BTreeMap<String, String>,
     /// Domain and steps.
     pub plan: Plan,
     /// The wind that enters, its turbulence left out.
@@ -59,23 +62,31 @@ impl Prepared {
     }
 
     fn new(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
-        let case = file.case.clone();
+        let mut case = file.case.clone();
+        hosting::attach(&mut case, file.folder());
         let plan = plan(&case, &machines.footprints(case.wind.speed))?;
         let models = machines.equipped(&case);
         threads::check(file)?;
-        let recorded = recorded_speed(file)?;
+        let table = file_of_wind::table(file, &plan)?;
+        let recorded = file_of_wind::recorded_speed(file, table.as_deref())?;
         check_operation(&case, &plan, &models, recorded)?;
         check_control(&case, &plan, &models)?;
-        let mean_inflow = wind::without_turbulence(&case, &plan)?;
+        let warned = file_of_wind::warning(&case, table.as_deref());
+        let mean_inflow = match table {
+            Some(table) => table as Arc<dyn Inflow>,
+            None => wind::without_turbulence(&case, &plan)?,
+        };
         let mut warnings = warnings::of(&case, &plan);
         let site = Site { case: &case, plan: &plan, models: &models };
         let turbulence = wind::turbulence(&site).and_then(|turbulence| turbulence.warning);
         let operation = warnings::of_operation(&case, &models);
-        let further = turbulence.into_iter().chain(machines.warnings).chain(operation);
+        let further =
+            turbulence.into_iter().chain(machines.warnings).chain(operation).chain(warned);
         warnings.extend(further.map(SetupWarning::from));
         Ok(Self {
             case_text: formats::case::write(&case),
             turbine_texts: machines.texts,
+            libraries: hosting::digests(&case, file.folder()),
             folder: file.folder().to_owned(),
             case,
             models,
@@ -93,28 +104,6 @@ impl Prepared {
     /// What the wind is made for.
     pub(crate) fn site(&self) -> Site<'_> {
         Site { case: &self.case, plan: &self.plan, models: &self.models }
-    }
-}
-
-/// Mean speed (m/s) of the wind that the case of `file` reads, where it reads one; that it can be read shows
-/// here, not when a run begins.
-///
-/// # Errors
-/// [`StudyError::Case`] at `wind.planes`.
-fn recorded_speed(file: &CaseFile) -> Result<Option<f64>, StudyError> {
-    if file.case.flow.solver.wind != WindSource::Planes {
-        return Ok(None);
-    }
-    let name = file.case.wind.planes.as_deref().unwrap_or_default();
-    match formats::turbulence_box::open(&file.folder().join(name)) {
-        Ok(planes) => Ok(Some(planes.grid().speed)),
-        Err(error) => {
-            let mut message = format!("the wind cannot be read: {error}");
-            if let Some(cause) = error.source() {
-                message += &format!(": {cause}");
-            }
-            Err(StudyError::Case(objection(file, &["wind", "planes"], message)))
-        }
     }
 }
 
@@ -155,7 +144,9 @@ fn check_control(case: &Case, plan: &Plan, models: &[TurbineModel]) -> Result<()
             let model = model.clone().without_individual_pitch();
             let mut control = control.clone();
             control.response = control.response.or(control.kind().any_response());
-            if let Err(source) = controller(&control, &model, case, plan) {
+            let built = controller(&control, &model, case, plan).map(|_| ());
+            let begun = || hosting::check(&control, placement, &model, (case, plan));
+            if let Err(source) = built.and_then(|()| begun()) {
                 let (run, turbine) = (run.name.clone(), placement.name.clone());
                 return Err(StudyError::Control { run, turbine, source: Box::new(source) });
             }

@@ -43,9 +43,8 @@ pub(crate) fn standing(
             return Err(StudyError::OtherCase { run: name, directory, differences });
         }
     };
-    let texts = prepared.turbine_texts.iter();
-    let texts = texts.map(|(name, text)| (name.clone(), records::sha256(text.as_bytes())));
-    if let Some((file, sha256)) = another(&manifest.turbines_sha256, &texts.collect()) {
+    let machines = prepared.machine_digests();
+    if let Some((file, sha256)) = another(&manifest.turbines_sha256, &machines) {
         return Err(StudyError::OtherFile { run: name, directory, file, sha256 });
     }
     match another(&manifest.wind_sha256, wind) {
@@ -153,13 +152,24 @@ pub(crate) fn another(
 }
 
 impl Prepared {
+    /// SHA-256 of turbine files, of controllers' inputs and of shared libraries, by their names.
+    fn machine_digests(&self) -> BTreeMap<String, String> {
+        let texts = self.turbine_texts.iter();
+        let texts = texts.map(|(name, text)| (name.clone(), records::sha256(text.as_bytes())));
+        texts.chain(self.libraries.clone()).collect()
+    }
+
     /// SHA-256 of each file of wind that the case reads, as the files are now.
     ///
     /// # Errors
     /// [`StudyError::File`] for one that cannot be read.
     pub(crate) fn wind_digests(&self) -> Result<WindDigests, StudyError> {
-        let Some(name) = self.case.wind.planes.as_ref() else { return Ok(BTreeMap::new()) };
         let mut digests = BTreeMap::new();
+        if let Some(name) = &self.case.wind.table {
+            let digest = records::sha256_of_file(&self.folder().join(name), "the table of wind")?;
+            digests.insert(name.clone(), digest);
+        }
+        let Some(name) = self.case.wind.planes.as_ref() else { return Ok(digests) };
         for path in formats::turbulence_box::files(&self.folder().join(name))? {
             let named = path.strip_prefix(self.folder()).unwrap_or(&path);
             let digest = records::sha256_of_file(&path, "the file of wind")?;

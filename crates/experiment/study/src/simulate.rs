@@ -3,9 +3,11 @@
 mod checkpoint;
 
 use crate::StudyError;
+use crate::hosting;
 use crate::observer::{Observer, Progress, making_turbulence};
 use crate::outputs::{Outputs, Stage, Writers};
 use crate::ready::Ready;
+use crate::summarise::Left;
 use basis::records::Cost;
 use checkpoint::Before;
 use farm::case::Run;
@@ -55,8 +57,8 @@ pub(crate) enum Ending {
     Complete {
         /// What it cost, all processes that made it together.
         cost: Cost,
-        /// Share of instants at which a pitch limit held a command back, turbine by turbine (–).
-        clipped_shares: Vec<f64>,
+        /// What its turbines leave beside the series, turbine by turbine.
+        left: Vec<Left>,
         /// What of the machine decided its bits, in words.
         backend: String,
     },
@@ -86,7 +88,9 @@ pub(crate) fn simulate(
 ) -> Result<Ending, StudyError> {
     let farm = {
         let observer: RefCell<&mut dyn Observer> = RefCell::new(&mut *observer);
-        job.ready.farm_until(job.run, &making_turbulence(stop, &observer))
+        let setup = &job.ready.prepared;
+        let run = hosting::recorded(&setup.case, setup.folder(), job.run, job.folder);
+        job.ready.farm_until(&run, &making_turbulence(stop, &observer))
     };
     let farm = match farm {
         Err(StudyError::Inflow(InflowError::BrokenOff)) => return Ok(Ending::Interrupted),
@@ -210,8 +214,8 @@ impl<'a> Simulation<'a> {
         self.outputs.finish(&self.job.stage(&self.farm))?;
         let (plan, made) = (&self.job.ready.prepared.plan, self.made());
         let cost = cost(plan, &self.farm, made.wall_time, made.peak_memory);
-        let clipped_shares = clipped_shares(&self.farm);
-        Ok(Ending::Complete { cost, clipped_shares, backend: self.backend })
+        let left = left(&self.farm);
+        Ok(Ending::Complete { cost, left, backend: self.backend })
     }
 }
 
@@ -241,11 +245,12 @@ pub(crate) fn cost(
     }
 }
 
-/// Share of instants at which a pitch limit held a command back, turbine by turbine of `farm` (–).
-pub(crate) fn clipped_shares(farm: &Farm<Air>) -> Vec<f64> {
-    let share = |machine: &Machine| {
+/// What the turbines of `farm` leave beside the series, turbine by turbine.
+pub(crate) fn left(farm: &Farm<Air>) -> Vec<Left> {
+    let of_machine = |machine: &Machine| {
         let (instants, limited) = machine.turbine.limited_instants();
-        limited as f64 / instants.max(1) as f64
+        let clipped_share = limited as f64 / instants.max(1) as f64;
+        Left { clipped_share, remarks: machine.controller.remarks() }
     };
-    farm.machines().iter().map(share).collect()
+    farm.machines().iter().map(of_machine).collect()
 }

@@ -8,7 +8,7 @@ use crate::prepared::Prepared;
 use crate::ready::Ready;
 use crate::same_case::{Standing, WindDigests, another, check_longer, check_same, standing};
 use crate::simulate::{Ending, Job, simulate};
-use crate::summarise;
+use crate::summarise::{self, Left};
 use crate::{Observer, StudyError};
 use basis::records::{Cost, Summary};
 use formats::leftovers;
@@ -183,8 +183,8 @@ impl<'a> Study<'a> {
         let job = Job { ready, run, folder, outputs, resume, place };
         match simulate(&job, stop, observer)? {
             Ending::Interrupted => Ok(ControlFlow::Break(())),
-            Ending::Complete { cost, clipped_shares, backend } => {
-                let summary = self.summary(ready, index, &clipped_shares, cost)?;
+            Ending::Complete { cost, left, backend } => {
+                let summary = self.summary(ready, index, &left, cost)?;
                 let known = &ready.prepared.warnings;
                 let n_known = known.iter().filter(|warning| warning.concerns(&run.name)).count();
                 for warning in &summary.warnings[n_known..] {
@@ -221,13 +221,13 @@ impl<'a> Study<'a> {
         &self,
         ready: &Ready,
         index: usize,
-        clipped_shares: &[f64],
+        left: &[Left],
         cost: Cost,
     ) -> Result<Summary, StudyError> {
         let (prepared, folder) = (&ready.prepared, &self.folders[index]);
         let run = &prepared.case.runs[index];
         let mut columns = Columns::open(folder, prepared)?;
-        let mut summary = summarise::summarise(prepared, run, &mut columns, clipped_shares, cost)?;
+        let mut summary = summarise::summarise(prepared, run, &mut columns, left, cost)?;
         if let Comparison::Made(other, mut there) =
             gains::comparison(prepared, &self.wind, index, &self.folders)?
         {
@@ -265,7 +265,7 @@ fn begin_run(
     let texts = prepared.turbine_texts.iter().map(|(name, text)| (name.as_str(), text.as_str()));
     let version = env!("CARGO_PKG_VERSION");
     let manifest = Manifest::start(version, &prepared.case, &prepared.case_text, index, texts);
-    let manifest = manifest.in_wind(wind);
+    let manifest = manifest.in_wind(wind).with_libraries(&prepared.libraries);
     records::write_manifest(folder, &manifest)?;
     Ok(manifest)
 }

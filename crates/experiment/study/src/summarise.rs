@@ -24,15 +24,23 @@ use farm::solvers::WindSource;
 /// Channel of the wind that meets the first turbine.
 const WIND: &str = "wind.u_m_s";
 
+/// What a turbine leaves beside its series.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Left {
+    /// Share of control instants at which a pitch limit held a command back (–).
+    pub(crate) clipped_share: f64,
+    /// What its controller has to tell, each as what follows "run R: T".
+    pub(crate) remarks: Vec<String>,
+}
+
 /// The run `run` in numbers, its gains left out, from its `columns`.
 ///
-/// `clipped_shares` (–) holds, for each turbine that is there, the share of control instants at which a pitch
-/// limit held a command back.
+/// `left` holds what each turbine that is there leaves beside its series.
 pub(crate) fn summarise(
     setup: &Prepared,
     run: &Run,
     columns: &mut Columns,
-    clipped_shares: &[f64],
+    left: &[Left],
     cost: Cost,
 ) -> Result<Summary, StudyError> {
     let expected = parts(setup, run, columns.names());
@@ -46,8 +54,8 @@ pub(crate) fn summarise(
     let mut warnings: Vec<Warning> = known.map(before).collect();
     let mut turbines = Vec::new();
     let mut array = Vec::new();
-    for (index, &clipped_share) in run.present().zip(clipped_shares) {
-        let turbine = Turbine::new(setup, run, index, clipped_share);
+    for (index, left) in run.present().zip(left) {
+        let turbine = Turbine::new(setup, run, index, left);
         turbines.push(turbine.summarise(columns, &mut array, &mut warnings)?);
     }
     let analysed = columns.of(&[WIND.to_owned()])?;
@@ -75,12 +83,11 @@ struct Turbine<'a> {
     name: &'a str,
     n_blades: usize,
     control: &'a Control,
-    /// Share of control instants at which a pitch limit held a command back (–).
-    clipped_share: f64,
+    left: &'a Left,
 }
 
 impl<'a> Turbine<'a> {
-    fn new(setup: &'a Prepared, run: &'a Run, index: usize, clipped_share: f64) -> Self {
+    fn new(setup: &'a Prepared, run: &'a Run, index: usize, left: &'a Left) -> Self {
         Self {
             setup,
             run,
@@ -88,7 +95,7 @@ impl<'a> Turbine<'a> {
             name: &setup.case.turbines[index].name,
             n_blades: setup.models[index].definition.n_blades,
             control: &run.control[index],
-            clipped_share,
+            left,
         }
     }
 
@@ -125,7 +132,7 @@ impl<'a> Turbine<'a> {
         })?;
         let message = |words: &String| format!("{}: {name}{words}", self.run.name);
         let of_controller = |words| self.warning(WarningKind::Controller, message(words));
-        warnings.extend(outcome.warnings.iter().map(of_controller));
+        warnings.extend(outcome.warnings.iter().chain(&self.left.remarks).map(of_controller));
         let outran = |outrun: Outrun| outrun.warning(&self.run.name, name);
         warnings.extend(outrun.map(|found| self.warning(WarningKind::TipSpeed, outran(found))));
 
@@ -196,7 +203,7 @@ impl<'a> Turbine<'a> {
             control::Motion::Collective => Motion::Collective,
         };
         let (interval, amplitude) = (analysed.interval, set.amplitude);
-        match delivered(motion, azimuth, &pitch, interval, amplitude, self.clipped_share) {
+        match delivered(motion, azimuth, &pitch, interval, amplitude, self.left.clipped_share) {
             Ok(delivered) => Ok(Some(delivered)),
             Err(AnalysisError::TooShort { .. }) => Ok(None),
             Err(error) => Err(error.into()),

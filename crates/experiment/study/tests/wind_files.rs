@@ -187,3 +187,58 @@ fn all_files_of_a_box_count() {
         assert!(files.iter().all(|file| file.is_file()), "{files:?}");
     }
 }
+
+/// A rise from 8 to 10 m/s, half way.
+const TABLE: &str = "time_s,speed_m_s\n0,8\n30,8\n30,10\n60,10\n";
+
+/// The case in the wind of `u.csv`, which holds `table`; `more` follows under `[wind]`.
+fn in_table(table: &str, more: &str) -> tempfile::TempDir {
+    let wind = format!("table = \"u.csv\"\n{more}");
+    let run = "[[run]]\nname = \"baseline\"\n";
+    let folder = written(&small::case("table", &wind, [10.0, 60.0], &[small::NREL_5MW], run));
+    fs::write(folder.path().join("u.csv"), table).expect("a table");
+    folder
+}
+
+#[test]
+fn wind_follows_a_table() {
+    let folder = in_table(TABLE, "shear_exponent = 0.0\n");
+    let out = small::done(&options(folder.path()));
+    let path = RunFolder::new(&out, "baseline").series_path();
+    let series =
+        formats::records::read_series(&path, |name| name == "time_s" || name == "wind.u_m_s");
+    let series = series.expect("a series");
+    let rows = series.columns[0].iter().zip(&series.columns[1]);
+    let mut n_rows = 0;
+    for (time, wind) in rows {
+        let expected = if *time < 30.0 { 8.0 } else { 10.0 };
+        // The row at the step itself may hold either side.
+        let fits = (wind - expected).abs() < 1e-9 || (time - 30.0).abs() < 0.25;
+        assert!(fits, "{wind} m/s at {time} s");
+        n_rows += 1;
+    }
+    assert!(n_rows > 100, "{n_rows}");
+    let manifest = read_manifest(&RunFolder::new(&out, "baseline")).expect("a manifest");
+    assert_eq!(manifest.wind_sha256.keys().collect::<Vec<_>>(), ["u.csv"]);
+}
+
+#[test]
+fn a_table_that_does_not_fit_is_refused_at_its_key() {
+    let refused = |table: &str, more: &str| {
+        let folder = in_table(table, more);
+        let path = folder.path().join("case.toml");
+        match study::Prepared::read(&path, &[]) {
+            Err(StudyError::Case(error)) => error.to_lines(),
+            Err(error) => panic!("{error:?}"),
+            Ok(_) => panic!("{table:?} is taken"),
+        }
+    };
+    let short = refused("time_s,speed_m_s\n0,8\n40,9\n", "");
+    assert!(short.contains("ends at 40 s, and runs last 60 s: add a row"), "{short}");
+    let wrong = refused("time_s,speed_m_s\n0,x\n", "");
+    assert!(wrong.contains("line 2, speed_m_s: expected 0 to 200, found x"), "{wrong}");
+    let storm = refused("time_s,speed_m_s\n0,30\n60,30\n", "");
+    assert!(storm.contains("the file of wind.table, with 30 m/s"), "{storm}");
+    let both = refused(TABLE, "event = { kind = \"step\", start = 5.0, speed = 9.0 }\n");
+    assert!(both.contains("wind.table says what happens in time"), "{both}");
+}

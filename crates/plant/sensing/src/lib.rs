@@ -5,6 +5,7 @@
 //! [sensors](Sensor) have names and may look at the flow. Noise belongs to a seed, a quantity and the number
 //! of the reading, so that a run that was killed goes on with the same noise.
 
+mod anemometer;
 mod channel;
 mod instrument;
 mod noise;
@@ -12,13 +13,17 @@ mod quantity;
 mod sensor;
 
 pub use instrument::{Instrument, Instruments, Lag};
-pub use sensor::{ForeignState, Mount, Mounted, SENSORS, Scene, Sensor, SensorKind};
+pub use sensor::{ForeignState, Mount, Mounted, Scene, Sensor, SensorKind};
 
+use basis::registry::Registry;
 use basis::{Measurements, Reading, Truth};
 use channel::Channel;
 use quantity::{QUANTITIES, Quantity};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+/// The kinds of sensors; programs built on this one add their own.
+pub static SENSORS: Registry<dyn SensorKind> = Registry::new(&[&anemometer::ANEMOMETER]);
 
 /// The seed of the noise of turbine number `turbine` of a layout in a wind of `seed`: another wind and
 /// another turbine have other noise.

@@ -2,7 +2,7 @@
 //! cross the wall by name.
 
 use basis::keys::{Objection, Table, Values};
-use basis::registry::{Named, Registry};
+use basis::registry::Named;
 use basis::{Truth, Vector3};
 use flow::WindField;
 use std::fmt;
@@ -72,9 +72,6 @@ pub trait SensorKind: Named + Sync {
     /// The sensor with `values` at `mount`.
     fn build(&self, values: &Values, mount: &Mount) -> Box<dyn Sensor>;
 }
-
-/// The kinds of sensors. None comes with the program yet; programs built on it add their own.
-pub static SENSORS: Registry<dyn SensorKind> = Registry::new(&[]);
 
 /// One sensor of a turbine, as the case file has it.
 #[derive(Clone)]

@@ -3,9 +3,11 @@
 use super::Helix;
 use super::sweep::{self, Sweep};
 use crate::Controller;
+use crate::discon::base;
 use crate::excitation::Excitation;
-use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, sense, starts_too_late};
+use crate::keys::{AMPLITUDE, BASE, PHASE_RANGE, START, STOP, STROUHAL, sense, starts_too_late};
 use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site};
+use crate::library::Hosted;
 use crate::stop::stop_of;
 use basis::Sense;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
@@ -55,6 +57,11 @@ static TABLE: Table = Table {
         ),
         START,
         STOP,
+        BASE[0],
+        BASE[1],
+        BASE[2],
+        BASE[3],
+        BASE[4],
     ],
 };
 
@@ -86,13 +93,17 @@ impl ControllerKind for HelixKind {
         helix.start = values.number("start");
         helix.sweep = Sweep::of(values, site);
         helix.stop = stop_of(helix.start, values.optional_number("stop"), helix.rate)?;
-        Ok(helix.on_top_of(site.baseline()))
+        Ok(helix.on_top_of(base(control, site)?))
     }
 
     fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
         let values = control.values();
         // One frequency is what others can be told of.
         (!values.has("strouhal_last")).then(|| (sense(values), values.number("strouhal")))
+    }
+
+    fn hosted(&self, control: &Control) -> Option<Hosted> {
+        Hosted::of(control.values())
     }
 
     fn pitching(&self, control: &Control) -> Option<Pitching> {

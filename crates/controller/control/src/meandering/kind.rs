@@ -4,9 +4,11 @@ use super::outcome;
 use super::settings::{MeanderingSettings, TABLE};
 use super::{Decoupling, Meandering, MeanderingControlSettings, TwoAxisSettings};
 use crate::Controller;
+use crate::discon::base;
 use crate::excitation::Excitation;
 use crate::keys::starts_too_late;
 use crate::kind::{Control, ControlError, ControllerKind, Identification, Place, Site};
+use crate::library::Hosted;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::keys::{Objection, Table, Values};
 use basis::records::PitchResponse;
@@ -115,7 +117,7 @@ impl ControllerKind for MeanderingKind {
             needs_lock: given.fallback,
             start: given.start,
         };
-        Ok(Meandering::new(settings, site.interval)?.on_top_of(site.baseline()))
+        Ok(Meandering::new(settings, site.interval)?.on_top_of(base(control, site)?))
     }
 
     fn slowest_strouhal(&self, control: &Control) -> Option<f64> {
@@ -126,6 +128,10 @@ impl ControllerKind for MeanderingKind {
         let given = MeanderingSettings::of(control)?;
         let needs = given.decoupling.is_none() && given.amplitude != 0.0;
         needs.then_some(Identification::Loads { strouhal: given.strouhal })
+    }
+
+    fn hosted(&self, control: &Control) -> Option<Hosted> {
+        Hosted::of(control.values())
     }
 
     fn outcome_channels(&self, _: &Control, n_blades: usize) -> Vec<String> {

@@ -1,7 +1,7 @@
 //! `kind = "meandering"`: its keys, and what they say.
 
 use super::{Decoupling, Followed, Leader, Reference};
-use crate::keys::{PHASE_RANGE, START, sense};
+use crate::keys::{BASE, PHASE_RANGE, START, sense};
 use crate::kind::Control;
 use basis::Sense;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
@@ -132,6 +132,11 @@ pub(super) static TABLE: Table = Table {
             "Tilt or yaw moment lost per degree of cyclic pitch.",
         ),
         START,
+        BASE[0],
+        BASE[1],
+        BASE[2],
+        BASE[3],
+        BASE[4],
     ],
 };
 

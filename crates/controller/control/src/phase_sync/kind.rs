@@ -3,11 +3,13 @@
 use super::settings::{PhaseEstimator, PhaseSyncSettings, TABLE, response_of};
 use super::{PhaseSync, SyncSettings, choices};
 use crate::Controller;
+use crate::discon::base;
 use crate::excitation::Excitation;
 use crate::keys::{sense, starts_too_late};
 use crate::kind::{
     Control, ControlError, ControllerKind, Identification, Motion, Pitching, Place, Site,
 };
+use crate::library::Hosted;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::Sense;
 use basis::angle::wrap_to_turn;
@@ -89,7 +91,7 @@ impl ControllerKind for PhaseSyncKind {
             start: given.start,
             trust: given.trust(),
         };
-        Ok(PhaseSync::new(settings, estimator).on_top_of(site.baseline()))
+        Ok(PhaseSync::new(settings, estimator).on_top_of(base(control, site)?))
     }
 
     fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
@@ -124,6 +126,10 @@ impl ControllerKind for PhaseSyncKind {
 
     fn any_response(&self) -> Option<PitchResponse> {
         Some(PitchResponse::Transformation { azimuth_offset: 0.0 })
+    }
+
+    fn hosted(&self, control: &Control) -> Option<Hosted> {
+        Hosted::of(control.values())
     }
 
     fn outcome_channels(&self, _: &Control, _: usize) -> Vec<String> {

@@ -2,7 +2,7 @@
 
 use super::TRUST;
 use super::choices::EstimatorChoices;
-use crate::keys::{PHASE_RANGE, START, sense};
+use crate::keys::{BASE, PHASE_RANGE, START, sense};
 use crate::kind::{Control, Site};
 use basis::Sense;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
@@ -131,6 +131,11 @@ pub(super) static TABLE: Table = Table {
             "Factor on the time constant of Snel and Schepers's delay in the estimator's model.",
         ),
         START,
+        BASE[0],
+        BASE[1],
+        BASE[2],
+        BASE[3],
+        BASE[4],
     ],
 };
 

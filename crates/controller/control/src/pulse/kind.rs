@@ -2,9 +2,11 @@
 
 use super::Pulse;
 use crate::Controller;
+use crate::discon::base;
 use crate::excitation::Excitation;
-use crate::keys::{AMPLITUDE, PHASE_RANGE, START, STOP, STROUHAL, starts_too_late};
+use crate::keys::{AMPLITUDE, BASE, PHASE_RANGE, START, STOP, STROUHAL, starts_too_late};
 use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site};
+use crate::library::Hosted;
 use crate::stop::stop_of;
 use basis::keys::LeftOut::Value;
 use basis::keys::{Objection, Table, Values, key};
@@ -25,6 +27,11 @@ static TABLE: Table = Table {
         key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase at time zero."),
         START,
         STOP,
+        BASE[0],
+        BASE[1],
+        BASE[2],
+        BASE[3],
+        BASE[4],
     ],
 };
 
@@ -50,11 +57,15 @@ impl ControllerKind for PulseKind {
         pulse.phase = values.angle("phase_deg");
         pulse.start = values.number("start");
         pulse.stop = stop_of(pulse.start, values.optional_number("stop"), pulse.rate)?;
-        Ok(pulse.on_top_of(site.baseline()))
+        Ok(pulse.on_top_of(base(control, site)?))
     }
 
     fn pitches_individually(&self) -> bool {
         false
+    }
+
+    fn hosted(&self, control: &Control) -> Option<Hosted> {
+        Hosted::of(control.values())
     }
 
     fn pitching(&self, control: &Control) -> Option<Pitching> {

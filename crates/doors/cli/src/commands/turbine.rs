@@ -1,14 +1,17 @@
 //! `wakemix turbine`: the library of turbines, and what blade-element momentum says of them.
 
+mod import;
+
 use super::arguments::{check_free, finite, positive};
-use super::output::{columns, detail, print, print_text, say, tell};
+use super::output::{columns, detail, print, print_text};
 use clap::Subcommand;
+use import::import;
 use miette::{IntoDiagnostic, Result, miette};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use wakemix::control::baseline::Constants;
-use wakemix::formats::turbine_file::{self, TurbineFile};
+use wakemix::formats::turbine_file::TurbineFile;
 use wakemix::formats::{atomic, library, openfast, windio};
 use wakemix::report::text_table::{Column, TextTable};
 use wakemix::study::{OffsetAnswer, OffsetQuestion, azimuth_offset};
@@ -31,8 +34,10 @@ pub(crate) enum TurbineCommand {
     },
     /// Convert an OpenFAST deck (.fst) or a windIO file (.yaml) into a turbine file
     ///
-    /// windIO files lack mode shapes, damping, generator inertia and controller gains: what is to be
-    /// completed by hand is listed, and the exit code is 2 until the file is complete.
+    /// Of a windIO file, mode shapes and controller gains are worked out where it has what they follow from.
+    /// What it lacks beside, such as the generator's inertia, is listed with a template, OUTPUT's name with
+    /// the end .missing.toml, to be filled in and given back with --complete; the exit code is 2 until the
+    /// file is complete.
     Import {
         /// Main file of the deck, or the windIO file
         file: PathBuf,
@@ -51,6 +56,16 @@ pub(crate) enum TurbineCommand {
         /// Where the input comes from (publication, commit), noted with every group of figures
         #[arg(long)]
         source: Option<String>,
+        /// Which polar of a windIO airfoil to take where it has several: words in its configuration, such as
+        /// "fully turbulent"
+        #[arg(long, value_name = "WORDS")]
+        polars: Option<String>,
+        /// Which polar of a windIO airfoil to take where it has several: that of the nearest Reynolds number
+        #[arg(long, value_name = "RE", value_parser = positive)]
+        reynolds: Option<f64>,
+        /// File (TOML) with figures that the windIO file lacks, in the groups and keys of a turbine file
+        #[arg(long, value_name = "FILE")]
+        complete: Option<PathBuf>,
     },
     /// Print coefficients of power, thrust and torque of the rigid rotor in steady wind as CSV
     Steady {
@@ -137,11 +152,23 @@ pub(crate) fn run(command: TurbineCommand) -> Result<()> {
             )?;
             print(&text)
         }
-        TurbineCommand::Import { file, output, overwrite, name, title, source } => {
+        TurbineCommand::Import {
+            file,
+            output,
+            overwrite,
+            name,
+            title,
+            source,
+            polars,
+            reynolds,
+            complete,
+        } => {
             check_free(std::slice::from_ref(&output), overwrite)?;
             let stem = output.file_stem().map(|stem| stem.to_string_lossy().into_owned());
             let options = openfast::ImportOptions { name: name.or(stem), title, source };
-            import(&file, &output, &options)
+            let polars = windio::PolarChoice { configuration: polars, reynolds_number: reynolds };
+            let further = windio::WindioOptions { polars, completion: complete };
+            import(&file, &output, &options, &further)
         }
         TurbineCommand::Steady { name, tsr, pitch } => steady(&load(&name)?, tsr, pitch),
         TurbineCommand::Offset { name, wind, strouhal, rigid } => {
@@ -287,42 +314,6 @@ fn operation(definition: &Definition) -> String {
         || "not stated".to_owned(),
         |operation| format!("{:.1} m/s, {:.1} m/s", operation.cut_in, operation.cut_out),
     )
-}
-
-fn import(file: &Path, output: &Path, options: &openfast::ImportOptions) -> Result<()> {
-    let extension = file.extension().map(|end| end.to_string_lossy().to_lowercase());
-    let document = match extension.as_deref() {
-        Some("fst") => openfast::import(file, options)?,
-        Some("yaml" | "yml") => windio::import(file, options)?,
-        _ => {
-            let found = file.display();
-            return Err(miette!(
-                help = "give the main file of an OpenFAST deck (.fst) or a windIO file (.yaml)",
-                "cannot tell what {found} is"
-            ));
-        }
-    };
-    detail(&format!("read: {}", file.display()));
-    let written = turbine_file::write(&document);
-    atomic::write(output, "the turbine file", written.text.as_bytes())?;
-    tell(&format!("wrote {}", output.display()));
-    if written.missing.is_empty() {
-        turbine_file::read(output)?;
-        return Ok(());
-    }
-    say(&format!("{} lacks these groups and keys:", file.display()));
-    for key in &written.missing {
-        say(&format!("  {key}"));
-    }
-    let place = output.display();
-    Err(miette!(
-        help = format!(
-            "each has a commented line or heading in {place}: write the figures there, with their source, until `wakemix turbine show {place}` \
-             describes the turbine; the OpenFAST deck (.fst) of the same turbine, imported instead, usually has them all"
-        ),
-        "{place} cannot be run yet: {} groups and keys are missing",
-        written.missing.len()
-    ))
 }
 
 fn steady(file: &TurbineFile, tsr: Range, pitch: Range) -> Result<()> {

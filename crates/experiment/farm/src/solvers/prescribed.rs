@@ -33,7 +33,7 @@ pub const PRESCRIBED: SolverKind = SolverKind {
 /// The mean profile.
 pub static UNIFORM: SolverKind = SolverKind {
     name: "uniform",
-    about: "prescribed wind without turbulence: the mean profile with `wind.veer_deg_per_m` and `wind.event`",
+    about: "prescribed wind without turbulence: the mean profile with `wind.veer_deg_per_m` and `wind.event`, or `wind.table`",
     objections: uniform_objections,
     ..PRESCRIBED
 };

@@ -75,6 +75,7 @@ pub(super) static WIND: Table = Table {
             .mistaken(&[Slip { unit: "mm²/s", factor: 1e-6 }]),
         key("turbulence_model", Holds::Choice(&["mann", "kaimal"]), "", Value("\"mann\""), "`mann`: Mann's spectral tensor. `kaimal`: Kaimal's spectra with the exponential coherence of IEC 61400-1, with `flow.solver = \"turbulence\"` only: the lattice needs wind that is free of divergence."),
         key("planes", Holds::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. `speed` then only sets the Strouhal numbers and the rotor's first speed."),
+        key("table", Holds::Text, "", Otherwise("none"), "With `flow.solver = \"uniform\"`: file with the wind over time, relative to this file: OpenFAST's uniform wind (`.wnd` or `.hh` with time, speed, direction, vertical speed, horizontal shear, exponent, linear shear, gust), or CSV with columns `time_s`, `speed_m_s` and, where wanted, `direction_deg` (counter-clockwise seen from above), `vertical_m_s`, `horizontal_shear`, `shear_exponent`, `vertical_shear`, `gust_m_s`. Lines join its rows, rows of equal time are a step, and it must last as long as the run. Shears are over the first turbine's diameter. `speed` then only sets the Strouhal numbers and the rotor's first speed; the profile is that of the case where the table has no exponent."),
         key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. Not with `flow.solver = \"planes\"`; with `\"lattice\"` between periodic sides, and by 60° at most up to the top of the domain.")
             .mistaken(&[Slip { unit: "deg per 100 m", factor: 0.01 }]),
         key("event", Holds::Event, "", Otherwise("nothing happens"), "With `flow.solver = \"uniform\"`: what happens in time, at all places at once: `event = { kind = \"step\", start = 100.0, speed = 12.0 }`."),
@@ -200,7 +201,7 @@ pub(super) static TURBINE: Table = Table {
             Holds::Sensors,
             "",
             Otherwise("none"),
-            "Further sensors, each with a name of its own: `sensors.NAME = { kind = … }`. None comes with the program yet; programs built on it add theirs.",
+            "Further sensors, each with a name of its own: `sensors.NAME = { kind = … }`; programs built on this one add kinds of their own.",
         ),
     ],
 };

@@ -8,7 +8,7 @@ use super::text::{degrees, quoted};
 use farm::case::{
     Change, CirclingDisk, FROM_WEST, Flow, Sense, Shear, TurbulenceModel, Wind, WindEvent,
 };
-use farm::solvers::{Fault, Objection};
+use farm::solvers::{Fault, Objection, WindSource};
 use std::fmt::Write;
 
 /// The wind that `section` describes; not a number where it is missing.
@@ -29,6 +29,7 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
             _ => TurbulenceModel::Mann,
         },
         planes: section.as_ref().and_then(|section| section.optional_text("planes")),
+        table: section.as_ref().and_then(|section| section.optional_text("table")),
         veer: number("veer_deg_per_m").to_radians(),
         event: section.as_ref().and_then(|section| {
             let entry = section.entry("event")?;
@@ -71,12 +72,35 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
         };
         note(key, kind, fix);
     }
+    if wind.table.is_some() {
+        check_table(section, wind, flow);
+    }
     if let Some(event) = &wind.event {
         let start = start_of(event);
         if start >= duration {
             let key = section.key_path("event.start");
             note("event", ProblemKind::StartsTooLate { key, start, duration }, "begin it earlier");
         }
+    }
+}
+
+/// Notes what a table of wind over time leaves no use for, and where it has none itself.
+fn check_table(section: &Section, wind: &Wind, flow: &Flow) {
+    let no_use = |key: &str, why: String, fix: &str| {
+        let kind = ProblemKind::NoUse { key: section.key_path(key), why };
+        section.findings().note(section.span_of(key), kind, Some(fix.to_owned()));
+    };
+    if flow.solver.wind != WindSource::Deterministic {
+        let why = format!("flow.solver = \"{}\" reads no wind over time", flow.solver.name);
+        no_use("table", why, "leave it out, or use flow.solver = \"uniform\"");
+        return;
+    }
+    let why = || "wind.table says what happens in time".to_owned();
+    if wind.event.is_some() {
+        no_use("event", why(), "leave one of the two out");
+    }
+    if wind.veer != 0.0 {
+        no_use("veer_deg_per_m", why(), "leave one of the two out");
     }
 }
 
@@ -223,6 +247,9 @@ pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
     writeln!(text, "turbulence_model = \"{model}\"")?;
     if let Some(planes) = &wind.planes {
         writeln!(text, "planes = {}", quoted(planes))?;
+    }
+    if let Some(table) = &wind.table {
+        writeln!(text, "table = {}", quoted(table))?;
     }
     if wind.veer != 0.0 {
         writeln!(text, "veer_deg_per_m = {:?}", degrees(wind.veer))?;

@@ -52,3 +52,13 @@ fn hawc_boxes() {
     let binaries = ["box_u.bin", "box_v.bin", "box_w.bin"];
     survives(files("box.toml", &binaries), |folder| read(&folder.join("box_v.bin")));
 }
+
+#[test]
+fn tables_of_wind() {
+    let rows = |path: &Path| Ok(crate::wind_table::read(path).map(drop)?);
+    let openfast =
+        b"! uniform wind\n0.0 9.0 0 0 0 0.1 0 0\n10.5 12.0 -30 1 0.1 0.2 -0.1 2\n".to_vec();
+    survives(vec![("u.wnd", openfast)], |folder| rows(&folder.join("u.wnd")));
+    let csv = b"time_s,speed_m_s,gust_m_s\n0,9,0\n10.5,12,2\n".to_vec();
+    survives(vec![("u.csv", csv)], |folder| rows(&folder.join("u.csv")));
+}

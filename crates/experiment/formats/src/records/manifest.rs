@@ -137,6 +137,13 @@ impl Manifest {
         Self { wind_sha256, ..self }
     }
 
+    /// The manifest of the same run with shared `libraries` and their inputs, SHA-256 by name, among its
+    /// machines.
+    pub fn with_libraries(mut self, libraries: &BTreeMap<String, String>) -> Self {
+        self.turbines_sha256.extend(libraries.clone());
+        self
+    }
+
     /// The manifest of the same run, ended now, computed with `backend`.
     pub fn finish(self, backend: &str) -> Self {
         Self { finished: Some(now()), backend: Some(backend.to_owned()), ..self }

@@ -70,7 +70,7 @@ impl TurbineFileError {
         Self::Unreadable { path: path.to_owned(), source, fix: fix.to_owned() }
     }
 
-    pub(super) fn syntax(file: &str, text: &str, error: &toml::de::Error) -> Self {
+    pub(crate) fn syntax(file: &str, text: &str, error: &toml::de::Error) -> Self {
         let place = error.span().map_or(text.len(), |span| span.start);
         let message = error.message().trim().replace('\n', "; ");
         // Of a value, the reader says what it is, and not whose.

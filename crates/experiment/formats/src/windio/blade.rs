@@ -13,6 +13,15 @@ const END_GAP: f64 = 0.02;
 const MOST_STATIONS: usize = 500;
 const MOST_ANGLES: usize = 2000;
 
+/// Which polar of an airfoil to take; the first of those that fit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PolarChoice {
+    /// Words in its `configuration`, such as `fully turbulent`; any where absent.
+    pub configuration: Option<String>,
+    /// Reynolds number to which its own comes nearest (–); any where absent.
+    pub reynolds_number: Option<f64>,
+}
+
 /// What the file says of a blade.
 pub(super) struct BladeShape {
     pub(super) shape: Blade,
@@ -21,8 +30,11 @@ pub(super) struct BladeShape {
     pub(super) length: f64,
 }
 
-/// An airfoil of the file with its first polar.
+/// An airfoil of the file with the polar that is taken.
 struct Airfoil {
+    name: String,
+    /// Which polar it is; none where there is but one.
+    taken: Option<String>,
     thickness: f64,
     center: f64,
     reynolds_number: f64,
@@ -35,6 +47,8 @@ pub(super) fn read(
     shape: &Node,
     airfoils: &Node,
     source: &str,
+    choice: &PolarChoice,
+    notes: &mut Vec<String>,
 ) -> Result<BladeShape, TurbineFileError> {
     let curve = |key: &str| Curve::read(&shape.get(key)?);
     let (chord, twist, pitch_axis) = (curve("chord")?, curve("twist")?, curve("pitch_axis")?);
@@ -49,7 +63,8 @@ pub(super) fn read(
     let grid = positions.get("grid")?.numbers()?;
     let labels = positions.get("labels")?.items()?;
     let placed: Vec<Airfoil> =
-        labels.iter().map(|label| airfoil(label, airfoils)).collect::<Result<_, _>>()?;
+        labels.iter().map(|label| airfoil(label, airfoils, choice)).collect::<Result<_, _>>()?;
+    notes.extend(choices(&placed));
     if grid.len() != placed.len() || grid.is_empty() {
         return Err(positions.error("as many labels as grid points", "one label per grid point"));
     }
@@ -108,7 +123,11 @@ fn blend_at(place: f64, grid: &[f64], placed: &[Airfoil], thickness: Option<&Cur
     Blend { low, high, share: share.clamp(0.0, 1.0) }
 }
 
-fn airfoil(label: &Node, airfoils: &Node) -> Result<Airfoil, TurbineFileError> {
+fn airfoil(
+    label: &Node,
+    airfoils: &Node,
+    choice: &PolarChoice,
+) -> Result<Airfoil, TurbineFileError> {
     let name = label.text()?;
     let items = airfoils.items()?;
     let known =
@@ -119,8 +138,15 @@ fn airfoil(label: &Node, airfoils: &Node) -> Result<Airfoil, TurbineFileError> {
         .ok_or_else(|| label.error("the name of an airfoil", "a name of the list airfoils"))?;
     let polars = item.get("polars")?;
     let list = polars.items()?;
-    let polar = list.first().ok_or_else(|| polars.error("at least one polar", "a polar"))?;
+    let polar = chosen(&polars, &list, choice)?;
+    let configuration = configuration(polar);
+    let taken = (list.len() > 1).then(|| {
+        let re = polar.number("re")?;
+        Ok::<_, TurbineFileError>(format!("\"{configuration}\" at Re {re:.3e} (of {})", list.len()))
+    });
     Ok(Airfoil {
+        name: name.to_owned(),
+        taken: taken.transpose()?,
         thickness: item.number("relative_thickness")?,
         center: item.number("aerodynamic_center")?,
         reynolds_number: polar.number("re")?,
@@ -128,6 +154,64 @@ fn airfoil(label: &Node, airfoils: &Node) -> Result<Airfoil, TurbineFileError> {
         drag: full_turn(&polar.get("c_d")?)?,
         moment: full_turn(&polar.get("c_m")?)?,
     })
+}
+
+/// What a polar says of its flow; empty where it says nothing.
+fn configuration(polar: &Node) -> String {
+    let node = polar.optional("configuration");
+    node.and_then(|node| node.text().ok().map(str::to_owned)).unwrap_or_default()
+}
+
+/// The one of the polars in `list` that `choice` takes; of a single one, that one.
+fn chosen<'a, 'n>(
+    polars: &Node,
+    list: &'a [Node<'n>],
+    choice: &PolarChoice,
+) -> Result<&'a Node<'n>, TurbineFileError> {
+    let words = choice.configuration.as_ref().map(|words| words.to_lowercase());
+    let fits = |polar: &&Node| {
+        let own = configuration(polar).to_lowercase();
+        list.len() == 1 || words.as_ref().is_none_or(|words| own.contains(words.as_str()))
+    };
+    let fitting: Vec<&Node> = list.iter().filter(fits).collect();
+    let Some(&first) = fitting.first() else {
+        let known: Vec<String> =
+            list.iter().map(|polar| format!("\"{}\"", configuration(polar))).collect();
+        let expected = match &words {
+            Some(words) => format!(
+                "a polar whose configuration has \"{words}\"; there are {}",
+                known.join(", ")
+            ),
+            None => "at least one polar".to_owned(),
+        };
+        return Err(polars.error(&expected, "a polar, or take another with --polars"));
+    };
+    let Some(wanted) = choice.reynolds_number else { return Ok(first) };
+    let mut nearest = (f64::INFINITY, first);
+    for polar in fitting {
+        let distance = (polar.number("re")? / wanted).ln().abs();
+        if distance < nearest.0 {
+            nearest = (distance, polar);
+        }
+    }
+    Ok(nearest.1)
+}
+
+/// Which polars were taken of the airfoils `placed` that have several: a sentence for each kind.
+fn choices(placed: &[Airfoil]) -> Vec<String> {
+    let mut kinds: Vec<(&str, Vec<&str>)> = Vec::new();
+    for airfoil in placed {
+        let Some(taken) = airfoil.taken.as_deref() else { continue };
+        match kinds.iter_mut().find(|(known, _)| *known == taken) {
+            Some((_, names)) if names.contains(&airfoil.name.as_str()) => {}
+            Some((_, names)) => names.push(&airfoil.name),
+            None => kinds.push((taken, vec![&airfoil.name])),
+        }
+    }
+    let told = |(taken, names): (&str, Vec<&str>)| {
+        format!("polars: {taken} of {}; --polars and --reynolds take others", names.join(", "))
+    };
+    kinds.into_iter().map(told).collect()
 }
 
 /// A curve over the full turn; published ones may end a hair before it.

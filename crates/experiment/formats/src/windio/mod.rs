@@ -1,21 +1,30 @@
 //! windIO turbine files (YAML, the ontology of WISDEM 2 and 3): what they hold of a turbine file.
 //!
-//! They hold outer shape, polars, hub, nacelle, tower and some of the controller, but no mode shapes,
-//! damping, generator inertia or controller gains; those figures are left out and named by the reader of the
+//! They hold outer shape, polars, blade sections, tower, some of the controller, and hub and nacelle where
+//! they are of a finished design. Mode shapes and gains [follow](derive); generator inertia and what else is
+//! not there a [user adds](completion). Figures that nobody knows are left out and named by the reader of the
 //! result.
 
 mod blade;
+mod completion;
+mod derive;
+mod elastic;
 mod node;
 mod tower;
+mod tuning;
+
+pub use completion::template;
 
 use crate::openfast::ImportOptions;
 use crate::turbine_file::{
     Controller, Document, DriveTrain, Hub, Nacelle, Operation, PitchActuator, Rotor,
     SetPointSmoothing, TurbineFileError,
 };
+pub use blade::PolarChoice;
 use node::{File, Node};
 use std::f64::consts::PI;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use tuning::Targets;
 
 /// Pitch (rad) that ROSCO's smoother, for which the file's gains are meant, divides by.
 const SMOOTHER_PITCH: f64 = 0.524;
@@ -26,8 +35,64 @@ const SMOOTHER_PITCH: f64 = 0.524;
 /// # Errors
 /// [`TurbineFileError`] naming file, line, key and what was expected.
 pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineFileError> {
+    Ok(import_with(path, options, &WindioOptions::default())?.document)
+}
+
+/// What a user decides or adds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WindioOptions {
+    /// Which polars to take where an airfoil has several.
+    pub polars: PolarChoice,
+    /// File with figures that the windIO file does not have.
+    pub completion: Option<PathBuf>,
+}
+
+/// A turbine as it was imported.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    /// The turbine.
+    pub document: Document,
+    /// What was chosen, derived and assumed, each in a sentence.
+    pub notes: Vec<String>,
+}
+
+/// Density of air where the file states none (kg/m³).
+const AIR_DENSITY: f64 = 1.225;
+
+/// The turbine of the windIO file at `path` with what `further` adds, and with what follows from all that.
+///
+/// # Errors
+/// Those of [`import`]; those of the file that completes it.
+pub fn import_with(
+    path: &Path,
+    options: &ImportOptions,
+    further: &WindioOptions,
+) -> Result<Imported, TurbineFileError> {
     let file = File::read(path)?;
     let root = file.root()?;
+    let mut notes = Vec::new();
+    let mut document = read(path, &root, options, &further.polars, &mut notes)?;
+    if let Some(completion) = &further.completion {
+        completion::complete(&mut document, completion)?;
+    }
+    let air_density = match root.optional("environment") {
+        Some(environment) => environment.number_or("air_density", AIR_DENSITY)?,
+        None => AIR_DENSITY,
+    };
+    let origin = format!("{} as imported", path.display());
+    let targets = Targets::read(&root)?;
+    derive::derive(&mut document, &targets, (air_density, &origin), &mut notes)?;
+    Ok(Imported { document, notes })
+}
+
+/// What the file at `path` under `root` states.
+fn read(
+    path: &Path,
+    root: &Node,
+    options: &ImportOptions,
+    polars: &PolarChoice,
+    notes: &mut Vec<String>,
+) -> Result<Document, TurbineFileError> {
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().to_lowercase());
     let origin = options.source.clone().unwrap_or_else(|| "imported".to_owned());
@@ -41,10 +106,11 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
     let assembly = root.get("assembly")?;
     let hub = components.get("hub")?;
     let hub_radius = 0.5 * hub.number("diameter")?;
-    let shape = components.get("blade")?.get("outer_shape_bem")?;
-    let blade = blade::read(&shape, &root.get("airfoils")?, &source)?;
+    let whole_blade = components.get("blade")?;
+    let shape = whole_blade.get("outer_shape_bem")?;
+    let blade = blade::read(&shape, &root.get("airfoils")?, &source, polars, notes)?;
     let nacelle = components.get("nacelle")?.get("drivetrain")?;
-    let (mut tower, tower_top) = tower::read(&root, &source)?;
+    let (mut tower, tower_top) = tower::read(root, &source)?;
     let rotor = rotor(&nacelle, &hub, hub_radius, blade.length, tower_top, &source)?;
     tower.top_to_shaft =
         rotor.hub_height - tower_top - rotor.overhang * rotor.shaft_tilt_deg.to_radians().sin();
@@ -55,19 +121,19 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Document, TurbineF
         n_blades: assembly.number("number_of_blades")? as usize,
         rotor: Some(rotor),
         blade: Some(blade.shape),
-        blade_structure: None,
+        blade_structure: elastic::read(&whole_blade, blade.length, &source)?,
         tower: Some(tower),
-        hub: elastic(&hub).map(|elastic| hub_of(&elastic, &source)).transpose()?,
-        nacelle: elastic(&nacelle).map(|elastic| nacelle_of(&elastic, &source)).transpose()?,
+        hub: multibody(&hub).map(|elastic| hub_of(&elastic, &source)).transpose()?,
+        nacelle: multibody(&nacelle).map(|elastic| nacelle_of(&elastic, &source)).transpose()?,
         drive_train: Some(drive_train(&nacelle, &source)?),
-        pitch_actuator: pitch_actuator(&root, &source)?,
-        operation: operation(&root, &source)?,
-        controller: controller(&root, &assembly, radius, &source)?,
+        pitch_actuator: pitch_actuator(root, &source)?,
+        operation: operation(root, &source)?,
+        controller: controller(root, &assembly, radius, &source)?,
         airfoils: Some(blade.airfoils),
     })
 }
 
-fn elastic<'a>(component: &Node<'a>) -> Option<Node<'a>> {
+fn multibody<'a>(component: &Node<'a>) -> Option<Node<'a>> {
     component.optional("elastic_properties_mb").or_else(|| component.optional("elastic_properties"))
 }
 
@@ -127,7 +193,7 @@ fn drive_train(nacelle: &Node, source: &str) -> Result<DriveTrain, TurbineFileEr
     Ok(DriveTrain {
         source: source.to_owned(),
         gear_ratio: nacelle.number("gear_ratio")?,
-        generator_inertia: f64::NAN,
+        generator_inertia: nacelle.number_or("generator_inertia_user", f64::NAN)?,
         gearbox_efficiency: nacelle.number_or("gearbox_efficiency", f64::NAN)?,
         generator_efficiency: efficiency,
         stiffness: f64::NAN,

@@ -91,6 +91,11 @@ fn setup(folder: &Path) -> Prepared {
     Prepared::read(&path, &[]).expect("a sound case")
 }
 
+/// What turbines leave whose pitch limits held these shares of the commands back (–).
+fn left(clipped_shares: [f64; 3]) -> [Left; 3] {
+    clipped_shares.map(|clipped_share| Left { clipped_share, remarks: Vec::new() })
+}
+
 #[test]
 fn groups_of_columns_make_the_same_summary_as_all_at_once() {
     let study = tempfile::tempdir().expect("a folder");
@@ -102,7 +107,7 @@ fn groups_of_columns_make_the_same_summary_as_all_at_once() {
             Columns::within(budget, &folders[run], &setup).expect("a series of its own")
         });
         let [baseline, run] = [&setup.case.runs[0], &setup.case.runs[1]];
-        let summary = summarise(&setup, run, &mut own, &[0.0, 0.5, 0.0], Cost::default());
+        let summary = summarise(&setup, run, &mut own, &left([0.0, 0.5, 0.0]), Cost::default());
         let mut summary = summary.expect("all channels");
         gains::add(&mut summary, (run, &mut own), (baseline, &mut there)).expect("gains");
         summary
@@ -169,7 +174,7 @@ fn a_gain_over_no_power_is_not_defined_and_the_rest_goes_on() {
             series.columns[place].fill(0.0);
         }
         let mut there = Columns::of_series(series, &setup);
-        let summary = summarise(&setup, run, &mut own, &[0.0; 3], Cost::default());
+        let summary = summarise(&setup, run, &mut own, &left([0.0; 3]), Cost::default());
         let mut summary = summary.expect("all channels");
         let n_before = summary.warnings.len();
         gains::add(&mut summary, (run, &mut own), (baseline, &mut there)).expect("gains");
@@ -196,7 +201,7 @@ fn a_channel_that_is_missing_is_named_however_the_rest_is_read() {
         for budget in BUDGETS {
             let mut columns = Columns::within(budget, &folder, &setup).expect("a series");
             let run = &setup.case.runs[1];
-            let error = summarise(&setup, run, &mut columns, &[0.0; 3], Cost::default());
+            let error = summarise(&setup, run, &mut columns, &left([0.0; 3]), Cost::default());
             match error {
                 Err(StudyError::MissingChannel { channel }) => assert_eq!(channel, missing),
                 other => panic!("{missing} within {budget}: {other:?}"),

@@ -50,9 +50,10 @@ impl Turbine<'_> {
 
     /// Where its blades did not do what they were set to.
     pub(super) fn warning_of_clipping(&self, pitch: Option<DeliveredPitch>) -> Option<Warning> {
-        let Self { run, name, clipped_share, .. } = self;
+        let Self { run, name, left, .. } = self;
+        let clipped_share = left.clipped_share;
         let held = 100.0 * clipped_share;
-        let is_clipped = *clipped_share > CLIPPED_SHARE;
+        let is_clipped = clipped_share > CLIPPED_SHARE;
         // A phase that follows the wind spreads the line: what is missing of it was not held back.
         let own = self.control.kind().pitching(self.control);
         let is_steady = own.is_none_or(|own| own.is_steady);

@@ -24,6 +24,7 @@
 
 mod arrowhead;
 mod beam;
+mod cantilever;
 mod channels;
 mod coordinates;
 mod energy;
@@ -42,6 +43,7 @@ mod stations;
 mod tests;
 
 pub use beam::Wrench;
+pub use cantilever::{BeamSection, BendingMode, EndBody, bending_modes};
 pub use channels::{Channel, canonical};
 pub use coordinates::{Coordinates, DegreeOfFreedom};
 pub use energy::Energy;

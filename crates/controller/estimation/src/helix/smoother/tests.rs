@@ -81,8 +81,9 @@ fn inverse(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
         rows[column].iter_mut().for_each(|value| *value *= scale);
         for row in (0..n).filter(|row| *row != column) {
             let factor = rows[row][column];
-            for k in 0..2 * n {
-                rows[row][k] -= factor * rows[column][k];
+            let pivot = rows[column].clone();
+            for (value, taken) in rows[row].iter_mut().zip(pivot) {
+                *value -= factor * taken;
             }
         }
     }
@@ -183,10 +184,8 @@ fn an_angle_comes_back_the_short_way_round() {
 fn a_state_that_is_another_is_left_out() {
     // Two states in step, and a third one of its own: a singular covariance.
     let mut covariance = [[0.0; N_STATES]; N_STATES];
-    for a in 0..2 {
-        for b in 0..2 {
-            covariance[a][b] = 4.0;
-        }
+    for row in &mut covariance[..2] {
+        row[..2].fill(4.0);
     }
     covariance[5][5] = 9.0;
     let mut right = [0.0; N_STATES];

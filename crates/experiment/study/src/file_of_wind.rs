@@ -1,0 +1,85 @@
+//! Files that the wind of a case comes from: that they can be read shows before any run begins.
+
+use crate::StudyError;
+use basis::Vector3;
+use farm::case::Case;
+use farm::plan::Plan;
+use farm::solvers::WindSource;
+use farm::wind;
+use flow::inflow::TabulatedWind;
+use formats::case::{CaseFile, objection};
+use std::error::Error;
+use std::sync::Arc;
+
+/// Mean speed of a table of wind over `wind.speed`, less one, beyond which a reader must know (–).
+const SPEED_TO_WARN: f64 = 0.05;
+
+/// The wind over time that the case of `file` reads; none where it reads none.
+///
+/// # Errors
+/// [`StudyError::Case`] at `wind.table`.
+pub(crate) fn table(
+    file: &CaseFile,
+    plan: &Plan,
+) -> Result<Option<Arc<TabulatedWind>>, StudyError> {
+    let case = &file.case;
+    let Some(name) = &case.wind.table else { return Ok(None) };
+    let refuse = |message| StudyError::Case(objection(file, &["wind", "table"], message));
+    let rows = formats::wind_table::read(&file.folder().join(name))
+        .map_err(|error| refuse(unreadable(&error)))?;
+    let foot = plan.positions.first().copied().unwrap_or(Vector3::ZERO);
+    let hub = foot + Vector3::Z * plan.hub_height;
+    let table = TabulatedWind::new(wind::profile(case, plan), hub, plan.diameter, rows)
+        .map_err(|error| refuse(error.to_string()))?;
+    let (end, duration) = (table.end(), case.time.duration);
+    if end < duration {
+        return Err(refuse(format!(
+            "{name} ends at {end} s, and runs last {duration} s: add a row at {duration} s or later, or lower time.duration"
+        )));
+    }
+    Ok(Some(Arc::new(table)))
+}
+
+/// Key of the file that the wind of the case of `file` comes from, and its mean speed at hub height (m/s),
+/// that of `table` where it is one; none where it comes from no file.
+///
+/// # Errors
+/// [`StudyError::Case`] at `wind.planes`.
+pub(crate) fn recorded_speed(
+    file: &CaseFile,
+    table: Option<&TabulatedWind>,
+) -> Result<Option<(&'static str, f64)>, StudyError> {
+    if let Some(table) = table {
+        return Ok(Some(("table", table.mean_speed(file.case.time.duration))));
+    }
+    if file.case.flow.solver.wind != WindSource::Planes {
+        return Ok(None);
+    }
+    let name = file.case.wind.planes.as_deref().unwrap_or_default();
+    match formats::turbulence_box::open(&file.folder().join(name)) {
+        Ok(planes) => Ok(Some(("planes", planes.grid().speed))),
+        Err(error) => {
+            let message = unreadable(&error);
+            Err(StudyError::Case(objection(file, &["wind", "planes"], message)))
+        }
+    }
+}
+
+/// That `case` is laid out for another wind than that of `table`.
+pub(crate) fn warning(case: &Case, table: Option<&TabulatedWind>) -> Option<String> {
+    let mean = table?.mean_speed(case.time.duration);
+    let speed = case.wind.speed;
+    ((mean / speed - 1.0).abs() > SPEED_TO_WARN).then(|| {
+        format!(
+            "wind.table blows with {mean:.2} m/s on average, and wind.speed = {speed} m/s: Strouhal numbers and the rotors' first speeds are those of wind.speed"
+        )
+    })
+}
+
+fn unreadable(error: &dyn Error) -> String {
+    let mut message = format!("the wind cannot be read: {error}");
+    if let Some(cause) = error.source() {
+        message += &format!(": {cause}");
+    }
+    message
+}
