@@ -20,7 +20,7 @@ impl Face {
         self.glyphs(content).map(|glyph| f64::from(self.advance(glyph, size))).sum()
     }
 
-    fn glyphs<'c>(&self, content: &'c str) -> impl Iterator<Item = GlyphId> {
+    fn glyphs(&self, content: &str) -> impl Iterator<Item = GlyphId> {
         content.chars().filter_map(move |letter| self.font.glyph_index(letter))
     }
 
