@@ -1,55 +1,85 @@
 //! The letters of the figures: Noto Sans, whose licence (SIL Open Font License 1.1) travels with
 //! the `notosans` package.
 
-use skrifa::instance::{LocationRef, Size};
-use skrifa::outline::{DrawSettings, OutlinePen};
-use skrifa::{FontRef, MetadataProvider};
+use ttf_parser::{GlyphId, OutlineBuilder};
 
 /// One of the two faces.
 pub(crate) struct Face {
-    font: FontRef<'static>,
+    font: ttf_parser::Face<'static>,
 }
 
 impl Face {
     /// The regular or the bold face.
     pub(crate) fn new(bold: bool) -> Self {
         let bytes = if bold { notosans::BOLD_TTF } else { notosans::REGULAR_TTF };
-        Self { font: FontRef::new(bytes).expect("the embedded font is whole") }
+        Self { font: ttf_parser::Face::parse(bytes, 0).expect("the embedded font is whole") }
     }
 
     /// Length of `content` in letters of `size`.
     pub(crate) fn width(&self, content: &str, size: f64) -> f64 {
-        let metrics = self.font.glyph_metrics(Size::new(size as f32), LocationRef::default());
-        let charmap = self.font.charmap();
-        content
-            .chars()
-            .filter_map(|letter| metrics.advance_width(charmap.map(letter)?))
-            .map(f64::from)
-            .sum()
+        self.glyphs(content).map(|glyph| f64::from(self.advance(glyph, size))).sum()
+    }
+
+    fn glyphs(&self, content: &str) -> impl Iterator<Item = GlyphId> {
+        content.chars().filter_map(move |letter| self.font.glyph_index(letter))
+    }
+
+    /// Way from the start of `glyph` to that of the next in letters of `size`, rounded as FreeType does: a
+    /// scale in 65536ths of 64ths.
+    fn advance(&self, glyph: GlyphId, size: f64) -> f32 {
+        let units = u64::from(self.font.units_per_em());
+        let scale = ((((64.0 * size) as u64) << 16) + units / 2) / units;
+        let advance = u64::from(self.font.glyph_hor_advance(glyph).unwrap_or(0));
+        ((scale * advance + 32) / 64) as f32 / 65536.0
     }
 
     /// Hands the outlines of `content` in letters of `size` to `pen`, from (0, 0) to the right, y
     /// upwards; `advance` tells the pen where each letter starts.
-    pub(crate) fn outlines<P: OutlinePen>(
+    pub(crate) fn outlines<P: OutlineBuilder>(
         &self,
         content: &str,
         size: f64,
         pen: &mut P,
         mut advance: impl FnMut(&mut P, f32),
     ) {
-        let size = Size::new(size as f32);
-        let metrics = self.font.glyph_metrics(size, LocationRef::default());
-        let (charmap, glyphs) = (self.font.charmap(), self.font.outline_glyphs());
+        let scale = size as f32 / f32::from(self.font.units_per_em());
         let mut start = 0.0;
-        for glyph in content.chars().filter_map(|letter| charmap.map(letter)) {
+        for glyph in self.glyphs(content) {
             advance(pen, start);
-            if let Some(outline) = glyphs.get(glyph) {
-                let settings = DrawSettings::unhinted(size, LocationRef::default());
-                // A letter that cannot be drawn leaves its space empty.
-                let _ = outline.draw(settings, pen);
-            }
-            start += metrics.advance_width(glyph).unwrap_or(0.0);
+            // A letter without an outline leaves its space empty.
+            self.font.outline_glyph(glyph, &mut Scaled { pen: &mut *pen, scale });
+            start += self.advance(glyph, size);
         }
+    }
+}
+
+/// A pen that is given the units of the font.
+struct Scaled<'p, P> {
+    pen: &'p mut P,
+    scale: f32,
+}
+
+impl<P: OutlineBuilder> OutlineBuilder for Scaled<'_, P> {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.pen.move_to(self.scale * x, self.scale * y);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.pen.line_to(self.scale * x, self.scale * y);
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        let [x1, y1, x, y] = [x1, y1, x, y].map(|place| self.scale * place);
+        self.pen.quad_to(x1, y1, x, y);
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        let [x1, y1, x2, y2, x, y] = [x1, y1, x2, y2, x, y].map(|place| self.scale * place);
+        self.pen.curve_to(x1, y1, x2, y2, x, y);
+    }
+
+    fn close(&mut self) {
+        self.pen.close();
     }
 }
 
@@ -113,7 +143,7 @@ mod tests {
         for bold in [false, true] {
             let face = Face::new(bold);
             for letter in "azAZ09 °±−–·×∞Δσₑ%/,.()".chars() {
-                assert!(face.font.charmap().map(letter).is_some(), "{letter} is missing");
+                assert!(face.font.glyph_index(letter).is_some(), "{letter} is missing");
             }
             assert!(face.width("mm", 12.0) > 2.0 * face.width("i", 12.0));
             assert!((face.width("power", 24.0) / face.width("power", 12.0) - 2.0).abs() < 0.01);

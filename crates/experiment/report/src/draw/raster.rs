@@ -4,7 +4,6 @@ use super::colour::{self, Ink};
 use super::font::Face;
 use super::svg::HALO;
 use super::{Figure, Look, Shape, TextStyle};
-use skrifa::outline::OutlinePen;
 use tiny_skia::{
     Color, FillRule, FilterQuality, LineCap, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap,
     PixmapPaint, PremultipliedColorU8, Rect, Stroke, StrokeDash, Transform,
@@ -182,7 +181,7 @@ struct Pen {
     start: f32,
 }
 
-impl OutlinePen for Pen {
+impl ttf_parser::OutlineBuilder for Pen {
     fn move_to(&mut self, x: f32, y: f32) {
         self.builder.move_to(self.start + x, -y);
     }
