@@ -59,13 +59,13 @@ fn deflection(run: &RunResult) -> [f64; 2] {
     [at[1] / rotor.diameter, turbine.thrust.mean / dynamic]
 }
 
-/// Wakes go to the right of a positive yaw and to the left of a negative one, by as much as the published laws
-/// say. Bastankhah and Porté-Agel (J. Fluid Mech. 806, 506, 2016, eq. 6.12): the wake leaves at an angle of
-/// 0.3 γ/cos γ (1 − √(1 − C_T cos γ)) and keeps it while it has a core, without turbulence for more than ten
-/// diameters. Jiménez, Crespo and Migoya (Wind Energy 13, 559, 2010): at ½ C_T cos²γ sin γ, which fades as the
-/// wake widens. The first lies below what is measured, the second above: written down before, half of the
-/// first and one and a half of the second without fading. Eight cells across the rotor are for a sign and a
-/// size, no more.
+/// Wakes go to the right of a positive yaw and to the left of a negative one, by as much as the published
+/// laws say. Bastankhah and Porté-Agel (J. Fluid Mech. 806, 506, 2016, eq. 6.12): the wake leaves at an
+/// angle of 0.3 γ/cos γ (1 − √(1 − C_T cos γ)) and keeps it while it has a core, without turbulence for
+/// more than ten diameters. Jiménez, Crespo and Migoya (Wind Energy 13, 559, 2010): at ½ C_T cos²γ sin γ,
+/// which fades as the wake widens. The first lies below what is measured, the second above: written down
+/// before, half of the first and one and a half of the second without fading. Eight cells across the
+/// rotor are for a sign and a size, no more.
 #[test]
 fn wakes_are_deflected_as_published() {
     let yaw = 25_f64.to_radians();

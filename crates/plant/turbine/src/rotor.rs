@@ -38,9 +38,9 @@ impl Frame {
         }
     }
 
-    /// The same rotor turned by `yaw` (rad) about the vertical through `axis` (m), counter-clockwise seen from
-    /// above: positive yaw carries the upwind side to the right looking downwind, and the thrust on the air,
-    /// hence the wake, to the right too.
+    /// The same rotor turned by `yaw` (rad) about the vertical through `axis` (m), counter-clockwise seen
+    /// from above: positive yaw carries the upwind side to the right looking downwind, and the thrust on
+    /// the air, hence the wake, to the right too.
     pub fn turned(&self, axis: Vector3, yaw: f64) -> Self {
         if yaw == 0.0 {
             return *self;

@@ -155,8 +155,8 @@ pub struct Rotor {
     pub diameter: f64,
     /// Where its hub is: hub height above the foot of the tower (m, farm frame).
     pub hub: [f64; 3],
-    /// Mean turn of its nacelle from facing the wind, counter-clockwise seen from above (deg); zero in records
-    /// that do not tell.
+    /// Mean turn of its nacelle from facing the wind, counter-clockwise seen from above (deg); zero in
+    /// records that do not tell.
     #[serde(default)]
     pub yaw_deg: f64,
 }

@@ -100,7 +100,8 @@ pub struct Measurements<'a> {
     pub generator_speed: f64,
     /// Blade pitch angles, positive to feather (rad).
     pub pitch: PerBlade<f64>,
-    /// Turn of the nacelle from facing the mean wind, counter-clockwise seen from above (rad); always as it is.
+    /// Turn of the nacelle from facing the mean wind, counter-clockwise seen from above (rad); always
+    /// as it is.
     pub yaw: f64,
     /// Generator torque on the low-speed side (N m).
     pub generator_torque: f64,

@@ -108,9 +108,10 @@ fn settled(yaw: f64, rotor_speed: f64) -> [f64; 2] {
     [power, thrust]
 }
 
-/// Momentum theory that knows the wind across the rotor plane alone gives cos³ for the power and cos² for the
-/// thrust of a rotor that keeps its tip-speed ratio in that wind; the wind along the plane and the wake's skew
-/// change that in second order. The shaft's tilt makes the wind meet the rotor at an angle of its own.
+/// Momentum theory that knows the wind across the rotor plane alone gives cos³ for the power and cos² for
+/// the thrust of a rotor that keeps its tip-speed ratio in that wind; the wind along the plane and the
+/// wake's skew change that in second order. The shaft's tilt makes the wind meet the rotor at an angle of
+/// its own.
 #[test]
 fn power_falls_with_the_cube_of_the_cosine_and_thrust_with_its_square() {
     let [power, thrust] = settled(0.0, ROTOR_SPEED);

@@ -68,8 +68,8 @@ fn turning(time: f64) -> Yaw {
     Yaw { angle: 0.2 + (rate + growth) * time, rate: rate + 2.0 * growth, acceleration }
 }
 
-/// What turns the nacelle shows in the loads of all that it carries, gyroscopic moments of the rotor included:
-/// tower base and yaw bearing against the momentum of everything above.
+/// What turns the nacelle shows in the loads of all that it carries, gyroscopic moments of the rotor
+/// included: tower base and yaw bearing against the momentum of everything above.
 #[test]
 fn loads_of_a_turning_nacelle_are_the_rate_of_momentum_too() {
     for text in [NREL_5, IEA_15] {
