@@ -43,6 +43,7 @@ impl Controller for Reference {
         Commands {
             pitch: PerBlade::splat(3, single(pitch)),
             generator_torque: GEAR_RATIO * single(torque),
+            yaw_rate: 0.0,
         }
     }
 
