@@ -203,16 +203,53 @@ impl<'a> Rotor<'a> {
     }
 
     /// Rows of pitch (deg), K_P (s) and K_I (–) at mechanical `power` (W), for frequency (rad/s) and damping
-    /// ratio (–); pitch angles at which power does not fall with pitch have none.
+    /// ratio (–).
+    ///
+    /// The fall of power with pitch is the straight line through what is found at all pitch angles, as the
+    /// source has it: close to fine pitch, where a rotor is at its best, power hardly falls, and a gain from
+    /// there alone would have no bound. Pitch angles at which that line does not fall have no row.
     fn pitch_gains(&self, power: f64, [frequency, damping]: [f64; 2]) -> Vec<[f64; 3]> {
-        let row = |pitch: f64| {
+        let fall = |pitch: f64| {
             let wind = self.wind(power, pitch)?;
             let [more, less] = [PITCH_STEP, -PITCH_STEP].map(|step| self.power(wind, pitch + step));
-            let fall = (less - more) / (2.0 * PITCH_STEP).to_radians();
+            Some((pitch, (less - more) / (2.0 * PITCH_STEP).to_radians()))
+        };
+        let line = straight_line(&SCHEDULE.into_iter().filter_map(fall).collect::<Vec<_>>());
+        let row = |pitch: f64| {
+            let fall = line[0] + line[1] * pitch;
             let scale = self.inertia * self.rated_speed / fall;
             let gains = [pitch, 2.0 * damping * frequency * scale, frequency.powi(2) * scale];
             (fall > 0.0).then_some(gains)
         };
         SCHEDULE.into_iter().filter_map(row).collect()
+    }
+}
+
+/// Value at zero and slope of the straight line nearest to `points` in the least-squares sense; not numbers
+/// for fewer than two.
+fn straight_line(points: &[(f64, f64)]) -> [f64; 2] {
+    let n = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (x_mean, y_mean) = (mean(|point| point.0), mean(|point| point.1));
+    let (mut with, mut own) = (0.0, 0.0);
+    for (x, y) in points {
+        with += (x - x_mean) * (y - y_mean);
+        own += (x - x_mean).powi(2);
+    }
+    let slope = with / own;
+    [y_mean - slope * x_mean, slope]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::straight_line;
+
+    #[test]
+    fn the_line_through_points_of_a_line_is_that_line() {
+        let points = [0.0, 2.0, 9.0, 23.0].map(|x| (x, 3.0 + 0.5 * x));
+        let [at_zero, slope] = straight_line(&points);
+        assert!((at_zero - 3.0).abs() < 1e-12 && (slope - 0.5).abs() < 1e-12);
+        // One point says nothing of a slope.
+        assert!(straight_line(&points[..1])[1].is_nan());
     }
 }
