@@ -42,7 +42,7 @@ pub const CASES: &[ShippedCase] = &[
     ShippedCase {
         name: "sweep-helix",
         file: include_str!("../../../../cases/sweep-helix.toml"),
-        minutes: 30.0,
+        minutes: 7.0,
         after: None,
     },
     ShippedCase {

@@ -161,7 +161,7 @@ fn a_gain_over_no_power_is_not_defined_and_the_rest_goes_on() {
     let [baseline, run] = [&setup.case.runs[0], &setup.case.runs[1]];
     for (still, undefined) in [
         (&["T2"][..], vec![Some("T2")]),
-        (&["T1", "T2", "T3"], vec![Some("T1"), Some("T2"), Some("T3"), None]),
+        (&["T1", "T2", "T3"], vec![Some("T1"), Some("T2"), Some("T3")]),
     ] {
         let folder = leave(study.path(), &setup, 1, N_ROWS, "");
         let mut own = Columns::open(&folder, &setup).expect("a series");
