@@ -24,8 +24,8 @@ const WAKE: f64 = 0.95;
 /// A profile across a wake: places (diameters) with speeds (m/s).
 type Profile = Vec<(f64, f64)>;
 
-/// `validation/cases/wake-profile.toml`: mean hub-height wind across the wake, baseline first, then the helix,
-/// then what the helix gains.
+/// `validation/cases/wake-profile.toml`: mean hub-height wind across the wake, baseline first, then the
+/// helix, then what the helix gains.
 pub fn wake_profile() -> Vec<Row> {
     let mut found = [vec![Profile::new(); DISTANCES.len()], vec![Profile::new(); DISTANCES.len()]];
     let mut turbine = [0.0; 2];
@@ -180,8 +180,8 @@ fn at(profile: &Profile, y: f64) -> f64 {
 /// Places between which a mean is summed (–).
 const N_PLACES: i32 = 400;
 
-/// Mean of the speed to the `power` over the disc of `half_width` (diameters), were the wake round: each place
-/// counts as the ring that it lies on.
+/// Mean of the speed to the `power` over the disc of `half_width` (diameters), were the wake round: each
+/// place counts as the ring that it lies on.
 fn mean(profile: &Profile, half_width: f64, power: i32) -> f64 {
     let places = (-N_PLACES..=N_PLACES).map(|n| half_width * f64::from(n) / f64::from(N_PLACES));
     let (sum, weight) = places.fold((0.0, 0.0), |(sum, weight), y| {

@@ -66,7 +66,7 @@ fn as_much_is_said_as_is_asked_for() {
     assert!(warnings.lines().all(|line| line.starts_with("warning: ")), "{warnings}");
     assert_eq!(quiet.stdout, run(&["-qq"]).stdout);
     assert!(run(&["--quiet", "--quiet"]).stderr.is_empty());
-    let more = text(&run(&["--verbose"]).stderr);
+    let more = text(&run(&["--verbose", "--jobs", "1"]).stderr);
     for words in [
         "read: case case.toml",
         "read: nrel-5mw",

@@ -47,7 +47,7 @@ pub struct Wind {
     /// How the mean speed grows with height.
     pub shear: Shear,
     /// Length scale of Mann's tensor (m); absent, it follows from the rest
-    /// ([`wind::length_scale`](crate::wind::length_scale)).
+    /// (`wind::length_scale`).
     pub length_scale: Option<f64>,
     /// Anisotropy Γ of Mann's tensor (–).
     pub anisotropy: f64,

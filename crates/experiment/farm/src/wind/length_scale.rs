@@ -11,8 +11,8 @@ const LONGEST: f64 = 2.0;
 /// Length scale L of Mann's tensor (m) of `wind` at `hub_height` (m): what its case says, or else
 /// σ_u / (dU/dz) there, between [`STANDARD`] and twice the hub height.
 ///
-/// Source: Kelly (2018), Wind Energ. Sci. 3, 533: in neutral air σ_u / (dU/dz) is Mann's length scale, found so
-/// from what an anemometer mast measures.
+/// Source: Kelly (2018), Wind Energ. Sci. 3, 533: in neutral air σ_u / (dU/dz) is Mann's length scale, found
+/// so from what an anemometer mast measures.
 pub fn length_scale(wind: &Wind, hub_height: f64) -> f64 {
     if let Some(given) = wind.length_scale {
         return given;

@@ -204,8 +204,8 @@ fn several(name: &str, text: &str, overrides: &[String], sweep: Option<Sweep>) -
     CaseError::Invalid { name: name.to_owned(), problems: vec![problem] }
 }
 
-/// The override that has the cases of `file` met in `n_seeds` winds: those of their own seed and the ones that
-/// follow.
+/// The override that has the cases of `file` met in `n_seeds` winds: those of their own seed and the ones
+/// that follow.
 ///
 /// # Errors
 /// [`CaseError`] for a case that sweeps `wind.seed` already.

@@ -145,8 +145,8 @@ fn with_a_figure_that_a_user_adds_the_turbine_is_whole() {
     let written = turbine_file::write(&document);
     assert_eq!(written.missing, Vec::<String>::new());
     let file = turbine_file::parse("whole.toml", &written.text).unwrap();
-    // A uniform blade of 39 m: 3.516 sqrt(EI / m) / L² (Blevins, 1979, table 8-1) is 0.5203 Hz flapwise, twice
-    // that edgewise, where it is four times as stiff.
+    // A uniform blade of 39 m: 3.516 sqrt(EI / m) / L² (Blevins, 1979, table 8-1) is 0.5203 Hz flapwise,
+    // twice that edgewise, where it is four times as stiff.
     assert!(
         notes
             .iter()

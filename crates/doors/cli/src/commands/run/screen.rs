@@ -250,6 +250,7 @@ impl Observer for Screen {
             self.bar.set_position(progress.step);
         } else {
             // Runs side by side would take the bar from each other.
+            self.enter("runs side by side");
             self.bar.set_prefix(format!("{run_index} of {n_runs} runs done"));
             self.bar.set_length(1000);
             self.bar.set_position((1000.0 * progress.share_of_all) as u64);
