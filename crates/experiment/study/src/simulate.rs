@@ -100,7 +100,8 @@ pub(crate) fn simulate(
     let n_steps = job.ready.prepared.plan.n_steps;
     let every = Duration::from_secs_f64(job.ready.prepared.case.output.checkpoint_interval);
     let mut last_checkpoint = Instant::now();
-    let mut last_progress = Instant::now();
+    // However short the run is, it is told of once.
+    let mut last_progress: Option<Instant> = None;
     while simulation.farm.step() < n_steps {
         if stop.load(Ordering::Relaxed) {
             simulation.checkpoint()?;
@@ -111,9 +112,9 @@ pub(crate) fn simulate(
             simulation.checkpoint()?;
             last_checkpoint = Instant::now();
         }
-        if last_progress.elapsed() >= PROGRESS_INTERVAL {
+        if last_progress.is_none_or(|last| last.elapsed() >= PROGRESS_INTERVAL) {
             observer.advanced(&simulation.progress());
-            last_progress = Instant::now();
+            last_progress = Some(Instant::now());
         }
     }
     simulation.finish()

@@ -26,6 +26,8 @@ const SCHEDULE: [f64; 9] = [0.0, 2.0, 4.0, 6.0, 9.0, 12.0, 15.0, 19.0, 23.0];
 const PITCH_STEP: f64 = 0.25;
 const WINDS: [f64; 2] = [4.0, 60.0];
 const WIND_STEP: f64 = 0.5;
+/// Fall of power with pitch over the most of it (–) below which a pitch angle has no gains of its own.
+const LEAST_FALL: f64 = 0.1;
 /// What the group says of it.
 const SOURCE: &str = "gains from the frequencies and damping ratios that the file asks for, by blade-element momentum (Jonkman et al., NREL/TP-500-38060, 2009, sec. 7.3); corners of filters assumed";
 /// What stands for a gain until it is known; no result depends on it.
@@ -207,7 +209,8 @@ impl<'a> Rotor<'a> {
     ///
     /// The fall of power with pitch is the straight line through what is found at all pitch angles, as the
     /// source has it: close to fine pitch, where a rotor is at its best, power hardly falls, and a gain from
-    /// there alone would have no bound. Pitch angles at which that line does not fall have no row.
+    /// there alone would have no bound. Pitch angles at which it falls by less than a tenth of the most have
+    /// no row: below its first row a controller holds that one's gains.
     fn pitch_gains(&self, power: f64, [frequency, damping]: [f64; 2]) -> Vec<[f64; 3]> {
         let fall = |pitch: f64| {
             let wind = self.wind(power, pitch)?;
@@ -215,11 +218,13 @@ impl<'a> Rotor<'a> {
             Some((pitch, (less - more) / (2.0 * PITCH_STEP).to_radians()))
         };
         let line = straight_line(&SCHEDULE.into_iter().filter_map(fall).collect::<Vec<_>>());
+        let along = |pitch: f64| line[0] + line[1] * pitch;
+        let most = SCHEDULE.into_iter().map(along).fold(0.0, f64::max);
         let row = |pitch: f64| {
-            let fall = line[0] + line[1] * pitch;
+            let fall = along(pitch);
             let scale = self.inertia * self.rated_speed / fall;
             let gains = [pitch, 2.0 * damping * frequency * scale, frequency.powi(2) * scale];
-            (fall > 0.0).then_some(gains)
+            (most > 0.0 && fall >= LEAST_FALL * most).then_some(gains)
         };
         SCHEDULE.into_iter().filter_map(row).collect()
     }
