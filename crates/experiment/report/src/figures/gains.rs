@@ -86,7 +86,7 @@ fn bands(groups: &[Group], mut y: f64, shapes: &mut Vec<Shape>) {
 }
 
 /// Lines at round gains, with their numbers and what they are below.
-fn ruler(frame: &Frame, shapes: &mut Vec<Shape>) {
+pub(super) fn ruler(frame: &Frame, shapes: &mut Vec<Shape>) {
     let (ticks, decimals) = frame.x.ticks(8);
     let bottom = frame.area[1] + frame.area[3];
     let mut inner = Vec::new();

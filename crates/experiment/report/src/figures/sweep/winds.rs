@@ -1,9 +1,10 @@
 //! Gains wind by wind, and all winds together with their interval.
 
 use super::super::WIDTH;
+use super::super::gains::ruler;
 use super::lines::scale;
 use super::{parts, settings, title};
-use crate::draw::axes::{Frame, MEDIUM, Readout, SMALL, Scale};
+use crate::draw::axes::{Frame, MEDIUM, Readout, Scale};
 use crate::draw::colour::Ink;
 use crate::draw::font::Face;
 use crate::draw::whisker::{Style, whisker};
@@ -92,21 +93,6 @@ fn rows(table: &SweepTable) -> Vec<Row<'_>> {
     }
     rows.truncate(MOST);
     rows
-}
-
-/// Lines at round gains, with their numbers and what they are below.
-fn ruler(frame: &Frame, shapes: &mut Vec<Shape>) {
-    let (ticks, decimals) = frame.x.ticks(8);
-    let bottom = frame.area[1] + frame.area[3];
-    let mut inner = Vec::new();
-    for tick in ticks {
-        let [x, _] = frame.point([tick, 0.0]);
-        inner.push(segment([x, frame.area[1]], [x, bottom], Look::line(Ink::Grid, 1.0)));
-        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(0.5);
-        inner.push(text([x, bottom + 17.0], words::number(tick, decimals), setting));
-    }
-    frame.ticks(Axis::X, inner, shapes);
-    frame.x_label("power gain over the compared run (%)", shapes);
 }
 
 /// The marks of `row` at the height `y`, with a line at zero behind them.
