@@ -2,27 +2,15 @@
 //! it, and that nothing beside the program is needed.
 
 mod program;
+mod small;
 
 use program::{said, wakemix};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-const CASE: &str = r#"
-name = "small"
-[wind]
-speed = 9.0
-turbulence_intensity = 0.0
-[flow]
-solver = "uniform"
-[time]
-spin_up = 10.0
-duration = 40.0
-[[turbine]]
-name = "T1"
-model = "nrel-5mw"
-position_diameters = [0.0, 0.0]
-[[turbine]]
+/// Its turbines and runs behind the first turbine.
+const REST: &str = r#"[[turbine]]
 name = "T2"
 model = "nrel-5mw"
 position_diameters = [5.0, 0.0]
@@ -33,9 +21,13 @@ name = "pulse"
 control.T1 = { kind = "pulse", amplitude_deg = 2.0, strouhal = 0.5 }
 "#;
 
+fn small_case() -> String {
+    small::case("small", REST)
+}
+
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("case.toml"), CASE).unwrap();
+    fs::write(folder.path().join("case.toml"), small_case()).unwrap();
     folder
 }
 
@@ -200,7 +192,7 @@ fn a_dry_run_reads_every_file_and_checks_rotors_only_when_asked() {
         assert!(said(&refused).contains(words), "{setting}: {}", said(&refused));
     }
     for planes in ["gone.bts", "wind.bts"] {
-        let case = CASE.replace("\"uniform\"", "\"planes\"");
+        let case = small_case().replace("\"uniform\"", "\"planes\"");
         let case = case.replace("speed = 9.0", &format!("speed = 9.0\nplanes = {planes:?}"));
         fs::write(folder.path().join("planes.toml"), case).unwrap();
         let refused = wakemix(&["run", "planes.toml", "--dry-run"], folder.path());

@@ -4,35 +4,27 @@
 #[path = "../../../experiment/study/tests/foreign/mod.rs"]
 mod foreign;
 mod program;
+mod small;
 
 use foreign::{compiled, input};
 use program::{said, wakemix};
 use std::fs;
 
-const CASE: &str = r#"
-name = "crash"
-[wind]
-speed = 9.0
-turbulence_intensity = 0.0
-[flow]
-solver = "uniform"
-[time]
-spin_up = 10.0
-duration = 40.0
-[[turbine]]
-name = "T1"
-model = "nrel-5mw"
-position_diameters = [0.0, 0.0]
-[[run]]
+/// Its turbines and runs behind the first turbine.
+const REST: &str = r#"[[run]]
 name = "own"
 control.T1 = { kind = "discon", library = "libdiscon.so", input = "DISCON.IN", anemometer = "none" }
 "#;
+
+fn small_case() -> String {
+    small::case("crash", REST)
+}
 
 #[test]
 fn a_library_that_crashes_or_ends_the_program_is_named() {
     let folder = tempfile::tempdir().unwrap();
     compiled(folder.path());
-    fs::write(folder.path().join("case.toml"), CASE).unwrap();
+    fs::write(folder.path().join("case.toml"), small_case()).unwrap();
     for trick in ["crash", "exit"] {
         input(folder.path(), trick, 5.0);
         let output = wakemix(&["run", "case.toml", "-o", trick], folder.path());

@@ -2,6 +2,7 @@
 //! are taken, and numbers that nobody meant.
 
 mod program;
+mod small;
 
 use program::{said, wakemix};
 use std::fs;
@@ -15,29 +16,20 @@ fn refused(arguments: &[&str], folder: &Path, words: &str) {
     assert!(said(&output).contains(words), "{arguments:?}: {}", said(&output));
 }
 
-const CASE: &str = r#"
-name = "small"
-[wind]
-speed = 9.0
-turbulence_intensity = 0.0
-[flow]
-solver = "uniform"
-[time]
-spin_up = 10.0
-duration = 40.0
-[[turbine]]
-name = "T1"
-model = "nrel-5mw"
-position_diameters = [0.0, 0.0]
-[[run]]
+/// Its turbines and runs behind the first turbine.
+const REST: &str = r#"[[run]]
 name = "baseline"
 "#;
+
+fn small_case() -> String {
+    small::case("small", REST)
+}
 
 #[cfg(unix)]
 #[test]
 fn a_closed_pipe_ends_the_program_in_silence() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("case.toml"), CASE).unwrap();
+    fs::write(folder.path().join("case.toml"), small_case()).unwrap();
     for arguments in [
         &["schema"][..],
         &["turbine", "list"],
@@ -97,13 +89,13 @@ fn what_is_no_file_is_not_waited_for() {
     let pipe = place("pipe.toml");
     for file in [pipe.as_str(), "/dev/zero"] {
         let is_none = "it is no file, but a device, a pipe or a socket";
-        let case = CASE.replace("\"nrel-5mw\"", &format!("{file:?}"));
+        let case = small_case().replace("\"nrel-5mw\"", &format!("{file:?}"));
         fs::write(place("case.toml"), case).unwrap();
         refused(&["run", "case.toml", "--dry-run"], folder.path(), is_none);
         refused(&["run", file, "--dry-run"], folder.path(), is_none);
         refused(&["turbine", "show", file], folder.path(), is_none);
         refused(&["fatigue", file, "--channel", "a", "--slope", "4"], folder.path(), is_none);
-        let discon = CASE.replace("model", &format!("discon = {file:?}\nmodel"));
+        let discon = small_case().replace("model", &format!("discon = {file:?}\nmodel"));
         fs::write(place("case.toml"), discon).unwrap();
         refused(&["run", "case.toml", "--dry-run"], folder.path(), "a device, a pipe or a socket");
     }
@@ -121,7 +113,7 @@ fn files_that_are_there_are_not_lost() {
     let place = |name: &str| folder.path().join(name);
     let mine = |name: &str| fs::write(place(name), "mine").unwrap();
     let is_mine = |name: &str| fs::read(place(name)).unwrap() == b"mine";
-    fs::write(place("case.toml"), CASE).unwrap();
+    fs::write(place("case.toml"), small_case()).unwrap();
     fs::write(
         place("small.yaml"),
         include_str!("../../../experiment/formats/src/windio/small.yaml"),
@@ -192,7 +184,7 @@ fn numbers_that_nobody_meant_are_refused_before_any_work() {
 #[test]
 fn names_cannot_steer_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
-    let evil = CASE.replace("name = \"T1\"", "name = \"\\u001b[2J\\u0007\"");
+    let evil = small_case().replace("name = \"T1\"", "name = \"\\u001b[2J\\u0007\"");
     fs::write(folder.path().join("case.toml"), evil).unwrap();
     let text = "time,\u{1b}]0;a\u{7}\n0,1\n1,2\n2,1\n";
     fs::write(folder.path().join("a.csv"), text).unwrap();
@@ -213,7 +205,7 @@ fn names_cannot_steer_the_terminal() {
 #[test]
 fn a_run_says_what_it_will_not_do() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("case.toml"), CASE).unwrap();
+    fs::write(folder.path().join("case.toml"), small_case()).unwrap();
     refused(&["run", "case.toml", "--resume"], folder.path(), "holds no run to resume");
     refused(
         &["run", "case.toml", "--set", "run.0.name=figures"],
