@@ -14,7 +14,7 @@ const LOADS: [(&str, &str, &str); 2] = [
 /// room, gains of each turbine and of all, and loads; below it what the intervals are and what else there is
 /// to know.
 pub(crate) fn render(table: &SweepTable, width: usize) -> String {
-    let parts = parts(table);
+    let parts = table.part_names();
     let (keys, columns) = heads(table, &parts);
     let mut lines = TextTable::new(keys, columns);
     for row in &table.rows {
@@ -42,19 +42,6 @@ fn what(table: &SweepTable) -> String {
         0 | 1 => format!("{} runs{over}", table.rows.len()),
         n => format!("{} runs{over}, each in {n} winds", table.rows.len()),
     }
-}
-
-/// Names of the turbines, and of all together where there is such a thing, in the order of the rows.
-fn parts(table: &SweepTable) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
-    for part in table.rows.iter().flat_map(|row| &row.parts) {
-        if !names.contains(&part.name.as_str()) {
-            names.push(&part.name);
-        }
-    }
-    // All together stands behind the turbines.
-    names.sort_by_key(|name| *name == "all");
-    names
 }
 
 /// Turbines with those of their loads of which any row tells a change.

@@ -21,7 +21,7 @@ pub(crate) fn render(
     // The name's ending turns escaping on.
     environment.add_template("sweep.html", TEMPLATE)?;
     let drawings = figures.iter().map(drawing).collect::<Result<Vec<_>, _>>()?;
-    let parts = parts(table);
+    let parts = table.part_names();
     let page = environment.get_template("sweep.html")?.render(context! {
         title => table.case.clone(),
         description => description(table),
@@ -86,18 +86,6 @@ fn convention(table: &SweepTable) -> String {
     } else {
         "± is the half width of the 95 % interval from blocks of the analysed time.".to_owned()
     }
-}
-
-/// Names of turbines and of all together, all last.
-fn parts(table: &SweepTable) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
-    for part in table.rows.iter().flat_map(|row| &row.parts) {
-        if !names.contains(&part.name.as_str()) {
-            names.push(&part.name);
-        }
-    }
-    names.sort_by_key(|name| *name == "all");
-    names
 }
 
 fn heads(table: &SweepTable, parts: &[&str]) -> Vec<String> {

@@ -174,6 +174,21 @@ pub struct SweepLoad {
     pub change: Option<Statistic>,
 }
 
+impl SweepTable {
+    /// Names of the turbines, in the order of the rows, and of all together behind them where there is such a
+    /// thing.
+    pub fn part_names(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for part in self.rows.iter().flat_map(|row| &row.parts) {
+            if !names.contains(&part.name.as_str()) {
+                names.push(&part.name);
+            }
+        }
+        names.sort_by_key(|name| *name == "all");
+        names
+    }
+}
+
 impl SweepRow {
     /// The value of `key`.
     pub fn value(&self, key: &str) -> Option<&SweptValue> {
