@@ -18,6 +18,7 @@ macro_rules! tell {
 
 pub mod actuator_line;
 pub mod aeroelastic;
+pub mod atmosphere;
 mod axisymmetric;
 pub mod blade_element;
 pub mod flow;

@@ -3,7 +3,7 @@
 
 use crate::{Cost, Elsewhere, Validation};
 use crate::{
-    actuator_line, aeroelastic, blade_element, flow, helix, inflow, meandering, memory,
+    actuator_line, aeroelastic, atmosphere, blade_element, flow, helix, inflow, meandering, memory,
     phase_estimator, resume, structure,
 };
 
@@ -80,6 +80,24 @@ pub const VALIDATIONS: &[Validation] = &[
         pictures: None,
         page: "flow",
         recorded: include_str!("../recorded/isotropy.toml"),
+    },
+    Validation {
+        name: "atmosphere",
+        about: "air with temperature on a turning earth against closed forms: conduction, inertial and internal waves, Ekman's layer, onset of convection",
+        cost: Cost::UnderAMinute,
+        run: atmosphere::atmosphere,
+        pictures: None,
+        page: "atmosphere",
+        recorded: include_str!("../recorded/atmosphere.toml"),
+    },
+    Validation {
+        name: "stable-boundary-layer",
+        about: "the stable boundary layer of GABLS1 on cells of 6.25 m beside the published spread of simulations",
+        cost: Cost::Minutes(15),
+        run: atmosphere::stable_boundary_layer,
+        pictures: None,
+        page: "atmosphere",
+        recorded: include_str!("../recorded/stable-boundary-layer.toml"),
     },
     Validation {
         name: "helix",

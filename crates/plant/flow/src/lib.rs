@@ -54,6 +54,18 @@ pub trait Inflow: Send + Sync {
     /// Writes the wind (m/s) at `time` (s) at each of `positions` (m, farm frame) into `velocities`, of the
     /// same length.
     fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]);
+
+    /// The same for potential temperature (K) into `temperatures`. False, and nothing is written, where it is
+    /// not known: the air has then the temperature of its height.
+    fn sample_temperature(
+        &self,
+        time: f64,
+        positions: &[Vector3],
+        temperatures: &mut [f64],
+    ) -> bool {
+        let _ = (time, positions, temperatures);
+        false
+    }
 }
 
 /// Why a solver could not go on.

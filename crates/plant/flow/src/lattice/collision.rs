@@ -26,6 +26,12 @@ pub(crate) const SUBGRID_FACTOR: f64 = 25.455_844_122_715_71;
 /// Rate at which the stress of a cell in state `before` relaxes.
 #[inline(always)]
 pub(crate) fn relaxation_rate<S: Simd>(before: &Moments<S>, relaxation: &Relaxation<S>) -> S {
+    S::splat(2.0).divide(twice_relaxation_time(before, relaxation))
+}
+
+/// Twice the time over which the stress of a cell in state `before` relaxes, in steps.
+#[inline(always)]
+pub(crate) fn twice_relaxation_time<S: Simd>(before: &Moments<S>, relaxation: &Relaxation<S>) -> S {
     // Symbols: s stress, t a third of its trace, d its deviator, q the deviator's norm, tau relaxation time.
     let [sxx, syy, szz, sxy, sxz, syz] = before.stress;
     let two = S::splat(2.0);
@@ -35,8 +41,8 @@ pub(crate) fn relaxation_rate<S: Simd>(before: &Moments<S>, relaxation: &Relaxat
     let q = two.mul_add(shear, dxx.mul_add(dxx, dyy.mul_add(dyy, dzz * dzz))).sqrt();
     let squared =
         (q * before.per_density).mul_add(relaxation.subgrid, relaxation.time * relaxation.time);
-    // 1/tau, tau = (tau0 + sqrt(tau0² + 18 √2 C² q/rho))/2.
-    two.divide(relaxation.time + squared.sqrt())
+    // tau = (tau0 + sqrt(tau0² + 18 √2 C² q/rho))/2.
+    relaxation.time + squared.sqrt()
 }
 
 /// State after the collision of a cell in state `before`, its stress relaxed at `rate`, under `force`

@@ -1,33 +1,33 @@
 //! The engine that runs on the processor: populations in one array, updated in place by threads that share
 //! the rows.
 
+mod worker;
+
+use super::atmosphere::probe::{self, AirRow};
+use super::atmosphere::stratification::Stratification;
 use super::collision::SUBGRID_FACTOR;
 use super::ends::RowEnds;
 use super::engine::{Engine, Rows};
 use super::forces::ForceBlock;
-use super::inlet::Inlet;
 use super::kernel::Kernel;
 use super::layout::{Edge, Layout, Parity};
 use super::memory::Memory;
 use super::pool::Pool;
 use super::probe::{RowState, View};
 use super::scaling::Scaling;
-use super::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides};
+use super::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil};
 use super::simd::{Backend, MAXIMUM_LANES};
-use super::spreading::Spreader;
-use super::sweep::{Share, Step};
+use super::stencil::D3Q19;
+use super::stencil27::D3Q27;
+use super::sweep::Step;
 use super::values::{read_values, write_values};
-use super::wall::{Wall, WallMemory};
+use super::wall::Wall;
 use crate::Inflow;
 use basis::{PointForce, Vector3};
 use std::io::{Read, Result, Write};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
+use worker::{Worker, own};
 
-/// Fastest speed that the lattice carries, in cells per step: at Mach 0.7 the expansion in Mach has broken
-/// down.
-const FASTEST: f32 = 0.4;
-/// Largest departure of the density from one that it carries.
-const DENSEST: f32 = 0.5;
 /// Longest zone of raised viscosity before the outlet, in cells.
 const LONGEST_SPONGE: usize = 24;
 /// Share of the box's length that it may take, as a divisor.
@@ -43,30 +43,19 @@ const OUTLET_PULL: f64 = 0.25;
 pub(crate) struct Cpu {
     scaling: Scaling,
     kernel: Kernel,
+    stencil: Stencil,
     backend: Backend,
     layout: Layout,
     memory: Memory,
     workers: Vec<Mutex<Worker>>,
     pool: Pool,
     wall: Option<Wall>,
+    stratification: Option<Stratification>,
     relaxation_times: Vec<f32>,
     subgrid: Vec<f32>,
     acceleration: [f32; 3],
     outlet_stiffness: f32,
     n_steps: u64,
-}
-
-/// What one thread owns.
-struct Worker {
-    share: Share,
-    inlet: Inlet,
-    wall: WallMemory,
-    /// Forces on the levels that the worker's rows are part of.
-    spreader: Spreader,
-    /// Room for a row.
-    row: RowState,
-    /// First bad cell of the last look and its speed.
-    found: Option<([usize; 3], f32)>,
 }
 
 /// The field between two steps, through the loops that know its layout.
@@ -100,13 +89,22 @@ impl Cpu {
             Sides::Slip => Edge::Slip,
         };
         let levels = match settings.ground {
-            Ground::Periodic => Edge::Periodic,
-            Ground::Slip | Ground::WallStress { .. } => Edge::Slip,
+            Ground::Periodic => [Edge::Periodic; 2],
+            Ground::Slip | Ground::WallStress { .. } => [Edge::Slip; 2],
+            Ground::NoSlip => [Edge::Hold, Edge::Slip],
+            Ground::Plates => [Edge::Hold; 2],
         };
         let layout = Layout::new(settings.n_cells, kernel.directions, sides, levels);
         let refused =
             LatticeError::Memory { n_cells: settings.cells(), bytes: 4 * layout.n_values() };
-        let memory = Memory::zeroed(layout.n_values()).ok_or(refused)?;
+        let memory = Memory::zeroed(layout.n_values()).ok_or_else(|| refused.clone())?;
+        let stratification = match &settings.atmosphere {
+            Some(atmosphere) => Some(
+                Stratification::new(atmosphere, settings, &scaling, sides, levels)
+                    .ok_or(refused)?,
+            ),
+            None => None,
+        };
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         let n_threads = settings.threads.unwrap_or_else(cores).min(layout.n_rows());
         let wall = Wall::new(settings, &scaling);
@@ -120,11 +118,13 @@ impl Cpu {
         let subgrid = (SUBGRID_FACTOR * settings.smagorinsky.powi(2)) as f32;
         Ok(Self {
             kernel,
+            stencil: settings.stencil,
             backend,
             memory,
             workers,
             pool: Pool::new(n_threads),
             wall,
+            stratification,
             relaxation_times: relaxation_times(settings, &scaling),
             subgrid: vec![subgrid; settings.n_cells[2]],
             acceleration,
@@ -149,7 +149,8 @@ impl Engine for Cpu {
         self.n_steps = 0;
         let view = view(&self.memory, &self.layout, self.n_steps);
         let (workers, kernel, scaling) = (&self.workers, &self.kernel, &self.scaling);
-        self.pool.run(&|thread| own(&workers[thread]).fill(kernel, &view, scaling, inflow));
+        let heat = self.stratification.as_ref();
+        self.pool.run(&|thread| own(&workers[thread]).fill(kernel, &view, scaling, inflow, heat));
     }
 
     fn set_forces(&mut self, forces: &[PointForce]) {
@@ -162,11 +163,19 @@ impl Engine for Cpu {
     fn step(&mut self, inflow: &dyn Inflow) {
         let view = view(&self.memory, &self.layout, self.n_steps);
         let (workers, kernel, scaling) = (&self.workers, &self.kernel, &self.scaling);
+        let n_steps = self.n_steps;
+        let air = self.stratification.as_ref();
         if let Some(wall) = &self.wall {
             let rows = Reader { kernel, view };
+            let surface = air.and_then(|air| Some((air, air.surface.as_ref()?)));
             self.pool.run(&|thread| {
-                let Worker { share, wall: memory, .. } = &mut *own(&workers[thread]);
-                wall.update(&rows, &self.layout, memory, share);
+                let Worker { share, wall: memory, heat, row, .. } = &mut *own(&workers[thread]);
+                match (surface, heat) {
+                    (Some((air, surface)), Some(heat)) => {
+                        surface.update(n_steps, &rows, air, row, share, heat);
+                    }
+                    _ => wall.update(&rows, &self.layout, memory, share),
+                }
             });
         }
         let step = Step {
@@ -178,13 +187,27 @@ impl Engine for Cpu {
             acceleration: self.acceleration,
             outlet_stiffness: self.outlet_stiffness,
         };
-        let n_steps = self.n_steps;
+        let air = air.map(Stratification::step);
         self.pool.run(&|thread| {
-            let Worker { share, inlet, spreader, .. } = &mut *own(&workers[thread]);
+            let Worker { share, inlet, spreader, heat, .. } = &mut *own(&workers[thread]);
             inlet.update(n_steps, inflow, scaling, &mut share.ends);
-            kernel.sweep(&step, spreader.blocks(), share);
+            match (&air, heat) {
+                (Some(air), Some(heat)) => {
+                    kernel.sweep_heat(&step, air, spreader.blocks(), share, heat);
+                }
+                _ => kernel.sweep(&step, spreader.blocks(), share),
+            }
         });
         self.n_steps += 1;
+        if let Some(air) = &mut self.stratification {
+            for worker in &self.workers {
+                let Worker { share, heat, .. } = &*own(worker);
+                if let Some(heat) = heat {
+                    air.gather(share.rows.start, &heat.sums);
+                }
+            }
+            air.follow();
+        }
     }
 
     fn n_steps(&self) -> u64 {
@@ -193,6 +216,17 @@ impl Engine for Cpu {
 
     fn read_row(&self, row: usize, state: &mut RowState) {
         self.kernel.read_row(&view(&self.memory, &self.layout, self.n_steps), row, state);
+    }
+
+    fn read_air(&self, row: usize, state: &mut AirRow) -> bool {
+        let Some(air) = &self.stratification else { return false };
+        let view = view(&self.memory, &self.layout, self.n_steps);
+        let law = (self.relaxation_times.as_slice(), self.subgrid[row / self.layout.n_cells[1]]);
+        match self.stencil {
+            Stencil::D3Q19 => probe::read_row::<D3Q19, 19>(&view, air, law, row, state),
+            Stencil::D3Q27 => probe::read_row::<D3Q27, 27>(&view, air, law, row, state),
+        }
+        true
     }
 
     fn read_cells(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4] {
@@ -225,7 +259,16 @@ impl Engine for Cpu {
                 write_values(writer, &mut bytes, &own(worker).wall.filtered[component])?;
             }
         }
-        write_values(writer, &mut bytes, self.memory.values())
+        write_values(writer, &mut bytes, self.memory.values())?;
+        if let Some(air) = &self.stratification {
+            for worker in &self.workers {
+                if let Some(heat) = &own(worker).heat {
+                    heat.surface.write(writer, &mut bytes)?;
+                }
+            }
+            air.write(writer, &mut bytes)?;
+        }
+        Ok(())
     }
 
     fn read_state(&mut self, n_steps: u64, reader: &mut dyn Read) -> Result<()> {
@@ -249,6 +292,14 @@ impl Engine for Cpu {
             }
         }
         read_values(reader, &mut bytes, self.memory.values_mut())?;
+        if let Some(air) = &mut self.stratification {
+            for worker in &self.workers {
+                if let Some(heat) = &mut own(worker).heat {
+                    heat.surface.read(reader, &mut bytes)?;
+                }
+            }
+            air.read_state(reader, &mut bytes)?;
+        }
         self.n_steps = n_steps;
         Ok(())
     }
@@ -268,93 +319,9 @@ impl Engine for Cpu {
         };
         // Each row has its place at the inlet: two vectors in double and ten single values.
         let ends = self.layout.n_rows() * (2 * size_of::<Vector3>() + 13 * size_of::<f32>());
-        (self.memory.bytes() + wall + ends) as u64
+        let heat = self.stratification.as_ref().map_or(0, Stratification::bytes);
+        (self.memory.bytes() + wall + ends + heat) as u64
     }
-}
-
-impl Worker {
-    fn new(
-        thread: usize,
-        n_threads: usize,
-        settings: &LatticeSettings,
-        layout: &Layout,
-        has_wall: bool,
-    ) -> Self {
-        let n_rows = layout.n_rows();
-        let rows = thread * n_rows / n_threads..(thread + 1) * n_rows / n_threads;
-        let levels = rows.start / layout.n_cells[1]..rows.end.div_ceil(layout.n_cells[1]);
-        let n_wall_rows = match has_wall {
-            true => rows.end.min(layout.n_cells[1]) - rows.start.min(layout.n_cells[1]),
-            false => 0,
-        };
-        let padded = layout.n_cells[0].next_multiple_of(MAXIMUM_LANES);
-        let wall = || vec![0.0; n_wall_rows * layout.row_stride];
-        Self {
-            inlet: Inlet::new(layout, &settings.scaling(), rows.clone()),
-            wall: WallMemory::new(layout, n_wall_rows),
-            spreader: Spreader::new(settings.scaling(), settings.n_cells).on_levels(levels),
-            row: RowState::new(layout.n_cells[0]),
-            found: None,
-            share: Share {
-                ends: RowEnds::new(settings.ends, rows.len()),
-                wall: [wall(), wall()],
-                force: std::array::from_fn(|_| vec![0.0; padded]),
-                rows,
-            },
-        }
-    }
-
-    /// On return the worker's rows move as `inflow` does at time zero.
-    fn fill(&mut self, kernel: &Kernel, view: &View<'_>, scaling: &Scaling, inflow: &dyn Inflow) {
-        let n = view.layout.n_cells[0];
-        let mut positions = vec![Vector3::ZERO; n + 1];
-        let mut velocities = vec![Vector3::ZERO; n + 1];
-        for row in self.share.rows.clone() {
-            let [y, z] = view.layout.place(row);
-            for (x, position) in positions.iter_mut().enumerate() {
-                *position = scaling.to_si_position(Vector3::new(x as f64, y as f64, z as f64));
-            }
-            inflow.sample(0.0, &positions, &mut velocities);
-            for (x, velocity) in velocities.iter().enumerate() {
-                let velocity = scaling.to_lattice_velocity(*velocity).as_vec3().to_array();
-                if x < n {
-                    for (column, value) in self.row.velocity.iter_mut().zip(velocity) {
-                        column[x] = value;
-                    }
-                } else if let RowEnds::Open { outlet: [_, columns @ ..], .. } = &mut self.share.ends
-                {
-                    for (column, value) in columns.iter_mut().zip(velocity) {
-                        column[row - self.share.rows.start] = value;
-                    }
-                }
-            }
-            kernel.write_row(view, row, &self.row);
-        }
-    }
-
-    fn look(&mut self, kernel: &Kernel, view: &View<'_>, first: usize, stride: usize) {
-        self.found = None;
-        for row in self.share.rows.clone().filter(|row| row % stride == first) {
-            kernel.read_row(view, row, &mut self.row);
-            let [u, v, w] = &self.row.velocity;
-            for x in 0..view.layout.n_cells[0] {
-                let squared = u[x] * u[x] + v[x] * v[x] + w[x] * w[x];
-                // Written so that a value that is not a number is found, too.
-                let good =
-                    squared <= FASTEST * FASTEST && self.row.density_excess[x].abs() <= DENSEST;
-                if !good {
-                    let [y, z] = view.layout.place(row);
-                    self.found = Some(([x, y, z], squared.sqrt()));
-                    return;
-                }
-            }
-        }
-    }
-}
-
-/// A worker is locked by its own thread during a job, and by the caller between jobs.
-fn own(worker: &Mutex<Worker>) -> MutexGuard<'_, Worker> {
-    worker.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// 1/2 + 3 ν along x, with the sponge before the outlet; padded to whole vectors.

@@ -4,6 +4,7 @@
 //! runs on. Today's is [`Cpu`](super::cpu::Cpu). One with memory of its own, on another device, implements
 //! the same few methods.
 
+use super::atmosphere::AirRow;
 use super::forces::ForceBlock;
 use super::probe::RowState;
 use crate::Inflow;
@@ -26,6 +27,13 @@ pub trait Engine: Send + Sync {
 
     /// On return `state` holds density and velocity of row number `row`, forces of this step aside.
     fn read_row(&self, row: usize, state: &mut RowState);
+
+    /// On return `state` holds wind, temperature and subgrid fluxes of row number `row`; false where the air
+    /// has no temperature.
+    fn read_air(&self, row: usize, state: &mut AirRow) -> bool {
+        let _ = (row, state);
+        false
+    }
 
     /// Density less one, and the velocity components forces aside, of eight cells (x, y, z).
     fn read_cells(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4];

@@ -1,5 +1,8 @@
 //! The compiled loops: one entry per velocity set and instruction set, picked once when a lattice is built.
 
+use super::atmosphere;
+use super::atmosphere::stratification::HeatShare;
+use super::atmosphere::sweep::StepHeat;
 use super::forces::ForceBlock;
 use super::probe::{self, RowState, View};
 use super::settings::Stencil as Set;
@@ -14,10 +17,13 @@ pub(crate) struct Kernel {
     /// Directions of the populations.
     pub(crate) directions: &'static [[i8; 3]],
     sweep: unsafe fn(&Step<'_>, &[ForceBlock], &mut Share),
+    sweep_heat: SweepHeat,
     read_row: unsafe fn(&View<'_>, usize, &mut RowState),
     read_cells: ReadCells,
     write_row: unsafe fn(&View<'_>, usize, &RowState),
 }
+
+type SweepHeat = unsafe fn(&Step<'_>, &StepHeat<'_>, &[ForceBlock], &mut Share, &mut HeatShare);
 
 type ReadCells = unsafe fn(&View<'_>, &[[usize; 3]; 8]) -> [[f32; 8]; 4];
 
@@ -27,6 +33,19 @@ macro_rules! kernel {
         unsafe fn sweep(step: &Step<'_>, blocks: &[ForceBlock], share: &mut Share) {
             // SAFETY: handed through.
             unsafe { sweep::rows::<$vector, $stencil, $n>(step, blocks, share) }
+        }
+        $(#[target_feature(enable = $features)])?
+        unsafe fn sweep_heat(
+            step: &Step<'_>,
+            air: &StepHeat<'_>,
+            blocks: &[ForceBlock],
+            share: &mut Share,
+            heat: &mut HeatShare,
+        ) {
+            // SAFETY: handed through.
+            unsafe {
+                atmosphere::sweep::rows::<$vector, $stencil, $n>(step, air, blocks, share, heat)
+            }
         }
         $(#[target_feature(enable = $features)])?
         unsafe fn read_row(view: &View<'_>, row: usize, state: &mut RowState) {
@@ -44,7 +63,7 @@ macro_rules! kernel {
             unsafe { probe::write_row::<$vector, $stencil, $n>(view, row, state) }
         }
         let directions = &<$stencil as Stencil<$n>>::DIRECTIONS;
-        Kernel { directions, sweep, read_row, read_cells, write_row }
+        Kernel { directions, sweep, sweep_heat, read_row, read_cells, write_row }
     }};
 }
 
@@ -71,6 +90,19 @@ impl Kernel {
     pub(crate) fn sweep(&self, step: &Step<'_>, blocks: &[ForceBlock], share: &mut Share) {
         // SAFETY: shares of one step have disjoint rows, and the back-end was checked.
         unsafe { (self.sweep)(step, blocks, share) }
+    }
+
+    /// The same with the temperatures of `air`.
+    pub(crate) fn sweep_heat(
+        &self,
+        step: &Step<'_>,
+        air: &StepHeat<'_>,
+        blocks: &[ForceBlock],
+        share: &mut Share,
+        heat: &mut HeatShare,
+    ) {
+        // SAFETY: as above.
+        unsafe { (self.sweep_heat)(step, air, blocks, share, heat) }
     }
 
     /// Density and velocity of row number `row`.

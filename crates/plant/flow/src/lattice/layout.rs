@@ -31,6 +31,8 @@ pub(crate) enum Edge {
     Periodic,
     /// Itself, mirrored.
     Slip,
+    /// Itself, turned back.
+    Hold,
 }
 
 /// Which of the two kinds of step.
@@ -62,7 +64,8 @@ pub(crate) struct Layout {
     slot_stride: usize,
     n_slots: usize,
     sides: Edge,
-    levels: Edge,
+    /// Below and above.
+    levels: [Edge; 2],
     directions: [[i8; 3]; MOST_SLOTS],
     /// Slot of the direction mirrored along y, and along z.
     mirrored: [[u8; MOST_SLOTS]; 2],
@@ -71,12 +74,12 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// `n_cells` cells with a slot for each of `directions`; `sides` beyond y, `levels` beyond z.
+    /// `n_cells` cells with a slot for each of `directions`; `sides` beyond y, `levels` below and above.
     pub(crate) fn new(
         n_cells: [usize; 3],
         directions: &[[i8; 3]],
         sides: Edge,
-        levels: Edge,
+        levels: [Edge; 2],
     ) -> Self {
         // One halo cell at each end of a row; the one before x = 0 is the last value of the row before.
         let row_stride = (n_cells[0] + 2).next_multiple_of(LINE);
@@ -161,7 +164,12 @@ impl Layout {
         for (q, offset) in offsets.iter_mut().enumerate() {
             let [ex, ey, ez] = self.directions[q];
             let (y_there, mirror_y) = step(y, ey, self.n_cells[1], self.sides);
-            let (z_there, mirror_z) = step(z, ez, self.n_cells[2], self.levels);
+            let beyond = self.levels[usize::from(ez > 0)];
+            let (z_there, mirror_z) = step(z, ez, self.n_cells[2], beyond);
+            if mirror_z && beyond == Edge::Hold {
+                *offset = self.row(opposite(q), y, z);
+                continue;
+            }
             let mut slot = q;
             for (mirror, mirrored) in [mirror_y, mirror_z].into_iter().zip(&self.mirrored) {
                 if mirror {
@@ -179,11 +187,11 @@ fn step(place: usize, direction: i8, n: usize, edge: Edge) -> (usize, bool) {
     match direction {
         1 if place + 1 == n => match edge {
             Edge::Periodic => (0, false),
-            Edge::Slip => (place, true),
+            Edge::Slip | Edge::Hold => (place, true),
         },
         -1 if place == 0 => match edge {
             Edge::Periodic => (n - 1, false),
-            Edge::Slip => (place, true),
+            Edge::Slip | Edge::Hold => (place, true),
         },
         _ => (place.wrapping_add_signed(isize::from(direction)), false),
     }
@@ -214,7 +222,11 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    fn each_once<L: Stencil<Q>, const Q: usize>(n_cells: [usize; 3], sides: Edge, levels: Edge) {
+    fn each_once<L: Stencil<Q>, const Q: usize>(
+        n_cells: [usize; 3],
+        sides: Edge,
+        levels: [Edge; 2],
+    ) {
         let layout = Layout::new(n_cells, &L::DIRECTIONS, sides, levels);
         for parity in [Parity::Even, Parity::Odd] {
             let mut seen = BTreeSet::new();
@@ -236,10 +248,15 @@ mod tests {
 
     #[test]
     fn every_address_belongs_to_one_cell() {
-        use Edge::{Periodic, Slip};
-        for (sides, levels) in
-            [(Periodic, Slip), (Slip, Slip), (Slip, Periodic), (Periodic, Periodic)]
-        {
+        use Edge::{Hold, Periodic, Slip};
+        for (sides, levels) in [
+            (Periodic, [Slip; 2]),
+            (Slip, [Slip; 2]),
+            (Slip, [Periodic; 2]),
+            (Periodic, [Periodic; 2]),
+            (Periodic, [Hold, Slip]),
+            (Slip, [Hold; 2]),
+        ] {
             for n_cells in [[5, 4, 3], [4, 1, 2], [4, 2, 1], [7, 3, 4]] {
                 each_once::<D3Q19, 19>(n_cells, sides, levels);
                 each_once::<D3Q27, 27>(n_cells, sides, levels);
@@ -249,7 +266,7 @@ mod tests {
 
     #[test]
     fn rows_inside_are_reached_as_rows_at_the_sides_are() {
-        let layout = Layout::new([6, 5, 4], &D3Q27::DIRECTIONS, Edge::Slip, Edge::Periodic);
+        let layout = Layout::new([6, 5, 4], &D3Q27::DIRECTIONS, Edge::Slip, [Edge::Periodic; 2]);
         let quick: [usize; 27] = layout.addresses(Parity::Odd, 2, 1);
         let mut slow = [0; 27];
         layout.addresses_at_sides(2, 1, &mut slow);

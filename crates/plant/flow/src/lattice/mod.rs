@@ -9,6 +9,7 @@
 //! Reading order: `settings`, `scaling`, `solver`, `engine`; then `cpu`, `layout`, `stencil`, `collision`,
 //! `sweep`.
 
+pub mod atmosphere;
 mod collision;
 mod cpu;
 mod ends;

@@ -1,5 +1,6 @@
 //! What a lattice is built from, and the assumptions that are checked before it is.
 
+use super::atmosphere::{Atmosphere, AtmosphereError};
 use super::scaling::Scaling;
 use super::simd::Backend;
 use basis::Vector3;
@@ -39,6 +40,8 @@ pub struct LatticeSettings {
     pub acceleration: Vector3,
     /// Constant of Smagorinsky's model (–); 0 switches it off.
     pub smagorinsky: f64,
+    /// Rotation, temperature and what comes with it; none where the air is alike everywhere.
+    pub atmosphere: Option<Atmosphere>,
     /// Velocity set.
     pub stencil: Stencil,
     /// Threads; all cores when absent. The result does not depend on it.
@@ -75,6 +78,7 @@ impl LatticeSettings {
             ground: Ground::Slip,
             acceleration: Vector3::ZERO,
             smagorinsky: DEFAULT_SMAGORINSKY,
+            atmosphere: None,
             stencil: Stencil::D3Q19,
             threads: None,
             backend: None,
@@ -147,6 +151,9 @@ impl LatticeSettings {
                 return Err(LatticeError::Roughness { roughness_length, highest });
             }
         }
+        if let Some(atmosphere) = &self.atmosphere {
+            atmosphere.check(self.interval, matches!(self.ground, Ground::WallStress { .. }))?;
+        }
         if self.threads == Some(0) {
             return Err(LatticeError::NoThreads);
         }
@@ -187,6 +194,10 @@ pub enum Ground {
         /// Roughness length z₀ (m).
         roughness_length: f64,
     },
+    /// The ground holds the air fast, as it does where every eddy is resolved; air slips along the top.
+    NoSlip,
+    /// Ground and top both hold the air fast.
+    Plates,
     /// No ground: what leaves through the top enters from below.
     Periodic,
 }
@@ -263,6 +274,9 @@ pub enum LatticeError {
         /// Greatest that the logarithmic law allows on this grid (m).
         highest: f64,
     },
+    /// The atmosphere cannot be.
+    #[error(transparent)]
+    Atmosphere(#[from] AtmosphereError),
     /// No thread to run on.
     #[error("at least one thread is needed")]
     NoThreads,

@@ -16,7 +16,7 @@ use std::ops::Range;
 /// How far ahead of a cell its populations are prefetched, in values: nineteen streams are more than a
 /// processor's own prefetching follows, and a miss is longer than the cells that it can look ahead to. Rows
 /// follow one another in memory, so that what is prefetched beyond a row's end is the next row's start.
-const AHEAD: usize = 8 * LINE;
+pub(crate) const AHEAD: usize = 8 * LINE;
 
 /// What all rows of a step share, in lattice units.
 pub(crate) struct Step<'a> {
@@ -105,7 +105,7 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
 ///
 /// It is the row at (`y`, `z`), number `number` of the thread's rows.
 #[inline(always)]
-fn gather_forces(
+pub(crate) fn gather_forces(
     step: &Step<'_>,
     blocks: &[ForceBlock],
     wall: &[Vec<f32>; 2],

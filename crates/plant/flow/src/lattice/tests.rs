@@ -1,5 +1,6 @@
 //! The lattice against closed forms and invariants, each test on every back-end that it concerns.
 
+mod atmosphere;
 mod boundaries;
 mod closed_forms;
 mod engines;

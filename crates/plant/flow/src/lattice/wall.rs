@@ -19,7 +19,7 @@ pub const VON_KARMAN: f64 = 0.4;
 
 /// Cell above the ground whose wind sets the stress: the lowest one has no resolved turbulence yet (Kawai,
 /// Larsson 2012, Phys. Fluids 24, 015105).
-const MATCHING_CELL: usize = 1;
+pub(crate) const MATCHING_CELL: usize = 1;
 
 /// The logarithmic law in lattice units.
 #[derive(Clone, Copy, Debug)]
@@ -47,21 +47,35 @@ impl WallMemory {
     }
 }
 
+/// ln(z/z₀) at the centre of level `level` (–).
+fn logarithm(level: usize, scaling: &Scaling, roughness_length: f64) -> f64 {
+    ((level as f64 + 0.5) / scaling.to_lattice_length(roughness_length)).ln()
+}
+
+/// Weight of a new sample in the filter of the wind above a ground of `roughness_length` (m), per step.
+pub(crate) fn filter_weight(
+    settings: &LatticeSettings,
+    scaling: &Scaling,
+    roughness_length: f64,
+) -> f64 {
+    let level = MATCHING_CELL.min(settings.n_cells[2] - 1);
+    let logarithm = logarithm(level, scaling, roughness_length);
+    let friction_velocity = VON_KARMAN * settings.lattice_speed() / logarithm;
+    // The eddies at the matching height turn over in h/(κ u*).
+    let duration = (level as f64 + 0.5) / (VON_KARMAN * friction_velocity).max(f64::MIN_POSITIVE);
+    1.0 / duration.clamp(1.0, 1e6)
+}
+
 impl Wall {
     /// The wall that `settings` ask for, if any.
     pub(crate) fn new(settings: &LatticeSettings, scaling: &Scaling) -> Option<Self> {
         let Ground::WallStress { roughness_length } = settings.ground else { return None };
         let level = MATCHING_CELL.min(settings.n_cells[2] - 1);
-        let height = level as f64 + 0.5;
-        let logarithm = (height / scaling.to_lattice_length(roughness_length)).ln();
-        let friction_velocity = VON_KARMAN * settings.lattice_speed() / logarithm;
-        // The eddies at the matching height turn over in h/(κ u*).
-        let duration =
-            (height / (VON_KARMAN * friction_velocity).max(f64::MIN_POSITIVE)).clamp(1.0, 1e6);
+        let logarithm = logarithm(level, scaling, roughness_length);
         Some(Self {
             level,
             drag: (VON_KARMAN / logarithm).powi(2) as f32,
-            weight: (1.0 / duration) as f32,
+            weight: filter_weight(settings, scaling, roughness_length) as f32,
         })
     }
 

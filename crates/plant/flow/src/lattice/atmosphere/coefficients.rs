@@ -1,0 +1,106 @@
+//! What a step needs to know of the atmosphere, in lattice units.
+
+use super::heat::SOUND_SQUARED;
+use super::settings::{Atmosphere, Damping, Driving, Heating};
+use crate::lattice::scaling::Scaling;
+use crate::lattice::settings::LatticeSettings;
+use basis::Vector3;
+
+/// The same at every cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coefficients {
+    /// f/(1 + f²/4) and f²/2/(1 + f²/4): a step of Coriolis force that keeps energy (Crank, Nicolson).
+    pub(crate) turning: [f32; 2],
+    /// Wind that the pressure gradient balances (cells a step).
+    pub(crate) geostrophic: [f32; 2],
+    /// Upward acceleration per kelvin.
+    pub(crate) buoyancy: f32,
+    /// What a slope of temperature (K per cell) takes from the square of Smagorinsky's viscosity (Lilly 1962,
+    /// Tellus 14, 148).
+    pub(crate) stability: f32,
+    /// Diffusivity over viscosity, in relaxation times of the heat set, for eddies.
+    pub(crate) eddy_diffusivity: f32,
+    /// Relaxation time of the air's own diffusivity.
+    pub(crate) heat_time: f32,
+}
+
+/// The same at every cell of a level.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Level {
+    /// Temperature that buoyancy starts from: the level's mean (K above the reference).
+    pub(crate) mean: f32,
+    /// Rate at which wind and temperature are damped (per step).
+    pub(crate) damping: f32,
+    /// Temperature that damping goes to (K above the reference).
+    pub(crate) target: f32,
+    /// What becomes of populations that leave downwards and upwards: a factor, and what is added (K).
+    pub(crate) leaving: [[f32; 2]; 2],
+}
+
+impl Coefficients {
+    /// Those of `atmosphere` in the box of `settings`.
+    pub(crate) fn new(
+        atmosphere: &Atmosphere,
+        settings: &LatticeSettings,
+        scaling: &Scaling,
+    ) -> Self {
+        let turn = atmosphere.coriolis * scaling.interval();
+        let share = 1.0 / (1.0 + 0.25 * turn * turn);
+        let Driving::Geostrophic([u, v]) = atmosphere.driving;
+        let geostrophic = scaling.to_lattice_velocity(Vector3::new(u, v, 0.0));
+        let per_kelvin = Vector3::Z * (atmosphere.gravity / atmosphere.reference_temperature);
+        let buoyancy = scaling.to_lattice_acceleration(per_kelvin).z;
+        let sound = f64::from(SOUND_SQUARED);
+        let viscosity = scaling.to_lattice_viscosity(settings.kinematic_viscosity);
+        // ν_t² = C⁴ (S² − N²/Pr_t).
+        let stability = settings.smagorinsky.powi(4) * buoyancy / atmosphere.subgrid_prandtl;
+        Self {
+            turning: [(turn * share) as f32, (0.5 * turn * turn * share) as f32],
+            geostrophic: [geostrophic.x as f32, geostrophic.y as f32],
+            buoyancy: buoyancy as f32,
+            stability: stability as f32,
+            eddy_diffusivity: (1.0 / (atmosphere.subgrid_prandtl * sound)) as f32,
+            heat_time: (0.5 + viscosity / (atmosphere.prandtl * sound)) as f32,
+        }
+    }
+}
+
+/// Levels of the box of `settings`, as at the start.
+pub(crate) fn levels(
+    atmosphere: &Atmosphere,
+    settings: &LatticeSettings,
+    scaling: &Scaling,
+) -> Vec<Level> {
+    let n_levels = settings.n_cells[2];
+    let top = settings.spacing * n_levels as f64;
+    (0..n_levels)
+        .map(|level| {
+            let height = (level as f64 + 0.5) * settings.spacing;
+            let departure =
+                (atmosphere.temperature_at(height) - atmosphere.reference_temperature) as f32;
+            let damping = match atmosphere.damping {
+                Some(Damping { from, rate }) if height > from => {
+                    let share = (height - from) / (top - from);
+                    rate * (std::f64::consts::FRAC_PI_2 * share).sin().powi(2) * scaling.interval()
+                }
+                _ => 0.0,
+            };
+            // Half-way between the cell and the plate the temperature is the plate's (anti-bounce-back:
+            // Ginzburg 2005).
+            let plate = |at_plate: bool, temperature: f64| match at_plate {
+                true => {
+                    let departure = (temperature - atmosphere.reference_temperature) as f32;
+                    [-1.0, SOUND_SQUARED * departure]
+                }
+                false => [1.0, 0.0],
+            };
+            let leaving = match atmosphere.heating {
+                Heating::Plates { ground, top } => {
+                    [plate(level == 0, ground), plate(level + 1 == n_levels, top)]
+                }
+                _ => [[1.0, 0.0]; 2],
+            };
+            Level { mean: departure, damping: damping as f32, target: departure, leaving }
+        })
+        .collect()
+}
