@@ -120,7 +120,7 @@ name = "steered"
 control.T1 = { kind = "steering", yaw_deg = 15.0, rate_deg_per_s = 0.5, start = 20.0 }
 "#;
     let run = runs(&case("steering", "", [80.0, 120.0], &[NREL_5MW], rest), &[]).remove(0);
-    let (times, yaw) = (column(&run.series, "time_s"), column(&run.series, "T1.yaw_rad"));
+    let (times, yaw) = (column(&run.series, "Time"), column(&run.series, "T1.NacYaw"));
     let at = |time: f64| {
         let row = times.iter().position(|now| *now >= time - 1e-9).expect("in the run");
         yaw[row].to_degrees()

@@ -316,17 +316,17 @@ impl Summary {
     }
 }
 
-/// Equally spaced samples of many channels, as `series.csv` holds them.
+/// Equally spaced samples of many channels, those of `series.csv`, in SI units whatever that file's are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
-    /// Channel names; the first is `time_s`, the others `T1.power_w`, `T1.pitch_1_deg`, ….
+    /// Names of the [channels](crate::channels), without units: `Time`, `T1.GenPwr`, `T1.BldPitch1`, ….
     pub names: Vec<String>,
     /// One column per name, all of one length.
     pub columns: Vec<Vec<f64>>,
 }
 
 impl Series {
-    /// The samples of the channel called `name`.
+    /// The samples of the channel called `name`, in SI units.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.names.iter().position(|n| n == name).map(|index| self.columns[index].as_slice())
     }

@@ -278,7 +278,8 @@ mod tests {
         let folder = RunFolder::new(study, &manifest.run);
         folder.create().unwrap();
         write_manifest(&folder, &manifest).unwrap();
-        let mut series = SeriesWriter::create(&folder.series_path(), &["time_s".into()]).unwrap();
+        let mut series =
+            SeriesWriter::create(&folder.series_path(), &[basis::channels::TIME]).unwrap();
         series.write(&[0.1]).unwrap();
         series.finish().unwrap();
         write_mean_plane(&folder, &plane("hub-height", 1200.0)).unwrap();
