@@ -46,7 +46,7 @@ def check_run(folder):
     with open(folder / "series.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     names, samples = rows[0], rows[1:]
-    assert names[0] == "time_s", f"the first column is {names[0]}"
+    assert names[0] == "Time_s", f"the first column is {names[0]}"
     assert len(samples) > 100, f"{len(samples)} samples"
     for number, row in enumerate(samples, start=2):
         assert len(row) == len(names), f"line {number} has {len(row)} of {len(names)} values"

@@ -10,7 +10,7 @@ use analysis::fatigue::{
 };
 use analysis::statistics::{BLOCK_LENGTH, change, standard_deviation};
 use basis::channels::{BLD_PITCH, ROOT_MXB, ROOT_MYB, Unit};
-use basis::records::{Load, LoadKind, PitchDuty};
+use basis::records::{BearingLoad, Load, LoadKind, PitchDuty};
 
 /// Wöhler's exponent of composite blades (–).
 const BLADE_SLOPE: f64 = 10.0;
@@ -167,7 +167,13 @@ pub(crate) fn pitch_duty(
         moving_share: travel.moving_share,
         n_reversals: travel.n_reversals,
         bearing_slope: BEARING_SLOPE,
-        bearing_loads_kn_m: loads.iter().map(|position| UNIT.0.of_si(position.load)).collect(),
+        bearing_loads: loads
+            .iter()
+            .map(|at| BearingLoad {
+                position_deg: at.position.to_degrees(),
+                load_kn_m: UNIT.0.of_si(at.load),
+            })
+            .collect(),
         sample_interval: interval,
     }))
 }
@@ -198,15 +204,19 @@ mod tests {
         let duty = pitch_duty("T1", &analysed).expect("numbers").expect("all channels");
         assert!((duty.travel_deg - 60.0).abs() < 0.01, "{}", duty.travel_deg);
         assert!((duty.travel_in_ten_minutes_deg - 600.0).abs() < 0.1);
-        assert_eq!(duty.bearing_loads_kn_m.len(), 36);
-        for (index, load) in duty.bearing_loads_kn_m.iter().enumerate() {
+        assert_eq!(duty.bearing_loads.len(), 36);
+        for (index, BearingLoad { position_deg, load_kn_m: load }) in
+            duty.bearing_loads.iter().enumerate()
+        {
             let angle = TAU * index as f64 / 36.0;
+            assert!((position_deg.to_radians() - angle).abs() < 1e-12);
             let expected = (3e4 * angle.cos() + 4e4 * angle.sin()).max(0.0);
             assert!((load - expected).abs() < 10.0, "{angle}: {load} {expected}");
         }
         // atan(4/3) is 53°.
-        let (load, position) = duty.worst_bearing_load().expect("positions");
-        assert!((position.to_degrees() - 50.0).abs() < 1e-9 && (load / 5e4 - 1.0).abs() < 0.01);
+        let worst = duty.worst_bearing_load().expect("positions");
+        assert!((worst.position_deg - 50.0).abs() < 1e-9);
+        assert!((worst.load_kn_m / 5e4 - 1.0).abs() < 0.01);
         assert_eq!((duty.bearing_slope, duty.sample_interval), (3.0, 0.01));
     }
 

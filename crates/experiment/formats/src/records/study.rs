@@ -346,11 +346,11 @@ mod tests {
             (error.to_string(), help)
         };
         let (problem, help) = other(1);
-        let written = "its schema_version is 1, that of an earlier wakemix; this one reads 2";
+        let written = "its schema_version is 1, that of an earlier wakemix; this one reads 3";
         assert!(problem.contains(written), "{problem}");
         assert!(help.contains("--overwrite") && help.contains("manifest.json"), "{help}");
-        let (problem, help) = other(3);
-        assert!(problem.contains("schema_version is 3, that of a later wakemix"), "{problem}");
+        let (problem, help) = other(4);
+        assert!(problem.contains("schema_version is 4, that of a later wakemix"), "{problem}");
         assert!(help.contains("a later one"), "{help}");
     }
 

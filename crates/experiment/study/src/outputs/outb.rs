@@ -34,7 +34,13 @@ fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
     let of_turbines = channels::of_turbines(setup, run);
     let n_channels: u64 = of_turbines.iter().map(|own| own + n_wind).sum();
     let most = of_turbines.iter().map(|own| own + n_wind).max().unwrap_or(0);
-    n_channels * (n_rows * VALUE_BYTES + HEADER_BYTES) + most * n_rows * GATHERED_BYTES
+    n_rows * row_bytes(setup, run) + n_channels * HEADER_BYTES + most * n_rows * GATHERED_BYTES
+}
+
+/// Bytes that a row of the series takes in the files of all turbines of `run`.
+pub(crate) fn row_bytes(setup: &Prepared, run: &Run) -> u64 {
+    let own = channels::of_turbines(setup, run).into_iter();
+    own.map(|own| (own + WIND.len() as u64) * VALUE_BYTES).sum()
 }
 
 struct Outb;

@@ -38,7 +38,7 @@ pub(crate) fn schedule(setup: &Prepared) -> Schedule {
 }
 
 /// Rows in the series of a run (–).
-pub(super) fn n_rows(setup: &Prepared) -> u64 {
+pub(crate) fn n_rows(setup: &Prepared) -> u64 {
     schedule(setup).count(setup.plan.n_steps)
 }
 
@@ -47,8 +47,13 @@ pub(crate) fn n_channels(setup: &Prepared, run: &Run) -> u64 {
     channels::count(setup, run, lines::count(setup, run))
 }
 
+/// Bytes that a row of the series of `run` takes.
+pub(crate) fn row_bytes(setup: &Prepared, run: &Run) -> u64 {
+    n_channels(setup, run) * VALUE_BYTES
+}
+
 fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
-    n_channels(setup, run) * (n_rows(setup) * VALUE_BYTES + NAME_BYTES)
+    n_rows(setup) * row_bytes(setup, run) + n_channels(setup, run) * NAME_BYTES
 }
 
 struct Series {
