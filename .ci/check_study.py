@@ -34,7 +34,7 @@ def check_loads(turbine, is_compared):
 
 def check_run(folder):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    assert summary["schema_version"] == 2, f"docs/summary.md is of version 2, not {summary['schema_version']}"
+    assert summary["schema_version"] == 3, f"docs/summary.md is of version 3, not {summary['schema_version']}"
     assert summary["run"] == folder.name, f"the summary of {folder.name} says {summary['run']}"
     for turbine in summary["turbines"]:
         power = turbine["power"]["mean"]

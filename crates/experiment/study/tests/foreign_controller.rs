@@ -137,7 +137,7 @@ fn it_does_what_the_same_law_does_in_rust() {
             assert_eq!(own, of("collective"));
         }
         // The pitch law is at work in strong wind alone.
-        let pitch = column(folder.path(), "own", "T1.pitch_1_rad");
+        let pitch = column(folder.path(), "own", "T1.BldPitch1");
         let last = *pitch.last().expect("rows");
         assert_eq!(last > 0.02, speed == "13.0", "{last} rad in {speed} m/s");
         let summary = read_summary(&RunFolder::new(&out, "own")).expect("a summary");
@@ -182,9 +182,9 @@ fn an_excitation_goes_on_top_of_it() {
     let runs = alone("") + &helix("still", 0.0) + &helix("helix", 2.0);
     let folder = folder("9.0", &[MACHINE], &runs, ("-", 0.0));
     done(&options(folder.path()));
-    let of = |run: &str| column(folder.path(), run, "T1.generator_torque_nm");
+    let of = |run: &str| column(folder.path(), run, "T1.GenTq");
     assert!(of("still") == of("own"), "no amplitude changes nothing");
-    let pitch = column(folder.path(), "helix", "T1.pitch_2_rad");
+    let pitch = column(folder.path(), "helix", "T1.BldPitch2");
     let largest = pitch.iter().fold(0.0_f64, |most, pitch| most.max(pitch.abs()));
     assert!((largest.to_degrees() - 2.0).abs() < 0.2, "{largest} rad");
 }
