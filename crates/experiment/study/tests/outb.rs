@@ -64,7 +64,8 @@ fn it_has_the_channels_of_the_series_with_their_units_and_values() {
     }
 }
 
-/// The generator's side of the gearbox is the fast one: torque times speed there is the power that it takes in.
+/// The generator's side of the gearbox is the fast one: torque times speed there is the power that it takes
+/// in.
 #[test]
 fn torque_and_speed_are_those_of_the_generator_s_side() {
     let folder = written(&case("geared", "", [10.0, 40.0], &[NREL_5MW], RUN));

@@ -25,7 +25,8 @@ pub trait Sensor: Send {
     /// Names of its values and their units in files, such as `LineOfSight1` in m/s.
     fn channels(&self) -> Vec<Channel>;
 
-    /// On return `values`, one for each channel, hold what it shows of `scene`, in SI units. Must not allocate.
+    /// On return `values`, one for each channel, hold what it shows of `scene`, in SI units. Must not
+    /// allocate.
     fn read(&mut self, scene: &Scene, values: &mut [f64]);
 
     /// Everything that time changes, for a checkpoint.

@@ -1,5 +1,5 @@
-//! The series of a run: one row a control instant, as CSV that pandas and spreadsheets open. Rows are given in
-//! SI units and written in those of the channels.
+//! The series of a run: one row a control instant, as CSV that pandas and spreadsheets open. Rows are given
+//! in SI units and written in those of the channels.
 
 use crate::checkpoint::{ANEW, GONE};
 use crate::{FileError, atomic};
