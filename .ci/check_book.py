@@ -74,13 +74,11 @@ def words(*pages):
 
 
 def channel(column):
-    """Column of a series as the page calls it: no turbine, blade or gauge 1, OpenFAST's without unit."""
-    if column.startswith(("time_s", "wind.")):
-        return column
-    name = column.partition(".")[2]
-    if name[0].isupper():
-        return re.sub(r"\d", "1", name.partition("_")[0])
-    return re.sub(r"_\d+_", "_1_", name)
+    """Column of a series as the page calls it: no turbine, blade or gauge 1, no unit."""
+    name = column.rpartition("_")[0]
+    if name.startswith("Wind."):
+        return name
+    return re.sub(r"\d", "1", name.rpartition(".")[2])
 
 
 def keys(value):

@@ -34,7 +34,7 @@ def check_loads(turbine, is_compared):
 
 def check_run(folder):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    assert summary["schema_version"] == 2, f"docs/summary.md is of version 2, not {summary['schema_version']}"
+    assert summary["schema_version"] == 3, f"docs/summary.md is of version 3, not {summary['schema_version']}"
     assert summary["run"] == folder.name, f"the summary of {folder.name} says {summary['run']}"
     for turbine in summary["turbines"]:
         power = turbine["power"]["mean"]
@@ -46,7 +46,7 @@ def check_run(folder):
     with open(folder / "series.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     names, samples = rows[0], rows[1:]
-    assert names[0] == "time_s", f"the first column is {names[0]}"
+    assert names[0] == "Time_s", f"the first column is {names[0]}"
     assert len(samples) > 100, f"{len(samples)} samples"
     for number, row in enumerate(samples, start=2):
         assert len(row) == len(names), f"line {number} has {len(row)} of {len(names)} values"

@@ -5,7 +5,7 @@
 //! whole turbine, and a row of its record as CSV and as `.outb`. Repeats are short, so that on a loaded
 //! machine some go undisturbed; the best counts. A number after `--` is that of the repeats.
 
-use basis::{Commands, PerBlade, Vector3};
+use basis::{Channel, Commands, PerBlade, Unit, Vector3};
 use formats::openfast_output::{Encoding, Layout, OutbWriter};
 use formats::records::SeriesWriter;
 use formats::table::Column;
@@ -198,9 +198,12 @@ fn rows(n_channels: usize) -> Vec<Vec<f64>> {
 /// Microseconds a row of `n_channels` in a series.
 fn csv(n_channels: usize) -> f64 {
     let path = std::env::temp_dir().join(format!("wakemix-bench-{}.csv", std::process::id()));
-    let names: Vec<String> = (0..n_channels).map(|channel| format!("channel{channel}")).collect();
+    let channel =
+        |index| Channel { name: format!("channel{index}").into(), unit: Unit::KilonewtonMetre };
+    let channels: Vec<Channel> = (0..n_channels).map(channel).collect();
     let rows = rows(n_channels);
-    let mut writer = SeriesWriter::create(&path, &names).expect("a temporary file can be written");
+    let mut writer =
+        SeriesWriter::create(&path, &channels).expect("a temporary file can be written");
     let cost = per_step(N_ROWS, |step| {
         writer.write(black_box(&rows[step])).expect("a temporary file can be written");
     });

@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut mean_powers = Vec::new();
     for result in ready.run_all()? {
         let series = &result.series;
-        let (times, powers) = (series.column("time_s"), series.column("T1.power_w"));
+        let (times, powers) = (series.column("Time"), series.column("T1.GenPwr"));
         let (times, powers) = times.zip(powers).ok_or("a series has time and power")?;
         let analysed: Vec<f64> =
             times.iter().zip(powers).filter(|(time, _)| **time >= 60.0).map(|row| *row.1).collect();

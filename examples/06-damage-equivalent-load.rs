@@ -43,13 +43,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ready = Prepared::of(case::parse("loads", CASE, &[])?)?.ready()?;
     let result = ready.run("baseline")?;
     let column = |name: &str| result.series.column(name).ok_or(format!("no channel {name}"));
-    let (times, moments) = (column("time_s")?, column("T1.RootMyb1_kN-m")?);
+    let (times, moments) = (column("Time")?, column("T1.RootMyb1")?);
     let first = times.iter().position(|time| *time >= 30.0).ok_or("the run is longer")?;
     let load = damage_equivalent_load(&moments[first..], times[1] - times[0], SLOPE, 1.0)?;
     let analysed = &moments[first..];
     let highest = analysed.iter().copied().fold(f64::MIN, f64::max);
     let lowest = analysed.iter().copied().fold(f64::MAX, f64::min);
-    println!("blade root: {load:.0} kN m; it swings from {lowest:.0} to {highest:.0} kN m");
+    let [load_kn, low_kn, high_kn] = [load, lowest, highest].map(|moment| 1e-3 * moment);
+    println!("blade root: {load_kn:.0} kN m; it swings from {low_kn:.0} to {high_kn:.0} kN m");
     // About one cycle a turn, of a turn each five seconds: somewhat less than the whole swing.
     assert!(load > 0.5 * (highest - lowest) && load < highest - lowest);
     Ok(())

@@ -18,7 +18,7 @@ const AMPLITUDE: f64 = 3.0;
 /// First time that counts (s): the helix is whole.
 const FROM: f64 = 200.0;
 /// Time, azimuth and pitch of T1's first blade in a series.
-const CHANNELS: [&str; 3] = ["time_s", "T1.azimuth_rad", "T1.pitch_1_rad"];
+const CHANNELS: [&str; 3] = ["Time", "T1.Azimuth", "T1.BldPitch1"];
 /// Share of the pitch's variance that may lie beside its line (–).
 const BESIDE: f64 = 0.02;
 

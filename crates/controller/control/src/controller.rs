@@ -1,6 +1,6 @@
 //! What every controller can do.
 
-use basis::{Commands, Measurements};
+use basis::{Channel, Commands, Measurements};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
@@ -42,14 +42,13 @@ pub trait Controller: Send {
     /// What runs, in a few words: "baseline", "helix ccw 4.0° St 0.25".
     fn describe(&self) -> String;
 
-    /// Names of the signals that it adds to the series, each ending in its unit, such as
-    /// `estimated_tilt_phase_rad`.
-    fn signals(&self) -> Vec<&'static str> {
+    /// Signals that it adds to the series, such as `EstTrust`.
+    fn signals(&self) -> Vec<Channel> {
         Vec::new()
     }
 
-    /// On return `values`, one for each of [`Self::signals`], hold them as they are after the last update. A
-    /// signal that is not known yet is left as it is.
+    /// On return `values`, one for each of [`Self::signals`], hold them as they are after the last update, in
+    /// SI units. A signal that is not known yet is left as it is.
     fn write_signals(&self, _values: &mut [f64]) {}
 
     /// Why it cannot go on, after an update or once it is restored; nothing of this house ever fails, a

@@ -22,7 +22,7 @@
 //! frequency. Here **ccw is the upper sign: blades pitch at rotor frequency plus excitation frequency**.
 
 use crate::controller::{Controller, ForeignState, from_bytes, to_bytes};
-use basis::{Commands, Measurements, PerBlade};
+use basis::{Channel, Commands, Measurements, PerBlade};
 use std::f64::consts::{PI, TAU};
 
 /// Pitch, or a turn of the nacelle, on top of what another controller decides.
@@ -41,7 +41,7 @@ pub trait Excitation: Send {
     fn describe(&self) -> String;
 
     /// As [`Controller::signals`].
-    fn signals(&self) -> Vec<&'static str> {
+    fn signals(&self) -> Vec<Channel> {
         Vec::new()
     }
 
@@ -91,7 +91,7 @@ impl<E: Excitation> Controller for OnTop<E> {
         self.excitation.describe()
     }
 
-    fn signals(&self) -> Vec<&'static str> {
+    fn signals(&self) -> Vec<Channel> {
         let mut signals = self.inner.signals();
         signals.extend(self.excitation.signals());
         signals

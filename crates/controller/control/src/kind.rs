@@ -8,10 +8,10 @@ use crate::meandering::MeanderingError;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use crate::phase_sync::PhaseSyncSettings;
 use crate::{Baseline, Controller};
-use basis::Sense;
 use basis::keys::{LeftOut, Objection, Table, Value, Values};
 use basis::records::PitchResponse;
 use basis::registry::Named;
+use basis::{Channel, Sense};
 use estimation::{Definition, EstimationError};
 use std::fmt;
 use std::sync::Arc;
@@ -88,9 +88,9 @@ pub trait ControllerKind: Named + Sync {
         None
     }
 
-    /// Channels of the turbine, of `n_blades` blades, that [`Self::outcome`] reads, named without the
-    /// turbine, or `time_s`.
-    fn outcome_channels(&self, _control: &Control, _n_blades: usize) -> Vec<String> {
+    /// Channels of the turbine, of `n_blades` blades, that [`Self::outcome`] reads, and time where it reads
+    /// it.
+    fn outcome_channels(&self, _control: &Control, _n_blades: usize) -> Vec<Channel> {
         Vec::new()
     }
 

@@ -1,15 +1,16 @@
 //! What a controller has to tell after a run, from the records of its turbine.
 
+use basis::Channel;
 use basis::records::{Finding, MeanderingSummary};
 use thiserror::Error;
 
 /// The analysed part of the records of one turbine.
 pub trait TurbineRecord {
-    /// Samples of `channel`, named without the turbine (`azimuth_rad`), or `time_s`.
+    /// Samples of `channel` of the turbine, or of the time, in SI units.
     ///
     /// # Errors
     /// [`MissingChannel`] when there is none.
-    fn column(&self, channel: &str) -> Result<&[f64], MissingChannel>;
+    fn column(&self, channel: &Channel) -> Result<&[f64], MissingChannel>;
 
     /// Time between samples (s).
     fn interval(&self) -> f64;

@@ -11,7 +11,7 @@ fn waves(seconds: usize) -> String {
         let angle = std::f64::consts::TAU * index as f64 / 20.0;
         format!("{:?},{:?},{:?}\n", index as f64 / 20.0, 3.0 * angle.cos(), 0.5 * angle.cos())
     });
-    std::iter::once("time_s,RootMyc1 [kN-m],TwrBsMyt_kN-m\n".to_owned()).chain(rows).collect()
+    std::iter::once("Time_s,RootMyc1 [kN-m],TwrBsMyt_kN-m\n".to_owned()).chain(rows).collect()
 }
 
 /// Lines that were one before they met the terminal's width.
@@ -133,7 +133,7 @@ fn pitching(prefix: &str, pitch: &str, degree: f64) -> String {
         let swing = f64::from((index % 40 - 20).abs()) / 2.0;
         format!("{:?},{:?},3000.0,4000.0\n", f64::from(index) / 2.0, degree * swing)
     });
-    let names = format!("time_s,{pitch},{prefix}RootMyb1_kN-m,{prefix}RootMxb1_kN-m\n");
+    let names = format!("Time_s,{pitch},{prefix}RootMyb1_kN-m,{prefix}RootMxb1_kN-m\n");
     std::iter::once(names).chain(rows).collect()
 }
 
@@ -163,12 +163,12 @@ fn a_bearing_carries_steady_moments_where_they_press() {
 #[test]
 fn the_bearing_of_a_turbine_in_the_records_of_a_run() {
     let folder = tempfile::tempdir().unwrap();
-    let series = pitching("T2.", "T2.pitch_1_rad", 1_f64.to_radians());
+    let series = pitching("T2.", "T2.BldPitch1_deg", 1.0);
     fs::write(folder.path().join("series.csv"), series).unwrap();
     let requested = ["fatigue", ".", "--bearing", "--turbine", "T2", "--slope", "4", "--json"];
     let output = wakemix(&[&requested[..], &["--from", "20"]].concat(), folder.path());
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(value["pitch"], "T2.pitch_1_rad");
+    assert_eq!(value["pitch"], "T2.BldPitch1_deg");
     assert_eq!(value["unit"], "kN-m");
     assert_eq!(value["slope"], 4.0);
     assert_eq!(value["duration_s"], 40.0);
@@ -192,7 +192,7 @@ fn a_bearing_that_cannot_be_counted_is_refused_with_a_fix() {
     let mixed = pitching("", "BldPitch1_deg", 1.0).replacen("RootMxb1_kN-m", "RootMxb1_N-m", 1);
     fs::write(folder.path().join("mixed.csv"), mixed).unwrap();
     let cases: [(&[&str], &str); 7] = [
-        (&["waves.csv"], "neither \"pitch_1\" nor \"BldPitch1\" is one of its channels"),
+        (&["waves.csv"], "\"BldPitch1\" is none of its channels"),
         (&["swing.csv", "--turbine", "T1"], "--turbine T1"),
         (&["swing.csv", "--blade", "2"], "has no pitch of blade 2"),
         (&["bare.csv"], "with the unit behind its name, such as BldPitch1_deg"),

@@ -38,7 +38,7 @@
 //! let prepared = Prepared::of(case)?; // checked, turbines loaded, domain laid out
 //! let ready = prepared.ready()?; // pitch responses identified, turbulence made
 //! let result = ready.run("baseline")?; // series, planes, summary
-//! let powers = result.series.column("T1.power_w").ok_or("a channel")?;
+//! let powers = result.series.column("T1.GenPwr").ok_or("a channel")?;
 //! assert!(powers.last().is_some_and(|power| *power > 1e5)); // W
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -6,6 +6,7 @@ use crate::phase::query::folder_of;
 use crate::phase::{column, moments, tells};
 use analysis::AnalysisError;
 use analysis::phase::uniform_interval;
+use basis::channels::TIME;
 use basis::records::Series;
 use basis::{FixedFrame, Sense};
 use control::ControlError;
@@ -100,7 +101,7 @@ fn answers(
     series: &Series,
     diameter: f64,
 ) -> Result<Vec<LockAnswer>, PostprocessingError> {
-    let times = column(series, "time_s")?;
+    let times = column(series, &TIME.name)?;
     let rate_of_one = excitation_rate(1.0, case.wind.speed, diameter);
     let from = question.from.unwrap_or(case.time.spin_up);
     let mut answers = Vec::with_capacity(turbines.len());

@@ -14,7 +14,11 @@ use analysis::phase::{
     Agreement, AxisWind, Band, Coherence, GroundTruth, Reference, agreement, coherence,
     fixed_frame_moments, ground_truth, uniform_interval,
 };
+use basis::Channel;
 use basis::FixedFrame;
+use basis::channels::{
+    AZIMUTH, BLD_PITCH, LINES, ROOT_MYC, ROT_SPEED, SYNC_SHARE, TIME, of_phase_sync,
+};
 use basis::records::{Series, Statistic};
 use estimates::{Estimates, Wave, consistency};
 use query::{Query, Records};
@@ -23,10 +27,6 @@ use std::path::PathBuf;
 
 /// Excitation periods in a segment of the cross-spectrum (–).
 const SEGMENT_PERIODS: f64 = 4.0;
-/// What the channels of a turbine begin with that tell of a phase: measured, estimated, and the true wind
-/// where it would stand.
-const CHANNELS: [&str; 6] =
-    ["azimuth_", "rotor_speed_", "pitch_", "flap_moment_", "estimate", "lines_"];
 
 /// A question to the records of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -214,7 +214,7 @@ fn zero_phase(
     band: Band,
 ) -> Result<Estimates, PostprocessingError> {
     let moments = moments(series, name)?;
-    let times = column(series, "time_s")?;
+    let times = column(series, &TIME.name)?;
     let filtered = ground_truth(&moments, times[0], uniform_interval(times)?, reference, band)?;
     let wave = |axis: AxisWind| {
         let AxisWind { amplitude, phase, .. } = axis;
@@ -231,9 +231,9 @@ fn zero_phase(
 
 /// Moments of the blades of turbine `name` in the fixed frame (N m), row by row.
 pub(crate) fn moments(series: &Series, name: &str) -> Result<Vec<FixedFrame>, PostprocessingError> {
-    let blade = |blade: usize| series.column(&format!("{name}.flap_moment_{blade}_nm"));
+    let blade = |blade: usize| series.column(&ROOT_MYC.of_blade(blade).at(name));
     let blades: Vec<&[f64]> = (1..).map_while(blade).collect();
-    Ok(fixed_frame_moments(column(series, &format!("{name}.azimuth_rad"))?, &blades)?)
+    Ok(fixed_frame_moments(column(series, &AZIMUTH.at(name))?, &blades)?)
 }
 
 /// Comparison of `estimates` over the rows of `series` with `truth`, from the time `from` (s) on.
@@ -249,7 +249,7 @@ pub(crate) fn compare(
     reference: &Reference,
     from: f64,
 ) -> Result<PhaseAnswer, PostprocessingError> {
-    let times = column(series, "time_s")?;
+    let times = column(series, &TIME.name)?;
     let interval = uniform_interval(times)?;
     let places: Vec<(usize, usize)> = (0..times.len())
         .filter(|&row| times[row] >= from)
@@ -317,9 +317,23 @@ pub(crate) fn compare(
 
 /// Whether `channel` of a series tells of the phase of a helix at turbine `name`; no other is asked for here.
 pub(crate) fn tells(name: &str, channel: &str) -> bool {
-    let of_turbine = channel.strip_prefix(name).and_then(|rest| rest.strip_prefix('.'));
-    let begins = |what: &str| CHANNELS.iter().any(|beginning| what.starts_with(beginning));
-    channel == "time_s" || of_turbine.is_some_and(begins)
+    let own = channel.strip_prefix(name).and_then(|rest| rest.strip_prefix('.'));
+    channel == TIME.name || own.is_some_and(|own| of_phase(own) || is_of_blades(own))
+}
+
+/// Whether the turbine's channel `own` tells of a phase: measured, estimated, and the true wind where it
+/// would stand.
+fn of_phase(own: &str) -> bool {
+    let is = |channel: &Channel| channel.name == own;
+    [AZIMUTH, ROT_SPEED].iter().any(is)
+        || of_phase_sync().iter().filter(|channel| **channel != SYNC_SHARE).any(is)
+        || LINES.iter().any(is)
+}
+
+/// Whether the turbine's channel `own` is what a blade pitches or the moment at its root.
+pub(crate) fn is_of_blades(own: &str) -> bool {
+    let stem = own.trim_end_matches(|c: char| c.is_ascii_digit());
+    own.len() > stem.len() && [BLD_PITCH, ROOT_MYC].iter().any(|channel| channel.stem == stem)
 }
 
 fn mean(values: &[f64]) -> f64 {
@@ -348,12 +362,11 @@ pub(crate) fn truth(
     reference: &Reference,
     band: Band,
 ) -> Result<Option<Truth>, PostprocessingError> {
-    let part = |axis: &str| series.column(&format!("{name}.lines_{axis}_m_s"));
-    let (Some(average), Some(tilt), Some(yaw)) = (part("average"), part("tilt"), part("yaw"))
+    let [Some(average), Some(tilt), Some(yaw)] = LINES.map(|part| series.column(&part.at(name)))
     else {
         return Ok(None);
     };
-    let times = column(series, "time_s")?;
+    let times = column(series, &TIME.name)?;
     let interval = uniform_interval(times)?;
     let winds: Vec<FixedFrame> = (0..times.len())
         .map(|row| FixedFrame { average: average[row], tilt: tilt[row], yaw: yaw[row] })

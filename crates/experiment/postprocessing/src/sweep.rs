@@ -6,7 +6,7 @@ use crate::seeds::{GainsQuestion, RunGains, gains_over_seeds};
 use analysis::statistics::independent;
 use basis::records::{
     Load, LoadKind, SWEEP_SCHEMA_VERSION, Setting, Statistic, Summary, Sweep, SweepLoad, SweepPart,
-    SweepRow, SweepTable, SweptRun, SweptStudy, TurbineSummary,
+    SweepRow, SweepTable, SweptRun, SweptStudy, TurbineSummary, WindGain,
 };
 use formats::records::{self, RunFolder};
 use std::path::{Path, PathBuf};
@@ -253,10 +253,20 @@ fn of_winds(
             loads,
             power: independent(&powers)?,
             gain: part.map(|part| part.together),
-            gains: part.map_or(Vec::new(), |part| part.gains.clone()),
+            gains: part.map_or(Vec::new(), |part| in_each(made, &part.gains)),
         })
     };
     powers.into_iter().map(part).collect()
+}
+
+/// The `gains` (–) with the winds that each of them is of, in which a run was `made`.
+fn in_each(made: &[Made], gains: &[f64]) -> Vec<WindGain> {
+    let gain = |(made, gain): (&Made, &f64)| WindGain {
+        study: made.study.folder.clone(),
+        seed: made.summary.conditions.seed,
+        gain: *gain,
+    };
+    made.iter().zip(gains).map(gain).collect()
 }
 
 /// Adds to `table` what a reader must know; `missing` are the runs that are not complete.

@@ -30,13 +30,13 @@ fn energy(request: &Request) -> Result<Answer, PostprocessingError> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let series = read_series(&RunFolder::new(parent, &name).series_path(), |_| true)?;
     let turbine = request.text("turbine").unwrap_or("T1");
-    let channel = format!("{turbine}.power_w");
+    let channel = format!("{turbine}.GenPwr");
     let missing = || PostprocessingError::MissingChannel {
         path: Some(request.run().join("series.csv")),
         channel: channel.clone(),
     };
     let powers = series.column(&channel).ok_or_else(missing)?;
-    let times = series.column("time_s").ok_or_else(missing)?;
+    let times = series.column("Time").ok_or_else(missing)?;
     let interval = times[1] - times[0];
     let energy = powers.iter().sum::<f64>() * interval / 3.6e6;
     Ok(Answer {
@@ -75,5 +75,5 @@ fn an_analysis_of_ones_own_answers_beside_the_others() {
     assert_eq!(answer.text, format!("T1 made {energy:.1} kWh\n"));
     let other = (own.run)(&Request::of(&run).with("turbine", "T9"));
     let reported = other.expect_err("no such turbine").to_string();
-    assert!(reported.contains("T9.power_w"), "{reported}");
+    assert!(reported.contains("T9.GenPwr"), "{reported}");
 }

@@ -82,9 +82,11 @@ fn damaged(run: &Path) {
     let lines: Vec<&str> = sound.lines().collect();
     let gap = [&lines[..60], &lines[64..]].concat().join("\n") + "\n";
     for (text, said) in [
-        (sound.replace("T2.azimuth_rad", "T2.azimut_rad"), "has no channel `T2.azimuth_rad`"),
+        (sound.replace("T2.Azimuth_deg", "T2.Azimut_deg"), "has no channel `T2.Azimuth`"),
         (gap, "not evenly spaced"),
-        (sound.replace("T2.flap_moment_3_nm", "T2.flap_moment_x_nm"), "2 blades"),
+        (sound.replace("T2.RootMyc3_kN-m", "T2.RootMycx_kN-m"), "2 blades"),
+        // As earlier programs wrote it.
+        (sound.replacen("Time_s,", "time_s,", 1), "names and units of an earlier program"),
         (lines[..2].join("\n") + "\n", "too few"),
     ] {
         assert_ne!(text, sound);

@@ -59,7 +59,7 @@ pub struct RunRecords {
 
 /// Whether the report of a run with this `summary` draws `channel` of its series.
 pub fn draws(summary: &Summary, channel: &str) -> bool {
-    channel == figures::TIME
+    channel == basis::channels::TIME.name
         || summary.turbines.iter().any(|turbine| {
             let of_turbine = channel.strip_prefix(&turbine.name);
             let quantity = of_turbine.and_then(|rest| rest.strip_prefix('.'));

@@ -206,7 +206,7 @@ fn the_channels_that_are_drawn_are_all_that_a_report_needs() {
     assert!(page(&study) == whole, "another page without what is not drawn");
     // Of a turbine that is not excited no pitch is drawn.
     let [baseline, helix] = [0, 1].map(|run| &study.runs[run].series.names);
-    let pitch = "T1.pitch_1_rad".to_owned();
+    let pitch = "T1.BldPitch1".to_owned();
     assert!(helix.contains(&pitch) && !baseline.contains(&pitch));
 }
 

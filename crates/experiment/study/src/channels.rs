@@ -1,169 +1,133 @@
 //! The channels of a run's series, one row a control instant.
 
 use crate::prepared::Prepared;
+use basis::channels::{Channel, LINES, OPERATION, OPERATION_OF_BLADES, TIME, WIND, loads_of};
 use basis::{Commands, FixedFrame, Truth, Vector3};
 use farm::case::Run;
 use farm::farm::Recorder;
 use farm::{Machine, assemble};
 use std::ops::Range;
-use turbine::Turbine;
-use turbine::structure::channels_of;
+use turbine::{Definition, Turbine};
 
-/// Channels before the turbines' own.
-const SHARED: [&str; 4] = ["time_s", "wind.u_m_s", "wind.v_m_s", "wind.w_m_s"];
+/// Channels before the turbines' own: time and wind.
+const N_SHARED: usize = 4;
 
-/// Loads and motions that are kept of a turbine in resolved flow, under OpenFAST's names; in prescribed wind
-/// all are.
-pub(crate) const LOADS: [&str; 18] = [
-    "RootMxc1",
-    "RootMyc1",
-    "RootMzc1",
-    "RootMxb1",
-    "RootMyb1",
-    "RotTorq",
-    "LSSTipMys",
-    "LSSTipMzs",
-    "YawBrMxp",
-    "YawBrMyp",
-    "YawBrMzp",
-    "TwrBsMxt",
-    "TwrBsMyt",
-    "TwrBsMzt",
-    "OoPDefl1",
-    "IPDefl1",
-    "TTDspFA",
-    "TTDspSS",
-];
+/// Channels that a turbine of `n_blades` blades has under any controller (–).
+fn n_own(n_blades: usize) -> usize {
+    OPERATION.len() + OPERATION_OF_BLADES.len() * n_blades + loads_of(n_blades).len()
+}
 
-/// Channels of the wind along lines at one place (–).
-const LINES: [&str; 3] = ["average", "tilt", "yaw"];
-/// Channels of a turbine beside its loads and signals: of the machine, and of each blade (–).
-const N_SCALARS: usize = 8;
-const N_PER_BLADE: usize = 3;
+/// Channels of turbine number `index` in the series of `run` (–).
+fn n_of_turbine(setup: &Prepared, run: &Run, index: usize) -> usize {
+    let (plan, model) = (&setup.plan, setup.models[index].clone());
+    // What is found before the runs, if there is to be anything, changes no name.
+    let model = model.without_individual_pitch();
+    let mut control = run.control[index].clone();
+    control.response = control.response.or(control.kind().any_response());
+    let signals = assemble::controller(&control, &model, &setup.case, plan)
+        .map_or(0, |controller| controller.signals().len());
+    let shown = assemble::sensing(&setup.case, plan, &model, index)
+        .map_or(0, |sensing| sensing.channels().len());
+    n_own(model.definition.n_blades) + signals + shown
+}
 
-/// Loads that the series of a run of `setup` keeps of turbine number `index` (–).
-pub(crate) fn n_loads(setup: &Prepared, index: usize) -> usize {
-    let channels = channels_of(setup.models[index].definition.n_blades);
-    let all = !setup.case.flow.solver.resolves_induction;
-    channels.iter().filter(|channel| all || LOADS.contains(&channel.name.as_str())).count()
+/// Channels of each turbine in the series of `run` (–).
+pub(crate) fn of_turbines(setup: &Prepared, run: &Run) -> Vec<u64> {
+    run.present().map(|index| n_of_turbine(setup, run, index) as u64).collect()
 }
 
 /// Channels in the series of `run` with lines at `n_lines` places (–), as [`Row`] has them.
 pub(crate) fn count(setup: &Prepared, run: &Run, n_lines: u64) -> u64 {
-    let of_turbine = |index: usize| {
-        let n_blades = setup.models[index].definition.n_blades;
-        let (plan, model) = (&setup.plan, setup.models[index].clone());
-        // What is found before the runs, if there is to be anything, changes no name.
-        let model = model.without_individual_pitch();
-        let mut control = run.control[index].clone();
-        control.response = control.response.or(control.kind().any_response());
-        let signals = assemble::controller(&control, &model, &setup.case, plan)
-            .map_or(0, |controller| controller.signals().len());
-        let shown = assemble::sensing(&setup.case, plan, &model, index)
-            .map_or(0, |sensing| sensing.channels().len());
-        N_SCALARS + N_PER_BLADE * n_blades + n_loads(setup, index) + signals + shown
-    };
-    let turbines: usize = run.present().map(of_turbine).sum();
-    (SHARED.len() + turbines) as u64 + LINES.len() as u64 * n_lines
+    let turbines: u64 = of_turbines(setup, run).into_iter().sum();
+    N_SHARED as u64 + turbines + LINES.len() as u64 * n_lines
 }
 
-/// Gathers one row of the series from the turbines' signals.
+/// Gathers one row of the series from the turbines' signals, in SI units.
 ///
 /// A row is: time, wind at the hub-height probe upstream of the first turbine, then for each
 /// turbine its true state, whatever its instruments showed, its commands, its loads, the signals of its
 /// controller and what its further sensors show; then the wind along radial lines at the places of turbines
 /// that are not there.
 pub(crate) struct Row {
-    names: Vec<String>,
+    channels: Vec<Channel>,
     values: Vec<f64>,
-    offsets: Vec<usize>,
-    /// Of each turbine: where its loads begin, and places among its channels with the factor to the unit in
-    /// the name.
-    loads: Vec<(usize, Vec<(usize, f64)>)>,
-    /// Of each turbine: where the signals of its controller begin and end; behind them is what its further
-    /// sensors show.
-    signals: Vec<Range<usize>>,
+    turbines: Vec<Place>,
     /// Where the winds along lines begin.
     lines: usize,
-    /// All channels of one turbine.
-    channels: Vec<f64>,
+    /// All that the structure of one turbine tells.
+    told: Vec<f64>,
+}
+
+/// Where a turbine's channels are in the row.
+struct Place {
+    /// Where its state begins.
+    first: usize,
+    /// Generator speed over rotor speed (–): the channels of the generator are of its own, the fast side.
+    gear_ratio: f64,
+    /// Where its loads begin, and their places among what its structure tells.
+    loads: (usize, Vec<usize>),
+    /// Where the signals of its controller begin and end; behind them is what its further sensors show.
+    signals: Range<usize>,
 }
 
 impl Row {
-    /// The row for `machines`, each with its name, and for lines at the places `lines`; `all_loads` or a
-    /// choice of them.
+    /// The row for `machines`, each with its name, and for lines at the places `lines`.
     pub(crate) fn new<'a>(
         machines: impl Iterator<Item = (&'a str, &'a Machine)>,
         lines: &[&str],
-        all_loads: bool,
     ) -> Self {
-        let mut names: Vec<String> = SHARED.iter().map(|&name| name.to_owned()).collect();
-        let (mut offsets, mut loads, mut signals) = (Vec::new(), Vec::new(), Vec::new());
-        let mut n_channels = 0;
+        let mut channels: Vec<Channel> = std::iter::once(TIME).chain(WIND).collect();
+        let (mut turbines, mut n_told) = (Vec::new(), 0);
         for (name, machine) in machines {
             let turbine = &machine.turbine;
-            let n_blades = turbine.definition().n_blades;
-            offsets.push(names.len());
-            let scalars: [&str; N_SCALARS] = [
-                "power_w",
-                "thrust_n",
-                "rotor_speed_rad_s",
-                "azimuth_rad",
-                "yaw_rad",
-                "generator_torque_nm",
-                "aerodynamic_torque_nm",
-                "rotor_wind_speed_m_s",
-            ];
-            names.extend(scalars.iter().map(|channel| format!("{name}.{channel}")));
-            let per_blade: [fn(usize) -> String; N_PER_BLADE] = [
-                |blade| format!("pitch_{blade}_rad"),
-                |blade| format!("pitch_command_{blade}_rad"),
-                |blade| format!("flap_moment_{blade}_nm"),
-            ];
-            for channel in per_blade {
-                names.extend((1..=n_blades).map(|blade| format!("{name}.{}", channel(blade))));
+            let Definition { n_blades, drive_train, .. } = turbine.definition();
+            let mut add = |own: &mut dyn Iterator<Item = Channel>| {
+                let first = channels.len();
+                channels.extend(own.map(|channel| channel.of(name)));
+                first..channels.len()
+            };
+            let first = add(&mut OPERATION.into_iter()).start;
+            for channel in OPERATION_OF_BLADES {
+                add(&mut (1..=*n_blades).map(|blade| channel.of_blade(blade)));
             }
-            let channels = turbine.channels();
-            n_channels = n_channels.max(channels.len());
-            let kept: Vec<usize> = (0..channels.len())
-                .filter(|&index| all_loads || LOADS.contains(&channels[index].name.as_str()))
-                .collect();
-            let first = names.len();
-            names.extend(kept.iter().map(|&index| {
-                let channel = &channels[index];
-                format!("{name}.{}_{}", channel.name, channel.unit)
-            }));
-            loads.push((first, kept.iter().map(|&i| (i, channels[i].scale)).collect()));
-            let first = names.len();
-            let own = machine.controller.signals();
-            names.extend(own.iter().map(|signal| format!("{name}.{signal}")));
-            signals.push(first..names.len());
-            let shown = machine.sensing.channels();
-            names.extend(shown.iter().map(|channel| format!("{name}.{channel}")));
+            // Its state is that of the instant; the structure tells of the middle of the step before, too.
+            let told = turbine.channels();
+            n_told = n_told.max(told.len());
+            let loads = loads_of(*n_blades);
+            let place = |load: &Channel| told.iter().position(|channel| channel == load);
+            let places = loads.iter().filter_map(place).collect();
+            let first_load = add(&mut loads.into_iter()).start;
+            let signals = add(&mut machine.controller.signals().into_iter());
+            add(&mut machine.sensing.channels().into_iter());
+            turbines.push(Place {
+                first,
+                gear_ratio: drive_train.gear_ratio,
+                loads: (first_load, places),
+                signals,
+            });
         }
-        let first_line = names.len();
+        let first_line = channels.len();
         for place in lines {
-            names.extend(LINES.map(|channel| format!("{place}.lines_{channel}_m_s")));
+            channels.extend(LINES.map(|channel| channel.of(place)));
         }
-        let values = vec![0.0; names.len()];
-        let channels = vec![0.0; n_channels];
-        Self { names, values, offsets, loads, signals, lines: first_line, channels }
+        let (values, told) = (vec![0.0; channels.len()], vec![0.0; n_told]);
+        Self { channels, values, turbines, lines: first_line, told }
     }
 
     /// Takes the loads of turbine number `index` in, as they are before it moves on.
     pub(crate) fn loads(&mut self, index: usize, turbine: &Turbine) {
-        let (first, kept) = &self.loads[index];
-        let channels = &mut self.channels[..turbine.channels().len()];
-        turbine.write_channels(channels);
-        for (value, (channel, scale)) in self.values[*first..].iter_mut().zip(kept) {
-            *value = channels[*channel] * scale;
+        let (first, places) = &self.turbines[index].loads;
+        let told = &mut self.told[..turbine.channels().len()];
+        turbine.write_channels(told);
+        for (value, place) in self.values[*first..].iter_mut().zip(places) {
+            *value = told[*place];
         }
     }
 
     /// Takes in the signals of the controller of `machine` number `index` after its last decision, and what
     /// its further sensors showed it.
     pub(crate) fn signals(&mut self, index: usize, machine: &Machine) {
-        let place = self.signals[index].clone();
+        let place = self.turbines[index].signals.clone();
         let mut next = place.end;
         machine.controller.write_signals(&mut self.values[place]);
         for reading in machine.sensing.readings() {
@@ -175,40 +139,43 @@ impl Row {
 
     /// Takes in the `wind` (m/s) along the lines at place number `index`.
     pub(crate) fn lines(&mut self, index: usize, wind: FixedFrame) {
-        let first = self.lines + 3 * index;
-        self.values[first..first + 3].copy_from_slice(&[wind.average, wind.tilt, wind.yaw]);
+        let first = self.lines + LINES.len() * index;
+        let values = &mut self.values[first..first + LINES.len()];
+        values.copy_from_slice(&[wind.average, wind.tilt, wind.yaw]);
     }
 
-    /// Names of the channels, in the order of [`Self::values`].
-    pub(crate) fn names(&self) -> &[String] {
-        &self.names
+    /// The channels, in the order of [`Self::values`].
+    pub(crate) fn channels(&self) -> &[Channel] {
+        &self.channels
     }
 
-    /// The row as it stands.
+    /// The row as it stands, in SI units.
     pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }
 
     /// Starts the row of `time` (s) with the probe's `wind` (m/s).
     pub(crate) fn start(&mut self, time: f64, wind: Vector3) {
-        self.values[..SHARED.len()].copy_from_slice(&[time, wind.x, wind.y, wind.z]);
+        self.values[..N_SHARED].copy_from_slice(&[time, wind.x, wind.y, wind.z]);
     }
 }
 
 impl Recorder for Row {
     fn record(&mut self, turbine: usize, truth: &Truth, commands: &Commands) {
-        let scalars = [
+        let Place { first, gear_ratio, .. } = self.turbines[turbine];
+        let operation: [f64; 9] = [
             truth.power,
-            truth.thrust,
+            truth.generator_torque / gear_ratio,
+            truth.generator_speed * gear_ratio,
             truth.rotor_speed,
             truth.azimuth,
             truth.yaw,
-            truth.generator_torque,
+            truth.thrust,
             truth.aerodynamic_torque,
             truth.rotor_wind_speed,
         ];
-        let mut next = self.offsets[turbine];
-        for block in [&scalars[..], &truth.pitch, &commands.pitch, &truth.flap_moments] {
+        let mut next = first;
+        for block in [&operation[..], &truth.pitch, &commands.pitch] {
             self.values[next..next + block.len()].copy_from_slice(block);
             next += block.len();
         }

@@ -134,11 +134,6 @@ fn group<'a>(
     group
 }
 
-/// Names of the `channels` of `turbine`.
-pub(crate) fn names_of(turbine: &str, channels: &[&str]) -> Vec<String> {
-    channels.iter().map(|channel| format!("{turbine}.{channel}")).collect()
-}
-
 /// On return `sum` holds `column` too, instant by instant.
 pub(crate) fn add_to(sum: &mut Vec<f64>, column: &[f64]) {
     sum.resize(column.len(), 0.0);

@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use crate::observer::Estimate;
-use crate::outputs::{Outputs, series};
+use crate::outputs::{Outputs, outb, series};
 use crate::prepared::Prepared;
 use farm::pitch_response::IdentificationCost;
 use formats::machine;
@@ -24,6 +24,13 @@ impl Prepared {
     /// Channels in the series of run number `index` (–).
     pub fn channels_of_run(&self, index: usize) -> u64 {
         series::n_channels(self, &self.case.runs[index])
+    }
+
+    /// Disk (bytes) that a row of the series of run number `index` takes, that in the `.outb` of its turbines
+    /// included.
+    pub fn row_of_run(&self, index: usize) -> u64 {
+        let run = &self.case.runs[index];
+        series::row_bytes(self, run) + outb::row_bytes(self, run)
     }
 
     /// Disk (bytes) that run number `index` with its `outputs` takes at most at any time: what it leaves, and
@@ -82,6 +89,8 @@ impl Prepared {
             n_steps: plan.n_steps,
             memory: field + turbulence.map_or(0, |turbulence| turbulence.memory),
             disk: disks().max().unwrap_or(0),
+            n_rows: series::n_rows(self),
+            row: open.iter().map(|&index| self.row_of_run(index)).max().unwrap_or(0),
             disk_in_all: disks().sum::<u64>() - checkpoints().sum::<u64>()
                 + kept().sum::<u64>()
                 + passing
@@ -114,6 +123,8 @@ pub(crate) fn together(of_studies: &[Estimate], n_jobs: usize) -> Estimate {
         work: of_studies.iter().map(|estimate| estimate.work).sum(),
         memory: n_jobs as u64 * most(|estimate| estimate.memory),
         disk: most(|estimate| estimate.disk),
+        n_rows: most(|estimate| estimate.n_rows),
+        row: most(|estimate| estimate.row),
         disk_in_all: sum(|estimate| estimate.disk_in_all) + passing,
         kept_checkpoints: sum(|estimate| estimate.kept_checkpoints),
         updates_per_second: speeds.reduce(f64::min),

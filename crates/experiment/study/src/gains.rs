@@ -7,6 +7,7 @@ use crate::same_case::{WindDigests, check_same};
 use crate::{Observer, StudyError};
 use analysis::AnalysisError;
 use analysis::statistics::{BLOCK_LENGTH, gain};
+use basis::channels::GEN_PWR;
 use basis::records::{Statistic, Summary, TurbineSummary, Warning, WarningKind};
 use farm::case::Run;
 use formats::records::{self, RunFolder};
@@ -142,7 +143,7 @@ fn parts(summary: &Summary, names: &[String]) -> Vec<Vec<String>> {
 
 /// The channel of the power of `turbine`.
 fn power(turbine: &str) -> [String; 1] {
-    [format!("{turbine}.power_w")]
+    [GEN_PWR.at(turbine)]
 }
 
 /// On return the summary of run number `index` holds its gains where the run that it compares with was made

@@ -100,7 +100,9 @@ impl<'a> Kept<'a> {
     fn new(prepared: &'a Prepared, run: &Run, farm: &Farm<Air>) -> Self {
         let rows = Rows::new(prepared, run, farm);
         let n_rows = (prepared.plan.n_steps / prepared.plan.row_stride) as usize;
-        let names = rows.names().to_vec();
+        let channels = rows.channels().iter();
+        let names: Vec<String> =
+            channels.map(|channel| channel.name.clone().into_owned()).collect();
         let columns = vec![Vec::with_capacity(n_rows); names.len()];
         let fields = farm.flow().fields();
         let averages = fields.map_or(Vec::new(), |fields| mean_planes::averages(prepared, fields));

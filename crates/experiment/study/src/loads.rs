@@ -2,7 +2,6 @@
 //! pitching cost.
 
 use crate::StudyError;
-use crate::channels::LOADS;
 use crate::columns::Analysed;
 use analysis::AnalysisError;
 use analysis::fatigue::{
@@ -10,18 +9,39 @@ use analysis::fatigue::{
     damage_equivalent_load,
 };
 use analysis::statistics::{BLOCK_LENGTH, change, standard_deviation};
-use basis::records::{Load, LoadKind, PitchDuty};
+use basis::channels::{BLD_PITCH, ROOT_MXB, ROOT_MYB, Unit};
+use basis::records::{BearingLoad, Load, LoadKind, PitchDuty};
 
 /// Wöhler's exponent of composite blades (–).
 const BLADE_SLOPE: f64 = 10.0;
 /// Wöhler's exponent of steel: shaft, tower (–).
 const STEEL_SLOPE: f64 = 4.0;
 
-/// A moment that is kept of any run.
+/// Moments that a summary tells of.
+const MOMENTS: [&str; 14] = [
+    "RootMxc1",
+    "RootMyc1",
+    "RootMzc1",
+    "RootMxb1",
+    "RootMyb1",
+    "RotTorq",
+    "LSSTipMys",
+    "LSSTipMzs",
+    "YawBrMxp",
+    "YawBrMyp",
+    "YawBrMzp",
+    "TwrBsMxt",
+    "TwrBsMyt",
+    "TwrBsMzt",
+];
+/// The unit in which it tells of them, in words of its own.
+const UNIT: (Unit, &str) = (Unit::KilonewtonMetre, "kN m");
+
+/// A moment of which a summary tells.
 pub(crate) struct Moment {
-    /// Name of its column.
+    /// Its name in the series.
     name: String,
-    /// The same without turbine and unit.
+    /// The same without turbine.
     channel: &'static str,
 }
 
@@ -32,12 +52,11 @@ impl Moment {
     }
 }
 
-/// Moments of `turbine` among the columns called `names`.
+/// Moments of `turbine` among the channels called `names`.
 pub(crate) fn moments(names: &[String], turbine: &str) -> Vec<Moment> {
     let moment = |name: &String| {
         let rest = name.strip_prefix(turbine)?.strip_prefix('.')?;
-        let rest = rest.strip_suffix("_kN-m")?;
-        let channel = LOADS.into_iter().find(|channel| *channel == rest)?;
+        let channel = MOMENTS.into_iter().find(|channel| *channel == rest)?;
         Some(Moment { name: name.clone(), channel })
     };
     names.iter().filter_map(moment).collect()
@@ -50,9 +69,9 @@ pub(crate) fn moments(names: &[String], turbine: &str) -> Vec<Moment> {
 pub(crate) fn loads(moment: &Moment, analysed: &Analysed<'_>) -> Result<Vec<Load>, StudyError> {
     let load = |kind, value| Load {
         channel: moment.channel.to_owned(),
-        unit: "kN m".to_owned(),
+        unit: UNIT.1.to_owned(),
         kind,
-        value,
+        value: UNIT.0.of_si(value),
         change: None,
     };
     let mut loads = Vec::new();
@@ -101,7 +120,7 @@ fn damage_equivalent(channel: &str) -> LoadKind {
     LoadKind::DamageEquivalent { slope, reference_frequency_hz: REFERENCE_FREQUENCY }
 }
 
-/// The figure `kind` of `samples` that lie `interval` (s) apart.
+/// The figure `kind` of `samples` (N m) that lie `interval` (s) apart.
 fn figure(kind: LoadKind, samples: &[f64], interval: f64) -> Result<f64, AnalysisError> {
     match kind {
         LoadKind::Deviation => Ok(standard_deviation(samples)),
@@ -113,7 +132,7 @@ fn figure(kind: LoadKind, samples: &[f64], interval: f64) -> Result<f64, Analysi
 
 /// What [`pitch_duty`] of `turbine` is made of: pitch of blade 1, flapwise and edgewise moment at its root.
 pub(crate) fn duty_channels(turbine: &str) -> [String; 3] {
-    ["pitch_1_rad", "RootMyb1_kN-m", "RootMxb1_kN-m"].map(|channel| format!("{turbine}.{channel}"))
+    [BLD_PITCH, ROOT_MYB, ROOT_MXB].map(|channel| channel.of_blade(1).at(turbine))
 }
 
 /// What pitching did to blade 1 of `turbine`, in the blade's own frame; None where the series does not tell.
@@ -148,7 +167,13 @@ pub(crate) fn pitch_duty(
         moving_share: travel.moving_share,
         n_reversals: travel.n_reversals,
         bearing_slope: BEARING_SLOPE,
-        bearing_loads_kn_m: loads.iter().map(|position| position.load).collect(),
+        bearing_loads: loads
+            .iter()
+            .map(|at| BearingLoad {
+                position_deg: at.position.to_degrees(),
+                load_kn_m: UNIT.0.of_si(at.load),
+            })
+            .collect(),
         sample_interval: interval,
     }))
 }
@@ -163,10 +188,10 @@ mod tests {
         let pitch = |time: f64| 2f64.to_radians() * (TAU * 0.125 * time).sin();
         let times: Vec<f64> = (0..n).map(|k| interval * k as f64).collect();
         let column = |of: &dyn Fn(f64) -> f64| times.iter().map(|time| of(*time)).collect();
-        let names = ["time_s", "T1.pitch_1_rad", "T1.RootMyb1_kN-m", "T1.RootMxb1_kN-m"];
+        let names = ["Time", "T1.BldPitch1", "T1.RootMyb1", "T1.RootMxb1"];
         Series {
             names: names.map(str::to_owned).to_vec(),
-            columns: vec![times.clone(), column(&pitch), column(&|_| 3e4), column(&|_| 4e4)],
+            columns: vec![times.clone(), column(&pitch), column(&|_| 3e7), column(&|_| 4e7)],
         }
     }
 
@@ -179,15 +204,19 @@ mod tests {
         let duty = pitch_duty("T1", &analysed).expect("numbers").expect("all channels");
         assert!((duty.travel_deg - 60.0).abs() < 0.01, "{}", duty.travel_deg);
         assert!((duty.travel_in_ten_minutes_deg - 600.0).abs() < 0.1);
-        assert_eq!(duty.bearing_loads_kn_m.len(), 36);
-        for (index, load) in duty.bearing_loads_kn_m.iter().enumerate() {
+        assert_eq!(duty.bearing_loads.len(), 36);
+        for (index, BearingLoad { position_deg, load_kn_m: load }) in
+            duty.bearing_loads.iter().enumerate()
+        {
             let angle = TAU * index as f64 / 36.0;
+            assert!((position_deg.to_radians() - angle).abs() < 1e-12);
             let expected = (3e4 * angle.cos() + 4e4 * angle.sin()).max(0.0);
             assert!((load - expected).abs() < 10.0, "{angle}: {load} {expected}");
         }
         // atan(4/3) is 53°.
-        let (load, position) = duty.worst_bearing_load().expect("positions");
-        assert!((position.to_degrees() - 50.0).abs() < 1e-9 && (load / 5e4 - 1.0).abs() < 0.01);
+        let worst = duty.worst_bearing_load().expect("positions");
+        assert!((worst.position_deg - 50.0).abs() < 1e-9);
+        assert!((worst.load_kn_m / 5e4 - 1.0).abs() < 0.01);
         assert_eq!((duty.bearing_slope, duty.sample_interval), (3.0, 0.01));
     }
 
@@ -195,7 +224,7 @@ mod tests {
     /// no change.
     #[test]
     fn moments_that_swing_further_say_so_with_an_interval() {
-        let names = ["time_s", "T1.RootMyb1_kN-m", "T1.TwrBsMyt_kN-m"];
+        let names = ["Time", "T1.RootMyb1", "T1.TwrBsMyt"];
         let swing = |sizes: [f64; 2], mean: f64| Series {
             names: names.map(str::to_owned).to_vec(),
             columns: vec![
@@ -241,7 +270,7 @@ mod tests {
             assert!((half_width - 12.706_205 * 0.05).abs() < 1e-6, "{change:?}");
         }
         // A run that keeps no moments is nothing to compare with.
-        let none = Series { names: vec!["time_s".into()], columns: other.columns[..1].to_vec() };
+        let none = Series { names: vec!["Time".into()], columns: other.columns[..1].to_vec() };
         assert!(compared(&none).iter().all(|load| load.change.is_none()));
     }
 

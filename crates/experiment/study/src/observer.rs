@@ -36,7 +36,12 @@ pub struct Estimate {
     pub memory: u64,
     /// Disk that one run takes at most at any time, checkpoint included (bytes).
     pub disk: u64,
-    /// The same of all runs still to be made, one after the other, and of the report (bytes).
+    /// Rows in the series of a run (–).
+    pub n_rows: u64,
+    /// Disk that a row of the series with most channels takes, in `series.csv` and in the `.outb` of all
+    /// turbines (bytes).
+    pub row: u64,
+    /// The same as `disk` of all runs still to be made, one after the other, and of the report (bytes).
     pub disk_in_all: u64,
     /// How much of it are checkpoints that stay, so that runs can go on for longer (bytes).
     pub kept_checkpoints: u64,

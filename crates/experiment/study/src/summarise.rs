@@ -3,7 +3,7 @@
 mod warnings;
 
 use crate::StudyError;
-use crate::columns::{Analysed, Columns, add_to, names_of};
+use crate::columns::{Analysed, Columns, add_to};
 use crate::loads;
 use crate::prepared::Prepared;
 use crate::tips::Outrun;
@@ -11,6 +11,8 @@ use crate::warnings::SetupWarning;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
 use analysis::statistics::{BLOCK_LENGTH, mean, statistic};
+use basis::Channel;
+use basis::channels::{AZIMUTH, BLD_PITCH, GEN_PWR, NAC_YAW, ROT_SPEED, RT_AERO_FXH, TIME, WIND_U};
 use basis::records::{
     Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding, FlowSummary, Load,
     PitchExcitation, Rotor, SCHEMA_VERSION, Statistic, Summary, TurbineSummary, Warning,
@@ -20,9 +22,6 @@ use control::{MissingChannel, Pitching, TurbineRecord};
 use farm::assemble::controller;
 use farm::case::{Control, Run, Shear, TurbulenceModel};
 use farm::solvers::WindSource;
-
-/// Channel of the wind that meets the first turbine.
-const WIND: &str = "wind.u_m_s";
 
 /// What a turbine leaves beside its series.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +57,7 @@ pub(crate) fn summarise(
         let turbine = Turbine::new(setup, run, index, left);
         turbines.push(turbine.summarise(columns, &mut array, &mut warnings)?);
     }
-    let analysed = columns.of(&[WIND.to_owned()])?;
+    let analysed = columns.of(&wind())?;
     Ok(Summary {
         schema_version: SCHEMA_VERSION,
         case: setup.case.name.clone(),
@@ -110,11 +109,11 @@ impl<'a> Turbine<'a> {
         let Self { setup, index, name, n_blades, control, .. } = *self;
 
         let analysed = columns.of(&operation(name))?;
-        let power_channel = format!("{name}.power_w");
+        let power_channel = GEN_PWR.at(name);
         let power = analysed.statistic(&power_channel)?;
-        let thrust = analysed.statistic(&format!("{name}.thrust_n"))?;
-        let rotor_speed = analysed.statistic(&format!("{name}.rotor_speed_rad_s"))?;
-        let yaw = mean(analysed.column(&format!("{name}.yaw_rad"))?);
+        let thrust = analysed.statistic(&RT_AERO_FXH.at(name))?;
+        let rotor_speed = analysed.statistic(&ROT_SPEED.at(name))?;
+        let yaw = mean(analysed.column(&NAC_YAW.at(name))?);
         let outrun = outrun(&analysed, index, setup)?;
         warnings.extend(self.warning_of_overspeed(&analysed)?);
         add_to(array, analysed.column(&power_channel)?);
@@ -127,9 +126,8 @@ impl<'a> Turbine<'a> {
         let analysed = columns.of(&outcome_channels(name, n_blades, control))?;
         let record = OfTurbine { analysed: &analysed, name, n_blades };
         let outcome = control.kind().outcome(control, &record);
-        let outcome = outcome.map_err(|MissingChannel(channel)| StudyError::MissingChannel {
-            channel: record.full_name(&channel),
-        })?;
+        let outcome =
+            outcome.map_err(|MissingChannel(channel)| StudyError::MissingChannel { channel })?;
         let message = |words: &String| format!("{}: {name}{words}", self.run.name);
         let of_controller = |words| self.warning(WarningKind::Controller, message(words));
         warnings.extend(outcome.warnings.iter().chain(&self.left.remarks).map(of_controller));
@@ -189,14 +187,14 @@ impl<'a> Turbine<'a> {
         let row = |time: f64| (time / analysed.interval).ceil() as usize;
         let skip = row(set.start + period).saturating_sub(analysed.first);
         let end = set.stop.map_or(usize::MAX, |stop| row(stop).saturating_sub(analysed.first));
-        let cut = |channel: &str| -> Result<_, StudyError> {
-            let column = analysed.column(&format!("{}.{channel}", self.name))?;
+        let cut = |channel: &Channel| -> Result<_, StudyError> {
+            let column = analysed.column(&channel.at(self.name))?;
             Ok(column.get(skip..end.min(column.len())).unwrap_or_default())
         };
-        let azimuth = cut("azimuth_rad")?;
+        let azimuth = cut(&AZIMUTH)?;
         let mut pitch = Vec::with_capacity(self.n_blades);
         for blade in 1..=self.n_blades {
-            pitch.push(cut(&format!("pitch_{blade}_rad"))?);
+            pitch.push(cut(&BLD_PITCH.of_blade(blade))?);
         }
         let motion = match set.motion {
             control::Motion::Cyclic => Motion::Cyclic,
@@ -224,15 +222,15 @@ struct OfTurbine<'a> {
 }
 
 impl OfTurbine<'_> {
-    fn full_name(&self, channel: &str) -> String {
+    fn full_name(&self, channel: &Channel) -> String {
         full_name(self.name, channel)
     }
 }
 
 impl TurbineRecord for OfTurbine<'_> {
-    fn column(&self, channel: &str) -> Result<&[f64], MissingChannel> {
-        let column = self.analysed.column(&self.full_name(channel));
-        column.map_err(|_| MissingChannel(channel.to_owned()))
+    fn column(&self, channel: &Channel) -> Result<&[f64], MissingChannel> {
+        let name = self.full_name(channel);
+        self.analysed.column(&name).map_err(|_| MissingChannel(name))
     }
 
     fn interval(&self) -> f64 {
@@ -245,8 +243,8 @@ impl TurbineRecord for OfTurbine<'_> {
 }
 
 /// Name in the series of the `channel` of `turbine`; time is everybody's.
-fn full_name(turbine: &str, channel: &str) -> String {
-    if channel == "time_s" { channel.to_owned() } else { format!("{turbine}.{channel}") }
+fn full_name(turbine: &str, channel: &Channel) -> String {
+    if *channel == TIME { TIME.name.into_owned() } else { channel.at(turbine) }
 }
 
 /// Loads of the moments that are kept of `turbine`, by channel.
@@ -271,22 +269,25 @@ fn parts(setup: &Prepared, run: &Run, names: &[String]) -> Vec<Vec<String>> {
         parts.extend(loads::moments(names, name).iter().map(loads::Moment::part));
         parts.push(loads::duty_channels(name).to_vec());
     }
-    parts.push(vec![WIND.to_owned()]);
+    parts.push(wind());
     parts
+}
+
+/// The wind that meets the first turbine.
+fn wind() -> Vec<String> {
+    vec![WIND_U.name.into_owned()]
 }
 
 /// What tells how `turbine` ran.
 fn operation(turbine: &str) -> Vec<String> {
-    let mut channels = names_of(turbine, &["power_w", "thrust_n", "rotor_speed_rad_s", "yaw_rad"]);
-    channels.push("time_s".to_owned());
-    channels
+    let channels = [GEN_PWR, RT_AERO_FXH, ROT_SPEED, NAC_YAW].map(|channel| channel.at(turbine));
+    channels.into_iter().chain([TIME.name.into_owned()]).collect()
 }
 
 /// What tells how the `n_blades` blades of `turbine` pitched.
 fn pitching(turbine: &str, n_blades: usize) -> Vec<String> {
-    let mut channels = names_of(turbine, &["azimuth_rad"]);
-    channels.extend((1..=n_blades).map(|blade| format!("{turbine}.pitch_{blade}_rad")));
-    channels
+    let pitch = BLD_PITCH.at(turbine, n_blades);
+    std::iter::once(AZIMUTH.at(turbine)).chain(pitch).collect()
 }
 
 /// What the controller of `turbine`, of `n_blades` blades, reads to say what became of it.
@@ -302,7 +303,7 @@ fn collective_pitch(
 ) -> Result<Statistic, StudyError> {
     let mut mean = Vec::new();
     for blade in 1..=n_blades {
-        let column = analysed.column(&format!("{name}.pitch_{blade}_rad"))?;
+        let column = analysed.column(&BLD_PITCH.of_blade(blade).at(name))?;
         mean.resize(column.len(), 0.0);
         for (mean, pitch) in mean.iter_mut().zip(column) {
             *mean += pitch / n_blades as f64;
@@ -321,8 +322,8 @@ fn outrun(
     let plan = &setup.plan;
     let Some(sound_speed) = (setup.case.flow.solver.sound_speed)(plan) else { return Ok(None) };
     let name = &setup.case.turbines[index].name;
-    let times = analysed.column("time_s")?;
-    let rotor_speeds = analysed.column(&format!("{name}.rotor_speed_rad_s"))?;
+    let times = analysed.column(&TIME.name)?;
+    let rotor_speeds = analysed.column(&ROT_SPEED.at(name))?;
     let radius = setup.models[index].definition.rotor_radius();
     Ok(Outrun::of(times, rotor_speeds, radius, sound_speed, plan.interval))
 }
@@ -334,7 +335,7 @@ fn flow(setup: &Prepared) -> FlowSummary {
 }
 
 fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, StudyError> {
-    let realised = analysed.statistic(WIND)?;
+    let realised = analysed.statistic(&WIND_U.name)?;
     let case = &setup.case;
     let (shear_exponent, roughness_length) = match case.wind.shear {
         Shear::PowerLaw { exponent } => (Some(exponent), None),

@@ -108,6 +108,15 @@ fn the_disk_that_is_told_is_what_is_taken_or_little_more() {
     let report = 4 << 20;
     let ratio = (estimate.disk_in_all - report) as f64 / in_all as f64;
     assert!((1.0..1.5).contains(&ratio), "{} told, {in_all} taken", estimate.disk_in_all);
+    // So is each row of a series, without what stands around them.
+    let csv = fs::metadata(folder.path().join("out/helix/series.csv")).expect("a series").len();
+    let outb: u64 = ["T1.outb", "T2.outb"]
+        .iter()
+        .filter_map(|name| fs::metadata(folder.path().join("out/helix").join(name)).ok())
+        .map(|file| file.len())
+        .sum();
+    let ratio = (estimate.n_rows * estimate.row) as f64 / (csv + outb) as f64;
+    assert!((0.95..1.5).contains(&ratio), "{} bytes a row told, {ratio}", estimate.row);
     // Its channels are counted, not guessed.
     let header = fs::read_to_string(folder.path().join("out/helix/series.csv")).expect("a series");
     let header = header.lines().next().expect("a header");

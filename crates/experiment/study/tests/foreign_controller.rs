@@ -127,7 +127,7 @@ fn it_does_what_the_same_law_does_in_rust() {
             + ", pitch_control = \"collective\" }\n";
         let folder = folder(speed, &[MACHINE], &runs, ("-", 0.0));
         let out = done(&options(folder.path()));
-        for channel in ["T1.power_w", "T1.pitch_1_rad", "T1.rotor_speed_rad_s"] {
+        for channel in ["T1.GenPwr", "T1.BldPitch1", "T1.RotSpeed"] {
             let of = |run: &str| column(folder.path(), run, channel);
             let (own, reference) = (of("own"), of("reference"));
             assert_eq!(own.len(), reference.len());
@@ -137,7 +137,7 @@ fn it_does_what_the_same_law_does_in_rust() {
             assert_eq!(own, of("collective"));
         }
         // The pitch law is at work in strong wind alone.
-        let pitch = column(folder.path(), "own", "T1.pitch_1_rad");
+        let pitch = column(folder.path(), "own", "T1.BldPitch1");
         let last = *pitch.last().expect("rows");
         assert_eq!(last > 0.02, speed == "13.0", "{last} rad in {speed} m/s");
         let summary = read_summary(&RunFolder::new(&out, "own")).expect("a summary");
@@ -164,7 +164,7 @@ fn turbines_with_one_library_have_states_of_their_own() {
     let folder = folder("13.0", &[MACHINE, MACHINE], &runs, ("-", 0.0));
     done(&options(folder.path()));
     for (turbine, other) in [("T1", "T2"), ("T2", "T1")] {
-        let of = |run: &str| column(folder.path(), run, &format!("{turbine}.power_w"));
+        let of = |run: &str| column(folder.path(), run, &format!("{turbine}.GenPwr"));
         assert!(of("both") == of(turbine), "{turbine} differs from a turbine alone");
         // Under the built-in controller it does something else.
         assert!(of("both") != of(other));
@@ -182,9 +182,9 @@ fn an_excitation_goes_on_top_of_it() {
     let runs = alone("") + &helix("still", 0.0) + &helix("helix", 2.0);
     let folder = folder("9.0", &[MACHINE], &runs, ("-", 0.0));
     done(&options(folder.path()));
-    let of = |run: &str| column(folder.path(), run, "T1.generator_torque_nm");
+    let of = |run: &str| column(folder.path(), run, "T1.GenTq");
     assert!(of("still") == of("own"), "no amplitude changes nothing");
-    let pitch = column(folder.path(), "helix", "T1.pitch_2_rad");
+    let pitch = column(folder.path(), "helix", "T1.BldPitch2");
     let largest = pitch.iter().fold(0.0_f64, |most, pitch| most.max(pitch.abs()));
     assert!((largest.to_degrees() - 2.0).abs() < 0.2, "{largest} rad");
 }
@@ -208,7 +208,7 @@ fn a_stopped_run_goes_on_to_the_same_bits_or_says_why_not() {
     let outcome = parted(&stopped).expect("a library that follows from what it is sent");
     let Outcome::Done { summaries, .. } = outcome else { panic!("{outcome:?}") };
     assert_eq!(summaries.len(), 1);
-    for channel in ["T1.power_w", "T1.pitch_1_rad"] {
+    for channel in ["T1.GenPwr", "T1.BldPitch1"] {
         let of = |folder: &TempDir| column(folder.path(), "own", channel);
         assert!(of(&whole) == of(&stopped), "the bits of {channel} differ");
     }
@@ -261,7 +261,7 @@ fn the_yaw_rate_that_it_asks_for_turns_the_nacelle() {
     let series = formats::records::read_series(&path, |_| true).expect("a series");
     let last = |name: &str| *series.column(name).expect("its column").last().expect("rows");
     // 0.01 rad/s all the time, behind a lag of a second.
-    let (time, yaw) = (last("time_s"), last("T1.yaw_rad"));
+    let (time, yaw) = (last("Time"), last("T1.NacYaw"));
     assert!((yaw - 0.01 * (time - 1.0)).abs() < 0.005, "{yaw} rad after {time} s");
 }
 

@@ -162,10 +162,10 @@ fn noise_reaches_the_phase_estimator_and_nothing_else() {
         let signals = controller.signals();
         let mut values = vec![f64::NAN; signals.len()];
         controller.write_signals(&mut values);
-        let [wind, phase] = ["estimated_wind_m_s", "estimated_tilt_phase_rad"].map(|wanted| {
+        let [wind, phase] = ["EstWind", "EstWindTiltPhase"].map(|wanted| {
             values[signals
                 .iter()
-                .position(|signal| *signal == wanted)
+                .position(|signal| signal.name == wanted)
                 .expect("T2 looks for the helix")]
         });
         (records, wind, phase)

@@ -2,6 +2,8 @@
 
 mod small;
 
+use formats::records::SeriesFile;
+use formats::table::{Column, TableReader};
 use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -74,6 +76,7 @@ fn assert_alike(whole: &Path, other: &Path) {
     };
     assert_eq!(names(&whole), names(&other));
     assert!(whole.len() > 10, "{:?}", names(&whole));
+    assert!(names(&whole).contains(&PathBuf::from("T1.outb")), "{:?}", names(&whole));
     for ((name, before), (_, after)) in whole.iter().zip(&other) {
         assert!(before == after, "{} has other bits", name.display());
     }
@@ -128,6 +131,15 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
 
     assert_alike(&folder.path().join("whole/helix"), &run);
     let whole = left(&folder.path().join("whole/helix"));
+    // Loads of every blade, in both files.
+    let series = SeriesFile::open(&run.join("series.csv")).expect("a series");
+    let outb = TableReader::open(&run.join("T1.outb")).expect("an .outb");
+    for channel in basis::channels::loads_of(3) {
+        assert!(series.names().contains(&channel.at("T1")), "{}", channel.name);
+        let is_it = |column: &&Column| column.name == channel.name;
+        let column = outb.channels().find(is_it).expect("each channel of the series");
+        assert_eq!(column.unit, channel.unit.symbol());
+    }
 
     // What it takes on the disk was known beforehand, what goes with the checkpoint included.
     let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");

@@ -6,7 +6,7 @@ mod small;
 use basis::keys::LeftOut::Value as Otherwise;
 use basis::keys::{Objection, Table, Values, from, key};
 use basis::registry::Named;
-use basis::{Commands, Measurements};
+use basis::{Channel, Commands, Measurements, Unit};
 use control::{
     CONTROLLERS, Control, ControlError, Controller, ControllerKind, ForeignState, Place, Site,
     from_bytes, to_bytes,
@@ -36,8 +36,8 @@ impl Controller for Derated {
         format!("derated by {:.0} %", 100.0 * self.share)
     }
 
-    fn signals(&self) -> Vec<&'static str> {
-        vec!["derating_–"]
+    fn signals(&self) -> Vec<Channel> {
+        vec![Channel::new("Derating", Unit::One)]
     }
 
     fn write_signals(&self, values: &mut [f64]) {
@@ -124,7 +124,7 @@ fn a_study_runs_it_and_its_signal_stands_in_the_series() {
     done(&options);
     let series = fs::read_to_string(folder.path().join("out/own/series.csv")).expect("a series");
     let names: Vec<&str> = series.lines().next().expect("a heading").split(',').collect();
-    let column = names.iter().position(|name| *name == "T1.derating_–").expect("its signal");
+    let column = names.iter().position(|name| *name == "T1.Derating_-").expect("its signal");
     let last: Vec<&str> = series.lines().last().expect("rows").split(',').collect();
     let value: f64 = last[column].parse().expect("a number");
     // 300 instants.

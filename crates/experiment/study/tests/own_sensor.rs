@@ -5,7 +5,7 @@ mod small;
 use basis::keys::LeftOut::Value as Otherwise;
 use basis::keys::{Table, Values, above, key};
 use basis::registry::Named;
-use basis::{Commands, Measurements, Vector3};
+use basis::{Channel, Commands, Measurements, Unit, Vector3};
 use control::{CONTROLLERS, Control, ControlError, Controller, ControllerKind, ForeignState, Site};
 use formats::table::TableReader;
 use sensing::{Mount, SENSORS, Scene, Sensor, SensorKind};
@@ -19,15 +19,21 @@ struct Beam {
 }
 
 impl Sensor for Beam {
-    fn channels(&self) -> Vec<String> {
-        vec!["wind_m_s".to_owned(), "n_readings_–".to_owned()]
+    fn channels(&self) -> Vec<Channel> {
+        vec![
+            Channel::new("Wind", Unit::MetrePerSecond),
+            Channel::new("Readings", Unit::One),
+            Channel::new("Turn", Unit::Degree),
+        ]
     }
 
     fn read(&mut self, scene: &Scene, values: &mut [f64]) {
         let mut wind = [Vector3::ZERO];
         scene.wind.sample(&[self.position], &mut wind);
         self.n_readings += 1.0;
-        values.copy_from_slice(&[wind[0].x, self.n_readings]);
+        // An angle that it does not know at once.
+        let turn = if self.n_readings > 1.0 { 0.5 } else { f64::NAN };
+        values.copy_from_slice(&[wind[0].x, self.n_readings, turn]);
     }
 
     fn save(&self) -> Vec<u8> {
@@ -143,8 +149,9 @@ fn a_sensor_reads_the_flow_and_its_readings_reach_controller_and_series() {
             .position(|name| *name == wanted)
             .unwrap_or_else(|| panic!("{wanted} is missing"))
     };
-    let [time, eye, count, torque] =
-        ["time_s", "T1.Eye.wind_m_s", "T1.Eye.n_readings_–", "T1.generator_torque_nm"].map(place);
+    let [time, eye, count, turn, torque] =
+        ["Time_s", "T1.Eye.Wind_m/s", "T1.Eye.Readings_-", "T1.Eye.Turn_deg", "T1.GenTq_kN-m"]
+            .map(place);
     let rows: Vec<Vec<f64>> = rows
         .map(|row| row.split(',').map(|value| value.parse().expect("a number")).collect())
         .collect();
@@ -152,10 +159,13 @@ fn a_sensor_reads_the_flow_and_its_readings_reach_controller_and_series() {
         let expected = if row[time] < 20.0 { 9.0 } else { 12.0 };
         assert!((row[eye] - expected).abs() < 1e-9, "{} m/s at {} s", row[eye], row[time]);
         assert_eq!(row[count], (index + 1) as f64);
+        let known = index > 0;
+        assert_eq!(row[turn].is_nan(), !known);
+        assert!(!known || (row[turn] - 0.5_f64.to_degrees()).abs() < 1e-12);
     }
     let at = |wanted: f64| rows.iter().find(|row| row[time] >= wanted).expect("such a row");
     assert!(
-        at(15.0)[torque] > 1e5 && at(25.0)[torque] < 1e3,
+        at(15.0)[torque] > 1.0 && at(25.0)[torque] < 0.01,
         "{} {}",
         at(15.0)[torque],
         at(25.0)[torque]
@@ -163,10 +173,13 @@ fn a_sensor_reads_the_flow_and_its_readings_reach_controller_and_series() {
     let case = formats::case::parse("sensor.toml", &text, &[]).expect("a sound case");
     let again = formats::case::parse("again", &formats::case::write(&case), &[]);
     assert_eq!(again.expect("what was written is read"), case);
-    // What it shows is no load of OpenFAST's, though its name begins with a capital as theirs do.
+    // What was not a number at some time has no place in OpenFAST's format.
     let outb = TableReader::open(&folder.path().join("out/own/T1.outb")).expect("an .outb");
     let names = || outb.channels().map(|column| column.name.as_str());
-    assert!(names().any(|name| name == "RootMyb1") && !names().any(|name| name.contains("Eye")));
+    for name in ["RootMyb1", "Eye.Wind", "Eye.Readings"] {
+        assert!(names().any(|other| other == name), "{name}");
+    }
+    assert!(!names().any(|name| name == "Eye.Turn"));
     for page in [formats::case::reference(), formats::case::schema()] {
         assert!(page.contains("Distance that it looks ahead"), "the kind is told of");
     }

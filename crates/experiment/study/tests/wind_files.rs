@@ -205,8 +205,7 @@ fn wind_follows_a_table() {
     let folder = in_table(TABLE, "shear_exponent = 0.0\n");
     let out = small::done(&options(folder.path()));
     let path = RunFolder::new(&out, "baseline").series_path();
-    let series =
-        formats::records::read_series(&path, |name| name == "time_s" || name == "wind.u_m_s");
+    let series = formats::records::read_series(&path, |name| name == "Time" || name == "Wind.U");
     let series = series.expect("a series");
     let rows = series.columns[0].iter().zip(&series.columns[1]);
     let mut n_rows = 0;

@@ -1,10 +1,10 @@
 //! An anemometer with its vane: horizontal wind and its direction at one place of the nacelle.
 
 use crate::sensor::{ForeignState, Mount, Scene, Sensor, SensorKind};
-use basis::Vector3;
 use basis::keys::LeftOut::Value;
 use basis::keys::{Table, Values, above, from, key};
 use basis::registry::Named;
+use basis::{Channel, Unit, Vector3};
 
 /// An anemometer.
 pub(crate) struct AnemometerKind;
@@ -60,8 +60,8 @@ struct Anemometer {
 }
 
 impl Sensor for Anemometer {
-    fn channels(&self) -> Vec<String> {
-        vec!["speed_m_s".to_owned(), "direction_rad".to_owned()]
+    fn channels(&self) -> Vec<Channel> {
+        vec![Channel::new("Speed", Unit::MetrePerSecond), Channel::new("Direction", Unit::Degree)]
     }
 
     fn read(&mut self, scene: &Scene, values: &mut [f64]) {

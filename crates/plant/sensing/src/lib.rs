@@ -121,13 +121,13 @@ impl Sensing {
         &self.readings
     }
 
-    /// Names of all values of the further sensors, `SENSOR.CHANNEL`, in the order of [`Self::readings`].
-    pub fn channels(&self) -> Vec<String> {
+    /// Channels of the further sensors, `SENSOR.CHANNEL`, in the order of [`Self::readings`].
+    pub fn channels(&self) -> Vec<basis::Channel> {
         let named = self.readings.iter().zip(&self.sensors);
         named
             .flat_map(|(reading, sensor)| {
                 let channels = sensor.channels().into_iter();
-                channels.map(|channel| format!("{}.{channel}", reading.sensor))
+                channels.map(|channel| channel.of(&reading.sensor))
             })
             .collect()
     }

@@ -3,7 +3,7 @@
 
 use basis::keys::{Objection, Table, Values};
 use basis::registry::Named;
-use basis::{Truth, Vector3};
+use basis::{Channel, Truth, Vector3};
 use flow::WindField;
 use std::fmt;
 use thiserror::Error;
@@ -22,10 +22,11 @@ pub struct Scene<'a> {
 
 /// A sensor at work on one turbine.
 pub trait Sensor: Send {
-    /// Names of its values, each ending in its unit, such as `line_of_sight_1_m_s`.
-    fn channels(&self) -> Vec<String>;
+    /// Names of its values and their units in files, such as `LineOfSight1` in m/s.
+    fn channels(&self) -> Vec<Channel>;
 
-    /// On return `values`, one for each channel, hold what it shows of `scene`. Must not allocate.
+    /// On return `values`, one for each channel, hold what it shows of `scene`, in SI units. Must not
+    /// allocate.
     fn read(&mut self, scene: &Scene, values: &mut [f64]);
 
     /// Everything that time changes, for a checkpoint.

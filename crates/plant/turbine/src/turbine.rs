@@ -17,10 +17,10 @@ use crate::breakdown::Breakdown;
 use crate::definition::Definition;
 use crate::rotor::Frame;
 use crate::structure::{
-    AppliedLoads, Channel, DegreeOfFreedom, GRAVITY, Pitch, Projection, Structure, StructureError,
+    AppliedLoads, DegreeOfFreedom, GRAVITY, Pitch, Projection, Structure, StructureError,
 };
 use aerodynamics::Aerodynamics;
-use basis::{Commands, PerBlade, PointForce, Truth, Vector3};
+use basis::{Channel, Commands, PerBlade, PointForce, Truth, Vector3};
 use nacelle::Facing;
 use state::Readings;
 use std::sync::Arc;

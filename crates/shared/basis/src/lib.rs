@@ -16,6 +16,7 @@
 
 pub mod angle;
 pub mod blades;
+pub mod channels;
 pub mod force;
 pub mod keys;
 pub mod mbc;
@@ -25,6 +26,7 @@ mod sense;
 pub mod signals;
 
 pub use blades::PerBlade;
+pub use channels::{Channel, Unit};
 pub use force::{BoundVortex, PointForce};
 pub use glam::{DMat3 as Matrix3, DVec3 as Vector3};
 pub use mbc::FixedFrame;

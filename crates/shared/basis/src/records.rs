@@ -11,15 +11,16 @@ pub use load::{Load, LoadKind};
 use serde::{Deserialize, Serialize};
 pub use sweep::{
     SWEEP_SCHEMA_VERSION, Setting, Sweep, SweepLoad, SweepPart, SweepRow, SweepTable, SweptKey,
-    SweptRun, SweptStudy, SweptValue,
+    SweptRun, SweptStudy, SweptValue, WindGain,
 };
 pub use warning::{Warning, WarningKind};
 
 /// Version of the layout of [`Summary`]; raised when a field changes its name, its place or its meaning.
 ///
 /// 2: loads, control and warnings are typed, where they were sentences; the wind is given as target and
-/// realised.
-pub const SCHEMA_VERSION: u32 = 2;
+/// realised. 3: a pitch response has its kind in it, where that was a key; bearing loads have their
+/// positions.
+pub const SCHEMA_VERSION: u32 = 3;
 
 /// Mean of a quantity over the analysed time, with what is known of its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,28 +66,34 @@ pub struct PitchDuty {
     pub n_reversals: usize,
     /// Slope of the bearing loads (–).
     pub bearing_slope: f64,
-    /// Equivalent moment of the pitch bearing at equally spaced positions all round its ring (kN m), the
-    /// first in the direction of the flapwise moment, the others towards the edgewise one.
-    pub bearing_loads_kn_m: Vec<f64>,
+    /// Equivalent moment of the pitch bearing at equally spaced positions all round its ring.
+    pub bearing_loads: Vec<BearingLoad>,
     /// Time between the samples of pitch and moments that these figures are made of (s).
     pub sample_interval: f64,
 }
 
+/// Load of a pitch bearing at one position of its ring.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BearingLoad {
+    /// Angle from the direction of the flapwise moment towards that of the edgewise one (deg).
+    pub position_deg: f64,
+    /// Equivalent moment (kN m).
+    pub load_kn_m: f64,
+}
+
 impl PitchDuty {
-    /// Greatest of the bearing loads (kN m), and the angle of its position (rad).
-    pub fn worst_bearing_load(&self) -> Option<(f64, f64)> {
-        let n_positions = self.bearing_loads_kn_m.len() as f64;
-        let loads = self.bearing_loads_kn_m.iter().copied().enumerate();
+    /// The greatest of the bearing loads.
+    pub fn worst_bearing_load(&self) -> Option<BearingLoad> {
         // The first of equal ones.
-        let (index, load) = loads.rev().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some((load, std::f64::consts::TAU * index as f64 / n_positions))
+        let loads = self.bearing_loads.iter().copied().rev();
+        loads.max_by(|a, b| a.load_kn_m.total_cmp(&b.load_kn_m))
     }
 }
 
 /// How a turbine's own pitch acts, as its controller is given it before the run: identified, or set in the
 /// case file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum PitchResponse {
     /// In the estimator's model of the turbine's own pitch.
     Estimator {
@@ -316,17 +323,17 @@ impl Summary {
     }
 }
 
-/// Equally spaced samples of many channels, as `series.csv` holds them.
+/// Equally spaced samples of many channels, those of `series.csv`, in SI units whatever that file's are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
-    /// Channel names; the first is `time_s`, the others `T1.power_w`, `T1.pitch_1_deg`, ….
+    /// Names of the [channels](crate::channels), without units: `Time`, `T1.GenPwr`, `T1.BldPitch1`, ….
     pub names: Vec<String>,
     /// One column per name, all of one length.
     pub columns: Vec<Vec<f64>>,
 }
 
 impl Series {
-    /// The samples of the channel called `name`.
+    /// The samples of the channel called `name`, in SI units.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.names.iter().position(|n| n == name).map(|index| self.columns[index].as_slice())
     }

@@ -122,7 +122,7 @@ pub struct Measurements<'a> {
 pub struct Reading {
     /// Name of the sensor in the case file.
     pub sensor: String,
-    /// Its values, in the order and units of its channels.
+    /// Its values, in the order of its channels, in SI units.
     pub values: Vec<f64>,
 }
 

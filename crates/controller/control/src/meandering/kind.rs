@@ -10,6 +10,7 @@ use crate::keys::starts_too_late;
 use crate::kind::{Control, ControlError, ControllerKind, Identification, Place, Site};
 use crate::library::Hosted;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
+use basis::Channel;
 use basis::keys::{Objection, Table, Values};
 use basis::records::PitchResponse;
 use basis::registry::Named;
@@ -134,7 +135,7 @@ impl ControllerKind for MeanderingKind {
         Hosted::of(control.values())
     }
 
-    fn outcome_channels(&self, _: &Control, n_blades: usize) -> Vec<String> {
+    fn outcome_channels(&self, _: &Control, n_blades: usize) -> Vec<Channel> {
         outcome::channels(n_blades)
     }
 

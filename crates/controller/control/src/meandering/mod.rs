@@ -38,7 +38,7 @@ use crate::excitation::Excitation;
 use axis::AxisLoop;
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use basis::mbc::{to_blades, to_fixed_frame};
-use basis::{FixedFrame, Measurements, PerBlade};
+use basis::{Channel, FixedFrame, Measurements, PerBlade};
 use estimation::phase_locked::{Axis, TwoAxisLoop};
 use reference::Baseline;
 use serde::{Deserialize, Serialize};
@@ -246,24 +246,6 @@ impl Meandering {
     }
 }
 
-/// Signals in the series.
-const SIGNALS: [&str; 14] = [
-    "meandering_rate_rad_s",
-    "meandering_phase_rad",
-    "meandering_tilt_amplitude_nm",
-    "meandering_yaw_amplitude_nm",
-    "meandering_tilt_phase_rad",
-    "meandering_yaw_phase_rad",
-    "meandering_tilt_offset_nm",
-    "meandering_yaw_offset_nm",
-    "meandering_tilt_reference_nm",
-    "meandering_yaw_reference_nm",
-    "meandering_lock",
-    "meandering_share",
-    "meandering_tilt_pitch_rad",
-    "meandering_yaw_pitch_rad",
-];
-
 impl Excitation for Meandering {
     fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
         Meandering::add_to(self, pitch, measurements);
@@ -276,8 +258,8 @@ impl Excitation for Meandering {
         format!("meandering × {} {}", self.settings.factor, self.settings.follower.sense)
     }
 
-    fn signals(&self) -> Vec<&'static str> {
-        SIGNALS.to_vec()
+    fn signals(&self) -> Vec<Channel> {
+        basis::channels::of_meandering()
     }
 
     fn write_signals(&self, values: &mut [f64]) {

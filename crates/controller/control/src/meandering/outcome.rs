@@ -3,9 +3,12 @@
 use super::MeanderingSettings;
 use crate::kind::Control;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
+use basis::channels::{
+    AZIMUTH, FollowedMoment, MEAND_AXES, MEAND_LOCK, MEAND_RATE, ROOT_MYC, TIME,
+};
 use basis::mbc::to_fixed_frame;
 use basis::records::{MeanderingAxis, MeanderingSummary};
-use basis::{FixedFrame, PerBlade};
+use basis::{Channel, FixedFrame, PerBlade};
 use std::f64::consts::TAU;
 
 /// Share of the time without a lock beyond which a reader must know (–).
@@ -14,19 +17,12 @@ const UNLOCKED_SHARE: f64 = 0.02;
 const FEWEST_PERIODS: f64 = 2.0;
 
 /// Channels that [`outcome`] reads of a turbine of `n_blades` blades.
-pub(super) fn channels(n_blades: usize) -> Vec<String> {
-    let own = [
-        "time_s",
-        "azimuth_rad",
-        "meandering_lock",
-        "meandering_rate_rad_s",
-        "meandering_tilt_phase_rad",
-        "meandering_yaw_phase_rad",
-        "meandering_tilt_reference_nm",
-        "meandering_yaw_reference_nm",
-    ];
-    let flap = (1..=n_blades).map(|blade| format!("flap_moment_{blade}_nm"));
-    own.into_iter().map(str::to_owned).chain(flap).collect()
+pub(super) fn channels(n_blades: usize) -> Vec<Channel> {
+    let [tilt, yaw] = MEAND_AXES;
+    let own = [TIME, AZIMUTH, MEAND_LOCK, MEAND_RATE];
+    let axes = [tilt.phase, yaw.phase, tilt.reference, yaw.reference];
+    let flap = (1..=n_blades).map(|blade| ROOT_MYC.of_blade(blade));
+    own.into_iter().chain(axes).chain(flap).collect()
 }
 
 /// What the turbine of `record` found of meandering under `control`.
@@ -60,16 +56,17 @@ pub(super) fn outcome(
 /// # Errors
 /// [`MissingChannel`].
 fn followed(record: &dyn TurbineRecord, start: f64) -> Result<MeanderingSummary, MissingChannel> {
-    let (lock, rate) = (record.column("meandering_lock")?, record.column("meandering_rate_rad_s")?);
-    let times = record.column("time_s")?;
+    let (lock, rate) = (record.column(&MEAND_LOCK)?, record.column(&MEAND_RATE)?);
+    let times = record.column(&TIME)?;
     let locked: Vec<usize> = (0..lock.len()).filter(|&row| lock[row] > 0.5).collect();
     let counted: Vec<usize> = locked.iter().copied().filter(|&row| times[row] >= start).collect();
     let turned = record.interval() * counted.iter().map(|&row| rate[row]).sum::<f64>();
     let is_known = turned >= TAU * FEWEST_PERIODS;
     let moments = moments(record, &counted)?;
-    let axis = |name: &str, of: fn(&FixedFrame) -> f64| {
-        let phase = record.column(&format!("meandering_{name}_phase_rad"))?;
-        let reference = record.column(&format!("meandering_{name}_reference_nm"))?;
+    let [tilt, yaw] = MEAND_AXES;
+    let axis = |followed: &FollowedMoment, of: fn(&FixedFrame) -> f64| {
+        let phase = record.column(&followed.phase)?;
+        let reference = record.column(&followed.reference)?;
         let pick = |column: &[f64]| counted.iter().map(|&row| column[row]).collect::<Vec<_>>();
         let moment: Vec<f64> = moments.iter().map(of).collect();
         let found = || axis_of(&moment, &pick(phase), &pick(reference));
@@ -79,17 +76,17 @@ fn followed(record: &dyn TurbineRecord, start: f64) -> Result<MeanderingSummary,
     Ok(MeanderingSummary {
         locked_share: locked.len() as f64 / lock.len().max(1) as f64,
         frequency_hz: mean(&rates),
-        tilt: axis("tilt", |moments| moments.tilt)?,
-        yaw: axis("yaw", |moments| moments.yaw)?,
+        tilt: axis(&tilt, |moments| moments.tilt)?,
+        yaw: axis(&yaw, |moments| moments.yaw)?,
     })
 }
 
 /// Moments of the blades of `record` in the fixed frame (N m) at the `rows` of the analysed time.
 fn moments(record: &dyn TurbineRecord, rows: &[usize]) -> Result<Vec<FixedFrame>, MissingChannel> {
-    let azimuth = record.column("azimuth_rad")?;
+    let azimuth = record.column(&AZIMUTH)?;
     let n_blades = record.n_blades();
     let flap = (1..=n_blades)
-        .map(|blade| record.column(&format!("flap_moment_{blade}_nm")))
+        .map(|blade| record.column(&ROOT_MYC.of_blade(blade)))
         .collect::<Result<Vec<&[f64]>, MissingChannel>>()?;
     let at = |&row: &usize| {
         to_fixed_frame(azimuth[row], &PerBlade::from_fn(n_blades, |blade| flap[blade][row]))
@@ -153,17 +150,17 @@ mod tests {
         };
         let is_locked = |time: f64| time >= locked_from;
         let columns: [(&str, &dyn Fn(f64) -> f64); 11] = [
-            ("time_s", &|time| time),
-            ("azimuth_rad", &azimuth),
-            ("flap_moment_1_nm", &|time| blade(time, 0)),
-            ("flap_moment_2_nm", &|time| blade(time, 1)),
-            ("flap_moment_3_nm", &|time| blade(time, 2)),
-            ("meandering_lock", &|time| f64::from(u8::from(is_locked(time)))),
-            ("meandering_rate_rad_s", &|time| if is_locked(time) { RATE } else { 0.0 }),
-            ("meandering_tilt_phase_rad", &|time| (RATE * time).rem_euclid(TAU)),
-            ("meandering_yaw_phase_rad", &|time| (RATE * time + 0.7).rem_euclid(TAU)),
-            ("meandering_tilt_reference_nm", &|time| if time < 1200.0 { 0.0 } else { 2e6 }),
-            ("meandering_yaw_reference_nm", &|_| 0.0),
+            ("Time", &|time| time),
+            ("Azimuth", &azimuth),
+            ("RootMyc1", &|time| blade(time, 0)),
+            ("RootMyc2", &|time| blade(time, 1)),
+            ("RootMyc3", &|time| blade(time, 2)),
+            ("MeandLock", &|time| f64::from(u8::from(is_locked(time)))),
+            ("MeandRate", &|time| if is_locked(time) { RATE } else { 0.0 }),
+            ("MeandTiltPhase", &|time| (RATE * time).rem_euclid(TAU)),
+            ("MeandYawPhase", &|time| (RATE * time + 0.7).rem_euclid(TAU)),
+            ("MeandTiltRef", &|time| if time < 1200.0 { 0.0 } else { 2e6 }),
+            ("MeandYawRef", &|_| 0.0),
         ];
         Series {
             names: columns.iter().map(|(name, _)| (*name).to_owned()).collect(),
@@ -177,8 +174,9 @@ mod tests {
     struct Record(Series);
 
     impl TurbineRecord for Record {
-        fn column(&self, channel: &str) -> Result<&[f64], MissingChannel> {
-            self.0.column(channel).ok_or_else(|| MissingChannel(channel.to_owned()))
+        fn column(&self, channel: &Channel) -> Result<&[f64], MissingChannel> {
+            let column = self.0.column(&channel.name);
+            column.ok_or_else(|| MissingChannel(channel.name.clone().into_owned()))
         }
 
         fn interval(&self) -> f64 {
@@ -220,7 +218,8 @@ mod tests {
 
     #[test]
     fn what_it_is_made_of_is_all_that_it_needs() {
-        let (mut names, mut wanted) = (series(500.0).names, channels(3));
+        let mut names = series(500.0).names;
+        let mut wanted: Vec<_> = channels(3).into_iter().map(|one| one.name.into_owned()).collect();
         names.sort();
         wanted.sort();
         assert_eq!(names, wanted);

@@ -11,16 +11,15 @@ use crate::kind::{
 };
 use crate::library::Hosted;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
-use basis::Sense;
 use basis::angle::wrap_to_turn;
+use basis::channels::SYNC_SHARE;
 use basis::keys::{Objection, Table, Values};
 use basis::records::{Finding, PitchResponse};
 use basis::registry::Named;
+use basis::{Channel, Sense};
 use estimation::HelixEstimator;
 use std::f64::consts::TAU;
 
-/// Signal with the share of the amplitude that trust allows.
-const SHARE: &str = "sync_share";
 /// Share of the time without a trusted phase beyond which a reader must know (–).
 const FADED_SHARE: f64 = 0.02;
 
@@ -132,8 +131,8 @@ impl ControllerKind for PhaseSyncKind {
         Hosted::of(control.values())
     }
 
-    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<String> {
-        vec![SHARE.to_owned()]
+    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<Channel> {
+        vec![SYNC_SHARE]
     }
 
     fn outcome(
@@ -144,7 +143,7 @@ impl ControllerKind for PhaseSyncKind {
         if control.values().number("amplitude_deg") == 0.0 {
             return Ok(Outcome::default());
         }
-        let share = record.column(SHARE)?;
+        let share = record.column(&SYNC_SHARE)?;
         let n_faded = share.iter().filter(|share| **share < 0.5).count();
         let faded = n_faded as f64 / share.len().max(1) as f64;
         let finding = Finding {

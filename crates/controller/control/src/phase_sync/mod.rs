@@ -32,7 +32,7 @@ pub use settings::{
 use crate::controller::{ForeignState, from_bytes, to_bytes};
 use crate::excitation::{Excitation, fade_in};
 use basis::mbc::to_blades;
-use basis::{FixedFrame, Measurements, PerBlade, Sense};
+use basis::{Channel, FixedFrame, Measurements, PerBlade, Sense};
 use estimation::helix::HelixEstimatorState as EstimatorState;
 use estimation::{Estimator, HelixEstimate, HelixEstimator};
 use serde::{Deserialize, Serialize};
@@ -185,24 +185,6 @@ impl PhaseSync {
     }
 }
 
-/// Signals in the series.
-const SIGNALS: [&str; 14] = [
-    "estimated_wind_m_s",
-    "estimated_tilt_wind_m_s",
-    "estimated_yaw_wind_m_s",
-    "estimated_tilt_amplitude_m_s",
-    "estimated_yaw_amplitude_m_s",
-    "estimated_tilt_phase_rad",
-    "estimated_yaw_phase_rad",
-    "estimated_tilt_phase_deviation_rad",
-    "estimated_yaw_phase_deviation_rad",
-    "estimated_wind_deviation_m_s",
-    "estimated_tilt_wind_deviation_m_s",
-    "estimated_yaw_wind_deviation_m_s",
-    "estimate_trust",
-    "sync_share",
-];
-
 impl Excitation for PhaseSync {
     fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
         let added = PhaseSync::pitch(self, measurements);
@@ -223,8 +205,8 @@ impl Excitation for PhaseSync {
         format!("synchronised {sense} {amplitude:.1}° at {offset:.0}°")
     }
 
-    fn signals(&self) -> Vec<&'static str> {
-        SIGNALS.to_vec()
+    fn signals(&self) -> Vec<Channel> {
+        basis::channels::of_phase_sync()
     }
 
     fn write_signals(&self, values: &mut [f64]) {

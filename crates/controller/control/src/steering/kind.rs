@@ -6,6 +6,8 @@ use crate::excitation::Excitation;
 use crate::keys::starts_too_late;
 use crate::kind::{Control, ControlError, ControllerKind, Place, Site};
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
+use basis::Channel;
+use basis::channels::NAC_YAW;
 use basis::keys::LeftOut::{Required, Value};
 use basis::keys::{Objection, Table, Values, above, from, key};
 use basis::registry::Named;
@@ -16,8 +18,6 @@ pub struct SteeringKind;
 /// The kind.
 pub static STEERING: SteeringKind = SteeringKind;
 
-/// Channel of the nacelle's turn.
-const YAW: &str = "yaw_rad";
 /// A nacelle that is farther away from where it is steered to is still on its way (rad): a degree.
 const STILL_TURNING: f64 = std::f64::consts::PI / 180.0;
 
@@ -82,8 +82,8 @@ impl ControllerKind for SteeringKind {
         true
     }
 
-    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<String> {
-        vec![YAW.to_owned()]
+    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<Channel> {
+        vec![NAC_YAW]
     }
 
     fn outcome(
@@ -92,7 +92,8 @@ impl ControllerKind for SteeringKind {
         record: &dyn TurbineRecord,
     ) -> Result<Outcome, MissingChannel> {
         let target = control.values().angle("yaw_deg");
-        let away = record.column(YAW)?.iter().map(|yaw| (yaw - target).abs()).fold(0.0, f64::max);
+        let away =
+            record.column(&NAC_YAW)?.iter().map(|yaw| (yaw - target).abs()).fold(0.0, f64::max);
         let warning = (away > STILL_TURNING).then(|| {
             format!(
                 " stood up to {:.1}° away from the yaw that it was steered to while the run was analysed; raise time.spin_up, or start earlier",

@@ -34,7 +34,7 @@ fn study() -> Vec<(&'static str, Vec<u8>)> {
     folder.create().unwrap();
     let manifest = Manifest::start("0.1.0", &case, CASE, 0, [("iea-15mw", "a turbine")]);
     records::write_manifest(&folder, &manifest).unwrap();
-    let mut series = SeriesWriter::create(&folder.series_path(), &["time_s".into()]).unwrap();
+    let mut series = SeriesWriter::create(&folder.series_path(), &[basis::channels::TIME]).unwrap();
     series.write(&[0.1]).unwrap();
     series.finish().unwrap();
     records::write_mean_plane(&folder, &plane()).unwrap();

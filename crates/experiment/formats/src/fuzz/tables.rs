@@ -43,8 +43,9 @@ Time\tWind1VelX\tRootMyc1
 0.1000\t 1.020E+01\t-2.700D+03
 ";
 const CSV: &str =
-    "# by hand\n\"Time [s]\",RootMyc1 [kN-m],T1.power_w\n0,1.5,2e6\n0.1,2.5,2e6\n\n0.2,3,2e6\n";
-const SERIES: &str = "time_s,T1.power_w,T1.pitch_1_rad\n0.1,2e6,0\n0.2,2.1e6,0.01\n0.3,2e6,0.02\n";
+    "# by hand\n\"Time [s]\",RootMyc1 [kN-m],T1.GenPwr_kW\n0,1.5,2e6\n0.1,2.5,2e6\n\n0.2,3,2e6\n";
+const SERIES: &str =
+    "Time_s,T1.GenPwr_kW,T1.BldPitch1_deg\n0.1,2e6,0\n0.2,2.1e6,0.01\n0.3,2e6,0.02\n";
 
 #[test]
 fn binary_output() {
@@ -67,7 +68,7 @@ fn comma_separated_values() {
 fn series() {
     survives(vec![("series.csv", SERIES.into())], |folder| {
         read_series(&folder.join("series.csv"), |_| true)?;
-        read_series(&folder.join("series.csv"), |name| name != "T1.power_w")?;
+        read_series(&folder.join("series.csv"), |name| name != "T1.GenPwr")?;
         read(folder)
     });
 }

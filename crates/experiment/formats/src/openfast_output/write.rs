@@ -79,6 +79,11 @@ impl OutbWriter {
         })
     }
 
+    /// Whether the format has a place for `value`: not for what is no finite number.
+    pub fn holds(value: f64) -> bool {
+        value.abs() <= LARGEST
+    }
+
     /// Adds one row: the channels in their order, without time.
     ///
     /// # Errors
@@ -91,9 +96,7 @@ impl OutbWriter {
         assert_eq!(row.len(), self.ranges.len(), "a row has one value per channel");
         self.row.clear();
         for (index, (value, range)) in row.iter().zip(&mut self.ranges).enumerate() {
-            // False for what is not a number, too.
-            let fits = value.abs() <= LARGEST;
-            if !fits {
+            if !Self::holds(*value) {
                 let name = &self.layout.channels[index].name;
                 let time = self.layout.start + self.layout.interval * f64::from(self.n_rows);
                 let problem = format!("at {time} s {name} is {value}");

@@ -12,7 +12,9 @@ use std::path::Path;
 /// Bytes of a file that are taken in at once.
 const BUFFER: usize = 1 << 20;
 /// Version of the layout of [`Manifest`].
-const SCHEMA_VERSION: u32 = 1;
+///
+/// 2: what is of files and models is in lists, where their names were keys.
+const SCHEMA_VERSION: u32 = 2;
 
 /// What was run, by which program, on which machine, when.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,13 +37,14 @@ pub struct Manifest {
     pub case_sha256: String,
     /// SHA-256 of the text of each turbine model, and of each controller's own input file and its table,
     /// hexadecimal.
+    #[serde(with = "digests")]
     pub turbines_sha256: BTreeMap<String, String>,
     /// SHA-256 of each file of wind that the run blew from, hexadecimal, by its path as the case names it.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", with = "digests")]
     pub wind_sha256: BTreeMap<String, String>,
     /// Text of each turbine model and input file that is not of the library, so that records can be asked
     /// anew without its file.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", with = "texts")]
     pub own_turbines: BTreeMap<String, String>,
     /// Where the mean wind of the case comes from (deg, clockwise from north); absent in manifests that do
     /// not tell, whose wind is from the west.
@@ -57,6 +60,52 @@ pub struct Manifest {
     /// End of the run's last part (UTC, RFC 3339); absent while it goes on.
     pub finished: Option<String>,
 }
+
+/// A map from names to texts, written as a list of objects with `name` and a field for the text.
+macro_rules! listed {
+    ($(#[$about:meta])* $module:ident, $field:ident) => {
+        $(#[$about])*
+        mod $module {
+            use serde::{Deserialize, Deserializer, Serialize, Serializer};
+            use std::collections::BTreeMap;
+
+            #[derive(Serialize, Deserialize)]
+            struct Entry {
+                name: String,
+                $field: String,
+            }
+
+            pub(super) fn serialize<S: Serializer>(
+                map: &BTreeMap<String, String>,
+                serializer: S,
+            ) -> Result<S::Ok, S::Error> {
+                let entry = |(name, value): (&String, &String)| Entry {
+                    name: name.clone(),
+                    $field: value.clone(),
+                };
+                serializer.collect_seq(map.iter().map(entry))
+            }
+
+            pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+                deserializer: D,
+            ) -> Result<BTreeMap<String, String>, D::Error> {
+                let entries = Vec::<Entry>::deserialize(deserializer)?;
+                Ok(entries.into_iter().map(|entry| (entry.name, entry.$field)).collect())
+            }
+        }
+    };
+}
+
+listed!(
+    /// Digests by name.
+    digests,
+    sha256
+);
+listed!(
+    /// Texts by name.
+    texts,
+    text
+);
 
 /// Where a run was made.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -181,7 +230,7 @@ fn hexadecimal(digest: Sha256) -> String {
 /// # Errors
 /// [`FileError::System`] or [`FileError::Content`].
 pub fn read_manifest(folder: &super::RunFolder) -> Result<Manifest, FileError> {
-    super::read_json(&folder.manifest_path(), "the manifest of a run")
+    super::read_layout(&folder.manifest_path(), "the manifest of a run", SCHEMA_VERSION)
 }
 
 /// Writes `manifest` into `folder`.

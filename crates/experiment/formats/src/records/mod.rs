@@ -311,16 +311,24 @@ pub fn write_summary(folder: &RunFolder, summary: &Summary) -> Result<(), FileEr
 /// [`FileError::System`], and [`FileError::Content`] when it is something else or of another version of the
 /// layout.
 pub fn read_summary(folder: &RunFolder) -> Result<Summary, FileError> {
+    read_layout(&folder.summary_path(), SUMMARY, SCHEMA_VERSION)
+}
+
+/// Reads what stands at `path` in the layout `expected`.
+fn read_layout<T: DeserializeOwned>(
+    path: &Path,
+    what: &'static str,
+    expected: u32,
+) -> Result<T, FileError> {
     #[derive(Deserialize)]
     struct Layout {
         schema_version: u32,
     }
-    let path = folder.summary_path();
-    let text = atomic::read_text(&path, SUMMARY)?;
+    let text = atomic::read_text(path, what)?;
     // Another version holds other fields: what it is comes before what it lacks.
-    let Layout { schema_version } = parse_json(&text, &path, SUMMARY)?;
-    let (writer, fix) = match schema_version.cmp(&SCHEMA_VERSION) {
-        Ordering::Equal => return parse_json(&text, &path, SUMMARY),
+    let Layout { schema_version } = parse_json(&text, path, what)?;
+    let (writer, fix) = match schema_version.cmp(&expected) {
+        Ordering::Equal => return parse_json(&text, path, what),
         Ordering::Less => (
             "an earlier",
             "make the run again with `wakemix run CASE --overwrite`, or read it with the wakemix that manifest.json names",
@@ -330,9 +338,9 @@ pub fn read_summary(folder: &RunFolder) -> Result<Summary, FileError> {
         }
     };
     let problem = format!(
-        "its schema_version is {schema_version}, that of {writer} wakemix; this one reads {SCHEMA_VERSION}"
+        "its schema_version is {schema_version}, that of {writer} wakemix; this one reads {expected}"
     );
-    Err(FileError::content(SUMMARY, &path, problem, fix))
+    Err(FileError::content(what, path, problem, fix))
 }
 
 fn write_json(path: &Path, what: &'static str, value: &impl Serialize) -> Result<(), FileError> {

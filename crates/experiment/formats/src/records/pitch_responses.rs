@@ -137,8 +137,8 @@ mod tests {
             });
         write_pitch_responses(study.path(), &records).unwrap();
         assert_eq!(read_pitch_responses(study.path()).unwrap(), records);
-        let older = r#"[{"key": "a", "turbine": "T2", "response": {"estimator":
-            {"gain": 1.04, "azimuth_offset": -0.01, "before": 0.12, "after": 0.0}}}]"#;
+        let older = r#"[{"key": "a", "turbine": "T2", "response": {"kind": "estimator",
+            "gain": 1.04, "azimuth_offset": -0.01, "before": 0.12, "after": 0.0}}]"#;
         std::fs::write(path_in(study.path()), older).unwrap();
         assert_eq!(read_pitch_responses(study.path()).unwrap(), &records[1..2]);
     }

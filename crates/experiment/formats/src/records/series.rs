@@ -1,7 +1,9 @@
-//! The series of a run: one row a control instant, as CSV that pandas and spreadsheets open.
+//! The series of a run: one row a control instant, as CSV that pandas and spreadsheets open. Rows are given
+//! in SI units and written in those of the channels.
 
 use crate::checkpoint::{ANEW, GONE};
 use crate::{FileError, atomic};
+use basis::{Channel, Unit};
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -19,32 +21,31 @@ pub struct SeriesWriter {
     part: PathBuf,
     path: PathBuf,
     line: Vec<u8>,
-    n_columns: usize,
+    units: Vec<Unit>,
     n_bytes: u64,
 }
 
 impl SeriesWriter {
-    /// Starts the series that will stand at `path`, with the channels `names`.
+    /// Starts the series that will stand at `path`, with these `channels`.
     ///
     /// # Errors
     /// [`FileError::System`].
-    pub fn create(path: &Path, names: &[String]) -> Result<Self, FileError> {
+    pub fn create(path: &Path, channels: &[Channel]) -> Result<Self, FileError> {
         let part = atomic::part_of(path);
         let file = File::create(&part).map_err(|e| FileError::system("write", WHAT, &part, e))?;
-        let line = names.join(",").into_bytes();
-        let mut writer = Self::new(file, part, path, names.len(), 0);
-        writer.line = line;
+        let mut writer = Self::new(file, part, path, channels, 0);
+        writer.line = columns(channels).join(",").into_bytes();
         writer.end_line()?;
         Ok(writer)
     }
 
-    /// Goes on with the series that will stand at `path`, with the channels `names`, after its first
-    /// `n_bytes`; what came after them goes.
+    /// Goes on with the series that will stand at `path`, with these `channels`, after its first `n_bytes`;
+    /// what came after them goes.
     ///
     /// # Errors
     /// [`FileError::System`], and [`FileError::Content`] when it is shorter than that, does not end a row
     /// there or has other channels.
-    pub fn resume(path: &Path, names: &[String], n_bytes: u64) -> Result<Self, FileError> {
+    pub fn resume(path: &Path, channels: &[Channel], n_bytes: u64) -> Result<Self, FileError> {
         let part = atomic::part_of(path);
         let failed = |source| FileError::system("read", WHAT, &part, source);
         if !part.exists() && path.exists() {
@@ -61,9 +62,10 @@ impl SeriesWriter {
             return Err(FileError::content(WHAT, &part, problem, ANEW));
         }
         let mut header = String::new();
+        let names = columns(channels);
         let most = names.iter().map(|name| name.len() as u64 + 1).sum::<u64>() + 1;
         BufReader::new((&file).take(most)).read_line(&mut header).map_err(failed)?;
-        check_names(&part, header.trim_end(), names)?;
+        check_names(&part, header.trim_end(), &names)?;
         let mut last = [0];
         file.seek(SeekFrom::Start(n_bytes - 1)).map_err(failed)?;
         file.read_exact(&mut last).map_err(failed)?;
@@ -72,15 +74,16 @@ impl SeriesWriter {
             return Err(FileError::content(WHAT, &part, problem, ANEW));
         }
         file.set_len(n_bytes).map_err(failed)?;
-        Ok(Self::new(file, part, path, names.len(), n_bytes))
+        Ok(Self::new(file, part, path, channels, n_bytes))
     }
 
-    fn new(file: File, part: PathBuf, path: &Path, n_columns: usize, n_bytes: u64) -> Self {
+    fn new(file: File, part: PathBuf, path: &Path, channels: &[Channel], n_bytes: u64) -> Self {
         let file = BufWriter::with_capacity(BUFFER, file);
-        Self { file, part, path: path.to_owned(), line: Vec::new(), n_columns, n_bytes }
+        let units = channels.iter().map(|channel| channel.unit).collect();
+        Self { file, part, path: path.to_owned(), line: Vec::new(), units, n_bytes }
     }
 
-    /// Adds one row, in the order of the channels.
+    /// Adds one row, in the order of the channels and in SI units.
     ///
     /// # Errors
     /// [`FileError::System`].
@@ -88,14 +91,14 @@ impl SeriesWriter {
     /// # Panics
     /// When `row` has not one value per channel.
     pub fn write(&mut self, row: &[f64]) -> Result<(), FileError> {
-        assert_eq!(row.len(), self.n_columns, "a row has one value per channel");
+        assert_eq!(row.len(), self.units.len(), "a row has one value per channel");
         self.line.clear();
-        for (index, value) in row.iter().enumerate() {
+        for (index, (value, unit)) in row.iter().zip(&self.units).enumerate() {
             if index > 0 {
                 self.line.push(b',');
             }
             // Writing to memory cannot fail.
-            let _ = write!(self.line, "{value:?}");
+            let _ = write!(self.line, "{:?}", unit.of_si(*value));
         }
         self.end_line()
     }
@@ -138,6 +141,11 @@ impl SeriesWriter {
     }
 }
 
+/// What the columns of `channels` are called.
+fn columns(channels: &[Channel]) -> Vec<String> {
+    channels.iter().map(Channel::column).collect()
+}
+
 /// Whether the series at `part`, which begins with `header`, has the channels `names`.
 fn check_names(part: &Path, header: &str, names: &[String]) -> Result<(), FileError> {
     let mut found = header.split(',');
@@ -163,10 +171,11 @@ fn check_names(part: &Path, header: &str, names: &[String]) -> Result<(), FileEr
 mod tests {
     use super::super::read_series;
     use super::*;
+    use basis::channels::{BLD_PITCH, GEN_PWR, TIME};
     use proptest::prelude::*;
 
-    fn names() -> Vec<String> {
-        ["time_s", "T1.power_w", "T1.pitch_1_rad"].map(str::to_owned).to_vec()
+    fn channels() -> Vec<Channel> {
+        vec![TIME, GEN_PWR.of("T1"), BLD_PITCH.of_blade(1).of("T1")]
     }
 
     fn row(step: usize) -> [f64; 3] {
@@ -178,11 +187,11 @@ mod tests {
     fn a_resumed_series_equals_an_uninterrupted_one() {
         let folder = tempfile::tempdir().unwrap();
         let [whole, broken] = ["whole.csv", "broken.csv"].map(|name| folder.path().join(name));
-        let mut writer = SeriesWriter::create(&whole, &names()).unwrap();
+        let mut writer = SeriesWriter::create(&whole, &channels()).unwrap();
         (0..300).for_each(|step| writer.write(&row(step)).unwrap());
         writer.finish().unwrap();
 
-        let mut writer = SeriesWriter::create(&broken, &names()).unwrap();
+        let mut writer = SeriesWriter::create(&broken, &channels()).unwrap();
         (0..120).for_each(|step| writer.write(&row(step)).unwrap());
         let n_bytes = writer.flush().unwrap();
         // Rows after the checkpoint, the last one torn by the kill.
@@ -197,29 +206,38 @@ mod tests {
         drop(writer);
         assert!(!broken.exists());
 
-        let mut writer = SeriesWriter::resume(&broken, &names(), n_bytes).unwrap();
+        let mut writer = SeriesWriter::resume(&broken, &channels(), n_bytes).unwrap();
         (120..300).for_each(|step| writer.write(&row(step)).unwrap());
         writer.finish().unwrap();
         assert_eq!(fs::read(&whole).unwrap(), fs::read(&broken).unwrap());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 
         let series = read_series(&broken, |_| true).unwrap();
-        assert_eq!(series.names, names());
-        for (step, power) in series.column("T1.power_w").unwrap().iter().enumerate() {
-            assert_eq!(power.to_bits(), row(step)[1].to_bits());
+        assert_eq!(series.names, ["Time", "T1.GenPwr", "T1.BldPitch1"]);
+        let text = fs::read_to_string(&broken).unwrap();
+        assert!(text.starts_with("Time_s,T1.GenPwr_kW,T1.BldPitch1_deg\n0.0,0.0,"), "{text}");
+        // Kilowatts and degrees in the file, SI beside it.
+        let close = |value: f64, written: f64| (value - written).abs() <= 1e-15 * written.abs();
+        for step in 0..300 {
+            let read = |column: usize| series.columns[column][step];
+            assert_eq!(read(0).to_bits(), row(step)[0].to_bits());
+            assert!(close(read(1), row(step)[1]) && close(read(2), row(step)[2]), "{step}");
         }
+        let line: Vec<f64> =
+            text.lines().nth(8).unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert!(close(line[1], row(7)[1] / 1e3) && close(line[2], row(7)[2].to_degrees()));
     }
 
     #[test]
     fn a_finished_series_can_be_taken_up_again() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("series.csv");
-        let mut writer = SeriesWriter::create(&path, &names()).unwrap();
+        let mut writer = SeriesWriter::create(&path, &channels()).unwrap();
         writer.write(&row(0)).unwrap();
         let n_bytes = writer.flush().unwrap();
         writer.write(&row(1)).unwrap();
         writer.finish().unwrap();
-        let mut writer = SeriesWriter::resume(&path, &names(), n_bytes).unwrap();
+        let mut writer = SeriesWriter::resume(&path, &channels(), n_bytes).unwrap();
         writer.write(&row(1)).unwrap();
         writer.finish().unwrap();
         assert_eq!(read_series(&path, |_| true).unwrap().columns[0].len(), 2);
@@ -229,15 +247,15 @@ mod tests {
     fn a_series_that_does_not_fit_the_checkpoint_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("series.csv");
-        let mut writer = SeriesWriter::create(&path, &names()).unwrap();
+        let mut writer = SeriesWriter::create(&path, &channels()).unwrap();
         writer.write(&row(1)).unwrap();
         let n_bytes = writer.flush().unwrap();
-        let error = SeriesWriter::resume(&path, &names(), n_bytes + 10).unwrap_err();
+        let error = SeriesWriter::resume(&path, &channels(), n_bytes + 10).unwrap_err();
         assert!(error.to_string().contains("the checkpoint has"), "{error}");
-        let error = SeriesWriter::resume(&path, &names(), n_bytes - 3).unwrap_err();
+        let error = SeriesWriter::resume(&path, &channels(), n_bytes - 3).unwrap_err();
         assert!(error.to_string().contains("no row ends at byte"), "{error}");
         let error =
-            SeriesWriter::resume(&folder.path().join("other.csv"), &names(), 5).unwrap_err();
+            SeriesWriter::resume(&folder.path().join("other.csv"), &channels(), 5).unwrap_err();
         assert!(error.to_string().contains("it is gone"), "{error}");
         let advice = miette::Diagnostic::help(&error).unwrap().to_string();
         assert!(advice.contains("--overwrite"), "{advice}");
@@ -247,19 +265,19 @@ mod tests {
     fn a_series_of_other_channels_is_told_and_left() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("series.csv");
-        let fewer: Vec<String> = names()[..2].to_vec();
-        let renamed: Vec<String> = names().iter().map(|name| name.replace("T1", "T22")).collect();
+        let fewer: Vec<Channel> = channels()[..2].to_vec();
+        let renamed = vec![TIME, GEN_PWR.of("T22"), BLD_PITCH.of_blade(1).of("T22")];
         for (written, said) in [
-            (fewer, "channel 3 is ``, this run writes `T1.pitch_1_rad` there, one of 3"),
-            ([names(), names()].concat(), "more than the 3 channels of this run"),
-            (renamed, "channel 2 is `T22.power_w`, this run writes `T1.power_w`"),
+            (fewer, "channel 3 is ``, this run writes `T1.BldPitch1_deg` there, one of 3"),
+            ([channels(), channels()].concat(), "more than the 3 channels of this run"),
+            (renamed, "channel 2 is `T22.GenPwr_kW`, this run writes `T1.GenPwr_kW`"),
         ] {
             let mut writer = SeriesWriter::create(&path, &written).unwrap();
             writer.write(&vec![0.5; written.len()]).unwrap();
             let n_bytes = writer.flush().unwrap();
             drop(writer);
             let before = fs::read(folder.path().join("series.csv.part")).unwrap();
-            let error = SeriesWriter::resume(&path, &names(), n_bytes).unwrap_err();
+            let error = SeriesWriter::resume(&path, &channels(), n_bytes).unwrap_err();
             assert!(error.to_string().contains(said), "{error}");
             assert!(error.to_string().contains("series.csv.part"), "{error}");
             let help = miette::Diagnostic::help(&error).unwrap().to_string();
@@ -273,7 +291,7 @@ mod tests {
         fn every_number_comes_back_bit_for_bit(bits in prop::collection::vec(any::<u64>(), 1..20)) {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("series.csv");
-            let mut writer = SeriesWriter::create(&path, &["a".to_owned()]).unwrap();
+            let mut writer = SeriesWriter::create(&path, &[TIME]).unwrap();
             for bits in &bits {
                 writer.write(&[f64::from_bits(*bits)]).unwrap();
             }

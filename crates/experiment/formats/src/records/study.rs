@@ -278,7 +278,8 @@ mod tests {
         let folder = RunFolder::new(study, &manifest.run);
         folder.create().unwrap();
         write_manifest(&folder, &manifest).unwrap();
-        let mut series = SeriesWriter::create(&folder.series_path(), &["time_s".into()]).unwrap();
+        let mut series =
+            SeriesWriter::create(&folder.series_path(), &[basis::channels::TIME]).unwrap();
         series.write(&[0.1]).unwrap();
         series.finish().unwrap();
         write_mean_plane(&folder, &plane("hub-height", 1200.0)).unwrap();
@@ -345,11 +346,11 @@ mod tests {
             (error.to_string(), help)
         };
         let (problem, help) = other(1);
-        let written = "its schema_version is 1, that of an earlier wakemix; this one reads 2";
+        let written = "its schema_version is 1, that of an earlier wakemix; this one reads 3";
         assert!(problem.contains(written), "{problem}");
         assert!(help.contains("--overwrite") && help.contains("manifest.json"), "{help}");
-        let (problem, help) = other(3);
-        assert!(problem.contains("schema_version is 3, that of a later wakemix"), "{problem}");
+        let (problem, help) = other(4);
+        assert!(problem.contains("schema_version is 4, that of a later wakemix"), "{problem}");
         assert!(help.contains("a later one"), "{help}");
     }
 

@@ -1,6 +1,7 @@
 //! Tests of tables in text.
 
 use super::*;
+use basis::channels::{GEN_PWR, ROOT_MYC, TIME};
 use proptest::prelude::*;
 use std::fs;
 
@@ -60,9 +61,9 @@ fn units_are_distinguished_from_names() {
 #[test]
 fn the_project_s_own_series_is_a_table() {
     let folder = tempfile::tempdir().unwrap();
-    let names = ["time_s", "T1.power_w", "T1.flap_moment_1_nm"].map(str::to_owned);
+    let channels = [TIME, GEN_PWR.of("T1"), ROOT_MYC.of_blade(1).of("T1")];
     let path = folder.path().join("series.csv");
-    let mut writer = crate::records::SeriesWriter::create(&path, &names).unwrap();
+    let mut writer = crate::records::SeriesWriter::create(&path, &channels).unwrap();
     for step in 0..20 {
         let time = f64::from(step) / 7.0;
         writer.write(&[time, 1e6 / 3.0, 1e7 * time.sin()]).unwrap();
@@ -70,11 +71,11 @@ fn the_project_s_own_series_is_a_table() {
     writer.finish().unwrap();
     // Its folder stands for it, and the unit at the end of a name may be left out.
     for path in [path.as_path(), folder.path()] {
-        let found = rows(path, &["t1.flap_moment_1"]).unwrap();
+        let found = rows(path, &["t1.rootmyc1"]).unwrap();
         assert_eq!(found.len(), 20);
         for (step, row) in found.iter().enumerate() {
             let time = step as f64 / 7.0;
-            assert_eq!(row[..], [time, 1e7 * time.sin()]);
+            assert_eq!(row[..], [time, 1e7 * time.sin() / 1e3]);
         }
     }
 }
@@ -126,7 +127,7 @@ fn a_name_that_is_not_there_is_reported_with_what_may_be_meant() {
 
 #[test]
 fn openfast_s_other_names_find_the_channel_that_is_written() {
-    let names = "time_s,T1.RootMyb1_kN-m,T1.RootMxb1_kN-m,T1.RotTorq_kN-m,T1.LSSTipMys_kN-m";
+    let names = "Time_s,T1.RootMyb1_kN-m,T1.RootMxb1_kN-m,T1.RotTorq_kN-m,T1.LSSTipMys_kN-m";
     let (_folder, path) = written("series.csv", &format!("{names}\n0,1,2,3,4\n"));
     let requested = ["T1.RootMFlp1", "t1.rootmedg1", "T1.LSSGagMxs", "T1.LSSGagMys"];
     assert_eq!(rows(&path, &requested).unwrap(), [[0.0, 1.0, 2.0, 3.0, 4.0]]);

@@ -56,10 +56,13 @@ fn text(answer: &GainsAnswer, width: usize) -> String {
 }
 
 fn json(answer: &GainsAnswer, studies: &[PathBuf]) -> serde_json::Value {
+    let folder = |place: usize| studies[place].display().to_string();
     let part = |part: &PartGains| {
+        let gain = |(place, (seed, gain)): (usize, (&u64, &f64))| json!({ "study": folder(place), "seed": seed, "gain": gain });
+        let gains = answer.seeds.iter().zip(&part.gains).enumerate().map(gain);
         json!({
             "name": part.name,
-            "gains": part.gains,
+            "gains": gains.collect::<Vec<_>>(),
             "mean": part.together.mean,
             "half_width_95": part.together.half_width_95,
         })
@@ -151,7 +154,9 @@ mod tests {
         assert_eq!(json["studies"][1], json!({ "folder": "b", "seed": 12 }));
         let part = &json["runs"][0]["parts"][1];
         assert_eq!(part["name"], "downstream");
-        assert_eq!(part["gains"], json!([0.047, 0.043]));
+        let gains = [("a", 1, 0.047), ("b", 12, 0.043)]
+            .map(|(study, seed, gain)| json!({ "study": study, "seed": seed, "gain": gain }));
+        assert_eq!(part["gains"], json!(gains));
         assert_eq!(part["half_width_95"], 0.0254);
     }
 }

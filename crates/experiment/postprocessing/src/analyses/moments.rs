@@ -78,12 +78,13 @@ fn text(answer: &MomentsAnswer) -> String {
 
 /// The numbers, and all that the figure draws.
 fn json(answer: &MomentsAnswer) -> serde_json::Value {
+    let axis = |line: &MomentsLine, axis: usize| json!({ "amplitude_nm": line.amplitudes[axis], "lead_deg": line.leads[axis].to_degrees() });
     let lines = answer.lines.iter().map(|line| {
         json!({
             "name": line.name,
             "wind_m_s": line.wind,
-            "amplitude_nm": line.amplitudes,
-            "lead_deg": line.leads.map(f64::to_degrees),
+            "tilt": axis(line, 0),
+            "yaw": axis(line, 1),
         })
     });
     let rows = answer.figure.rows.iter().map(|row| {

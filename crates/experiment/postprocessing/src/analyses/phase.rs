@@ -258,15 +258,20 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
         "trust": answer.trust,
         "tilt": axis(&answer.tilt),
         "yaw": axis(&answer.yaw),
-        "zero_phase": answer.zero_phase.map(|axes| axes.map(|found| json!({
+        "zero_phase": answer.zero_phase.map(|axes| by_axis(axes.map(|found| json!({
             "spread_deg": found.spread.to_degrees(),
             "bias_deg": found.bias.to_degrees(),
-        }))),
-        "published_band": answer.published_band.map(|axes| axes.map(|found| json!({
+        })))),
+        "published_band": answer.published_band.map(|axes| by_axis(axes.map(|found| json!({
             "rmse_deg": found.rmse.to_degrees(),
             "rmse_95_deg": found.rmse_95.map(|ends| ends.map(f64::to_degrees)),
-        }))),
+        })))),
     })
+}
+
+/// What is of tilt and yaw, by these names.
+fn by_axis([tilt, yaw]: [serde_json::Value; 2]) -> serde_json::Value {
+    json!({ "tilt": tilt, "yaw": yaw })
 }
 
 #[cfg(test)]

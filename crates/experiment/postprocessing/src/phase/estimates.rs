@@ -3,7 +3,9 @@
 use super::column;
 use crate::PostprocessingError;
 use analysis::statistics::statistic;
+use basis::Channel;
 use basis::angle::wrap_to_half_turn;
+use basis::channels::{EST_TRUST, EST_WIND, EST_WIND_DEV, EST_WIND_WAVES, EstimatedWave};
 use basis::records::{Series, Statistic};
 
 /// Estimates over the time of a series.
@@ -29,24 +31,22 @@ pub(super) struct Wave {
 
 /// Estimate of turbine `name` during the run.
 pub(crate) fn recorded(series: &Series, name: &str) -> Result<Estimates, PostprocessingError> {
-    let channel = |what: &str| column(series, &format!("{name}.{what}")).map(<[f64]>::to_vec);
-    let wave = |axis: &str| {
+    let channel = |what: &Channel| column(series, &what.at(name)).map(<[f64]>::to_vec);
+    let wave = |estimated: &EstimatedWave| {
         Ok::<Wave, PostprocessingError>(Wave {
-            amplitude: channel(&format!("estimated_{axis}_amplitude_m_s"))?,
-            phase: channel(&format!("estimated_{axis}_phase_rad"))?,
-            // Earlier series do not hold these.
-            deviation: channel(&format!("estimated_{axis}_phase_deviation_rad"))
-                .unwrap_or_default(),
-            wind_deviation: channel(&format!("estimated_{axis}_wind_deviation_m_s"))
-                .unwrap_or_default(),
+            amplitude: channel(&estimated.amplitude)?,
+            phase: channel(&estimated.phase)?,
+            deviation: channel(&estimated.phase_deviation)?,
+            wind_deviation: channel(&estimated.deviation)?,
         })
     };
+    let [tilt, yaw] = EST_WIND_WAVES;
     Ok(Estimates {
-        wind: channel("estimated_wind_m_s")?,
-        wind_deviation: channel("estimated_wind_deviation_m_s").unwrap_or_default(),
-        tilt: wave("tilt")?,
-        yaw: wave("yaw")?,
-        trust: channel("estimate_trust")?,
+        wind: channel(&EST_WIND)?,
+        wind_deviation: channel(&EST_WIND_DEV)?,
+        tilt: wave(&tilt)?,
+        yaw: wave(&yaw)?,
+        trust: channel(&EST_TRUST)?,
     })
 }
 

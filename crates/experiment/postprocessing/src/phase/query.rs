@@ -244,7 +244,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("series.csv");
         let mut writer =
-            records::SeriesWriter::create(&path, &["time_s".to_owned()]).expect("a file");
+            records::SeriesWriter::create(&path, &[basis::channels::TIME]).expect("a file");
         writer.write(&[0.5]).expect("a row");
         writer.finish().expect("a file");
         let mut read = BTreeMap::new();

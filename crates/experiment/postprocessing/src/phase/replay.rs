@@ -6,6 +6,7 @@ use super::{PhaseQuestion, column};
 use crate::PostprocessingError;
 use crate::error::InRecords;
 use analysis::phase::uniform_interval;
+use basis::channels::{AZIMUTH, BLD_PITCH, BladeChannel, ROOT_MYC, ROT_SPEED, TIME};
 use basis::{Measurements, PerBlade};
 use control::ControlError;
 use control::phase_sync::PhaseEstimator;
@@ -31,7 +32,7 @@ pub(super) fn replay(
     query: &Query<'_>,
     estimator: Replayed,
 ) -> Result<Estimates, PostprocessingError> {
-    let interval = uniform_interval(column(query.series, "time_s")?)?;
+    let interval = uniform_interval(column(query.series, &TIME.name)?)?;
     let setting = setting(query, interval);
     let record = record(query, interval)?;
     let replayed = match estimator {
@@ -105,7 +106,7 @@ pub fn tune(question: &PhaseQuestion) -> Result<Tuned, PostprocessingError> {
 /// What tuning finds for the turbine of `query`.
 fn tuned(question: &PhaseQuestion, query: &Query<'_>) -> Result<Tuned, PostprocessingError> {
     let truth = &query.truth.wind;
-    let interval = uniform_interval(column(query.series, "time_s")?)?;
+    let interval = uniform_interval(column(query.series, &TIME.name)?)?;
     let from = question.from.unwrap_or(query.case.time.spin_up);
     let whole = record(query, interval)?;
     let (mut measured, mut wave) = (Vec::new(), TrueWave::default());
@@ -194,16 +195,14 @@ fn record(
     interval: f64,
 ) -> Result<Vec<Measurements<'static>>, PostprocessingError> {
     let (name, series, n_blades) = (query.name, query.series, query.definition.n_blades);
-    let channel = |what: &str| column(series, &format!("{name}.{what}"));
-    let per_blade = |what: &str| {
-        (1..=n_blades)
-            .map(|blade| channel(&what.replace('#', &blade.to_string())))
-            .collect::<Result<Vec<_>, _>>()
+    let per_blade = |what: BladeChannel| {
+        let names = what.at(name, n_blades);
+        names.iter().map(|name| column(series, name)).collect::<Result<Vec<_>, _>>()
     };
-    let times = column(series, "time_s")?;
-    let azimuth = channel("azimuth_rad")?;
-    let rotor_speed = channel("rotor_speed_rad_s")?;
-    let (pitch, flap) = (per_blade("pitch_#_rad")?, per_blade("flap_moment_#_nm")?);
+    let times = column(series, &TIME.name)?;
+    let azimuth = column(series, &AZIMUTH.at(name))?;
+    let rotor_speed = column(series, &ROT_SPEED.at(name))?;
+    let (pitch, flap) = (per_blade(BLD_PITCH)?, per_blade(ROOT_MYC)?);
     let measurements = |row: usize| Measurements {
         time: times[row],
         interval,

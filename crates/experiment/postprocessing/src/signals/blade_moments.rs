@@ -6,6 +6,7 @@ use crate::error::{InRecords, case_of};
 use crate::phase::query::{folder_of, rotor};
 use crate::phase::{column, tells};
 use analysis::phase::uniform_interval;
+use basis::channels::{AZIMUTH, BLD_PITCH, BladeChannel, ROOT_MYC, ROT_SPEED, TIME};
 use basis::mbc::{to_blades, to_fixed_frame};
 use basis::records::Series;
 use basis::{FixedFrame, PerBlade};
@@ -88,21 +89,20 @@ impl<'a> Record<'a> {
         n_blades: usize,
         from: f64,
     ) -> Result<Self, PostprocessingError> {
-        let times = column(series, "time_s")?;
+        let times = column(series, &TIME.name)?;
         let first = times.partition_point(|time| *time < from);
-        let channel = |what: &str| Ok(&column(series, &format!("{name}.{what}"))?[first..]);
-        let per_blade = |start: &str, end: &str| {
-            (1..=n_blades)
-                .map(|blade| channel(&format!("{start}_{blade}_{end}")))
-                .collect::<Result<Vec<_>, PostprocessingError>>()
+        let channel = |name: &String| Ok(&column(series, name)?[first..]);
+        let per_blade = |what: BladeChannel| {
+            let names = what.at(name, n_blades);
+            names.iter().map(channel).collect::<Result<Vec<_>, PostprocessingError>>()
         };
         Ok(Self {
             interval: uniform_interval(&times[first..])?,
             times: &times[first..],
-            azimuth: channel("azimuth_rad")?,
-            rotor_speed: channel("rotor_speed_rad_s")?,
-            pitch: per_blade("pitch", "rad")?,
-            moments: per_blade("flap_moment", "nm")?,
+            azimuth: channel(&AZIMUTH.at(name))?,
+            rotor_speed: channel(&ROT_SPEED.at(name))?,
+            pitch: per_blade(BLD_PITCH)?,
+            moments: per_blade(ROOT_MYC)?,
         })
     }
 

@@ -6,7 +6,9 @@ mod figures;
 use super::{analysed, control_of};
 use crate::PostprocessingError;
 use crate::error::case_in;
-use crate::phase::column;
+use crate::phase::{column, is_of_blades};
+use basis::Channel;
+use basis::channels::{AZIMUTH, FollowedMoment, MEAND_AXES, MEAND_RATE, TIME, of_meandering};
 use basis::records::Series;
 use control::excitation_rate;
 use control::meandering::MeanderingSettings;
@@ -148,9 +150,12 @@ impl<'a> Followed<'a> {
     ) -> Result<Option<Self>, PostprocessingError> {
         let wanted = |channel: &str| {
             let own = channel.strip_prefix(turbine).and_then(|rest| rest.strip_prefix('.'));
-            let needed = ["azimuth_", "flap_moment_", "meandering_"];
-            channel == "time_s"
-                || own.is_some_and(|own| needed.iter().any(|start| own.starts_with(start)))
+            let is_needed = |own: &str| {
+                own == AZIMUTH.name
+                    || is_of_blades(own)
+                    || of_meandering().iter().any(|channel| channel.name == own)
+            };
+            channel == TIME.name || own.is_some_and(is_needed)
         };
         let series = run.series.read(wanted)?;
         let Some((first, _, interval)) = analysed(&series, case.time.spin_up) else {
@@ -178,13 +183,12 @@ impl<'a> Followed<'a> {
     }
 
     fn times(&self) -> Result<&[f64], PostprocessingError> {
-        Ok(&column(&self.series, "time_s")?[self.first..])
+        Ok(&column(&self.series, &TIME.name)?[self.first..])
     }
 
-    /// The analysed rows of the turbine's channel `meandering_…`.
-    fn own(&self, what: &str) -> Result<&[f64], PostprocessingError> {
-        let channel = format!("{}.meandering_{what}", self.turbine);
-        Ok(&column(&self.series, &channel)?[self.first..])
+    /// The analysed rows of the turbine's `channel`.
+    fn own(&self, channel: &Channel) -> Result<&[f64], PostprocessingError> {
+        Ok(&column(&self.series, &channel.at(self.turbine))?[self.first..])
     }
 
     /// Whether it only monitors.
@@ -193,9 +197,9 @@ impl<'a> Followed<'a> {
     }
 
     /// Target minus estimated amplitude of `axis` (N m) at each row; not a number while there is no target.
-    fn amplitude_error(&self, axis: &str) -> Result<Vec<f64>, PostprocessingError> {
-        let reference = self.own(&format!("{axis}_reference_nm"))?;
-        let found = self.own(&format!("{axis}_amplitude_nm"))?;
+    fn amplitude_error(&self, axis: &FollowedMoment) -> Result<Vec<f64>, PostprocessingError> {
+        let reference = self.own(&axis.reference)?;
+        let found = self.own(&axis.amplitude)?;
         let error = |(reference, found): (&f64, &f64)| {
             if *reference > 0.0 { self.settings.factor * reference - found } else { f64::NAN }
         };
@@ -215,12 +219,12 @@ impl<'a> Followed<'a> {
     }
 
     fn numbers(&self) -> Result<MeanderingNumbers, PostprocessingError> {
-        let axis = |name: &str| {
-            let errors = known(&self.amplitude_error(name)?);
-            let reference = self.own(&format!("{name}_reference_nm"))?;
+        let axis = |followed: &FollowedMoment| {
+            let errors = known(&self.amplitude_error(followed)?);
+            let reference = self.own(&followed.reference)?;
             let reference: Vec<f64> =
                 reference.iter().copied().filter(|reference| *reference > 0.0).collect();
-            let [bias, bias_deviation] = moments_of(self.own(&format!("{name}_offset_nm"))?);
+            let [bias, bias_deviation] = moments_of(self.own(&followed.offset)?);
             let [amplitude_error, deviation] = moments_of(&errors);
             Ok::<_, PostprocessingError>(MeanderingAxisNumbers {
                 amplitude_error,
@@ -230,7 +234,8 @@ impl<'a> Followed<'a> {
                 bias_deviation,
             })
         };
-        let frequencies: Vec<f64> = self.own("rate_rad_s")?.iter().map(|rate| rate / TAU).collect();
+        let [tilt, yaw] = MEAND_AXES;
+        let frequencies: Vec<f64> = self.own(&MEAND_RATE)?.iter().map(|rate| rate / TAU).collect();
         let error = self.true_frequency()?.map(|truth| {
             let squares = frequencies.iter().zip(&truth).map(|(a, b)| (a / b - 1.0).powi(2));
             (squares.sum::<f64>() / truth.len() as f64).sqrt()
@@ -239,7 +244,7 @@ impl<'a> Followed<'a> {
             run: self.run.to_owned(),
             turbine: self.turbine.to_owned(),
             factor: (!self.monitors()).then_some(self.settings.factor),
-            axes: [axis("tilt")?, axis("yaw")?],
+            axes: [axis(&tilt)?, axis(&yaw)?],
             frequency: moments_of(&frequencies),
             frequency_error: error,
         })

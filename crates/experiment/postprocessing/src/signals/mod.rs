@@ -8,6 +8,7 @@ use crate::PostprocessingError;
 use crate::error::case_in;
 use analysis::AnalysisError;
 use analysis::spectra::{Spectrum, power_density};
+use basis::channels::TIME;
 use basis::records::Series;
 use farm::case::{Case, Control, Sense, helix_upstream};
 use formats::records::{RunRecords, StudyRecords};
@@ -67,7 +68,7 @@ fn helix_in(case: &Case, run: &RunRecords, index: usize) -> Option<(Sense, f64)>
 /// First row of `series` from `from` (s) on, the times from there, and their distance (s); nothing where
 /// there are fewer than two.
 fn analysed(series: &Series, from: f64) -> Option<(usize, &[f64], f64)> {
-    let times = series.column("time_s")?;
+    let times = series.column(&TIME.name)?;
     let first = times.iter().position(|time| *time >= from)?;
     let rest = &times[first..];
     let (begin, end) = (rest.first()?, rest.last()?);

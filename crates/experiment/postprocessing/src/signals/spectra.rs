@@ -6,6 +6,7 @@ use crate::PostprocessingError;
 use crate::error::case_in;
 use crate::phase::{column, moments, tells};
 use analysis::spectra::Spectrum;
+use basis::channels::LINES;
 use control::excitation_rate;
 use control::phase_sync::PhaseSyncSettings;
 use estimation::helix::tuning::high_passed_variance;
@@ -149,18 +150,17 @@ impl Place<'_> {
 
     /// The wind where the turbine would stand, in runs without it.
     fn winds(&self) -> Result<(Option<DensityFigure>, Vec<SpectraLine>), PostprocessingError> {
-        let channel = |of: &str| format!("{}.lines_{of}_m_s", self.name);
         let mut rows =
             COMPONENTS.map(|(_, label)| DensityRow { label: label.to_owned(), lines: Vec::new() });
         let mut numbers = Vec::new();
-        let kept = |run: &RunRecords| run.series.names().contains(&channel("average"));
+        let kept = |run: &RunRecords| run.series.names().contains(&LINES[0].at(self.name));
         for (colour, run) in self.runs(kept) {
             let series = run.series.read(|channel| tells(self.name, channel))?;
             let Some((first, _, interval)) = analysed(&series, self.case.time.spin_up) else {
                 continue;
             };
-            for ((of, _), row) in COMPONENTS.into_iter().zip(&mut rows) {
-                let samples = &column(&series, &channel(of))?[first..];
+            for (((of, _), part), row) in COMPONENTS.into_iter().zip(LINES).zip(&mut rows) {
+                let samples = &column(&series, &part.at(self.name))?[first..];
                 let Some(found) = density(samples, interval, self.frequency)? else { continue };
                 numbers.push(self.number(run, of, &found, None));
                 row.lines.push(line(&run.manifest.run, colour, found));

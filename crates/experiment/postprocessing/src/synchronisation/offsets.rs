@@ -4,6 +4,7 @@ use super::curve::offset_panel;
 use super::{Joined, Synchronised};
 use crate::PostprocessingError;
 use analysis::statistics::{BLOCK_LENGTH, gain};
+use basis::channels::{GEN_PWR, TIME};
 use basis::records::{Series, Statistic, TurbineSummary};
 use formats::records::RunRecords;
 use report::{OffsetFigure, OffsetPanel, OffsetPoint};
@@ -120,12 +121,12 @@ fn together(
     names: &[&str],
 ) -> Result<Option<Statistic>, PostprocessingError> {
     let Some(other) = compared(study, run) else { return Ok(None) };
-    let powers: Vec<String> = names.iter().map(|name| format!("{name}.power_w")).collect();
+    let powers: Vec<String> = names.iter().map(|name| GEN_PWR.at(name)).collect();
     let read = |run: &RunRecords| {
-        run.series.read(|channel| channel == "time_s" || powers.iter().any(|name| name == channel))
+        run.series.read(|channel| channel == TIME.name || powers.iter().any(|name| name == channel))
     };
     let sum = |series: Series| -> Option<(Vec<f64>, f64)> {
-        let times = series.column("time_s")?;
+        let times = series.column(&TIME.name)?;
         let first = times.iter().position(|time| *time >= study.case.time.spin_up)?;
         let mut total = vec![0.0; times.len() - first];
         for name in &powers {

@@ -6,7 +6,9 @@ use crate::phase::tells;
 use crate::winds;
 use analysis::phase::{Band, fixed_frame_moments, narrowband};
 use analysis::spectra::amplitude;
+use basis::Channel;
 use basis::PerBlade;
+use basis::channels::{AZIMUTH, BLD_PITCH, BladeChannel, EST_WIND_WAVES, ROOT_MYC, TIME};
 use basis::mbc::to_fixed_frame;
 use basis::records::Series;
 use report::{PhaseRow, SpectrumFigure, SpectrumLine, TrackFigure, TrackLine, TrackRow};
@@ -83,15 +85,13 @@ fn answer(study: &Synchronised, name: &str) -> Result<Option<TrackFigure>, Postp
     for (colour, run) in shown(study).into_iter().enumerate() {
         let series = &study.records.runs[run.run].series.read(|channel| tells(name, channel))?;
         let Some((first, times, interval)) = analysed(study, series) else { continue };
-        let cut = |channel: &str| series.column(&format!("{name}.{channel}")).map(|c| &c[first..]);
-        let (Some(wind), Some(azimuth)) = (cut("estimated_tilt_wind_m_s"), cut("azimuth_rad"))
-        else {
+        let cut = |channel: &Channel| series.column(&channel.at(name)).map(|c| &c[first..]);
+        let [estimated, _] = EST_WIND_WAVES;
+        let (Some(wind), Some(azimuth)) = (cut(&estimated.wind), cut(&AZIMUTH)) else {
             continue;
         };
-        let (Some(pitch), Some(moment)) = (
-            columns(series, name, "pitch_#_rad", first),
-            columns(series, name, "flap_moment_#_nm", first),
-        ) else {
+        let of_blades = |channel: BladeChannel| columns(series, name, channel, first);
+        let (Some(pitch), Some(moment)) = (of_blades(BLD_PITCH), of_blades(ROOT_MYC)) else {
             continue;
         };
         let tilt_pitch: Vec<f64> = (0..times.len())
@@ -125,8 +125,8 @@ pub(super) fn spectra(study: &Synchronised) -> Result<Vec<SpectrumFigure>, Postp
     for (colour, run) in shown(study).into_iter().enumerate() {
         let series = &study.records.runs[run.run].series.read(|channel| tells(name, channel))?;
         let Some((first, _, interval)) = analysed(study, series) else { continue };
-        let Some(azimuth) = series.column(&format!("{name}.azimuth_rad")) else { continue };
-        let Some(moment) = columns(series, name, "flap_moment_#_nm", first) else { continue };
+        let Some(azimuth) = series.column(&AZIMUTH.at(name)) else { continue };
+        let Some(moment) = columns(series, name, ROOT_MYC, first) else { continue };
         let moments = fixed_frame_moments(&azimuth[first..], &moment)?;
         let tilt: Vec<f64> = moments.iter().map(|moment| 1e-6 * moment.tilt).collect();
         let spectrum = amplitude(&tilt, interval)?;
@@ -151,23 +151,22 @@ pub(super) fn spectra(study: &Synchronised) -> Result<Vec<SpectrumFigure>, Postp
 
 /// First analysed row, the times from it on, and their distance (s).
 fn analysed<'a>(study: &Synchronised, series: &'a Series) -> Option<(usize, &'a [f64], f64)> {
-    let times = series.column("time_s")?;
+    let times = series.column(&TIME.name)?;
     let first = times.iter().position(|time| *time >= study.case.time.spin_up)?;
     let rest = &times[first..];
     let (begin, end) = (rest.first()?, rest.last()?);
     (rest.len() > 1).then(|| (first, rest, (end - begin) / (rest.len() - 1) as f64))
 }
 
-/// One column per blade from row `first` on, the blade's number for `#`.
+/// One column per blade from row `first` on.
 fn columns<'a>(
     series: &'a Series,
     name: &str,
-    channel: &str,
+    channel: BladeChannel,
     first: usize,
 ) -> Option<Vec<&'a [f64]>> {
     let of_blade = |blade: usize| {
-        let channel = channel.replace('#', &blade.to_string());
-        series.column(&format!("{name}.{channel}")).map(|column| &column[first..])
+        series.column(&channel.of_blade(blade).at(name)).map(|column| &column[first..])
     };
     let columns: Vec<&[f64]> = (1..).map_while(of_blade).collect();
     (columns.len() >= 3).then_some(columns)

@@ -17,8 +17,6 @@ use crate::sentence;
 use crate::study::Study;
 use synchronisation::Synchronisation;
 
-/// The channel that every series is drawn over.
-pub(crate) const TIME: &str = "time_s";
 /// Width of every figure.
 const WIDTH: f64 = 1000.0;
 

@@ -1,6 +1,6 @@
 //! What the blades did: pitch over a few turns of the rotor, and the lines in its spectrum.
 
-use super::{TIME, WIDTH};
+use super::WIDTH;
 use crate::RunRecords;
 use crate::draw::axes::{Frame, SMALL, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
@@ -8,6 +8,7 @@ use crate::draw::{Figure, Look, Role, Shape, TextStyle, segment, text};
 use crate::study::Study;
 use crate::trace::{peaks, thinned};
 use analysis::spectra::amplitude;
+use basis::channels::{BLD_PITCH, TIME};
 use std::f64::consts::TAU;
 
 /// Turns of the rotor that are shown.
@@ -16,14 +17,9 @@ const N_TURNS: f64 = 6.0;
 const N_BLADES: usize = 3;
 const HEIGHT: f64 = 215.0;
 
-/// Channel of the pitch of `blade`, numbered from 1, among those of its turbine.
-fn channel(blade: usize) -> String {
-    format!("pitch_{blade}_rad")
-}
-
 /// Whether the channel `requested` of an excited turbine is shown.
 pub(crate) fn draws(requested: &str) -> bool {
-    (1..=N_BLADES).any(|blade| channel(blade) == requested)
+    (1..=N_BLADES).any(|blade| BLD_PITCH.of_blade(blade).name == requested)
 }
 
 /// One excited turbine in one run.
@@ -86,8 +82,8 @@ pub(crate) fn pitch(study: &Study) -> Option<Figure> {
 
 /// Times (s) and pitch (deg) of a blade.
 fn blade<'a>(run: &'a RunRecords, turbine: &str, blade: usize) -> Option<(&'a [f64], Vec<f64>)> {
-    let times = run.series.column(TIME)?;
-    let pitch = run.series.column(&format!("{turbine}.{}", channel(blade)))?;
+    let times = run.series.column(&TIME.name)?;
+    let pitch = run.series.column(&BLD_PITCH.of_blade(blade).at(turbine))?;
     let pitch: Vec<f64> = pitch.iter().map(|angle| angle.to_degrees()).collect();
     (times.len() > 4 && pitch.len() == times.len()).then_some((times, pitch))
 }

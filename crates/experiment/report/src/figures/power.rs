@@ -1,6 +1,6 @@
 //! Power and rotor speed over time.
 
-use super::{TIME, WIDTH};
+use super::WIDTH;
 use crate::draw::axes::{Frame, Readout, Scale, legend};
 use crate::draw::colour::{Ink, run_dash};
 use crate::draw::whisker::{Style, whisker};
@@ -8,6 +8,8 @@ use crate::draw::{Axis, Figure, Look, Role, Shape, TextStyle, text};
 use crate::study::Study;
 use crate::trace::{envelope, moving_mean, thinned};
 use crate::words;
+use basis::Channel;
+use basis::channels::{GEN_PWR, ROT_SPEED, TIME};
 use basis::records::Statistic;
 use std::f64::consts::TAU;
 
@@ -17,20 +19,16 @@ const SMOOTHING: f64 = 30.0;
 const MOST_RAW_RUNS: usize = 4;
 const PANEL_HEIGHT: f64 = 165.0;
 
-/// Channels of every turbine that are shown.
-const POWER: &str = "power_w";
-const ROTOR_SPEED: &str = "rotor_speed_rad_s";
-
 /// Whether the channel `channel` of a turbine is shown.
 pub(crate) fn draws(channel: &str) -> bool {
-    [POWER, ROTOR_SPEED].contains(&channel)
+    [GEN_PWR, ROT_SPEED].iter().any(|shown| shown.name == channel)
 }
 
 /// A quantity of every turbine over time.
 struct Quantity {
     name: &'static str,
     title: &'static str,
-    channel: &'static str,
+    channel: Channel,
     label: &'static str,
     unit: &'static str,
     /// SI value of one unit of the axis.
@@ -45,7 +43,7 @@ pub(crate) fn power(study: &Study) -> Option<Figure> {
         &Quantity {
             name: "power",
             title: "Power over time",
-            channel: POWER,
+            channel: GEN_PWR,
             label: "power (MW)",
             unit: "MW",
             scale: 1e6,
@@ -61,7 +59,7 @@ pub(crate) fn rotor_speed(study: &Study) -> Option<Figure> {
         &Quantity {
             name: "rotor-speed",
             title: "Rotor speed over time",
-            channel: ROTOR_SPEED,
+            channel: ROT_SPEED,
             label: "rotor speed (rpm)",
             unit: "rpm",
             scale: TAU / 60.0,
@@ -79,7 +77,7 @@ fn over_time(study: &Study, quantity: &Quantity) -> Option<Figure> {
     let end = study
         .runs()
         .iter()
-        .filter_map(|run| run.series.column(TIME)?.last().copied())
+        .filter_map(|run| run.series.column(&TIME.name)?.last().copied())
         .fold(0.0, f64::max);
     if names.is_empty() || end <= 0.0 {
         return None;
@@ -114,8 +112,8 @@ fn channel<'r>(
     turbine: &str,
     quantity: &Quantity,
 ) -> Option<(&'r [f64], &'r [f64])> {
-    let times = run.series.column(TIME)?;
-    let values = run.series.column(&format!("{turbine}.{}", quantity.channel))?;
+    let times = run.series.column(&TIME.name)?;
+    let values = run.series.column(&quantity.channel.at(turbine))?;
     (times.len() > 1 && values.len() == times.len()).then_some((times, values))
 }
 

@@ -16,7 +16,7 @@ pub(crate) fn conventions(study: &Study) -> Vec<String> {
         conventions.push(fatigue::convention(None));
     }
     conventions.extend(turbines().find_map(|turbine| turbine.pitch_duty.as_ref()).map(|duty| {
-        let n_positions = duty.bearing_loads_kn_m.len();
+        let n_positions = duty.bearing_loads.len();
         fatigue::duty_convention(duty.bearing_slope, n_positions, duty.sample_interval)
     }));
     conventions.into_iter().map(|convention| words::capitalised(&convention)).collect()
@@ -53,7 +53,7 @@ impl Quantity {
         match self {
             Self::Bearing(slope) => {
                 let duty = turbine.pitch_duty.as_ref().filter(|duty| duty.bearing_slope == *slope);
-                Some((duty?.worst_bearing_load()?.0, None))
+                Some((duty?.worst_bearing_load()?.load_kn_m, None))
             }
             Self::Travel => Some((turbine.pitch_duty.as_ref()?.travel_in_ten_minutes_deg, None)),
             Self::Moment(channel, unit, kind) => turbine
@@ -129,7 +129,8 @@ pub(crate) fn bearings(study: &Study) -> Vec<Value> {
     for name in study.turbines() {
         let of_run = |run: &RunRecords| {
             let turbine = run.summary.turbines.iter().find(|turbine| turbine.name == name)?;
-            Some(turbine.pitch_duty.as_ref()?.bearing_loads_kn_m.clone())
+            let positions = turbine.pitch_duty.as_ref()?.bearing_loads.iter();
+            Some(positions.map(|position| position.load_kn_m).collect())
         };
         let loads: Vec<Vec<f64>> =
             study.runs().iter().map(|run| of_run(run).unwrap_or_default()).collect();

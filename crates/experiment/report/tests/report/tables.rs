@@ -2,8 +2,8 @@
 
 use crate::{assert_well_formed, page, synthetic};
 use basis::records::{
-    ControlSummary, Finding, LoadKind, MeanderingAxis, MeanderingSummary, PitchDuty, PitchResponse,
-    Statistic, examples,
+    BearingLoad, ControlSummary, Finding, LoadKind, MeanderingAxis, MeanderingSummary, PitchDuty,
+    PitchResponse, Statistic, examples,
 };
 use report::StudyRecords;
 
@@ -13,7 +13,10 @@ fn what_pitching_cost_stands_in_the_tables_with_its_convention() {
     assert!(!page(&study).contains("Pitch bearing"));
     for (run, scale) in [(0, 1.0), (1, 3.5)] {
         for turbine in &mut study.runs[run].summary.turbines {
-            let loads = (0..36).map(|k| scale * 1e3 * (1.0 + f64::from(k).sin()));
+            let loads = (0..36).map(|k| BearingLoad {
+                position_deg: 10.0 * f64::from(k),
+                load_kn_m: scale * 1e3 * (1.0 + f64::from(k).sin()),
+            });
             turbine.pitch_duty = Some(PitchDuty {
                 travel_deg: scale * 1200.0,
                 travel_in_ten_minutes_deg: scale * 342.0,
@@ -21,7 +24,7 @@ fn what_pitching_cost_stands_in_the_tables_with_its_convention() {
                 moving_share: 1.0,
                 n_reversals: 12,
                 bearing_slope: 3.0,
-                bearing_loads_kn_m: loads.collect(),
+                bearing_loads: loads.collect(),
                 sample_interval: 0.25,
             });
         }

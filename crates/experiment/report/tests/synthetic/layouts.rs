@@ -99,20 +99,20 @@ fn turbine(index: usize, &([diameter, height], [x, y]): &Placed, is_helix: bool)
 /// Power and rotor speed of `turbines` at the times of `like`, and the pitch of T1 as it is there.
 fn series(turbines: &[TurbineSummary], like: &Series) -> Series {
     let times = like.columns[0].clone();
-    let mut series = Series { names: vec!["time_s".into()], columns: vec![times.clone()] };
+    let mut series = Series { names: vec!["Time".into()], columns: vec![times.clone()] };
     for (index, turbine) in turbines.iter().enumerate() {
         let gust =
             |time: f64| 0.07 * (time / 47.0 + index as f64).sin() + 0.04 * (time / 9.0).cos();
         let power = |(step, time): (usize, &f64)| {
             turbine.power.mean * (1.0 + gust(*time) + 0.012 * noise(step, index))
         };
-        series.names.push(format!("{}.power_w", turbine.name));
+        series.names.push(format!("{}.GenPwr", turbine.name));
         series.columns.push(times.iter().enumerate().map(power).collect());
-        series.names.push(format!("{}.rotor_speed_rad_s", turbine.name));
+        series.names.push(format!("{}.RotSpeed", turbine.name));
         series.columns.push(times.iter().map(|time| 0.7 * (1.0 + 0.3 * gust(*time))).collect());
     }
     for (name, column) in like.names.iter().zip(&like.columns) {
-        if name.starts_with("T1.pitch") {
+        if name.starts_with("T1.BldPitch") {
             series.names.push(name.clone());
             series.columns.push(column.clone());
         }

@@ -172,7 +172,7 @@ fn noise(index: usize, seed: usize) -> f64 {
 fn series(recipe: &Recipe, powers: [f64; 2]) -> Series {
     let n_samples = (DURATION / INTERVAL) as usize;
     let times: Vec<f64> = (1..=n_samples).map(|step| step as f64 * INTERVAL).collect();
-    let mut series = Series { names: vec!["time_s".into()], columns: vec![times.clone()] };
+    let mut series = Series { names: vec!["Time".into()], columns: vec![times.clone()] };
     let excitation = TAU * STROUHAL * WIND_SPEED / DIAMETER;
     for (turbine, power) in powers.into_iter().enumerate() {
         let name = |channel: &str| format!("T{}.{channel}", turbine + 1);
@@ -183,7 +183,7 @@ fn series(recipe: &Recipe, powers: [f64; 2]) -> Series {
                 + 0.03 * (time / 6.3).cos()
         };
         let rise = |time: f64| if turbine == 0 { 1.0 } else { 1.0 + 0.9 * (-time / 90.0).exp() };
-        series.names.push(name("power_w"));
+        series.names.push(name("GenPwr"));
         series.columns.push(
             times
                 .iter()
@@ -191,15 +191,15 @@ fn series(recipe: &Recipe, powers: [f64; 2]) -> Series {
                 .map(|(index, &t)| power * (rise(t) + gust(t) + 0.012 * noise(index, turbine)))
                 .collect(),
         );
-        series.names.push(name("rotor_speed_rad_s"));
+        series.names.push(name("RotSpeed"));
         series.columns.push(times.iter().map(|&t| speed * (1.0 + 0.3 * gust(t))).collect());
-        series.names.push(name("azimuth_rad"));
+        series.names.push(name("Azimuth"));
         series.columns.push(times.iter().map(|&t| (speed * t).rem_euclid(TAU)).collect());
         for blade in 1..=3 {
             let amplitude =
                 if turbine == 0 { 0.97 * recipe.amplitude_deg.to_radians() } else { 0.0 };
             let shift = TAU * f64::from(blade - 1) / 3.0;
-            series.names.push(name(&format!("pitch_{blade}_rad")));
+            series.names.push(name(&format!("BldPitch{blade}")));
             series.columns.push(
                 times
                     .iter()

@@ -11,7 +11,7 @@ mod instant_planes;
 mod last_planes;
 mod lines;
 pub(crate) mod mean_planes;
-mod outb;
+pub(crate) mod outb;
 mod output;
 mod phase_planes;
 mod schedule;

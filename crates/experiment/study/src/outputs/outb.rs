@@ -1,4 +1,4 @@
-//! What OpenFAST's users expect of a turbine in prescribed wind: one `.outb` file.
+//! What OpenFAST's users expect of a turbine: one `.outb` file, with the channels of its series.
 
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
@@ -7,43 +7,40 @@ use super::series;
 use crate::channels;
 use crate::error::StudyError;
 use crate::prepared::Prepared;
+use basis::channels::WIND;
 use basis::keys::Values;
 use farm::case::Run;
+use formats::FileError;
 use formats::openfast_output::{Encoding, Layout, OutbWriter};
-use formats::records::RunFolder;
-use formats::table::{Column, TableReader};
-use turbine::structure::{Channel, channels_of};
+use formats::records::{RunFolder, SeriesFile};
+use formats::table::Column;
+use std::collections::BTreeSet;
 
-/// Channels of ours under OpenFAST's names: ours, theirs, unit, factor to it; `{}` is the turbine's name.
-const RENAMED: [(&str, &str, &str, f64); 6] = [
-    ("wind.u_m_s", "Wind1VelX", "m/s", 1.0),
-    ("wind.v_m_s", "Wind1VelY", "m/s", 1.0),
-    ("wind.w_m_s", "Wind1VelZ", "m/s", 1.0),
-    ("{}.power_w", "GenPwr", "kW", 1e-3),
-    ("{}.thrust_n", "RtFldFxh", "N", 1.0),
-    ("{}.aerodynamic_torque_nm", "RtFldMxh", "N-m", 1.0),
-];
+/// What OpenFAST calls the wind at a point; the series have it of no turbine.
+const WIND_NAMES: [&str; 3] = ["Wind1VelX", "Wind1VelY", "Wind1VelZ"];
 
 /// Bytes of a value in the file, and in the rows that gather beside the file of one turbine at a time.
 const VALUE_BYTES: u64 = size_of::<i16>() as u64;
 const GATHERED_BYTES: u64 = size_of::<f64>() as u64;
 /// Bytes of a channel above the rows: name, unit, range.
-const HEADER_BYTES: u64 = 32;
+const HEADER_BYTES: u64 = 56;
 
-pub(super) static KIND: OutputKind = OutputKind {
-    name: "outb",
-    keys: Keys::OfOutput(&[]),
-    fed_by: FedBy::PrescribedWind,
-    disk,
-    begin,
-};
+pub(super) static KIND: OutputKind =
+    OutputKind { name: "outb", keys: Keys::OfOutput(&[]), fed_by: FedBy::AnyFlow, disk, begin };
 
 fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
     let n_rows = series::n_rows(setup);
-    let of_turbine = |index: usize| (RENAMED.len() + 1 + channels::n_loads(setup, index)) as u64;
-    let n_channels: u64 = run.present().map(of_turbine).sum();
-    let most = run.present().map(of_turbine).max().unwrap_or(0);
-    n_channels * (n_rows * VALUE_BYTES + HEADER_BYTES) + most * n_rows * GATHERED_BYTES
+    let n_wind = WIND.len() as u64;
+    let of_turbines = channels::of_turbines(setup, run);
+    let n_channels: u64 = of_turbines.iter().map(|own| own + n_wind).sum();
+    let most = of_turbines.iter().map(|own| own + n_wind).max().unwrap_or(0);
+    n_rows * row_bytes(setup, run) + n_channels * HEADER_BYTES + most * n_rows * GATHERED_BYTES
+}
+
+/// Bytes that a row of the series takes in the files of all turbines of `run`.
+pub(crate) fn row_bytes(setup: &Prepared, run: &Run) -> u64 {
+    let own = channels::of_turbines(setup, run).into_iter();
+    own.map(|own| (own + WIND.len() as u64) * VALUE_BYTES).sum()
 }
 
 struct Outb;
@@ -65,45 +62,62 @@ impl Output for Outb {
 
 /// Writes `TURBINE.outb` into `folder`, from the run's complete series, for turbine number `index` of the
 /// case.
+///
+/// The format has finite numbers alone: a channel that was anything else at any time is left out.
 fn write(setup: &Prepared, run: &Run, folder: &RunFolder, index: usize) -> Result<(), StudyError> {
     let turbine = setup.case.turbines[index].name.as_str();
-    let mut reader = TableReader::open(&folder.series_path())?;
-    let (mut ours, mut channels, mut scales) = (Vec::new(), Vec::new(), Vec::new());
-    // Ours is on the low-speed side.
-    let gear_ratio = setup.models[index].definition.drive_train.gear_ratio;
-    let torque = ("{}.generator_torque_nm", "GenTq", "kN-m", 1e-3 / gear_ratio);
-    for (own, name, unit, scale) in RENAMED.into_iter().chain([torque]) {
-        ours.push(own.replace("{}", turbine));
-        channels.push(Column { name: name.to_owned(), unit: unit.to_owned() });
-        scales.push(scale);
+    let series = SeriesFile::open(&folder.series_path())?;
+    let mut left_out = BTreeSet::new();
+    loop {
+        let is_in = |name: &str| name_of(name, turbine).is_some() && !left_out.contains(name);
+        let chosen: Vec<(&str, Column)> = series
+            .names()
+            .iter()
+            .zip(series.units())
+            .filter(|(name, _)| is_in(name))
+            .filter_map(|(ours, unit)| {
+                let name = name_of(ours, turbine)?.to_owned();
+                Some((ours.as_str(), Column { name, unit: unit.symbol().to_owned() }))
+            })
+            .collect();
+        let layout = Layout {
+            description: format!("wakemix, case {}, run {}", setup.case.name, run.name),
+            channels: chosen.iter().map(|(_, column)| column.clone()).collect(),
+            start: 0.0,
+            interval: setup.plan.row_interval(),
+        };
+        let path = folder.path().join(format!("{turbine}.outb"));
+        let mut writer = OutbWriter::create(&path, layout, Encoding::Compressed)?;
+        let written = series.each_row(is_in, |row| {
+            match row.iter().position(|value| !OutbWriter::holds(*value)) {
+                Some(place) => Err(Stop::NotFinite(chosen[place].0.to_owned())),
+                None => Ok(writer.write(row)?),
+            }
+        });
+        match written {
+            Ok(()) => return Ok(writer.finish()?),
+            Err(Stop::NotFinite(name)) => left_out.insert(name),
+            Err(Stop::File(error)) => return Err(error.into()),
+        };
     }
-    // Loads already stand under OpenFAST's names and units.
-    for Channel { name, unit, .. } in channels_of(setup.models[index].definition.n_blades) {
-        let own = format!("{turbine}.{name}_{unit}");
-        if reader.channels().any(|column| column.name == own) {
-            ours.push(own);
-            channels.push(Column { name, unit: unit.to_owned() });
-            scales.push(1.0);
-        }
+}
+
+/// The name in the file of `turbine` of what the series calls `name`; none of what is another's.
+fn name_of<'a>(name: &'a str, turbine: &str) -> Option<&'a str> {
+    let wind = WIND.iter().position(|wind| wind.name == name);
+    let own = || name.strip_prefix(turbine)?.strip_prefix('.');
+    wind.map(|place| WIND_NAMES[place]).or_else(own)
+}
+
+/// Why rows end before the last.
+enum Stop {
+    /// The channel of this name was not a finite number.
+    NotFinite(String),
+    File(FileError),
+}
+
+impl From<FileError> for Stop {
+    fn from(error: FileError) -> Self {
+        Self::File(error)
     }
-    let names: Vec<&str> = ours.iter().map(String::as_str).collect();
-    reader.select(&names)?;
-    let layout = Layout {
-        description: format!("wakemix, case {}, run {}", setup.case.name, run.name),
-        channels,
-        start: 0.0,
-        interval: setup.plan.row_interval(),
-    };
-    let path = folder.path().join(format!("{turbine}.outb"));
-    let mut writer = OutbWriter::create(&path, layout, Encoding::Compressed)?;
-    let mut row = vec![0.0; names.len() + 1];
-    let mut values = vec![0.0; names.len()];
-    while reader.read(&mut row)? {
-        for ((value, own), scale) in values.iter_mut().zip(&row[1..]).zip(&scales) {
-            *value = own * scale;
-        }
-        writer.write(&values)?;
-    }
-    writer.finish()?;
-    Ok(())
 }

@@ -8,7 +8,7 @@ use crate::channels::{self, Row};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use basis::keys::Values;
-use basis::{Commands, Truth, Vector3};
+use basis::{Channel, Commands, Truth, Vector3};
 use farm::case::Run;
 use farm::{Air, Farm, Recorder};
 use flow::WindField;
@@ -38,7 +38,7 @@ pub(crate) fn schedule(setup: &Prepared) -> Schedule {
 }
 
 /// Rows in the series of a run (–).
-pub(super) fn n_rows(setup: &Prepared) -> u64 {
+pub(crate) fn n_rows(setup: &Prepared) -> u64 {
     schedule(setup).count(setup.plan.n_steps)
 }
 
@@ -47,8 +47,13 @@ pub(crate) fn n_channels(setup: &Prepared, run: &Run) -> u64 {
     channels::count(setup, run, lines::count(setup, run))
 }
 
+/// Bytes that a row of the series of `run` takes.
+pub(crate) fn row_bytes(setup: &Prepared, run: &Run) -> u64 {
+    n_channels(setup, run) * VALUE_BYTES
+}
+
 fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
-    n_channels(setup, run) * (n_rows(setup) * VALUE_BYTES + NAME_BYTES)
+    n_rows(setup) * row_bytes(setup, run) + n_channels(setup, run) * NAME_BYTES
 }
 
 struct Series {
@@ -86,14 +91,13 @@ impl Rows {
         let lines = lines::of(setup, run);
         let places: Vec<&str> = lines.iter().map(|lines| lines.name.as_str()).collect();
         let names = run.present().map(|index| setup.case.turbines[index].name.as_str());
-        let all_loads = !setup.case.flow.solver.resolves_induction;
-        let row = Row::new(names.zip(farm.machines()), &places, all_loads);
+        let row = Row::new(names.zip(farm.machines()), &places);
         Self { row, probe: probe(setup), lines }
     }
 
-    /// Names of the columns.
-    pub(crate) fn names(&self) -> &[String] {
-        self.row.names()
+    /// The channels, in the order of the columns.
+    pub(crate) fn channels(&self) -> &[Channel] {
+        self.row.channels()
     }
 
     /// Starts the row of the step that `farm` is about to make.
@@ -109,7 +113,7 @@ impl Rows {
         }
     }
 
-    /// The row, once `farm` has made the step.
+    /// The row in SI units, once `farm` has made the step.
     pub(crate) fn complete(&mut self, farm: &Farm<Air>) -> &[f64] {
         for (index, machine) in farm.machines().iter().enumerate() {
             self.row.signals(index, machine);
@@ -129,8 +133,10 @@ fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>
     let rows = Rows::new(setup, run, farm);
     let writer = match stored {
         // So many bytes of it are sure.
-        Some(stored) => SeriesWriter::resume(&folder.series_path(), rows.names(), stored.state()?)?,
-        None => SeriesWriter::create(&folder.series_path(), rows.names())?,
+        Some(stored) => {
+            SeriesWriter::resume(&folder.series_path(), rows.channels(), stored.state()?)?
+        }
+        None => SeriesWriter::create(&folder.series_path(), rows.channels())?,
     };
     Ok(Some(Box::new(Series { schedule: schedule(setup), rows, writer })))
 }

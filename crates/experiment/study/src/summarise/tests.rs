@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::gains;
+use basis::Unit;
+use basis::channels::{OPERATION, ROOT_MYC, SYNC_SHARE, of_meandering};
 use basis::records::SettingValue;
 use formats::records::{RunFolder, SeriesWriter};
 use std::f64::consts::TAU;
@@ -52,33 +54,32 @@ const BUDGETS: [usize; 3] = [0, 9 * 8 * N_ROWS as usize, usize::MAX];
 fn leave(study: &Path, setup: &Prepared, run: usize, n_rows: u32, without: &str) -> RunFolder {
     let folder = RunFolder::new(study, &setup.case.runs[run].name);
     folder.create().expect("a folder");
-    let mut names = vec!["time_s".to_owned(), WIND.to_owned()];
+    let mut channels = vec![TIME, WIND_U];
     for turbine in ["T1", "T2", "T3"] {
-        names.extend(operation(turbine).into_iter().filter(|name| name != "time_s"));
-        names.extend(pitching(turbine, 3));
-        let loads = ["RootMyc1", "RootMxb1", "RootMyb1", "TwrBsMyt", "Spn1FLxb1"];
-        names.extend(loads.map(|channel| format!("{turbine}.{channel}_kN-m")));
-        names.extend(outcome_channels(turbine, 3, &setup.case.runs[run].control[2]));
-        names.extend(names_of(turbine, &["sync_share", "generator_torque_nm"]));
+        let of_blades =
+            (1..=3).flat_map(|blade| [BLD_PITCH, ROOT_MYC].map(|own| own.of_blade(blade)));
+        let loads = ["RootMxb1", "RootMyb1", "TwrBsMyt", "Spn1MLxb1"];
+        let loads = loads.map(|name| Channel::new(name, Unit::KilonewtonMetre));
+        let own = OPERATION.into_iter().chain(of_blades).chain(loads);
+        let own = own.chain(of_meandering()).chain([SYNC_SHARE]);
+        channels.extend(own.map(|channel| channel.of(turbine)));
     }
-    names.sort();
-    names.dedup();
-    names.retain(|name| name != without);
+    channels.retain(|channel| channel.name != without);
     let interval = setup.plan.row_interval();
-    let mut writer = SeriesWriter::create(&folder.series_path(), &names).expect("a file");
+    let mut writer = SeriesWriter::create(&folder.series_path(), &channels).expect("a file");
     for row in 1..=n_rows {
         let time = interval * f64::from(row);
         // Each channel swings about a mean of its own, in the second run a little more.
-        let value = |(place, name): (usize, &String)| match name.as_str() {
-            "time_s" => time,
-            name if name.ends_with("azimuth_rad") => (1.2 * time).rem_euclid(TAU),
-            name if name.ends_with("_lock") => 1.0,
+        let value = |(place, channel): (usize, &Channel)| match &*channel.name {
+            "Time" => time,
+            name if name.ends_with("Azimuth") => (1.2 * time).rem_euclid(TAU),
+            name if name.ends_with("Lock") => 1.0,
             _ => {
                 let own = 0.01 * place as f64;
                 1.0 + own + (0.1 + 0.02 * run as f64) * ((0.3 + own) * time).sin()
             }
         };
-        let values: Vec<f64> = names.iter().enumerate().map(value).collect();
+        let values: Vec<f64> = channels.iter().enumerate().map(value).collect();
         writer.write(&values).expect("a row");
     }
     writer.finish().expect("a file");
@@ -169,7 +170,7 @@ fn a_gain_over_no_power_is_not_defined_and_the_rest_goes_on() {
         let mut series =
             formats::records::read_series(&folder.series_path(), |_| true).expect("it");
         for turbine in still {
-            let power = format!("{turbine}.power_w");
+            let power = GEN_PWR.at(turbine);
             let place = series.names.iter().position(|name| *name == power).expect("its power");
             series.columns[place].fill(0.0);
         }
@@ -196,7 +197,7 @@ fn a_gain_over_no_power_is_not_defined_and_the_rest_goes_on() {
 fn a_channel_that_is_missing_is_named_however_the_rest_is_read() {
     let study = tempfile::tempdir().expect("a folder");
     let setup = setup(study.path());
-    for missing in ["T2.power_w", "T1.pitch_3_rad", "T2.sync_share", "T3.meandering_lock", WIND] {
+    for missing in ["T2.GenPwr", "T1.BldPitch3", "T2.SyncShare", "T3.MeandLock", "Wind.U"] {
         let folder = leave(study.path(), &setup, 1, 600, missing);
         for budget in BUDGETS {
             let mut columns = Columns::within(budget, &folder, &setup).expect("a series");

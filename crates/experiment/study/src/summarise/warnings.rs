@@ -3,6 +3,7 @@
 use super::Turbine;
 use crate::StudyError;
 use crate::columns::Analysed;
+use basis::channels::{ROT_SPEED, TIME};
 use basis::records::{DeliveredPitch, Warning, WarningKind};
 
 /// Turns a minute in a radian a second.
@@ -28,8 +29,8 @@ impl Turbine<'_> {
     ) -> Result<Option<Warning>, StudyError> {
         let Self { setup, run, index, name, .. } = self;
         let rated = setup.models[*index].constants.rated_rotor_speed;
-        let times = analysed.column("time_s")?;
-        let speeds = analysed.column(&format!("{name}.rotor_speed_rad_s"))?;
+        let times = analysed.column(&TIME.name)?;
+        let speeds = analysed.column(&ROT_SPEED.at(name))?;
         let instants = times.iter().zip(speeds).map(|(&time, speed)| (time, speed.abs()));
         let fastest = instants.reduce(|a, b| if b.1 > a.1 { b } else { a });
         let Some((time, speed)) = fastest.filter(|(_, speed)| *speed > OVERSPEED * rated) else {

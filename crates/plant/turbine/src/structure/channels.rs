@@ -2,79 +2,20 @@
 
 use super::loads::{Loads, N_GAUGES};
 use super::machine::Pitch;
-use std::f64::consts::PI;
+use basis::channels::{
+    AZIMUTH, BLADE_LOADS, BLD_PITCH, BladeChannel, Channel, GEN_SPEED, N_SPAN_GAUGES, NAC_YAW,
+    ROT_SPEED, TURBINE_LOADS, span_moment,
+};
 
-/// One column of output.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Channel {
-    /// OpenFAST's name, such as `RootMyc1`.
-    pub name: String,
-    /// OpenFAST's unit, such as `kN-m`.
-    pub unit: &'static str,
-    /// One SI unit (N, N m, m, rad, rad/s, m/s²) in `unit` (–).
-    pub scale: f64,
+/// How the turbine stands and turns; before its loads.
+const MOTION: [Channel; 4] = [AZIMUTH, ROT_SPEED, GEN_SPEED, NAC_YAW];
+
+const _: () = assert!(N_GAUGES == N_SPAN_GAUGES, "every gauge has its channels");
+
+/// Channels of one blade, before those of its gauges.
+fn of_blade() -> impl Iterator<Item = BladeChannel> {
+    std::iter::once(BLD_PITCH).chain(BLADE_LOADS)
 }
-
-const FORCE: (&str, f64) = ("kN", 1e-3);
-const MOMENT: (&str, f64) = ("kN-m", 1e-3);
-const LENGTH: (&str, f64) = ("m", 1.0);
-const ANGLE: (&str, f64) = ("deg", 180.0 / PI);
-const SPEED: (&str, f64) = ("rpm", 30.0 / PI);
-const ACCELERATION: (&str, f64) = ("m/s^2", 1.0);
-
-/// Channels of one turbine, in the order in which [`write`] gives values.
-const TURBINE: [(&str, (&str, f64)); 32] = [
-    ("Azimuth", ANGLE),
-    ("RotSpeed", SPEED),
-    ("GenSpeed", SPEED),
-    ("NacYaw", ANGLE),
-    ("RotThrust", FORCE),
-    ("RotTorq", MOMENT),
-    ("LSShftFys", FORCE),
-    ("LSShftFzs", FORCE),
-    ("LSSTipMys", MOMENT),
-    ("LSSTipMzs", MOMENT),
-    ("LSShftFya", FORCE),
-    ("LSShftFza", FORCE),
-    ("LSSTipMya", MOMENT),
-    ("LSSTipMza", MOMENT),
-    ("YawBrFxp", FORCE),
-    ("YawBrFyp", FORCE),
-    ("YawBrFzp", FORCE),
-    ("YawBrMxp", MOMENT),
-    ("YawBrMyp", MOMENT),
-    ("YawBrMzp", MOMENT),
-    ("TwrBsFxt", FORCE),
-    ("TwrBsFyt", FORCE),
-    ("TwrBsFzt", FORCE),
-    ("TwrBsMxt", MOMENT),
-    ("TwrBsMyt", MOMENT),
-    ("TwrBsMzt", MOMENT),
-    ("TTDspFA", LENGTH),
-    ("TTDspSS", LENGTH),
-    ("TTDspAx", LENGTH),
-    ("NcIMUTAxs", ACCELERATION),
-    ("NcIMUTAys", ACCELERATION),
-    ("NcIMUTAzs", ACCELERATION),
-];
-
-/// Channels of one blade; its number follows the name.
-const BLADE: [(&str, (&str, f64)); 14] = [
-    ("BldPitch", ANGLE),
-    ("RootFxc", FORCE),
-    ("RootFyc", FORCE),
-    ("RootFzc", FORCE),
-    ("RootMxc", MOMENT),
-    ("RootMyc", MOMENT),
-    ("RootMzc", MOMENT),
-    ("RootFxb", FORCE),
-    ("RootFyb", FORCE),
-    ("RootMxb", MOMENT),
-    ("RootMyb", MOMENT),
-    ("OoPDefl", LENGTH),
-    ("IPDefl", LENGTH),
-    ("TipDzc", LENGTH),
-];
 
 /// OpenFAST's other names of the same channels; a blade's number follows both, or neither.
 const ALIASES: [(&str, &str); 26] = [
@@ -110,15 +51,11 @@ const ALIASES: [(&str, &str); 26] = [
 ///
 /// `Spn1` to `Spn7` lie at 1/8 to 7/8 of the blade; the shaft's strain gauges lie at the rotor apex.
 pub(super) fn table(n_blades: usize) -> Vec<Channel> {
-    let channel = |name: String, (unit, scale): (&'static str, f64)| Channel { name, unit, scale };
-    let mut channels: Vec<Channel> =
-        TURBINE.iter().map(|(name, unit)| channel((*name).into(), *unit)).collect();
+    let mut channels: Vec<Channel> = MOTION.into_iter().chain(TURBINE_LOADS).collect();
     for blade in 1..=n_blades {
-        channels.extend(BLADE.iter().map(|(name, unit)| channel(format!("{name}{blade}"), *unit)));
+        channels.extend(of_blade().map(|channel| channel.of_blade(blade)));
         for gauge in 1..=N_GAUGES {
-            for axis in ["x", "y"] {
-                channels.push(channel(format!("Spn{gauge}ML{axis}b{blade}"), MOMENT));
-            }
+            channels.extend(['x', 'y'].map(|axis| span_moment(gauge, axis, blade)));
         }
     }
     channels
@@ -139,7 +76,7 @@ pub fn canonical(name: &str) -> Option<String> {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
     let number = &name[stem.len()..];
     let (same, _) = ALIASES.iter().find(|(_, alias)| alias.eq_ignore_ascii_case(stem))?;
-    let of_blade = BLADE.iter().any(|(blade, _)| blade == same);
+    let of_blade = of_blade().any(|blade| blade.stem == *same);
     (of_blade != number.is_empty()).then(|| format!("{same}{number}"))
 }
 
@@ -201,7 +138,7 @@ mod tests {
             assert_eq!(index(&table, &channel.name), Some(place), "{}", channel.name);
         }
         for (name, alias) in ALIASES {
-            let number = if BLADE.iter().any(|(blade, _)| *blade == name) { "4" } else { "" };
+            let number = if of_blade().any(|blade| blade.stem == name) { "4" } else { "" };
             let found = index(&table, &format!("{alias}{number}"));
             assert_eq!(found, index(&table, &format!("{name}{number}")), "{alias}");
             assert!(found.is_some(), "{alias}");

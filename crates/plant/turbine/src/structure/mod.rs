@@ -44,7 +44,7 @@ mod tests;
 
 pub use beam::Wrench;
 pub use cantilever::{BeamSection, BendingMode, EndBody, bending_modes};
-pub use channels::{Channel, canonical};
+pub use channels::canonical;
 pub use coordinates::{Coordinates, DegreeOfFreedom};
 pub use energy::Energy;
 pub use error::StructureError;
@@ -57,7 +57,7 @@ pub use stations::{AppliedLoads, ElementLoad};
 use crate::definition::Definition;
 use crate::motion::ElementMotion;
 use crate::rotor::Frame;
-use basis::{PerBlade, Vector3};
+use basis::{Channel, PerBlade, Vector3};
 use coordinates::{GENERATOR, Locks, TORSION};
 use equations_of_motion::EquationsOfMotion;
 use machine::Machine;
@@ -327,8 +327,7 @@ impl Structure {
         channels::index(&self.channels, name)
     }
 
-    /// On return `values` holds the channels in the middle of the last step, in SI units; times their scale
-    /// they are in OpenFAST's units.
+    /// On return `values` holds the channels in the middle of the last step, in SI units.
     pub fn write_channels(&self, values: &mut [f64]) {
         channels::write(&self.state.loads, self.state.yaw.angle, &self.state.pitch, values);
     }

@@ -1,9 +1,10 @@
 //! Made-up summaries for tests and examples, so that each needs to write down only what it is about.
 
 use super::{
-    Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding, FlowSummary, Load,
-    LoadKind, MeanderingAxis, MeanderingSummary, PitchDuty, PitchExcitation, PitchResponse, Rotor,
-    SCHEMA_VERSION, SettingValue, Statistic, Summary, TurbineSummary, Warning, WarningKind,
+    BearingLoad, Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding,
+    FlowSummary, Load, LoadKind, MeanderingAxis, MeanderingSummary, PitchDuty, PitchExcitation,
+    PitchResponse, Rotor, SCHEMA_VERSION, SettingValue, Statistic, Summary, TurbineSummary,
+    Warning, WarningKind,
 };
 use crate::Sense;
 
@@ -206,7 +207,9 @@ fn full_turbine(name: &str, gain: Statistic) -> TurbineSummary {
             moving_share: 1.0,
             n_reversals: 12,
             bearing_slope: 3.0,
-            bearing_loads_kn_m: vec![1e4; 36],
+            bearing_loads: (0..36)
+                .map(|k| BearingLoad { position_deg: 10.0 * f64::from(k), load_kn_m: 1e4 })
+                .collect(),
             sample_interval: 0.125,
         }),
         ..turbine(name, 1e7)

@@ -4,7 +4,9 @@ use super::Statistic;
 use serde::{Deserialize, Serialize};
 
 /// Version of the layout of [`Sweep`].
-pub const SWEEP_SCHEMA_VERSION: u32 = 1;
+///
+/// 2: the gains in each wind name their study and seed.
+pub const SWEEP_SCHEMA_VERSION: u32 = 2;
 
 /// What is swept: every combination of values has its study and run. `sweep.json` is this, written out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,10 +155,21 @@ pub struct SweepPart {
     /// Its gain over the compared run in the same wind (–), with an interval from blocks or, with several
     /// winds, from them.
     pub gain: Option<Statistic>,
-    /// The gain in each wind (–); empty with one.
-    pub gains: Vec<f64>,
+    /// The gain in each wind; empty with one.
+    pub gains: Vec<WindGain>,
     /// Damage-equivalent loads of a turbine, by channel; none of several together.
     pub loads: Vec<SweepLoad>,
+}
+
+/// A gain in one wind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WindGain {
+    /// Folder of the study in that of the sweep.
+    pub study: String,
+    /// Seed of the wind.
+    pub seed: u64,
+    /// Gain of the mean power over that of the compared run (–).
+    pub gain: f64,
 }
 
 /// A damage-equivalent load of a turbine in a sweep.

@@ -63,20 +63,18 @@ pub(super) fn count(arguments: &FatigueArguments) -> Result<Duty> {
     Ok(Duty { span, slope, columns, travel, loads })
 }
 
-/// Selects pitch, flapwise and edgewise moment of the blade, whose pitch own records call otherwise than
-/// OpenFAST does.
+/// Selects pitch, flapwise and edgewise moment of the blade.
 fn select(table: &mut TableReader, arguments: &FatigueArguments) -> Result<[Column; 3]> {
     let blade = arguments.blade.map_or(1, NonZeroUsize::get);
     let prefix = arguments.turbine.as_ref().map_or(String::new(), |turbine| format!("{turbine}."));
-    let pitches = ["pitch_", "BldPitch"].map(|stem| format!("{prefix}{stem}{blade}"));
-    let Some(pitch) = pitches.iter().find(|pitch| table.select(&[pitch.as_str()]).is_ok()) else {
-        let [own, openfast] = &pitches;
+    let pitch = format!("{prefix}BldPitch{blade}");
+    if table.select(&[pitch.as_str()]).is_err() {
         return Err(miette!(
             help = "records of a run need --turbine, such as --turbine T1; OpenFAST has BldPitch1 where its OutList asks for it",
-            "{} has no pitch of blade {blade}: neither \"{own}\" nor \"{openfast}\" is one of its channels",
+            "{} has no pitch of blade {blade}: \"{pitch}\" is none of its channels",
             table.path().display()
         ));
-    };
+    }
     let [flapwise, edgewise] = ["RootMyb", "RootMxb"].map(|stem| format!("{prefix}{stem}{blade}"));
     table.select(&[pitch.as_str(), flapwise.as_str(), edgewise.as_str()])?;
     let columns: Vec<Column> = table.selected().cloned().collect();
@@ -169,7 +167,7 @@ mod tests {
     #[test]
     fn pitch_without_a_unit_is_refused() {
         let column = |name: &str, unit: &str| Column { name: name.into(), unit: unit.into() };
-        assert_eq!(radians(&column("T1.pitch_1_rad", "")).ok(), Some(1.0));
+        assert_eq!(radians(&column("T1.BldPitch1_rad", "")).ok(), Some(1.0));
         assert_eq!(radians(&column("BldPitch1", "deg")).ok(), Some(1_f64.to_radians()));
         assert_eq!(radians(&column("BldPitch1_deg", "")).ok(), Some(1_f64.to_radians()));
         let message = radians(&column("BldPitch1", "")).unwrap_err().to_string();

@@ -37,9 +37,10 @@ fn disk(estimate: &Estimate) -> String {
             format!(", {} of it to go on for longer (output.last_checkpoint)", HumanBytes(kept))
         }
     };
+    let rows = format!("; {} rows of {}", estimate.n_rows, HumanBytes(estimate.row));
     match estimate.n_runs {
-        0 | 1 => format!("disk up to {run}{kept}"),
-        _ => format!("disk up to {run} a run, {all} in all{kept}"),
+        0 | 1 => format!("disk up to {run}{kept}{rows}"),
+        _ => format!("disk up to {run} a run, {all} in all{kept}{rows}"),
     }
 }
 

@@ -6,6 +6,7 @@ use crate::PostprocessingError;
 use crate::phase::moments;
 use analysis::smooth::smoothed;
 use basis::FixedFrame;
+use basis::channels::{MEAND_AXES, MEAND_RATE};
 use report::{DensityFigure, DensityRow, SpectrumLine, TrackFigure, TrackLine, TrackRow};
 use std::f64::consts::TAU;
 
@@ -22,8 +23,7 @@ const MILLI: f64 = 1e3;
 /// Colour of what is true.
 const TRUTH: usize = 10;
 /// The axes, and what of the fixed frame they are.
-const AXES: [(&str, OfFrame); 2] =
-    [("tilt", |moments| moments.tilt), ("yaw", |moments| moments.yaw)];
+const AXES: [OfFrame; 2] = [|moments| moments.tilt, |moments| moments.yaw];
 
 /// The figures of one turbine, run by run.
 #[derive(Default)]
@@ -68,7 +68,7 @@ impl Figures {
         let [low, high] = run.band();
         let slowly = |values: &[f64]| smoothed(values, run.interval, CORNER * high);
         let all = moments(&run.series, run.turbine)?;
-        for (place, (axis, of)) in AXES.into_iter().enumerate() {
+        for (place, (axis, of)) in MEAND_AXES.iter().zip(AXES).enumerate() {
             let moment: Vec<f64> = all.iter().map(|moments| MEGA * of(moments)).collect();
             let slow = slowly(&moment)?;
             self.loads[place].push(track(run.run, colour, slow[run.first..].to_vec()));
@@ -80,11 +80,11 @@ impl Figures {
             }
             let mega = |values: &[f64]| values.iter().map(|value| MEGA * value).collect::<Vec<_>>();
             let error = slowly(&mega(&run.amplitude_error(axis)?))?;
-            let bias = slowly(&mega(run.own(&format!("{axis}_offset_nm"))?))?;
+            let bias = slowly(&mega(run.own(&axis.offset)?))?;
             self.errors[place].push(track(run.run, colour, error));
             self.biases[place].push(track(run.run, colour, bias));
         }
-        let rates = run.own("rate_rad_s")?.iter().map(|rate| MILLI * rate / TAU);
+        let rates = run.own(&MEAND_RATE)?.iter().map(|rate| MILLI * rate / TAU);
         let frequency = slowly(&rates.collect::<Vec<_>>())?;
         if self.truth.is_none()
             && let Some(truth) = run.true_frequency()?

@@ -3,7 +3,7 @@
 use super::*;
 use crate::draw::Shape;
 use basis::records::examples::statistic;
-use basis::records::{SWEEP_SCHEMA_VERSION, Setting, Statistic, SweepPart, SweptValue};
+use basis::records::{SWEEP_SCHEMA_VERSION, Setting, Statistic, SweepPart, SweptValue, WindGain};
 
 fn key(key: &str, label: &str) -> SweptKey {
     SweptKey { key: key.into(), label: label.into(), of_studies: false }
@@ -26,7 +26,10 @@ fn table(n_winds: usize) -> SweepTable {
             name: "all".into(),
             power: statistic(1e7),
             gain: gain.map(|gain| Statistic { half_width_95: Some(0.01), ..statistic(gain) }),
-            gains: gain.filter(|_| n_winds > 1).map_or(Vec::new(), |gain| vec![gain; n_winds]),
+            gains: gain.filter(|_| n_winds > 1).map_or(Vec::new(), |gain| {
+                let in_wind = |seed| WindGain { study: format!("seed-{seed}"), seed, gain };
+                (1..=n_winds as u64).map(in_wind).collect()
+            }),
             loads: Vec::new(),
         }],
     };

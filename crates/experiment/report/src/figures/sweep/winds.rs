@@ -34,7 +34,7 @@ pub(super) fn winds(table: &SweepTable) -> Option<Figure> {
     let height = ROW * rows.len() as f64 + 14.0;
     let single = rows.iter().flat_map(|row| &row.part.gains);
     let single = single.map(|gain| Statistic {
-        mean: *gain,
+        mean: gain.gain,
         standard_deviation: 0.0,
         half_width_95: None,
         n_blocks: 1,
@@ -105,7 +105,7 @@ fn drawn(row: &Row, frame: &Frame, y: f64) -> Shape {
     let half = row.gain.half_width_95.map(|half| 100.0 * half);
     shapes.extend(whisker(frame, Axis::X, y, 100.0 * row.gain.mean, half, style));
     for gain in &row.part.gains {
-        let [x, _] = frame.point([100.0 * gain, 0.0]);
+        let [x, _] = frame.point([100.0 * gain.gain, 0.0]);
         let look = Look::fill(Ink::Run(2)).opacity(0.75);
         shapes.push(Shape::Circle { center: [x, y], radius: 2.6, look });
     }

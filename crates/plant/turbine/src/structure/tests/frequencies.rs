@@ -143,7 +143,7 @@ fn weight_bends_blades_edgewise_as_openfast_has_it() {
             structure.advance(step, &AppliedLoads::NONE, &[Pitch::default(); 3]);
             structure.write_channels(&mut values);
             for (k, &channel) in channels.iter().enumerate().filter(|_| turn >= 50) {
-                let value = values[channel] * structure.channels()[channel].scale;
+                let value = structure.channels()[channel].unit.of_si(values[channel]);
                 sums[k] += value;
                 squares[k] += value * value;
             }
