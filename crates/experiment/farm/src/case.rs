@@ -6,6 +6,7 @@ pub use crate::outputs::Requested;
 pub use crate::solvers::Solver;
 pub use control::{Control, Sense};
 pub use flow::inflow::deterministic::Change;
+pub use flow::inflow::recorded::Beyond;
 pub use sensing::{Instrument, Instruments, Lag, Mounted};
 
 use crate::layout;
@@ -59,8 +60,11 @@ pub struct Wind {
     pub kinematic_viscosity: f64,
     /// Which turbulence is made, where it is made and not read.
     pub turbulence_model: TurbulenceModel,
-    /// File with the planes of wind that [`Solver::PLANES`] reads, relative to the case file.
+    /// File with the planes of wind that [`Solver::PLANES`] reads, or that enter at the inlet of a domain,
+    /// relative to the case file.
     pub planes: Option<String>,
+    /// What blows where a domain is larger than the grid of these planes, where the case says so.
+    pub beyond_planes: Option<Beyond>,
     /// File with the wind over time for a solver of deterministic wind, relative to the case file.
     pub table: Option<String>,
     /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at

@@ -65,7 +65,8 @@ impl Prepared {
     ) -> Estimate {
         let plan = &self.plan;
         let field = (self.case.flow.solver.memory)(plan);
-        let turbulence = farm::wind::turbulence(&self.site());
+        let made = farm::wind::turbulence(&self.site()).map(|turbulence| turbulence.memory);
+        let turbulence = made.or(self.recorded.map(|recorded| recorded.memory));
         let checkpoints = || open.iter().map(|&index| self.checkpoints_of_run(index));
         let disks = || open.iter().map(|&index| self.disk_of_run(index, outputs));
         let kept = || open.iter().map(|&index| self.kept_checkpoint(index));
@@ -80,7 +81,7 @@ impl Prepared {
             spacing: plan.spacing,
             interval: plan.interval,
             n_steps: plan.n_steps,
-            memory: field + turbulence.map_or(0, |turbulence| turbulence.memory),
+            memory: field + turbulence.unwrap_or(0),
             disk: disks().max().unwrap_or(0),
             disk_in_all: disks().sum::<u64>() - checkpoints().sum::<u64>()
                 + kept().sum::<u64>()

@@ -36,6 +36,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             kinematic_viscosity: 1.5e-5,
             turbulence_model: TurbulenceModel::Mann,
             planes: None,
+            beyond_planes: None,
             table: None,
             veer: 0.0,
             event: None,

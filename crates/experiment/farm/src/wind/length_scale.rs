@@ -44,6 +44,7 @@ mod tests {
             kinematic_viscosity: 1.46e-5,
             turbulence_model: TurbulenceModel::Mann,
             planes: None,
+            beyond_planes: None,
             table: None,
             veer: 0.0,
             event: None,
