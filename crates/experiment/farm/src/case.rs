@@ -350,6 +350,8 @@ pub struct Output {
     pub inflow_at: Vec<usize>,
     /// Time between volume snapshots, VTK (s); none when absent.
     pub volume_interval: Option<f64>,
+    /// Every so many cells along each axis are in a volume (–).
+    pub volume_stride: usize,
     /// Checkpoint every so many seconds of wall time (s).
     pub checkpoint_interval: f64,
     /// Whether the checkpoint at the end of a run stays, from which it can go on for longer.

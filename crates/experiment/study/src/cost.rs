@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use crate::observer::Estimate;
-use crate::outputs::{Outputs, series};
+use crate::outputs::{Outputs, series, volumes};
 use crate::prepared::Prepared;
 use farm::pitch_response::IdentificationCost;
 use formats::machine;
@@ -81,7 +81,7 @@ impl Prepared {
             spacing: plan.spacing,
             interval: plan.interval,
             n_steps: plan.n_steps,
-            memory: field + turbulence.unwrap_or(0),
+            memory: field + turbulence.unwrap_or(0) + volumes::memory(self),
             disk: disks().max().unwrap_or(0),
             disk_in_all: disks().sum::<u64>() - checkpoints().sum::<u64>()
                 + kept().sum::<u64>()

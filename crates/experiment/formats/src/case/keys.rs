@@ -253,7 +253,7 @@ pub(super) static OUTPUT: Table = Table {
             above(0.0, 1e6),
             "s",
             Otherwise("no instantaneous planes"),
-            "Instantaneous planes every so many seconds of the analysed time.",
+            "Instantaneous planes every so many seconds of the analysed time, all instants of a plane in one file.",
         ),
         key(
             "crosswind_diameters",
@@ -289,6 +289,13 @@ pub(super) static OUTPUT: Table = Table {
             "s",
             Otherwise("no volumes"),
             "Volume snapshots (VTK) every so many seconds; large.",
+        ),
+        key(
+            "volume_stride",
+            Holds::Whole { least: 1, most: 16 },
+            "–",
+            Value("2"),
+            "Volumes hold every so many cells along each axis: 2 an eighth of them, 1 all of the flow's resolution. A cell takes 12 bytes on the disk, and as many of memory while a volume is written; `--dry-run` tells both.",
         ),
         key(
             "checkpoint_interval",
