@@ -10,7 +10,7 @@ mod walls;
 pub use around_rotors::prescribed;
 pub use at_inlet::entering;
 pub use from_file::{ForeignWind, Recorded, enters_from_file};
-pub use length_scale::length_scale;
+pub use length_scale::{length_scale, usual_length_scale};
 pub use walls::{inflow_share, wall_gain};
 
 use crate::assemble::TurbineModel;
