@@ -115,7 +115,6 @@ impl Conditions<'_> {
             model: "iea-15mw",
             wind: 9.0,
             planes: None,
-            beyond_planes: None,
             tower: None,
             slow_constant: 29.03,
             rotor_speed: 6.44866,
