@@ -14,7 +14,7 @@ pub use setting::{PlacedTurbine, PlaneSetting};
 
 use crate::{FileError, atomic};
 use basis::records::{Plane, PlaneAxes};
-use netcdf_writer::{Error, NcAttrValue, NcFileBuilder, NcWriteOptions};
+use netcdf_writer::{DimensionId, Error, NcAttrValue, NcFileBuilder, NcWriteOptions};
 use std::io;
 use std::path::Path;
 
@@ -110,30 +110,7 @@ fn encode(setting: &PlaneSetting, plane: &Plane, over: &Over) -> Result<Vec<u8>,
     file.add_attribute("averaging_time_s", NcAttrValue::Doubles(vec![plane.averaged]))?;
     setting.add_turbines(&mut file)?;
 
-    let mut coordinates = plane.origin.map(|start| vec![start]);
-    for (axis, (spacing, count)) in along.into_iter().zip(plane.spacing.iter().zip(plane.n_points))
-    {
-        coordinates[axis] = (0..count).map(|i| plane.origin[axis] + i as f64 * spacing).collect();
-    }
-    let [x, y, z] = &coordinates;
-    let described: [(&str, &[f64], &str, &str); 3] = [
-        ("z", z, "Z", "height above the ground"),
-        ("y", y, "Y", "distance to the left of the first turbine looking downwind"),
-        ("x", x, "X", "distance downwind of the first turbine"),
-    ];
-    let mut dimensions = Vec::with_capacity(described.len() + 1);
-    for (name, values, axis, long_name) in described {
-        let dimension = file.add_dimension(name, values.len() as u64)?;
-        let variable = file.add_variable::<f64>(name, &[dimension])?;
-        file.add_variable_attribute(variable, "units", text("m"))?;
-        file.add_variable_attribute(variable, "axis", text(axis))?;
-        file.add_variable_attribute(variable, "long_name", text(long_name))?;
-        if name == "z" {
-            file.add_variable_attribute(variable, "positive", text("up"))?;
-        }
-        file.write_variable(variable, values)?;
-        dimensions.push(dimension);
-    }
+    let mut dimensions = add_axes(&mut file, plane, along)?;
     dimensions.insert(0, add_first(&mut file, plane, over)?);
     let method = match over {
         Over::Phase(_) => "time: mean (over instants of equal phase)",
@@ -161,12 +138,41 @@ fn encode(setting: &PlaneSetting, plane: &Plane, over: &Over) -> Result<Vec<u8>,
     Ok(file.to_vec(options)?.1)
 }
 
-/// Adds the first dimension of velocities with its coordinate.
-fn add_first(
+/// Adds z, y and x of `plane`, which spans those in `along`; gives their dimensions.
+fn add_axes(
     file: &mut NcFileBuilder,
     plane: &Plane,
-    over: &Over,
-) -> Result<netcdf_writer::DimensionId, Error> {
+    along: [usize; 2],
+) -> Result<Vec<DimensionId>, Error> {
+    let mut coordinates = plane.origin.map(|start| vec![start]);
+    for (axis, (spacing, count)) in along.into_iter().zip(plane.spacing.iter().zip(plane.n_points))
+    {
+        coordinates[axis] = (0..count).map(|i| plane.origin[axis] + i as f64 * spacing).collect();
+    }
+    let [x, y, z] = &coordinates;
+    let described: [(&str, &[f64], &str, &str); 3] = [
+        ("z", z, "Z", "height above the ground"),
+        ("y", y, "Y", "distance to the left of the first turbine looking downwind"),
+        ("x", x, "X", "distance downwind of the first turbine"),
+    ];
+    let mut dimensions = Vec::with_capacity(described.len() + 1);
+    for (name, values, axis, long_name) in described {
+        let dimension = file.add_dimension(name, values.len() as u64)?;
+        let variable = file.add_variable::<f64>(name, &[dimension])?;
+        file.add_variable_attribute(variable, "units", text("m"))?;
+        file.add_variable_attribute(variable, "axis", text(axis))?;
+        file.add_variable_attribute(variable, "long_name", text(long_name))?;
+        if name == "z" {
+            file.add_variable_attribute(variable, "positive", text("up"))?;
+        }
+        file.write_variable(variable, values)?;
+        dimensions.push(dimension);
+    }
+    Ok(dimensions)
+}
+
+/// Adds the first dimension of velocities with its coordinate.
+fn add_first(file: &mut NcFileBuilder, plane: &Plane, over: &Over) -> Result<DimensionId, Error> {
     let time = match over {
         Over::Time { grows: true } => vec![file.add_unlimited_dimension("time")?],
         Over::Time { grows: false } => vec![file.add_dimension("time", 1)?],

@@ -77,17 +77,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Vec<(Option<f64>, Plane)>, String> 
     let (Some(n_values), Some(in_all)) = (n_values, in_all) else {
         return Err("it holds fewer values than it says".to_owned());
     };
-    let mut velocity = [const { Vec::new() }; 3];
-    for ((name, _), values) in COMPONENTS.iter().zip(&mut velocity) {
-        let shape = file.variable(name).map_err(|_| lacks(name))?.shape();
-        if shape.iter().try_fold(1_u64, |n, m| n.checked_mul(*m)) != Some(in_all as u64) {
-            return Err(format!(
-                "`{name}` has the shape {shape:?} for {n_planes} planes of {n_values} points"
-            ));
-        }
-        values.resize(in_all, 0.0_f32);
-        file.read_variable_into::<f32>(name, values).map_err(|error| error.to_string())?;
-    }
+    let velocity = velocities(&file, in_all)?;
     let like = Plane {
         name: text("plane")?,
         axes,
@@ -110,6 +100,20 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Vec<(Option<f64>, Plane)>, String> 
         return Err("it tells no time".to_owned());
     }
     Ok((0..n_planes).map(plane).collect())
+}
+
+/// The components of the wind in `file`, of `n_values` values each.
+fn velocities(file: &NcFile, n_values: usize) -> Result<[Vec<f32>; 3], String> {
+    let mut velocity = [const { Vec::new() }; 3];
+    for ((name, _), values) in COMPONENTS.iter().zip(&mut velocity) {
+        let shape = file.variable(name).map_err(|_| lacks(name))?.shape();
+        if shape.iter().try_fold(1_u64, |n, m| n.checked_mul(*m)) != Some(n_values as u64) {
+            return Err(format!("`{name}` has the shape {shape:?} for {n_values} values"));
+        }
+        values.resize(n_values, 0.0_f32);
+        file.read_variable_into::<f32>(name, values).map_err(|error| error.to_string())?;
+    }
+    Ok(velocity)
 }
 
 /// The values of the coordinate `name` in a file of `most` bytes.
