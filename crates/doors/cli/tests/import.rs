@@ -85,8 +85,8 @@ fn a_template_that_is_filled_in_makes_a_turbine_that_runs() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let output = wakemix(&["run", "case.toml"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    // It runs, and delivers what its own rotor has in steady wind at the speed and pitch that it came to: tilt
-    // and bending take less than a tenth.
+    // It runs, and delivers what its own rotor has in steady wind at the speed and pitch that it came to;
+    // tilt and bending take less than a tenth.
     let summary = fs::read_to_string(at("runs/imported/baseline/summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     let turbine = &summary["turbines"][0];

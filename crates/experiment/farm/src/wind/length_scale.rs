@@ -17,8 +17,8 @@ pub fn length_scale(wind: &Wind, hub_height: f64) -> f64 {
     wind.length_scale.unwrap_or_else(usual)
 }
 
-/// σ_u / (dU/dz) (m) at `hub_height` (m) in wind of `turbulence_intensity` (–), between [`STANDARD`] and twice
-/// the hub height.
+/// σ_u / (dU/dz) (m) at `hub_height` (m) in wind of `turbulence_intensity` (–), between [`STANDARD`] and
+/// twice the hub height.
 ///
 /// Source: Kelly (2018), Wind Energ. Sci. 3, 533: in neutral air σ_u / (dU/dz) is Mann's length scale, found
 /// so from what an anemometer mast measures.

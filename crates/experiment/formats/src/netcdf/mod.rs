@@ -1,8 +1,8 @@
 //! Planes as NetCDF files that xarray, ParaView and MATLAB open as they are, and back.
 //!
 //! The classic format (64-bit offsets where needed), which needs no HDF5 on either side. Velocity stands over
-//! `time` or `phase`, `z`, `y`, `x`, the axis across the plane having one point, so that a plane lies where it
-//! was taken. Beside it stand the turbines and the wind in which it was, [`PlaneSetting`].
+//! `time` or `phase`, `z`, `y`, `x`, the axis across the plane having one point, so that a plane lies where
+//! it was taken. Beside it stand the turbines and the wind in which it was, [`PlaneSetting`].
 
 mod instants;
 mod read;
