@@ -109,8 +109,7 @@ def missing(study):
         if path.is_file():
             name = re.sub(r"-\d{4}\.", "-0000.", path.name)
             if path.parent.name == "planes":
-                name = re.sub(r"^.*-(mean|last|0000|phase-\d+)", r"NAME-\1", name)
-                name = re.sub(r"phase-\d+", "phase-010", name)
+                name = re.sub(r"^.*?(-(?:mean|last|phases))?\.nc$", r"NAME\1.nc", name)
             name = re.sub(r"^\w+\.outb$", "T1.outb", re.sub(r"^inflow-\w+", "inflow-T2", name))
             if path.parent.name in ("planes", "volumes"):
                 name = f"{path.parent.name}/{name}"

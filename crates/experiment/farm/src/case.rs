@@ -6,6 +6,7 @@ pub use crate::outputs::Requested;
 pub use crate::solvers::Solver;
 pub use control::{Control, Sense};
 pub use flow::inflow::deterministic::Change;
+pub use flow::inflow::recorded::Beyond;
 pub use sensing::{Instrument, Instruments, Lag, Mounted};
 
 use crate::layout;
@@ -59,8 +60,11 @@ pub struct Wind {
     pub kinematic_viscosity: f64,
     /// Which turbulence is made, where it is made and not read.
     pub turbulence_model: TurbulenceModel,
-    /// File with the planes of wind that [`Solver::PLANES`] reads, relative to the case file.
+    /// File with the planes of wind that [`Solver::PLANES`] reads, or that enter at the inlet of a domain,
+    /// relative to the case file.
     pub planes: Option<String>,
+    /// What blows where a domain is larger than the grid of these planes, where the case says so.
+    pub beyond_planes: Option<Beyond>,
     /// File with the wind over time for a solver of deterministic wind, relative to the case file.
     pub table: Option<String>,
     /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at
@@ -346,6 +350,8 @@ pub struct Output {
     pub inflow_at: Vec<usize>,
     /// Time between volume snapshots, VTK (s); none when absent.
     pub volume_interval: Option<f64>,
+    /// Every so many cells along each axis are in a volume (–).
+    pub volume_stride: usize,
     /// Checkpoint every so many seconds of wall time (s).
     pub checkpoint_interval: f64,
     /// Whether the checkpoint at the end of a run stays, from which it can go on for longer.

@@ -5,6 +5,7 @@ use crate::prepared::Prepared;
 use farm::Air;
 use farm::solvers::{SolverError, Start, WindSource};
 use flow::Inflow;
+use flow::inflow::Planes;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -20,12 +21,7 @@ pub(crate) fn begin(
     progress: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<Air, StudyError> {
     let solver = setup.case.flow.solver;
-    let planes = if solver.wind == WindSource::Planes {
-        let name = setup.case.wind.planes.as_deref().unwrap_or_default();
-        Some(formats::turbulence_box::open(&setup.folder().join(name))?)
-    } else {
-        None
-    };
+    let planes = if solver.wind == WindSource::Planes { Some(planes(setup)?) } else { None };
     let start = Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress };
     (solver.begin)(start).map_err(|error| match error {
         SolverError::Lattice(error) => error.into(),
@@ -33,6 +29,15 @@ pub(crate) fn begin(
         SolverError::Other(error) => StudyError::Solver(error),
         error @ SolverError::NoPlanes { .. } => StudyError::Solver(Box::new(error)),
     })
+}
+
+/// The planes of wind of the file that `setup` names.
+///
+/// # Errors
+/// [`StudyError::File`] when it cannot be read.
+pub(crate) fn planes(setup: &Prepared) -> Result<Box<dyn Planes>, StudyError> {
+    let name = setup.case.wind.planes.as_deref().unwrap_or_default();
+    Ok(formats::turbulence_box::open(&setup.folder().join(name))?)
 }
 
 /// Begins the wind that `setup` reads from a file, where it does, and lets it go: what is wrong with the

@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use crate::observer::Estimate;
-use crate::outputs::{Outputs, outb, series};
+use crate::outputs::{Outputs, outb, series, volumes};
 use crate::prepared::Prepared;
 use farm::pitch_response::IdentificationCost;
 use formats::machine;
@@ -72,7 +72,8 @@ impl Prepared {
     ) -> Estimate {
         let plan = &self.plan;
         let field = (self.case.flow.solver.memory)(plan);
-        let turbulence = farm::wind::turbulence(&self.site());
+        let made = farm::wind::turbulence(&self.site()).map(|turbulence| turbulence.memory);
+        let turbulence = made.or(self.recorded.map(|recorded| recorded.memory));
         let checkpoints = || open.iter().map(|&index| self.checkpoints_of_run(index));
         let disks = || open.iter().map(|&index| self.disk_of_run(index, outputs));
         let kept = || open.iter().map(|&index| self.kept_checkpoint(index));
@@ -87,7 +88,7 @@ impl Prepared {
             spacing: plan.spacing,
             interval: plan.interval,
             n_steps: plan.n_steps,
-            memory: field + turbulence.map_or(0, |turbulence| turbulence.memory),
+            memory: field + turbulence.unwrap_or(0) + volumes::memory(self),
             disk: disks().max().unwrap_or(0),
             n_rows: series::n_rows(self),
             row: open.iter().map(|&index| self.row_of_run(index)).max().unwrap_or(0),

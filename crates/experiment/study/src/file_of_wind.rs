@@ -5,8 +5,8 @@ use basis::Vector3;
 use farm::case::Case;
 use farm::plan::Plan;
 use farm::solvers::WindSource;
-use farm::wind;
-use flow::inflow::TabulatedWind;
+use farm::wind::{self, Recorded, Site};
+use flow::inflow::{Planes, TabulatedWind};
 use formats::case::{CaseFile, objection};
 use std::error::Error;
 use std::sync::Arc;
@@ -40,29 +40,53 @@ pub(crate) fn table(
     Ok(Some(Arc::new(table)))
 }
 
-/// Key of the file that the wind of the case of `file` comes from, and its mean speed at hub height (m/s),
-/// that of `table` where it is one; none where it comes from no file.
+/// The planes of wind that the case of `file` reads, opened; none where it reads none.
 ///
 /// # Errors
 /// [`StudyError::Case`] at `wind.planes`.
-pub(crate) fn recorded_speed(
-    file: &CaseFile,
-    table: Option<&TabulatedWind>,
-) -> Result<Option<(&'static str, f64)>, StudyError> {
-    if let Some(table) = table {
-        return Ok(Some(("table", table.mean_speed(file.case.time.duration))));
-    }
-    if file.case.flow.solver.wind != WindSource::Planes {
+pub(crate) fn planes(file: &CaseFile) -> Result<Option<Box<dyn Planes>>, StudyError> {
+    let case = &file.case;
+    if case.flow.solver.wind != WindSource::Planes && !wind::enters_from_file(case) {
         return Ok(None);
     }
-    let name = file.case.wind.planes.as_deref().unwrap_or_default();
+    let name = case.wind.planes.as_deref().unwrap_or_default();
     match formats::turbulence_box::open(&file.folder().join(name)) {
-        Ok(planes) => Ok(Some(("planes", planes.grid().speed))),
+        Ok(planes) => Ok(Some(planes)),
         Err(error) => {
             let message = unreadable(&error);
             Err(StudyError::Case(objection(file, &["wind", "planes"], message)))
         }
     }
+}
+
+/// Key of the file that the wind of a case comes from, and its mean speed at hub height (m/s): `table` over
+/// `duration` (s), or `planes`; none where it comes from no file.
+pub(crate) fn recorded_speed(
+    table: Option<&TabulatedWind>,
+    planes: Option<&dyn Planes>,
+    duration: f64,
+) -> Option<(&'static str, f64)> {
+    let of_table = table.map(|table| ("table", table.mean_speed(duration)));
+    of_table.or_else(|| planes.map(|planes| ("planes", planes.grid().speed)))
+}
+
+/// `planes` of the case of `file` as they enter the domain of `site`; none where they do not.
+///
+/// # Errors
+/// [`StudyError::Case`] at `wind.planes` where they do not fit.
+pub(crate) fn at_inlet(
+    file: &CaseFile,
+    site: &Site,
+    planes: Option<&dyn Planes>,
+) -> Result<Option<Recorded>, StudyError> {
+    let Some(planes) = planes.filter(|_| wind::enters_from_file(site.case)) else {
+        return Ok(None);
+    };
+    let recorded = Recorded::new(site, planes).map_err(|error| {
+        let name = site.case.wind.planes.as_deref().unwrap_or_default();
+        StudyError::Case(objection(file, &["wind", "planes"], format!("{name}: {error}")))
+    })?;
+    Ok(Some(recorded))
 }
 
 /// That `case` is laid out for another wind than that of `table`.

@@ -10,7 +10,7 @@ use crate::warnings::{self, SetupWarning};
 use farm::assemble::{TurbineModel, controller};
 use farm::case::Case;
 use farm::operation::check_operation;
-use farm::wind::{self, Site};
+use farm::wind::{self, Recorded, Site};
 use farm::{Plan, plan};
 use flow::Inflow;
 use formats::case::{CaseFile, objection};
@@ -38,6 +38,8 @@ pub struct Prepared {
     pub plan: Plan,
     /// The wind that enters, its turbulence left out.
     pub mean_inflow: Arc<dyn Inflow>,
+    /// The planes of a file that enter, where they do.
+    pub recorded: Option<Recorded>,
     /// What a reader of the numbers must know.
     pub warnings: Vec<SetupWarning>,
     /// Folder that paths in the case are relative to.
@@ -68,8 +70,10 @@ impl Prepared {
         let models = machines.equipped(&case);
         threads::check(file)?;
         let table = file_of_wind::table(file, &plan)?;
-        let recorded = file_of_wind::recorded_speed(file, table.as_deref())?;
-        check_operation(&case, &plan, &models, recorded)?;
+        let planes = file_of_wind::planes(file)?;
+        let (planes, duration) = (planes.as_deref(), case.time.duration);
+        let speed = file_of_wind::recorded_speed(table.as_deref(), planes, duration);
+        check_operation(&case, &plan, &models, speed)?;
         check_control(&case, &plan, &models)?;
         let warned = file_of_wind::warning(&case, table.as_deref());
         let mean_inflow = match table {
@@ -78,10 +82,16 @@ impl Prepared {
         };
         let mut warnings = warnings::of(&case, &plan);
         let site = Site { case: &case, plan: &plan, models: &models };
+        let recorded = file_of_wind::at_inlet(file, &site, planes)?;
+        let of_file = recorded.map_or(Vec::new(), |recorded| recorded.warnings(&site));
         let turbulence = wind::turbulence(&site).and_then(|turbulence| turbulence.warning);
         let operation = warnings::of_operation(&case, &models);
-        let further =
-            turbulence.into_iter().chain(machines.warnings).chain(operation).chain(warned);
+        let further = turbulence
+            .into_iter()
+            .chain(machines.warnings)
+            .chain(operation)
+            .chain(warned)
+            .chain(of_file);
         warnings.extend(further.map(SetupWarning::from));
         Ok(Self {
             case_text: formats::case::write(&case),
@@ -92,6 +102,7 @@ impl Prepared {
             models,
             plan,
             mean_inflow,
+            recorded,
             warnings,
         })
     }

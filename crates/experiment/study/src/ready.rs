@@ -66,7 +66,9 @@ impl Ready {
         }
         let entering = {
             let observer: RefCell<&mut dyn Observer> = RefCell::new(&mut *observer);
-            wind::entering(&prepared.site(), &making_turbulence(stop, &observer))
+            let is_read = wind::enters_from_file(&prepared.case);
+            let planes = if is_read { Some(air::planes(&prepared)?) } else { None };
+            wind::entering(&prepared.site(), planes, &making_turbulence(stop, &observer))
         };
         let inflow = match entering {
             Err(InflowError::BrokenOff) => return Ok(ControlFlow::Break(())),

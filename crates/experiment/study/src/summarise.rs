@@ -364,6 +364,7 @@ fn turbulence_length_scale(setup: &Prepared) -> Option<f64> {
     let (wind, made) = (&setup.case.wind, setup.case.flow.solver.wind);
     let is_made = wind.turbulence_intensity > 0.0
         && wind.turbulence_model == TurbulenceModel::Mann
+        && wind.planes.is_none()
         && matches!(made, WindSource::AtInlet | WindSource::AroundRotors);
     is_made.then(|| farm::wind::length_scale(wind, setup.plan.hub_height))
 }

@@ -40,6 +40,7 @@ lines_at = ["T2"]
 inflow_at = ["T2"]
 plane_interval = 20.0
 volume_interval = 60.0
+volume_stride = 1
 helix_phases = 4
 crosswind_diameters = [1.0]
 "#;
@@ -141,8 +142,20 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
         assert_eq!(column.unit, channel.unit.symbol());
     }
 
-    // What it takes on the disk was known beforehand, what goes with the checkpoint included.
+    // All instants of a plane are in one file, all phases in another, and volumes are as fine as the flow.
+    let planes = formats::netcdf::read_planes(&run.join("planes/hub-height.nc")).expect("instants");
+    let times: Vec<f64> = planes.iter().map(|plane| plane.time).collect();
+    assert_eq!(times.len(), 5, "{times:?}");
+    assert!(times.is_sorted() && (times[0] - 60.0).abs() < 0.1, "{times:?}");
+    let phases = formats::netcdf::read_phases(&run.join("planes/hub-height-phases.nc"));
+    assert_eq!(phases.expect("phases").len(), 4);
+    let volume = fs::read(run.join("volumes/velocity-0000.vti")).expect("a volume");
     let setup = Prepared::read(&folder.path().join("case.toml"), &[]).expect("a sound case");
+    let [n_x, n_y, n_z] = setup.plan.n_cells.map(|n| n - 1);
+    let header = String::from_utf8_lossy(&volume[..400]).into_owned();
+    assert!(header.contains(&format!("\"0 {n_x} 0 {n_y} 0 {n_z}\"")), "{header}");
+
+    // What it takes on the disk was known beforehand, what goes with the checkpoint included.
     let reported = Outputs::standard().disk_of_run(&setup, &setup.case.runs[0]) as f64;
     let taken: usize = whole.iter().map(|(_, bytes)| bytes.len()).sum();
     assert!(

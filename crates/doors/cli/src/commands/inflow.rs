@@ -7,6 +7,8 @@ use clap::{Args, Subcommand, ValueEnum};
 use indicatif::{HumanBytes, ProgressBar};
 use miette::{IntoDiagnostic, miette};
 use std::path::PathBuf;
+use wakemix::farm::case::Shear;
+use wakemix::farm::wind::usual_length_scale;
 use wakemix::flow::inflow::iec::TurbulenceClass;
 use wakemix::flow::inflow::{MeanProfile, kaimal, mann};
 use wakemix::formats::machine;
@@ -86,7 +88,7 @@ pub(crate) struct GenerateArguments {
     /// Normal turbulence model of a category instead of --ti
     #[arg(long, value_enum, ignore_case = true)]
     class: Option<Class>,
-    /// Length scale L of Mann's tensor (m) [default: 33.6]
+    /// Length scale L of Mann's tensor (m) [default: standard deviation over shear at the hub, as in a case]
     #[arg(long, value_parser = positive)]
     length_scale: Option<f64>,
     /// Anisotropy Γ of Mann's tensor; 0 is isotropic [default: 3.9]
@@ -266,7 +268,13 @@ fn mann_of(arguments: &GenerateArguments, place: &Place) -> miette::Result<(BoxS
             "--scale belongs to --model kaimal"
         ));
     }
-    let length_scale = arguments.length_scale.unwrap_or(33.6);
+    let shear = match arguments.roughness_length {
+        None => Shear::PowerLaw { exponent: arguments.shear_exponent },
+        Some(roughness_length) => Shear::LogLaw { roughness_length },
+    };
+    let intensity = place.standard_deviation / arguments.speed;
+    let usual = || usual_length_scale(shear, intensity, arguments.hub_height);
+    let length_scale = arguments.length_scale.unwrap_or_else(usual);
     let anisotropy = arguments.gamma.unwrap_or(3.9);
     let settings = mann::MannSettings {
         n_points: place.n_points,
@@ -277,7 +285,7 @@ fn mann_of(arguments: &GenerateArguments, place: &Place) -> miette::Result<(BoxS
         seed: arguments.seed,
         threads: None,
     };
-    let model = format!("Mann, L {length_scale} m, Gamma {anisotropy}");
+    let model = format!("Mann, L {length_scale:.1} m, Gamma {anisotropy}");
     Ok((BoxSettings::Mann(settings), model))
 }
 

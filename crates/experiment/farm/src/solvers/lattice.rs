@@ -62,17 +62,16 @@ fn warnings(case: &Case, _: &Plan) -> Vec<String> {
 fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
     let mut objections = Vec::new();
     let mut object = |key, fault, fix| objections.push(Objection { key, fault, fix });
-    if wind.planes.is_some() {
-        let why = "flow.solver = \"lattice\" reads no wind from a file";
-        object("planes", Fault::NoUse(why), "leave it out, or use flow.solver = \"planes\"");
-    }
     if wind.turbulence_model == TurbulenceModel::Kaimal {
         let why =
             "Kaimal's turbulence has divergence, which the lattice would turn into pressure waves";
         let fix = "take turbulence_model = \"mann\", or flow.solver = \"turbulence\"";
         object("turbulence_model", Fault::Refused(why), fix);
     }
-    if wind.veer != 0.0 && flow.domain().sides == Sides::Slip {
+    if wind.veer != 0.0 && wind.planes.is_some() {
+        let why = "the file of wind.planes brings its own veer";
+        object("veer_deg_per_m", Fault::NoUse(why), "leave one of the two out");
+    } else if wind.veer != 0.0 && flow.domain().sides == Sides::Slip {
         let why = "a wind that veers blows through sides along which the air is to slip";
         let fix = "leave it out, or use flow.sides = \"periodic\"";
         object("veer_deg_per_m", Fault::NoUse(why), fix);

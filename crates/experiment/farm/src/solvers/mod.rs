@@ -84,7 +84,7 @@ impl Named for SolverKind {
 pub enum WindSource {
     /// The mean profile with veer and event, without turbulence.
     Deterministic,
-    /// The mean profile, and turbulence in a box that is carried into its domain.
+    /// The mean profile, and turbulence in a box that is carried into its domain; or planes from a file.
     AtInlet,
     /// The mean profile, and turbulence on a grid around the rotors.
     AroundRotors,

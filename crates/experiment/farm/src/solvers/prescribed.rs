@@ -103,7 +103,7 @@ fn planes_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
 }
 
 fn no_file(why: &'static str) -> Objection {
-    let fix = "leave it out, or use flow.solver = \"planes\"";
+    let fix = "leave it out, or use flow.solver = \"planes\" or \"lattice\"";
     Objection { key: "planes", fault: Fault::NoUse(why), fix }
 }
 

@@ -1,17 +1,17 @@
 //! Turbulence that is carried into a domain through its inlet.
 
-use super::{Site, Turbulence, length_scale, profile};
+use super::{Site, Turbulence, from_file, length_scale, profile};
 use crate::solvers::WindSource;
 use flow::Inflow;
 use flow::inflow::sizing::{Need, Size};
 use flow::inflow::turbulent::BLOCKING_HEIGHT;
-use flow::inflow::{InflowError, TurbulentInflow, mann, size_box};
+use flow::inflow::{InflowError, Planes, TurbulentInflow, mann, size_box};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Most memory that the turbulence may take (bytes); a longer run then meets the same wind again, and is
 /// warned of it.
-const TURBULENCE_MEMORY: u64 = 6 << 30;
+pub(super) const TURBULENCE_MEMORY: u64 = 6 << 30;
 
 /// The turbulence of a box for the inlet of `site`; none where none enters so.
 pub(super) fn turbulence(site: &Site) -> Option<Turbulence> {
@@ -26,15 +26,19 @@ pub(super) fn turbulence(site: &Site) -> Option<Turbulence> {
     Some(Turbulence { memory: size.peak_memory, n_points: size.n_points, warning })
 }
 
-/// The wind with turbulence that enters the domain of `site`, made now; none where no turbulence enters so.
-/// `progress` receives the share done; a break ends it.
+/// The wind with turbulence that enters the domain of `site`: that of `planes` where there are any, else made
+/// now; none where no turbulence enters so. `progress` receives the share done; a break ends it.
 ///
 /// # Errors
-/// [`InflowError`] when it cannot be made, [`InflowError::BrokenOff`] after a break.
+/// [`InflowError`] when it cannot be made or read, [`InflowError::BrokenOff`] after a break.
 pub fn entering(
     site: &Site,
+    planes: Option<Box<dyn Planes>>,
     progress: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<Option<Arc<dyn Inflow>>, InflowError> {
+    if let Some(planes) = planes {
+        return Ok(Some(Arc::new(from_file::entering(site, planes, progress)?)));
+    }
     let Some(size) = size(site) else { return Ok(None) };
     let (case, plan, wind) = (site.case, site.plan, &site.case.wind);
     let settings = mann::MannSettings {
@@ -56,7 +60,8 @@ pub fn entering(
 /// What the inlet needs of the turbulence: the box of air at the start, then a plane for every later step.
 fn size(site: &Site) -> Option<Size> {
     let (case, plan) = (site.case, site.plan);
-    if case.flow.solver.wind != WindSource::AtInlet || case.wind.turbulence_intensity == 0.0 {
+    let is_made = case.flow.solver.wind == WindSource::AtInlet && case.wind.planes.is_none();
+    if !is_made || case.wind.turbulence_intensity == 0.0 {
         return None;
     }
     let [length, width, height] = plan.n_cells.map(|n| n as f64 * plan.spacing);

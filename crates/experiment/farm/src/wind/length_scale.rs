@@ -8,22 +8,28 @@ pub(crate) const STANDARD: f64 = 33.6;
 /// Most hub heights that an eddy at a hub is long: the ground and the top of a boundary layer are no farther.
 const LONGEST: f64 = 2.0;
 
-/// Length scale L of Mann's tensor (m) of `wind` at `hub_height` (m): what its case says, or else
-/// σ_u / (dU/dz) there, between [`STANDARD`] and twice the hub height.
+/// Length scale L of Mann's tensor (m) of `wind` at `hub_height` (m): what its case says, or else the
+/// [usual] one.
+///
+/// [usual]: usual_length_scale
+pub fn length_scale(wind: &Wind, hub_height: f64) -> f64 {
+    let usual = || usual_length_scale(wind.shear, wind.turbulence_intensity, hub_height);
+    wind.length_scale.unwrap_or_else(usual)
+}
+
+/// σ_u / (dU/dz) (m) at `hub_height` (m) in wind of `turbulence_intensity` (–), between [`STANDARD`] and
+/// twice the hub height.
 ///
 /// Source: Kelly (2018), Wind Energ. Sci. 3, 533: in neutral air σ_u / (dU/dz) is Mann's length scale, found
 /// so from what an anemometer mast measures.
-pub fn length_scale(wind: &Wind, hub_height: f64) -> f64 {
-    if let Some(given) = wind.length_scale {
-        return given;
-    }
+pub fn usual_length_scale(shear: Shear, turbulence_intensity: f64, hub_height: f64) -> f64 {
     // Heights over which the wind at the hub would change by as much as it is: U / (dU/dz).
-    let depth = match wind.shear {
+    let depth = match shear {
         Shear::PowerLaw { exponent } if exponent > 0.0 => hub_height / exponent,
         Shear::PowerLaw { .. } => return STANDARD,
         Shear::LogLaw { roughness_length } => hub_height * (hub_height / roughness_length).ln(),
     };
-    (wind.turbulence_intensity * depth).min(LONGEST * hub_height).max(STANDARD)
+    (turbulence_intensity * depth).min(LONGEST * hub_height).max(STANDARD)
 }
 
 #[cfg(test)]
@@ -44,6 +50,7 @@ mod tests {
             kinematic_viscosity: 1.46e-5,
             turbulence_model: TurbulenceModel::Mann,
             planes: None,
+            beyond_planes: None,
             table: None,
             veer: 0.0,
             event: None,

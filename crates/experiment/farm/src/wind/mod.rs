@@ -3,12 +3,14 @@
 
 mod around_rotors;
 mod at_inlet;
+mod from_file;
 mod length_scale;
 mod walls;
 
 pub use around_rotors::prescribed;
 pub use at_inlet::entering;
-pub use length_scale::length_scale;
+pub use from_file::{ForeignWind, Recorded, enters_from_file};
+pub use length_scale::{length_scale, usual_length_scale};
 pub use walls::{inflow_share, wall_gain};
 
 use crate::assemble::TurbineModel;
@@ -74,9 +76,9 @@ pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
 }
 
 /// Why the profile that blows into `case` is not the one that its rough ground keeps, with the fix; none
-/// where it is, and where no air meets a rough ground.
+/// where it is, where a file brings it, and where no air meets a rough ground.
 pub fn off_balance(case: &Case) -> Option<String> {
-    if case.flow.solver.wind != WindSource::AtInlet {
+    if case.flow.solver.wind != WindSource::AtInlet || case.wind.planes.is_some() {
         return None;
     }
     let Ground::Rough { roughness_length: ground } = case.flow.domain().ground else { return None };

@@ -272,6 +272,7 @@ fn output_of(section: &Section, turbines: &[Placement], solver: Solver) -> Outpu
         plane_interval: section.optional_number("plane_interval"),
         crosswind_diameters: section.numbers("crosswind_diameters"),
         volume_interval: section.optional_number("volume_interval"),
+        volume_stride: section.whole("volume_stride") as usize,
         checkpoint_interval: section.number("checkpoint_interval"),
         keeps_checkpoint: section.choice("last_checkpoint") == "keep",
         further: further_of(section, solver),

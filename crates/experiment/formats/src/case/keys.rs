@@ -74,9 +74,10 @@ pub(super) static WIND: Table = Table {
         key("kinematic_viscosity", above(0.0, 1e-3), "m²/s", Value("1.46e-5"), "Kinematic viscosity of air; the default is air at 15 °C at sea level.")
             .mistaken(&[Slip { unit: "mm²/s", factor: 1e-6 }]),
         key("turbulence_model", Holds::Choice(&["mann", "kaimal"]), "", Value("\"mann\""), "`mann`: Mann's spectral tensor. `kaimal`: Kaimal's spectra with the exponential coherence of IEC 61400-1, with `flow.solver = \"turbulence\"` only: the lattice needs wind that is free of divergence."),
-        key("planes", Holds::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. `speed` then only sets the Strouhal numbers and the rotor's first speed."),
-        key("table", Holds::Text, "", Otherwise("none"), "With `flow.solver = \"uniform\"`: file with the wind over time, relative to this file: OpenFAST's uniform wind (`.wnd` or `.hh` with time, speed, direction, vertical speed, horizontal shear, exponent, linear shear, gust), or CSV with columns `time_s`, `speed_m_s` and, where wanted, `direction_deg` (counter-clockwise seen from above), `vertical_m_s`, `horizontal_shear`, `shear_exponent`, `vertical_shear`, `gust_m_s`. Lines join its rows, rows of equal time are a step, and it must last as long as the run. Shears are over the first turbine's diameter. `speed` then only sets the Strouhal numbers and the rotor's first speed; the profile is that of the case where the table has no exponent."),
-        key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. Not with `flow.solver = \"planes\"`; with `\"lattice\"` between periodic sides, and by 60° at most up to the top of the domain.")
+        key("planes", Holds::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"` or `\"lattice\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. In prescribed wind `speed` then only sets the Strouhal numbers and the rotor's first speed. The lattice takes the file's wind, its mean included, in at the inlet and makes no turbulence of its own: a plane reaches the place of the first turbine when it would in prescribed wind, and the air of the domain is filled with the planes before it. Below the lowest row of points the wind goes on to the ground in proportion to the profile of this case; `speed` sets the step, too."),
+        key("beyond_planes", Holds::Choice(&["repeat", "mean", "hold"]), "", Otherwise("refused; a HAWC2 box is repeated"), "With `planes` and the lattice: what blows where the domain is wider or higher than the grid of the file. `repeat`: its turbulence again, to the sides and upwards, for files of Mann's model, which have no seam there. `mean`: the mean wind of the nearest row without turbulence, which fades over a tenth of the grid's width or height. `hold`: the turbulence of the edge. In each of them the mean wind above the grid goes on in proportion to the profile of this case."),
+        key("table", Holds::Text, "", Otherwise("none"), "With `flow.solver = \"uniform\"` only (the lattice takes none: it would answer wind that changes everywhere at once with pressure waves): file with the wind over time, relative to this file: OpenFAST's uniform wind (`.wnd` or `.hh` with time, speed, direction, vertical speed, horizontal shear, exponent, linear shear, gust), or CSV with columns `time_s`, `speed_m_s` and, where wanted, `direction_deg` (counter-clockwise seen from above), `vertical_m_s`, `horizontal_shear`, `shear_exponent`, `vertical_shear`, `gust_m_s`. Lines join its rows, rows of equal time are a step, and it must last as long as the run. Shears are over the first turbine's diameter. `speed` then only sets the Strouhal numbers and the rotor's first speed; the profile is that of the case where the table has no exponent."),
+        key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. Not with `planes`; with `flow.solver = \"lattice\"` between periodic sides, and by 60° at most up to the top of the domain.")
             .mistaken(&[Slip { unit: "deg per 100 m", factor: 0.01 }]),
         key("event", Holds::Event, "", Otherwise("nothing happens"), "With `flow.solver = \"uniform\"`: what happens in time, at all places at once: `event = { kind = \"step\", start = 100.0, speed = 12.0 }`."),
     ],
@@ -252,7 +253,7 @@ pub(super) static OUTPUT: Table = Table {
             above(0.0, 1e6),
             "s",
             Otherwise("no instantaneous planes"),
-            "Instantaneous planes every so many seconds of the analysed time.",
+            "Instantaneous planes every so many seconds of the analysed time, all instants of a plane in one file.",
         ),
         key(
             "crosswind_diameters",
@@ -288,6 +289,13 @@ pub(super) static OUTPUT: Table = Table {
             "s",
             Otherwise("no volumes"),
             "Volume snapshots (VTK) every so many seconds; large.",
+        ),
+        key(
+            "volume_stride",
+            Holds::Whole { least: 1, most: 16 },
+            "–",
+            Value("2"),
+            "Volumes hold every so many cells along each axis: 2 an eighth of them, 1 all of the flow's resolution. A cell takes 12 bytes on the disk, and as many of memory while a volume is written; `--dry-run` tells both.",
         ),
         key(
             "checkpoint_interval",

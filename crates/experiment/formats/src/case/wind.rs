@@ -6,7 +6,7 @@ use super::keys::{self, EVENTS};
 use super::section::Section;
 use super::text::{degrees, quoted};
 use farm::case::{
-    Change, CirclingDisk, FROM_WEST, Flow, Sense, Shear, TurbulenceModel, Wind, WindEvent,
+    Beyond, Change, CirclingDisk, FROM_WEST, Flow, Sense, Shear, TurbulenceModel, Wind, WindEvent,
 };
 use farm::solvers::{Fault, Objection, WindSource};
 use std::fmt::Write;
@@ -29,6 +29,7 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
             _ => TurbulenceModel::Mann,
         },
         planes: section.as_ref().and_then(|section| section.optional_text("planes")),
+        beyond_planes: section.as_ref().and_then(beyond_of),
         table: section.as_ref().and_then(|section| section.optional_text("table")),
         veer: number("veer_deg_per_m").to_radians(),
         event: section.as_ref().and_then(|section| {
@@ -36,6 +37,19 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
             event_of(section, entry, number("speed"))
         }),
     }
+}
+
+/// Names of what may blow beyond the planes of a file.
+const BEYOND: [(&str, Beyond); 3] =
+    [("repeat", Beyond::Repeat), ("mean", Beyond::Mean), ("hold", Beyond::Hold)];
+
+/// What blows beyond the planes, where `section` says so.
+fn beyond_of(section: &Section) -> Option<Beyond> {
+    if !section.has("beyond_planes") {
+        return None;
+    }
+    let chosen = section.choice("beyond_planes");
+    BEYOND.iter().find(|(name, _)| *name == chosen).map(|(_, beyond)| *beyond)
 }
 
 /// How the mean speed of `section` grows with height; notes when two laws are asked for.
@@ -75,6 +89,13 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
     if wind.table.is_some() {
         check_table(section, wind, flow);
     }
+    if wind.beyond_planes.is_some()
+        && (wind.planes.is_none() || flow.solver.wind != WindSource::AtInlet)
+    {
+        let why = "it is for a file of wind.planes at the inlet of resolved flow".to_owned();
+        let kind = ProblemKind::NoUse { key: section.key_path("beyond_planes"), why };
+        note("beyond_planes", kind, "leave it out");
+    }
     if let Some(event) = &wind.event {
         let start = start_of(event);
         if start >= duration {
@@ -91,7 +112,14 @@ fn check_table(section: &Section, wind: &Wind, flow: &Flow) {
         section.findings().note(section.span_of(key), kind, Some(fix.to_owned()));
     };
     if flow.solver.wind != WindSource::Deterministic {
-        let why = format!("flow.solver = \"{}\" reads no wind over time", flow.solver.name);
+        let why = if flow.solver.wind == WindSource::AtInlet {
+            format!(
+                "flow.solver = \"{}\" would answer wind that changes everywhere at once with pressure waves",
+                flow.solver.name
+            )
+        } else {
+            format!("flow.solver = \"{}\" reads no wind over time", flow.solver.name)
+        };
         no_use("table", why, "leave it out, or use flow.solver = \"uniform\"");
         return;
     }
@@ -247,6 +275,10 @@ pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
     writeln!(text, "turbulence_model = \"{model}\"")?;
     if let Some(planes) = &wind.planes {
         writeln!(text, "planes = {}", quoted(planes))?;
+    }
+    if let Some(beyond) = wind.beyond_planes {
+        let name = BEYOND.iter().find(|(_, one)| *one == beyond).map_or("", |(name, _)| name);
+        writeln!(text, "beyond_planes = \"{name}\"")?;
     }
     if let Some(table) = &wind.table {
         writeln!(text, "table = {}", quoted(table))?;

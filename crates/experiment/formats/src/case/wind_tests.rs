@@ -2,6 +2,7 @@
 
 use super::*;
 use basis::Vector3;
+use farm::case::Beyond;
 use farm::plan::{Footprint, plan};
 use farm::wind::{deterministic, off_balance};
 use flow::inflow::DeterministicWind;
@@ -196,9 +197,24 @@ fn what_cannot_be_is_reported_with_its_line() {
         ),
         (step, "turbulence", "`wind.event` has no effect here"),
         (
-            "planes = \"field.bts\"",
+            "planes = \"field.bts\"\nveer_deg_per_m = 0.1",
             "lattice",
-            "windy.toml:6: `wind.planes` has no effect here: flow.solver = \"lattice\" reads no wind from a file; leave it out, or use flow.solver = \"planes\"",
+            "windy.toml:7: `wind.veer_deg_per_m` has no effect here: the file of wind.planes brings its own veer",
+        ),
+        (
+            "beyond_planes = \"mean\"",
+            "lattice",
+            "windy.toml:6: `wind.beyond_planes` has no effect here: it is for a file of wind.planes at the inlet of resolved flow",
+        ),
+        (
+            "planes = \"field.bts\"\nbeyond_planes = \"mean\"",
+            "planes",
+            "windy.toml:7: `wind.beyond_planes` has no effect here",
+        ),
+        (
+            "table = \"u.csv\"",
+            "lattice",
+            "windy.toml:6: `wind.table` has no effect here: flow.solver = \"lattice\" would answer wind that changes everywhere at once",
         ),
         ("planes = \"field.bts\"", "uniform", "`wind.planes` has no effect here"),
         ("planes = \"field.bts\"", "turbulence", "`wind.planes` has no effect here"),
@@ -228,4 +244,13 @@ fn what_cannot_be_is_reported_with_its_line() {
     let read = text("planes = \"field.bts\"").replace("\"uniform\"", "\"planes\"");
     let case = parse("windy.toml", &read, &[]).unwrap();
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
+    for (name, beyond) in
+        [("repeat", Beyond::Repeat), ("mean", Beyond::Mean), ("hold", Beyond::Hold)]
+    {
+        let text = text(&format!("planes = \"field.bts\"\nbeyond_planes = \"{name}\""))
+            .replace("\"uniform\"", "\"lattice\"");
+        let case = parse("windy.toml", &text, &[]).unwrap();
+        assert_eq!(case.wind.beyond_planes, Some(beyond));
+        assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
+    }
 }

@@ -92,6 +92,9 @@ fn write_output(text: &mut String, output: &Output, turbines: &[Placement]) -> s
     if let Some(interval) = output.volume_interval {
         writeln!(text, "volume_interval = {interval:?}")?;
     }
+    if output.volume_stride != 2 {
+        writeln!(text, "volume_stride = {}", output.volume_stride)?;
+    }
     writeln!(text, "checkpoint_interval = {:?}", output.checkpoint_interval)?;
     // Only where it is used, so that the text of a case without it stays what it was.
     if !output.keeps_checkpoint {

@@ -3,7 +3,7 @@
 use super::{Refusal, survives};
 use crate::case;
 use crate::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
-use crate::records::{self, Manifest, RunFolder, SeriesWriter, read_study};
+use crate::records::{self, AtPhase, Manifest, PlaneSetting, RunFolder, SeriesWriter, read_study};
 use basis::records::{Plane, PlaneAxes, examples};
 use farm::case::{Case, Time, Wind};
 use std::fs;
@@ -37,8 +37,11 @@ fn study() -> Vec<(&'static str, Vec<u8>)> {
     let mut series = SeriesWriter::create(&folder.series_path(), &[basis::channels::TIME]).unwrap();
     series.write(&[0.1]).unwrap();
     series.finish().unwrap();
-    records::write_mean_plane(&folder, &plane()).unwrap();
-    records::write_phase_plane(&folder, 0.5, &plane()).unwrap();
+    let (setting, plane) = (PlaneSetting::example(), plane());
+    records::write_mean_plane(&folder, &setting, &plane).unwrap();
+    let at_phase = |phase| AtPhase { phase, n_instants: 3, plane: &plane };
+    let phases = [0.0, 0.5].map(at_phase);
+    records::write_phase_planes(&folder, &setting, &phases).unwrap();
     // A run without volumes has an empty folder of them, which a file of another kind keeps here.
     fs::write(folder.volumes_path().join("kept"), []).unwrap();
     records::write_summary(&folder, &examples::full()).unwrap();
@@ -47,7 +50,7 @@ fn study() -> Vec<(&'static str, Vec<u8>)> {
         "run/summary.json",
         "run/series.csv",
         "run/planes/hub-height-mean.nc",
-        "run/planes/hub-height-phase-029.nc",
+        "run/planes/hub-height-phases.nc",
         "run/volumes/kept",
     ];
     files.map(|name| (name, fs::read(study.path().join(name)).unwrap())).to_vec()

@@ -5,6 +5,7 @@
 
 mod manifest;
 mod pitch_responses;
+mod planes;
 mod series;
 mod series_file;
 mod study;
@@ -17,14 +18,18 @@ pub use manifest::{Machine, Manifest, read_manifest, sha256, sha256_of_file, wri
 pub use pitch_responses::{
     PitchResponseRecord, add_pitch_responses, read_pitch_responses, write_pitch_responses,
 };
+pub use planes::{
+    AtPhase, InstantWriter, PlacedTurbine, PlaneSetting, write_last_plane, write_mean_plane,
+    write_phase_planes,
+};
 pub use series::SeriesWriter;
 pub use series_file::{SeriesFile, read_series};
 pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
 pub use sweep::{read_sweep, remove_sweep, sweep_path, write_sweep, write_table};
 
 use crate::lock::Lock;
-use crate::{FileError, atomic, leftovers, netcdf, vtk};
-use basis::records::{Plane, SCHEMA_VERSION, Summary};
+use crate::{FileError, atomic, leftovers, vtk};
+use basis::records::{SCHEMA_VERSION, Summary};
 use flow::lattice::Volume;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -194,6 +199,12 @@ impl RunFolder {
         self.path.join("checkpoint")
     }
 
+    /// `planes/hub-height.nc`: the plane called `plane` at instants; until the run is complete they are in
+    /// `planes/hub-height.nc.part`.
+    pub fn instants_path(&self, plane: &str) -> PathBuf {
+        self.planes_path().join(format!("{plane}.nc"))
+    }
+
     /// Folder of the planes.
     pub fn planes_path(&self) -> PathBuf {
         self.path.join("planes")
@@ -250,43 +261,6 @@ fn gone(removed: std::io::Result<()>, path: &Path) -> Result<(), FileError> {
         }
         _ => Ok(()),
     }
-}
-
-/// Writes the mean of a plane over the analysed time: `planes/NAME-mean.nc`.
-///
-/// # Errors
-/// [`FileError::System`].
-pub fn write_mean_plane(folder: &RunFolder, plane: &Plane) -> Result<(), FileError> {
-    write_plane(folder, &format!("{}-mean.nc", plane.name), plane)
-}
-
-/// Writes a plane at an instant, the `index`-th kept: `planes/NAME-0000.nc`.
-///
-/// # Errors
-/// [`FileError::System`].
-pub fn write_instant_plane(folder: &RunFolder, index: u64, plane: &Plane) -> Result<(), FileError> {
-    write_plane(folder, &format!("{}-{index:04}.nc", plane.name), plane)
-}
-
-/// Writes a plane at the run's last instant: `planes/NAME-last.nc`.
-///
-/// # Errors
-/// [`FileError::System`].
-pub fn write_last_plane(folder: &RunFolder, plane: &Plane) -> Result<(), FileError> {
-    write_plane(folder, &format!("{}-last.nc", plane.name), plane)
-}
-
-/// Writes the mean of a plane at one `phase` (rad) of the excitation: `planes/NAME-phase-010.nc`, the phase
-/// in degrees.
-///
-/// # Errors
-/// [`FileError::System`].
-pub fn write_phase_plane(folder: &RunFolder, phase: f64, plane: &Plane) -> Result<(), FileError> {
-    write_plane(folder, &format!("{}-phase-{:03.0}.nc", plane.name, phase.to_degrees()), plane)
-}
-
-fn write_plane(folder: &RunFolder, name: &str, plane: &Plane) -> Result<(), FileError> {
-    netcdf::write_plane(&folder.planes_path().join(name), &folder.run(), plane)
 }
 
 /// Writes a volume, the `index`-th kept: `volumes/velocity-0000.vti`.

@@ -1,5 +1,6 @@
 //! A study read back from its folder.
 
+use super::planes::{LAST, MEAN, PHASES};
 use super::{Manifest, RunFolder, SeriesFile, read_manifest, read_summary};
 use crate::{FileError, case, netcdf};
 use basis::records::{Plane, Summary, Warning, WarningKind};
@@ -39,9 +40,9 @@ pub struct RunRecords {
     pub mean_planes: Vec<Plane>,
     /// The same planes at the run's last instant.
     pub last_planes: Vec<Plane>,
-    /// Planes averaged at phases of the excitation, by phase (rad).
+    /// Planes averaged at phases of the excitation (rad).
     pub phase_planes: Vec<(f64, Plane)>,
-    /// Files of planes at earlier instants, by name and time.
+    /// Files of planes at instants, by name.
     pub instant_paths: Vec<PathBuf>,
     /// Files of volumes, by time.
     pub volume_paths: Vec<PathBuf>,
@@ -193,12 +194,6 @@ fn warnings(runs: &[RunRecords], latest: &Manifest) -> Vec<Warning> {
     mixed.chain(runs.iter().filter(computes_otherwise).map(warn_of_bits)).collect()
 }
 
-/// The phase (rad) in a file's `name` such as `hub-height-phase-010.nc`.
-fn phase_of(name: &str) -> Option<f64> {
-    let (_, degrees) = name.strip_suffix(".nc")?.rsplit_once("-phase-")?;
-    degrees.parse().ok().map(f64::to_radians)
-}
-
 fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileError> {
     let mut records = RunRecords {
         summary: read_summary(folder)?,
@@ -215,11 +210,11 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
         if name.starts_with('.') || !name.ends_with(".nc") {
             continue;
         }
-        if name.ends_with("-mean.nc") {
+        if name.ends_with(MEAN) {
             records.mean_planes.push(netcdf::read_plane(&path)?);
-        } else if let Some(phase) = phase_of(&name) {
-            records.phase_planes.push((phase, netcdf::read_plane(&path)?));
-        } else if name.ends_with("-last.nc") {
+        } else if name.ends_with(PHASES) {
+            records.phase_planes.extend(netcdf::read_phases(&path)?);
+        } else if name.ends_with(LAST) {
             records.last_planes.push(netcdf::read_plane(&path)?);
         } else {
             records.instant_paths.push(path);
@@ -282,9 +277,15 @@ mod tests {
             SeriesWriter::create(&folder.series_path(), &[basis::channels::TIME]).unwrap();
         series.write(&[0.1]).unwrap();
         series.finish().unwrap();
-        write_mean_plane(&folder, &plane("hub-height", 1200.0)).unwrap();
-        write_last_plane(&folder, &plane("hub-height", 0.0)).unwrap();
-        write_instant_plane(&folder, 3, &plane("hub-height", 0.0)).unwrap();
+        let (setting, now) = (PlaneSetting::example(), plane("hub-height", 0.0));
+        write_mean_plane(&folder, &setting, &plane("hub-height", 1200.0)).unwrap();
+        write_last_plane(&folder, &setting, &now).unwrap();
+        let at_phase = AtPhase { phase: 0.5, n_instants: 3, plane: &now };
+        write_phase_planes(&folder, &setting, &[at_phase]).unwrap();
+        let instants = folder.instants_path("hub-height");
+        let mut instants = InstantWriter::create(&instants, &setting, &now).unwrap();
+        instants.write(&now).unwrap();
+        instants.finish().unwrap();
         let volume = Volume {
             origin: Vector3::ZERO,
             spacing: 30.0,
@@ -314,7 +315,8 @@ mod tests {
         assert_eq!(run.series.read(|_| true).unwrap().columns, [[0.1]]);
         assert_eq!(run.mean_planes, [plane("hub-height", 1200.0)]);
         assert_eq!(run.last_planes, [plane("hub-height", 0.0)]);
-        assert!(run.instant_paths[0].ends_with("baseline/planes/hub-height-0003.nc"));
+        assert!(run.instant_paths[0].ends_with("baseline/planes/hub-height.nc"));
+        assert_eq!(run.phase_planes, [(0.5, plane("hub-height", 0.0))]);
         assert!(run.volume_paths[0].ends_with("baseline/volumes/velocity-0000.vti"));
         assert!(run.manifest.finished.is_some() && run.manifest.machine.n_cores > 0);
         assert!(records.warnings.is_empty() && records.incomplete.is_empty());

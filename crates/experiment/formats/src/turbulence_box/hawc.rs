@@ -246,6 +246,11 @@ impl Planes for HawcPlanes {
         self.grid
     }
 
+    /// As Mann's boxes do, for which the format was made.
+    fn repeats_across(&self) -> bool {
+        true
+    }
+
     fn read(&mut self, step: usize, values: &mut [[f32; 3]]) -> Result<(), InflowError> {
         for (index, component) in self.components.iter_mut().enumerate() {
             component

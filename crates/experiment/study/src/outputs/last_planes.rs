@@ -28,8 +28,9 @@ impl Output for LastPlanes {
 
     fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
         if let Some(fields) = scene.farm.flow().fields() {
+            let setting = slices::setting(scene.setup, scene.run);
             for slice in slices::of(scene.setup) {
-                write_last_plane(scene.folder, &slice.plane(fields))?;
+                write_last_plane(scene.folder, &setting, &slice.plane(fields))?;
             }
         }
         Ok(())

@@ -67,8 +67,9 @@ impl Output for MeanPlanes {
     }
 
     fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        let setting = slices::setting(scene.setup, scene.run);
         for average in self.averages.iter().filter(|average| average.n_instants() > 0) {
-            write_mean_plane(scene.folder, &average.mean())?;
+            write_mean_plane(scene.folder, &setting, &average.mean())?;
         }
         Ok(())
     }

@@ -18,7 +18,7 @@ mod schedule;
 mod section;
 pub(crate) mod series;
 pub(crate) mod slices;
-mod volumes;
+pub(crate) mod volumes;
 mod wind_records;
 mod writers;
 

@@ -1,17 +1,17 @@
-//! The plane at hub height averaged by the phase of the first helix: `planes/hub-height-phase-010.nc`.
+//! The plane at hub height averaged by the phase of the first helix: `planes/hub-height-phases.nc`.
 
 use super::mean_planes::AVERAGING_INTERVAL;
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
-use super::slices::{self, FILE_BYTES, POINT_BYTES, SUM_BYTES, Slice};
+use super::slices::{self, POINT_BYTES, SUM_BYTES, Slice};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use analysis::wake::PhaseAverage;
 use basis::keys::Values;
 use control::excitation_rate;
 use farm::case::Run;
-use formats::records::write_phase_plane;
+use formats::records::{AtPhase, write_phase_planes};
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "phase planes",
@@ -30,9 +30,9 @@ fn requested(setup: &Prepared, run: &Run) -> Option<(usize, f64)> {
 }
 
 fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
-    let n_phases = requested(setup, run).map_or(0, |(n_phases, _)| n_phases as u64);
-    let of_phase = slices::n_points_at_hub_height(setup) * (POINT_BYTES + SUM_BYTES) + FILE_BYTES;
-    n_phases * of_phase
+    let Some((n_phases, _)) = requested(setup, run) else { return 0 };
+    let of_phase = slices::n_points_at_hub_height(setup) * (POINT_BYTES + SUM_BYTES);
+    n_phases as u64 * of_phase + slices::bytes_beside(setup)
 }
 
 struct PhasePlanes {
@@ -70,9 +70,12 @@ impl Output for PhasePlanes {
     }
 
     fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        for phase in self.average.planes() {
-            write_phase_plane(scene.folder, phase.phase, &phase.plane)?;
-        }
-        Ok(())
+        let planes = self.average.planes();
+        let phases: Vec<AtPhase> = planes
+            .iter()
+            .map(|one| AtPhase { phase: one.phase, n_instants: one.n_instants, plane: &one.plane })
+            .collect();
+        let setting = slices::setting(scene.setup, scene.run);
+        Ok(write_phase_planes(scene.folder, &setting, &phases)?)
     }
 }

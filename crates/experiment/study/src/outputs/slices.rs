@@ -1,13 +1,18 @@
 //! The planes of resolved flow that a run keeps: averaged, now and then, and last of all.
 
 use crate::prepared::Prepared;
+use basis::Vector3;
 use basis::records::{Plane, PlaneAxes};
+use farm::case::Run;
 use flow::fields::FieldSource;
+use formats::records::{PlacedTurbine, PlaneSetting};
 
 /// Bytes of a point in a file: three components.
 pub(super) const POINT_BYTES: u64 = 3 * size_of::<f32>() as u64;
-/// Bytes of a plane's file beside its points: header and coordinates.
-pub(super) const FILE_BYTES: u64 = 8 << 10;
+/// Bytes of a plane's file beside its points and turbines: header and coordinates.
+const FILE_BYTES: u64 = 8 << 10;
+/// Bytes of a turbine in a plane's file, at most: name, place and diameter.
+const TURBINE_BYTES: u64 = 128;
 /// Bytes of a point of a sum, three components, in a checkpoint and the one before it.
 pub(super) const SUM_BYTES: u64 = 2 * 3 * size_of::<f64>() as u64;
 
@@ -76,9 +81,37 @@ pub(super) fn count(setup: &Prepared) -> u64 {
     (1 + along(setup).len() + setup.case.output.crosswind_diameters.len()) as u64
 }
 
+/// Bytes of a plane's file beside its points.
+pub(super) fn bytes_beside(setup: &Prepared) -> u64 {
+    FILE_BYTES + setup.case.turbines.len() as u64 * TURBINE_BYTES
+}
+
 /// Bytes of a file of each plane.
 pub(super) fn file_bytes(setup: &Prepared) -> u64 {
-    n_points(setup) * POINT_BYTES + count(setup) * FILE_BYTES
+    n_points(setup) * POINT_BYTES + count(setup) * bytes_beside(setup)
+}
+
+/// What the planes of `run` are taken of.
+pub(super) fn setting(setup: &Prepared, run: &Run) -> PlaneSetting {
+    let (case, plan) = (&setup.case, &setup.plan);
+    let turbine = |(index, foot): (usize, &Vector3)| {
+        let definition = &setup.models[index].definition;
+        PlacedTurbine {
+            name: case.turbines[index].name.clone(),
+            hub: (*foot + Vector3::Z * definition.rotor.hub_height).to_array(),
+            rotor_diameter: definition.rotor_diameter(),
+            is_there: run.control[index].is_there(),
+        }
+    };
+    PlaneSetting {
+        case: case.name.clone(),
+        run: run.name.clone(),
+        wind_speed: case.wind.speed,
+        wind_direction_deg: case.wind.direction_deg(),
+        turbulence_intensity: case.wind.turbulence_intensity,
+        air_density: case.wind.air_density,
+        turbines: plan.positions.iter().enumerate().map(turbine).collect(),
+    }
 }
 
 /// Points of the plane at hub height (–).

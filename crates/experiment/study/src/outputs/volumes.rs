@@ -10,14 +10,12 @@ use basis::keys::Values;
 use farm::case::Run;
 use formats::records::write_volume;
 
-/// Every so many cells along each axis are kept.
-const STRIDE: usize = 2;
 /// Bytes of a file beside its points.
 const HEADER_BYTES: u64 = 1 << 10;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "volumes",
-    keys: Keys::OfOutput(&["volume_interval"]),
+    keys: Keys::OfOutput(&["volume_interval", "volume_stride"]),
     fed_by: FedBy::ResolvedFlow,
     disk,
     begin,
@@ -27,10 +25,22 @@ fn schedule(setup: &Prepared) -> Option<Schedule> {
     setup.case.output.volume_interval.map(|interval| Schedule::analysed(&setup.plan, interval))
 }
 
+/// Bytes of the points of a volume, on the disk as in memory.
+fn bytes(setup: &Prepared) -> u64 {
+    let stride = setup.case.output.volume_stride;
+    let n_points = setup.plan.n_cells.map(|n| n.div_ceil(stride) as u64);
+    n_points.iter().product::<u64>() * POINT_BYTES
+}
+
+/// Memory (bytes) that a run of `setup` takes while it writes a volume; none where it writes none.
+pub(crate) fn memory(setup: &Prepared) -> u64 {
+    let is_kept = KIND.fed_by.admits(&setup.case) && setup.case.output.volume_interval.is_some();
+    if is_kept { bytes(setup) } else { 0 }
+}
+
 fn disk(setup: &Prepared, _run: &Run, _: &Values) -> u64 {
     let n_times = schedule(setup).map_or(0, |schedule| schedule.count(setup.plan.n_steps));
-    let n_points: usize = setup.plan.n_cells.iter().map(|n| n.div_ceil(STRIDE)).product();
-    n_times * (n_points as u64 * POINT_BYTES + HEADER_BYTES)
+    n_times * (bytes(setup) + HEADER_BYTES)
 }
 
 struct Volumes {
@@ -52,7 +62,8 @@ impl Output for Volumes {
 
     fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
         if let Some(fields) = scene.farm.flow().fields() {
-            write_volume(scene.folder, self.n_kept, &fields.volume(STRIDE))?;
+            let stride = scene.setup.case.output.volume_stride;
+            write_volume(scene.folder, self.n_kept, &fields.volume(stride))?;
             self.n_kept += 1;
         }
         Ok(())

@@ -2,7 +2,8 @@
 //!
 //! [`MeanProfile`] alone is steady wind, [`DeterministicWind`] adds veer and one event; [`mann::generate`]
 //! and [`kaimal::generate`] make a [`TurbulenceBox`]. For a solver's inlet [`TurbulentInflow`] carries it
-//! past the farm on top of a profile, [`sizing`] says how large it must be. Without a flow solver,
+//! past the farm on top of a profile, [`sizing`] says how large it must be, and [`RecordedInflow`] brings
+//! the planes of a file. Without a flow solver,
 //! [`PrescribedWind`] is the flow: any of these winds, or [`Planes`] that come from a file one by one.
 //! Sources: Mann (1994) J. Mann, J. Fluid Mech. 273 (1994) 141-168; Mann (1998) J. Mann, Probabilistic
 //! Engineering Mechanics 13 (1998) 269-282.
@@ -16,6 +17,7 @@ mod noise;
 pub mod planes;
 pub mod prescribed;
 pub mod profile;
+pub mod recorded;
 pub mod sampled;
 pub mod sizing;
 pub mod spectra;
@@ -29,6 +31,7 @@ pub use deterministic::DeterministicWind;
 pub use planes::{PlaneGrid, Planes};
 pub use prescribed::PrescribedWind;
 pub use profile::{GREATEST_ROUGHNESS, MeanProfile};
+pub use recorded::RecordedInflow;
 pub use sampled::sampled;
 pub use sizing::size_box;
 pub use tabulated::TabulatedWind;

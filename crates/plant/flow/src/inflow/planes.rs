@@ -67,6 +67,11 @@ pub trait Planes: Send + Sync {
     /// # Errors
     /// [`InflowError::Plane`] when it cannot be had.
     fn read(&mut self, step: usize, values: &mut [[f32; 3]]) -> Result<(), InflowError>;
+
+    /// Whether the planes are of a kind whose right end goes on at the left, and whose top at the bottom.
+    fn repeats_across(&self) -> bool {
+        false
+    }
 }
 
 /// Planes of a box of fluctuations on top of a mean speed per row.

@@ -1,0 +1,165 @@
+//! Recorded wind at an inlet: the record's own on its grid, and what was chosen beyond it.
+
+use super::*;
+
+const GRID: PlaneGrid = PlaneGrid {
+    n_y: 5,
+    n_z: 4,
+    spacing: [20.0, 25.0],
+    first: [-40.0, 40.0],
+    interval: 0.5,
+    speed: 10.0,
+    n_steps: 24,
+    repeats: true,
+};
+const PROFILE: MeanProfile = MeanProfile::PowerLaw { hub_height: 90.0, speed: 10.0, exponent: 0.2 };
+const ENTRY: Entry = Entry { origin_x: 0.0, extent: [-60.0, 100.0], duration: 8.0 };
+
+struct Given(PlaneGrid);
+
+impl Given {
+    /// A wind that tells its place.
+    fn wind(step: usize, y: usize, z: usize) -> [f32; 3] {
+        let phase = (7 * step + 3 * y + 5 * z) as f32;
+        [9.0 + 0.5 * z as f32 + phase.sin(), 0.7 * phase.cos(), 0.3 * (2.0 * phase).sin()]
+    }
+}
+
+impl Planes for Given {
+    fn grid(&self) -> PlaneGrid {
+        self.0
+    }
+
+    fn read(&mut self, step: usize, values: &mut [[f32; 3]]) -> Result<(), InflowError> {
+        let n_y = self.0.n_y;
+        for (point, value) in values.iter_mut().enumerate() {
+            *value = Self::wind(step, point % n_y, point / n_y);
+        }
+        Ok(())
+    }
+}
+
+fn entering(grid: PlaneGrid, entry: Entry, beyond: Beyond) -> RecordedInflow {
+    RecordedInflow::read(Box::new(Given(grid)), entry, PROFILE, beyond, &|_| true).unwrap()
+}
+
+fn at(inflow: &RecordedInflow, time: f64, x: f64, y: f64, z: f64) -> Vector3 {
+    let mut wind = [Vector3::ZERO];
+    inflow.sample(time, &[Vector3::new(x, y, z)], &mut wind);
+    wind[0]
+}
+
+#[track_caller]
+fn assert_near(found: Vector3, [u, v, w]: [f32; 3]) {
+    let expected = Vector3::new(f64::from(u), f64::from(v), f64::from(w));
+    assert!((found - expected).length() < 2e-5, "{found}, expected {expected}");
+}
+
+fn place(y: usize, z: usize) -> (f64, f64) {
+    (-40.0 + 20.0 * y as f64, 40.0 + 25.0 * z as f64)
+}
+
+/// Mean of row `z` over time and width.
+fn mean(z: usize) -> [f32; 3] {
+    let mut sum = [0.0_f64; 3];
+    for step in 0..24 {
+        for y in 0..5 {
+            (0..3).for_each(|axis| sum[axis] += f64::from(Given::wind(step, y, z)[axis]));
+        }
+    }
+    sum.map(|sum| (sum / 120.0) as f32)
+}
+
+#[test]
+fn it_is_the_record_on_its_grid_and_arrives_by_its_speed() {
+    for beyond in [Beyond::Repeat, Beyond::Hold, Beyond::Mean] {
+        let inflow = entering(GRID, ENTRY, beyond);
+        for (step, y, z) in [(0, 0, 0), (3, 4, 3), (11, 2, 1), (23, 3, 2)] {
+            let (left, height) = place(y, z);
+            let time = 0.5 * step as f64;
+            assert_near(at(&inflow, time, 0.0, left, height), Given::wind(step, y, z));
+            // 50 m upstream it was 5 s earlier, and the record comes round.
+            assert_near(
+                at(&inflow, time, -50.0, left, height),
+                Given::wind((step + 10) % 24, y, z),
+            );
+            assert_near(at(&inflow, time + 12.0, 0.0, left, height), Given::wind(step, y, z));
+        }
+        // Linear between points and in time.
+        let [a, b] = [Given::wind(4, 1, 1), Given::wind(5, 1, 1)];
+        let half = std::array::from_fn(|axis| 0.25 * a[axis] + 0.75 * b[axis]);
+        assert_near(at(&inflow, 2.375, 0.0, -20.0, 65.0), half);
+    }
+}
+
+#[test]
+fn below_the_grid_all_goes_with_the_profile() {
+    let inflow = entering(GRID, ENTRY, Beyond::Hold);
+    let factor = (10.0_f64 / 40.0).powf(0.2) as f32;
+    let expected = Given::wind(6, 2, 0).map(|wind| factor * wind);
+    assert_near(at(&inflow, 3.0, 0.0, 0.0, 10.0), expected);
+}
+
+#[test]
+fn beyond_the_grid_blows_what_was_chosen() {
+    let (step, time) = (9, 4.5);
+    let growth = ((115.0_f64 + 25.0) / 115.0).powf(0.2) as f32;
+    let fluctuation = |y: usize, z: usize| -> [f32; 3] {
+        std::array::from_fn(|axis| Given::wind(step, y, z)[axis] - mean(z)[axis])
+    };
+    let above = |about: [f32; 3]| -> [f32; 3] {
+        std::array::from_fn(|axis| growth * mean(3)[axis] + about[axis])
+    };
+    let repeated = entering(GRID, ENTRY, Beyond::Repeat);
+    // One point beyond the left end is the right end, one above the top the lowest row.
+    assert_near(at(&repeated, time, 0.0, 60.0, 65.0), Given::wind(step, 0, 1));
+    assert_near(at(&repeated, time, 0.0, -60.0, 65.0), Given::wind(step, 4, 1));
+    assert_near(at(&repeated, time, 0.0, 0.0, 140.0), above(fluctuation(2, 0)));
+    let held = entering(GRID, ENTRY, Beyond::Hold);
+    assert_near(at(&held, time, 0.0, 300.0, 65.0), Given::wind(step, 4, 1));
+    assert_near(at(&held, time, 0.0, 0.0, 140.0), above(fluctuation(2, 3)));
+    let mean_wind = entering(GRID, ENTRY, Beyond::Mean);
+    assert_near(at(&mean_wind, time, 0.0, 60.0, 65.0), mean(1));
+    assert_near(at(&mean_wind, time, 0.0, 0.0, 140.0), above([0.0; 3]));
+    // Half of it is left in the middle of the fading.
+    let half = std::array::from_fn(|axis| mean(1)[axis] + 0.5 * fluctuation(4, 1)[axis]);
+    assert_near(at(&mean_wind, time, 0.0, 50.0, 65.0), half);
+}
+
+#[test]
+fn a_share_of_the_mean_leaves_the_fluctuations() {
+    let inflow = entering(GRID, ENTRY, Beyond::Hold).with_share_of_mean(0.9);
+    let (wind, mean) = (Given::wind(2, 1, 2), mean(2));
+    let expected = std::array::from_fn(|axis| wind[axis] - 0.1 * mean[axis]);
+    assert_near(at(&inflow, 1.0, 0.0, -20.0, 90.0), expected);
+}
+
+#[test]
+fn a_record_that_ends_is_refused_or_stands_still_at_its_ends() {
+    let grid = PlaneGrid { repeats: false, ..GRID };
+    // 23 intervals of 0.5 s are there; the inlet is 6 s upstream.
+    let too_long = Entry { duration: 5.6, ..ENTRY };
+    assert!(matches!(too_long.planes(&grid), Err(InflowError::Ended { .. })));
+    let entry = Entry { duration: 5.5, ..ENTRY };
+    let inflow = entering(grid, entry, Beyond::Hold);
+    assert_near(at(&inflow, 0.0, 80.0, 0.0, 65.0), Given::wind(0, 2, 1));
+    assert_near(at(&inflow, 5.5, -60.0, 0.0, 65.0), Given::wind(23, 2, 1));
+    // What a lattice asks for a few steps after the end.
+    assert_near(at(&inflow, 5.7, -60.0, 0.0, 65.0), Given::wind(23, 2, 1));
+    // A part of a record is the same wind, in less memory.
+    let entry = Entry { origin_x: 150.0, extent: [100.0, 140.0], duration: 1.5 };
+    assert_eq!(entry.planes(&grid).unwrap(), [2, 14]);
+    assert_eq!(entry.memory(&grid).unwrap(), 13 * 20 * 12);
+    let part = entering(grid, entry, Beyond::Hold);
+    let whole = entering(grid, Entry { extent: [100.0, 150.0], ..entry }, Beyond::Hold);
+    assert_eq!(at(&part, 1.0, 120.0, 10.0, 70.0), at(&whole, 1.0, 120.0, 10.0, 70.0));
+}
+
+#[test]
+fn reading_can_be_broken_off() {
+    let broken =
+        RecordedInflow::read(Box::new(Given(GRID)), ENTRY, PROFILE, Beyond::Hold, &|share| {
+            share < 0.5
+        });
+    assert!(matches!(broken, Err(InflowError::BrokenOff)));
+}
