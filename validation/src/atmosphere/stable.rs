@@ -37,17 +37,17 @@ impl Inflow for Geostrophic {
 }
 
 /// What came of a simulation.
-pub struct Stable {
+struct Stable {
     /// Means over the last hour.
-    pub levels: Vec<LevelStatistics>,
+    levels: Vec<LevelStatistics>,
     spacing: f64,
 }
 
 /// The case on `n` cells a side, for `hours`.
-pub fn stable(n: usize, hours: f64) -> Stable {
+fn stable(n: usize, hours: f64) -> Stable {
     let spacing = EDGE / n as f64;
-    // The jet reaches 10 m/s.
-    let step = 0.12 * spacing / 10.0;
+    // The jet reaches 10 m/s: 0.15 cells a step.
+    let step = 0.15 * spacing / 10.0;
     let interval = INTERVAL / (INTERVAL / step).ceil();
     let mut settings = LatticeSettings::new(Vector3::ZERO, spacing, [n; 3], interval, 10.0);
     settings.ends = Ends::Periodic;
@@ -108,12 +108,12 @@ fn surface_stress(levels: &[LevelStatistics]) -> f64 {
 
 impl Stable {
     /// Friction velocity (m/s).
-    pub fn friction_velocity(&self) -> f64 {
+    fn friction_velocity(&self) -> f64 {
         surface_stress(&self.levels).sqrt()
     }
 
     /// Depth (m): where the stress is 5 % of the ground's, over 0.95.
-    pub fn depth(&self) -> f64 {
+    fn depth(&self) -> f64 {
         let limit = 0.05 * surface_stress(&self.levels);
         let stress: Vec<f64> = self
             .levels
@@ -129,7 +129,7 @@ impl Stable {
     }
 
     /// Speed (m/s) and height (m) of the jet: the top of a parabola through three levels.
-    pub fn jet(&self) -> [f64; 2] {
+    fn jet(&self) -> [f64; 2] {
         let speed: Vec<f64> =
             self.levels.iter().map(|level| level.velocity[0].hypot(level.velocity[1])).collect();
         let best = (1..speed.len() - 1)
