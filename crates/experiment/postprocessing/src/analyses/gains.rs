@@ -58,7 +58,10 @@ fn text(answer: &GainsAnswer, width: usize) -> String {
 fn json(answer: &GainsAnswer, studies: &[PathBuf]) -> serde_json::Value {
     let folder = |place: usize| studies[place].display().to_string();
     let part = |part: &PartGains| {
-        let gain = |(place, (seed, gain)): (usize, (&u64, &f64))| json!({ "study": folder(place), "seed": seed, "gain": gain });
+        let gain = |(place, (seed, gain)): (usize, (&u64, &f64))| {
+            let study = folder(place);
+            json!({ "study": study, "seed": seed, "gain": gain })
+        };
         let gains = answer.seeds.iter().zip(&part.gains).enumerate().map(gain);
         json!({
             "name": part.name,

@@ -78,7 +78,10 @@ fn text(answer: &MomentsAnswer) -> String {
 
 /// The numbers, and all that the figure draws.
 fn json(answer: &MomentsAnswer) -> serde_json::Value {
-    let axis = |line: &MomentsLine, axis: usize| json!({ "amplitude_nm": line.amplitudes[axis], "lead_deg": line.leads[axis].to_degrees() });
+    let axis = |line: &MomentsLine, axis: usize| {
+        let (amplitude, lead) = (line.amplitudes[axis], line.leads[axis].to_degrees());
+        json!({ "amplitude_nm": amplitude, "lead_deg": lead })
+    };
     let lines = answer.lines.iter().map(|line| {
         json!({
             "name": line.name,

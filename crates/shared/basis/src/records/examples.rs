@@ -154,6 +154,11 @@ pub fn full() -> Summary {
     }
 }
 
+fn bearing_loads() -> Vec<BearingLoad> {
+    let positions = (0..360).step_by(10).map(f64::from);
+    positions.map(|at| BearingLoad { position_deg: at, load_kn_m: 1e4 }).collect()
+}
+
 fn full_turbine(name: &str, gain: Statistic) -> TurbineSummary {
     let axis = MeanderingAxis { amplitude: 7.5e6, reference: Some(5e6), factor: Some(1.5) };
     let plain = helix(Sense::CounterClockwise, 4.0);
@@ -207,9 +212,7 @@ fn full_turbine(name: &str, gain: Statistic) -> TurbineSummary {
             moving_share: 1.0,
             n_reversals: 12,
             bearing_slope: 3.0,
-            bearing_loads: (0..36)
-                .map(|k| BearingLoad { position_deg: 10.0 * f64::from(k), load_kn_m: 1e4 })
-                .collect(),
+            bearing_loads: bearing_loads(),
             sample_interval: 0.125,
         }),
         ..turbine(name, 1e7)
