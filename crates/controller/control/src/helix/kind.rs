@@ -1,7 +1,7 @@
 //! `kind = "helix"`: its keys, and how it is built.
 
 use super::Helix;
-use super::sweep::{self, Sweep};
+use super::chirp::{self, Chirp};
 use crate::Controller;
 use crate::discon::base;
 use crate::excitation::Excitation;
@@ -11,7 +11,7 @@ use crate::library::Hosted;
 use crate::stop::stop_of;
 use basis::Sense;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
-use basis::keys::{Holds, Objection, Table, Values, above, key};
+use basis::keys::{Holds, Key, Objection, Table, Values, above, key};
 use basis::registry::Named;
 
 /// The helix.
@@ -38,15 +38,18 @@ static TABLE: Table = Table {
             above(0.0, 2.0),
             "–",
             Otherwise("`strouhal` throughout"),
-            "Strouhal number to which the frequency goes evenly from `strouhal` at time zero, over `sweep`. No turbine downstream can join a helix whose frequency changes.",
+            "Strouhal number to which the frequency goes evenly from `strouhal` at time zero, over `strouhal_change_time`. No turbine downstream can join a helix whose frequency changes.",
         ),
-        key(
-            "sweep",
-            above(0.0, 1e6),
-            "s",
-            Otherwise("needed with `strouhal_last`"),
-            "Time that the change of frequency takes, from time zero.",
-        ),
+        Key {
+            former_names: &["sweep"],
+            ..key(
+                "strouhal_change_time",
+                above(0.0, 1e6),
+                "s",
+                Otherwise("needed with `strouhal_last`"),
+                "Time that the change of frequency takes, from time zero.",
+            )
+        },
         key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero."),
         key(
             "azimuth_offset_deg",
@@ -79,7 +82,7 @@ impl ControllerKind for HelixKind {
     fn check(&self, values: &mut Values, place: &Place) -> Vec<Objection> {
         starts_too_late(values, place.duration)
             .into_iter()
-            .chain(sweep::objections(values))
+            .chain(chirp::objections(values))
             .collect()
     }
 
@@ -91,7 +94,7 @@ impl ControllerKind for HelixKind {
         helix.phase = values.angle("phase_deg");
         helix.azimuth_offset = values.angle("azimuth_offset_deg");
         helix.start = values.number("start");
-        helix.sweep = Sweep::of(values, site);
+        helix.chirp = Chirp::of(values, site);
         helix.stop = stop_of(helix.start, values.optional_number("stop"), helix.rate)?;
         Ok(helix.on_top_of(base(control, site)?))
     }

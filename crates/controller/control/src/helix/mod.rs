@@ -1,10 +1,10 @@
 //! The helix: tilt and yaw commands a quarter period apart, through the inverse multi-blade transformation.
 
+mod chirp;
 mod kind;
-mod sweep;
 
+pub use chirp::Chirp;
 pub use kind::HELIX;
-pub use sweep::Sweep;
 
 use crate::excitation::{Excitation, excitation_rate, share, words};
 use basis::mbc::to_blades;
@@ -31,7 +31,7 @@ pub struct Helix {
     /// Time at which it fades out, over one excitation period (s); never when absent.
     pub stop: Option<f64>,
     /// Change of the rate with time; `rate` throughout when absent.
-    pub sweep: Option<Sweep>,
+    pub chirp: Option<Chirp>,
 }
 
 impl Helix {
@@ -54,15 +54,15 @@ impl Helix {
             azimuth_offset: 0.0,
             start: 0.0,
             stop: None,
-            sweep: None,
+            chirp: None,
         }
     }
 
     /// Tilt and yaw commands (rad) at `time` (s); the average is zero. van Vondelen et al. (2025), Eq. 2.
     pub fn commands(&self, time: f64) -> FixedFrame {
         let amplitude = self.amplitude * share(time, self.start, self.stop, self.rate);
-        let turned = match self.sweep {
-            Some(sweep) => sweep.angle(self.rate, time),
+        let turned = match self.chirp {
+            Some(chirp) => chirp.angle(self.rate, time),
             None => self.rate * time,
         };
         let angle = turned + self.phase;
