@@ -5,6 +5,7 @@
 //! machine change both within seconds, by as much as half; so the limit is measured before and after every
 //! figure, and the share is the median of such pairs, with the least and the greatest. Options after `--`:
 //! `quick` for a small box, `best` for the fastest instructions alone, a number for the repeats.
+//! `benches/count.py` counts the instructions of its loops and times each loop alone.
 
 use basis::{PointForce, Vector3};
 use benches::bandwidth::Limit;

@@ -35,6 +35,47 @@ impl<S: Simd> Moments<S> {
     }
 }
 
+/// What populations add up to: all that a collision keeps of them.
+#[derive(Clone, Copy)]
+pub(crate) struct Sums<S> {
+    /// Density less one.
+    pub(crate) density_excess: S,
+    /// Momentum per cell.
+    pub(crate) momentum: [S; 3],
+    /// Second raw moments less those of air of this density at rest: xx, yy, zz, xy, xz, yz.
+    pub(crate) flux: [S; 6],
+}
+
+impl<S: Simd> Sums<S> {
+    /// One over density.
+    #[inline(always)]
+    pub(crate) fn per_density(&self) -> S {
+        S::splat(1.0).divide(S::splat(1.0) + self.density_excess)
+    }
+
+    /// The state of the air, given one over its density.
+    #[inline(always)]
+    pub(crate) fn moments(&self, per_density: S) -> Moments<S> {
+        let [jx, jy, jz] = self.momentum;
+        let [xx, yy, zz, xy, xz, yz] = self.flux;
+        let (ux, uy, uz) = (jx * per_density, jy * per_density, jz * per_density);
+        Moments {
+            density_excess: self.density_excess,
+            per_density,
+            momentum: self.momentum,
+            velocity: [ux, uy, uz],
+            stress: [
+                jx.sub_from(ux, xx),
+                jy.sub_from(uy, yy),
+                jz.sub_from(uz, zz),
+                jx.sub_from(uy, xy),
+                jx.sub_from(uz, xz),
+                jy.sub_from(uz, yz),
+            ],
+        }
+    }
+}
+
 /// A velocity set of `Q` directions.
 ///
 /// Populations are shifted: slot q holds f_q − w_q, which keeps seven digits for the departure from air at
@@ -43,8 +84,15 @@ pub(crate) trait Stencil<const Q: usize> {
     /// Directions, cells per step; the opposite of an odd index is the next one.
     const DIRECTIONS: [[i8; 3]; Q];
 
+    /// What shifted populations add up to.
+    fn sums<S: Simd>(populations: &[S; Q]) -> Sums<S>;
+
     /// Density, velocity and stress of shifted populations.
-    fn moments<S: Simd>(populations: &[S; Q]) -> Moments<S>;
+    #[inline(always)]
+    fn moments<S: Simd>(populations: &[S; Q]) -> Moments<S> {
+        let sums = Self::sums(populations);
+        sums.moments(sums.per_density())
+    }
 
     /// Shifted populations with these moments, third central moments zero and higher ones those of a
     /// Gaussian.
@@ -89,9 +137,8 @@ impl Stencil<19> for D3Q19 {
     ];
 
     #[inline(always)]
-    fn moments<S: Simd>(f: &[S; 19]) -> Moments<S> {
-        // Symbols: s and d are sums and differences of opposite populations; m raw moments; the rest as in
-        // `Moments`.
+    fn sums<S: Simd>(f: &[S; 19]) -> Sums<S> {
+        // Symbols: s and d are sums and differences of opposite populations; the rest as in `Moments`.
         let (sx, dx) = (f[1] + f[2], f[1] - f[2]);
         let (sy, dy) = (f[3] + f[4], f[3] - f[4]);
         let (sz, dz) = (f[5] + f[6], f[5] - f[6]);
@@ -106,21 +153,17 @@ impl Stencil<19> for D3Q19 {
         let jx = dx + (d7 + d9) + (d11 + d13);
         let jy = dy + (d7 - d9) + (d15 + d17);
         let jz = dz + (d11 - d13) + (d15 - d17);
-        let per_density = S::splat(1.0).divide(S::splat(1.0) + density_excess);
-        let (ux, uy, uz) = (jx * per_density, jy * per_density, jz * per_density);
         let third = density_excess * S::splat(1.0 / 3.0);
-        Moments {
+        Sums {
             density_excess,
-            per_density,
             momentum: [jx, jy, jz],
-            velocity: [ux, uy, uz],
-            stress: [
-                jx.sub_from(ux, sx + xy + xz - third),
-                jy.sub_from(uy, sy + xy + yz - third),
-                jz.sub_from(uz, sz + xz + yz - third),
-                jx.sub_from(uy, s7 - s9),
-                jx.sub_from(uz, s11 - s13),
-                jy.sub_from(uz, s15 - s17),
+            flux: [
+                sx + xy + xz - third,
+                sy + xy + yz - third,
+                sz + xz + yz - third,
+                s7 - s9,
+                s11 - s13,
+                s15 - s17,
             ],
         }
     }

@@ -7,7 +7,7 @@
 )]
 
 use super::simd::Simd;
-use super::stencil::{D3Q19, Moments, Stencil};
+use super::stencil::{D3Q19, Moments, Stencil, Sums};
 
 /// Rest, faces, edges and corners of the cube.
 pub(crate) struct D3Q27;
@@ -35,7 +35,7 @@ impl Stencil<27> for D3Q27 {
     const DIRECTIONS: [[i8; 3]; 27] = directions();
 
     #[inline(always)]
-    fn moments<S: Simd>(f: &[S; 27]) -> Moments<S> {
+    fn sums<S: Simd>(f: &[S; 27]) -> Sums<S> {
         // Corners count as two edges each, in turn: what D3Q19 sums over edges is here summed over edges and
         // corners.
         let (s19, d19) = (f[19] + f[20], f[19] - f[20]);
@@ -55,21 +55,17 @@ impl Stencil<27> for D3Q27 {
         let jx = (f[1] - f[2]) + (d7 + d9) + (d11 + d13) + (d19 + d21) + (d23 - d25);
         let jy = (f[3] - f[4]) + (d7 - d9) + (d15 + d17) + (d19 + d21) + (d25 - d23);
         let jz = (f[5] - f[6]) + (d11 - d13) + (d15 - d17) + (d19 - d21) + (d23 + d25);
-        let per_density = S::splat(1.0).divide(S::splat(1.0) + density_excess);
-        let (ux, uy, uz) = (jx * per_density, jy * per_density, jz * per_density);
         let third = density_excess * S::splat(1.0 / 3.0);
-        Moments {
+        Sums {
             density_excess,
-            per_density,
             momentum: [jx, jy, jz],
-            velocity: [ux, uy, uz],
-            stress: [
-                jx.sub_from(ux, sx + xy + xz + corners - third),
-                jy.sub_from(uy, sy + xy + yz + corners - third),
-                jz.sub_from(uz, sz + xz + yz + corners - third),
-                jx.sub_from(uy, s7 - s9 + (s19 + s21) - (s23 + s25)),
-                jx.sub_from(uz, s11 - s13 + (s19 + s23) - (s21 + s25)),
-                jy.sub_from(uz, s15 - s17 + (s19 + s25) - (s21 + s23)),
+            flux: [
+                sx + xy + xz + corners - third,
+                sy + xy + yz + corners - third,
+                sz + xz + yz + corners - third,
+                s7 - s9 + (s19 + s21) - (s23 + s25),
+                s11 - s13 + (s19 + s23) - (s21 + s25),
+                s15 - s17 + (s19 + s25) - (s21 + s23),
             ],
         }
     }

@@ -10,8 +10,10 @@ use super::ends::{self, RowEnds};
 use super::forces::ForceBlock;
 use super::layout::{LINE, Layout, Parity, read_direction, write_direction};
 use super::simd::{MAXIMUM_LANES, Simd};
-use super::stencil::{Moments, Stencil};
+use super::stencil::{Moments, Stencil, Sums};
+use std::mem::MaybeUninit;
 use std::ops::Range;
+use std::sync::atomic::{Ordering, compiler_fence};
 
 /// How far ahead of a cell its populations are prefetched, in values: nineteen streams are more than a
 /// processor's own prefetching follows, and a miss is longer than the cells that it can look ahead to. Rows
@@ -192,82 +194,182 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
     let times = step.relaxation_times.as_ptr();
     let force = [force[0].as_ptr(), force[1].as_ptr(), force[2].as_ptr()];
     let mut x = range.start;
+    let mut desk = Desk::<S>::new();
+    let [mut now, mut next, mut later] = desk.trays();
     // SAFETY: whole vectors of cells of the row; its padding makes the last one readable, and only cells of
     // the row are written.
     unsafe {
-        if x + S::LANES <= range.end {
-            // The state of the next vector is found before this one is written back: the two share no
-            // address, and what one waits for (divisions, roots) the other fills.
-            let mut now = before::<S, L, Q, ODD>(&places, x, times, subgrid);
-            while x + 2 * S::LANES <= range.end {
-                let next = before::<S, L, Q, ODD>(&places, x + S::LANES, times, subgrid);
-                let after = after::<S, L, Q, FORCED>(&now, x, &force);
-                for slot in 0..Q {
-                    after[write_direction(parity::<ODD>(), slot)].store(places[slot].add(x));
-                }
+        let n_vectors = range.len() / S::LANES;
+        if n_vectors > 0 {
+            add_up::<S, L, Q, ODD>(&places, x, now);
+            judge(now, x, times, subgrid);
+            if n_vectors > 1 {
+                add_up::<S, L, Q, ODD>(&places, x + S::LANES, next);
+            }
+            // Three vectors share no address, and what one waits for (divisions, roots) the others fill. The
+            // fences keep the compiler from mixing the stages: its own order costs up to half as much again.
+            for _ in 2..n_vectors {
+                judge(next, x + S::LANES, times, subgrid);
+                compiler_fence(Ordering::SeqCst);
+                add_up::<S, L, Q, ODD>(&places, x + 2 * S::LANES, later);
+                compiler_fence(Ordering::SeqCst);
+                write_back::<S, L, Q, ODD, FORCED>(&places, x, now, &force);
+                compiler_fence(Ordering::SeqCst);
+                (now, next, later) = (next, later, now);
+                x += S::LANES;
+            }
+            if n_vectors > 1 {
+                judge(next, x + S::LANES, times, subgrid);
+                write_back::<S, L, Q, ODD, FORCED>(&places, x, now, &force);
                 now = next;
                 x += S::LANES;
             }
-            let after = after::<S, L, Q, FORCED>(&now, x, &force);
-            for slot in 0..Q {
-                after[write_direction(parity::<ODD>(), slot)].store(places[slot].add(x));
-            }
+            write_back::<S, L, Q, ODD, FORCED>(&places, x, now, &force);
             x += S::LANES;
         }
         if x < range.end {
-            let state = before::<S, L, Q, ODD>(&places, x, times, subgrid);
-            let after = after::<S, L, Q, FORCED>(&state, x, &force);
-            for slot in 0..Q {
-                let mut lanes = [0.0; MAXIMUM_LANES];
-                after[write_direction(parity::<ODD>(), slot)].store(lanes.as_mut_ptr());
-                for (lane, value) in lanes[..range.end - x].iter().enumerate() {
-                    *places[slot].add(x + lane) = *value;
-                }
-            }
+            add_up::<S, L, Q, ODD>(&places, x, now);
+            judge(now, x, times, subgrid);
+            let after = after::<S, L, Q, FORCED>(now, x, &force);
+            write_part::<S, Q, ODD>(&places, x..range.end, &after);
         }
     }
 }
 
-/// State of the cells from `x` before the collision, and the rate at which their stress relaxes.
+/// A vector of cells on its way through the stages, each of which fills in more.
+struct Tray<S> {
+    sums: Sums<S>,
+    per_density: S,
+    state: Moments<S>,
+    /// Rate at which the stress relaxes.
+    rate: S,
+}
+
+/// Trays of three vectors.
+struct Desk<S>([MaybeUninit<Tray<S>>; 3]);
+
+impl<S> Desk<S> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self([const { MaybeUninit::uninit() }; 3])
+    }
+
+    /// The trays, as memory that the compiler knows nothing of, so that it cannot pass the values on beside
+    /// it and undo the order of the stages.
+    #[inline(always)]
+    fn trays(&mut self) -> [*mut Tray<S>; 3] {
+        let first = std::hint::black_box(&raw mut self.0).cast::<Tray<S>>();
+        std::array::from_fn(|number| first.wrapping_add(number))
+    }
+}
+
+/// Whether population `slot` is asked for ahead of its cells where it is read: half of them are asked for
+/// where they are written instead, which is faster than all at once. Vectors shorter than a line have it all
+/// in one place, so that only one asks whether a line begins.
 #[inline(always)]
-unsafe fn before<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool>(
+const fn asked_where_read<S: Simd>(slot: usize) -> bool {
+    slot.is_multiple_of(2) || S::LANES < LINE
+}
+
+/// First stage: the populations of the cells from `x` are read and added up, and divided by the density.
+#[inline(always)]
+unsafe fn add_up<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool>(
     places: &[*mut f32; Q],
     x: usize,
-    times: *const f32,
-    subgrid: S,
-) -> (Moments<S>, S) {
+    tray: *mut Tray<S>,
+) {
     // SAFETY: the caller promises whole readable vectors.
     unsafe {
         let mut populations = [S::splat(0.0); Q];
         for slot in 0..Q {
             let place = places[slot].add(x);
             populations[read_direction(parity::<ODD>(), slot)] = S::load(place);
-            if S::LANES >= LINE || x.is_multiple_of(LINE) {
+            if asked_where_read::<S>(slot) && (S::LANES >= LINE || x.is_multiple_of(LINE)) {
                 S::prefetch(place.wrapping_add(AHEAD));
             }
         }
+        let sums = L::sums(&populations);
+        (*tray).per_density = sums.per_density();
+        (*tray).sums = sums;
+    }
+}
+
+/// Second stage: the state of the cells, and the rate at which their stress relaxes.
+#[inline(always)]
+unsafe fn judge<S: Simd>(tray: *mut Tray<S>, x: usize, times: *const f32, subgrid: S) {
+    // SAFETY: the caller promises whole readable vectors.
+    unsafe {
         let relaxation = Relaxation { time: S::load(times.add(x)), subgrid };
-        let state = L::moments(&populations);
-        let rate = relaxation_rate(&state, &relaxation);
-        (state, rate)
+        let state = (*tray).sums.moments((*tray).per_density);
+        (*tray).rate = relaxation_rate(&state, &relaxation);
+        (*tray).state = state;
+    }
+}
+
+/// Last stage: the populations after the collision are written back.
+#[inline(always)]
+unsafe fn write_back<
+    S: Simd,
+    L: Stencil<Q>,
+    const Q: usize,
+    const ODD: bool,
+    const FORCED: bool,
+>(
+    places: &[*mut f32; Q],
+    x: usize,
+    tray: *const Tray<S>,
+    force: &[*const f32; 3],
+) {
+    // SAFETY: handed through.
+    unsafe {
+        let after = after::<S, L, Q, FORCED>(tray, x, force);
+        for slot in 0..Q {
+            let place = places[slot].add(x);
+            after[write_direction(parity::<ODD>(), slot)].store(place);
+            if !asked_where_read::<S>(slot) {
+                S::prefetch(place.wrapping_add(AHEAD + 2 * S::LANES));
+            }
+        }
+    }
+}
+
+/// Writes those populations `after` the collision back that belong to the cells of `range`, less than a
+/// vector.
+#[inline(always)]
+unsafe fn write_part<S: Simd, const Q: usize, const ODD: bool>(
+    places: &[*mut f32; Q],
+    range: Range<usize>,
+    after: &[S; Q],
+) {
+    for slot in 0..Q {
+        let mut lanes = [0.0; MAXIMUM_LANES];
+        // SAFETY: a buffer of the widest vector; then cells of the row.
+        unsafe {
+            after[write_direction(parity::<ODD>(), slot)].store(lanes.as_mut_ptr());
+            for (lane, value) in lanes[..range.len()].iter().enumerate() {
+                *places[slot].add(range.start + lane) = *value;
+            }
+        }
     }
 }
 
 /// Populations after the collision of the cells from `x`.
 #[inline(always)]
 unsafe fn after<S: Simd, L: Stencil<Q>, const Q: usize, const FORCED: bool>(
-    (state, rate): &(Moments<S>, S),
+    tray: *const Tray<S>,
     x: usize,
     force: &[*const f32; 3],
 ) -> [S; Q] {
-    let force = if FORCED {
-        let [fx, fy, fz] = *force;
-        // SAFETY: the caller promises whole readable vectors.
-        unsafe { Some([S::load(fx.add(x)), S::load(fy.add(x)), S::load(fz.add(x))]) }
-    } else {
-        None
-    };
-    L::populations(&collide(state, *rate, force))
+    // SAFETY: the caller promises whole readable vectors.
+    unsafe {
+        let force = if FORCED {
+            let [fx, fy, fz] = *force;
+            Some([S::load(fx.add(x)), S::load(fy.add(x)), S::load(fz.add(x))])
+        } else {
+            None
+        };
+        L::populations(&collide(&(*tray).state, (*tray).rate, force))
+    }
 }
 
 #[inline(always)]
