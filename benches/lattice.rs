@@ -9,13 +9,35 @@
 
 use basis::{PointForce, Vector3};
 use benches::bandwidth::Limit;
+use flow::lattice::atmosphere::{Atmosphere, Driving, Heating};
 use flow::lattice::{Backend, Ends, Ground, Lattice, LatticeSettings};
 use flow::{FlowSolver, Inflow};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Bytes that a cell update moves (D3Q19 in f32, in and out).
-const BYTES_PER_UPDATE: f64 = 2.0 * 19.0 * 4.0;
+/// What a cell update does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Work {
+    /// The bulk alone.
+    Bare,
+    /// Inlet, outlet, wall and two rotors' forces.
+    Everything,
+    /// The bulk on a turning earth, with temperature, over a cooled ground.
+    Temperature,
+}
+
+impl Work {
+    const ALL: [Self; 3] = [Self::Bare, Self::Everything, Self::Temperature];
+
+    /// Bytes that a cell update moves: D3Q19 in f32, in and out, and seven populations for temperature.
+    fn bytes(self) -> f64 {
+        match self {
+            Self::Bare | Self::Everything => 2.0 * 19.0 * 4.0,
+            Self::Temperature => 2.0 * 26.0 * 4.0,
+        }
+    }
+}
+
 const STEPS: f64 = 20.0;
 /// Memory that the limit is measured on, as much as the box takes (MiB).
 const MEBIBYTES: usize = 192;
@@ -50,15 +72,15 @@ fn main() {
         for (one, rate) in &limits.loops {
             println!("  {:.1} GB/s: {one:?}", rate / 1e9);
         }
-        for (name, backend, everything) in cases(best) {
+        for (name, backend, work) in cases(best) {
             let limit = || limits.now(3);
             let mut before = limit();
             let (mut speeds, mut limits, mut shares) = (Vec::new(), Vec::new(), Vec::new());
             for _ in 0..n_repeats {
-                let speed = updates_per_second(n_cells, n_threads, backend, everything);
+                let speed = updates_per_second(n_cells, n_threads, backend, work);
                 let after = limit();
                 let around = 0.5 * (before + after);
-                shares.push(100.0 * speed * BYTES_PER_UPDATE / around);
+                shares.push(100.0 * speed * work.bytes() / around);
                 speeds.push(speed / 1e6);
                 limits.push(around / 1e9);
                 before = after;
@@ -82,16 +104,18 @@ fn main() {
     for n_threads in [1, cores] {
         let cached = [256, 8, 6 * n_threads];
         let speed = (0..n_repeats)
-            .map(|_| updates_per_second(cached, n_threads, Backend::detect(), false))
+            .map(|_| updates_per_second(cached, n_threads, Backend::detect(), Work::Bare))
             .fold(0.0, f64::max);
         println!(
             "{n_threads} threads on {cached:?} cells, in the cache: {:.0} M updates/s",
             speed / 1e6
         );
     }
-    let air = lattice(n_cells, 1, Backend::detect(), true);
     let cells = n_cells.iter().product::<usize>() as f64;
-    println!("memory {:.1} bytes a cell", air.memory() as f64 / cells);
+    for work in [Work::Everything, Work::Temperature] {
+        let air = lattice(n_cells, 1, Backend::detect(), work);
+        println!("{work:?}: memory {:.1} bytes a cell", air.memory() as f64 / cells);
+    }
 }
 
 /// Median of some figures, the least and the greatest of them.
@@ -113,28 +137,33 @@ impl Spread {
     }
 }
 
-/// Name, back-end, and whether everything is on.
-fn cases(best: bool) -> Vec<(String, Backend, bool)> {
+/// Name, back-end and work.
+fn cases(best: bool) -> Vec<(String, Backend, Work)> {
     Backend::ALL
         .into_iter()
         .filter(|backend| backend.is_available() && (!best || *backend == Backend::detect()))
-        .flat_map(|backend| {
-            [
-                (format!("{backend:?} bare"), backend, false),
-                (format!("{backend:?} everything"), backend, true),
-            ]
-        })
+        .flat_map(|backend| Work::ALL.map(|work| (format!("{backend:?} {work:?}"), backend, work)))
         .collect()
 }
 
-fn lattice(n_cells: [usize; 3], n_threads: usize, backend: Backend, everything: bool) -> Lattice {
+fn lattice(n_cells: [usize; 3], n_threads: usize, backend: Backend, work: Work) -> Lattice {
     let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, n_cells, 0.08, 10.0);
     settings.threads = Some(n_threads);
     settings.backend = Some(backend);
-    if everything {
-        settings.ground = Ground::WallStress { roughness_length: 0.05 };
-    } else {
+    if work != Work::Everything {
         settings.ends = Ends::Periodic;
+    }
+    if work != Work::Bare {
+        settings.ground = Ground::WallStress { roughness_length: 0.05 };
+    }
+    if work == Work::Temperature {
+        settings.atmosphere = Some(Atmosphere {
+            coriolis: 1e-4,
+            driving: Driving::Geostrophic([9.0, 0.0]),
+            heating: Heating::Ground { temperature: 289.0, rate: -1e-4 },
+            temperature: vec![[0.0, 290.0], [900.0, 293.0]],
+            ..Atmosphere::new(290.0)
+        });
     }
     match Lattice::new(settings, Arc::new(Shear)) {
         Ok(air) => air,
@@ -142,15 +171,10 @@ fn lattice(n_cells: [usize; 3], n_threads: usize, backend: Backend, everything: 
     }
 }
 
-/// Best of three runs; `everything` means inlet, outlet, wall and two rotors' forces.
-fn updates_per_second(
-    n_cells: [usize; 3],
-    n_threads: usize,
-    backend: Backend,
-    everything: bool,
-) -> f64 {
-    let mut air = lattice(n_cells, n_threads, backend, everything);
-    let forces = if everything { rotors(&air) } else { Vec::new() };
+/// Best of three runs.
+fn updates_per_second(n_cells: [usize; 3], n_threads: usize, backend: Backend, work: Work) -> f64 {
+    let mut air = lattice(n_cells, n_threads, backend, work);
+    let forces = if work == Work::Everything { rotors(&air) } else { Vec::new() };
     let interval = air.settings().interval;
     let mut best = f64::INFINITY;
     for _ in 0..3 {

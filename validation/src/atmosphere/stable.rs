@@ -13,7 +13,7 @@ use flow::lattice::{Ends, Ground, Lattice, LatticeSettings};
 use flow::{FlowSolver, Inflow};
 use std::sync::Arc;
 
-const SOURCE: &str = "Beare et al. (2006), spread of the large-eddy simulations";
+const SOURCE: &str = "spread of the simulations of Beare et al. (2006), read second hand";
 const WIND: f64 = 8.0;
 const EDGE: f64 = 400.0;
 const HOUR: f64 = 3600.0;
@@ -58,7 +58,8 @@ fn stable(n: usize, hours: f64) -> Stable {
         reference_temperature: 263.5,
         temperature: vec![[0.0, 265.0], [100.0, 265.0], [400.0, 268.0]],
         heating: Heating::Ground { temperature: 265.0, rate: -0.25 / HOUR },
-        damping: Some(Damping { from: 300.0, rate: 0.0016 * 10.0 }),
+        // An e-fold in a minute at the top: waves of this air take five for a swing.
+        damping: Some(Damping { from: 300.0, rate: 0.016 }),
         perturbation: Some(Perturbation { below: 50.0, amplitude: 0.1, seed: 1 }),
         ..Atmosphere::new(263.5)
     });
@@ -123,7 +124,7 @@ impl Stable {
                     .hypot(level.stress[1] + level.subgrid_stress[1])
             })
             .collect();
-        let above = stress.iter().skip(1).position(|stress| *stress < limit).map_or(1, |at| at + 1);
+        let Some(above) = (1..stress.len()).find(|at| stress[*at] < limit) else { return f64::NAN };
         let share = (stress[above - 1] - limit) / (stress[above - 1] - stress[above]);
         (self.levels[above - 1].height + share * self.spacing) / 0.95
     }

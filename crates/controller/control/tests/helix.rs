@@ -7,8 +7,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A helix long after its fade-in.
 fn helix(sense: Sense, amplitude: f64, rate: f64, phase: f64, azimuth_offset: f64) -> Helix {
-    let (strouhal, start, stop, sweep) = (0.25, -1e6, None, None);
-    Helix { sense, amplitude, strouhal, rate, phase, azimuth_offset, start, stop, sweep }
+    let (strouhal, start, stop, chirp) = (0.25, -1e6, None, None);
+    Helix { sense, amplitude, strouhal, rate, phase, azimuth_offset, start, stop, chirp }
 }
 
 fn senses() -> impl Strategy<Value = Sense> {

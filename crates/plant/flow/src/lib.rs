@@ -55,8 +55,9 @@ pub trait Inflow: Send + Sync {
     /// same length.
     fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]);
 
-    /// The same for potential temperature (K) into `temperatures`. False, and nothing is written, where it is
-    /// not known: the air has then the temperature of its height.
+    /// The same for potential temperature (K) into `temperatures`, asked at the start; what enters later has
+    /// the first temperature of its height. False, and nothing is written, where it is not known: the air has
+    /// that temperature from the start then.
     fn sample_temperature(
         &self,
         time: f64,

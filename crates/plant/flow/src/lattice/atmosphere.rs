@@ -17,6 +17,7 @@ pub(crate) mod stratification;
 pub(crate) mod surface;
 pub(crate) mod sweep;
 
+pub(crate) use heat::N_HEAT;
 pub use probe::AirRow;
 pub use settings::{
     Atmosphere, AtmosphereError, Damping, Driving, GRAVITY, Heating, Perturbation, Reference,

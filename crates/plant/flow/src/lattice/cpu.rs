@@ -5,6 +5,7 @@ mod worker;
 
 use super::atmosphere::probe::{self, AirRow};
 use super::atmosphere::stratification::Stratification;
+use super::atmosphere::surface::N_COLUMNS;
 use super::collision::SUBGRID_FACTOR;
 use super::ends::RowEnds;
 use super::engine::{Engine, Rows};
@@ -261,9 +262,11 @@ impl Engine for Cpu {
         }
         write_values(writer, &mut bytes, self.memory.values())?;
         if let Some(air) = &self.stratification {
-            for worker in &self.workers {
-                if let Some(heat) = &own(worker).heat {
-                    heat.surface.write(writer, &mut bytes)?;
+            for column in 0..N_COLUMNS {
+                for worker in &self.workers {
+                    if let Some(heat) = &own(worker).heat {
+                        heat.surface.write(column, writer, &mut bytes)?;
+                    }
                 }
             }
             air.write(writer, &mut bytes)?;
@@ -293,9 +296,11 @@ impl Engine for Cpu {
         }
         read_values(reader, &mut bytes, self.memory.values_mut())?;
         if let Some(air) = &mut self.stratification {
-            for worker in &self.workers {
-                if let Some(heat) = &mut own(worker).heat {
-                    heat.surface.read(reader, &mut bytes)?;
+            for column in 0..N_COLUMNS {
+                for worker in &self.workers {
+                    if let Some(heat) = &mut own(worker).heat {
+                        heat.surface.read(column, reader, &mut bytes)?;
+                    }
                 }
             }
             air.read_state(reader, &mut bytes)?;

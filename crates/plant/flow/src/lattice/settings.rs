@@ -152,7 +152,7 @@ impl LatticeSettings {
             }
         }
         if let Some(atmosphere) = &self.atmosphere {
-            atmosphere.check(self.interval, matches!(self.ground, Ground::WallStress { .. }))?;
+            atmosphere.check(self.interval, self.ground)?;
         }
         if self.threads == Some(0) {
             return Err(LatticeError::NoThreads);

@@ -1,6 +1,7 @@
 //! What makes the air of a box an atmosphere.
 
 use super::similarity::Similarity;
+use crate::lattice::settings::Ground;
 use thiserror::Error;
 
 /// Acceleration of free fall (m/s²).
@@ -17,7 +18,8 @@ pub struct Atmosphere {
     pub driving: Driving,
     /// Acceleration of free fall (m/s²); 0 leaves temperature without effect on the wind.
     pub gravity: f64,
-    /// Temperature that buoyancy refers to (K).
+    /// Temperature that buoyancy refers to, and that populations hold the departure from (K): best near that of
+    /// the layer of interest, because a departure feels the slight compressibility of the lattice's air.
     pub reference_temperature: f64,
     /// Temperature at the start over height: pairs of height (m) and temperature (K), linear in between and
     /// beyond, heights rising.
@@ -43,7 +45,7 @@ pub struct Atmosphere {
 pub enum Reference {
     /// The mean temperature of its level at each step: for air that is alike from place to place.
     Mean,
-    /// The temperature of its level at the start.
+    /// The profile of temperature at its height.
     Start,
 }
 
@@ -88,7 +90,7 @@ pub enum Heating {
     },
 }
 
-/// A layer below the top in which what differs from the geostrophic wind and the first temperatures dies.
+/// A layer below the top in which what differs from the geostrophic wind and the profile of temperature dies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Damping {
     /// Where it begins (m above the ground).
@@ -116,6 +118,9 @@ pub enum AtmosphereError {
     /// Heat through a ground along which air slips.
     #[error("heat passes through a rough ground only: give a roughness length")]
     NoRoughness,
+    /// Plates where air comes back from the other side.
+    #[error("plates need a ground and a top, and this box is periodic upwards")]
+    NoPlates,
     /// The step is too long for what the air does in it.
     #[error(
         "air in this stratification swings {steps:.1} times a period, at least 20 steps are needed; use a step of at most {longest:.4} s"
@@ -165,7 +170,7 @@ impl Atmosphere {
     ///
     /// # Errors
     /// [`AtmosphereError`] names the quantity and what would do.
-    pub fn check(&self, interval: f64, has_roughness: bool) -> Result<(), AtmosphereError> {
+    pub fn check(&self, interval: f64, ground: Ground) -> Result<(), AtmosphereError> {
         let value = |name, expected, value| AtmosphereError::Value { name, expected, value };
         let Driving::Geostrophic([u, v]) = self.driving;
         for (name, number) in [
@@ -203,9 +208,35 @@ impl Atmosphere {
         if self.temperature.is_empty() || !rises || !finite {
             return Err(AtmosphereError::Profile);
         }
-        let through_roughness = matches!(self.heating, Heating::Flux(_) | Heating::Ground { .. });
-        if through_roughness && !has_roughness {
-            return Err(AtmosphereError::NoRoughness);
+        let temperatures = match self.heating {
+            Heating::None => [0.0; 2],
+            Heating::Flux(flux) => [flux; 2],
+            Heating::Ground { temperature, rate } => [temperature, rate],
+            Heating::Plates { ground, top } => [ground, top],
+        };
+        let similarity = self.similarity;
+        let noise = self.perturbation.map_or([0.0; 2], |noise| [noise.below, noise.amplitude]);
+        for (name, number) in
+            temperatures.map(|number| ("heating of the ground", number)).into_iter().chain([
+                ("similarity constant", similarity.stable_momentum),
+                ("similarity constant", similarity.stable_heat),
+                ("similarity constant", similarity.unstable),
+                ("height of the perturbation", noise[0]),
+                ("perturbation", noise[1]),
+            ])
+        {
+            if !number.is_finite() {
+                return Err(value(name, "a number", number));
+            }
+        }
+        match (self.heating, ground) {
+            (Heating::Flux(_) | Heating::Ground { .. }, Ground::WallStress { .. })
+            | (Heating::None, _) => {}
+            (Heating::Flux(_) | Heating::Ground { .. }, _) => {
+                return Err(AtmosphereError::NoRoughness);
+            }
+            (Heating::Plates { .. }, Ground::Periodic) => return Err(AtmosphereError::NoPlates),
+            (Heating::Plates { .. }, _) => {}
         }
         let steepest = self
             .temperature

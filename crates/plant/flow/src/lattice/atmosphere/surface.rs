@@ -48,7 +48,8 @@ pub(crate) struct SurfaceMemory {
     pub(crate) source: Vec<f32>,
 }
 
-const N_COLUMNS: usize = 6;
+/// Columns that a thread remembers (–).
+pub(crate) const N_COLUMNS: usize = 6;
 
 impl SurfaceMemory {
     /// Memory of `n_values`; nothing is known yet.
@@ -60,14 +61,25 @@ impl SurfaceMemory {
         }
     }
 
-    /// Writes what it remembers.
-    pub(crate) fn write(&self, writer: &mut dyn Write, bytes: &mut Vec<u8>) -> Result<()> {
-        self.columns.iter().try_for_each(|column| write_values(writer, bytes, column))
+    /// Writes column number `column` of what it remembers; of all threads' rows one column after the other, so
+    /// that the order does not hang on their number.
+    pub(crate) fn write(
+        &self,
+        column: usize,
+        writer: &mut dyn Write,
+        bytes: &mut Vec<u8>,
+    ) -> Result<()> {
+        write_values(writer, bytes, &self.columns[column])
     }
 
     /// Goes on from what [`write`](Self::write) wrote.
-    pub(crate) fn read(&mut self, reader: &mut dyn Read, bytes: &mut Vec<u8>) -> Result<()> {
-        self.columns.iter_mut().try_for_each(|column| read_values(reader, bytes, column))
+    pub(crate) fn read(
+        &mut self,
+        column: usize,
+        reader: &mut dyn Read,
+        bytes: &mut Vec<u8>,
+    ) -> Result<()> {
+        read_values(reader, bytes, &mut self.columns[column])
     }
 }
 

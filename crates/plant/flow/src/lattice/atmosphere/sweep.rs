@@ -35,6 +35,8 @@ struct RowHeat<'a> {
     /// Its addresses among the populations that carry temperature.
     addresses: [usize; N_HEAT],
     level: Level,
+    /// Smagorinsky's factor.
+    subgrid: f32,
     /// What the ground adds to the temperature of each cell (K), padded to whole vectors; zeros above it.
     source: &'a [f32],
 }
@@ -66,6 +68,7 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
             let row = RowHeat {
                 addresses: air.layout.addresses(step.parity, y, z),
                 level: air.levels[z],
+                subgrid: step.subgrid[z],
                 source: match z {
                     0 => &heat.surface.source[number * stride..],
                     _ => &heat.none,
@@ -74,24 +77,12 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
             // SAFETY: handed through; this row's cells are done before its ends are closed.
             unsafe {
                 heat.sums[number] = match step.parity {
-                    Parity::Even => cells_of::<S, L, Q, false>(
-                        step,
-                        air,
-                        address,
-                        &row,
-                        step.subgrid[z],
-                        &share.force,
-                        forced,
-                    ),
-                    Parity::Odd => cells_of::<S, L, Q, true>(
-                        step,
-                        air,
-                        address,
-                        &row,
-                        step.subgrid[z],
-                        &share.force,
-                        forced,
-                    ),
+                    Parity::Even => {
+                        cells_of::<S, L, Q, false>(step, air, address, &row, &share.force, forced)
+                    }
+                    Parity::Odd => {
+                        cells_of::<S, L, Q, true>(step, air, address, &row, &share.force, forced)
+                    }
                 };
                 let entering = entering(&share.ends, number, row.level.target);
                 ends::close(air, step.parity, &row.addresses, entering);
@@ -130,23 +121,30 @@ unsafe fn cells_of<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool>(
     air: &StepHeat<'_>,
     addresses: &[usize; Q],
     row: &RowHeat<'_>,
-    subgrid: f32,
     force: &[Vec<f32>; 3],
     forced: Range<usize>,
 ) -> f32 {
     let n = step.layout.n_cells[0];
+    let pieces = match forced.is_empty() {
+        true => [0..n, n..n, n..n],
+        false => [0..forced.start, forced.clone(), forced.end..n],
+    };
+    let [before, forced, behind] = pieces;
+    // One sum through all pieces, which begin with whole vectors: its bits do not hang on where they begin.
+    let mut sum = Sum { lanes: S::splat(0.0), rest: 0.0 };
     // SAFETY: handed through.
     unsafe {
-        if forced.is_empty() {
-            cells::<S, L, Q, ODD, false>(step, air, addresses, row, subgrid, force, 0..n)
-        } else {
-            let before = 0..forced.start;
-            let after = forced.end..n;
-            cells::<S, L, Q, ODD, false>(step, air, addresses, row, subgrid, force, before)
-                + cells::<S, L, Q, ODD, true>(step, air, addresses, row, subgrid, force, forced)
-                + cells::<S, L, Q, ODD, false>(step, air, addresses, row, subgrid, force, after)
-        }
+        cells::<S, L, Q, ODD, false>(step, air, addresses, row, force, before, &mut sum);
+        cells::<S, L, Q, ODD, true>(step, air, addresses, row, force, forced, &mut sum);
+        cells::<S, L, Q, ODD, false>(step, air, addresses, row, force, behind, &mut sum);
     }
+    sum.rest + first(sum.lanes, S::LANES).iter().sum::<f32>()
+}
+
+/// Sum of the temperatures of a row so far: of whole vectors, and of the cells behind the last.
+struct Sum<S> {
+    lanes: S,
+    rest: f32,
 }
 
 #[inline(always)]
@@ -155,10 +153,13 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
     air: &StepHeat<'_>,
     addresses: &[usize; Q],
     row: &RowHeat<'_>,
-    subgrid: f32,
     force: &[Vec<f32>; 3],
     range: Range<usize>,
-) -> f32 {
+    sum: &mut Sum<S>,
+) {
+    if range.is_empty() {
+        return;
+    }
     let mut places = Places {
         air: [step.air; Q],
         heat: [air.heat; N_HEAT],
@@ -175,10 +176,8 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
             *place = air.heat.add(*address);
         }
     }
-    let law = Law::<S>::new(air.coefficients, row.level, subgrid);
+    let law = Law::<S>::new(air.coefficients, row.level, row.subgrid);
     let parity = parity::<ODD>();
-    let mut sum = S::splat(0.0);
-    let mut rest = 0.0;
     let mut x = range.start;
     // SAFETY: whole vectors of cells of the row; its padding makes the last one readable, and only cells of
     // the row are written.
@@ -194,7 +193,7 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
                 } else {
                     now
                 };
-                sum = sum + now.heat.temperature;
+                sum.lanes = sum.lanes + now.heat.temperature;
                 let (f, g) = now.after::<L, Q>(&law);
                 for slot in 0..Q {
                     f[write_direction(parity, slot)].store(places.air[slot].add(x));
@@ -212,7 +211,7 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
         if x < range.end {
             let n = range.end - x;
             let now = before::<S, L, Q, ODD, FORCED>(&places, &law, x);
-            rest = first(now.heat.temperature, n).iter().sum();
+            sum.rest = first(now.heat.temperature, n).iter().sum();
             let (f, g) = now.after::<L, Q>(&law);
             for slot in 0..Q {
                 write(f[write_direction(parity, slot)], n, places.air[slot].add(x));
@@ -222,7 +221,6 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
             }
         }
     }
-    rest + first(sum, S::LANES).iter().sum::<f32>()
 }
 
 /// Where a row lies in memory.

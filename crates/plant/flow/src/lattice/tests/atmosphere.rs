@@ -5,6 +5,7 @@ use crate::FlowSolver;
 use crate::lattice::atmosphere::{
     AirRow, Atmosphere, AtmosphereError, Damping, Driving, Heating, LevelStatistics, Perturbation,
 };
+use basis::PointForce;
 use std::f64::consts::TAU;
 
 /// A turbulent, stratified box over a cooled ground.
@@ -59,11 +60,15 @@ fn the_number_of_threads_changes_no_bit_of_an_atmosphere() {
     for ends in [Ends::Periodic, Ends::InletOutlet] {
         let run = |threads| {
             let mut air = windy(stratified(threads, Backend::detect(), ends));
-            air.advance(5.0, &[]).expect("no divergence");
+            let push = |x, z| {
+                let position = Vector3::new(x, 45.0, z);
+                PointForce::of_body(position, Vector3::new(-3e4, 0.0, 0.0), 20.0)
+            };
+            air.advance(5.0, &[push(60.0, 25.0), push(250.0, 75.0)]).expect("no divergence");
             bits(&air)
         };
         let alone = run(1);
-        for threads in [2, 3, 5] {
+        for threads in [2, 3, 5, 13] {
             assert!(run(threads) == alone, "{ends:?}: {threads} threads");
         }
     }
@@ -96,7 +101,7 @@ fn an_atmosphere_read_back_goes_on_with_the_same_bits() {
         let mut state = Vec::new();
         air.write_state(&mut state).expect("memory");
         air.advance(3.0, &[]).expect("no divergence");
-        let mut other = windy(LatticeSettings { threads: Some(3), ..settings });
+        let mut other = windy(LatticeSettings { threads: Some(29), ..settings });
         other.read_state(&mut state.as_slice()).expect("a state of this grid");
         other.advance(3.0, &[]).expect("no divergence");
         assert!(bits(&air) == bits(&other), "{ends:?}");
@@ -202,13 +207,18 @@ fn an_atmosphere_that_cannot_be_is_refused() {
         settings.interval = 0.1;
     });
     assert!(stiff.contains("use a step of at most"), "{stiff}");
+    let wrapped = refused(|settings, air| {
+        settings.ground = Ground::Periodic;
+        air.heating = Heating::Plates { ground: 290.0, top: 280.0 };
+    });
+    assert!(wrapped.contains("periodic upwards"), "{wrapped}");
     let cold = refused(|_, air| air.reference_temperature = -1.0);
     assert!(cold.contains("the reference temperature must be positive, not -1"), "{cold}");
     let nowhere = refused(|_, air| air.coriolis = f64::NAN);
     assert!(nowhere.contains("Coriolis"), "{nowhere}");
     assert!(matches!(
         Atmosphere { damping: Some(Damping { from: 1.0, rate: 10.0 }), ..Atmosphere::new(280.0) }
-            .check(0.1, true),
+            .check(0.1, Ground::Slip),
         Err(AtmosphereError::Value { name: "damping rate", .. })
     ));
 }
