@@ -113,7 +113,7 @@ impl Stable {
         surface_stress(&self.levels).sqrt()
     }
 
-    /// Depth (m): where the stress is 5 % of the ground's, over 0.95.
+    /// Depth (m): where the stress is 5 % of the ground's, over 0.95; the box's own where it never is.
     fn depth(&self) -> f64 {
         let limit = 0.05 * surface_stress(&self.levels);
         let stress: Vec<f64> = self
@@ -124,7 +124,7 @@ impl Stable {
                     .hypot(level.stress[1] + level.subgrid_stress[1])
             })
             .collect();
-        let Some(above) = (1..stress.len()).find(|at| stress[*at] < limit) else { return f64::NAN };
+        let Some(above) = (1..stress.len()).find(|at| stress[*at] < limit) else { return EDGE };
         let share = (stress[above - 1] - limit) / (stress[above - 1] - stress[above]);
         (self.levels[above - 1].height + share * self.spacing) / 0.95
     }
