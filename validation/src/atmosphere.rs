@@ -1,11 +1,8 @@
-//! Air with temperature on a turning earth against closed forms: conduction, waves, Ekman's layer, the onset of
-//! convection; and boundary layers against published simulations.
-
-mod stable;
-
-pub use stable::stable_boundary_layer;
+//! Air with temperature on a turning earth against closed forms: conduction, waves, Ekman's layer, the onset
+//! of convection.
 
 use crate::Row;
+use crate::folds::worst;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
 use flow::lattice::atmosphere::{Atmosphere, Driving, Heating, Reference};
@@ -271,11 +268,11 @@ fn ekman() -> Vec<Row> {
     };
     let mut air = lattice(settings, move |x| exact(x.z), |_| REFERENCE);
     advance(&mut air, 3.0 * TAU / coriolis);
-    let worst = air
-        .level_statistics()
-        .iter()
-        .map(|level| Vector3::from(level.velocity).distance(exact(level.height)) / wind)
-        .fold(0.0, f64::max);
+    let worst = worst(
+        air.level_statistics()
+            .iter()
+            .map(|level| Vector3::from(level.velocity).distance(exact(level.height)) / wind),
+    );
     vec![Row {
         what:
             "laminar Ekman layer of ten cells: largest error of the wind over the geostrophic one"

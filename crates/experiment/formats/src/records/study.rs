@@ -48,8 +48,7 @@ pub struct RunRecords {
     pub volume_paths: Vec<PathBuf>,
 }
 
-/// Reads the study in the folder `path` back: every run's folder in it, of its series the channels' names
-/// alone.
+/// Reads the study in the folder `path` back: every run's folder, of its series the channels' names alone.
 ///
 /// # Errors
 /// [`FileError::System`] when a file cannot be read; [`FileError::Content`] when one holds something else, or
@@ -126,8 +125,8 @@ fn order<'m>(runs: impl Iterator<Item = &'m Manifest> + Clone) -> Vec<String> {
     let indices: BTreeSet<usize> = runs.clone().map(|run| run.run_index).collect();
     if indices.len() == runs.clone().count() {
         let texts: BTreeSet<&str> = runs.clone().map(|run| run.case_sha256.as_str()).collect();
+        // Their places tell.
         if texts.len() < 2 {
-            // Their places tell.
             return Vec::new();
         }
     }

@@ -24,3 +24,4 @@ pub use settings::{
 };
 pub use similarity::Similarity;
 pub use statistics::LevelStatistics;
+pub(crate) use statistics::Sums;

@@ -18,6 +18,7 @@ mod forces;
 mod inlet;
 mod kernel;
 mod layout;
+mod levels;
 mod memory;
 mod planes;
 mod pool;

@@ -1,9 +1,9 @@
 //! The set of seven directions that carries temperature: rest and the faces of the cube.
 //!
-//! Populations hold the departure from the reference temperature. Their sum is the temperature; all relax at
-//! one rate to an equilibrium with flux u θ and, along each axis, θ (c² + u²), which takes the wind out of the
-//! diffusivity along the axes. One rate for all is stable down to no diffusion at all, which other rates of the
-//! even moments are not (linear analysis, as in Ginzburg 2005, Adv. Water Resour. 28, 1171).
+//! Populations hold the departure from the reference temperature. Their sum is the temperature; all relax
+//! at one rate to an equilibrium with flux u θ and, along each axis, θ (c² + u²), which takes the wind out of
+//! the diffusivity along the axes. One rate for all is stable down to no diffusion at all, which other rates
+//! of the even moments are not (linear analysis, as in Ginzburg 2005, Adv. Water Resour. 28, 1171).
 
 use crate::lattice::simd::Simd;
 
@@ -49,8 +49,8 @@ pub(crate) fn equilibrium<S: Simd>(temperature: S, velocity: [S; 3]) -> [S; N_HE
     [temperature - (all + all), sx + jx, sx - jx, sy + jy, sy - jy, sz + jz, sz - jz]
 }
 
-/// Populations `g`, of `heat`, after a collision in air that moves with `velocity`: relaxed at `rate`, `source`
-/// (K) added.
+/// Populations `g`, of `heat`, after a collision in air that moves with `velocity`: relaxed at `rate`, and
+/// `source` (K) added.
 #[inline(always)]
 pub(crate) fn collide<S: Simd>(
     g: &[S; N_HEAT],

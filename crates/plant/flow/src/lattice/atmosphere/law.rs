@@ -76,7 +76,8 @@ impl<S: Simd> Law<S> {
         let one = S::splat(1.0);
         [
             one.divide(S::splat(3.0).mul_add(viscosity, time)),
-            // Heat without the correction: nothing else takes the noise out that stirring leaves in stable air.
+            // Heat without the correction: nothing else takes the noise out that stirring leaves in
+            // stable air.
             one.divide(self.eddy_diffusivity.mul_add(neutral.maximum(viscosity), self.heat_time)),
         ]
     }

@@ -18,8 +18,10 @@ pub struct Atmosphere {
     pub driving: Driving,
     /// Acceleration of free fall (m/s²); 0 leaves temperature without effect on the wind.
     pub gravity: f64,
-    /// Temperature that buoyancy refers to, and that populations hold the departure from (K): best near that of
-    /// the layer of interest, because a departure feels the slight compressibility of the lattice's air.
+    /// Temperature that buoyancy refers to, and that populations hold the departure from (K).
+    ///
+    /// Best near that of the layer of interest: a departure feels the slight compressibility of the
+    /// lattice's air.
     pub reference_temperature: f64,
     /// Temperature at the start over height: pairs of height (m) and temperature (K), linear in between and
     /// beyond, heights rising.
@@ -208,6 +210,33 @@ impl Atmosphere {
         if self.temperature.is_empty() || !rises || !finite {
             return Err(AtmosphereError::Profile);
         }
+        self.check_heating()?;
+        match (self.heating, ground) {
+            (Heating::Flux(_) | Heating::Ground { .. }, Ground::WallStress { .. })
+            | (Heating::None, _) => {}
+            (Heating::Flux(_) | Heating::Ground { .. }, _) => {
+                return Err(AtmosphereError::NoRoughness);
+            }
+            (Heating::Plates { .. }, Ground::Periodic) => return Err(AtmosphereError::NoPlates),
+            (Heating::Plates { .. }, _) => {}
+        }
+        let steepest = self
+            .temperature
+            .windows(2)
+            .map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]))
+            .fold(0.0, f64::max);
+        let frequency = (self.gravity * steepest / self.reference_temperature).sqrt();
+        let period = std::f64::consts::TAU / frequency;
+        let steps = period / interval;
+        if steps < 20.0 {
+            return Err(AtmosphereError::Step { steps, longest: period / 20.0 });
+        }
+        Ok(())
+    }
+
+    /// Checks the numbers of heating, similarity and perturbation.
+    fn check_heating(&self) -> Result<(), AtmosphereError> {
+        let value = |name, expected, value| AtmosphereError::Value { name, expected, value };
         let temperatures = match self.heating {
             Heating::None => [0.0; 2],
             Heating::Flux(flux) => [flux; 2],
@@ -228,26 +257,6 @@ impl Atmosphere {
             if !number.is_finite() {
                 return Err(value(name, "a number", number));
             }
-        }
-        match (self.heating, ground) {
-            (Heating::Flux(_) | Heating::Ground { .. }, Ground::WallStress { .. })
-            | (Heating::None, _) => {}
-            (Heating::Flux(_) | Heating::Ground { .. }, _) => {
-                return Err(AtmosphereError::NoRoughness);
-            }
-            (Heating::Plates { .. }, Ground::Periodic) => return Err(AtmosphereError::NoPlates),
-            (Heating::Plates { .. }, _) => {}
-        }
-        let steepest = self
-            .temperature
-            .windows(2)
-            .map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]))
-            .fold(0.0, f64::max);
-        let frequency = (self.gravity * steepest / self.reference_temperature).sqrt();
-        let period = std::f64::consts::TAU / frequency;
-        let steps = period / interval;
-        if steps < 20.0 {
-            return Err(AtmosphereError::Step { steps, longest: period / 20.0 });
         }
         Ok(())
     }

@@ -1,7 +1,6 @@
 //! Means, variances and fluxes over the levels of the box at an instant.
 
 use super::probe::AirRow;
-use crate::lattice::Lattice;
 
 /// Statistics of one level, over all its cells at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,33 +61,9 @@ impl LevelStatistics {
     }
 }
 
-impl Lattice {
-    /// Statistics of every level, from the ground up; none where the air has no temperature.
-    pub fn level_statistics(&self) -> Vec<LevelStatistics> {
-        let Some(atmosphere) = &self.settings().atmosphere else { return Vec::new() };
-        let [n_x, n_y, n_z] = self.n_cells();
-        let mut row = AirRow::new(n_x);
-        (0..n_z)
-            .map(|z| {
-                let mut sums = Sums::default();
-                for y in 0..n_y {
-                    self.engine.read_air(z * n_y + y, &mut row);
-                    sums.add(&row, n_x);
-                }
-                let unit = self.scaling().si_velocity_unit();
-                let height = (z as f64 + 0.5) * self.settings().spacing;
-                let mut level = sums.statistics((n_x * n_y) as f64, unit);
-                level.height = height;
-                level.temperature += atmosphere.reference_temperature;
-                level
-            })
-            .collect()
-    }
-}
-
 /// Sums over the cells of a level, in lattice units but for kelvin.
 #[derive(Default)]
-struct Sums {
+pub(crate) struct Sums {
     /// u, v, w, θ.
     first: [f64; 4],
     /// Their squares.
@@ -100,7 +75,8 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, row: &AirRow, n: usize) {
+    /// Takes the first `n` cells of `row` in.
+    pub(crate) fn add(&mut self, row: &AirRow, n: usize) {
         let [u, v, w] = &row.velocity;
         let theta = &row.temperature;
         for x in 0..n {
@@ -122,7 +98,8 @@ impl Sums {
         }
     }
 
-    fn statistics(&self, n: f64, unit: f64) -> LevelStatistics {
+    /// Statistics over `n` cells, with `unit` (m/s) for a cell a step; height and reference temperature are to come.
+    pub(crate) fn statistics(&self, n: f64, unit: f64) -> LevelStatistics {
         let mean = self.first.map(|sum| sum / n);
         let variance: [f64; 4] = std::array::from_fn(|which| {
             (self.second[which] / n - mean[which] * mean[which]).max(0.0)

@@ -97,8 +97,8 @@ impl Stratification {
         Law::new(&self.coefficients, self.levels[z], subgrid)
     }
 
-    /// Gives row number `row` its first temperatures, `given` (K) or those of its height, in air that moves as
-    /// `state` says, before the first step.
+    /// Gives row number `row` its first temperatures, `given` (K) or those of its height, in air that moves
+    /// as `state` says, before the first step.
     pub(crate) fn fill(&self, row: usize, state: &RowState, given: Option<&[f64]>) {
         let [y, z] = self.layout.place(row);
         let addresses: [usize; N_HEAT] = self.layout.addresses(Parity::Even, y, z);

@@ -61,8 +61,8 @@ impl SurfaceMemory {
         }
     }
 
-    /// Writes column number `column` of what it remembers; of all threads' rows one column after the other, so
-    /// that the order does not hang on their number.
+    /// Writes column number `column` of what it remembers: of all threads' rows one column after the other,
+    /// so that the order does not hang on their number.
     pub(crate) fn write(
         &self,
         column: usize,

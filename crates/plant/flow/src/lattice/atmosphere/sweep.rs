@@ -209,16 +209,31 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
             }
         }
         if x < range.end {
-            let n = range.end - x;
-            let now = before::<S, L, Q, ODD, FORCED>(&places, &law, x);
-            sum.rest = first(now.heat.temperature, n).iter().sum();
-            let (f, g) = now.after::<L, Q>(&law);
-            for slot in 0..Q {
-                write(f[write_direction(parity, slot)], n, places.air[slot].add(x));
-            }
-            for slot in 0..N_HEAT {
-                write(g[write_direction(parity, slot)], n, places.heat[slot].add(x));
-            }
+            part::<S, L, Q, ODD, FORCED>(&places, &law, x..range.end, sum);
+        }
+    }
+}
+
+/// Moves the cells of `range`, less than a vector, on by a step.
+#[inline(always)]
+unsafe fn part<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const FORCED: bool>(
+    places: &Places<Q>,
+    law: &Law<S>,
+    range: Range<usize>,
+    sum: &mut Sum<S>,
+) {
+    let (x, n) = (range.start, range.len());
+    let parity = parity::<ODD>();
+    // SAFETY: as for whole vectors; cells of the row alone are written.
+    unsafe {
+        let now = before::<S, L, Q, ODD, FORCED>(places, law, x);
+        sum.rest = first(now.heat.temperature, n).iter().sum();
+        let (f, g) = now.after::<L, Q>(law);
+        for slot in 0..Q {
+            write(f[write_direction(parity, slot)], n, places.air[slot].add(x));
+        }
+        for slot in 0..N_HEAT {
+            write(g[write_direction(parity, slot)], n, places.heat[slot].add(x));
         }
     }
 }
