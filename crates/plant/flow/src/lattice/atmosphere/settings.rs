@@ -2,6 +2,7 @@
 
 use super::similarity::Similarity;
 use crate::lattice::settings::Ground;
+use std::f64::consts::TAU;
 use thiserror::Error;
 
 /// Acceleration of free fall (m/s²).
@@ -225,8 +226,7 @@ impl Atmosphere {
             .windows(2)
             .map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]))
             .fold(0.0, f64::max);
-        let frequency = (self.gravity * steepest / self.reference_temperature).sqrt();
-        let period = std::f64::consts::TAU / frequency;
+        let period = TAU / (self.gravity * steepest / self.reference_temperature).sqrt();
         let steps = period / interval;
         if steps < 20.0 {
             return Err(AtmosphereError::Step { steps, longest: period / 20.0 });

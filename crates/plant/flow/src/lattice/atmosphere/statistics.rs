@@ -98,7 +98,8 @@ impl Sums {
         }
     }
 
-    /// Statistics over `n` cells, with `unit` (m/s) for a cell a step; height and reference temperature are to come.
+    /// Statistics over `n` cells, with `unit` (m/s) for a cell a step; height and reference temperature are
+    /// to come.
     pub(crate) fn statistics(&self, n: f64, unit: f64) -> LevelStatistics {
         let mean = self.first.map(|sum| sum / n);
         let variance: [f64; 4] = std::array::from_fn(|which| {

@@ -160,22 +160,8 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
     if range.is_empty() {
         return;
     }
-    let mut places = Places {
-        air: [step.air; Q],
-        heat: [air.heat; N_HEAT],
-        times: step.relaxation_times.as_ptr(),
-        source: row.source.as_ptr(),
-        force: [force[0].as_ptr(), force[1].as_ptr(), force[2].as_ptr()],
-    };
-    // SAFETY: a row's addresses lie in the arrays.
-    unsafe {
-        for (place, address) in places.air.iter_mut().zip(addresses) {
-            *place = step.air.add(*address);
-        }
-        for (place, address) in places.heat.iter_mut().zip(&row.addresses) {
-            *place = air.heat.add(*address);
-        }
-    }
+    // SAFETY: handed through.
+    let places = unsafe { Places::new(step, air, addresses, row, force) };
     let law = Law::<S>::new(air.coefficients, row.level, row.subgrid);
     let parity = parity::<ODD>();
     let mut x = range.start;
@@ -245,6 +231,39 @@ struct Places<const Q: usize> {
     times: *const f32,
     source: *const f32,
     force: [*const f32; 3],
+}
+
+impl<const Q: usize> Places<Q> {
+    /// The row at `addresses`, under `force`.
+    ///
+    /// # Safety
+    /// A row's addresses lie in the arrays.
+    #[inline(always)]
+    unsafe fn new(
+        step: &Step<'_>,
+        air: &StepHeat<'_>,
+        addresses: &[usize; Q],
+        row: &RowHeat<'_>,
+        force: &[Vec<f32>; 3],
+    ) -> Self {
+        let mut places = Self {
+            air: [step.air; Q],
+            heat: [air.heat; N_HEAT],
+            times: step.relaxation_times.as_ptr(),
+            source: row.source.as_ptr(),
+            force: [force[0].as_ptr(), force[1].as_ptr(), force[2].as_ptr()],
+        };
+        // SAFETY: as the caller promises.
+        unsafe {
+            for (place, address) in places.air.iter_mut().zip(addresses) {
+                *place = step.air.add(*address);
+            }
+            for (place, address) in places.heat.iter_mut().zip(&row.addresses) {
+                *place = air.heat.add(*address);
+            }
+        }
+        places
+    }
 }
 
 /// A vector of cells before its collision.
