@@ -28,12 +28,12 @@ pub(crate) unsafe fn close(
     entering: Option<Entering>,
 ) {
     let last = air.layout.n_cells[0] - 1;
-    for slot in 0..N_HEAT {
+    for (slot, address) in addresses.iter().enumerate() {
         let q = write_direction(parity, slot);
         let [along, ..] = DIRECTIONS[q];
         // SAFETY: cells of a row of this thread, and its halo.
         unsafe {
-            let place = air.heat.add(addresses[slot]);
+            let place = air.heat.add(*address);
             match (along, entering) {
                 (1, None) => *place.wrapping_sub(1) = *place.add(last),
                 (1, Some(wind)) => *place.wrapping_sub(1) = population(&wind, q),
