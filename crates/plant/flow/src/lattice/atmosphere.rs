@@ -3,7 +3,7 @@
 //!
 //! Temperature is carried by a second [set of populations](heat) on the same cells and moved in the same
 //! pass; see [`sweep`]. What the ground does to wind and temperature is a matter of
-//! [similarity](similarity), held by [`surface`].
+//! [`similarity`], held by [`surface`].
 
 mod coefficients;
 mod ends;
