@@ -26,6 +26,7 @@ pub mod tabulated;
 pub mod tensor;
 pub mod turbulence_box;
 pub mod turbulent;
+mod walk;
 
 pub use deterministic::DeterministicWind;
 pub use planes::{PlaneGrid, Planes};

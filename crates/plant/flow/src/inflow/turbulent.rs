@@ -1,6 +1,7 @@
 //! Turbulence carried past the farm on top of a mean profile.
 
 use super::profile::veered;
+use super::walk::walk;
 use super::{InflowError, MeanProfile, TurbulenceBox};
 use crate::Inflow;
 use basis::Vector3;
@@ -182,21 +183,8 @@ impl Inflow for TurbulentInflow {
     fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]) {
         let [_, n_y, _] = self.turbulence.n_points();
         let per_point = 1.0 / self.turbulence.spacing()[1];
-        let Some(first) = positions.first() else { return };
-        // A plane shares its x and its rows share their height: what belongs to them is kept from point to
-        // point.
-        let (mut x, mut planes) = (first.x, self.planes(first.x, time));
-        let (mut z, mut rows) = (first.z, self.rows(first.z));
-        for (position, velocity) in positions.iter().zip(velocities) {
-            if position.x != x {
-                x = position.x;
-                planes = self.planes(x, time);
-            }
-            if position.z != z {
-                z = position.z;
-                rows = self.rows(z);
-            }
-            let (y, across) = place((position.y - self.origin.y) * per_point, n_y);
+        let wind = |planes: &Planes<'_>, rows: &Rows, y: f64| {
+            let (y, across) = place((y - self.origin.y) * per_point, n_y);
             let mut fluctuation = planes.at(rows.below + y);
             if across != 0.0 || rows.weight != 0.0 {
                 let next = if y + 1 == n_y { 0 } else { y + 1 };
@@ -212,8 +200,9 @@ impl Inflow for TurbulentInflow {
             }
             let [u, v, w] = fluctuation.map(f64::from);
             let [along, across] = rows.mean;
-            *velocity = Vector3::new(along + u, across + v, rows.vertical * w);
-        }
+            Vector3::new(along + u, across + v, rows.vertical * w)
+        };
+        walk(positions, velocities, |x| self.planes(x, time), |z| self.rows(z), wind);
     }
 }
 
