@@ -143,3 +143,32 @@ fn many_processes_at_once_leave_a_whole_study_and_a_report_of_all_runs() {
     });
     assert_eq!(hidden.count(), 0, "something half-written is left");
 }
+
+#[test]
+fn a_study_under_way_has_a_page_that_tells_which_runs_are_to_come() {
+    const N_RUNS: usize = 900;
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let runs = (1..=N_RUNS).map(|number| format!("[[run]]\nname = \"run-{number}\"\n"));
+    let (head, _) = CASE.split_once("[[run]]").expect("runs");
+    let case = head.replace("1e6", "2000.0") + &runs.collect::<String>();
+    fs::write(folder.join("case.toml"), case).expect("a case file");
+    let mut command = command(&["--jobs", "1"], folder);
+    let mut child = command.stderr(Stdio::piped()).spawn().expect("the program");
+    let page = folder.join("out/report.html");
+    while !page.exists() {
+        assert!(child.try_wait().expect("a process").is_none(), "it has ended already");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    // It goes on with the next run before it is stopped.
+    while !folder.join("out/run-2/manifest.json").exists() {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().expect("a process");
+    let told = told(&child.wait_with_output().expect("a process"));
+    assert_eq!(told.matches("report so far: out/report.html").count(), 1, "{told}");
+    let page = fs::read_to_string(page).expect("a page");
+    let notice =
+        format!("Of {N_RUNS} runs 1 is complete, and on this page; not yet complete: run-2, ");
+    assert!(page.contains(&notice), "no notice");
+}

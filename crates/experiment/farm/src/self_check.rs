@@ -42,7 +42,7 @@ pub struct SelfCheck {
 /// Difference beyond which the self-check warns (–).
 pub const TOLERANCE: f64 = 0.05;
 /// Wall time for which a machine is timed.
-const TIMED: Duration = Duration::from_millis(300);
+pub const TIMED: Duration = Duration::from_millis(300);
 
 impl SelfCheck {
     /// Power over its expectation, minus one (–).

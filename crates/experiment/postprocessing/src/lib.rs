@@ -55,12 +55,12 @@ pub struct ReportMade {
 /// report that cannot be written.
 pub fn report(directory: &Path) -> Result<ReportMade, PostprocessingError> {
     let Some(swept) = records::read_sweep(directory)? else {
-        let (summaries, page) = report_of_study(directory)?;
+        let (summaries, page) = report_of_study(directory, report::write)?;
         return Ok(ReportMade { summaries, sweep: None, page });
     };
     let mut summaries = Vec::new();
     for study in sweep::studies_with_runs(directory, &swept) {
-        summaries.extend(report_of_study(&study)?.0);
+        summaries.extend(report_of_study(&study, report::write)?.0);
     }
     let _lock = records::lock_shared(directory, "sweep")?;
     let table = sweep::table(directory, &swept)?;
@@ -69,8 +69,27 @@ pub fn report(directory: &Path) -> Result<ReportMade, PostprocessingError> {
     Ok(ReportMade { summaries, sweep: Some(table), page })
 }
 
-/// Makes the report of the one study in `directory`; gives the summaries and the report's path.
-fn report_of_study(directory: &Path) -> Result<(Vec<Summary>, PathBuf), PostprocessingError> {
+/// Makes the page of the study in `study` while further runs of it are to come, without figures beside it;
+/// where `directory`, in which it is, is that of a sweep, `sweep.html` too. Gives the page over all.
+///
+/// # Errors
+/// Those of [`report`].
+pub fn report_so_far(directory: &Path, study: &Path) -> Result<PathBuf, PostprocessingError> {
+    let (_, page) = report_of_study(study, report::write_page)?;
+    let Some(swept) = records::read_sweep(directory)? else { return Ok(page) };
+    let _lock = records::lock_shared(directory, "sweep")?;
+    let table = sweep::table(directory, &swept)?;
+    Ok(report::write_sweep_page(&table, env!("CARGO_PKG_VERSION"), directory)?)
+}
+
+/// Writes what is of a report into a folder.
+type Write = fn(&report::StudyRecords, &Path) -> Result<(), report::ReportError>;
+
+/// Has `write` make the report of the one study in `directory`; gives the summaries and the report's path.
+fn report_of_study(
+    directory: &Path,
+    write: Write,
+) -> Result<(Vec<Summary>, PathBuf), PostprocessingError> {
     if !directory.is_dir() {
         // The reader says what is wrong; a lock would make the folder.
         records::read_study(directory)?;
@@ -104,10 +123,11 @@ fn report_of_study(directory: &Path) -> Result<(Vec<Summary>, PathBuf), Postproc
         description: study.description,
         case_text: study.case_text,
         runs,
+        incomplete: study.incomplete,
         synchronisation,
         signals,
         version: study.version,
     };
-    report::write(&study, directory)?;
+    write(&study, directory)?;
     Ok((summaries, directory.join("report.html")))
 }

@@ -283,7 +283,10 @@ fn remark(table: &mut SweepTable, missing: &[String]) {
         if missing.len() > MOST {
             names += &format!(" and {} more", missing.len() - MOST);
         }
-        let (is, it) = if missing.len() == 1 { ("is", "it") } else { ("are", "them") };
-        table.remarks.push(format!("{names} {is} not complete: make {it} with --resume"));
+        let [is, it, they] =
+            if missing.len() == 1 { ["is", "it", "it is"] } else { ["are", "them", "they are"] };
+        table.remarks.push(format!(
+            "{names} {is} not complete: unless {they} under way, make {it} with --resume"
+        ));
     }
 }

@@ -165,6 +165,7 @@ mod tests {
                         [[turbine]]\nname = 'B'\nposition_diameters = [5.0, 1]\n"
                 .into(),
             runs: vec![run],
+            incomplete: Vec::new(),
             synchronisation: Vec::new(),
             signals: Vec::new(),
             version: "0".into(),

@@ -36,6 +36,8 @@ pub struct StudyRecords {
     pub case_text: String,
     /// The runs, in the case file's order.
     pub runs: Vec<RunRecords>,
+    /// Names of the case's runs that are not complete, and not among them.
+    pub incomplete: Vec<String>,
     /// What there is to show of phase synchronisation, for each turbine that joins a helix.
     pub synchronisation: Vec<Synchronisation>,
     /// Further signals and their spectra, each under a heading of its own.
@@ -124,6 +126,15 @@ pub fn write(study: &StudyRecords, directory: &Path) -> Result<(), ReportError> 
     write_whole(&directory.join("report.html"), page.as_bytes())
 }
 
+/// Writes `report.html` of `study` into `directory` without the figures beside it, which the page does not
+/// need.
+///
+/// # Errors
+/// Those of [`write()`].
+pub fn write_page(study: &StudyRecords, directory: &Path) -> Result<(), ReportError> {
+    write_whole(&directory.join("report.html"), page(study)?.as_bytes())
+}
+
 /// Writes `sweep.html` and the figures of the sweep of `table` into `directory`, made by the program of
 /// `version`; gives the page's path.
 ///
@@ -134,9 +145,20 @@ pub fn write_sweep(
     version: &str,
     directory: &Path,
 ) -> Result<PathBuf, ReportError> {
-    let figures = figures::sweep::all(table);
-    let page = page::sweep::render(table, &figures, version)?;
-    write_figures(figures.iter(), directory)?;
+    write_figures(figures::sweep::all(table).iter(), directory)?;
+    write_sweep_page(table, version, directory)
+}
+
+/// Writes `sweep.html` as [`write_sweep`] does, without the figures beside it; gives the page's path.
+///
+/// # Errors
+/// Those of [`write_sweep`].
+pub fn write_sweep_page(
+    table: &SweepTable,
+    version: &str,
+    directory: &Path,
+) -> Result<PathBuf, ReportError> {
+    let page = page::sweep::render(table, &figures::sweep::all(table), version)?;
     let path = directory.join("sweep.html");
     write_whole(&path, page.as_bytes())?;
     Ok(path)

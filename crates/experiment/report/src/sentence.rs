@@ -17,6 +17,28 @@ pub(crate) fn headline(study: &Study) -> String {
     }
 }
 
+/// That runs of the case are missing, and which; empty where none is.
+pub(crate) fn incomplete(study: &Study) -> String {
+    /// Runs that are named at most (–).
+    const MOST: usize = 6;
+    let missing = &study.records.incomplete;
+    if missing.is_empty() {
+        return String::new();
+    }
+    let mut names = missing.clone();
+    if missing.len() > MOST {
+        names.truncate(MOST - 1);
+        names.push(format!("{} more", missing.len() - names.len()));
+    }
+    let n = study.runs().len();
+    let is = if n == 1 { "is" } else { "are" };
+    format!(
+        "Of {} runs {n} {is} complete, and on this page; not yet complete: {}.",
+        n + missing.len(),
+        words::list(&names)
+    )
+}
+
 /// A remark on how firm the headline is; empty when there is nothing to add.
 pub(crate) fn confidence(study: &Study) -> String {
     let Some(run) = study.best() else { return String::new() };

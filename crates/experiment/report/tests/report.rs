@@ -49,6 +49,31 @@ fn the_page_says_what_the_numbers_say_and_under_which_conditions() {
 }
 
 #[test]
+fn the_page_opens_with_the_runs_that_are_still_to_come() {
+    let mut study = synthetic::two_runs();
+    assert!(!page(&study).contains("class=\"incomplete\""));
+    study.runs.truncate(1);
+    study.incomplete = vec!["helix-ccw".into(), "helix-cw".into()];
+    let told = page(&study);
+    let notice = "<p class=\"incomplete\">Of 3 runs 1 is complete, and on this page; not yet complete: helix-ccw and helix-cw.</p>";
+    let place = told.find(notice).expect("a notice");
+    assert!(place < told.find("class=\"headline\"").expect("a headline"));
+    study.incomplete = (1..=9).map(|number| format!("run-{number}")).collect();
+    assert!(page(&study).contains("run-1, run-2, run-3, run-4, run-5 and 4 more."));
+}
+
+#[test]
+fn a_page_can_be_written_without_its_figures() {
+    let (whole, alone) =
+        (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder"));
+    let study = synthetic::two_runs();
+    report::write(&study, whole.path()).expect("a report");
+    report::write_page(&study, alone.path()).expect("a page");
+    assert_eq!(read(whole.path()), read(alone.path()));
+    assert!(!alone.path().join("figures").exists());
+}
+
+#[test]
 fn a_synchronised_turbine_is_named_and_what_both_runs_do_is_left_out() {
     let mut study = synthetic::two_runs();
     let helix = study.runs[1].summary.turbines[0].clone();

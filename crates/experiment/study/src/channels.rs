@@ -3,9 +3,9 @@
 use crate::prepared::Prepared;
 use basis::channels::{Channel, LINES, OPERATION, OPERATION_OF_BLADES, TIME, WIND, loads_of};
 use basis::{Commands, FixedFrame, Truth, Vector3};
+use farm::Machine;
 use farm::case::Run;
 use farm::farm::Recorder;
-use farm::{Machine, assemble};
 use std::ops::Range;
 use turbine::{Definition, Turbine};
 
@@ -17,23 +17,11 @@ fn n_own(n_blades: usize) -> usize {
     OPERATION.len() + OPERATION_OF_BLADES.len() * n_blades + loads_of(n_blades).len()
 }
 
-/// Channels of turbine number `index` in the series of `run` (–).
-fn n_of_turbine(setup: &Prepared, run: &Run, index: usize) -> usize {
-    let (plan, model) = (&setup.plan, setup.models[index].clone());
-    // What is found before the runs, if there is to be anything, changes no name.
-    let model = model.without_individual_pitch();
-    let mut control = run.control[index].clone();
-    control.response = control.response.or(control.kind().any_response());
-    let signals = assemble::controller(&control, &model, &setup.case, plan)
-        .map_or(0, |controller| controller.signals().len());
-    let shown = assemble::sensing(&setup.case, plan, &model, index)
-        .map_or(0, |sensing| sensing.channels().len());
-    n_own(model.definition.n_blades) + signals + shown
-}
-
 /// Channels of each turbine in the series of `run` (–).
 pub(crate) fn of_turbines(setup: &Prepared, run: &Run) -> Vec<u64> {
-    run.present().map(|index| n_of_turbine(setup, run, index) as u64).collect()
+    let n_blades = |index: usize| setup.models[index].definition.n_blades;
+    let own = |index| (n_own(n_blades(index)) + setup.n_told(run, index)) as u64;
+    run.present().map(own).collect()
 }
 
 /// Channels in the series of `run` with lines at `n_lines` places (–), as [`Row`] has them.

@@ -89,6 +89,29 @@ pub(crate) fn at_inlet(
     Ok(Some(recorded))
 }
 
+/// What a reader of the numbers must know of the planes of the case of `file`, which enter the domain of
+/// `site` as `recorded`.
+///
+/// # Errors
+/// [`StudyError::File`] for a file that cannot be read.
+pub(crate) fn warnings(
+    file: &CaseFile,
+    site: &Site,
+    recorded: Option<Recorded>,
+) -> Result<Vec<String>, StudyError> {
+    let Some(recorded) = recorded else { return Ok(Vec::new()) };
+    let name = site.case.wind.planes.as_deref().unwrap_or_default();
+    let mut warnings = recorded.warnings(site);
+    let maker = formats::turbulence_box::maker_with_divergence(&file.folder().join(name))?;
+    warnings.extend(maker.map(|maker| {
+        format!(
+            "the turbulence of wind.planes is {maker}'s, which has divergence: the first cells take it away with part of the variance; go by the \
+             intensity upstream of the rotor that the results tell, or take a box of Mann's tensor, which has none (wakemix inflow generate)"
+        )
+    }));
+    Ok(warnings)
+}
+
 /// That `case` is laid out for another wind than that of `table`.
 pub(crate) fn warning(case: &Case, table: Option<&TabulatedWind>) -> Option<String> {
     let mean = table?.mean_speed(case.time.duration);

@@ -5,6 +5,7 @@ use basis::records::{PitchResponse, Summary};
 use farm::self_check::SelfCheck;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a study will cost, known before it starts.
@@ -120,6 +121,9 @@ pub trait Observer {
     fn in_study(&mut self, _folder: &str) {}
     /// The cost, before the first step.
     fn estimated(&mut self, _estimate: &Estimate) {}
+    /// All checks are passed, and the runs are about to be made: into `directory`, the folder of the study,
+    /// or of the sweep.
+    fn beginning(&mut self, _directory: &Path) {}
     /// Something is being prepared: `share` (–) of it is done.
     fn preparing(&mut self, _what: &str, _share: f64) {}
     /// A rotor was checked against blade-element momentum.
@@ -131,7 +135,7 @@ pub trait Observer {
     fn identified(&mut self, _turbine: &str, _response: &PitchResponse, _again: bool) {}
     /// A run moved on.
     fn advanced(&mut self, _progress: &Progress) {}
-    /// A run is complete.
+    /// A run is complete, and so are its records.
     fn finished(&mut self, _summary: &Summary) {}
     /// Something that a reader of the numbers must know.
     fn warned(&mut self, _warning: &str) {}

@@ -7,8 +7,8 @@ use crate::hosting;
 use crate::models::{self, Machines};
 use crate::threads;
 use crate::warnings::{self, SetupWarning};
-use farm::assemble::{TurbineModel, controller};
-use farm::case::Case;
+use farm::assemble::{TurbineModel, controller, sensing};
+use farm::case::{Case, Run};
 use farm::operation::check_operation;
 use farm::wind::{self, Recorded, Site};
 use farm::{Plan, plan};
@@ -42,6 +42,9 @@ pub struct Prepared {
     pub recorded: Option<Recorded>,
     /// What a reader of the numbers must know.
     pub warnings: Vec<SetupWarning>,
+    /// Channels of each turbine's controller and further sensors (–), of every run by its name, in the case's
+    /// order: counted where every controller is made as a check, which takes a while.
+    n_told: BTreeMap<String, Vec<usize>>,
     /// Folder that paths in the case are relative to.
     folder: PathBuf,
 }
@@ -74,7 +77,7 @@ impl Prepared {
         let (planes, duration) = (planes.as_deref(), case.time.duration);
         let speed = file_of_wind::recorded_speed(table.as_deref(), planes, duration);
         check_operation(&case, &plan, &models, speed)?;
-        check_control(&case, &plan, &models)?;
+        let n_told = check_control(&case, &plan, &models)?;
         let warned = file_of_wind::warning(&case, table.as_deref());
         let mean_inflow = match table {
             Some(table) => table as Arc<dyn Inflow>,
@@ -83,7 +86,7 @@ impl Prepared {
         let mut warnings = warnings::of(&case, &plan);
         let site = Site { case: &case, plan: &plan, models: &models };
         let recorded = file_of_wind::at_inlet(file, &site, planes)?;
-        let of_file = recorded.map_or(Vec::new(), |recorded| recorded.warnings(&site));
+        let of_file = file_of_wind::warnings(file, &site, recorded)?;
         let turbulence = wind::turbulence(&site).and_then(|turbulence| turbulence.warning);
         let operation = warnings::of_operation(&case, &models);
         let further = turbulence
@@ -98,6 +101,7 @@ impl Prepared {
             turbine_texts: machines.texts,
             libraries: hosting::digests(&case, file.folder()),
             folder: file.folder().to_owned(),
+            n_told,
             case,
             models,
             plan,
@@ -110,6 +114,12 @@ impl Prepared {
     /// Folder that paths in the case are relative to.
     pub(crate) fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// Channels of the controller and the further sensors of turbine number `index` in `run`, one of the
+    /// case's (–).
+    pub(crate) fn n_told(&self, run: &Run, index: usize) -> usize {
+        self.n_told.get(&run.name).map_or(0, |of_turbines| of_turbines[index])
     }
 
     /// What the wind is made for.
@@ -139,29 +149,49 @@ fn pointed_at(file: &CaseFile, error: StudyError) -> StudyError {
 }
 
 /// Whether every rotor that shall pitch by tilt and yaw has the blades for it, and every controller can be
-/// made: known now, not when its run begins after hours of others.
-fn check_control(case: &Case, plan: &Plan, models: &[TurbineModel]) -> Result<(), StudyError> {
+/// made: known now, not when its run begins after hours of others. Gives [`Prepared::n_told`].
+fn check_control(
+    case: &Case,
+    plan: &Plan,
+    models: &[TurbineModel],
+) -> Result<BTreeMap<String, Vec<usize>>, StudyError> {
+    let mut n_told = BTreeMap::new();
     for run in &case.runs {
-        for ((control, placement), model) in run.control.iter().zip(&case.turbines).zip(models) {
-            let n_blades = model.definition.n_blades;
-            if control.kind().pitches_individually() && n_blades < 3 {
-                let (run, turbine) = (run.name.clone(), placement.name.clone());
-                return Err(StudyError::TooFewBlades { run, turbine, n_blades });
-            }
-            if !control.is_there() {
-                continue;
-            }
-            // What is found before the runs, if there is to be anything, decides nothing here.
-            let model = model.clone().without_individual_pitch();
-            let mut control = control.clone();
-            control.response = control.response.or(control.kind().any_response());
-            let built = controller(&control, &model, case, plan).map(|_| ());
-            let begun = || hosting::check(&control, placement, &model, (case, plan));
-            if let Err(source) = built.and_then(|()| begun()) {
-                let (run, turbine) = (run.name.clone(), placement.name.clone());
-                return Err(StudyError::Control { run, turbine, source: Box::new(source) });
-            }
-        }
+        let of_turbines =
+            (0..models.len()).map(|index| check_control_of(case, plan, &models[index], run, index));
+        n_told.insert(run.name.clone(), of_turbines.collect::<Result<_, _>>()?);
     }
-    Ok(())
+    Ok(n_told)
+}
+
+/// The same of turbine number `index` in `run`.
+fn check_control_of(
+    case: &Case,
+    plan: &Plan,
+    model: &TurbineModel,
+    run: &Run,
+    index: usize,
+) -> Result<usize, StudyError> {
+    let (control, placement) = (&run.control[index], &case.turbines[index]);
+    let n_blades = model.definition.n_blades;
+    if control.kind().pitches_individually() && n_blades < 3 {
+        let (run, turbine) = (run.name.clone(), placement.name.clone());
+        return Err(StudyError::TooFewBlades { run, turbine, n_blades });
+    }
+    if !control.is_there() {
+        return Ok(0);
+    }
+    // What is found before the runs, if there is to be anything, decides nothing here.
+    let model = model.clone().without_individual_pitch();
+    let mut control = control.clone();
+    control.response = control.response.or(control.kind().any_response());
+    let built = controller(&control, &model, case, plan).map(|built| built.signals().len());
+    let begun =
+        |n_signals| hosting::check(&control, placement, &model, (case, plan)).map(|()| n_signals);
+    let n_signals = built.and_then(begun).map_err(|source| {
+        let (run, turbine) = (run.name.clone(), placement.name.clone());
+        StudyError::Control { run, turbine, source: Box::new(source) }
+    })?;
+    let n_shown = sensing(case, plan, &model, index).map_or(0, |sensing| sensing.channels().len());
+    Ok(n_signals + n_shown)
 }

@@ -15,6 +15,7 @@ use crate::study::Study;
 use crate::threads::cores;
 use crate::{Estimate, Observer, StudyError, gains};
 use basis::records::Sweep;
+use formats::FileError;
 use formats::lock::Lock;
 use formats::records::{self, PitchResponseRecord, read_pitch_responses};
 use formats::shipped;
@@ -72,6 +73,7 @@ pub fn run_with(
     if options.dry_run {
         return Ok(Outcome::Estimated);
     }
+    observer.beginning(&all.directory);
     let parts = match all.make(options, n_jobs, stop, observer)? {
         Made::Interrupted(directory) => return interrupted(directory),
         Made::All(parts) => parts,
@@ -121,7 +123,7 @@ impl<'a> All<'a> {
         sweep: Option<Sweep>,
         directory: PathBuf,
     ) -> Result<Self, StudyError> {
-        check_folder(&directory, sweep.as_ref())?;
+        check_folder(&directory, sweep.as_ref(), options.overwrite)?;
         let mut studies = Vec::with_capacity(prepared.len());
         let wanted = wanted::of_studies(&options.runs, sweep.as_ref(), &prepared)?;
         for (index, (prepared, runs)) in prepared.into_iter().zip(wanted).enumerate() {
@@ -157,13 +159,20 @@ impl<'a> All<'a> {
         Ok(locks)
     }
 
-    /// Pitch responses that earlier sessions have identified for any of the studies.
+    /// Pitch responses that earlier sessions have identified for any of the studies, where they go on; where
+    /// they begin anew, what another program identified is taken away.
     fn known_responses(
         &self,
         options: &StudyOptions,
     ) -> Result<Vec<PitchResponseRecord>, StudyError> {
         let mut known: Vec<PitchResponseRecord> = Vec::new();
-        for Opened { study, .. } in self.studies.iter().filter(|_| options.resume) {
+        for Opened { study, .. } in &self.studies {
+            if !options.resume {
+                if !options.dry_run {
+                    records::discard_unreadable_pitch_responses(&study.directory)?;
+                }
+                continue;
+            }
             for record in read_pitch_responses(&study.directory)? {
                 if !known.iter().any(|other| other.key == record.key) {
                     known.push(record);
@@ -252,7 +261,7 @@ impl<'a> All<'a> {
                 continue;
             }
             if is_quick {
-                *checked = prepared.timed()?;
+                *checked = prepared.timed(&prepared.case.runs[study.open[0]])?;
                 known.insert(alike, checked.clone());
                 continue;
             }
@@ -315,8 +324,13 @@ impl<'a> All<'a> {
     }
 }
 
-/// Nothing where `directory` holds nothing yet, or what the case makes: the studies of `sweep`, or one.
-fn check_folder(directory: &Path, sweep: Option<&Sweep>) -> Result<(), StudyError> {
+/// Nothing where `directory` holds nothing yet, or what the case makes: the studies of `sweep`, or one; also
+/// where it is to `overwrite` what another program left there.
+fn check_folder(
+    directory: &Path,
+    sweep: Option<&Sweep>,
+    overwrite: bool,
+) -> Result<(), StudyError> {
     let of_studies = |sweep: &Sweep| -> Vec<String> {
         let keys = sweep.keys.iter().filter(|key| key.of_studies);
         keys.map(|key| key.key.clone()).collect()
@@ -326,10 +340,12 @@ fn check_folder(directory: &Path, sweep: Option<&Sweep>) -> Result<(), StudyErro
         keys => format!("a study for each value of {}", keys.join(", ")),
     };
     let expected = sweep.map_or(Vec::new(), of_studies);
-    let found = match records::read_sweep(directory)? {
-        Some(found) => of_studies(&found),
-        None if records::is_begun(directory) => Vec::new(),
-        None => return Ok(()),
+    let found = match records::read_sweep(directory) {
+        Err(FileError::Content { .. }) if overwrite => return Ok(()),
+        Err(error) => return Err(error.into()),
+        Ok(Some(found)) => of_studies(&found),
+        Ok(None) if records::is_begun(directory) => Vec::new(),
+        Ok(None) => return Ok(()),
     };
     if found.iter().collect::<BTreeSet<_>>() == expected.iter().collect::<BTreeSet<_>>() {
         return Ok(());

@@ -184,3 +184,24 @@ fn files_without_a_manifest_are_neither_taken_nor_taken_away() {
     let replaced = run(&StudyOptions { overwrite: true, ..first });
     assert!(matches!(replaced, Ok(Outcome::Done { .. })), "{replaced:?}");
 }
+
+/// What another program identified, or swept, is told as such, and the advice leads on.
+#[test]
+fn records_of_an_earlier_program_are_refused_until_they_are_overwritten() {
+    let folder = written(&case());
+    let first = options(folder.path());
+    let out = small::done(&first);
+    let records =
+        [("probes.json", "[{\"key\": \"a\"}]"), ("sweep.json", "{\"schema_version\": 1}")];
+    for (name, text) in records {
+        fs::write(out.join(name), text).expect("a record");
+        let resumed = run(&StudyOptions { resume: true, ..first.clone() });
+        let error = resumed.expect_err("an earlier program's");
+        let told = error.to_string();
+        assert!(told.contains(name) && told.contains("that of an earlier wakemix"), "{told}");
+        assert!(help(&error).contains("--overwrite"), "{}", help(&error));
+        let replaced = run(&StudyOptions { overwrite: true, ..first.clone() });
+        assert!(matches!(replaced, Ok(Outcome::Done { .. })), "{name}: {replaced:?}");
+        assert!(!out.join(name).exists(), "{name} is still there");
+    }
+}

@@ -7,7 +7,8 @@ use formats::table::{Column, TableReader};
 use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::{Path, PathBuf};
-use study::{Outcome, Outputs, Prepared, Silent, StudyOptions};
+use std::sync::atomic::AtomicBool;
+use study::{Estimate, Observer, Outcome, Outputs, Prepared, Silent, StudyOptions};
 
 const CASE: &str = r#"
 name = "small"
@@ -162,4 +163,28 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
         (1.0..2.0).contains(&(reported / taken as f64)),
         "{reported} bytes reported, {taken} taken"
     );
+}
+
+/// The cost as it was told last.
+#[derive(Default)]
+struct Told(Option<Estimate>);
+
+impl Observer for Told {
+    fn estimated(&mut self, estimate: &Estimate) {
+        self.0 = Some(estimate.clone());
+    }
+}
+
+#[test]
+fn a_dry_run_times_turbines_whose_pitch_is_yet_to_be_identified() {
+    let joining = "{ kind = \"phase-sync\", offset_deg = 90.0, amplitude_deg = 3.0 }";
+    let folder = written(&CASE.replace("{ kind = \"absent\" }", joining));
+    let dry = StudyOptions { dry_run: true, ..options(folder.path(), "dry") };
+    let mut told = Told::default();
+    let outcome = study::run(&dry, &AtomicBool::new(false), &mut told);
+    assert!(matches!(outcome, Ok(Outcome::Estimated)), "{outcome:?}");
+    let estimate = told.0.expect("a cost");
+    assert!(estimate.n_identifications > 0);
+    assert!(estimate.wall_time().is_some_and(|time| time > 0.0 && time.is_finite()));
+    assert!(!folder.path().join("dry").exists());
 }

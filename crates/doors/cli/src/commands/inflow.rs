@@ -315,7 +315,7 @@ fn kaimal_of(
         seed: arguments.seed,
         threads: None,
     };
-    Ok((BoxSettings::Kaimal(settings), "IEC Kaimal".to_owned()))
+    Ok((BoxSettings::Kaimal(settings), turbulence_box::KAIMAL.to_owned()))
 }
 
 /// The mean profile that is written beside the fluctuations.

@@ -1,7 +1,9 @@
 //! `wakemix run`: one study from case file to report.
 
 mod again;
+mod pace;
 mod screen;
+mod so_far;
 mod stages;
 
 use super::output::{columns, detail, print, refuse, say, tell, warn};

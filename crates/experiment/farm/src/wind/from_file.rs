@@ -104,8 +104,7 @@ impl Recorded {
     pub fn new(site: &Site, planes: &dyn Planes) -> Result<Self, ForeignWind> {
         let grid = planes.grid();
         grid.check()?;
-        let usual = planes.repeats_across().then_some(Beyond::Repeat);
-        let beyond = site.case.wind.beyond_planes.or(usual);
+        let beyond = beyond(site, planes);
         if beyond.is_none() && reaches_beyond(site, &grid) {
             let [needed_across, [_, need_top]] = needed(site);
             let (across, top) = (grid.across(), grid.up()[1]);
@@ -143,6 +142,18 @@ impl Recorded {
                  first speeds are those of wind.speed"
             ));
         }
+        let entry = entry(site, &self.grid);
+        let (blown_out, spin_up) = (entry.blown_out(&self.grid), site.case.time.spin_up);
+        if blown_out > spin_up {
+            warnings.push(format!(
+                "wind.planes does not repeat: at the start the last {:.0} m of the domain, from x = {:.0} m on, hold its first plane alone, the same \
+                 all along the wind; at the mean speed that air is blown out after {blown_out:.0} s, and time.spin_up = {spin_up} s is shorter: \
+                 raise it to {:.0} s",
+                entry.extent[1] - entry.origin_x,
+                entry.origin_x,
+                blown_out.ceil()
+            ));
+        }
         let is_chosen = site.case.wind.beyond_planes.is_some();
         if self.beyond == Some(Beyond::Repeat) && !is_chosen && reaches_beyond(site, &self.grid) {
             warnings.push(
@@ -166,13 +177,18 @@ pub(super) fn entering(
 ) -> Result<RecordedInflow, InflowError> {
     let entry = entry(site, &planes.grid());
     // Where nothing is chosen the grid covers all, up to the rounding of its places.
-    let usual = if planes.repeats_across() { Beyond::Repeat } else { Beyond::Hold };
-    let beyond = site.case.wind.beyond_planes.unwrap_or(usual);
+    let beyond = beyond(site, &*planes).unwrap_or(Beyond::Hold);
     let share = inflow_share(site.case, site.plan);
     let profile = profile(site.case, site.plan);
     let goes_on = |done: f64| progress(done).is_continue();
     let inflow = RecordedInflow::read(planes, entry, profile, beyond, &goes_on)?;
     Ok(inflow.with_share_of_mean(share))
+}
+
+/// What blows beyond the grid of `planes`: what the case says, or else what the file is made for, if
+/// anything.
+fn beyond(site: &Site, planes: &dyn Planes) -> Option<Beyond> {
+    site.case.wind.beyond_planes.or(planes.repeats_across().then_some(Beyond::Repeat))
 }
 
 /// How the planes of `grid` lie in the domain of `site`: where prescribed wind would have them, so that the

@@ -261,7 +261,16 @@ fn places_of(section: &Section, key: &str, turbines: &[Placement]) -> Vec<usize>
     section.turbines(key).iter().filter_map(place).collect()
 }
 
+/// What is kept of a run; notes what is said of volumes where none are kept.
 fn output_of(section: &Section, turbines: &[Placement], solver: Solver) -> Output {
+    let volume_interval = section.optional_number("volume_interval");
+    let volume_stride = section.optional_whole("volume_stride");
+    if volume_interval.is_none() && volume_stride.is_some() {
+        let why = "no volumes are kept without `output.volume_interval`".to_owned();
+        let kind = ProblemKind::NoUse { key: section.key_path("volume_stride"), why };
+        let fix = "add `volume_interval`, or leave `volume_stride` out".to_owned();
+        section.findings().note(section.span_of("volume_stride"), kind, Some(fix));
+    }
     Output {
         lines_at: places_of(section, "lines_at", turbines),
         inflow_at: places_of(section, "inflow_at", turbines),
@@ -271,8 +280,8 @@ fn output_of(section: &Section, turbines: &[Placement], solver: Solver) -> Outpu
         interval: section.optional_number("interval"),
         plane_interval: section.optional_number("plane_interval"),
         crosswind_diameters: section.numbers("crosswind_diameters"),
-        volume_interval: section.optional_number("volume_interval"),
-        volume_stride: section.whole("volume_stride") as usize,
+        volume_interval,
+        volume_stride: volume_stride.map_or(keys::USUAL_STRIDE, |stride| stride as usize),
         checkpoint_interval: section.number("checkpoint_interval"),
         keeps_checkpoint: section.choice("last_checkpoint") == "keep",
         further: further_of(section, solver),

@@ -236,6 +236,9 @@ pub(super) static RUN: Table = Table {
     ],
 };
 
+/// `output.volume_stride` of volumes that say none (–).
+pub(super) const USUAL_STRIDE: usize = 2;
+
 /// `[output]`.
 pub(super) static OUTPUT: Table = Table {
     heading: "[output]",
@@ -294,7 +297,7 @@ pub(super) static OUTPUT: Table = Table {
             "volume_stride",
             Holds::Whole { least: 1, most: 16 },
             "–",
-            Value("2"),
+            Otherwise("2 with `volume_interval`"),
             "Volumes hold every so many cells along each axis: 2 an eighth of them, 1 all of the flow's resolution. A cell takes 12 bytes on the disk, and as many of memory while a volume is written; `--dry-run` tells both.",
         ),
         key(

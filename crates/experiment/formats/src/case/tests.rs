@@ -164,6 +164,18 @@ fn stall_is_dynamic_where_the_wind_is_prescribed_unless_the_case_says_otherwise(
 }
 
 #[test]
+fn the_stride_of_volumes_goes_with_their_interval() {
+    let of = |overrides: &[&str]| {
+        let case = small(overrides).unwrap();
+        assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
+        (case.output.volume_interval, case.output.volume_stride)
+    };
+    assert_eq!(of(&[]), (None, 2));
+    assert_eq!(of(&["output.volume_interval=60"]), (Some(60.0), 2));
+    assert_eq!(of(&["output.volume_interval=60", "output.volume_stride=1"]), (Some(60.0), 1));
+}
+
+#[test]
 fn a_turbine_may_name_the_input_of_its_controller() {
     let case = small(&["turbine.T2.discon=rosco/DISCON.IN"]).unwrap();
     let requested: Vec<Option<&str>> = case.turbines.iter().map(|t| t.discon.as_deref()).collect();

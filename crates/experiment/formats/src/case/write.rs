@@ -1,6 +1,7 @@
 //! A case as text: every key written out, defaults included.
 
 use super::instruments::instruments_text;
+use super::keys;
 use super::kinds;
 use super::momentum::momentum_text;
 use super::position::{position_text, yaw_text};
@@ -91,9 +92,9 @@ fn write_output(text: &mut String, output: &Output, turbines: &[Placement]) -> s
     }
     if let Some(interval) = output.volume_interval {
         writeln!(text, "volume_interval = {interval:?}")?;
-    }
-    if output.volume_stride != 2 {
-        writeln!(text, "volume_stride = {}", output.volume_stride)?;
+        if output.volume_stride != keys::USUAL_STRIDE {
+            writeln!(text, "volume_stride = {}", output.volume_stride)?;
+        }
     }
     writeln!(text, "checkpoint_interval = {:?}", output.checkpoint_interval)?;
     // Only where it is used, so that the text of a case without it stays what it was.

@@ -16,7 +16,8 @@ mod sweep;
 pub use crate::clock::now;
 pub use manifest::{Machine, Manifest, read_manifest, sha256, sha256_of_file, write_manifest};
 pub use pitch_responses::{
-    PitchResponseRecord, add_pitch_responses, read_pitch_responses, write_pitch_responses,
+    PitchResponseRecord, add_pitch_responses, discard_unreadable_pitch_responses,
+    read_pitch_responses, write_pitch_responses,
 };
 pub use planes::{
     AtPhase, InstantWriter, PlacedTurbine, PlaneSetting, write_last_plane, write_mean_plane,
@@ -294,37 +295,42 @@ fn read_layout<T: DeserializeOwned>(
     what: &'static str,
     expected: u32,
 ) -> Result<T, FileError> {
-    #[derive(Deserialize)]
-    struct Layout {
-        schema_version: u32,
-    }
+    const AGAIN: &str = "make the run again with `wakemix run CASE --overwrite`, or read it with the wakemix that manifest.json names";
     let text = atomic::read_text(path, what)?;
     // Another version holds other fields: what it is comes before what it lacks.
-    let Layout { schema_version } = parse_json(&text, path, what)?;
-    let (writer, fix) = match schema_version.cmp(&expected) {
-        Ordering::Equal => return parse_json(&text, path, what),
-        Ordering::Less => (
-            "an earlier",
-            "make the run again with `wakemix run CASE --overwrite`, or read it with the wakemix that manifest.json names",
-        ),
-        Ordering::Greater => {
-            ("a later", "use the wakemix that manifest.json names, or a later one")
+    let (found, fix) = match version_of(&text, path, what)? {
+        None => ("it has no schema_version, as that of an earlier wakemix".to_owned(), AGAIN),
+        Some(version) => {
+            let (writer, fix) = match version.cmp(&expected) {
+                Ordering::Equal => return parse_json(&text, path, what),
+                Ordering::Less => ("an earlier", AGAIN),
+                Ordering::Greater => {
+                    ("a later", "use the wakemix that manifest.json names, or a later one")
+                }
+            };
+            (format!("its schema_version is {version}, that of {writer} wakemix"), fix)
         }
     };
-    let problem = format!(
-        "its schema_version is {schema_version}, that of {writer} wakemix; this one reads {expected}"
-    );
+    let problem = format!("{found}; this one reads {expected}");
     Err(FileError::content(what, path, problem, fix))
+}
+
+/// Version of the layout of `text`, which stands at `path`; none where it tells none, such as a bare list.
+fn version_of(text: &str, path: &Path, what: &'static str) -> Result<Option<u32>, FileError> {
+    #[derive(Deserialize)]
+    struct Layout {
+        schema_version: Option<u32>,
+    }
+    if text.trim_start().starts_with('[') {
+        return Ok(None);
+    }
+    parse_json(text, path, what).map(|layout: Layout| layout.schema_version)
 }
 
 fn write_json(path: &Path, what: &'static str, value: &impl Serialize) -> Result<(), FileError> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| FileError::system("write", what, path, error.into()))?;
     atomic::write(path, what, (text + "\n").as_bytes())
-}
-
-fn read_json<T: DeserializeOwned>(path: &Path, what: &'static str) -> Result<T, FileError> {
-    parse_json(&atomic::read_text(path, what)?, path, what)
 }
 
 fn parse_json<T: DeserializeOwned>(

@@ -4,9 +4,23 @@
 use crate::{FileError, atomic};
 use basis::records::PitchResponse;
 use serde::{Deserialize, Serialize};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 const WHAT: &str = "what was identified before the runs";
+/// Version of the layout of [`Identified`].
+///
+/// 2: it tells its version, where it was a bare list of records.
+const SCHEMA_VERSION: u32 = 2;
+
+/// All that was identified. `probes.json` is this, written out.
+#[derive(Serialize, Deserialize)]
+struct Identified {
+    /// Version of this layout.
+    schema_version: u32,
+    /// What was found, each key once.
+    records: Vec<PitchResponseRecord>,
+}
 
 /// How the pitch of one turbine was found to act.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,10 +40,32 @@ pub(super) fn path_in(study: &Path) -> PathBuf {
 /// Reads what was identified for the study in the folder `study`; nothing where nothing was.
 ///
 /// # Errors
-/// [`FileError::System`] and [`FileError::Content`].
+/// [`FileError::System`], and [`FileError::Content`] when it is something else or of another version of the
+/// layout.
 pub fn read_pitch_responses(study: &Path) -> Result<Vec<PitchResponseRecord>, FileError> {
     let path = path_in(study);
-    if path.is_file() { super::read_json(&path, WHAT) } else { Ok(Vec::new()) }
+    if !path.is_file() {
+        return Ok(Vec::new());
+    }
+    let read: Identified = super::read_layout(&path, WHAT, SCHEMA_VERSION)?;
+    Ok(read.records)
+}
+
+/// Takes away what was identified for the study in the folder `study` where this program cannot read it, so
+/// that runs which begin anew need not ask for it.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn discard_unreadable_pitch_responses(study: &Path) -> Result<(), FileError> {
+    let path = path_in(study);
+    if !path.is_file() {
+        return Ok(());
+    }
+    let _lock = super::lock_shared(study, "probes")?;
+    match read_pitch_responses(study) {
+        Err(FileError::Content { .. }) => super::gone(fs::remove_file(&path), &path),
+        read => read.map(|_| ()),
+    }
 }
 
 /// Writes `records`, all that was identified, into the folder `study`, once nobody else does.
@@ -46,7 +82,8 @@ pub fn write_pitch_responses(
 
 fn put(study: &Path, records: &[PitchResponseRecord]) -> Result<(), FileError> {
     atomic::create_folder(study)?;
-    super::write_json(&path_in(study), WHAT, &records)
+    let all = Identified { schema_version: SCHEMA_VERSION, records: records.to_vec() };
+    super::write_json(&path_in(study), WHAT, &all)
 }
 
 /// Adds `records` to what was identified for the study in the folder `study`, each key once; others may do so
@@ -120,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_synchronised_turbine_was_given_comes_back_and_older_records_read() {
+    fn what_a_synchronised_turbine_was_given_comes_back_and_may_not_be_told() {
         let study = tempfile::tempdir().unwrap();
         let estimator = |transformation_offset| PitchResponse::Estimator {
             gain: 1.04,
@@ -137,9 +174,39 @@ mod tests {
             });
         write_pitch_responses(study.path(), &records).unwrap();
         assert_eq!(read_pitch_responses(study.path()).unwrap(), records);
-        let older = r#"[{"key": "a", "turbine": "T2", "response": {"kind": "estimator",
-            "gain": 1.04, "azimuth_offset": -0.01, "before": 0.12, "after": 0.0}}]"#;
-        std::fs::write(path_in(study.path()), older).unwrap();
+        let silent = r#"{"schema_version": 2, "records": [{"key": "a", "turbine": "T2", "response": {"kind":
+            "estimator", "gain": 1.04, "azimuth_offset": -0.01, "before": 0.12, "after": 0.0}}]}"#;
+        fs::write(path_in(study.path()), silent).unwrap();
         assert_eq!(read_pitch_responses(study.path()).unwrap(), &records[1..2]);
+    }
+
+    #[test]
+    fn what_another_program_identified_says_who_wrote_it_and_what_to_do() {
+        let study = tempfile::tempdir().unwrap();
+        let path = path_in(study.path());
+        let earlier = r#"[{"key": "a", "turbine": "T2", "response": {"azimuth_offset": 0.6}}]"#;
+        let newer = r#"{"schema_version": 3}"#;
+        let cases = [
+            (earlier, "it has no schema_version, as that of an earlier wakemix; this one reads 2"),
+            ("[]", "as that of an earlier wakemix"),
+            ("{}", "as that of an earlier wakemix"),
+            (newer, "its schema_version is 3, that of a later wakemix; this one reads 2"),
+        ];
+        for (text, expected) in cases {
+            fs::write(&path, text).unwrap();
+            let error = read_pitch_responses(study.path()).unwrap_err();
+            let told = error.to_string();
+            assert!(told.contains("probes.json") && told.contains(expected), "{told}");
+            let help = miette::Diagnostic::help(&error).unwrap().to_string();
+            assert!(help.contains("--overwrite") || text == newer, "{help}");
+            // Who begins anew goes on without it.
+            discard_unreadable_pitch_responses(study.path()).unwrap();
+            assert!(!path.exists(), "{text}");
+        }
+        let response = PitchResponse::Transformation { azimuth_offset: 0.6 };
+        let own = [PitchResponseRecord { key: "a".into(), turbine: "T2".into(), response }];
+        write_pitch_responses(study.path(), &own).unwrap();
+        discard_unreadable_pitch_responses(study.path()).unwrap();
+        assert_eq!(read_pitch_responses(study.path()).unwrap(), own);
     }
 }

@@ -1,9 +1,9 @@
 //! What a sweep leaves beside its studies: `sweep.json`, which tells what is swept, and `table.json` and
 //! `table.csv` with what came of it.
 
-use super::{read_json, write_json};
+use super::{read_layout, write_json};
 use crate::{FileError, atomic};
-use basis::records::{Statistic, Sweep, SweepTable};
+use basis::records::{SWEEP_SCHEMA_VERSION, Statistic, Sweep, SweepTable};
 use std::path::{Path, PathBuf};
 
 const WHAT: &str = "what is swept";
@@ -17,10 +17,11 @@ pub fn sweep_path(folder: &Path) -> PathBuf {
 /// Reads what is swept in the folder `folder`; none where that is no sweep.
 ///
 /// # Errors
-/// [`FileError::System`] and [`FileError::Content`].
+/// [`FileError::System`], and [`FileError::Content`] when it is something else or of another version of the
+/// layout.
 pub fn read_sweep(folder: &Path) -> Result<Option<Sweep>, FileError> {
     let path = sweep_path(folder);
-    if path.is_file() { read_json(&path, WHAT).map(Some) } else { Ok(None) }
+    if path.is_file() { read_layout(&path, WHAT, SWEEP_SCHEMA_VERSION).map(Some) } else { Ok(None) }
 }
 
 /// Writes what is swept into `folder`.
@@ -91,7 +92,7 @@ fn quoted(value: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use basis::records::{SWEEP_SCHEMA_VERSION, Setting, SweptStudy, SweptValue};
+    use basis::records::{Setting, SweptStudy, SweptValue};
 
     #[test]
     fn what_is_swept_comes_back_as_it_was() {
@@ -116,7 +117,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(read_sweep(folder.path()).unwrap(), None);
         write_sweep(folder.path(), &sweep).unwrap();
-        assert_eq!(read_sweep(folder.path()).unwrap(), Some(sweep));
+        assert_eq!(read_sweep(folder.path()).unwrap(), Some(sweep.clone()));
+        write_sweep(folder.path(), &Sweep { schema_version: 1, ..sweep }).unwrap();
+        let told = read_sweep(folder.path()).unwrap_err().to_string();
+        assert!(told.contains("sweep.json") && told.contains("an earlier wakemix"), "{told}");
     }
 
     #[test]

@@ -168,6 +168,14 @@ pub(super) fn stream(path: &Path) -> Result<impl Source + use<>, FileError> {
     Ok(HawcSource { components, outline, velocity })
 }
 
+/// Where the box whose header is at `path` says that it comes from.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn description(path: &Path) -> Result<String, FileError> {
+    read_header(path).map(|header| header.description)
+}
+
 /// The file `name` of a component, which must stand beside the header at `path`.
 fn beside(path: &Path, name: &str) -> Result<PathBuf, FileError> {
     let component = path.with_file_name(name);

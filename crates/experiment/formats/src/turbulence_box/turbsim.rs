@@ -75,6 +75,14 @@ pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
     start(path).map(|(planes, ..)| planes)
 }
 
+/// Where the full field at `path` says that it comes from.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn description(path: &Path) -> Result<String, FileError> {
+    start(path).map(|(_, _, description)| description)
+}
+
 fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
     let refused = |source| FileError::system("read", WHAT, path, source);
     let mut file = atomic::open(path).map_err(refused)?;

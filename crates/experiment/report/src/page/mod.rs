@@ -46,6 +46,7 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
         version => records.version.clone(),
         style => Value::from_safe_string(format!("{}{STYLE}", inks())),
         script => Value::from_safe_string(format!("/*\n{D3_LICENCES}*/\n{D3}\n{SCRIPT}")),
+        incomplete => sentence::incomplete(study),
         headline => sentence::headline(study),
         confidence => sentence::confidence(study),
         headline_conditions => sentence::conditions_line(study, best),

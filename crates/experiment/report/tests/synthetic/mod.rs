@@ -70,6 +70,7 @@ fn study(recipes: &[Recipe]) -> StudyRecords {
              [[turbine]]\nname = \"T2\"\nposition_diameters = [{SPACING:.1}, 0.0]\n"
         ),
         runs,
+        incomplete: Vec::new(),
         synchronisation: Vec::new(),
         signals: Vec::new(),
         version: "0.1.0".into(),

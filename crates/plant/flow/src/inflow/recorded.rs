@@ -1,5 +1,6 @@
 //! Recorded planes of wind that enter a domain larger than their grid.
 
+use super::walk::walk;
 use super::{InflowError, MeanProfile, PlaneGrid, Planes};
 use crate::Inflow;
 use basis::Vector3;
@@ -74,6 +75,14 @@ impl Entry {
         // Casts stop at zero. One more, so that what is asked for a few steps after the end is there.
         let first = (first.floor() as usize).min(last);
         Ok([first, (newest.ceil() as usize + 1).clamp(first, last)])
+    }
+
+    /// Time (s) at which the air leaves that is alike all along the wind: at the start the first plane of
+    /// `grid` stands at all places beyond `origin_x`, for no plane came before it. Zero for a record that
+    /// repeats.
+    pub fn blown_out(&self, grid: &PlaneGrid) -> f64 {
+        let beyond = if grid.repeats { 0.0 } else { self.extent[1] - self.origin_x };
+        beyond.max(0.0) / grid.speed
     }
 
     /// Memory that the planes take (bytes).
@@ -255,21 +264,9 @@ fn between(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
 
 impl Inflow for RecordedInflow {
     fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]) {
-        let Some(first) = positions.first() else { return };
-        // A plane shares its x and its rows share their height.
-        let (mut x, mut planes) = (first.x, self.planes(first.x, time));
-        let (mut z, mut row) = (first.z, self.row(first.z));
-        for (position, velocity) in positions.iter().zip(velocities) {
-            if position.x != x {
-                x = position.x;
-                planes = self.planes(x, time);
-            }
-            if position.z != z {
-                z = position.z;
-                row = self.row(z);
-            }
-            let (columns, left, share) = self.columns(position.y);
-            let ([before, after], late) = planes;
+        let wind = |planes: &([&[[f32; 3]]; 2], f32), row: &Row, y| {
+            let (columns, left, share) = self.columns(y);
+            let ([before, after], late) = *planes;
             let [before, after] = [before, after].map(|plane| {
                 let [low, high] = row
                     .starts
@@ -280,8 +277,9 @@ impl Inflow for RecordedInflow {
             let share = share * row.share;
             let [u, v, w]: [f32; 3] =
                 std::array::from_fn(|axis| row.mean[axis] + share * (wind[axis] - row.about[axis]));
-            *velocity = Vector3::new(f64::from(u), f64::from(v), f64::from(w));
-        }
+            Vector3::new(f64::from(u), f64::from(v), f64::from(w))
+        };
+        walk(positions, velocities, |x| self.planes(x, time), |z| self.row(z), wind);
     }
 }
 

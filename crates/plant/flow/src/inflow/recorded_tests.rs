@@ -156,6 +156,20 @@ fn a_record_that_ends_is_refused_or_stands_still_at_its_ends() {
 }
 
 #[test]
+fn the_first_plane_of_a_record_that_ends_stands_downwind_until_it_is_blown_out() {
+    let grid = PlaneGrid { repeats: false, ..GRID };
+    let entry = Entry { origin_x: 20.0, extent: [60.0, 100.0], duration: 12.0 };
+    let inflow = entering(grid, entry, Beyond::Hold);
+    let (first, next) = (Given::wind(0, 2, 1), Given::wind(1, 2, 1));
+    let at_outlet = |time| at(&inflow, time, 100.0, 0.0, 65.0);
+    assert_eq!(entry.blown_out(&grid), 8.0);
+    [0.0, 4.0, 8.0].iter().for_each(|&time| assert_near(at_outlet(time), first));
+    assert_near(at_outlet(8.5), next);
+    assert_eq!(Entry { origin_x: 120.0, ..entry }.blown_out(&grid), 0.0);
+    assert_eq!(entry.blown_out(&GRID), 0.0);
+}
+
+#[test]
 fn reading_can_be_broken_off() {
     let broken =
         RecordedInflow::read(Box::new(Given(GRID)), ENTRY, PROFILE, Beyond::Hold, &|share| {

@@ -1,5 +1,7 @@
 //! What a person sees of a study under way: cost, progress, remarks.
 
+use super::pace::Pace;
+use super::so_far::SoFar;
 use super::stages::{Stages, say_prepared};
 use crate::commands::manner;
 use crate::commands::output::{clean, detail, tell, warn};
@@ -7,7 +9,7 @@ use indicatif::{HumanBytes, HumanDuration, ProgressBar, ProgressDrawTarget, Prog
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use wakemix::basis::records::{PitchResponse, Summary};
 use wakemix::farm::self_check::{SelfCheck, TOLERANCE};
 use wakemix::study::{Estimate, IdentificationProgress, Observer, Prepared, Progress};
@@ -100,6 +102,8 @@ pub(super) struct Screen {
     study: String,
     stages: Stages,
     case: PathBuf,
+    pace: Pace,
+    so_far: SoFar,
 }
 
 impl Screen {
@@ -122,6 +126,22 @@ impl Screen {
             study: String::new(),
             stages: Stages::new(),
             case: case.to_owned(),
+            pace: Pace::default(),
+            so_far: SoFar::default(),
+        }
+    }
+
+    /// Makes the report of the runs so far where it is worth its time.
+    fn report_so_far(&mut self) {
+        if !self.so_far.is_due(Instant::now()) {
+            return;
+        }
+        self.enter("report so far");
+        match self.so_far.make(&self.study) {
+            Ok(Some(page)) => self.say(&format!("report so far: {}", page.display())),
+            Ok(None) => {}
+            // The one at the end tells what is wrong.
+            Err(error) => self.bar.suspend(|| detail(&format!("no report so far: {error}"))),
         }
     }
 
@@ -158,6 +178,7 @@ impl Observer for Screen {
     }
 
     fn estimated(&mut self, estimate: &Estimate) {
+        self.pace.take(estimate);
         let [n_x, n_y, n_z] = estimate.n_cells;
         match (estimate.updates_per_second, estimate.wall_time()) {
             (Some(speed), Some(wall_time)) => self.say(&format!(
@@ -195,6 +216,10 @@ impl Observer for Screen {
 
     fn in_study(&mut self, folder: &str) {
         self.study = if folder.is_empty() { String::new() } else { format!("{folder}/") };
+    }
+
+    fn beginning(&mut self, directory: &Path) {
+        directory.clone_into(&mut self.so_far.directory);
     }
 
     fn preparing(&mut self, what: &str, share: f64) {
@@ -242,6 +267,10 @@ impl Observer for Screen {
 
     fn advanced(&mut self, progress: &Progress) {
         self.last = None;
+        self.so_far.time_left = progress.time_left;
+        if let Some(words) = self.pace.set_right(progress, Instant::now()) {
+            self.say(&words);
+        }
         let Progress { run_index, n_runs, n_at_a_time, .. } = *progress;
         let what = format!("{}{} ({}/{n_runs})", self.study, progress.run, run_index + 1);
         if n_at_a_time == 1 {
@@ -280,6 +309,7 @@ impl Observer for Screen {
             summary.run,
             HumanDuration(Duration::from_secs_f64(summary.cost.wall_time.max(1.0)))
         ));
+        self.report_so_far();
     }
 
     fn warned(&mut self, warning: &str) {

@@ -144,6 +144,11 @@ fn errors_name_file_line_key_and_fix() {
             "`output.lines_at` names the turbine `T9`, which the file does not have",
         ),
         (
+            "[time]",
+            "[output]\nvolume_stride = 1\n[time]",
+            "small.toml:7: `output.volume_stride` has no effect here: no volumes are kept without `output.volume_interval`; add `volume_interval`, or leave `volume_stride` out",
+        ),
+        (
             "\"helix\", sense",
             "\"pulse\", sense",
             "there is no key `run.helix.control.T1.sense`; control.T1 = { kind = \"pulse\", … } knows",
