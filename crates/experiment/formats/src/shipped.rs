@@ -104,7 +104,7 @@ pub struct ShippedPrecursor {
 pub const PRECURSORS: &[ShippedPrecursor] = &[ShippedPrecursor {
     name: "precursor-offshore",
     file: include_str!("../../../../cases/precursor-offshore.toml"),
-    minutes: 90.0,
+    minutes: 150.0,
 }];
 
 impl ShippedPrecursor {

@@ -104,12 +104,12 @@ impl WindRecorder {
     }
 
     /// Completes the record: a full field in the format of TurbSim, whose planes lie as `grid` says, the
-    /// number of steps, repetition and speed aside, for a hub at `hub_height` (m); `description` goes into the
-    /// file.
+    /// number of steps, repetition and speed aside, for a hub at `hub_height` (m); `description` goes into
+    /// the file.
     ///
-    /// The file's hub speed, with which its planes are carried along, is the mean in the row nearest hub height
-    /// where `carried` says. The planes stay beside it for a run that is killed before it can say that it is
-    /// complete; nothing may be written after.
+    /// The file's hub speed, with which its planes are carried along, is the mean in the row nearest hub
+    /// height where `carried` says. The planes stay beside it for a run that is killed before it can say that
+    /// it is complete; nothing may be written after.
     ///
     /// # Errors
     /// [`FileError::System`], and [`FileError::Content`] when fewer than two planes came, or wind that is no

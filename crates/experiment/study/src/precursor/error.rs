@@ -66,8 +66,8 @@ pub enum PrecursorError {
     },
     /// It is further than its times allow.
     #[error(
-        "the precursor in {} stands at {time:.1} s and has recorded from {recorded}: {problem}", directory.display(),
-        recorded = recorded.map_or("nowhere".to_owned(), |time| format!("{time:.1} s on"))
+        "the precursor in {} stands at {time:.1} s{recorded}: {problem}", directory.display(),
+        recorded = recorded.map_or_else(String::new, |time| format!(" and has recorded from {time:.1} s on"))
     )]
     #[diagnostic(help(
         "raise time.spin_up beyond {time:.1} s to record anew from then on, or time.record to record for longer; --overwrite begins again"

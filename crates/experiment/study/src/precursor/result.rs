@@ -26,6 +26,15 @@ pub fn is_steady(drift: &Drift) -> bool {
         && drift.of_direction().abs() <= STEADY_DIRECTION
 }
 
+/// That a layer of `depth` (m) has grown through its inversion from `foot` to `top` (m), where it has.
+pub(super) fn outgrown(depth: f64, foot: f64, top: f64) -> Option<String> {
+    (depth > top).then(|| {
+        format!(
+            "the layer is {depth:.0} m deep while it is recorded: it has grown through its inversion, which began at {foot:.0} to {top:.0} m (docs/validation/atmosphere.md tells what the air of the box does not do right yet)"
+        )
+    })
+}
+
 impl Job {
     /// Length of the blocks (s) by which the end of the spin-up is judged.
     fn block(&self) -> f64 {
@@ -97,6 +106,14 @@ impl Job {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_layer_that_outgrows_its_inversion_is_told() {
+        assert_eq!(outgrown(240.0, 200.0, 250.0), None);
+        let told = outgrown(394.0, 200.0, 250.0).unwrap();
+        assert!(told.contains("394 m deep") && told.contains("200 to 250 m"), "{told}");
+        assert_eq!(outgrown(f64::NAN, 200.0, 250.0), None);
+    }
 
     #[test]
     fn a_wind_that_changes_little_is_steady() {

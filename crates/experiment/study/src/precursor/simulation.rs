@@ -5,6 +5,7 @@ use super::history::History;
 use super::levels::direction;
 use super::observer::{PrecursorObserver, PrecursorProgress};
 use super::recording::{Recording, RecordingState};
+use super::result::outgrown;
 use super::{Job, is_steady};
 use flow::lattice::Lattice;
 use flow::{FlowError, FlowSolver};
@@ -271,6 +272,10 @@ impl<'a> Simulation<'a> {
             observer.warned(
                 "the wind changes while it is recorded: its first half differs from its second one",
             );
+        }
+        let (foot, top) = (precursor.air.inversion_height, precursor.inversion_top());
+        if let Some(warning) = outgrown(result.boundary_layer_height, foot, top) {
+            observer.warned(&warning);
         }
         // The result comes last: with it the precursor is complete.
         job.folder.write_result(&result)?;

@@ -127,3 +127,10 @@ fn what_is_missing_misspelt_or_no_number_is_told() {
         }
     }
 }
+
+#[test]
+fn the_example_of_the_reference_page_reads() {
+    let page = crate::case::precursor_reference();
+    let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    parsed(example, &[]).unwrap_or_else(|lines| panic!("{lines}"));
+}
