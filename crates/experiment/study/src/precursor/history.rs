@@ -46,9 +46,10 @@ impl History {
     pub(super) fn fits(&self, n_levels: usize) -> bool {
         let n = self.times.len();
         let is_whole = |columns: &[Vec<f64>], size: usize| columns.iter().all(|c| c.len() == size);
-        (n == 0 || self.heights.len() == n_levels)
-            && (n == 0 || self.series.len() == OF_LAYER.len())
-            && (n == 0 || self.profiles.len() == OF_LEVELS.len())
+        let has_all = self.heights.len() == n_levels
+            && self.series.len() == OF_LAYER.len()
+            && self.profiles.len() == OF_LEVELS.len();
+        (n == 0 || has_all)
             && is_whole(&self.series, n)
             && is_whole(&self.profiles, n * self.heights.len())
     }
