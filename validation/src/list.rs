@@ -91,6 +91,15 @@ pub const VALIDATIONS: &[Validation] = &[
         recorded: include_str!("../recorded/atmosphere.toml"),
     },
     Validation {
+        name: "stable-boundary-layer",
+        about: "the stable boundary layer of GABLS1 on cells of 6.25 m beside the published spread of simulations",
+        cost: Cost::Minutes(25),
+        run: atmosphere::stable_boundary_layer,
+        pictures: None,
+        page: "atmosphere",
+        recorded: include_str!("../recorded/stable-boundary-layer.toml"),
+    },
+    Validation {
         name: "helix",
         about: "power of two turbines against amplitude and sense of the helix, beside published large-eddy figures",
         cost: Cost::Minutes(38),

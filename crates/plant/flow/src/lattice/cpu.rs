@@ -101,8 +101,7 @@ impl Cpu {
         let memory = Memory::zeroed(layout.n_values()).ok_or_else(|| refused.clone())?;
         let stratification = match &settings.atmosphere {
             Some(atmosphere) => Some(
-                Stratification::new(atmosphere, settings, &scaling, sides, levels)
-                    .ok_or(refused)?,
+                Stratification::new(atmosphere, settings, &layout, sides, levels).ok_or(refused)?,
             ),
             None => None,
         };
@@ -137,6 +136,19 @@ impl Cpu {
         })
     }
 
+    /// The levels of an atmosphere follow the temperatures of their rows.
+    fn follow_temperatures(&mut self) {
+        if let Some(air) = &mut self.stratification {
+            for worker in &self.workers {
+                let Worker { share, heat, .. } = &*own(worker);
+                if let Some(heat) = heat {
+                    air.gather(share.rows.start, &heat.sums);
+                }
+            }
+            air.follow();
+        }
+    }
+
     /// The worker that row number `row` belongs to.
     fn worker_of(&self, row: usize) -> &Mutex<Worker> {
         // Workers' rows start at worker · n_rows / n_workers, rounded down.
@@ -152,6 +164,7 @@ impl Engine for Cpu {
         let (workers, kernel, scaling) = (&self.workers, &self.kernel, &self.scaling);
         let heat = self.stratification.as_ref();
         self.pool.run(&|thread| own(&workers[thread]).fill(kernel, &view, scaling, inflow, heat));
+        self.follow_temperatures();
     }
 
     fn set_forces(&mut self, forces: &[PointForce]) {
@@ -188,27 +201,26 @@ impl Engine for Cpu {
             acceleration: self.acceleration,
             outlet_stiffness: self.outlet_stiffness,
         };
-        let air = air.map(Stratification::step);
+        let stratified = air.map(|air| air.air(n_steps));
         self.pool.run(&|thread| {
-            let Worker { share, inlet, spreader, heat, .. } = &mut *own(&workers[thread]);
+            let Worker { share, inlet, spreader, .. } = &mut *own(&workers[thread]);
             inlet.update(n_steps, inflow, scaling, &mut share.ends);
-            match (&air, heat) {
-                (Some(air), Some(heat)) => {
-                    kernel.sweep_heat(&step, air, spreader.blocks(), share, heat);
-                }
-                _ => kernel.sweep(&step, spreader.blocks(), share),
+            match &stratified {
+                Some(air) => kernel.sweep_stratified(&step, air, spreader.blocks(), share),
+                None => kernel.sweep(&step, spreader.blocks(), share),
             }
         });
-        self.n_steps += 1;
-        if let Some(air) = &mut self.stratification {
-            for worker in &self.workers {
-                let Worker { share, heat, .. } = &*own(worker);
+        if let Some(air) = air {
+            let transport = air.transport(n_steps);
+            self.pool.run(&|thread| {
+                let Worker { share, heat, .. } = &mut *own(&workers[thread]);
                 if let Some(heat) = heat {
-                    air.gather(share.rows.start, &heat.sums);
+                    kernel.carry(&transport, share.rows.clone(), heat);
                 }
-            }
-            air.follow();
+            });
         }
+        self.n_steps += 1;
+        self.follow_temperatures();
     }
 
     fn n_steps(&self) -> u64 {
@@ -223,9 +235,10 @@ impl Engine for Cpu {
         let Some(air) = &self.stratification else { return false };
         let view = view(&self.memory, &self.layout, self.n_steps);
         let law = (self.relaxation_times.as_slice(), self.subgrid[row / self.layout.n_cells[1]]);
+        let n_steps = self.n_steps;
         match self.stencil {
-            Stencil::D3Q19 => probe::read_row::<D3Q19, 19>(&view, air, law, row, state),
-            Stencil::D3Q27 => probe::read_row::<D3Q27, 27>(&view, air, law, row, state),
+            Stencil::D3Q19 => probe::read_row::<D3Q19, 19>(&view, air, law, n_steps, row, state),
+            Stencil::D3Q27 => probe::read_row::<D3Q27, 27>(&view, air, law, n_steps, row, state),
         }
         true
     }

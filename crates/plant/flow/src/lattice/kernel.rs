@@ -1,15 +1,17 @@
 //! The compiled loops: one entry per velocity set and instruction set, picked once when a lattice is built.
 
-use super::atmosphere;
+use super::atmosphere::law::Stratified;
 use super::atmosphere::stratification::HeatShare;
-use super::atmosphere::sweep::StepHeat;
+use super::atmosphere::transport::{self, Transport};
 use super::forces::ForceBlock;
 use super::probe::{self, RowState, View};
 use super::settings::Stencil as Set;
 use super::simd::{Backend, Portable};
 use super::stencil::{D3Q19, Stencil};
 use super::stencil27::D3Q27;
+use super::still::Still;
 use super::sweep::{self, Share, Step};
+use std::ops::Range;
 
 /// Loops for one velocity set, compiled for one instruction set.
 #[derive(Clone, Copy)]
@@ -17,13 +19,14 @@ pub(crate) struct Kernel {
     /// Directions of the populations.
     pub(crate) directions: &'static [[i8; 3]],
     sweep: unsafe fn(&Step<'_>, &[ForceBlock], &mut Share),
-    sweep_heat: SweepHeat,
+    sweep_stratified: SweepStratified,
+    carry: unsafe fn(&Transport<'_>, Range<usize>, &mut HeatShare),
     read_row: unsafe fn(&View<'_>, usize, &mut RowState),
     read_cells: ReadCells,
     write_row: unsafe fn(&View<'_>, usize, &RowState),
 }
 
-type SweepHeat = unsafe fn(&Step<'_>, &StepHeat<'_>, &[ForceBlock], &mut Share, &mut HeatShare);
+type SweepStratified = unsafe fn(&Step<'_>, &Stratified<'_>, &[ForceBlock], &mut Share);
 
 type ReadCells = unsafe fn(&View<'_>, &[[usize; 3]; 8]) -> [[f32; 8]; 4];
 
@@ -32,20 +35,22 @@ macro_rules! kernel {
         $(#[target_feature(enable = $features)])?
         unsafe fn sweep(step: &Step<'_>, blocks: &[ForceBlock], share: &mut Share) {
             // SAFETY: handed through.
-            unsafe { sweep::rows::<$vector, $stencil, $n>(step, blocks, share) }
+            unsafe { sweep::rows::<$vector, $stencil, $n, Still>(step, &Still, blocks, share) }
         }
         $(#[target_feature(enable = $features)])?
-        unsafe fn sweep_heat(
+        unsafe fn sweep_stratified(
             step: &Step<'_>,
-            air: &StepHeat<'_>,
+            air: &Stratified<'_>,
             blocks: &[ForceBlock],
             share: &mut Share,
-            heat: &mut HeatShare,
         ) {
             // SAFETY: handed through.
-            unsafe {
-                atmosphere::sweep::rows::<$vector, $stencil, $n>(step, air, blocks, share, heat)
-            }
+            unsafe { sweep::rows::<$vector, $stencil, $n, Stratified<'_>>(step, air, blocks, share) }
+        }
+        $(#[target_feature(enable = $features)])?
+        unsafe fn carry(step: &Transport<'_>, rows: Range<usize>, heat: &mut HeatShare) {
+            // SAFETY: handed through.
+            unsafe { transport::rows::<$vector>(step, rows, heat) }
         }
         $(#[target_feature(enable = $features)])?
         unsafe fn read_row(view: &View<'_>, row: usize, state: &mut RowState) {
@@ -63,7 +68,7 @@ macro_rules! kernel {
             unsafe { probe::write_row::<$vector, $stencil, $n>(view, row, state) }
         }
         let directions = &<$stencil as Stencil<$n>>::DIRECTIONS;
-        Kernel { directions, sweep, sweep_heat, read_row, read_cells, write_row }
+        Kernel { directions, sweep, sweep_stratified, carry, read_row, read_cells, write_row }
     }};
 }
 
@@ -92,17 +97,22 @@ impl Kernel {
         unsafe { (self.sweep)(step, blocks, share) }
     }
 
-    /// The same with the temperatures of `air`.
-    pub(crate) fn sweep_heat(
+    /// The same in an atmosphere, which notes the wind of the step.
+    pub(crate) fn sweep_stratified(
         &self,
         step: &Step<'_>,
-        air: &StepHeat<'_>,
+        air: &Stratified<'_>,
         blocks: &[ForceBlock],
         share: &mut Share,
-        heat: &mut HeatShare,
     ) {
         // SAFETY: as above.
-        unsafe { (self.sweep_heat)(step, air, blocks, share, heat) }
+        unsafe { (self.sweep_stratified)(step, air, blocks, share) }
+    }
+
+    /// Carries the temperatures of `rows` over a step whose sweep is done on all rows.
+    pub(crate) fn carry(&self, step: &Transport<'_>, rows: Range<usize>, heat: &mut HeatShare) {
+        // SAFETY: rows of one step are disjoint, and the back-end was checked.
+        unsafe { (self.carry)(step, rows, heat) }
     }
 
     /// Density and velocity of row number `row`.

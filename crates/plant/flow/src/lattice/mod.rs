@@ -32,6 +32,7 @@ pub mod spreading;
 mod state;
 mod stencil;
 mod stencil27;
+mod still;
 mod sweep;
 #[cfg(test)]
 mod tests;

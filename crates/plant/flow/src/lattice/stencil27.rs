@@ -1,4 +1,4 @@
-//! Rest, faces, edges and corners of the cube: twice the cost of D3Q19, kept to judge it by
+//! Rest, faces, edges and corners of the cube: what D3Q19 lacks makes streaks of eddies that the wind carries
 //! (docs/validation/flow.md).
 
 #![expect(
@@ -72,36 +72,79 @@ impl Stencil<27> for D3Q27 {
 
     #[inline(always)]
     fn populations<S: Simd>(moments: &Moments<S>) -> [S; 27] {
-        let mut m = raw_moments(moments);
-        // The inverse of the moments, one axis after the other: f(±1) = (m2 ± m1)/2, f(0) = m0 − m2.
-        let half = S::splat(0.5);
-        for a in 0..3 {
-            for b in 0..3 {
-                let [m0, m1, m2] = [m[0][a][b], m[1][a][b], m[2][a][b]];
-                [m[0][a][b], m[1][a][b], m[2][a][b]] =
-                    [m0 - m2, half * (m2 + m1), half * (m2 - m1)];
+        let mut m = central_moments(moments);
+        let [jx, jy, jz] = moments.momentum;
+        let [u, v, w] = moments.velocity;
+        let n = S::splat;
+        // Along x, y and z in turn central moments become raw ones, and these populations. What is left out
+        // of moments of even order is their value in air at rest; it is needed where the wind carries it.
+        for b in 0..3 {
+            for c in 0..3 {
+                let m0 = m[0][b][c];
+                let m1 = match (b, c) {
+                    (0, 0) => jx,
+                    (1, 0) | (0, 1) | (2, 1) | (1, 2) => m[1][b][c],
+                    (1, 1) => u * m0,
+                    _ => u * (m0 + n(rest(b) * rest(c))),
+                };
+                let m2 = match (b, c) {
+                    (1, 0) | (0, 1) | (2, 1) | (1, 2) => u * (m1 + m1),
+                    _ => u.mul_add(m1, m[2][b][c]),
+                };
+                [m[0][b][c], m[1][b][c], m[2][b][c]] = along(m0, m1, m2);
             }
         }
-        for a in 0..3 {
-            for b in 0..3 {
-                let [m0, m1, m2] = [m[a][0][b], m[a][1][b], m[a][2][b]];
-                [m[a][0][b], m[a][1][b], m[a][2][b]] =
-                    [m0 - m2, half * (m2 + m1), half * (m2 - m1)];
+        for c in 0..3 {
+            let mut carried = n(0.0);
+            for a in [1, 2, 0] {
+                let [m0, k1, k2] = [m[a][0][c], m[a][1][c], m[a][2][c]];
+                let full = if c == 1 { m0 } else { m0 + n(WEIGHT[a] * rest(c)) };
+                // Momentum is kept without a rounding to and fro.
+                let m1 = if c == 0 && a == 0 { jy - carried } else { v.mul_add(full, k1) };
+                carried = carried + m1;
+                let m2 = v.mul_add(k1 + m1, k2);
+                [m[a][0][c], m[a][1][c], m[a][2][c]] = along(m0, m1, m2);
             }
         }
-        for a in 0..3 {
-            for b in 0..3 {
-                let [m0, m1, m2] = m[a][b];
-                m[a][b] = [m0 - m2, half * (m2 + m1), half * (m2 - m1)];
+        let mut carried = n(0.0);
+        for a in [1, 2, 0] {
+            for b in [1, 2, 0] {
+                let [m0, k1, k2] = m[a][b];
+                let full = m0 + n(WEIGHT[a] * WEIGHT[b]);
+                let m1 = if a == 0 && b == 0 { jz - carried } else { w.mul_add(full, k1) };
+                carried = carried + m1;
+                m[a][b] = along(m0, m1, w.mul_add(k1 + m1, k2));
             }
         }
-        let mut populations = [S::splat(0.0); 27];
+        let mut populations = [n(0.0); 27];
         for q in 0..27 {
             let [x, y, z] = Self::DIRECTIONS[q];
             populations[q] = m[place(x)][place(y)][place(z)];
         }
         populations
     }
+}
+
+/// Share of air at rest that does not move along an axis, and that moves forward and backward.
+const WEIGHT: [f32; 3] = [2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0];
+
+/// Moment of order `order` along an axis of air at rest.
+#[inline(always)]
+const fn rest(order: usize) -> f32 {
+    match order {
+        0 => 1.0,
+        1 => 0.0,
+        _ => 1.0 / 3.0,
+    }
+}
+
+/// Populations at rest, forward and backward along an axis with these moments: f(±1) = (m2 ± m1)/2, f(0) =
+/// m0 − m2.
+#[inline(always)]
+fn along<S: Simd>(m0: S, m1: S, m2: S) -> [S; 3] {
+    let half = S::splat(0.5);
+    let common = half * m2;
+    [m0 - m2, half.mul_add(m1, common), half.sub_from(m1, common)]
 }
 
 /// Where a direction's component stands in an axis' triple: rest, forward, backward.
@@ -114,88 +157,34 @@ const fn place(component: i8) -> usize {
     }
 }
 
-/// Raw moments, orders 0 to 2 along each axis, of shifted populations with a Gaussian's central moments.
+/// Central moments, orders 0 to 2 along each axis, of a Gaussian of these moments, less those of air at rest.
+///
+/// Cumulants beyond the second vanish, so odd central moments do, and even ones follow from the second
+/// (Isserlis). Of the sixth the products of three stresses are left out: a millionth of it.
 #[inline(always)]
-fn raw_moments<S: Simd>(moments: &Moments<S>) -> [[[S; 3]; 3]; 3] {
-    // Symbols: k central moments, a to c components of the velocity; cumulants beyond the second vanish, so
-    // odd central moments do, and even ones follow from the second (Isserlis).
-    let [jx, jy, jz] = moments.momentum;
-    let [a, b, c] = moments.velocity;
+fn central_moments<S: Simd>(moments: &Moments<S>) -> [[[S; 3]; 3]; 3] {
     let [sxx, syy, szz, sxy, sxz, syz] = moments.stress;
     let excess = moments.density_excess;
     let per_density = moments.per_density;
     let n = S::splat;
-    let rho = n(1.0) + excess;
-    let third = n(1.0 / 3.0);
-    let two = n(2.0);
-    let four = n(4.0);
-    let k_xx = rho.mul_add(third, sxx);
-    let k_yy = rho.mul_add(third, syy);
-    let k_zz = rho.mul_add(third, szz);
-    let (aa, bb, cc) = (a * a, b * b, c * c);
-    let (ab, ac, bc) = (a * b, a * c, b * c);
-
-    let m200 = jx.mul_add(a, excess.mul_add(third, sxx));
-    let m020 = jy.mul_add(b, excess.mul_add(third, syy));
-    let m002 = jz.mul_add(c, excess.mul_add(third, szz));
-    let m110 = jx.mul_add(b, sxy);
-    let m101 = jx.mul_add(c, sxz);
-    let m011 = jy.mul_add(c, syz);
-    let (full_xx, full_yy, full_zz) = (m200 + third, m020 + third, m002 + third);
-
-    let m210 = (two * a).mul_add(sxy, b * full_xx);
-    let m201 = (two * a).mul_add(sxz, c * full_xx);
-    let m120 = (two * b).mul_add(sxy, a * full_yy);
-    let m021 = (two * b).mul_add(syz, c * full_yy);
-    let m102 = (two * c).mul_add(sxz, a * full_zz);
-    let m012 = (two * c).mul_add(syz, b * full_zz);
-    let m111 = a * m011 + b.mul_add(sxz, c * sxy);
-
-    // Fourth central moments; those with even orders less their value in air at rest.
-    let ninth = excess * n(1.0 / 9.0);
-    let k220 =
-        (sxx + syy).mul_add(third, ninth) + (two * sxy).mul_add(sxy, sxx * syy) * per_density;
-    let k202 =
-        (sxx + szz).mul_add(third, ninth) + (two * sxz).mul_add(sxz, sxx * szz) * per_density;
-    let k022 =
-        (syy + szz).mul_add(third, ninth) + (two * syz).mul_add(syz, syy * szz) * per_density;
-    let k211 = (two * sxy).mul_add(sxz, k_xx * syz) * per_density;
-    let k121 = (two * sxy).mul_add(syz, k_yy * sxz) * per_density;
-    let k112 = (two * sxz).mul_add(syz, k_zz * sxy) * per_density;
-    let m220 = k220 + aa * full_yy + bb * k_xx + four * ab * sxy;
-    let m202 = k202 + aa * full_zz + cc * k_xx + four * ac * sxz;
-    let m022 = k022 + bb * full_zz + cc * k_yy + four * bc * syz;
-    let m211 = k211 + bc * full_xx + two * a * (c * sxy + b * sxz) + aa * syz;
-    let m121 = k121 + ac * full_yy + two * b * (c * sxy + a * syz) + bb * sxz;
-    let m112 = k112 + ab * full_zz + two * c * (b * sxz + a * syz) + cc * sxy;
-
-    let (full_220, full_202, full_022) =
-        (m220 + n(1.0 / 9.0), m202 + n(1.0 / 9.0), m022 + n(1.0 / 9.0));
-    let m221 = c * full_220 + two * (b * k211 + a * k121 + a * bb * sxz + b * aa * syz);
-    let m212 = b * full_202 + two * (c * k211 + a * k112 + a * cc * sxy + c * aa * syz);
-    let m122 = a * full_022 + two * (c * k121 + b * k112 + b * cc * sxy + c * bb * sxz);
-
-    let pairs = sxx * syy + sxx * szz + syy * szz;
-    let squares = k_xx * syz * syz + k_yy * sxz * sxz + k_zz * sxy * sxy;
-    let k222 = excess * n(1.0 / 27.0)
-        + (sxx + syy + szz) * n(1.0 / 9.0)
-        + pairs * third * per_density
-        + (sxx * syy * szz + two * squares + n(8.0) * sxy * sxz * syz) * per_density * per_density;
-    let rest = n(1.0 / 9.0);
-    let m222 = k222
-        + aa * (k022 + rest)
-        + bb * (k202 + rest)
-        + cc * (k220 + rest)
-        + four * (ab * k112 + ac * k121 + bc * k211)
-        + aa * bb * k_zz
-        + aa * cc * k_yy
-        + bb * cc * k_xx
-        + four * (ab * cc * sxy + ac * bb * sxz + bc * aa * syz)
-        + rho * aa * bb * cc;
-
+    let (third, two, zero) = (n(1.0 / 3.0), n(2.0), n(0.0));
+    let (e3, e9) = (excess * third, excess * n(1.0 / 9.0));
+    // Products of stresses over density.
+    let (txy, txz, tyz) = (sxy * per_density, sxz * per_density, syz * per_density);
+    let pxy = (two * txy).mul_add(sxy, sxx * syy * per_density);
+    let pxz = (two * txz).mul_add(sxz, sxx * szz * per_density);
+    let pyz = (two * tyz).mul_add(syz, syy * szz * per_density);
+    let k220 = (sxx + syy).mul_add(third, e9 + pxy);
+    let k202 = (sxx + szz).mul_add(third, e9 + pxz);
+    let k022 = (syy + szz).mul_add(third, e9 + pyz);
+    let k211 = (two * txy).mul_add(sxz, sxx.mul_add(tyz, third * syz));
+    let k121 = (two * txy).mul_add(syz, syy.mul_add(txz, third * sxz));
+    let k112 = (two * txz).mul_add(syz, szz.mul_add(txy, third * sxy));
+    let k222 =
+        third.mul_add(pxy + pxz + pyz, (sxx + syy + szz).mul_add(n(1.0 / 9.0), e3 * n(1.0 / 9.0)));
     [
-        [[excess, jz, m002], [jy, m011, m012], [m020, m021, m022]],
-        [[jx, m101, m102], [m110, m111, m112], [m120, m121, m122]],
-        [[m200, m201, m202], [m210, m211, m212], [m220, m221, m222]],
+        [[excess, zero, e3 + szz], [zero, syz, zero], [e3 + syy, zero, k022]],
+        [[zero, sxz, zero], [sxy, zero, k112], [zero, k121, zero]],
+        [[e3 + sxx, zero, k202], [zero, k211, zero], [k220, zero, k222]],
     ]
 }

@@ -5,12 +5,13 @@
 //! exactly one cell in a step of either parity (a test of [`Layout`] shows it), a halo value to exactly one
 //! row's end, and each row to exactly one thread.
 
-use super::collision::{Relaxation, collide, relaxation_rate};
+use super::collision::collide;
 use super::ends::{self, RowEnds};
 use super::forces::ForceBlock;
 use super::layout::{LINE, Layout, Parity, read_direction, write_direction};
 use super::simd::{MAXIMUM_LANES, Simd};
 use super::stencil::{Moments, Stencil, Sums};
+use super::still::{Air, RowAir};
 use std::mem::MaybeUninit;
 use std::ops::Range;
 use std::sync::atomic::{Ordering, compiler_fence};
@@ -52,13 +53,14 @@ pub(crate) struct Share {
     pub(crate) force: [Vec<f32>; 3],
 }
 
-/// Moves the rows of `share` on by a step, under the force densities of `blocks`.
+/// Moves the rows of `share` on by a step, under the force densities of `blocks` and what acts on `air`.
 ///
 /// # Safety
 /// As the module says; `S`'s instructions are there; buffers are padded as their docs say.
 #[inline(always)]
-pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
+pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize, A: Air>(
     step: &Step<'_>,
+    air: &A,
     blocks: &[ForceBlock],
     share: &mut Share,
 ) {
@@ -71,25 +73,15 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
         for (index, address) in addresses[..n].iter_mut().enumerate() {
             *address = step.layout.addresses(step.parity, y, z);
             let number = start + index - first;
-            let forced = gather_forces(step, blocks, &share.wall, &mut share.force, number, [y, z]);
+            let forced = gather_forces(step, blocks, share, number, [y, z], A::Row::<S>::PUSHES);
+            let row = air.row::<S>([y, z], step.subgrid[z]);
             // SAFETY: handed through.
             unsafe {
                 match step.parity {
-                    Parity::Even => row_of::<S, L, Q, false>(
-                        step,
-                        address,
-                        step.subgrid[z],
-                        &share.force,
-                        forced,
-                    ),
-                    Parity::Odd => row_of::<S, L, Q, true>(
-                        step,
-                        address,
-                        step.subgrid[z],
-                        &share.force,
-                        forced,
-                    ),
+                    Parity::Even => row_of::<S, L, Q, _, false>(step, address, &row, share, forced),
+                    Parity::Odd => row_of::<S, L, Q, _, true>(step, address, &row, share, forced),
                 }
+                row.close(&share.ends);
             }
             y += 1;
             if y == step.layout.n_cells[1] {
@@ -102,22 +94,24 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize>(
     }
 }
 
-/// On return `force` holds the force density on the cells of a row in the range that is given back, and
+/// On return `share` holds the force density on the cells of a row in the range that is given back, and
 /// perhaps around it.
 ///
-/// It is the row at (`y`, `z`), number `number` of the thread's rows.
+/// It is the row at (`y`, `z`), number `number` of the thread's rows; where something `pushes` every cell the
+/// range is the whole row.
 #[inline(always)]
-pub(crate) fn gather_forces(
+fn gather_forces(
     step: &Step<'_>,
     blocks: &[ForceBlock],
-    wall: &[Vec<f32>; 2],
-    force: &mut [Vec<f32>; 3],
+    share: &mut Share,
     number: usize,
     [y, z]: [usize; 2],
+    pushes: bool,
 ) -> Range<usize> {
+    let Share { wall, force, .. } = share;
     let n = step.layout.n_cells[0];
     let at_wall = z == 0 && !wall[0].is_empty();
-    let everywhere = at_wall || step.acceleration != [0.0; 3];
+    let everywhere = pushes || at_wall || step.acceleration != [0.0; 3];
     let mut range = if everywhere { 0..n } else { n..0 };
     for block in blocks {
         if block.row(y, z).is_some() {
@@ -136,7 +130,7 @@ pub(crate) fn gather_forces(
     }
     if at_wall {
         let start = number * step.layout.row_stride;
-        for (component, wall) in force.iter_mut().zip(wall) {
+        for (component, wall) in force.iter_mut().zip(&*wall) {
             for (value, wall) in component[..n].iter_mut().zip(&wall[start..start + n]) {
                 *value += wall;
             }
@@ -157,32 +151,43 @@ pub(crate) fn gather_forces(
 }
 
 #[inline(always)]
-unsafe fn row_of<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool>(
+unsafe fn row_of<S: Simd, L: Stencil<Q>, const Q: usize, R: RowAir<S>, const ODD: bool>(
     step: &Step<'_>,
     addresses: &[usize; Q],
-    subgrid: f32,
-    force: &[Vec<f32>; 3],
+    row: &R,
+    share: &mut Share,
     forced: Range<usize>,
 ) {
     let n = step.layout.n_cells[0];
+    let [fx, fy, fz] = &mut share.force;
+    let force = [fx.as_mut_ptr(), fy.as_mut_ptr(), fz.as_mut_ptr()];
     // SAFETY: handed through.
     unsafe {
-        if forced.is_empty() {
-            cells::<S, L, Q, ODD, false>(step, addresses, subgrid, force, 0..n);
+        if R::PUSHES {
+            cells::<S, L, Q, R, ODD, true>(step, addresses, row, force, forced);
+        } else if forced.is_empty() {
+            cells::<S, L, Q, R, ODD, false>(step, addresses, row, force, 0..n);
         } else {
-            cells::<S, L, Q, ODD, false>(step, addresses, subgrid, force, 0..forced.start);
-            cells::<S, L, Q, ODD, true>(step, addresses, subgrid, force, forced.clone());
-            cells::<S, L, Q, ODD, false>(step, addresses, subgrid, force, forced.end..n);
+            cells::<S, L, Q, R, ODD, false>(step, addresses, row, force, 0..forced.start);
+            cells::<S, L, Q, R, ODD, true>(step, addresses, row, force, forced.clone());
+            cells::<S, L, Q, R, ODD, false>(step, addresses, row, force, forced.end..n);
         }
     }
 }
 
 #[inline(always)]
-unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const FORCED: bool>(
+unsafe fn cells<
+    S: Simd,
+    L: Stencil<Q>,
+    const Q: usize,
+    R: RowAir<S>,
+    const ODD: bool,
+    const FORCED: bool,
+>(
     step: &Step<'_>,
     addresses: &[usize; Q],
-    subgrid: f32,
-    force: &[Vec<f32>; 3],
+    row: &R,
+    force: [*mut f32; 3],
     range: Range<usize>,
 ) {
     let mut places = [step.air; Q];
@@ -190,9 +195,7 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
         // SAFETY: a row's addresses lie in the array.
         *place = unsafe { step.air.add(*address) };
     }
-    let subgrid = S::splat(subgrid);
     let times = step.relaxation_times.as_ptr();
-    let force = [force[0].as_ptr(), force[1].as_ptr(), force[2].as_ptr()];
     let mut x = range.start;
     let mut desk = Desk::<S>::new();
     let [mut now, mut next, mut later] = desk.trays();
@@ -202,14 +205,14 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
         let n_vectors = range.len() / S::LANES;
         if n_vectors > 0 {
             add_up::<S, L, Q, ODD>(&places, x, now);
-            judge(now, x, times, subgrid);
+            judge(now, x, times, row, &force);
             if n_vectors > 1 {
                 add_up::<S, L, Q, ODD>(&places, x + S::LANES, next);
             }
             // Three vectors share no address, and what one waits for (divisions, roots) the others fill. The
             // fences keep the compiler from mixing the stages: its own order costs up to half as much again.
             for _ in 2..n_vectors {
-                judge(next, x + S::LANES, times, subgrid);
+                judge(next, x + S::LANES, times, row, &force);
                 compiler_fence(Ordering::SeqCst);
                 add_up::<S, L, Q, ODD>(&places, x + 2 * S::LANES, later);
                 compiler_fence(Ordering::SeqCst);
@@ -219,7 +222,7 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
                 x += S::LANES;
             }
             if n_vectors > 1 {
-                judge(next, x + S::LANES, times, subgrid);
+                judge(next, x + S::LANES, times, row, &force);
                 write_back::<S, L, Q, ODD, FORCED>(&places, x, now, &force);
                 now = next;
                 x += S::LANES;
@@ -229,7 +232,7 @@ unsafe fn cells<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool, const F
         }
         if x < range.end {
             add_up::<S, L, Q, ODD>(&places, x, now);
-            judge(now, x, times, subgrid);
+            judge(now, x, times, row, &force);
             let after = after::<S, L, Q, FORCED>(now, x, &force);
             write_part::<S, Q, ODD>(&places, x..range.end, &after);
         }
@@ -296,12 +299,17 @@ unsafe fn add_up<S: Simd, L: Stencil<Q>, const Q: usize, const ODD: bool>(
 
 /// Second stage: the state of the cells, and the rate at which their stress relaxes.
 #[inline(always)]
-unsafe fn judge<S: Simd>(tray: *mut Tray<S>, x: usize, times: *const f32, subgrid: S) {
+unsafe fn judge<S: Simd, R: RowAir<S>>(
+    tray: *mut Tray<S>,
+    x: usize,
+    times: *const f32,
+    row: &R,
+    force: &[*mut f32; 3],
+) {
     // SAFETY: the caller promises whole readable vectors.
     unsafe {
-        let relaxation = Relaxation { time: S::load(times.add(x)), subgrid };
         let state = (*tray).sums.moments((*tray).per_density);
-        (*tray).rate = relaxation_rate(&state, &relaxation);
+        (*tray).rate = row.judge(&state, S::load(times.add(x)), x, force);
         (*tray).state = state;
     }
 }
@@ -318,7 +326,7 @@ unsafe fn write_back<
     places: &[*mut f32; Q],
     x: usize,
     tray: *const Tray<S>,
-    force: &[*const f32; 3],
+    force: &[*mut f32; 3],
 ) {
     // SAFETY: handed through.
     unsafe {
@@ -358,7 +366,7 @@ unsafe fn write_part<S: Simd, const Q: usize, const ODD: bool>(
 unsafe fn after<S: Simd, L: Stencil<Q>, const Q: usize, const FORCED: bool>(
     tray: *const Tray<S>,
     x: usize,
-    force: &[*const f32; 3],
+    force: &[*mut f32; 3],
 ) -> [S; Q] {
     // SAFETY: the caller promises whole readable vectors.
     unsafe {

@@ -1,7 +1,6 @@
 //! What a step needs to know of the atmosphere, in lattice units.
 
-use super::heat::SOUND_SQUARED;
-use super::settings::{Atmosphere, Damping, Driving, Heating};
+use super::settings::{Atmosphere, Damping, Driving};
 use crate::lattice::scaling::Scaling;
 use crate::lattice::settings::LatticeSettings;
 use basis::Vector3;
@@ -18,10 +17,10 @@ pub(crate) struct Coefficients {
     /// What a slope of temperature (K per cell) takes from the square of Smagorinsky's viscosity (Lilly 1962,
     /// Tellus 14, 148).
     pub(crate) stability: f32,
-    /// Diffusivity over viscosity, in relaxation times of the heat set, for eddies.
+    /// Diffusivity over viscosity, for eddies.
     pub(crate) eddy_diffusivity: f32,
-    /// Relaxation time of the air's own diffusivity.
-    pub(crate) heat_time: f32,
+    /// The air's own diffusivity (cells² a step).
+    pub(crate) conductivity: f32,
 }
 
 /// The same at every cell of a level.
@@ -33,8 +32,6 @@ pub(crate) struct Level {
     pub(crate) damping: f32,
     /// Temperature that damping goes to (K above the reference).
     pub(crate) target: f32,
-    /// What becomes of populations that leave downwards and upwards: a factor, and what is added (K).
-    pub(crate) leaving: [[f32; 2]; 2],
 }
 
 impl Coefficients {
@@ -50,7 +47,6 @@ impl Coefficients {
         let geostrophic = scaling.to_lattice_velocity(Vector3::new(u, v, 0.0));
         let per_kelvin = Vector3::Z * (atmosphere.gravity / atmosphere.reference_temperature);
         let buoyancy = scaling.to_lattice_acceleration(per_kelvin).z;
-        let sound = f64::from(SOUND_SQUARED);
         let viscosity = scaling.to_lattice_viscosity(settings.kinematic_viscosity);
         // ν_t² = C⁴ (S² − N²/Pr_t).
         let stability = settings.smagorinsky.powi(4) * buoyancy / atmosphere.subgrid_prandtl;
@@ -59,8 +55,8 @@ impl Coefficients {
             geostrophic: [geostrophic.x as f32, geostrophic.y as f32],
             buoyancy: buoyancy as f32,
             stability: stability as f32,
-            eddy_diffusivity: (1.0 / (atmosphere.subgrid_prandtl * sound)) as f32,
-            heat_time: (0.5 + viscosity / (atmosphere.prandtl * sound)) as f32,
+            eddy_diffusivity: (1.0 / atmosphere.subgrid_prandtl) as f32,
+            conductivity: (viscosity / atmosphere.prandtl) as f32,
         }
     }
 }
@@ -85,22 +81,7 @@ pub(crate) fn levels(
                 }
                 _ => 0.0,
             };
-            // Half-way between the cell and the plate the temperature is the plate's (anti-bounce-back:
-            // Ginzburg 2005).
-            let plate = |at_plate: bool, temperature: f64| match at_plate {
-                true => {
-                    let departure = (temperature - atmosphere.reference_temperature) as f32;
-                    [-1.0, SOUND_SQUARED * departure]
-                }
-                false => [1.0, 0.0],
-            };
-            let leaving = match atmosphere.heating {
-                Heating::Plates { ground, top } => {
-                    [plate(level == 0, ground), plate(level + 1 == n_levels, top)]
-                }
-                _ => [[1.0, 0.0]; 2],
-            };
-            Level { mean: departure, damping: damping as f32, target: departure, leaving }
+            Level { mean: departure, damping: damping as f32, target: departure }
         })
         .collect()
 }

@@ -2,55 +2,183 @@
 //! grid does not resolve.
 
 use super::coefficients::{Coefficients, Level};
-use super::heat::{self, Heat};
+use super::fields::{Field, Fields};
 use crate::lattice::collision::{Relaxation, twice_relaxation_time};
+use crate::lattice::ends::RowEnds;
 use crate::lattice::simd::Simd;
 use crate::lattice::stencil::Moments;
+use crate::lattice::still::{Air, RowAir};
+
+/// The atmosphere that a step finds.
+pub(crate) struct Stratified<'a> {
+    pub(super) fields: &'a Fields,
+    /// Where the temperature of this step lies.
+    pub(super) temperature: Field,
+    pub(super) coefficients: &'a Coefficients,
+    /// Levels, from the ground up.
+    pub(super) levels: &'a [Level],
+}
 
 /// What is the same at all cells of a level.
-pub(crate) struct Law<S> {
-    level: [S; 3],
+pub(super) struct Law<S> {
+    level: [S; 2],
     turning: [S; 2],
     geostrophic: [S; 2],
     buoyancy: S,
     stability: S,
     eddy_diffusivity: S,
-    heat_time: S,
+    conductivity: S,
     subgrid: S,
-    /// What becomes of populations that leave downwards and upwards: a factor, and what is added.
-    pub(crate) leaving: [[S; 2]; 2],
+}
+
+/// A row of an atmosphere.
+pub(crate) struct StratifiedRow<S> {
+    law: Law<S>,
+    temperature: *const f32,
+    slope: Slope,
+    wind: [*mut f32; 3],
+    diffusivity: *mut f32,
+    n_cells: usize,
+}
+
+/// The slope of temperature upwards at a row.
+#[derive(Clone, Copy)]
+pub(super) struct Slope {
+    below: *const f32,
+    above: *const f32,
+    /// One over the distance between them (per cell).
+    per_distance: f32,
+}
+
+impl Slope {
+    /// That at row (`y`, `z`): between the levels below and above, where there are such.
+    #[inline(always)]
+    pub(super) fn new(fields: &Fields, temperature: Field, [y, z]: [usize; 2]) -> Self {
+        let (below, above) = (fields.above(z, -1), fields.above(z, 1));
+        let n_steps = usize::from(below.is_some()) + usize::from(above.is_some());
+        Self {
+            below: fields.row(temperature, y, below.unwrap_or(z)).cast_const(),
+            above: fields.row(temperature, y, above.unwrap_or(z)).cast_const(),
+            per_distance: 1.0 / n_steps.max(1) as f32,
+        }
+    }
+
+    /// At the cells from `x` (K per cell).
+    ///
+    /// # Safety
+    /// Whole vectors of a row from `x`, padding included.
+    #[inline(always)]
+    pub(super) unsafe fn at<S: Simd>(&self, x: usize) -> S {
+        // SAFETY: handed through.
+        let (below, above) = unsafe { (S::load(self.below.add(x)), S::load(self.above.add(x))) };
+        S::splat(self.per_distance) * (above - below)
+    }
+}
+
+impl Air for Stratified<'_> {
+    type Row<S: Simd> = StratifiedRow<S>;
+
+    #[inline(always)]
+    fn row<S: Simd>(&self, [y, z]: [usize; 2], subgrid: f32) -> StratifiedRow<S> {
+        let fields = self.fields;
+        StratifiedRow {
+            law: Law::new(self.coefficients, self.levels[z], subgrid),
+            temperature: fields.row(self.temperature, y, z).cast_const(),
+            slope: Slope::new(fields, self.temperature, [y, z]),
+            wind: [
+                fields.row(Field::Wind(0), y, z),
+                fields.row(Field::Wind(1), y, z),
+                fields.row(Field::Wind(2), y, z),
+            ],
+            diffusivity: fields.row(Field::Diffusivity, y, z),
+            n_cells: fields.n_cells[0],
+        }
+    }
+}
+
+impl<S: Simd> RowAir<S> for StratifiedRow<S> {
+    const PUSHES: bool = true;
+
+    #[inline(always)]
+    unsafe fn judge(&self, state: &Moments<S>, time: S, x: usize, force: &[*mut f32; 3]) -> S {
+        // SAFETY: rows of the fields and of the force are padded to whole vectors; this row is this thread's.
+        unsafe {
+            let temperature = S::load(self.temperature.add(x));
+            let push = self.law.push(state, temperature);
+            let half = S::splat(0.5) * state.per_density;
+            for axis in 0..3 {
+                let place = force[axis].add(x);
+                let force = S::load(place) + push[axis];
+                force.store(place);
+                half.mul_add(force, state.velocity[axis]).store(self.wind[axis].add(x));
+            }
+            let [rate, diffusivity] = self.law.mixing(state, self.slope.at(x), time);
+            diffusivity.store(self.diffusivity.add(x));
+            rate
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn close(&self, ends: &RowEnds) {
+        let [u, v, w] = self.wind;
+        for row in [u, v, w, self.diffusivity] {
+            // SAFETY: the row's own padding.
+            unsafe { beyond(row, self.n_cells, 1, matches!(ends, RowEnds::Periodic)) };
+        }
+    }
+}
+
+/// Gives the `reach` values before and behind a `row` of `n` cells those of the row's other end, or those of
+/// its last cells.
+///
+/// # Safety
+/// A row of the fields, written by this thread alone.
+#[inline(always)]
+pub(super) unsafe fn beyond(row: *mut f32, n: usize, reach: usize, periodic: bool) {
+    for offset in 0..reach {
+        let (first, last) = match periodic {
+            true => ((n - 1 - offset % n), offset % n),
+            false => (0, n - 1),
+        };
+        // SAFETY: handed through.
+        unsafe {
+            *row.wrapping_sub(1 + offset) = *row.add(first);
+            *row.add(n + offset) = *row.add(last);
+        }
+    }
 }
 
 impl<S: Simd> Law<S> {
     /// That of a level, under Smagorinsky's factor `subgrid`.
     #[inline(always)]
-    pub(crate) fn new(coefficients: &Coefficients, level: Level, subgrid: f32) -> Self {
-        let Coefficients { turning, geostrophic, buoyancy, stability, eddy_diffusivity, heat_time } =
-            *coefficients;
-        let [below, above] = level.leaving;
+    pub(super) fn new(coefficients: &Coefficients, level: Level, subgrid: f32) -> Self {
+        let Coefficients {
+            turning,
+            geostrophic,
+            buoyancy,
+            stability,
+            eddy_diffusivity,
+            conductivity,
+        } = *coefficients;
         Self {
-            level: [S::splat(level.mean), S::splat(level.damping), S::splat(level.target)],
+            level: [S::splat(level.mean), S::splat(level.damping)],
             turning: [S::splat(turning[0]), S::splat(turning[1] + level.damping)],
             geostrophic: [S::splat(geostrophic[0]), S::splat(geostrophic[1])],
             buoyancy: S::splat(buoyancy),
             stability: S::splat(stability),
             eddy_diffusivity: S::splat(eddy_diffusivity),
-            heat_time: S::splat(heat_time),
+            conductivity: S::splat(conductivity),
             subgrid: S::splat(subgrid),
-            leaving: [
-                [S::splat(below[0]), S::splat(below[1])],
-                [S::splat(above[0]), S::splat(above[1])],
-            ],
         }
     }
 
     /// What rotation, buoyancy and damping do to a cell in `state` and of this `temperature`.
     #[inline(always)]
-    pub(crate) fn force(&self, state: &Moments<S>, temperature: S) -> [S; 3] {
+    fn push(&self, state: &Moments<S>, temperature: S) -> [S; 3] {
         let [jx, jy, jz] = state.momentum;
         let [u, v] = self.geostrophic;
         let [along, across] = self.turning;
-        let [mean, damping, _] = self.level;
+        let [mean, damping] = self.level;
         let rho = S::splat(1.0) + state.density_excess;
         let (dx, dy) = (u.sub_from(rho, jx), v.sub_from(rho, jy));
         let zero = S::splat(0.0);
@@ -61,31 +189,17 @@ impl<S: Simd> Law<S> {
         ]
     }
 
-    /// Rates at which stress and flux of temperature relax; `w` is the vertical velocity.
+    /// Rate at which stress relaxes, and diffusivity of temperature, whose slope upwards is `slope`.
     #[inline(always)]
-    pub(crate) fn rates(&self, state: &Moments<S>, heat: &Heat<S>, w: S, time: S) -> [S; 2] {
+    pub(super) fn mixing(&self, state: &Moments<S>, slope: S, time: S) -> [S; 2] {
         let relaxation = Relaxation { time, subgrid: self.subgrid };
         let twice = twice_relaxation_time(state, &relaxation);
         let neutral = S::splat(1.0 / 6.0) * (twice - (time + time));
-        // The slope of temperature from its flux: jz - w theta = -tau c² slope, 1/tau to second order.
-        let conduction = heat.flux[2] - w * heat.temperature;
-        let rate = (self.eddy_diffusivity * neutral).sub_from(S::splat(4.0), S::splat(2.0));
-        let slope = S::splat(-1.0 / heat::SOUND_SQUARED) * (rate * conduction);
         let squared = self.stability.sub_from(slope, neutral * neutral);
         let viscosity = squared.maximum(S::splat(0.0)).sqrt();
-        let one = S::splat(1.0);
         [
-            one.divide(S::splat(3.0).mul_add(viscosity, time)),
-            // Heat without the correction: nothing else takes the noise out that stirring leaves in
-            // stable air.
-            one.divide(self.eddy_diffusivity.mul_add(neutral.maximum(viscosity), self.heat_time)),
+            S::splat(1.0).divide(S::splat(3.0).mul_add(viscosity, time)),
+            self.eddy_diffusivity.mul_add(viscosity, self.conductivity),
         ]
-    }
-
-    /// What damping adds to `temperature`.
-    #[inline(always)]
-    pub(crate) fn warming(&self, temperature: S) -> S {
-        let [_, damping, target] = self.level;
-        damping * (target - temperature)
     }
 }

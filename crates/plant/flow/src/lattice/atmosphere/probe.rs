@@ -1,6 +1,5 @@
 //! Reading wind, temperature and the fluxes that the grid does not resolve out of a row.
 
-use super::heat::{self, DIRECTIONS, N_HEAT};
 use super::stratification::Stratification;
 use crate::lattice::layout::read_direction;
 use crate::lattice::probe::View;
@@ -33,20 +32,21 @@ impl AirRow {
     }
 }
 
-/// On return `state` holds that of row number `row`; no sweep is running.
+/// On return `state` holds that of row number `row` after `n_steps` steps; no sweep is running.
 pub(crate) fn read_row<L: Stencil<Q>, const Q: usize>(
     view: &View<'_>,
     air: &Stratification,
     (times, subgrid): (&[f32], f32),
+    n_steps: u64,
     row: usize,
     state: &mut AirRow,
 ) {
     let [y, z] = view.layout.place(row);
     let addresses: [usize; Q] = view.layout.addresses(view.parity, y, z);
-    let heat_addresses: [usize; N_HEAT] = air.layout.addresses(view.parity, y, z);
-    let law = air.law::<Portable>(z, subgrid);
+    let (law, slope) = air.law::<Portable>(n_steps, [y, z], subgrid);
     let one = Portable::splat(1.0);
     let half = Portable::splat(0.5);
+    state.temperature[..view.layout.n_cells[0]].copy_from_slice(air.temperature(n_steps, row));
     let mut x = 0;
     while x < view.layout.n_cells[0] {
         // SAFETY: rows and buffers are padded to whole vectors.
@@ -56,25 +56,19 @@ pub(crate) fn read_row<L: Stencil<Q>, const Q: usize>(
                 f[read_direction(view.parity, slot)] =
                     Portable::load(view.air.add(addresses[slot] + x));
             }
-            let mut g = [Portable::splat(0.0); N_HEAT];
-            for slot in 0..DIRECTIONS.len() {
-                g[read_direction(view.parity, slot)] =
-                    Portable::load(air.memory.start().add(heat_addresses[slot] + x));
-            }
             let moments = L::moments(&f);
-            let heat = heat::moments(&g);
             let time = Portable::load(times.as_ptr().add(x));
-            let [rate, heat_rate] = law.rates(&moments, &heat, moments.velocity[2], time);
+            let slope = slope.at::<Portable>(x);
+            let [rate, diffusivity] = law.mixing(&moments, slope, time);
             let kept = half.sub_from(rate, one) * moments.per_density;
             for (component, column) in moments.velocity.iter().zip(&mut state.velocity) {
                 component.store(column.as_mut_ptr().add(x));
             }
-            heat.temperature.store(state.temperature.as_mut_ptr().add(x));
             let [_, _, _, _, xz, yz] = moments.stress;
             (kept * xz).store(state.stress[0].as_mut_ptr().add(x));
             (kept * yz).store(state.stress[1].as_mut_ptr().add(x));
-            let conducted = heat.flux[2] - moments.velocity[2] * heat.temperature;
-            (half.sub_from(heat_rate, one) * conducted).store(state.heat_flux.as_mut_ptr().add(x));
+            let conducted = diffusivity.sub_from(slope, Portable::splat(0.0));
+            conducted.store(state.heat_flux.as_mut_ptr().add(x));
         }
         x += Portable::LANES;
     }

@@ -1,45 +1,45 @@
 //! Temperature and what comes with it in the machine's memory, beside the populations of the air.
 
 use super::coefficients::{Coefficients, Level, levels};
-use super::heat::{self, DIRECTIONS, N_HEAT};
-use super::law::Law;
-use super::settings::{Atmosphere, Perturbation, Reference};
+use super::fields::{Field, Fields};
+use super::law::{Law, Slope, Stratified, beyond};
+use super::settings::{Atmosphere, Heating, Perturbation, Reference};
 use super::surface::{Surface, SurfaceMemory};
-use super::sweep::StepHeat;
-use crate::lattice::layout::{Edge, LINE, Layout, Parity};
-use crate::lattice::memory::Memory;
-use crate::lattice::probe::RowState;
-use crate::lattice::scaling::Scaling;
-use crate::lattice::settings::LatticeSettings;
-use crate::lattice::simd::{Portable, Simd};
+use super::transport::{Ghosts, Transport};
+use crate::lattice::layout::{Edge, LINE, Layout};
+use crate::lattice::settings::{Ends, LatticeSettings};
+use crate::lattice::simd::Simd;
 use crate::lattice::values::{read_values, write_values};
 use std::io::{Read, Result, Write};
 use std::ops::Range;
 
 /// The state of an atmosphere that is not in the populations of the air.
 pub(crate) struct Stratification {
-    pub(crate) memory: Memory,
-    pub(crate) layout: Layout,
+    fields: Fields,
     coefficients: Coefficients,
-    pub(crate) levels: Vec<Level>,
+    levels: Vec<Level>,
+    plates: Option<[f32; 2]>,
+    periodic: bool,
     pub(crate) surface: Option<Surface>,
+    /// Values from a row at the ground to the next in what threads know of them.
+    pub(crate) ground_stride: usize,
     reference: Reference,
     perturbation: Option<Perturbation>,
     reference_temperature: f64,
     spacing: f64,
-    /// Sum of the temperatures of every row in the last step.
+    /// Sum of the temperatures of every row after the last step.
     sums: Vec<f32>,
 }
 
 /// What one thread owns of it.
 pub(crate) struct HeatShare {
     pub(crate) surface: SurfaceMemory,
-    /// Sum of the temperatures of each row of the last step (K above the reference).
+    /// Sum of the temperatures of each row after the last step (K above the reference).
     pub(crate) sums: Vec<f32>,
-    /// Temperature of a row, padded to whole vectors.
-    pub(crate) temperature: Vec<f32>,
-    /// No heat from the ground, padded likewise.
-    pub(crate) none: Vec<f32>,
+    /// Temperatures beyond the ground and the top of the row under way.
+    pub(super) beyond: Ghosts,
+    /// No heat from the ground, padded to whole vectors.
+    pub(super) none: Vec<f32>,
 }
 
 impl HeatShare {
@@ -47,65 +47,96 @@ impl HeatShare {
     pub(crate) fn new(layout: &Layout, rows: &Range<usize>) -> Self {
         let n_y = layout.n_cells[1];
         let n_at_ground = rows.end.min(n_y) - rows.start.min(n_y);
-        let padded = layout.n_cells[0].next_multiple_of(LINE);
         Self {
             surface: SurfaceMemory::new(n_at_ground * layout.row_stride),
             sums: vec![0.0; rows.len()],
-            temperature: vec![0.0; padded],
-            none: vec![0.0; padded],
+            beyond: Ghosts::new(layout.n_cells[0]),
+            none: vec![0.0; layout.n_cells[0].next_multiple_of(LINE)],
         }
     }
 }
 
 impl Stratification {
-    /// That of `atmosphere` in the box of `settings`, with `sides` beyond y and `beyond` below and above;
-    /// none when the system refuses the memory.
+    /// That of `atmosphere` in the box of `settings` and `layout`, with `sides` beyond y and `beyond` below
+    /// and above; none when the system refuses the memory.
     pub(crate) fn new(
         atmosphere: &Atmosphere,
         settings: &LatticeSettings,
-        scaling: &Scaling,
+        layout: &Layout,
         sides: Edge,
         beyond: [Edge; 2],
     ) -> Option<Self> {
-        let layout = Layout::new(settings.n_cells, &DIRECTIONS, sides, beyond);
+        let scaling = settings.scaling();
+        let plates = match atmosphere.heating {
+            Heating::Plates { ground, top } => {
+                Some([ground, top].map(|plate| (plate - atmosphere.reference_temperature) as f32))
+            }
+            _ => None,
+        };
         Some(Self {
-            memory: Memory::zeroed(layout.n_values())?,
-            coefficients: Coefficients::new(atmosphere, settings, scaling),
-            levels: levels(atmosphere, settings, scaling),
-            surface: Surface::new(atmosphere, settings, scaling),
+            fields: Fields::new(layout, sides, beyond)?,
+            coefficients: Coefficients::new(atmosphere, settings, &scaling),
+            levels: levels(atmosphere, settings, &scaling),
+            plates,
+            periodic: settings.ends == Ends::Periodic,
+            surface: Surface::new(atmosphere, settings, &scaling),
+            ground_stride: layout.row_stride,
             reference: atmosphere.reference,
             perturbation: atmosphere.perturbation,
             reference_temperature: atmosphere.reference_temperature,
             spacing: settings.spacing,
             sums: vec![0.0; layout.n_rows()],
-            layout,
         })
     }
 
-    /// What a step shares.
-    pub(crate) fn step(&self) -> StepHeat<'_> {
-        StepHeat {
-            heat: self.memory.start(),
-            layout: &self.layout,
+    /// Cells along x, y, z.
+    pub(crate) fn n_cells(&self) -> [usize; 3] {
+        self.fields.n_cells
+    }
+
+    /// What step number `n_steps` finds.
+    pub(crate) fn air(&self, n_steps: u64) -> Stratified<'_> {
+        Stratified {
+            fields: &self.fields,
+            temperature: Fields::temperature(n_steps),
             coefficients: &self.coefficients,
             levels: &self.levels,
         }
     }
 
-    /// What acts on the cells of level `z`, under Smagorinsky's factor `subgrid`.
-    pub(crate) fn law<S: Simd>(&self, z: usize, subgrid: f32) -> Law<S> {
-        Law::new(&self.coefficients, self.levels[z], subgrid)
+    /// How temperature is carried over step number `n_steps`.
+    pub(crate) fn transport(&self, n_steps: u64) -> Transport<'_> {
+        Transport {
+            fields: &self.fields,
+            n_steps,
+            levels: &self.levels,
+            plates: self.plates,
+            periodic: self.periodic,
+            ground_stride: self.ground_stride,
+        }
     }
 
-    /// Gives row number `row` its first temperatures, `given` (K) or those of its height, in air that moves
-    /// as `state` says, before the first step.
-    pub(crate) fn fill(&self, row: usize, state: &RowState, given: Option<&[f64]>) {
-        let [y, z] = self.layout.place(row);
-        let addresses: [usize; N_HEAT] = self.layout.addresses(Parity::Even, y, z);
+    /// What acts on the cells of row (`y`, `z`), under Smagorinsky's factor `subgrid`, and the slope of their
+    /// temperature after `n_steps` steps.
+    pub(super) fn law<S: Simd>(
+        &self,
+        n_steps: u64,
+        [y, z]: [usize; 2],
+        subgrid: f32,
+    ) -> (Law<S>, Slope) {
+        let slope = Slope::new(&self.fields, Fields::temperature(n_steps), [y, z]);
+        (Law::new(&self.coefficients, self.levels[z], subgrid), slope)
+    }
+
+    /// Gives row number `row` its first temperatures, `given` (K) or those of its height, and sums them up in
+    /// `sum`.
+    pub(crate) fn fill(&self, row: usize, given: Option<&[f64]>, sum: &mut f32) {
+        let [n, n_y, _] = self.fields.n_cells;
+        let [y, z] = [row % n_y, row / n_y];
         let height = (z as f64 + 0.5) * self.spacing;
-        let [u, v, w] = &state.velocity;
-        for x in 0..self.layout.n_cells[0] {
-            let velocity = [u[x], v[x], w[x]].map(Portable::splat);
+        let place = self.fields.row(Fields::temperature(0), y, z);
+        *sum = 0.0;
+        for x in 0..n {
             let mut departure = match given {
                 Some(given) => (given[x] - self.reference_temperature) as f32,
                 None => self.levels[z].target,
@@ -113,38 +144,23 @@ impl Stratification {
             if let Some(Perturbation { below, amplitude, seed }) = self.perturbation
                 && height < below
             {
-                let cell = (row * self.layout.n_cells[0] + x) as u64;
-                departure += amplitude as f32 * noise(seed, cell);
+                departure += amplitude as f32 * noise(seed, (row * n + x) as u64);
             }
-            let temperature = Portable::splat(departure);
-            let g = heat::equilibrium(temperature, velocity);
-            for (address, value) in addresses.iter().zip(g) {
-                let mut lanes = [0.0; Portable::LANES];
-                // SAFETY: as many values as lanes; then a cell of this thread's rows.
-                unsafe {
-                    value.store(lanes.as_mut_ptr());
-                    *self.memory.start().add(address + x) = lanes[0];
-                }
+            *sum += departure;
+            // SAFETY: a cell of this thread's rows.
+            unsafe {
+                *place.add(x) = departure;
+                *self.fields.row(Field::Change, y, z).add(x) = 0.0;
             }
         }
+        // SAFETY: this thread's row.
+        unsafe { beyond(place, n, super::fields::REACH, self.periodic) };
     }
 
-    /// On return `temperature` holds that of row number `row` (K above the reference) before a step of
-    /// `parity`.
-    pub(crate) fn read(&self, parity: Parity, row: usize, temperature: &mut [f32]) {
-        let [y, z] = self.layout.place(row);
-        let addresses: [usize; N_HEAT] = self.layout.addresses(parity, y, z);
-        let n = self.layout.n_cells[0];
-        temperature[..n].fill(0.0);
-        for address in addresses {
-            // SAFETY: a row of the array; no sweep is running.
-            let values = unsafe {
-                std::slice::from_raw_parts(self.memory.start().add(address).cast_const(), n)
-            };
-            for (sum, value) in temperature.iter_mut().zip(values) {
-                *sum += value;
-            }
-        }
+    /// Temperatures of row number `row` after `n_steps` steps (K above the reference).
+    pub(crate) fn temperature(&self, n_steps: u64, row: usize) -> &[f32] {
+        let n_y = self.fields.n_cells[1];
+        self.fields.cells(Fields::temperature(n_steps), row % n_y, row / n_y)
     }
 
     /// Takes in the sums of the rows from number `first` on.
@@ -157,7 +173,7 @@ impl Stratification {
         if self.reference == Reference::Start {
             return;
         }
-        let [n_x, n_y, _] = self.layout.n_cells;
+        let [n_x, n_y, _] = self.fields.n_cells;
         let share = 1.0 / (n_x * n_y) as f64;
         for (level, sums) in self.levels.iter_mut().zip(self.sums.chunks(n_y)) {
             let sum: f64 = sums.iter().copied().map(f64::from).sum();
@@ -169,7 +185,7 @@ impl Stratification {
     pub(crate) fn write(&self, writer: &mut dyn Write, bytes: &mut Vec<u8>) -> Result<()> {
         let means: Vec<f32> = self.levels.iter().map(|level| level.mean).collect();
         write_values(writer, bytes, &means)?;
-        write_values(writer, bytes, self.memory.values())
+        write_values(writer, bytes, self.fields.kept())
     }
 
     /// Goes on from what [`write`](Self::write) wrote.
@@ -179,17 +195,17 @@ impl Stratification {
         for (level, mean) in self.levels.iter_mut().zip(means) {
             level.mean = mean;
         }
-        read_values(reader, bytes, self.memory.values_mut())
+        read_values(reader, bytes, self.fields.kept_mut())
     }
 
     /// Memory that it holds (bytes).
     pub(crate) fn bytes(&self) -> usize {
-        let [_, n_y, _] = self.layout.n_cells;
+        let [_, n_y, _] = self.fields.n_cells;
         let at_ground = match self.surface {
-            Some(_) => 7 * n_y * self.layout.row_stride,
+            Some(_) => 7 * n_y * self.ground_stride,
             None => 0,
         };
-        self.memory.bytes() + size_of::<f32>() * (at_ground + self.sums.len())
+        self.fields.bytes() + size_of::<f32>() * (at_ground + self.sums.len())
     }
 }
 

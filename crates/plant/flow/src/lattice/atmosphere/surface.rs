@@ -7,7 +7,7 @@ use super::settings::{Atmosphere, Heating};
 use super::similarity::{Place, Similarity};
 use super::stratification::{HeatShare, Stratification};
 use crate::lattice::engine::Rows;
-use crate::lattice::layout::{LINE, Parity};
+use crate::lattice::layout::LINE;
 use crate::lattice::probe::RowState;
 use crate::lattice::scaling::Scaling;
 use crate::lattice::settings::{Ground, LatticeSettings};
@@ -135,18 +135,17 @@ impl Surface {
         share: &mut Share,
         heat: &mut HeatShare,
     ) {
-        let [n, n_y, _] = air.layout.n_cells;
+        let [n, n_y, _] = air.n_cells();
         let at_ground = share.rows.start.min(n_y)..share.rows.end.min(n_y);
         for (index, row) in at_ground.enumerate() {
             let above = row + self.level * n_y;
             rows.read_row(above, state);
-            air.read(Parity::of(step), above, &mut heat.temperature);
-            let start = index * air.layout.row_stride;
+            let start = index * air.ground_stride;
             let range = start..start + n;
             let [u, v, _] = &state.velocity;
             let above = AboveGround {
                 velocity: [&u[..n], &v[..n]],
-                temperature: &heat.temperature[..n],
+                temperature: air.temperature(step, above),
                 stress: share.wall.each_mut().map(|wall| &mut wall[range.clone()]),
             };
             self.update_row(step, &mut heat.surface, range, above);

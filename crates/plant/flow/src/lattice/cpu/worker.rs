@@ -76,7 +76,7 @@ impl Worker {
         view: &View<'_>,
         scaling: &Scaling,
         inflow: &dyn Inflow,
-        heat: Option<&Stratification>,
+        air: Option<&Stratification>,
     ) {
         let n = view.layout.n_cells[0];
         let mut positions = vec![Vector3::ZERO; n + 1];
@@ -102,9 +102,10 @@ impl Worker {
                 }
             }
             kernel.write_row(view, row, &self.row);
-            if let Some(heat) = heat {
+            if let (Some(air), Some(heat)) = (air, &mut self.heat) {
                 let given = inflow.sample_temperature(0.0, &positions, &mut temperatures);
-                heat.fill(row, &self.row, given.then_some(&temperatures));
+                let sum = &mut heat.sums[row - self.share.rows.start];
+                air.fill(row, given.then_some(&temperatures), sum);
             }
         }
     }

@@ -1,0 +1,130 @@
+//! Where temperature, and what a step tells of the wind, lie in memory.
+//!
+//! One array holds field after field, each all cells, x fastest. The three values before a row and the three
+//! behind it are those of neighbours beyond its ends.
+
+use crate::lattice::layout::{Edge, LINE, Layout};
+use crate::lattice::memory::Memory;
+
+/// Values beyond either end of a row that its cells look at (–).
+pub(super) const REACH: usize = 3;
+
+/// A quantity of every cell, in lattice units but for kelvin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Field {
+    /// Departure of the temperature from the reference (K), after an even number of steps.
+    Even,
+    /// The same after an odd number.
+    Odd,
+    /// Change of temperature in the last step by wind and conduction (K a step).
+    Change,
+    /// Wind of the step under way along x, y, z, half-way through its forces.
+    Wind(usize),
+    /// Diffusivity of the step under way.
+    Diffusivity,
+}
+
+/// Fields (–).
+const N_FIELDS: usize = 7;
+/// Fields that outlast a step (–).
+pub(crate) const N_KEPT: usize = 3;
+
+/// The fields of a box.
+pub(crate) struct Fields {
+    memory: Memory,
+    pub(super) n_cells: [usize; 3],
+    row_stride: usize,
+    field_stride: usize,
+    /// What lies beyond y, and below and above.
+    pub(super) sides: Edge,
+    pub(super) levels: [Edge; 2],
+}
+
+impl Fields {
+    /// Fields of the cells of `layout`, with `sides` beyond y and `levels` below and above, all zero; none
+    /// when the system refuses the memory.
+    pub(super) fn new(layout: &Layout, sides: Edge, levels: [Edge; 2]) -> Option<Self> {
+        let n_cells = layout.n_cells;
+        // Whole vectors, and a line for what lies beyond the ends: `REACH` values at its beginning belong to
+        // this row, as many at its end to the next.
+        let row_stride = n_cells[0].next_multiple_of(LINE) + LINE;
+        let field_stride = row_stride * layout.n_rows() + LINE;
+        let memory = Memory::zeroed(field_stride * N_FIELDS + LINE)?;
+        Some(Self { memory, n_cells, row_stride, field_stride, sides, levels })
+    }
+
+    /// Where temperature lies after `n_steps` steps.
+    pub(super) fn temperature(n_steps: u64) -> Field {
+        if n_steps.is_multiple_of(2) { Field::Even } else { Field::Odd }
+    }
+
+    /// First cell of row (`y`, `z`) of `field`.
+    #[inline(always)]
+    pub(super) fn row(&self, field: Field, y: usize, z: usize) -> *mut f32 {
+        let field = match field {
+            Field::Even => 0,
+            Field::Odd => 1,
+            Field::Change => 2,
+            Field::Wind(axis) => 3 + axis,
+            Field::Diffusivity => 6,
+        };
+        let row = z * self.n_cells[1] + y;
+        // Inside the array for rows of the box.
+        self.memory.start().wrapping_add(LINE + field * self.field_stride + row * self.row_stride)
+    }
+
+    /// The cells of row (`y`, `z`) of `field`, while nobody writes it.
+    pub(super) fn cells(&self, field: Field, y: usize, z: usize) -> &[f32] {
+        // SAFETY: a row of the array; between the passes of a step its fields are read only.
+        unsafe { std::slice::from_raw_parts(self.row(field, y, z).cast_const(), self.n_cells[0]) }
+    }
+
+    /// The fields that outlast a step.
+    pub(super) fn kept(&self) -> &[f32] {
+        &self.memory.values()[..LINE + N_KEPT * self.field_stride]
+    }
+
+    /// The same, to be overwritten.
+    pub(super) fn kept_mut(&mut self) -> &mut [f32] {
+        let n_values = LINE + N_KEPT * self.field_stride;
+        &mut self.memory.values_mut()[..n_values]
+    }
+
+    /// Memory that they hold (bytes).
+    pub(super) fn bytes(&self) -> usize {
+        self.memory.bytes()
+    }
+
+    /// The row of a level that lies `offset` rows along y from `y`.
+    #[inline(always)]
+    pub(super) fn beside(&self, y: usize, offset: isize) -> usize {
+        reach(y, offset, self.n_cells[1], self.sides)
+    }
+
+    /// The level that lies `offset` levels above `z`, where that is one of the box or comes back from its
+    /// other side.
+    #[inline(always)]
+    pub(super) fn above(&self, z: usize, offset: isize) -> Option<usize> {
+        let n = self.n_cells[2];
+        let place = z as isize + offset;
+        let beyond = self.levels[usize::from(offset > 0)];
+        match beyond {
+            Edge::Periodic => Some(reach(z, offset, n, beyond)),
+            _ if place < 0 || place >= n as isize => None,
+            _ => Some(place as usize),
+        }
+    }
+}
+
+/// From `place` on an axis of `n` rows `offset` rows on: around, or mirrored at the ends.
+fn reach(place: usize, offset: isize, n: usize, edge: Edge) -> usize {
+    let (place, n) = (place as isize + offset, n as isize);
+    let there = match edge {
+        Edge::Periodic => place.rem_euclid(n),
+        // Mirrored; where there are fewer rows than that, the last one.
+        _ if place < 0 => (-1 - place).min(n - 1),
+        _ if place >= n => (2 * n - 1 - place).max(0),
+        _ => place,
+    };
+    there as usize
+}
