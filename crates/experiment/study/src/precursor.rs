@@ -117,13 +117,6 @@ impl Job {
                 "the box is {lengths:.1} times as wide as its layer is deep: its longest eddies meet themselves and last too long; {LENGTH_TO_WARN} and more are for results"
             ));
         }
-        if air.cooling_rate.is_some_and(|rate| rate > 0.0) || air.heat_flux.is_some_and(|q| q < 0.0)
-        {
-            warnings.push(
-                "the ground cools the air: layers that are stable from the ground up come out too deep (docs/validation/atmosphere.md)"
-                    .to_owned(),
-            );
-        }
         warnings
     }
 

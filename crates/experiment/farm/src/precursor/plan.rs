@@ -2,11 +2,12 @@
 
 use super::Precursor;
 use super::start::Start;
+use crate::assemble::SMAGORINSKY_OVER_GROUND;
 use basis::Vector3;
 use flow::Inflow;
 use flow::inflow::PlaneGrid;
 use flow::lattice::atmosphere::{Atmosphere, Damping, Driving, GRAVITY, Heating, Perturbation};
-use flow::lattice::{Ends, Ground, LatticeSettings};
+use flow::lattice::{Ends, Ground, LatticeSettings, Stencil};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -139,6 +140,9 @@ impl Precursor {
         );
         settings.ends = Ends::Periodic;
         settings.ground = Ground::WallStress { roughness_length: air.roughness_length };
+        settings.smagorinsky = SMAGORINSKY_OVER_GROUND;
+        // Its eddies live for hours, in which nineteen directions would let the wind feed them.
+        settings.stencil = Stencil::D3Q27;
         settings.threads = self.domain.threads;
         settings.atmosphere = Some(self.atmosphere());
         settings

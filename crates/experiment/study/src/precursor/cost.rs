@@ -9,7 +9,7 @@ use formats::records::PrecursorFolder;
 use std::time::{Duration, Instant};
 
 /// Bytes of a cell with its temperature, boundaries included.
-const CELL_BYTES: u64 = 112;
+const CELL_BYTES: u64 = 146;
 /// Bytes of a point of a plane: three components as they come, which stay for a longer record, and three of
 /// the full field.
 const POINT_BYTES: u64 = 3 * (size_of::<f32>() + size_of::<i16>()) as u64;

@@ -30,7 +30,7 @@ pub fn is_steady(drift: &Drift) -> bool {
 pub(super) fn outgrown(depth: f64, foot: f64, top: f64) -> Option<String> {
     (depth > top).then(|| {
         format!(
-            "the layer is {depth:.0} m deep while it is recorded: it has grown through its inversion, which began at {foot:.0} to {top:.0} m (docs/validation/atmosphere.md tells what the air of the box does not do right yet)"
+            "the layer is {depth:.0} m deep while it is recorded: it has grown through its inversion, which began at {foot:.0} to {top:.0} m"
         )
     })
 }
