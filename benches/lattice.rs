@@ -10,7 +10,7 @@
 use basis::{PointForce, Vector3};
 use benches::bandwidth::Limit;
 use flow::lattice::atmosphere::{Atmosphere, Driving, Heating};
-use flow::lattice::{Backend, Ends, Ground, Lattice, LatticeSettings};
+use flow::lattice::{Backend, Ends, Ground, Lattice, LatticeSettings, Stencil};
 use flow::{FlowSolver, Inflow};
 use std::sync::Arc;
 use std::time::Instant;
@@ -24,17 +24,32 @@ enum Work {
     Everything,
     /// The bulk on a turning earth, with temperature, over a cooled ground.
     Temperature,
+    /// The bulk alone with twenty-seven directions.
+    Bare27,
+    /// With temperature and twenty-seven directions.
+    Temperature27,
 }
 
 impl Work {
-    const ALL: [Self; 3] = [Self::Bare, Self::Everything, Self::Temperature];
+    const ALL: [Self; 5] =
+        [Self::Bare, Self::Everything, Self::Temperature, Self::Bare27, Self::Temperature27];
 
-    /// Bytes that a cell update moves: D3Q19 in f32, in and out, and seven populations for temperature.
-    fn bytes(self) -> f64 {
+    fn has_temperature(self) -> bool {
+        matches!(self, Self::Temperature | Self::Temperature27)
+    }
+
+    fn stencil(self) -> Stencil {
         match self {
-            Self::Bare | Self::Everything => 2.0 * 19.0 * 4.0,
-            Self::Temperature => 2.0 * 26.0 * 4.0,
+            Self::Bare | Self::Everything | Self::Temperature => Stencil::D3Q19,
+            Self::Bare27 | Self::Temperature27 => Stencil::D3Q27,
         }
+    }
+
+    /// Bytes that a cell update moves: populations in and out; with temperature the sweep reads one field and
+    /// writes four, and the transport reads six and writes two.
+    fn bytes(self) -> f64 {
+        let fields = if self.has_temperature() { 13.0 } else { 0.0 };
+        4.0 * (2.0 * self.stencil().n_directions() as f64 + fields)
     }
 }
 
@@ -112,7 +127,7 @@ fn main() {
         );
     }
     let cells = n_cells.iter().product::<usize>() as f64;
-    for work in [Work::Everything, Work::Temperature] {
+    for work in [Work::Everything, Work::Temperature, Work::Bare27, Work::Temperature27] {
         let air = lattice(n_cells, 1, Backend::detect(), work);
         println!("{work:?}: memory {:.1} bytes a cell", air.memory() as f64 / cells);
     }
@@ -153,10 +168,11 @@ fn lattice(n_cells: [usize; 3], n_threads: usize, backend: Backend, work: Work) 
     if work != Work::Everything {
         settings.ends = Ends::Periodic;
     }
-    if work != Work::Bare {
+    settings.stencil = work.stencil();
+    if work == Work::Everything || work.has_temperature() {
         settings.ground = Ground::WallStress { roughness_length: 0.05 };
     }
-    if work == Work::Temperature {
+    if work.has_temperature() {
         settings.atmosphere = Some(Atmosphere {
             coriolis: 1e-4,
             driving: Driving::Geostrophic([9.0, 0.0]),
