@@ -13,6 +13,7 @@ use commands::output;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
+use wakemix::formats::case;
 
 /// Wind-farm wake mixing, from wind to report.
 #[derive(Parser)]
@@ -40,7 +41,7 @@ enum Command {
     /// The turbine library: list, show, import, steady coefficients
     #[command(subcommand)]
     Turbine(commands::turbine::TurbineCommand),
-    /// Turbulent inflow: generate, inspect, convert boxes
+    /// Turbulent inflow: generate, inspect, convert boxes; record planes of an atmosphere
     #[command(subcommand)]
     Inflow(commands::inflow::InflowCommand),
     /// Damage-equivalent loads of channels, or of a pitch bearing, in OpenFAST output, CSV or the records of
@@ -60,7 +61,11 @@ enum Command {
         words: Vec<String>,
     },
     /// Print the JSON Schema of the case file, for editors
-    Schema,
+    Schema {
+        /// That of the file of a precursor, which `wakemix inflow precursor` reads
+        #[arg(long)]
+        precursor: bool,
+    },
     /// Print completions of commands and options for a shell
     Completions {
         /// Shell
@@ -101,7 +106,7 @@ fn run(command: Command) -> ExitCode {
         Command::Cases(arguments) => commands::cases::run(&arguments),
         Command::Report { directory } => commands::report::run(&directory),
         Command::Turbine(command) => commands::turbine::run(command),
-        Command::Inflow(command) => commands::inflow::run(command),
+        Command::Inflow(command) => return commands::inflow::run(command),
         Command::Fatigue(arguments) => commands::fatigue::run(&arguments),
         Command::Analyse(command) => commands::analyse::run(&command),
         #[cfg(feature = "validate")]
@@ -112,7 +117,10 @@ fn run(command: Command) -> ExitCode {
             "this program was built without validations: `wakemix validate {}` is not in it",
             words.join(" ")
         )),
-        Command::Schema => output::print(&(wakemix::formats::case::schema() + "\n")),
+        Command::Schema { precursor } => {
+            let case = if precursor { case::precursor_schema() } else { case::schema() };
+            output::print(&(case + "\n"))
+        }
         Command::Completions { shell } => {
             commands::definition::completions(shell, Arguments::command())
         }

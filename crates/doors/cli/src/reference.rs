@@ -136,4 +136,6 @@ fn page_and_schema_of_the_case_file_are_current() {
     wakemix::study::outputs::announce();
     is_current("docs/case-file.md", &wakemix::formats::case::reference());
     is_current("docs/case.schema.json", &wakemix::formats::case::schema());
+    is_current("docs/precursor-file.md", &wakemix::formats::case::precursor_reference());
+    is_current("docs/precursor.schema.json", &wakemix::formats::case::precursor_schema());
 }

@@ -1,5 +1,5 @@
 //! `wakemix inflow` from outside: the wind of a case sampled, other kinds of wind refused, profiles beside
-//! boxes.
+//! boxes, an atmosphere recorded.
 
 mod program;
 
@@ -90,4 +90,62 @@ fn a_box_has_the_given_profile_beside_it() {
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(!output.status.success() && error.contains(message), "{error}");
     }
+}
+
+const PRECURSOR: &str = r#"
+name = "small"
+[box]
+length = 400
+width = 400
+height = 200
+cell = 12.5
+[atmosphere]
+latitude_deg = 52.6
+roughness_length = 0.01
+geostrophic_wind = 8.0
+inversion_height = 100
+inversion_strength = 2
+inversion_depth = 25
+[time]
+spin_up = 20
+record = 10
+statistics_interval = 2
+[planes]
+hub_height = 70
+"#;
+
+#[test]
+fn a_precursor_is_told_recorded_and_read() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.toml"), PRECURSOR).unwrap();
+    let made = wakemix(&["inflow", "precursor", "small.toml"], folder.path());
+    assert!(made.status.success(), "{}", said(&made));
+    let told = said(&made);
+    assert!(told.contains("32 × 32 × 16 = 0.02 million cells of 12.5 m"), "{told}");
+    assert!(told.contains("planes stand across the wind at hub height"), "{told}");
+    let table = String::from_utf8_lossy(&made.stdout).into_owned();
+    assert!(table.contains("hub 70 m: ") && table.contains("TI of u"), "{table}");
+    let file = "runs/small/planes.bts";
+    let info = wakemix(&["inflow", "info", file, "--json"], folder.path());
+    let info: serde_json::Value = serde_json::from_slice(&info.stdout).unwrap();
+    assert_eq!(info["n_points"], serde_json::json!([13, 32, 8]));
+    let again =
+        wakemix(&["inflow", "precursor", "small.toml", "--resume", "--json"], folder.path());
+    let result: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let speeds = [&result["planes"]["hub_speed"], &info["hub_speed"]].map(number);
+    assert!((speeds[0] - speeds[1]).abs() < 1e-3, "{speeds:?}");
+}
+
+#[test]
+fn a_precursor_tells_its_cost_and_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = ["inflow", "precursor", "precursor-offshore", "--dry-run"];
+    let output = wakemix(&shipped, folder.path());
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(said(&output).contains("224 × 224 × 64 = 3.21 million cells"), "{}", said(&output));
+    let output = wakemix(&[&shipped[..], &["--set", "box.height=700"]].concat(), folder.path());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("`atmosphere.inversion_height` = 700 m"), "{}", said(&output));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }

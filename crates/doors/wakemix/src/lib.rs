@@ -47,6 +47,7 @@
 //! | --- | --- |
 //! | make a case from text | [`formats::case::parse`] |
 //! | run it without files | [`Prepared::of`](study::Prepared::of), [`run_all`](study::Ready::run_all) |
+//! | spin up an atmosphere and record its wind | [`study::precursor::precursor`] |
 //! | run a case file in a folder | [`study::run`], then [`postprocessing::report`] |
 //! | observe it, or stop it | [`study::Observer`], the flag that [`study::run`] takes |
 //! | step a farm by hand | [`study::Ready::farm`], [`farm::Farm::advance`] |

@@ -11,6 +11,7 @@ pub mod operation;
 pub mod outputs;
 pub mod pitch_response;
 pub mod plan;
+pub mod precursor;
 pub mod self_check;
 pub mod solvers;
 pub mod tracking;

@@ -1,7 +1,7 @@
 //! The cases that come with the program: each can be run by its name, anywhere.
 
 use crate::FileError;
-use crate::case::{self, CaseError, CaseFile, CaseFiles};
+use crate::case::{self, CaseError, CaseFile, CaseFiles, PrecursorFile};
 use farm::case::Case;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -89,16 +89,67 @@ pub const CASES: &[ShippedCase] = &[
     },
 ];
 
+/// A precursor that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShippedPrecursor {
+    /// Its name, which stands for its file.
+    pub name: &'static str,
+    /// The file in the repository.
+    file: &'static str,
+    /// Wall time on two cores (min), about.
+    pub minutes: f64,
+}
+
+/// All of them.
+pub const PRECURSORS: &[ShippedPrecursor] = &[ShippedPrecursor {
+    name: "precursor-offshore",
+    file: include_str!("../../../../cases/precursor-offshore.toml"),
+    minutes: 150.0,
+}];
+
+impl ShippedPrecursor {
+    /// Its text for any folder.
+    pub fn text(&self) -> String {
+        anywhere(self.file)
+    }
+
+    /// The precursor itself.
+    ///
+    /// # Errors
+    /// [`CaseError`] for what a test holds not to be wrong.
+    pub fn precursor(&self) -> Result<PrecursorFile, CaseError> {
+        case::parse_precursor(Path::new(self.name), &self.text(), &[])
+    }
+}
+
+/// The shipped precursor called `name`.
+pub fn find_precursor(name: &str) -> Option<&'static ShippedPrecursor> {
+    PRECURSORS.iter().find(|precursor| precursor.name == name)
+}
+
+/// Reads the precursor's file at `path`, or the shipped one that it stands for, and applies `overrides`.
+///
+/// # Errors
+/// Those of [`case::read_precursor`].
+pub fn read_precursor(path: &Path, overrides: &[String]) -> Result<PrecursorFile, CaseError> {
+    let named = path.to_str().and_then(find_precursor).filter(|_| !path.is_file());
+    match named {
+        Some(shipped) => case::parse_precursor(path, &shipped.text(), overrides),
+        None => case::read_precursor(path, overrides),
+    }
+}
+
+/// `file` of the repository without the line of its schema, which stands beside `cases/`.
+fn anywhere(file: &str) -> String {
+    let lines = file.lines().filter(|line| !line.starts_with("#:schema"));
+    lines.map(|line| line.to_owned() + "\n").collect()
+}
+
 impl ShippedCase {
     /// Its text for any folder. In the repository a case stands in `cases/`, beside the schema and with
     /// `runs/` one folder up; here `runs/` is in the current folder, and cases are called by their names.
     pub fn text(&self) -> String {
-        let mut text = String::with_capacity(self.file.len());
-        for line in self.file.lines().filter(|line| !line.starts_with("#:schema")) {
-            text += line;
-            text.push('\n');
-        }
-        text = text.replace("../runs/", "runs/");
+        let mut text = anywhere(self.file).replace("../runs/", "runs/");
         for case in CASES {
             text = text.replace(&format!("cases/{}.toml", case.name), case.name);
         }
@@ -183,7 +234,9 @@ mod tests {
             .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
             .collect();
         files.sort();
-        let mut names: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+        let studies = CASES.iter().map(|case| case.name);
+        let mut names: Vec<&str> =
+            studies.chain(PRECURSORS.iter().map(|shipped| shipped.name)).collect();
         names.sort();
         assert_eq!(names, files);
         for shipped in CASES {
@@ -202,6 +255,19 @@ mod tests {
             let text = shipped.text();
             assert!(!text.contains("../") && !text.contains("cases/"), "{text}");
         }
+    }
+
+    #[test]
+    fn a_precursor_is_found_by_its_name() {
+        for shipped in PRECURSORS {
+            let precursor = shipped.precursor().unwrap().precursor;
+            assert_eq!(precursor.name, shipped.name);
+            assert!(precursor.description.is_some_and(|words| words.len() > 20));
+            assert!(!shipped.text().contains("../") && find(shipped.name).is_none());
+        }
+        let file = read_precursor(Path::new("precursor-offshore"), &["seed=3".to_owned()]);
+        assert_eq!(file.unwrap().precursor.seed, 3);
+        assert!(read_precursor(Path::new("no-such-precursor"), &[]).is_err());
     }
 
     #[test]

@@ -9,6 +9,8 @@
 //! | | the same as values, without files | `in_memory` |
 //! | summary | its numbers, and gains over another run | `summarise` from `columns`, `gains` |
 //!
+//! [`precursor`] makes wind for studies instead: a periodic box of atmosphere.
+//!
 //! No stage is ever half built: each comes whole from the one before. The stages need no files; [`run`] takes
 //! a study through all of them in a folder, from the case file to the records; [`Ready::run_all`] makes the
 //! runs as values.
@@ -31,6 +33,7 @@ mod observer;
 mod options;
 pub mod outputs;
 mod pitch_identification;
+pub mod precursor;
 mod prepared;
 mod ready;
 mod same_case;

@@ -7,7 +7,7 @@ use basis::records::PlaneAxes;
 use flow::inflow::PlaneGrid;
 use flow::inflow::mann::{self, MannSettings};
 use formats::records::{RunFolder, read_manifest};
-use formats::turbulence_box::{self, StoredBox, WindRecorder};
+use formats::turbulence_box::{self, Carried, StoredBox, WindRecorder};
 use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::Path;
@@ -204,7 +204,7 @@ fn record(folder: &Path, n_steps: usize, speed: f32) {
     let path = folder.join("w.bts");
     let mut recorder = WindRecorder::create(&path, 35 * 26).expect("a file");
     (0..n_steps).for_each(|_| recorder.write(&[[speed, 0.0, 0.0]; 35 * 26]).expect("a plane"));
-    recorder.finish(&grid, 97.5, "a trial").expect("a record");
+    recorder.finish(&grid, 97.5, Carried::Middle, "a trial").expect("a record");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `wakemix cases`: what comes with the program, and how to get at it.
+//! `wakemix cases`: what comes with the program, studies and precursors, and how to get at it.
 
 use super::arguments::check_free;
 use super::output::{columns, print, tell};
@@ -27,8 +27,12 @@ pub(crate) struct CasesArguments {
 /// A name that there is not, a file that is there already or cannot be written.
 pub(crate) fn run(arguments: &CasesArguments) -> Result<()> {
     let Some(name) = &arguments.name else { return print(&list(columns())?) };
-    let Some(case) = shipped::find(name) else {
-        let names: Vec<&str> = shipped::CASES.iter().map(|case| case.name).collect();
+    let study = shipped::find(name).map(|case| case.text());
+    let text = study.or_else(|| shipped::find_precursor(name).map(|shipped| shipped.text()));
+    let Some(text) = text else {
+        let studies = shipped::CASES.iter().map(|case| case.name);
+        let names: Vec<&str> =
+            studies.chain(shipped::PRECURSORS.iter().map(|shipped| shipped.name)).collect();
         return Err(miette!(
             help = format!("there are: {}", names.join(", ")),
             "no case called `{name}` comes with the program"
@@ -36,10 +40,10 @@ pub(crate) fn run(arguments: &CasesArguments) -> Result<()> {
     };
     let output = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
     if output.as_os_str() == "-" {
-        return print(&case.text());
+        return print(&text);
     }
     check_free(std::slice::from_ref(&output), arguments.overwrite)?;
-    atomic::write(&output, "the case file", case.text().as_bytes())?;
+    atomic::write(&output, "the case file", text.as_bytes())?;
     tell(&format!("wrote {}", output.display()));
     Ok(())
 }
@@ -57,6 +61,11 @@ fn list(width: usize) -> Result<String> {
             shows += &format!(" (after {before})");
         }
         table.row([shipped.name.to_owned(), runs, takes, shows]);
+    }
+    for shipped in shipped::PRECURSORS {
+        let shows = shipped.precursor()?.precursor.description.unwrap_or_default();
+        let shows = shows + " (`wakemix inflow precursor NAME`)";
+        table.row([shipped.name.to_owned(), String::new(), takes(shipped.minutes), shows]);
     }
     let below = "takes: all its runs on two cores, about; `wakemix run NAME --dry-run` says it for this machine\n";
     Ok(table.fitted(width) + &wakemix::report::text_table::wrapped(below, width))
@@ -84,8 +93,9 @@ mod tests {
             let text = list(width).unwrap();
             let widest = text.lines().map(|line| line.chars().count()).max().unwrap();
             assert!(widest <= width, "{widest}: {text}");
-            for case in shipped::CASES {
-                assert!(text.lines().any(|line| line.starts_with(case.name)), "{text}");
+            let studies = shipped::CASES.iter().map(|case| case.name);
+            for name in studies.chain(shipped::PRECURSORS.iter().map(|shipped| shipped.name)) {
+                assert!(text.lines().any(|line| line.starts_with(name)), "{text}");
             }
         }
         assert_eq!([0.2, 3.0, 270.0].map(takes), ["12 s", "3 min", "4.5 h"]);

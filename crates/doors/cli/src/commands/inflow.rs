@@ -1,12 +1,13 @@
-//! `wakemix inflow`: turbulence boxes made, looked at, converted.
+//! `wakemix inflow`: turbulence boxes made, looked at, converted; wind of an atmosphere.
 
 use super::arguments::{check_free, finite, positive};
 use super::manner;
-use super::output::{detail, tell};
+use super::output::{detail, refuse, tell};
 use clap::{Args, Subcommand, ValueEnum};
 use indicatif::{HumanBytes, ProgressBar};
 use miette::{IntoDiagnostic, miette};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use wakemix::farm::case::Shear;
 use wakemix::farm::wind::usual_length_scale;
 use wakemix::flow::inflow::iec::TurbulenceClass;
@@ -38,6 +39,8 @@ pub(crate) enum InflowCommand {
         #[arg(long)]
         overwrite: bool,
     },
+    /// Spin up a periodic box of atmosphere, tell its statistics, and record planes of its wind for studies
+    Precursor(super::inflow_precursor::PrecursorArguments),
     /// Write the wind of a case without turbulence (shear, veer, gusts, steps, rotating disk) as a full field
     Sample(super::inflow_sample::SampleArguments),
 }
@@ -129,23 +132,27 @@ pub(crate) struct GenerateArguments {
     overwrite: bool,
 }
 
-/// Runs `command`.
-///
-/// # Errors
-/// Settings that make no box, files that cannot be read or written.
-pub(crate) fn run(command: InflowCommand) -> miette::Result<()> {
-    match command {
+/// Runs `command`; exit code 0 done, 2 bad input, and of a precursor 3 diverged, 130 interrupted.
+pub(crate) fn run(command: InflowCommand) -> ExitCode {
+    let done = match command {
+        InflowCommand::Precursor(arguments) => return super::inflow_precursor::run(&arguments),
         InflowCommand::Generate(arguments) => generate(&arguments),
         InflowCommand::Info { file, json } => super::inflow_info::run(&file, json),
-        InflowCommand::Convert { from, to, overwrite } => {
-            check_free(&turbulence_box::files_of(&to)?, overwrite)?;
-            turbulence_box::convert(&from, &to)?;
-            detail(&format!("read: {}", from.display()));
-            tell(&format!("wrote {}", to.display()));
-            Ok(())
-        }
+        InflowCommand::Convert { from, to, overwrite } => convert(&from, &to, overwrite),
         InflowCommand::Sample(arguments) => super::inflow_sample::run(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(report) => refuse(&report),
     }
+}
+
+fn convert(from: &Path, to: &Path, overwrite: bool) -> miette::Result<()> {
+    check_free(&turbulence_box::files_of(to)?, overwrite)?;
+    turbulence_box::convert(from, to)?;
+    detail(&format!("read: {}", from.display()));
+    tell(&format!("wrote {}", to.display()));
+    Ok(())
 }
 
 fn generate(arguments: &GenerateArguments) -> miette::Result<()> {

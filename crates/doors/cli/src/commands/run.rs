@@ -6,17 +6,15 @@ mod screen;
 mod so_far;
 mod stages;
 
-use super::output::{columns, detail, print, refuse, say, tell, warn};
+use super::output::{columns, detail, print, refuse, say, tell};
 use super::{BAD_INPUT, DIVERGED, INTERRUPTED};
-use crate::commands::{arguments, sweep_table, table};
+use crate::commands::{arguments, stop, sweep_table, table};
 use again::interrupted;
 use clap::Args;
 use miette::IntoDiagnostic;
 use screen::Screen;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use wakemix::farm::pitch_response::CalibrationError;
 use wakemix::farm::self_check::SelfCheckError;
@@ -68,18 +66,7 @@ pub(crate) struct RunArguments {
 
 /// Runs the study; exit code 0 done, 2 bad input, 3 diverged, 130 interrupted.
 pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stop);
-    let installed = ctrlc::set_handler(move || {
-        // A second Ctrl-C means now; the last checkpoint stands.
-        if flag.swap(true, Ordering::SeqCst) {
-            std::process::exit(i32::from(INTERRUPTED));
-        }
-        say("\nstopping after this step; press Ctrl-C again to stop now");
-    });
-    if let Err(error) = installed {
-        warn(&format!("Ctrl-C will not write a checkpoint: {error}"));
-    }
+    let stop = stop::on_interrupt();
     let options = StudyOptions {
         case: arguments.case.clone(),
         output: arguments.output.clone(),

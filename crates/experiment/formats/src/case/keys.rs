@@ -3,12 +3,14 @@
 mod event;
 mod flow;
 mod instruments;
+mod precursor;
 
 pub(super) use event::{EVENTS, STEP};
 pub(super) use flow::{COMMON as FLOW_COMMON, flow};
 pub(super) use instruments::{
     ACCELERATION, ANGLE, INSTRUMENT_KINDS, INSTRUMENTS, MOMENT, POWER, SPEED,
 };
+pub(super) use precursor::{ATMOSPHERE, BOX, PLANES, PRECURSOR, TIME as PRECURSOR_TIME};
 
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Range, Slip, Table, above, from, key};

@@ -14,6 +14,7 @@ mod kinds;
 mod momentum;
 mod objection;
 mod position;
+mod precursor;
 mod reference;
 mod section;
 mod solver;
@@ -28,7 +29,8 @@ mod write;
 pub use difference::{Difference, differences};
 pub use error::{CaseError, Problem, ProblemKind};
 pub use objection::objection;
-pub use reference::{reference, schema};
+pub use precursor::{PrecursorFile, parse_precursor, read_precursor};
+pub use reference::{precursor_reference, precursor_schema, reference, schema};
 pub(crate) use spelling::nearest;
 pub use write::write;
 

@@ -1,7 +1,8 @@
 //! The table of keys as a page for people and as a schema for editors.
 
 use super::keys::{
-    EVENTS, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, ROOT, RUN, TIME, TURBINE, WIND, flow,
+    ATMOSPHERE, BOX, EVENTS, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, PLANES, PRECURSOR,
+    PRECURSOR_TIME, ROOT, RUN, TIME, TURBINE, WIND, flow,
 };
 use basis::keys::{Holds, Key, LeftOut, Table};
 use control::CONTROLLERS;
@@ -15,6 +16,8 @@ use std::fmt::Write;
 
 /// What the page says around the tables of keys.
 const PREFACE: &str = include_str!("preface.md");
+/// What the page on precursors says above theirs.
+const PREFACE_OF_PRECURSOR: &str = include_str!("preface_of_precursor.md");
 /// What the page says above the table of flow solvers.
 const WHAT_SOLVERS_DO: &str = "The flow solver. Where induction is not resolved, each turbine makes its own by blade-element momentum, and leaves no wake.";
 
@@ -47,6 +50,16 @@ pub fn reference() -> String {
     for kind in OUTPUTS.all() {
         let about = "Which kind of output it is.";
         let _ = write_table(&mut page, kind.table(), Some((kind.name(), about)));
+    }
+    page
+}
+
+/// The page docs/precursor-file.md: every key of the file of a precursor.
+pub fn precursor_reference() -> String {
+    let mut page = PREFACE_OF_PRECURSOR.to_owned();
+    for table in [&PRECURSOR, &BOX, &ATMOSPHERE, &PRECURSOR_TIME, &PLANES] {
+        // Writing to a string cannot fail.
+        let _ = write_table(&mut page, table, None);
     }
     page
 }
@@ -114,9 +127,18 @@ fn holds(key: &Key) -> String {
 
 /// JSON Schema (draft 2020-12) of the case file, for editors that complete and check TOML.
 pub fn schema() -> String {
-    let mut root = schema_of(&ROOT);
+    schema_text(&ROOT, "wakemix case file")
+}
+
+/// The same of the file of a precursor.
+pub fn precursor_schema() -> String {
+    schema_text(&PRECURSOR, "wakemix precursor file")
+}
+
+fn schema_text(table: &Table, title: &str) -> String {
+    let mut root = schema_of(table);
     root.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
-    root.insert("title".into(), json!("wakemix case file"));
+    root.insert("title".into(), json!(title));
     // A map of plain values always has a text.
     let text = serde_json::to_string_pretty(&Value::Object(root)).unwrap_or_default();
     text + "\n"

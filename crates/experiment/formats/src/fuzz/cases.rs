@@ -48,6 +48,19 @@ fn case_files() {
 }
 
 #[test]
+fn precursor_files() {
+    let text = include_str!("../../../../../cases/precursor-offshore.toml");
+    survives(vec![("precursor.toml", text.into())], |folder| {
+        let read = case::read_precursor(&folder.join("precursor.toml"), &[]);
+        if let Err(error) = &read {
+            lines(error).map_err(|_| miette::miette!("a problem has no line"))?;
+        }
+        let _ = read?.fingerprint();
+        Ok(())
+    });
+}
+
+#[test]
 fn overrides() {
     proptest!(config(), |(which in 0..OVERRIDES.len(), damages in damages())| {
         let text = damaged(OVERRIDES[which].as_bytes(), &damages);

@@ -1,4 +1,5 @@
-//! Planes as NetCDF files that xarray, ParaView and MATLAB open as they are, and back.
+//! Planes, and statistics over time and height, as NetCDF files that xarray, ParaView and MATLAB open as they
+//! are; planes come back, too.
 //!
 //! The classic format (64-bit offsets where needed), which needs no HDF5 on either side. Velocity stands over
 //! `time` or `phase`, `z`, `y`, `x`, the axis across the plane having one point, so that a plane lies where
@@ -7,10 +8,12 @@
 mod instants;
 mod read;
 mod setting;
+mod statistics;
 
 pub use instants::InstantWriter;
 pub use read::{read_phases, read_plane, read_planes};
 pub use setting::{PlacedTurbine, PlaneSetting};
+pub use statistics::{Column, TimeHeight, write_statistics};
 
 use crate::{FileError, atomic};
 use basis::records::{Plane, PlaneAxes};

@@ -6,6 +6,7 @@
 mod manifest;
 mod pitch_responses;
 mod planes;
+mod precursor;
 mod series;
 mod series_file;
 mod study;
@@ -22,6 +23,9 @@ pub use pitch_responses::{
 pub use planes::{
     AtPhase, InstantWriter, PlacedTurbine, PlaneSetting, write_last_plane, write_mean_plane,
     write_phase_planes,
+};
+pub use precursor::{
+    Drift, PRECURSOR_VERSION, PrecursorFolder, PrecursorResult, ProfileRow, RecordedPlanes,
 };
 pub use series::SeriesWriter;
 pub use series_file::{SeriesFile, read_series};

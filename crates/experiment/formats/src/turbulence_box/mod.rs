@@ -19,7 +19,7 @@ mod turbsim;
 pub use bladed::{open as open_bladed, read as read_bladed, write as write_bladed};
 pub use hawc::{Axis, open as open_hawc, read as read_hawc, write as write_hawc};
 pub use maker::{KAIMAL, maker_with_divergence};
-pub use recorder::WindRecorder;
+pub use recorder::{Carried, WindRecorder};
 pub use source::{Outline, Source};
 pub use turbsim::{open as open_turbsim, read as read_turbsim, write as write_turbsim};
 

@@ -16,6 +16,15 @@ use std::path::{Path, PathBuf};
 const WHAT: &str = "a record of wind";
 const BUFFER: usize = 1 << 18;
 
+/// Where the mean wind at hub height is taken with which planes are carried along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carried {
+    /// In the middle of the width: behind a turbine, say.
+    Middle,
+    /// Over all of the width, where the wind is alike.
+    Width,
+}
+
 /// Writes planes of wind as they come.
 #[derive(Debug)]
 pub struct WindRecorder {
@@ -95,12 +104,12 @@ impl WindRecorder {
     }
 
     /// Completes the record: a full field in the format of TurbSim, whose planes lie as `grid` says, the
-    /// number of steps, repetition and speed aside; `hub_height` (m) is a row of it, `description` goes into
+    /// number of steps, repetition and speed aside, for a hub at `hub_height` (m); `description` goes into
     /// the file.
     ///
-    /// The file's hub speed, with which its planes are carried along, is the mean at hub height in the middle
-    /// of the width. The planes stay beside it for a run that is killed before it can say that it is
-    /// complete; nothing may be written after.
+    /// The file's hub speed, with which its planes are carried along, is the mean in the row nearest hub
+    /// height where `carried` says. The planes stay beside it for a run that is killed before it can say that
+    /// it is complete; nothing may be written after.
     ///
     /// # Errors
     /// [`FileError::System`], and [`FileError::Content`] when fewer than two planes came, or wind that is no
@@ -109,6 +118,7 @@ impl WindRecorder {
         &mut self,
         grid: &PlaneGrid,
         hub_height: f64,
+        carried: Carried,
         description: &str,
     ) -> Result<(), FileError> {
         self.flush()?;
@@ -121,7 +131,12 @@ impl WindRecorder {
             return Err(wrong(format!("{n_steps} planes are too few for a record")));
         }
         let row = ((hub_height - grid.first[1]) / grid.spacing[1]).round().max(0.0) as usize;
-        let hub = row.min(grid.n_z - 1) * grid.n_y + grid.n_y / 2;
+        let start = row.min(grid.n_z - 1) * grid.n_y;
+        let hub = match carried {
+            Carried::Middle => start + grid.n_y / 2..start + grid.n_y / 2 + 1,
+            Carried::Width => start..start + grid.n_y,
+        };
+        let n_values = (n_steps * hub.len()) as f64;
         let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         let (mut speed, mut finite) = (0.0, true);
         self.each_plane(n_steps, |wind| {
@@ -132,7 +147,8 @@ impl WindRecorder {
                     *range = [range[0].min(value), range[1].max(value)];
                 }
             }
-            speed += f64::from(wind[hub][0]) / n_steps as f64;
+            let row = &wind[hub.clone()];
+            speed += row.iter().map(|point| f64::from(point[0])).sum::<f64>() / n_values;
             Ok(())
         })?;
         if !finite || speed <= 0.0 {
@@ -214,7 +230,7 @@ mod tests {
         assert!(WindRecorder::resume(&path, 12, 100 * kept).is_err());
         let mut recorder = WindRecorder::resume(&path, 12, kept).unwrap();
         (5..14).for_each(|step| recorder.write(&plane(step)).unwrap());
-        recorder.finish(&GRID, 150.0, "wind behind T1").unwrap();
+        recorder.finish(&GRID, 150.0, Carried::Middle, "wind behind T1").unwrap();
         let mut planes = turbsim::open(&path).unwrap();
         let grid = planes.grid();
         // Hub: third row, second column.
@@ -229,6 +245,10 @@ mod tests {
                 assert!((read - written).abs() < 1e-4, "{read} {written}");
             }
         }
+        recorder.finish(&GRID, 150.0, Carried::Width, "wind of an atmosphere").unwrap();
+        let row = (0..14).flat_map(|step| plane(step)[6..9].to_vec());
+        let mean = row.map(|wind| f64::from(wind[0])).sum::<f64>() / 42.0;
+        assert!((turbsim::open(&path).unwrap().grid().speed - mean).abs() < 1e-5);
     }
 
     #[test]
@@ -237,12 +257,12 @@ mod tests {
         let path = folder.path().join("inflow-T2.bts");
         let mut recorder = WindRecorder::create(&path, 12).unwrap();
         recorder.write(&plane(0)).unwrap();
-        let error = recorder.finish(&GRID, 150.0, "").unwrap_err().to_string();
+        let error = recorder.finish(&GRID, 150.0, Carried::Width, "").unwrap_err().to_string();
         assert!(error.contains("1 planes are too few for a record"), "{error}");
         let mut calm = plane(1);
         calm[3][2] = f32::NAN;
         recorder.write(&calm).unwrap();
-        assert!(recorder.finish(&GRID, 150.0, "").is_err());
+        assert!(recorder.finish(&GRID, 150.0, Carried::Width, "").is_err());
         assert!(!path.exists());
     }
 }

@@ -11,7 +11,7 @@ use basis::keys::Values;
 use farm::case::Run;
 use flow::WindField;
 use flow::inflow::PlaneGrid;
-use formats::turbulence_box::WindRecorder;
+use formats::turbulence_box::{Carried, WindRecorder};
 
 /// Air around the rotor that is kept (rotor diameters): tower tops sway, and rotors are displaced.
 const MARGIN: f64 = 0.1;
@@ -121,7 +121,7 @@ impl Output for WindRecords {
 
     fn finish(&mut self, _scene: &Scene) -> Result<(), StudyError> {
         for WindRecord { recorder, grid, hub_height, description, .. } in &mut self.records {
-            recorder.finish(grid, *hub_height, description)?;
+            recorder.finish(grid, *hub_height, Carried::Middle, description)?;
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! What there is to do after a study that was stopped: the same command once more.
 
 use super::RunArguments;
+use crate::commands::stop::shell_word;
 use std::path::Path;
 use wakemix::formats::records;
 
@@ -37,34 +38,11 @@ fn repeated(arguments: &RunArguments) -> String {
     runs.chain(overrides).chain(seeds).chain(jobs).collect()
 }
 
-/// `text` as one word of a shell.
-fn shell_word(text: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+%@".contains(c);
-    if !text.is_empty() && text.chars().all(plain) {
-        text.to_owned()
-    } else {
-        format!("'{}'", text.replace('\'', r"'\''"))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::fs;
     use std::path::PathBuf;
-
-    #[test]
-    fn a_shell_reads_a_word_back() {
-        for (text, word) in [
-            ("cases/a.toml", "cases/a.toml"),
-            ("wind.speed=7", "wind.speed=7"),
-            ("my case", "'my case'"),
-            ("it's", r"'it'\''s'"),
-            ("", "''"),
-        ] {
-            assert_eq!(shell_word(text), word);
-        }
-    }
 
     #[test]
     fn what_is_advised_is_what_there_is_to_do() {

@@ -1,18 +1,20 @@
 //! Every number of every case that comes with the program, one at a time in the place of which no number can
 //! be.
 
-use super::root;
-use crate::case::parse;
+use super::{is_precursor, root};
+use crate::case::{parse, parse_precursor};
 use crate::fuzz::numbers::{NEVER, numbers_of};
 use std::fs;
+use std::path::Path;
 
 /// Keys whose numbers may be negative: places, angles, exponents.
-const SIGNED: [&str; 5] = [
+const SIGNED: [&str; 6] = [
     "turbine.position_diameters",
     "output.crosswind_diameters",
     "wind.shear_exponent",
     "offset_deg",
     "yaw_deg",
+    "atmosphere.latitude_deg",
 ];
 
 #[test]
@@ -24,6 +26,14 @@ fn what_no_number_can_be_is_refused_wherever_it_stands() {
             continue;
         }
         let text = fs::read_to_string(&path).unwrap();
+        let refusal = |text: &str| {
+            let name = Path::new("case.toml");
+            if is_precursor(&path) {
+                parse_precursor(name, text, &[]).err()
+            } else {
+                parse("case.toml", text, &[]).err()
+            }
+        };
         for number in numbers_of(&text) {
             n_numbers += 1;
             let key = number.key.rsplit('.').next().unwrap();
@@ -34,8 +44,8 @@ fn what_no_number_can_be_is_refused_wherever_it_stands() {
             for bad in NEVER.into_iter().chain((!is_signed).then_some(negative.as_str())) {
                 let mut damaged = text.clone();
                 damaged.replace_range(number.bytes.clone(), bad);
-                let lines = parse("case.toml", &damaged, &[])
-                    .expect_err(&format!("{}, {} = {bad}", path.display(), number.key))
+                let lines = refusal(&damaged)
+                    .unwrap_or_else(|| panic!("{}, {} = {bad}", path.display(), number.key))
                     .to_lines();
                 let line = 1 + text[..number.bytes.start].matches('\n').count();
                 let told =

@@ -1,0 +1,249 @@
+//! What a precursor leaves behind: `DIR/` with its case, statistics, planes of wind and result.
+
+use super::{gone, read_json, write_json};
+use crate::lock::Lock;
+use crate::{FileError, atomic, leftovers};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Version of the layout of [`PrecursorResult`].
+pub const PRECURSOR_VERSION: u32 = 1;
+const WHAT: &str = "the result of a precursor";
+
+/// What came of a precursor. It is complete with it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PrecursorResult {
+    /// Version of this layout.
+    pub schema_version: u32,
+    /// Version of the program.
+    pub version: String,
+    /// Name of the precursor.
+    pub name: String,
+    /// Its file as run, with every default.
+    pub case_text: String,
+    /// What of the machine decides the bits, in words.
+    pub backend: String,
+    /// When it was complete (UTC, RFC 3339).
+    pub finished: String,
+    /// The planes of wind.
+    pub planes: RecordedPlanes,
+    /// What changed from one half of the end of the spin-up to the other; absent without a spin-up.
+    pub spin_up: Option<Drift>,
+    /// The same of the time that was recorded.
+    pub record: Option<Drift>,
+    /// Means over level and time that was recorded, from the ground up.
+    pub profile: Vec<ProfileRow>,
+    /// Friction velocity over the time that was recorded (m/s).
+    pub friction_velocity: f64,
+    /// Height where the stress is a twentieth of the ground's, over 0.95, in that time (m).
+    pub boundary_layer_height: f64,
+    /// Cells (–).
+    pub n_cells: u64,
+    /// Steps (–).
+    pub n_steps: u64,
+    /// Wall time (s).
+    pub wall_time: f64,
+}
+
+/// The planes of wind in `planes.bts`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RecordedPlanes {
+    /// SHA-256 of the file, hexadecimal.
+    pub sha256: String,
+    /// Planes (–).
+    pub n_planes: usize,
+    /// Points along y and z (–).
+    pub n_points: [usize; 2],
+    /// Distance of points (m).
+    pub spacing: f64,
+    /// Time between planes (s).
+    pub interval: f64,
+    /// Hub height (m).
+    pub hub_height: f64,
+    /// Mean speed across the planes in the row nearest hub height (m/s).
+    pub hub_speed: f64,
+    /// Standard deviation of u in that row over its mean (–).
+    pub turbulence_intensity: f64,
+    /// Where the wind of the file comes from in the box (deg, clockwise from north).
+    pub direction_deg: f64,
+    /// By how much the mean wind at hub height turned from that while it was recorded (deg, to the left seen
+    /// downwind).
+    pub turned_deg: f64,
+}
+
+/// Means of two blocks of equal length, one after the other.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drift {
+    /// Length of a block (s).
+    pub block: f64,
+    /// Speed at hub height (m/s).
+    pub hub_speed: [f64; 2],
+    /// Where that wind comes from (deg, clockwise from north).
+    pub direction_deg: [f64; 2],
+    /// Friction velocity (m/s).
+    pub friction_velocity: [f64; 2],
+}
+
+impl Drift {
+    /// Change of the speed at hub height over its mean (–).
+    pub fn of_speed(&self) -> f64 {
+        change(self.hub_speed)
+    }
+
+    /// Change of the friction velocity over its mean (–).
+    pub fn of_friction(&self) -> f64 {
+        change(self.friction_velocity)
+    }
+
+    /// Change of the direction (deg), the shorter way round.
+    pub fn of_direction(&self) -> f64 {
+        let [before, after] = self.direction_deg;
+        (after - before + 180.0).rem_euclid(360.0) - 180.0
+    }
+}
+
+fn change([before, after]: [f64; 2]) -> f64 {
+    2.0 * (after - before) / (after + before)
+}
+
+/// Means of one level.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProfileRow {
+    /// Height (m).
+    pub height: f64,
+    /// Speed (m/s).
+    pub speed: f64,
+    /// Where the wind comes from (deg, clockwise from north).
+    pub direction_deg: f64,
+    /// √(2k/3) over speed (–).
+    pub turbulence_intensity: f64,
+    /// Flux of momentum, what the grid does not resolve included (m²/s²).
+    pub stress: f64,
+    /// Potential temperature (K).
+    pub temperature: f64,
+    /// Flux of heat upwards, what the grid does not resolve included (K m/s).
+    pub heat_flux: f64,
+}
+
+/// The folder of a precursor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PrecursorFolder {
+    path: PathBuf,
+}
+
+impl PrecursorFolder {
+    /// The folder at `path`; nothing is touched.
+    pub fn new(path: &Path) -> Self {
+        Self { path: path.to_owned() }
+    }
+
+    /// The folder itself.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// `case.toml`: the precursor as run, with every default.
+    pub fn case_path(&self) -> PathBuf {
+        self.path.join("case.toml")
+    }
+
+    /// `statistics.nc`.
+    pub fn statistics_path(&self) -> PathBuf {
+        self.path.join("statistics.nc")
+    }
+
+    /// `planes.bts`; what a longer record goes on from stands beside it, in `planes.bts.part`.
+    pub fn planes_path(&self) -> PathBuf {
+        self.path.join("planes.bts")
+    }
+
+    /// `checkpoint`.
+    pub fn checkpoint_path(&self) -> PathBuf {
+        self.path.join("checkpoint")
+    }
+
+    /// `precursor.json`.
+    pub fn result_path(&self) -> PathBuf {
+        self.path.join("precursor.json")
+    }
+
+    /// All of them, the result first.
+    fn files(&self) -> [PathBuf; 6] {
+        [
+            self.result_path(),
+            self.checkpoint_path(),
+            self.planes_path(),
+            atomic::part_of(&self.planes_path()),
+            self.statistics_path(),
+            self.case_path(),
+        ]
+    }
+
+    /// Whether a precursor has left anything in it.
+    pub fn holds_results(&self) -> bool {
+        self.files().iter().any(|file| fs::symlink_metadata(file).is_ok())
+    }
+
+    /// Whether the precursor is complete.
+    pub fn is_complete(&self) -> bool {
+        self.result_path().is_file()
+    }
+
+    /// Takes away what an earlier precursor left, the result first.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn clear(&self) -> Result<(), FileError> {
+        self.files().iter().try_for_each(|file| gone(fs::remove_file(file), file))
+    }
+
+    /// Makes the precursor one that is under way again, without result and planes, which will be others; what
+    /// it goes on from stays.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn reopen(&self) -> Result<(), FileError> {
+        let files = [self.result_path(), self.planes_path()];
+        files.iter().try_for_each(|file| gone(fs::remove_file(file), file))
+    }
+
+    /// Makes the folder and takes away what a killed process was writing there; nobody else writes it until
+    /// the lock is dropped.
+    ///
+    /// # Errors
+    /// [`FileError::Held`] says who else does; [`FileError::System`].
+    pub fn lock(&self) -> Result<Lock, FileError> {
+        atomic::create_folder(&self.path)?;
+        let lock = Lock::take(
+            &self.path.join(".lock"),
+            &format!("the precursor in {}", self.path.display()),
+        )?;
+        leftovers::remove_leftovers(&self.path)?;
+        Ok(lock)
+    }
+
+    /// Writes `text` as the precursor's file.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn write_case(&self, text: &str) -> Result<(), FileError> {
+        atomic::write(&self.case_path(), "the precursor's file", text.as_bytes())
+    }
+
+    /// Writes the result.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn write_result(&self, result: &PrecursorResult) -> Result<(), FileError> {
+        write_json(&self.result_path(), WHAT, result)
+    }
+
+    /// Reads the result.
+    ///
+    /// # Errors
+    /// [`FileError::System`], and [`FileError::Content`] when it is something else.
+    pub fn read_result(&self) -> Result<PrecursorResult, FileError> {
+        read_json(&self.result_path(), WHAT)
+    }
+}

@@ -1,0 +1,308 @@
+//! The precursor itself: from the first step, or from its checkpoint, to the last plane.
+
+use super::error::PrecursorError;
+use super::history::History;
+use super::levels::direction;
+use super::observer::{PrecursorObserver, PrecursorProgress};
+use super::recording::{Recording, RecordingState};
+use super::result::outgrown;
+use super::{Job, is_steady};
+use flow::lattice::Lattice;
+use flow::{FlowError, FlowSolver};
+use formats::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
+use formats::records::PrecursorResult;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Wall time between two reports of progress, and between two checkpoints.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(600);
+/// Sections of the checkpoint.
+const RUN: &str = "run";
+const HISTORY: &str = "history";
+const AIR: &str = "air";
+
+/// How a precursor ended.
+pub(super) enum Ending {
+    /// All planes are there.
+    Complete(Box<PrecursorResult>),
+    /// Stopped on request; a checkpoint stands.
+    Interrupted,
+}
+
+/// What a checkpoint keeps beside statistics and air.
+#[derive(Serialize, Deserialize)]
+struct RunState {
+    step: u64,
+    wall_time: f64,
+    recording: Option<RecordingState>,
+}
+
+/// A precursor under way.
+pub(super) struct Simulation<'a> {
+    job: &'a Job,
+    air: Lattice,
+    history: History,
+    recording: Option<Recording>,
+    /// What of the machine decides its bits, in words.
+    backend: String,
+    started: Instant,
+    /// Steps (–) and wall time (s) of the processes before.
+    before: (u64, f64),
+}
+
+impl<'a> Simulation<'a> {
+    /// The precursor of `job` at time zero, or where its checkpoint has it.
+    ///
+    /// # Errors
+    /// [`PrecursorError`]; what the folder holds is untouched then.
+    pub(super) fn begin(job: &'a Job) -> Result<Self, PrecursorError> {
+        let precursor = &job.file.precursor;
+        let air = Lattice::new(precursor.settings(&job.plan), precursor.start())?;
+        let backend = format!("{}, air {}", flow::numerics(), air.backend());
+        let mut simulation = Self {
+            job,
+            air,
+            history: History::default(),
+            recording: None,
+            backend,
+            started: Instant::now(),
+            before: (0, 0.0),
+        };
+        if job.resume {
+            simulation.resume()?;
+        }
+        job.folder.reopen()?;
+        job.folder.write_case(&job.file.text)?;
+        // What a checkpoint has told of is told already.
+        if !job.resume {
+            simulation.tell_levels();
+        }
+        Ok(simulation)
+    }
+
+    /// What a checkpoint is known by.
+    fn identity<'b>(text: &'b str, job: &'b Job, backend: &'b str) -> Identity<'b> {
+        let run = &job.file.precursor.name;
+        Identity { case_text: text, run, version: env!("CARGO_PKG_VERSION"), backend }
+    }
+
+    /// On return it stands where its checkpoint was written.
+    fn resume(&mut self) -> Result<(), PrecursorError> {
+        let (job, path) = (self.job, self.job.folder.checkpoint_path());
+        let print = job.file.fingerprint();
+        let identity = Self::identity(&print, job, &self.backend);
+        let mut reader = CheckpointReader::open(&path, &identity)?;
+        let state: RunState = reader.state(RUN)?;
+        self.history = reader.state(HISTORY)?;
+        if !self.history.fits(job.plan.n_cells[2]) {
+            let reason = "statistics of other levels".to_owned();
+            return Err(reader.unfitting(HISTORY, reason).into());
+        }
+        let kept = job.recorded(&state)?;
+        let air = &mut self.air;
+        reader.stream(AIR, |bytes| air.read_state(bytes))?;
+        self.before = (state.step, state.wall_time);
+        if let Some(kept) = kept {
+            let path = job.folder.planes_path();
+            self.recording = Some(Recording::resume(&path, &job.plan.grid, kept)?);
+        }
+        Ok(())
+    }
+
+    /// Makes all steps; `stop` asks it to leave a checkpoint and return.
+    ///
+    /// # Errors
+    /// [`PrecursorError`]; the last good checkpoint stands.
+    pub(super) fn run(
+        mut self,
+        stop: &AtomicBool,
+        observer: &mut dyn PrecursorObserver,
+    ) -> Result<Ending, PrecursorError> {
+        let plan = &self.job.plan;
+        self.begin_recording(observer)?;
+        let mut last_checkpoint = Instant::now();
+        let mut last_progress: Option<Instant> = None;
+        while self.air.n_steps() < plan.n_steps {
+            if stop.load(Ordering::Relaxed) {
+                self.checkpoint()?;
+                return Ok(Ending::Interrupted);
+            }
+            self.step(observer)?;
+            if last_checkpoint.elapsed() >= CHECKPOINT_INTERVAL {
+                self.checkpoint()?;
+                last_checkpoint = Instant::now();
+            }
+            if last_progress.is_none_or(|last| last.elapsed() >= PROGRESS_INTERVAL) {
+                observer.advanced(&self.progress());
+                last_progress = Some(Instant::now());
+            }
+        }
+        self.finish(observer)
+    }
+
+    fn step(&mut self, observer: &mut dyn PrecursorObserver) -> Result<(), PrecursorError> {
+        let plan = &self.job.plan;
+        if let Err(error) = self.air.advance(plan.interval, &[]) {
+            return Err(self.diverged(error));
+        }
+        let step = self.air.n_steps();
+        if step.is_multiple_of(plan.statistics_stride) {
+            self.tell_levels();
+        }
+        if step == plan.first_plane {
+            return self.begin_recording(observer);
+        }
+        match &mut self.recording {
+            Some(recording) if (step - plan.first_plane).is_multiple_of(plan.plane_stride) => {
+                Ok(recording.add(&self.air)?)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Adds what the levels tell now to the history.
+    fn tell_levels(&mut self) {
+        let hub = self.job.file.precursor.planes.hub_height;
+        self.history.add(self.air.time(), &self.air.level_statistics(), hub);
+    }
+
+    /// Begins the record with its first plane, where that is due now.
+    fn begin_recording(
+        &mut self,
+        observer: &mut dyn PrecursorObserver,
+    ) -> Result<(), PrecursorError> {
+        let plan = &self.job.plan;
+        if self.recording.is_some() || self.air.n_steps() != plan.first_plane {
+            return Ok(());
+        }
+        let wind = self.job.wind_of_spin_up(&self.history);
+        let drift = self.job.drift_of_spin_up(&self.history);
+        observer.spun_up(drift.as_ref(), direction(wind));
+        if drift.is_none_or(|drift| !is_steady(&drift)) {
+            observer.warned(
+                "the wind is not steady yet when its record begins: stop, raise time.spin_up and go on with --resume, or look at statistics.nc and take it as it is",
+            );
+        }
+        let path = self.job.folder.planes_path();
+        let mut recording = Recording::begin(&path, &plan.grid, plan.first_plane, wind)?;
+        recording.add(&self.air)?;
+        self.recording = Some(recording);
+        Ok(())
+    }
+
+    /// On return checkpoint and statistics on disk hold this very instant.
+    ///
+    /// # Errors
+    /// [`PrecursorError::Diverged`] for air that is no longer valid, [`PrecursorError::File`].
+    fn checkpoint(&mut self) -> Result<(), PrecursorError> {
+        if let Err(error) = self.air.check() {
+            return Err(self.diverged(error));
+        }
+        self.write_statistics()?;
+        let recording = self.recording.as_mut().map(Recording::flush).transpose()?;
+        let state = RunState { step: self.air.n_steps(), wall_time: self.wall_time(), recording };
+        let print = self.job.file.fingerprint();
+        let identity = Self::identity(&print, self.job, &self.backend);
+        let path = self.job.folder.checkpoint_path();
+        let mut writer = CheckpointWriter::create(&path, &identity)?;
+        writer.state(RUN, &state)?;
+        writer.state(HISTORY, &self.history)?;
+        let air = &mut self.air;
+        writer.stream(AIR, |bytes| air.write_state(bytes))?;
+        Ok(writer.finish()?)
+    }
+
+    fn write_statistics(&self) -> Result<(), PrecursorError> {
+        let title = format!("precursor {}", self.job.file.precursor.name);
+        Ok(self.history.write(&self.job.folder.statistics_path(), &title)?)
+    }
+
+    /// Wall time of all processes that have made it (s).
+    fn wall_time(&self) -> f64 {
+        self.before.1 + self.started.elapsed().as_secs_f64()
+    }
+
+    fn diverged(&self, source: FlowError) -> PrecursorError {
+        // What was told up to here is kept; the checkpoint before it stands.
+        let statistics = self.write_statistics().is_ok();
+        let folder = &self.job.folder;
+        let checkpoint = folder.checkpoint_path();
+        PrecursorError::Diverged {
+            source: Box::new(source),
+            checkpoint: checkpoint.exists().then_some(checkpoint),
+            statistics: statistics.then(|| folder.statistics_path()),
+        }
+    }
+
+    fn progress(&self) -> PrecursorProgress {
+        let plan = &self.job.plan;
+        let step = self.air.n_steps();
+        let made = (step - self.before.0) as f64;
+        let steps_per_second = made / self.started.elapsed().as_secs_f64();
+        let [hub_speed, friction_velocity] = self.history.latest().unwrap_or([f64::NAN; 2]);
+        PrecursorProgress {
+            step,
+            n_steps: plan.n_steps,
+            time: self.air.time(),
+            records: self.recording.is_some(),
+            updates_per_second: plan.cells() as f64 * steps_per_second,
+            time_left: (plan.n_steps - step) as f64 / steps_per_second,
+            hub_speed,
+            friction_velocity,
+        }
+    }
+
+    fn finish(mut self, observer: &mut dyn PrecursorObserver) -> Result<Ending, PrecursorError> {
+        // From here it can go on.
+        self.checkpoint()?;
+        let (job, wall_time) = (self.job, self.wall_time());
+        let precursor = &job.file.precursor;
+        let along = match &mut self.recording {
+            Some(recording) => {
+                let description = format!("wakemix: precursor {}", precursor.name);
+                recording.finish(&job.plan.grid, precursor.planes.hub_height, &description)?;
+                recording.along()
+            }
+            None => [f64::NAN; 2],
+        };
+        let result = job.result(&self.history, along, wall_time, &self.backend)?;
+        if result.record.is_some_and(|drift| !is_steady(&drift)) {
+            observer.warned(
+                "the wind changes while it is recorded: its first half differs from its second one",
+            );
+        }
+        let (foot, top) = (precursor.air.inversion_height, precursor.inversion_top());
+        if let Some(warning) = outgrown(result.boundary_layer_height, foot, top) {
+            observer.warned(&warning);
+        }
+        // The result comes last: with it the precursor is complete.
+        job.folder.write_result(&result)?;
+        Ok(Ending::Complete(Box::new(result)))
+    }
+}
+
+impl Job {
+    /// The record that goes on from `state`; none where it is begun anew, later.
+    ///
+    /// # Errors
+    /// [`PrecursorError::Passed`] when it stands behind what the times of the file ask for.
+    fn recorded(&self, state: &RunState) -> Result<Option<RecordingState>, PrecursorError> {
+        let plan = &self.plan;
+        let passed = |problem: &str| PrecursorError::Passed {
+            directory: self.folder.path().to_owned(),
+            time: plan.time(state.step),
+            recorded: state.recording.map(|kept| plan.time(kept.first_plane)),
+            problem: problem.to_owned(),
+        };
+        if state.step > plan.n_steps {
+            return Err(passed("it is beyond the end of time.spin_up and time.record"));
+        }
+        match state.recording {
+            Some(kept) if kept.first_plane == plan.first_plane => Ok(Some(kept)),
+            _ if state.step <= plan.first_plane => Ok(None),
+            _ => Err(passed("time.spin_up has it record from another time on, which is over")),
+        }
+    }
+}
