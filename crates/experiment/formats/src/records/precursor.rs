@@ -1,6 +1,6 @@
 //! What a precursor leaves behind: `DIR/` with its case, statistics, planes of wind and result.
 
-use super::{gone, read_json, write_json};
+use super::{gone, parse_json, write_json};
 use crate::lock::Lock;
 use crate::{FileError, atomic, leftovers};
 use serde::{Deserialize, Serialize};
@@ -244,6 +244,7 @@ impl PrecursorFolder {
     /// # Errors
     /// [`FileError::System`], and [`FileError::Content`] when it is something else.
     pub fn read_result(&self) -> Result<PrecursorResult, FileError> {
-        read_json(&self.result_path(), WHAT)
+        let path = self.result_path();
+        parse_json(&atomic::read_text(&path, WHAT)?, &path, WHAT)
     }
 }
