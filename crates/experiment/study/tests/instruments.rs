@@ -197,12 +197,16 @@ fn noise_belongs_to_the_winds_seed_and_the_turbine() {
     assert_ne!(shown("wind.seed=4"), [first, second]);
 }
 
-/// Stops a run at the first sign of life.
-struct Stopper<'a>(&'a AtomicBool);
+/// Stops a run at its eighth sign of life: at each of them the start would take longer than all else.
+struct Stopper<'a> {
+    stop: &'a AtomicBool,
+    seen: u32,
+}
 
 impl Observer for Stopper<'_> {
     fn advanced(&mut self, _: &Progress) {
-        self.0.store(true, Ordering::Relaxed);
+        self.seen += 1;
+        self.stop.store(self.seen >= 8, Ordering::Relaxed);
     }
 }
 
@@ -224,16 +228,21 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
             overrides: overrides.to_vec(),
             ..options(folder.path())
         };
+        let mut n_parts = 1;
         while !matches!(observer(&AtomicBool::new(false), &options), Outcome::Done { .. }) {
             options.resume = true;
+            n_parts += 1;
         }
-        read(&output)
+        (read(&output), n_parts)
     };
     let run = |stop: &AtomicBool, options: &StudyOptions, observer: &mut (dyn Observer + Send)| {
         study::run(options, stop, observer).expect("the study runs")
     };
     let whole = series("whole", &mut |stop, options| run(stop, options, &mut Silent));
-    let broken = series("broken", &mut |stop, options| run(stop, options, &mut Stopper(stop)));
+    let broken =
+        series("broken", &mut |stop, options| run(stop, options, &mut Stopper { stop, seen: 0 }));
+    let ((whole, _), (broken, n_parts)) = (whole, broken);
+    assert!(n_parts > 3, "it was stopped {} times", n_parts - 1);
     assert!(whole == broken, "the series differ");
 }
 

@@ -39,6 +39,11 @@ impl Inlet {
         }
     }
 
+    /// Asks the inflow anew at the next step, whichever that is.
+    pub(crate) fn forget(&mut self) {
+        self.interval = None;
+    }
+
     /// On return the inlet of `ends` holds the wind at step number `step`.
     pub(crate) fn update(
         &mut self,

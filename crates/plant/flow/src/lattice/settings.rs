@@ -10,6 +10,8 @@ use thiserror::Error;
 const FASTEST_REFERENCE: f64 = 0.15;
 /// Most viscous air, in cells² per step: relaxation time 2, beyond which the discretisation error dominates.
 const MOST_VISCOUS: f64 = 0.5;
+/// Best conducting air, in cells² per step: steps of Adams and Bashforth grow from 1/12 on.
+const MOST_CONDUCTING: f64 = 0.08;
 /// Fewest cells between inlet and outlet, or along a periodic axis.
 const FEWEST_CELLS: usize = 4;
 
@@ -141,6 +143,7 @@ impl LatticeSettings {
         if viscosity > MOST_VISCOUS {
             return Err(LatticeError::TooViscous {
                 viscosity,
+                most: MOST_VISCOUS,
                 longest: MOST_VISCOUS * self.spacing * self.spacing / self.kinematic_viscosity,
             });
         }
@@ -153,6 +156,14 @@ impl LatticeSettings {
         }
         if let Some(atmosphere) = &self.atmosphere {
             atmosphere.check(self.interval, self.ground)?;
+            let conducted = viscosity / atmosphere.prandtl;
+            if conducted > MOST_CONDUCTING {
+                return Err(LatticeError::TooViscous {
+                    viscosity: conducted,
+                    most: MOST_CONDUCTING,
+                    longest: MOST_CONDUCTING / conducted * self.interval,
+                });
+            }
         }
         if self.threads == Some(0) {
             return Err(LatticeError::NoThreads);
@@ -255,13 +266,15 @@ pub enum LatticeError {
         /// Longest step (s).
         longest: f64,
     },
-    /// The air is too viscous for the step.
+    /// The air is too viscous for the step, or conducts too well.
     #[error(
-        "the viscosity is {viscosity:.3} cells² a step, the maximum is {MOST_VISCOUS}; use a step of at most {longest:.4} s"
+        "the viscosity, or the diffusivity of temperature, is {viscosity:.3} cells² a step, the maximum is {most}; use a step of at most {longest:.4} s"
     )]
     TooViscous {
         /// Cells² per step (–).
         viscosity: f64,
+        /// Most that there may be (cells² per step).
+        most: f64,
         /// Longest step (s).
         longest: f64,
     },

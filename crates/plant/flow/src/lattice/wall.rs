@@ -45,6 +45,13 @@ impl WallMemory {
         let column = || vec![f32::NAN; n_rows * layout.row_stride];
         Self { filtered: [column(), column()], state: RowState::new(layout.n_cells[0]) }
     }
+
+    /// Knows nothing, as at first.
+    pub(crate) fn forget(&mut self) {
+        for column in &mut self.filtered {
+            column.fill(f32::NAN);
+        }
+    }
 }
 
 /// ln(z/z₀) at the centre of level `level` (–).

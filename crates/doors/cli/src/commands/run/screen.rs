@@ -179,6 +179,7 @@ impl Observer for Screen {
 
     fn estimated(&mut self, estimate: &Estimate) {
         self.pace.take(estimate);
+        self.so_far.take(estimate);
         let [n_x, n_y, n_z] = estimate.n_cells;
         match (estimate.updates_per_second, estimate.wall_time()) {
             (Some(speed), Some(wall_time)) => self.say(&format!(
@@ -267,7 +268,6 @@ impl Observer for Screen {
 
     fn advanced(&mut self, progress: &Progress) {
         self.last = None;
-        self.so_far.time_left = progress.time_left;
         if let Some(words) = self.pace.set_right(progress, Instant::now()) {
             self.say(&words);
         }
@@ -309,6 +309,7 @@ impl Observer for Screen {
             summary.run,
             HumanDuration(Duration::from_secs_f64(summary.cost.wall_time.max(1.0)))
         ));
+        self.so_far.one_less(summary.cost.wall_time);
         self.report_so_far();
     }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use wakemix::postprocessing::{self, PostprocessingError};
+use wakemix::study::Estimate;
 
 /// What the first page is taken to need.
 const EXPECTED: Duration = Duration::from_secs(1);
@@ -16,13 +17,27 @@ const RARITY: u32 = 30;
 pub(super) struct SoFar {
     /// Folder of the study, or of the sweep.
     pub(super) directory: PathBuf,
-    /// Wall time left for all runs, as it was told last (s).
-    pub(super) time_left: f64,
+    /// Runs that are still to come, and how many are made at a time (–).
+    n_left: usize,
+    n_at_a_time: usize,
+    /// Wall time that they take, if each takes as long as the one before (s).
+    time_left: f64,
     /// When the last page was there, and how long it took.
     last: Option<(Instant, Duration)>,
 }
 
 impl SoFar {
+    /// Takes in which runs are to be made.
+    pub(super) fn take(&mut self, estimate: &Estimate) {
+        (self.n_left, self.n_at_a_time) = (estimate.n_runs, estimate.n_jobs.max(1));
+    }
+
+    /// Takes in that a run is complete, which took `wall_time` (s).
+    pub(super) fn one_less(&mut self, wall_time: f64) {
+        self.n_left = self.n_left.saturating_sub(1);
+        self.time_left = wall_time * self.n_left as f64 / self.n_at_a_time as f64;
+    }
+
     /// Whether a page of the runs that are complete at `now` is worth its time.
     pub(super) fn is_due(&self, now: Instant) -> bool {
         let took = self.last.map_or(EXPECTED, |(_, took)| took);
@@ -43,6 +58,15 @@ impl SoFar {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_time_that_is_left_is_that_of_the_runs_to_come() {
+        let mut so_far = SoFar { n_left: 5, n_at_a_time: 2, ..SoFar::default() };
+        so_far.one_less(100.0);
+        assert_eq!(so_far.time_left, 200.0);
+        (0..4).for_each(|_| so_far.one_less(3600.0));
+        assert!(so_far.time_left == 0.0 && !so_far.is_due(Instant::now()));
+    }
 
     #[test]
     fn a_page_is_made_where_there_is_long_to_wait_and_it_takes_little() {

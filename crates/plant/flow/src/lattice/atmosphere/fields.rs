@@ -26,7 +26,9 @@ pub(super) enum Field {
 
 /// Fields (–).
 const N_FIELDS: usize = 7;
-/// Fields that outlast a step (–).
+/// Fields that outlast a step.
+pub(super) const KEPT: [Field; N_KEPT] = [Field::Even, Field::Odd, Field::Change];
+/// Their number (–).
 pub(crate) const N_KEPT: usize = 3;
 
 /// The fields of a box.
@@ -79,15 +81,10 @@ impl Fields {
         unsafe { std::slice::from_raw_parts(self.row(field, y, z).cast_const(), self.n_cells[0]) }
     }
 
-    /// The fields that outlast a step.
-    pub(super) fn kept(&self) -> &[f32] {
-        &self.memory.values()[..LINE + N_KEPT * self.field_stride]
-    }
-
     /// The same, to be overwritten.
-    pub(super) fn kept_mut(&mut self) -> &mut [f32] {
-        let n_values = LINE + N_KEPT * self.field_stride;
-        &mut self.memory.values_mut()[..n_values]
+    pub(super) fn cells_mut(&mut self, field: Field, y: usize, z: usize) -> &mut [f32] {
+        // SAFETY: a row of the array, borrowed exclusively.
+        unsafe { std::slice::from_raw_parts_mut(self.row(field, y, z), self.n_cells[0]) }
     }
 
     /// Memory that they hold (bytes).

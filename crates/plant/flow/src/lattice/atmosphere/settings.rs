@@ -19,10 +19,7 @@ pub struct Atmosphere {
     pub driving: Driving,
     /// Acceleration of free fall (m/s²); 0 leaves temperature without effect on the wind.
     pub gravity: f64,
-    /// Temperature that buoyancy refers to, and that populations hold the departure from (K).
-    ///
-    /// Best near that of the layer of interest: a departure feels the slight compressibility of the
-    /// lattice's air.
+    /// Temperature that buoyancy refers to, and that is stored the departure from (K).
     pub reference_temperature: f64,
     /// Temperature at the start over height: pairs of height (m) and temperature (K), linear in between and
     /// beyond, heights rising.

@@ -1,11 +1,11 @@
 //! Temperature and what comes with it in the machine's memory, beside the populations of the air.
 
 use super::coefficients::{Coefficients, Level, levels};
-use super::fields::{Field, Fields};
-use super::law::{Law, Slope, Stratified, beyond};
+use super::fields::{Field, Fields, KEPT};
+use super::law::{Law, Slope, Stratified};
 use super::settings::{Atmosphere, Heating, Perturbation, Reference};
 use super::surface::{Surface, SurfaceMemory};
-use super::transport::{Ghosts, Transport};
+use super::transport::{Ghosts, Transport, close_row};
 use crate::lattice::layout::{Edge, LINE, Layout};
 use crate::lattice::settings::{Ends, LatticeSettings};
 use crate::lattice::simd::Simd;
@@ -153,8 +153,7 @@ impl Stratification {
                 *self.fields.row(Field::Change, y, z).add(x) = 0.0;
             }
         }
-        // SAFETY: this thread's row.
-        unsafe { beyond(place, n, super::fields::REACH, self.periodic) };
+        self.close(Fields::temperature(0), y, z);
     }
 
     /// Temperatures of row number `row` after `n_steps` steps (K above the reference).
@@ -185,7 +184,13 @@ impl Stratification {
     pub(crate) fn write(&self, writer: &mut dyn Write, bytes: &mut Vec<u8>) -> Result<()> {
         let means: Vec<f32> = self.levels.iter().map(|level| level.mean).collect();
         write_values(writer, bytes, &means)?;
-        write_values(writer, bytes, self.fields.kept())
+        let [_, n_y, n_z] = self.fields.n_cells;
+        for field in KEPT {
+            for row in 0..n_y * n_z {
+                write_values(writer, bytes, self.fields.cells(field, row % n_y, row / n_y))?;
+            }
+        }
+        Ok(())
     }
 
     /// Goes on from what [`write`](Self::write) wrote.
@@ -195,7 +200,22 @@ impl Stratification {
         for (level, mean) in self.levels.iter_mut().zip(means) {
             level.mean = mean;
         }
-        read_values(reader, bytes, self.fields.kept_mut())
+        let [_, n_y, n_z] = self.fields.n_cells;
+        for field in KEPT {
+            for row in 0..n_y * n_z {
+                let [y, z] = [row % n_y, row / n_y];
+                read_values(reader, bytes, self.fields.cells_mut(field, y, z))?;
+                self.close(field, y, z);
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives what lies beyond the ends of row (`y`, `z`) of `field` its values.
+    fn close(&self, field: Field, y: usize, z: usize) {
+        let row = self.fields.row(field, y, z);
+        // SAFETY: the padding of a row that nobody else writes.
+        unsafe { close_row(row, self.fields.n_cells[0], self.periodic, self.levels[z].target) };
     }
 
     /// Memory that it holds (bytes).

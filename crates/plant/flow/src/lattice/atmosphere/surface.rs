@@ -61,6 +61,13 @@ impl SurfaceMemory {
         }
     }
 
+    /// Knows nothing, as at first.
+    pub(crate) fn forget(&mut self) {
+        for column in &mut self.columns {
+            column.fill(f32::NAN);
+        }
+    }
+
     /// Writes column number `column` of what it remembers: of all threads' rows one column after the other,
     /// so that the order does not hang on their number.
     pub(crate) fn write(

@@ -57,7 +57,7 @@ pub(crate) unsafe fn rows<S: Simd>(
         unsafe {
             let row = Row::new(step, ghosts, [y, z], source);
             sums[number] = row.carry::<S>(n);
-            row.close(step, n);
+            close_row(row.next, n, step.periodic, row.entering);
         }
     }
 }
@@ -265,20 +265,21 @@ impl Row {
             half.mul_add(from_before + from_behind, carried)
         }
     }
+}
 
-    /// Gives what lies beyond the row's ends its temperatures.
-    ///
-    /// # Safety
-    /// As the module says.
-    #[inline(always)]
-    unsafe fn close(&self, step: &Transport<'_>, n: usize) {
-        // SAFETY: the row's own padding.
-        unsafe {
-            beyond(self.next, n, REACH, step.periodic);
-            if !step.periodic {
-                for offset in 1..=REACH {
-                    *self.next.wrapping_sub(offset) = self.entering;
-                }
+/// Gives what lies beyond the ends of a `row` of `n` temperatures its values: those of its other end, or what
+/// is `entering` (K above the reference) and the last one.
+///
+/// # Safety
+/// A row of the fields, written by this thread alone.
+#[inline(always)]
+pub(super) unsafe fn close_row(row: *mut f32, n: usize, periodic: bool, entering: f32) {
+    // SAFETY: the row's own padding.
+    unsafe {
+        beyond(row, n, REACH, periodic);
+        if !periodic {
+            for offset in 1..=REACH {
+                *row.wrapping_sub(offset) = entering;
             }
         }
     }

@@ -78,6 +78,13 @@ impl Worker {
         inflow: &dyn Inflow,
         air: Option<&Stratification>,
     ) {
+        // Nothing of an earlier run is left.
+        self.row.density_excess.fill(0.0);
+        self.inlet.forget();
+        self.wall.forget();
+        if let Some(heat) = &mut self.heat {
+            heat.surface.forget();
+        }
         let n = view.layout.n_cells[0];
         let mut positions = vec![Vector3::ZERO; n + 1];
         let mut velocities = vec![Vector3::ZERO; n + 1];
@@ -94,8 +101,10 @@ impl Worker {
                     for (column, value) in self.row.velocity.iter_mut().zip(velocity) {
                         column[x] = value;
                     }
-                } else if let RowEnds::Open { outlet: [_, columns @ ..], .. } = &mut self.share.ends
+                } else if let RowEnds::Open { outlet: [density, columns @ ..], .. } =
+                    &mut self.share.ends
                 {
+                    density[row - self.share.rows.start] = 0.0;
                     for (column, value) in columns.iter_mut().zip(velocity) {
                         column[row - self.share.rows.start] = value;
                     }
