@@ -3,7 +3,8 @@
 //! Little-endian: magic, version, cells along x, y, z, populations a cell, steps made; forces of the last
 //! step (position, force, smearing length each); then what the engine writes, which on the processor is the
 //! outlet halo row by row, the filtered wind at the ground, all populations; in an atmosphere also what the
-//! ground remembers, the mean temperatures of the levels, temperature now and a step before, and its last change.
+//! ground remembers, the mean temperatures of the levels, temperature now and a step before, and its last
+//! change.
 //! Everything else follows from settings and inflow.
 
 use super::atmosphere::N_KEPT;

@@ -1,4 +1,5 @@
-//! What acts on a cell beside its neighbours and the forces of bodies: nothing, in air that is alike everywhere.
+//! What acts on a cell beside its neighbours and the forces of bodies: nothing, in air that is alike
+//! everywhere.
 
 use super::collision::{Relaxation, relaxation_rate};
 use super::ends::RowEnds;

@@ -190,11 +190,7 @@ unsafe fn cells<
     force: [*mut f32; 3],
     range: Range<usize>,
 ) {
-    let mut places = [step.air; Q];
-    for (place, address) in places.iter_mut().zip(addresses) {
-        // SAFETY: a row's addresses lie in the array.
-        *place = unsafe { step.air.add(*address) };
-    }
+    let places = places(step, addresses);
     let times = step.relaxation_times.as_ptr();
     let mut x = range.start;
     let mut desk = Desk::<S>::new();
@@ -237,6 +233,17 @@ unsafe fn cells<
             write_part::<S, Q, ODD>(&places, x..range.end, &after);
         }
     }
+}
+
+/// Where the populations of a row at `addresses` lie.
+#[inline(always)]
+fn places<const Q: usize>(step: &Step<'_>, addresses: &[usize; Q]) -> [*mut f32; Q] {
+    let mut places = [step.air; Q];
+    for (place, address) in places.iter_mut().zip(addresses) {
+        // SAFETY: a row's addresses lie in the array.
+        *place = unsafe { step.air.add(*address) };
+    }
+    places
 }
 
 /// A vector of cells on its way through the stages, each of which fills in more.
