@@ -4,6 +4,7 @@
 //! 73° N, ground cooled by 0.25 K an hour, nine hours, profiles of the last.
 
 use crate::Row;
+use crate::folds::worst;
 use crate::row::Tolerance::Within;
 use basis::Vector3;
 use flow::lattice::atmosphere::{
@@ -83,10 +84,7 @@ fn stable(n: usize, hours: f64) -> Stable {
         }
         if instant.is_multiple_of(180) {
             let now = air.level_statistics();
-            let jet = now
-                .iter()
-                .map(|level| level.velocity[0].hypot(level.velocity[1]))
-                .fold(0.0, f64::max);
+            let jet = worst(now.iter().map(|level| level.velocity[0].hypot(level.velocity[1])));
             tell!(
                 "{:.1} h: u* {:.3} m/s, jet {jet:.2} m/s, w'² {:.4}",
                 air.time() / HOUR,

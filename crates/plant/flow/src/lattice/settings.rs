@@ -154,17 +154,7 @@ impl LatticeSettings {
                 return Err(LatticeError::Roughness { roughness_length, highest });
             }
         }
-        if let Some(atmosphere) = &self.atmosphere {
-            atmosphere.check(self.interval, self.ground)?;
-            let conducted = viscosity / atmosphere.prandtl;
-            if conducted > MOST_CONDUCTING {
-                return Err(LatticeError::TooViscous {
-                    viscosity: conducted,
-                    most: MOST_CONDUCTING,
-                    longest: MOST_CONDUCTING / conducted * self.interval,
-                });
-            }
-        }
+        self.check_atmosphere(viscosity)?;
         if self.threads == Some(0) {
             return Err(LatticeError::NoThreads);
         }
@@ -174,6 +164,21 @@ impl LatticeSettings {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Checks the atmosphere, if there is one, in air of `viscosity` (cells² a step).
+    fn check_atmosphere(&self, viscosity: f64) -> Result<(), LatticeError> {
+        let Some(atmosphere) = &self.atmosphere else { return Ok(()) };
+        atmosphere.check(self.interval, self.ground)?;
+        let conducted = viscosity / atmosphere.prandtl;
+        if conducted > MOST_CONDUCTING {
+            return Err(LatticeError::TooViscous {
+                viscosity: conducted,
+                most: MOST_CONDUCTING,
+                longest: MOST_CONDUCTING / conducted * self.interval,
+            });
+        }
+        Ok(())
     }
 }
 
