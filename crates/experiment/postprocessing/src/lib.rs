@@ -73,7 +73,7 @@ pub fn report(directory: &Path) -> Result<ReportMade, PostprocessingError> {
 /// where `directory`, in which it is, is that of a sweep, `sweep.html` too. Gives the page over all.
 ///
 /// # Errors
-/// Those of [`report`].
+/// Those of [`report()`].
 pub fn report_so_far(directory: &Path, study: &Path) -> Result<PathBuf, PostprocessingError> {
     let (_, page) = report_of_study(study, report::write_page)?;
     let Some(swept) = records::read_sweep(directory)? else { return Ok(page) };
