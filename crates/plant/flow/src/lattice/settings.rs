@@ -224,7 +224,7 @@ pub enum Stencil {
     /// Rest, faces and edges of the cube: for wakes, which are young when they leave the box. Wind that
     /// carries eddies over hundreds of their own size feeds them (docs/validation/atmosphere.md).
     D3Q19,
-    /// Rest, faces, edges and corners of the cube, at 1.4 times the cost: for eddies that live long.
+    /// Rest, faces, edges and corners of the cube, at twice the cost: for eddies that live long.
     D3Q27,
 }
 
