@@ -1,13 +1,15 @@
 //! The lattice against closed forms: decay, conservation, momentum theory, the logarithmic law, an open
-//! outlet.
+//! outlet, boxes of finer cells.
 
 mod disc;
 mod ground;
 mod isotropy;
+mod refinement;
 
 pub use disc::momentum_theory;
 pub use ground::log_profile;
 pub use isotropy::isotropy;
+pub use refinement::refinement;
 
 use crate::Row;
 use crate::folds::worst;

@@ -8,6 +8,7 @@
 mod coefficients;
 mod fields;
 pub(crate) mod law;
+mod layer;
 pub(crate) mod probe;
 mod settings;
 mod similarity;
@@ -17,6 +18,7 @@ pub(crate) mod surface;
 pub(crate) mod transport;
 
 pub(crate) use fields::N_KEPT;
+pub use layer::{friction_velocity, ground_heat_flux, layer_depth};
 pub use probe::AirRow;
 pub use settings::{
     Atmosphere, AtmosphereError, Damping, Driving, GRAVITY, Heating, Perturbation, Reference,

@@ -1,6 +1,7 @@
 //! The engine that runs on the processor: populations in one array, updated in place by threads that share
 //! the rows.
 
+mod exchange;
 mod worker;
 
 use super::atmosphere::probe::{self, AirRow};
@@ -12,11 +13,12 @@ use super::engine::{Engine, Rows};
 use super::forces::ForceBlock;
 use super::kernel::Kernel;
 use super::layout::{Edge, Layout, Parity};
+use super::links::Exchange;
 use super::memory::Memory;
 use super::pool::Pool;
 use super::probe::{RowState, View};
 use super::scaling::Scaling;
-use super::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil};
+use super::settings::{Ends, LatticeError, LatticeSettings, Stencil};
 use super::simd::{Backend, MAXIMUM_LANES};
 use super::stencil::D3Q19;
 use super::stencil27::D3Q27;
@@ -85,16 +87,8 @@ impl Cpu {
         let scaling = settings.scaling();
         let backend = settings.backend.unwrap_or_else(Backend::detect);
         let kernel = Kernel::new(settings.stencil, backend);
-        let sides = match settings.sides {
-            Sides::Periodic => Edge::Periodic,
-            Sides::Slip => Edge::Slip,
-        };
-        let levels = match settings.ground {
-            Ground::Periodic => [Edge::Periodic; 2],
-            Ground::Slip | Ground::WallStress { .. } => [Edge::Slip; 2],
-            Ground::NoSlip => [Edge::Hold, Edge::Slip],
-            Ground::Plates => [Edge::Hold; 2],
-        };
+        let sides = Edge::of_sides(settings.sides);
+        let levels = Edge::of_ground(settings.ground);
         let layout = Layout::new(settings.n_cells, kernel.directions, sides, levels);
         let refused =
             LatticeError::Memory { n_cells: settings.cells(), bytes: 4 * layout.n_values() };
@@ -172,6 +166,10 @@ impl Engine for Cpu {
         self.pool.run(&|thread| {
             own(&workers[thread]).spreader.spread(forces);
         });
+    }
+
+    fn drive(&mut self, wind: [f32; 2]) -> bool {
+        self.stratification.as_mut().map(|air| air.drive(wind)).is_some()
     }
 
     fn step(&mut self, inflow: &dyn Inflow) {
@@ -256,6 +254,10 @@ impl Engine for Cpu {
         let (workers, kernel) = (&self.workers, &self.kernel);
         self.pool.run(&|thread| own(&workers[thread]).look(kernel, &view, first, stride));
         self.workers.iter().find_map(|worker| own(worker).found)
+    }
+
+    fn exchange(&mut self) -> Option<&mut dyn Exchange> {
+        Some(self)
     }
 
     fn write_state(&self, writer: &mut dyn Write) -> Result<()> {

@@ -6,6 +6,7 @@
 
 use super::atmosphere::AirRow;
 use super::forces::ForceBlock;
+use super::links::Exchange;
 use super::probe::RowState;
 use crate::Inflow;
 use basis::PointForce;
@@ -18,6 +19,13 @@ pub trait Engine: Send + Sync {
 
     /// Holds `forces` from now on, until others are set.
     fn set_forces(&mut self, forces: &[PointForce]);
+
+    /// The geostrophic wind that drives an atmosphere is `wind` (cells a step, x and y) from now on; false
+    /// where there is none to be driven.
+    fn drive(&mut self, wind: [f32; 2]) -> bool {
+        let _ = wind;
+        false
+    }
 
     /// Makes a step, with the wind of `inflow` at the inlet.
     fn step(&mut self, inflow: &dyn Inflow);
@@ -45,6 +53,11 @@ pub trait Engine: Send + Sync {
     /// Looks at every `stride`-th row from `first` for a cell that the lattice cannot carry on from; gives
     /// the cell and its speed.
     fn look(&mut self, first: usize, stride: usize) -> Option<([usize; 3], f32)>;
+
+    /// Its populations for whoever exchanges them with another grid; none where they cannot be reached.
+    fn exchange(&mut self) -> Option<&mut dyn Exchange> {
+        None
+    }
 
     /// Writes all that time has changed but the steps made and the forces.
     ///

@@ -162,21 +162,48 @@ impl Layout {
     #[inline(never)]
     fn addresses_at_sides(&self, y: usize, z: usize, offsets: &mut [usize]) {
         for (q, offset) in offsets.iter_mut().enumerate() {
-            let [ex, ey, ez] = self.directions[q];
-            let (y_there, mirror_y) = step(y, ey, self.n_cells[1], self.sides);
-            let beyond = self.levels[usize::from(ez > 0)];
-            let (z_there, mirror_z) = step(z, ez, self.n_cells[2], beyond);
-            if mirror_z && beyond == Edge::Hold {
-                *offset = self.row(opposite(q), y, z);
-                continue;
+            *offset = self.odd_address(q, y, z);
+        }
+    }
+
+    /// One of the offsets of an odd step.
+    fn odd_address(&self, q: usize, y: usize, z: usize) -> usize {
+        let [ex, ey, ez] = self.directions[q];
+        let (y_there, mirror_y) = step(y, ey, self.n_cells[1], self.sides);
+        let beyond = self.levels[usize::from(ez > 0)];
+        let (z_there, mirror_z) = step(z, ez, self.n_cells[2], beyond);
+        if mirror_z && beyond == Edge::Hold {
+            return self.row(opposite(q), y, z);
+        }
+        let mut slot = q;
+        for (mirror, mirrored) in [mirror_y, mirror_z].into_iter().zip(&self.mirrored) {
+            if mirror {
+                slot = usize::from(mirrored[slot]);
             }
-            let mut slot = q;
-            for (mirror, mirrored) in [mirror_y, mirror_z].into_iter().zip(&self.mirrored) {
-                if mirror {
-                    slot = usize::from(mirrored[slot]);
-                }
-            }
-            *offset = self.row(slot, y_there, z_there).wrapping_add_signed(isize::from(ex));
+        }
+        self.row(slot, y_there, z_there).wrapping_add_signed(isize::from(ex))
+    }
+
+    /// Where population `direction` of `cell` lies that the next step, of `parity`, reads.
+    pub(crate) fn arriving(
+        &self,
+        parity: Parity,
+        [x, y, z]: [usize; 3],
+        direction: usize,
+    ) -> usize {
+        self.address(parity, read_direction(parity, direction), y, z) + x
+    }
+
+    /// Where population `direction` of `cell` lies that the last step, of `parity`, wrote.
+    pub(crate) fn leaving(&self, parity: Parity, [x, y, z]: [usize; 3], direction: usize) -> usize {
+        self.address(parity, write_direction(parity, direction), y, z) + x
+    }
+
+    /// Address number `slot` of the row at (`y`, `z`).
+    fn address(&self, parity: Parity, slot: usize, y: usize, z: usize) -> usize {
+        match parity {
+            Parity::Even => self.row(slot, y, z),
+            Parity::Odd => self.odd_address(slot, y, z),
         }
     }
 }

@@ -10,8 +10,10 @@
 //! `sweep`.
 
 pub mod atmosphere;
+mod cell_box;
 mod collision;
 mod cpu;
+mod edges;
 mod ends;
 mod engine;
 mod forces;
@@ -19,10 +21,12 @@ mod inlet;
 mod kernel;
 mod layout;
 mod levels;
+mod links;
 mod memory;
 mod planes;
 mod pool;
 mod probe;
+pub mod refinement;
 mod sampling;
 mod scaling;
 mod settings;
@@ -42,6 +46,7 @@ mod wall;
 pub use crate::fields::{PlaneAverage, PlaneAverageState, PlaneSizeError, Volume};
 pub use engine::Engine;
 pub use forces::ForceBlock;
+pub use links::{Exchange, Fill, Link, Way};
 pub use probe::RowState;
 pub use scaling::Scaling;
 pub use settings::{

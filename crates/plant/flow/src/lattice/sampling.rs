@@ -1,5 +1,6 @@
 //! The field as others see it: wind at points, rows, the mass of the air.
 
+use super::cell_box::CellBox;
 use super::probe::RowState;
 use super::settings::{Ends, Ground, Sides};
 use super::solver::Lattice;
@@ -30,32 +31,36 @@ impl WindField for Lattice {
 impl Lattice {
     /// Mass of the air in the box (kg).
     pub fn mass(&self) -> f64 {
-        let mut row = RowState::new(self.n_cells()[0]);
-        let mut excess = 0.0;
-        for index in 0..self.n_rows() {
-            self.engine.read_row(index, &mut row);
-            excess +=
-                row.density_excess[..self.n_cells()[0]].iter().copied().map(f64::from).sum::<f64>();
-        }
-        let settings = self.settings();
-        (settings.cells() as f64 + excess) * settings.air_density * settings.spacing.powi(3)
+        self.totals(&[]).0
     }
 
     /// Momentum of the air in the box, forces of the last step not counted (kg m/s).
     pub fn momentum(&self) -> Vector3 {
-        let n = self.n_cells()[0];
-        let mut row = RowState::new(n);
-        let mut total = Vector3::ZERO;
+        self.totals(&[]).1
+    }
+
+    /// Mass (kg) and momentum (kg m/s) of the air in all cells but those of `left_out`.
+    pub(super) fn totals(&self, left_out: &[CellBox]) -> (f64, Vector3) {
+        let [n_x, n_y, _] = self.n_cells();
+        let mut row = RowState::new(n_x);
+        let (mut n_cells, mut excess, mut momentum) = (0_usize, 0.0, Vector3::ZERO);
         for index in 0..self.n_rows() {
             self.engine.read_row(index, &mut row);
-            for x in 0..n {
+            let [y, z] = [index % n_y, index / n_y];
+            for x in 0..n_x {
+                if left_out.iter().any(|cells| cells.contains([x, y, z])) {
+                    continue;
+                }
                 let velocity =
                     Vector3::from_array(std::array::from_fn(|c| f64::from(row.velocity[c][x])));
-                total += velocity * (1.0 + f64::from(row.density_excess[x]));
+                n_cells += 1;
+                excess += f64::from(row.density_excess[x]);
+                momentum += velocity * (1.0 + f64::from(row.density_excess[x]));
             }
         }
         let settings = self.settings();
-        self.scaling().to_si_velocity(total) * settings.air_density * settings.spacing.powi(3)
+        let mass_unit = settings.air_density * settings.spacing.powi(3);
+        ((n_cells as f64 + excess) * mass_unit, self.scaling().to_si_velocity(momentum) * mass_unit)
     }
 
     /// Pressure above that of undisturbed air (Pa) at `position` (m), trilinear between cell centres.
@@ -99,7 +104,7 @@ impl Lattice {
 
     /// The cells around `position`: the lower ones, the upper ones, and how far it lies from the former to
     /// the latter (–).
-    fn cell_cube(&self, position: Vector3) -> ([usize; 3], [usize; 3], [f64; 3]) {
+    pub(super) fn cell_cube(&self, position: Vector3) -> ([usize; 3], [usize; 3], [f64; 3]) {
         let periodic = [
             self.settings().ends == Ends::Periodic,
             self.settings().sides == Sides::Periodic,
@@ -140,14 +145,14 @@ impl Lattice {
 }
 
 /// The corners of the cube from `low` to `high`, x fastest.
-fn corners(low: [usize; 3], high: [usize; 3]) -> [[usize; 3]; 8] {
+pub(super) fn corners(low: [usize; 3], high: [usize; 3]) -> [[usize; 3]; 8] {
     std::array::from_fn(|corner| {
         std::array::from_fn(|axis| if corner >> axis & 1 == 1 { high[axis] } else { low[axis] })
     })
 }
 
 /// Trilinear value `weight` of the way along each axis, of values at the corners of a cube.
-fn interpolate(corners: &[f32; 8], weight: [f64; 3]) -> f64 {
+pub(super) fn interpolate(corners: &[f32; 8], weight: [f64; 3]) -> f64 {
     let mut result = 0.0;
     for (corner, value) in corners.iter().enumerate() {
         let mut share = f64::from(*value);

@@ -116,6 +116,36 @@ impl Lattice {
         self.look(0, 1)
     }
 
+    /// Steps in `duration` (s), which is to be a whole number of them.
+    pub(super) fn steps_in(&self, duration: f64) -> Result<u64, FlowError> {
+        let step = self.scaling.interval();
+        let n_steps = (duration / step).round();
+        // Written so that a duration that is not a number is refused.
+        let whole = n_steps >= 0.0 && (duration / step - n_steps).abs() <= 1e-6 * n_steps.max(1.0);
+        if whole { Ok(n_steps as u64) } else { Err(FlowError::FractionalStep { duration, step }) }
+    }
+
+    /// Holds `forces` from now on.
+    pub(super) fn hold(&mut self, forces: &[PointForce]) {
+        self.forces.clear();
+        self.forces.extend_from_slice(forces);
+        self.engine.set_forces(&self.forces);
+    }
+
+    /// Makes a step.
+    pub(super) fn step(&mut self) {
+        self.engine.step(&*self.inflow);
+    }
+
+    /// Looks at a part of the field every few steps, so that in time all of it is seen.
+    pub(super) fn watch(&mut self) -> Result<(), FlowError> {
+        let n_steps = self.engine.n_steps();
+        if !n_steps.is_multiple_of(LOOK_STRIDE) {
+            return Ok(());
+        }
+        self.look((n_steps / LOOK_STRIDE % LOOKS) as usize, LOOKS as usize)
+    }
+
     /// Rows along x (–).
     pub(super) fn n_rows(&self) -> usize {
         self.settings.n_cells[1] * self.settings.n_cells[2]
@@ -136,22 +166,11 @@ impl Lattice {
 
 impl FlowSolver for Lattice {
     fn advance(&mut self, duration: f64, forces: &[PointForce]) -> Result<(), FlowError> {
-        let step = self.scaling.interval();
-        let n_steps = (duration / step).round();
-        // Written so that a duration that is not a number is refused.
-        let whole = n_steps >= 0.0 && (duration / step - n_steps).abs() <= 1e-6 * n_steps.max(1.0);
-        if !whole {
-            return Err(FlowError::FractionalStep { duration, step });
-        }
-        self.forces.clear();
-        self.forces.extend_from_slice(forces);
-        self.engine.set_forces(&self.forces);
-        for _ in 0..n_steps as u64 {
-            self.engine.step(&*self.inflow);
-            let n_steps = self.engine.n_steps();
-            if n_steps.is_multiple_of(LOOK_STRIDE) {
-                self.look((n_steps / LOOK_STRIDE % LOOKS) as usize, LOOKS as usize)?;
-            }
+        let n_steps = self.steps_in(duration)?;
+        self.hold(forces);
+        for _ in 0..n_steps {
+            self.step();
+            self.watch()?;
         }
         Ok(())
     }

@@ -6,6 +6,7 @@
 //! b (xᵢ − x)), with a and b such that Σ wᵢ = 1 and Σ wᵢ xᵢ = x. The products of such factors conserve force
 //! and moment exactly.
 
+use super::cell_box::CellBox;
 use super::forces::ForceBlock;
 use super::scaling::Scaling;
 use basis::PointForce;
@@ -28,30 +29,6 @@ pub struct Spreader {
     boxes: Vec<CellBox>,
     weights: [Vec<f64>; 3],
     row: [Vec<f32>; 3],
-}
-
-/// Cells `low..high` along x, y, z.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct CellBox {
-    low: [usize; 3],
-    high: [usize; 3],
-}
-
-impl CellBox {
-    fn is_empty(&self) -> bool {
-        (0..3).any(|axis| self.low[axis] >= self.high[axis])
-    }
-
-    fn overlaps(&self, other: &Self) -> bool {
-        (0..3).all(|axis| self.low[axis] < other.high[axis] && other.low[axis] < self.high[axis])
-    }
-
-    fn join(&self, other: &Self) -> Self {
-        Self {
-            low: std::array::from_fn(|axis| self.low[axis].min(other.low[axis])),
-            high: std::array::from_fn(|axis| self.high[axis].max(other.high[axis])),
-        }
-    }
 }
 
 impl Spreader {

@@ -2,7 +2,6 @@
 //! everywhere.
 
 use super::collision::{Relaxation, relaxation_rate};
-use super::ends::RowEnds;
 use super::simd::Simd;
 use super::stencil::Moments;
 
@@ -31,7 +30,7 @@ pub(crate) trait RowAir<S: Simd> {
     ///
     /// # Safety
     /// As above.
-    unsafe fn close(&self, ends: &RowEnds);
+    unsafe fn close(&self);
 }
 
 /// Air that is alike everywhere.
@@ -58,5 +57,5 @@ impl<S: Simd> RowAir<S> for StillRow<S> {
     }
 
     #[inline(always)]
-    unsafe fn close(&self, _: &RowEnds) {}
+    unsafe fn close(&self) {}
 }

@@ -81,7 +81,7 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize, A: Air>(
                     Parity::Even => row_of::<S, L, Q, _, false>(step, address, &row, share, forced),
                     Parity::Odd => row_of::<S, L, Q, _, true>(step, address, &row, share, forced),
                 }
-                row.close(&share.ends);
+                row.close();
             }
             y += 1;
             if y == step.layout.n_cells[1] {

@@ -4,7 +4,7 @@ mod atmosphere;
 mod boundaries;
 mod closed_forms;
 mod engines;
-mod ground;
+pub(super) mod ground;
 mod invariants;
 mod stencils;
 
@@ -14,7 +14,7 @@ use basis::Vector3;
 use std::sync::Arc;
 
 /// Wind given by a function of time and position.
-struct Wind<F>(F);
+pub(super) struct Wind<F>(pub(super) F);
 
 impl<F: Fn(f64, Vector3) -> Vector3 + Send + Sync> Inflow for Wind<F> {
     fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]) {
@@ -25,7 +25,7 @@ impl<F: Fn(f64, Vector3) -> Vector3 + Send + Sync> Inflow for Wind<F> {
 }
 
 /// A box on all sides periodic, of cells one metre wide, steps of a second: lattice units are SI units.
-fn periodic_box(n_cells: [usize; 3], viscosity: f64) -> LatticeSettings {
+pub(super) fn periodic_box(n_cells: [usize; 3], viscosity: f64) -> LatticeSettings {
     let mut settings = LatticeSettings::new(Vector3::splat(-0.5), 1.0, n_cells, 1.0, 0.1);
     settings.air_density = 1.0;
     settings.kinematic_viscosity = viscosity;

@@ -4,7 +4,6 @@
 use super::coefficients::{Coefficients, Level};
 use super::fields::{Field, Fields};
 use crate::lattice::collision::{Relaxation, twice_relaxation_time};
-use crate::lattice::ends::RowEnds;
 use crate::lattice::simd::Simd;
 use crate::lattice::stencil::Moments;
 use crate::lattice::still::{Air, RowAir};
@@ -17,6 +16,8 @@ pub(crate) struct Stratified<'a> {
     pub(super) coefficients: &'a Coefficients,
     /// Levels, from the ground up.
     pub(super) levels: &'a [Level],
+    /// Whether what leaves a row downstream enters it upstream.
+    pub(super) periodic: bool,
 }
 
 /// What is the same at all cells of a level.
@@ -39,6 +40,7 @@ pub(crate) struct StratifiedRow<S> {
     wind: [*mut f32; 3],
     diffusivity: *mut f32,
     n_cells: usize,
+    periodic: bool,
 }
 
 /// The slope of temperature upwards at a row.
@@ -92,6 +94,7 @@ impl Air for Stratified<'_> {
             ],
             diffusivity: fields.row(Field::Diffusivity, y, z),
             n_cells: fields.n_cells[0],
+            periodic: self.periodic,
         }
     }
 }
@@ -119,11 +122,11 @@ impl<S: Simd> RowAir<S> for StratifiedRow<S> {
     }
 
     #[inline(always)]
-    unsafe fn close(&self, ends: &RowEnds) {
+    unsafe fn close(&self) {
         let [u, v, w] = self.wind;
         for row in [u, v, w, self.diffusivity] {
             // SAFETY: the row's own padding.
-            unsafe { beyond(row, self.n_cells, 1, matches!(ends, RowEnds::Periodic)) };
+            unsafe { beyond(row, self.n_cells, 1, self.periodic) };
         }
     }
 }

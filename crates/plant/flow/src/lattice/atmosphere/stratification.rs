@@ -94,6 +94,11 @@ impl Stratification {
         self.fields.n_cells
     }
 
+    /// The geostrophic wind is `wind` (cells a step) from now on.
+    pub(crate) fn drive(&mut self, wind: [f32; 2]) {
+        self.coefficients.geostrophic = wind;
+    }
+
     /// What step number `n_steps` finds.
     pub(crate) fn air(&self, n_steps: u64) -> Stratified<'_> {
         Stratified {
@@ -101,6 +106,7 @@ impl Stratification {
             temperature: Fields::temperature(n_steps),
             coefficients: &self.coefficients,
             levels: &self.levels,
+            periodic: self.periodic,
         }
     }
 

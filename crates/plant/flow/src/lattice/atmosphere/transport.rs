@@ -48,9 +48,7 @@ pub(crate) unsafe fn rows<S: Simd>(
         let HeatShare { surface, beyond: ghosts, none, sums, .. } = heat;
         ghosts.fill(step, y, z);
         let source = match z {
-            0 if !surface.source.is_empty() => {
-                surface.source[number * step.ground_stride..].as_ptr()
-            }
+            0 => surface.source[number * step.ground_stride..].as_ptr(),
             _ => none.as_ptr(),
         };
         // SAFETY: handed through.

@@ -283,3 +283,29 @@ fn an_atmosphere_that_cannot_be_is_refused() {
         Err(AtmosphereError::Value { name: "damping rate", .. })
     ));
 }
+
+#[test]
+fn air_over_a_slipping_ground_swings_about_the_wind_that_drives_it() {
+    let coriolis = 0.02;
+    let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [8, 6, 5], 0.1, 8.0);
+    settings.ends = Ends::Periodic;
+    settings.ground = Ground::Slip;
+    let driving = Driving::Geostrophic([8.0, 0.0]);
+    settings.atmosphere = Some(Atmosphere { coriolis, driving, ..Atmosphere::new(290.0) });
+    let mut air = lattice(settings, |_, _| Vector3::new(8.0, 0.0, 0.0));
+    assert!(air.drive([6.0, 1.0]));
+    let steps = 600;
+    air.advance(0.1 * f64::from(steps), &[]).expect("no divergence");
+    // The departure turns to the right (Ekman 1905): (2, -1) m/s by f t.
+    let (s, c) = (coriolis * 60.0_f64).sin_cos();
+    let expected = [6.0 + 2.0 * c - s, 1.0 - 2.0 * s - c];
+    for level in air.statistics_of(1..4) {
+        for axis in 0..2 {
+            assert!((level.velocity[axis] - expected[axis]).abs() < 5e-3, "{level:?} {expected:?}");
+        }
+    }
+    assert_eq!(air.statistics_of(3..9).len(), 2);
+    assert_eq!(air.statistics_of(1..3), air.level_statistics()[1..3]);
+    let mut still = lattice(periodic_box([8; 3], 0.01), |_, _| Vector3::ZERO);
+    assert!(!still.drive([6.0, 1.0]));
+}

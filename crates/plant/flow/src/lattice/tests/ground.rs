@@ -4,17 +4,16 @@ use super::*;
 use crate::FlowSolver;
 use std::f64::consts::{PI, TAU};
 
-const HEIGHT: f64 = 1000.0;
-const FRICTION_VELOCITY: f64 = 0.4;
+pub(in crate::lattice) const HEIGHT: f64 = 1000.0;
+pub(in crate::lattice) const FRICTION_VELOCITY: f64 = 0.4;
 const ROUGHNESS_LENGTH: f64 = 0.1;
 
-fn logarithmic(z: f64) -> f64 {
+pub(in crate::lattice) fn logarithmic(z: f64) -> f64 {
     FRICTION_VELOCITY / VON_KARMAN * (z / ROUGHNESS_LENGTH).ln()
 }
 
-/// Half a channel with a rough floor, `n` cells across, driven by u*²/H, logarithmic with eddies at the
-/// start.
-fn half_channel(n: [usize; 3]) -> Lattice {
+/// Half a channel with a rough floor, `n` cells across, driven by u*²/H.
+pub(in crate::lattice) fn half_channel(n: [usize; 3]) -> LatticeSettings {
     let spacing = HEIGHT / n[2] as f64;
     let top = logarithmic(HEIGHT);
     let mut settings = LatticeSettings::new(Vector3::ZERO, spacing, n, 0.13 * spacing / top, top);
@@ -22,25 +21,28 @@ fn half_channel(n: [usize; 3]) -> Lattice {
     settings.ground = Ground::WallStress { roughness_length: ROUGHNESS_LENGTH };
     settings.acceleration = Vector3::new(FRICTION_VELOCITY.powi(2) / HEIGHT, 0.0, 0.0);
     settings.threads = Some(1);
-    let k = TAU / (n[0] as f64 * spacing);
-    lattice(settings, move |_, p| {
-        let (x, y) = (k * p.x, k * p.y);
-        let eddies = Vector3::new(
-            (3.0 * y).sin() * (2.0 * x + p.z / 80.0).cos()
-                + (5.0 * y + 1.0).cos() * (4.0 * x).sin(),
-            (4.0 * x + 2.0 * y).sin() + (3.0 * x - 5.0 * y).cos(),
-            (3.0 * x).sin() * (3.0 * y).cos() + (5.0 * x + 1.3).sin() * (2.0 * y).cos(),
-        );
-        let envelope = 1.5 * FRICTION_VELOCITY * (PI * p.z / HEIGHT).sin();
-        Vector3::new(logarithmic(p.z), 0.0, 0.0) + eddies * envelope
-    })
+    settings
+}
+
+/// Logarithmic wind with eddies in a half channel of `length` (m).
+pub(in crate::lattice) fn eddies(length: f64, p: Vector3) -> Vector3 {
+    let k = TAU / length;
+    let (x, y) = (k * p.x, k * p.y);
+    let eddies = Vector3::new(
+        (3.0 * y).sin() * (2.0 * x + p.z / 80.0).cos() + (5.0 * y + 1.0).cos() * (4.0 * x).sin(),
+        (4.0 * x + 2.0 * y).sin() + (3.0 * x - 5.0 * y).cos(),
+        (3.0 * x).sin() * (3.0 * y).cos() + (5.0 * x + 1.3).sin() * (2.0 * y).cos(),
+    );
+    let envelope = 1.5 * FRICTION_VELOCITY * (PI * p.z / HEIGHT).sin();
+    Vector3::new(logarithmic(p.z), 0.0, 0.0) + eddies * envelope
 }
 
 #[test]
 fn a_rough_ground_keeps_a_logarithmic_profile() {
     let n = [24, 24, 16];
-    let mut air = half_channel(n);
-    let interval = air.settings().interval;
+    let settings = half_channel(n);
+    let (interval, length) = (settings.interval, n[0] as f64 * settings.spacing);
+    let mut air = lattice(settings, move |_, p| eddies(length, p));
     let turnover = (HEIGHT / FRICTION_VELOCITY / interval).round() * interval;
     air.advance(2.0 * turnover, &[]).expect("no divergence");
     let mut means = vec![0.0; n[2]];

@@ -1,0 +1,186 @@
+//! Which cells are refined, and the assumptions that are checked before they are.
+
+use crate::lattice::cell_box::CellBox;
+use crate::lattice::layout::Edge;
+use crate::lattice::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides};
+use basis::Vector3;
+use thiserror::Error;
+
+/// Cells of the grid around a box between it and a side that it does not stand on, and between two boxes: one
+/// takes part in the exchange, the next one knows its slope.
+const MARGIN: usize = 2;
+
+/// A box of cells of half the size, moved by steps of half the length.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refinement {
+    /// Its first cell along x, y, z, in cells of the grid around it (–).
+    pub first_cell: [usize; 3],
+    /// Cells of the grid around it that it covers along x, y, z (–).
+    pub n_cells: [usize; 3],
+    /// Boxes within it, in cells of its own.
+    pub within: Vec<Refinement>,
+}
+
+/// Why a grid cannot be refined so.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum RefinementError {
+    /// A grid cannot be built.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// A box has no cells along an axis.
+    #[error(
+        "a refined box has no cells along {axis}: give it at least one cell of the grid around it, or leave it out"
+    )]
+    Empty {
+        /// Axis.
+        axis: &'static str,
+    },
+    /// A box comes too close to a side of the grid around it.
+    #[error(
+        "a refined box from cell {first} to cell {last} along {axis} comes too close to a side of the {n_cells} cells around it: let it end {MARGIN} cells before, or stand on a wall that air slips along, or fill a periodic axis"
+    )]
+    TooClose {
+        /// Axis.
+        axis: &'static str,
+        /// First cell covered.
+        first: usize,
+        /// Last cell covered.
+        last: usize,
+        /// Cells around it along the axis (–).
+        n_cells: usize,
+    },
+    /// Two boxes overlap or nearly touch.
+    #[error(
+        "refined boxes number {first} and {second} are less than {MARGIN} cells apart: join them, or move one"
+    )]
+    Overlap {
+        /// Number of the first box among its neighbours, from zero.
+        first: usize,
+        /// Number of the second.
+        second: usize,
+    },
+    /// Temperature is not carried from grid to grid.
+    #[error("air with temperature cannot be refined: leave out the boxes, or the atmosphere")]
+    Atmosphere,
+}
+
+/// What lies beyond the first and the last cell along each axis: none where populations are given, by an
+/// inlet, an outlet or the grid around.
+pub(super) type Beyond = [[Option<Edge>; 2]; 3];
+
+/// What lies beyond the box of `settings`.
+pub(super) fn beyond(settings: &LatticeSettings) -> Beyond {
+    let ends = match settings.ends {
+        Ends::Periodic => Some(Edge::Periodic),
+        Ends::InletOutlet => None,
+    };
+    let sides = Edge::of_sides(settings.sides);
+    [[ends; 2], [Some(sides); 2], Edge::of_ground(settings.ground).map(Some)]
+}
+
+impl Refinement {
+    /// The box from `low` to `high` (m, farm frame), snapped to the nearest cells of `settings`, with nothing
+    /// within it.
+    pub fn between(settings: &LatticeSettings, low: Vector3, high: Vector3) -> Self {
+        let cell = |corner: Vector3| {
+            let place = ((corner - settings.origin) / settings.spacing).to_array();
+            // Saturating: what lies before the grid begins with it.
+            std::array::from_fn(|axis| (place[axis].round() as usize).min(settings.n_cells[axis]))
+        };
+        let (first_cell, end): ([usize; 3], [usize; 3]) = (cell(low), cell(high));
+        let n_cells = std::array::from_fn(|axis| end[axis].saturating_sub(first_cell[axis]));
+        Self { first_cell, n_cells, within: Vec::new() }
+    }
+
+    /// The cells around it that it covers.
+    pub(super) fn covered(&self) -> CellBox {
+        CellBox {
+            low: self.first_cell,
+            high: std::array::from_fn(|axis| self.first_cell[axis] + self.n_cells[axis]),
+        }
+    }
+
+    /// Checks its place among `n_cells` cells, `beyond` which lies what is given.
+    pub(super) fn check(
+        &self,
+        n_cells: [usize; 3],
+        beyond: &Beyond,
+    ) -> Result<(), RefinementError> {
+        let CellBox { low, high } = self.covered();
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            if self.n_cells[axis] == 0 {
+                return Err(RefinementError::Empty { axis: name });
+            }
+            let n = n_cells[axis];
+            let touches = [low[axis] == 0, high[axis] == n];
+            let apart = [low[axis] >= MARGIN, high[axis] + MARGIN <= n];
+            let stands: [bool; 2] = std::array::from_fn(|side| match beyond[axis][side] {
+                // What a wall turns back would go other ways in long steps than in short ones.
+                None | Some(Edge::Hold) => false,
+                Some(Edge::Periodic) => touches == [true; 2],
+                Some(Edge::Slip) => touches[side],
+            });
+            let good: [bool; 2] = std::array::from_fn(|side| apart[side] || stands[side]);
+            if good != [true; 2] {
+                return Err(RefinementError::TooClose {
+                    axis: name,
+                    first: low[axis],
+                    last: high[axis].saturating_sub(1),
+                    n_cells: n,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// What lies beyond the box in a grid of `n_cells` cells, given what lies beyond that one.
+    pub(super) fn beyond(&self, n_cells: [usize; 3], around: &Beyond) -> Beyond {
+        let CellBox { low, high } = self.covered();
+        std::array::from_fn(|axis| {
+            [
+                around[axis][0].filter(|_| low[axis] == 0),
+                around[axis][1].filter(|_| high[axis] == n_cells[axis]),
+            ]
+        })
+    }
+
+    /// Settings of the box's own grid, `beyond` which lies what is given, in the grid of `around`.
+    ///
+    /// Where populations are given by the grid around, the lattice has a side that it can have: whatever
+    /// comes from there is overwritten.
+    pub(super) fn settings(&self, around: &LatticeSettings, beyond: &Beyond) -> LatticeSettings {
+        let first = Vector3::from_array(self.first_cell.map(|first| first as f64));
+        LatticeSettings {
+            origin: around.origin + first * around.spacing,
+            spacing: 0.5 * around.spacing,
+            n_cells: self.n_cells.map(|n| 2 * n),
+            interval: 0.5 * around.interval,
+            ends: Ends::Periodic,
+            sides: match beyond[1][0] {
+                Some(Edge::Periodic) => Sides::Periodic,
+                _ => Sides::Slip,
+            },
+            ground: match beyond[2][0] {
+                Some(_) => around.ground,
+                None => Ground::Slip,
+            },
+            ..around.clone()
+        }
+    }
+}
+
+/// Checks that `boxes` are apart from one another, in a grid of `n_cells` cells.
+pub(super) fn check_apart(
+    boxes: &[Refinement],
+    n_cells: [usize; 3],
+) -> Result<(), RefinementError> {
+    for (second, one) in boxes.iter().enumerate() {
+        let around = one.covered().grown(MARGIN, n_cells);
+        if let Some(first) =
+            boxes[..second].iter().position(|other| other.covered().overlaps(&around))
+        {
+            return Err(RefinementError::Overlap { first, second });
+        }
+    }
+    Ok(())
+}
