@@ -1,6 +1,7 @@
 //! Analysis of records: means with their uncertainty, spectra, fatigue, delivered pitch, phases, wakes.
 
 pub mod fatigue;
+pub mod lateral;
 pub mod line;
 pub mod phase;
 pub mod pitch;

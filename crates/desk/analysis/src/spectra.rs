@@ -107,7 +107,12 @@ fn mean_square_spectrum(
     Ok((values, weights))
 }
 
-fn check(n_samples: usize, n_segment: usize, interval: f64) -> Result<(), AnalysisError> {
+/// Whether segments of `n_segment` samples fit into `n_samples`, `interval` s apart.
+pub(crate) fn check(
+    n_samples: usize,
+    n_segment: usize,
+    interval: f64,
+) -> Result<(), AnalysisError> {
     if n_segment < FEWEST_SAMPLES || n_samples < n_segment {
         let needed = n_segment.max(FEWEST_SAMPLES);
         return Err(AnalysisError::TooShort { n_samples: n_samples.min(n_segment), needed });
@@ -119,7 +124,8 @@ fn check(n_samples: usize, n_segment: usize, interval: f64) -> Result<(), Analys
     Ok(())
 }
 
-fn hann(n: usize) -> Vec<f64> {
+/// Hann's window of `n` samples.
+pub(crate) fn hann(n: usize) -> Vec<f64> {
     (0..n).map(|index| 0.5 - 0.5 * (TAU * index as f64 / n as f64).cos()).collect()
 }
 

@@ -118,6 +118,7 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
             settings.smagorinsky = SMAGORINSKY_OVER_GROUND;
         }
     }
+    domain.method.apply(&mut settings);
     settings.threads = case.flow.threads;
     settings
 }

@@ -1,6 +1,6 @@
 //! One study as plain data: what the case file says, in SI units.
 
-pub use crate::domain::{Blockage, Domain, Ground, Sides};
+pub use crate::domain::{Blockage, Domain, Ground, Method, Sides};
 pub use crate::layout::{FROM_WEST, Position};
 pub use crate::outputs::Requested;
 pub use crate::solvers::Solver;

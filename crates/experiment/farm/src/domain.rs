@@ -1,10 +1,11 @@
 //! The box of cells in which a flow is resolved: its keys of `[flow]`, and what they say.
 
-use basis::keys::LeftOut::{Required, Value};
+use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Key, Slip, Table, Values, above, from, key};
+use flow::lattice::{LatticeSettings, Stencil};
 
 /// Keys of `[flow]` for a box of cells.
-pub static KEYS: [Key; 8] = [
+pub static KEYS: [Key; 10] = [
     key(
         "cells_per_diameter",
         from(8.0, 200.0),
@@ -55,6 +56,20 @@ pub static KEYS: [Key; 8] = [
         Value("\"felt\""),
         "The walls hold the air together, so that a rotor meets more wind than in the open. `felt`: `wind.speed` blows in. `corrected`: so much less blows in that a rotor of thrust coefficient 0.8 works as in open air of `wind.speed` (axial momentum theory of a disc in a channel, Glauert 1935); for rotors below their rated wind.",
     ),
+    key(
+        "velocity_set",
+        Holds::Choice(&["d3q19", "d3q27"]),
+        "",
+        Value("\"d3q19\""),
+        "Velocities of the lattice. `d3q19`: rest, faces and edges of the cube. `d3q27`: corners too, at 2.2 times the time and 1.4 times the memory; it moves eddies alike whichever way the wind blows, where nineteen feed those of four and five cells (docs/validation/flow.md).",
+    ),
+    key(
+        "smagorinsky_constant",
+        from(0.0, 0.5),
+        "–",
+        Otherwise("0.12; 0.16 over a rough ground"),
+        "Constant of Smagorinsky's eddy viscosity, whose filter is a cell wide.",
+    ),
 ];
 
 /// `flow.ground` of a rough ground.
@@ -90,6 +105,34 @@ pub struct Domain {
     pub sides: Sides,
     /// What becomes of the walls' effect on the rotors.
     pub blockage: Blockage,
+    /// How the air is computed.
+    pub method: Method,
+}
+
+/// How the lattice computes the air of a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Method {
+    /// Velocity set.
+    pub stencil: Stencil,
+    /// Constant of Smagorinsky's model (–); that of the box's ground when absent.
+    pub smagorinsky: Option<f64>,
+}
+
+/// That of a case which says nothing of it.
+impl Default for Method {
+    fn default() -> Self {
+        Domain::of(&Values::default()).method
+    }
+}
+
+impl Method {
+    /// Gives `settings` what the case asks for, and leaves what it does not.
+    pub(crate) fn apply(self, settings: &mut LatticeSettings) {
+        settings.stencil = self.stencil;
+        if let Some(constant) = self.smagorinsky {
+            settings.smagorinsky = constant;
+        }
+    }
 }
 
 impl Domain {
@@ -109,6 +152,13 @@ impl Domain {
             blockage: match all.word("blockage") {
                 "corrected" => Blockage::Corrected,
                 _ => Blockage::Felt,
+            },
+            method: Method {
+                stencil: match all.word("velocity_set") {
+                    "d3q27" => Stencil::D3Q27,
+                    _ => Stencil::D3Q19,
+                },
+                smagorinsky: all.optional_number("smagorinsky_constant"),
             },
         }
     }

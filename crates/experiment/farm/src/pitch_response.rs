@@ -93,7 +93,7 @@ struct Course {
 impl Course {
     /// In a wind of `wind_speed` (m/s), with `n_periods` (–) of a pitch of `rate` (rad/s) after the settling.
     fn new(wind_speed: f64, plan: &Plan, model: &TurbineModel, rate: f64, n_periods: f64) -> Self {
-        let tunnel = Tunnel::for_identification(plan.spacing, plan.interval);
+        let tunnel = Tunnel::for_identification(plan);
         let diameter = model.definition.rotor_diameter();
         let settling = (tunnel.settling * diameter / wind_speed).max(TAU / rate);
         Self {
@@ -114,7 +114,7 @@ impl Course {
         model: &TurbineModel,
         n_trials: u64,
     ) -> IdentificationCost {
-        let tunnel = Tunnel::for_identification(plan.spacing, plan.interval);
+        let tunnel = Tunnel::for_identification(plan);
         let diameter = model.definition.rotor_diameter();
         let updates = (case.flow.solver.updates_alone)(&tunnel, diameter);
         let n_steps = n_trials * self.n_steps();
@@ -249,7 +249,7 @@ fn pitching(
     let turbine = assemble::in_air_of(alone.flow.solver, turbine);
     let baseline = assemble::controller(&Control::baseline(), model, &alone, plan)?;
     let controller = helix.on_top_of(baseline);
-    let tunnel = Tunnel::for_identification(plan.spacing, plan.interval);
+    let tunnel = Tunnel::for_identification(plan);
     let air = (alone.flow.solver.begin_alone)(&Alone {
         tunnel,
         wind: &alone.wind,

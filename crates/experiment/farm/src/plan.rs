@@ -5,7 +5,7 @@ mod step;
 
 pub use error::PlanError;
 
-use crate::case::{Case, Placement, Shear};
+use crate::case::{Case, Method, Placement, Shear};
 use basis::Vector3;
 use flow::inflow::GREATEST_ROUGHNESS;
 use std::collections::BTreeMap;
@@ -87,6 +87,8 @@ pub struct Plan {
     pub blockage: f64,
     /// Free-stream speed in cells per step (–).
     pub lattice_speed: f64,
+    /// How the air of the cells is computed.
+    pub method: Method,
 }
 
 /// Sizes domain and step for `case` as its flow solver wants them; `footprints` holds one entry per
@@ -141,6 +143,7 @@ pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
             positions: positions.clone(),
             blockage: std::f64::consts::PI / 4.0 * widest * widest / area,
             lattice_speed: case.wind.speed * interval / spacing,
+            method: case.flow.domain().method,
         }
     };
     let plan = plan_without_step(step(case, machines, spacing)?);
@@ -222,6 +225,7 @@ pub(crate) fn without_air(
         positions,
         blockage: 0.0,
         lattice_speed: 0.0,
+        method: case.flow.domain().method,
     }
 }
 

@@ -1,10 +1,13 @@
 //! A precursor: a periodic box of atmosphere that is spun up, and from which planes of wind are taken for
 //! studies.
 
+mod driving;
 mod faults;
+mod hub_control;
 mod plan;
 mod start;
 
+pub use hub_control::HubControl;
 pub use plan::PrecursorPlan;
 
 /// What a precursor is made of, in SI units and radians.
@@ -46,10 +49,14 @@ pub struct AirColumn {
     pub latitude: f64,
     /// Roughness length z₀ of the ground (m).
     pub roughness_length: f64,
-    /// Speed of the geostrophic wind (m/s).
-    pub geostrophic_wind: f64,
-    /// Where the geostrophic wind comes from (rad), clockwise from north.
-    pub geostrophic_direction: f64,
+    /// Speed of the geostrophic wind (m/s), where that is given.
+    pub geostrophic_wind: Option<f64>,
+    /// Where it comes from (rad), clockwise from north; west when absent.
+    pub geostrophic_direction: Option<f64>,
+    /// Speed of the mean wind at hub height (m/s), where that is given in its place and held.
+    pub hub_wind: Option<f64>,
+    /// Where that comes from (rad), clockwise from north; west when absent.
+    pub hub_direction: Option<f64>,
     /// Potential temperature below the inversion (K).
     pub temperature: f64,
     /// Where the inversion begins (m).
@@ -88,6 +95,8 @@ pub struct PrecursorTime {
 pub struct WantedPlanes {
     /// Height whose mean wind they stand across (m).
     pub hub_height: f64,
+    /// Diameter of the rotors that they are for (m), where it is known.
+    pub rotor_diameter: Option<f64>,
     /// Their width (m); the shorter side of the box when absent.
     pub width: Option<f64>,
     /// Their height (m); that of the inversion when absent.
@@ -116,11 +125,5 @@ impl Precursor {
     /// Height of the planes (m).
     pub fn plane_height(&self) -> f64 {
         self.planes.height.unwrap_or(self.air.inversion_height)
-    }
-
-    /// Geostrophic wind towards east and north (m/s).
-    pub fn geostrophic(&self) -> [f64; 2] {
-        let (s, c) = self.air.geostrophic_direction.sin_cos();
-        [-self.air.geostrophic_wind * s, -self.air.geostrophic_wind * c]
     }
 }

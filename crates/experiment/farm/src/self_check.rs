@@ -3,7 +3,8 @@
 
 use crate::Progress;
 use crate::assemble::{SMEARING_CELLS, TurbineModel};
-use crate::case::Wind;
+use crate::case::{Method, Wind};
+use crate::plan::Plan;
 use basis::{Commands, PerBlade, Vector3};
 use flow::inflow::MeanProfile;
 use flow::lattice::{self, Lattice};
@@ -78,29 +79,61 @@ pub struct Tunnel {
     pub spacing: f64,
     /// Step (s).
     pub interval: f64,
+    /// How its air is computed.
+    pub method: Method,
 }
 
 impl Tunnel {
     /// The one of the check before a study: as small as the walls' effect still follows its closed form.
-    pub fn of_study(spacing: f64, interval: f64) -> Self {
+    pub fn of_study(plan: &Plan) -> Self {
+        let Plan { spacing, interval, method, .. } = *plan;
         let [upstream, downstream, width] = [4.0, 4.0, 6.0];
-        Self { upstream, downstream, width, settling: 10.0, averaging: 1.0, spacing, interval }
+        Self {
+            upstream,
+            downstream,
+            width,
+            settling: 10.0,
+            averaging: 1.0,
+            spacing,
+            interval,
+            method,
+        }
     }
 
     /// The one in which a turbine's pitch response is identified: smaller, since walls change little of what
     /// pitch does. What is averaged is counted in periods of the pitch instead.
-    pub fn for_identification(spacing: f64, interval: f64) -> Self {
+    pub fn for_identification(plan: &Plan) -> Self {
+        let Plan { spacing, interval, method, .. } = *plan;
         let [upstream, downstream, width] = [3.0, 3.0, 5.0];
-        Self { upstream, downstream, width, settling: 8.0, averaging: 0.0, spacing, interval }
+        Self {
+            upstream,
+            downstream,
+            width,
+            settling: 8.0,
+            averaging: 0.0,
+            spacing,
+            interval,
+            method,
+        }
     }
 
     /// The one in which a machine is timed around a rotor of `diameter` (m): of some 800 000 cells, more than
     /// caches hold and few enough to be there at once.
-    pub fn for_timing(diameter: f64, spacing: f64, interval: f64) -> Self {
+    pub fn for_timing(diameter: f64, plan: &Plan) -> Self {
+        let Plan { spacing, interval, method, .. } = *plan;
         const CELLS_ACROSS: f64 = 84.0;
         let width = (CELLS_ACROSS * spacing / diameter).max(1.5);
         let [upstream, downstream] = [0.5 * width, 0.83 * width];
-        Self { upstream, downstream, width, settling: 0.0, averaging: 0.0, spacing, interval }
+        Self {
+            upstream,
+            downstream,
+            width,
+            settling: 0.0,
+            averaging: 0.0,
+            spacing,
+            interval,
+            method,
+        }
     }
 
     /// Cells along x, y and z around a rotor of `diameter` (m).
@@ -129,6 +162,7 @@ impl Tunnel {
         settings.kinematic_viscosity = wind.kinematic_viscosity;
         settings.ground = lattice::Ground::Periodic;
         settings.threads = threads;
+        self.method.apply(&mut settings);
         Lattice::new(settings, Arc::new(MeanProfile::Uniform { speed: wind.speed }))
     }
 }

@@ -101,11 +101,18 @@ pub struct ShippedPrecursor {
 }
 
 /// All of them.
-pub const PRECURSORS: &[ShippedPrecursor] = &[ShippedPrecursor {
-    name: "precursor-offshore",
-    file: include_str!("../../../../cases/precursor-offshore.toml"),
-    minutes: 150.0,
-}];
+pub const PRECURSORS: &[ShippedPrecursor] = &[
+    ShippedPrecursor {
+        name: "precursor-offshore",
+        file: include_str!("../../../../cases/precursor-offshore.toml"),
+        minutes: 170.0,
+    },
+    ShippedPrecursor {
+        name: "precursor-seed-000",
+        file: include_str!("../../../../cases/precursor-seed-000.toml"),
+        minutes: 290.0,
+    },
+];
 
 impl ShippedPrecursor {
     /// Its text for any folder.

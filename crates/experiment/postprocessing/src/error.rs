@@ -4,7 +4,9 @@ use crate::seeds::SeedsError;
 use analysis::AnalysisError;
 use farm::assemble::AssemblyError;
 use farm::case::Case;
+use flow::inflow::InflowError;
 use formats::atomic::FileError;
+use formats::case::CaseError;
 use formats::records::{Manifest, RunFolder};
 use formats::turbine_file::TurbineFileError;
 use miette::Diagnostic;
@@ -43,6 +45,10 @@ pub enum PostprocessingError {
         /// Why.
         source: AnalysisError,
     },
+    /// There are no curves in this program.
+    #[error("this program was built without the curve through changes over the phase offset")]
+    #[diagnostic(help("build it with its default features, without --no-default-features"))]
+    NoCurves,
     /// The case that the records hold is not that of their run.
     #[error("{} does not hold run {run} where it says, number {index} of its case", path.display())]
     #[diagnostic(help(
@@ -56,6 +62,14 @@ pub enum PostprocessingError {
         /// Its place in the case, from 0.
         index: usize,
     },
+    /// The file of a precursor is not understood.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Precursor(#[from] CaseError),
+    /// Planes of wind cannot be read.
+    #[error("the planes of wind cannot be read")]
+    #[diagnostic(help("restore the file, or make the precursor again"))]
+    Planes(#[from] InflowError),
     /// Several studies tell no gains together.
     #[error(transparent)]
     #[diagnostic(transparent)]

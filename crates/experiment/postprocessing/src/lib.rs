@@ -8,6 +8,7 @@ mod error;
 mod lock;
 mod over_offset;
 mod phase;
+mod precursor;
 mod seeds;
 mod signals;
 mod sweep;
@@ -21,6 +22,7 @@ pub use over_offset::over_offset;
 pub use phase::{
     PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, Replayed, phase, phases, tune,
 };
+pub use precursor::report_of_precursor;
 pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};
 pub use signals::blade_moments::{MomentsAnswer, MomentsLine, MomentsQuestion, moments};
 pub use signals::meandering::{MeanderingAxisNumbers, MeanderingNumbers, meandering};
@@ -45,7 +47,7 @@ pub struct ReportMade {
 }
 
 /// Makes the report of the study in `directory` from its records; of a sweep that of each of its studies,
-/// `sweep.html` over all of them, and its table.
+/// `sweep.html` over all of them, and its table; of a precursor its page.
 ///
 /// Where several processes do so at once, each waits for the one before: the last report tells of all runs
 /// that were complete when it began.
@@ -54,6 +56,10 @@ pub struct ReportMade {
 /// [`PostprocessingError::File`] for records that cannot be read, [`PostprocessingError::Report`] for a
 /// report that cannot be written.
 pub fn report(directory: &Path) -> Result<ReportMade, PostprocessingError> {
+    if precursor::is_precursor(directory) {
+        let page = report_of_precursor(directory)?;
+        return Ok(ReportMade { summaries: Vec::new(), sweep: None, page });
+    }
     let Some(swept) = records::read_sweep(directory)? else {
         let (summaries, page) = report_of_study(directory, report::write)?;
         return Ok(ReportMade { summaries, sweep: None, page });

@@ -4,6 +4,7 @@ mod draw;
 mod figures;
 mod layout;
 mod page;
+mod precursor;
 mod sentence;
 mod study;
 pub mod text_table;
@@ -17,6 +18,7 @@ pub use figures::synchronisation::{
     SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, Synchronisation,
     TrackFigure, TrackLine, TrackRow,
 };
+pub use precursor::{CoherenceLine, DriftRow, HubWind, LevelRow, PrecursorRecords, TimeHeightMap};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -133,6 +135,23 @@ pub fn write(study: &StudyRecords, directory: &Path) -> Result<(), ReportError> 
 /// Those of [`write()`].
 pub fn write_page(study: &StudyRecords, directory: &Path) -> Result<(), ReportError> {
     write_whole(&directory.join("report.html"), page(study)?.as_bytes())
+}
+
+/// Writes `report.html` and `figures/*.svg`, `figures/*.png` of the precursor of `records` into `directory`;
+/// gives the page's path.
+///
+/// # Errors
+/// [`ReportError::Write`] when the disk says no.
+pub fn write_precursor(
+    records: &PrecursorRecords,
+    directory: &Path,
+) -> Result<PathBuf, ReportError> {
+    let figures = figures::precursor::all(records);
+    let page = page::precursor::render(records, &figures)?;
+    write_figures(figures.iter(), directory)?;
+    let path = directory.join("report.html");
+    write_whole(&path, page.as_bytes())?;
+    Ok(path)
 }
 
 /// Writes `sweep.html` and the figures of the sweep of `table` into `directory`, made by the program of

@@ -9,7 +9,7 @@ use basis::records::PitchResponse;
 use control::Identification;
 use control::phase_sync::{PhaseEstimator, response_of};
 use farm::Progress;
-use farm::case::DynamicInflow;
+use farm::case::{DynamicInflow, Method};
 use farm::pitch_response::{
     CalibrationError, INDIVIDUAL_PITCH_STROUHAL, IdentificationCost, decoupling, decoupling_cost,
     individual_pitch_offset, individual_pitch_offset_cost, own_pitch, own_pitch_cost,
@@ -160,10 +160,14 @@ impl Prepared {
             inflow if inflow == usual => String::new(),
             inflow => format!(" {inflow:?}"),
         };
+        let method = match plan.method {
+            method if method == Method::default() => String::new(),
+            method => format!(" {method:?}"),
+        };
         let wind = &case.wind;
         sha256(
             format!(
-                "{} {} {} {}{inflow} {needed} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}{controller}",
+                "{} {} {} {}{inflow}{method} {needed} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {turbine}{controller}",
                 env!("CARGO_PKG_VERSION"),
                 placement.model,
                 placement.flexible,

@@ -12,7 +12,6 @@ mod simulation;
 pub use cost::PrecursorEstimate;
 pub use error::PrecursorError;
 pub use observer::{PrecursorObserver, PrecursorProgress};
-pub use result::is_steady;
 
 use farm::precursor::PrecursorPlan;
 use formats::case::{PrecursorFile, parse_precursor};

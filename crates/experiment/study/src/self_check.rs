@@ -78,7 +78,7 @@ impl Prepared {
             found.updates_per_second = self.timed_in_place(run)?;
         } else {
             let diameter = model.definition.rotor_diameter();
-            let tunnel = Tunnel::for_timing(diameter, self.plan.spacing, self.plan.interval);
+            let tunnel = Tunnel::for_timing(diameter, &self.plan);
             let speed =
                 updates_per_second(model, &self.case.wind, &tunnel, self.case.flow.threads)?;
             found.updates_per_second = Some(speed);
@@ -136,7 +136,7 @@ impl Prepared {
         self_check(
             model,
             &self.case.wind,
-            &Tunnel::of_study(self.plan.spacing, self.plan.interval),
+            &Tunnel::of_study(&self.plan),
             self.case.flow.threads,
             &mut |share| {
                 observer.preparing(&what, share);

@@ -1,6 +1,7 @@
 //! A precursor in a folder: a small box is spun up, stopped, resumed to the same bits, lengthened, and read
 //! as wind.
 
+use formats::case::parse_precursor;
 use formats::records::{Drift, PrecursorFolder, PrecursorResult};
 use formats::turbulence_box;
 use std::fs;
@@ -142,6 +143,33 @@ fn a_longer_one_goes_on_and_says_where_it_cannot() {
     done(&set(&later, true));
     let (_, at_once) = done(&options(folder.path(), "late", &later));
     assert!(bytes(&grown) == bytes(&at_once), "not the same bits after a longer spin-up");
+}
+
+#[test]
+fn a_wind_that_is_held_moves_what_drives_it_and_resumes_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = CASE.replace("geostrophic_wind = 8.0", "hub_wind = 7.5");
+    let case = text.replace("geostrophic_direction_deg", "hub_direction_deg");
+    let asked = |name: &str| {
+        let options = options(folder.path(), name, &[]);
+        fs::write(&options.case, &case).unwrap();
+        options
+    };
+    let (result, at_once) = done(&asked("at-once"));
+    let mut stopped = asked("stopped");
+    part(&stopped, true);
+    stopped.resume = true;
+    let direction = part(&stopped, false).expect("a record that has begun");
+    let (resumed, in_parts) = done(&stopped);
+    assert!(bytes(&in_parts) == bytes(&at_once), "not the same bits");
+    assert_eq!(resumed.geostrophic_speed, result.geostrophic_speed);
+    // It starts with that wind, into which faster air from above is mixed; hours would bring it back.
+    assert!((direction - 240.0).abs() < 3.0, "{direction}");
+    let record = result.record.expect("two blocks");
+    assert!(record.hub_speed.iter().all(|speed| (speed / 7.5 - 1.0).abs() < 0.05), "{record:?}");
+    let precursor = parse_precursor(Path::new("held"), &case, &[]).unwrap().precursor;
+    let moved = result.geostrophic_speed / precursor.geostrophic_speed() - 1.0;
+    assert!(moved.abs() > 1e-4 && moved.abs() < 0.1, "{moved}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::case::{
     Control, DynamicInflow, FROM_WEST, Flow, Instruments, Output, Placement, Position, Run, Shear,
     Solver, Time, TowerInfluence, TurbulenceModel, Wind,
 };
+use flow::lattice::Stencil;
 
 fn case(positions: &[[f64; 2]]) -> Case {
     let placement = |(index, &position): (usize, &[f64; 2])| Placement {
@@ -125,6 +126,27 @@ fn the_step_keeps_tips_and_wind_slow_and_minutes_whole() {
     let per_minute = 60.0 / plan.interval;
     assert!((per_minute - per_minute.round()).abs() < 1e-9);
     assert_eq!(plan.n_steps as f64 * plan.interval, 1500.0);
+}
+
+#[test]
+fn the_lattice_is_computed_as_the_case_asks() {
+    let settings_and_memory = |case: &Case| {
+        let plan = plan(case, &footprints()).unwrap();
+        let settings = crate::assemble::lattice_settings(case, &plan);
+        ((settings.stencil, settings.smagorinsky), (case.flow.solver.memory)(&plan))
+    };
+    let plain = case(&[[0.0, 0.0]]);
+    let (method, memory) = settings_and_memory(&plain);
+    assert_eq!(method, (Stencil::D3Q19, 0.12));
+
+    let mut asked = plain.clone();
+    asked.flow.values.set("velocity_set", "d3q27");
+    let (method, more) = settings_and_memory(&asked);
+    assert_eq!(method, (Stencil::D3Q27, 0.12));
+    assert_eq!(more * 80, memory * 112, "27 and 19 populations of four bytes, and four more");
+
+    asked.flow.values.set("smagorinsky_constant", 0.1);
+    assert_eq!(settings_and_memory(&asked).0, (Stencil::D3Q27, 0.1));
 }
 
 #[test]

@@ -41,6 +41,7 @@ impl Precursor {
         let mut faults = Vec::new();
         self.check_box(&mut faults);
         self.check_layer(&mut faults);
+        self.check_driving(&mut faults);
         self.check_ground(&mut faults);
         self.check_steps(&mut faults);
         self.check_planes(&mut faults);
@@ -110,6 +111,40 @@ impl Precursor {
         }
     }
 
+    fn check_driving(&self, faults: &mut Vec<Fault>) {
+        let air = &self.air;
+        let mut object = |key, message: String, label, fix: &str| {
+            faults.push(fault(("atmosphere", key), message, label, fix.to_owned()));
+        };
+        match (air.geostrophic_wind, air.hub_wind) {
+            (None, None) => object(
+                "geostrophic_wind",
+                "is missing, and so is atmosphere.hub_wind: one of the two drives the air"
+                    .to_owned(),
+                "without wind",
+                "give geostrophic_wind, or hub_wind where the wind at hub height is to be held",
+            ),
+            (Some(_), Some(_)) => object(
+                "hub_wind",
+                "stands beside atmosphere.geostrophic_wind, which would follow from it".to_owned(),
+                "one too many",
+                "leave one of the two out",
+            ),
+            _ => {}
+        }
+        for (key, direction, wind, other) in [
+            ("geostrophic_direction_deg", air.geostrophic_direction, air.geostrophic_wind, "hub_"),
+            ("hub_direction_deg", air.hub_direction, air.hub_wind, "geostrophic_"),
+        ] {
+            if direction.is_some() && wind.is_none() {
+                let message =
+                    format!("is of a wind that is not given, for atmosphere.{other}wind drives");
+                let fix = format!("use {other}direction_deg");
+                object(key, message, "of another wind", &fix);
+            }
+        }
+    }
+
     fn check_ground(&self, faults: &mut Vec<Fault>) {
         let air = &self.air;
         if air.latitude.abs() < TROPICS {
@@ -138,7 +173,7 @@ impl Precursor {
 
     fn check_steps(&self, faults: &mut Vec<Fault>) {
         let (time, air, cell) = (&self.time, &self.air, self.domain.cell);
-        let by_wind = MAXIMUM_LATTICE_SPEED * cell / air.geostrophic_wind;
+        let by_wind = MAXIMUM_LATTICE_SPEED * cell / self.geostrophic_speed();
         let by_buoyancy = self.shortest_period() / STEPS_OF_A_PERIOD;
         let by_damping = 0.5 / air.damping_rate;
         let step = self.plan().interval;
@@ -163,6 +198,14 @@ impl Precursor {
                 let fix = format!("use at least {step:.4} s");
                 faults.push(fault(("time", key), message, "too short", fix));
             }
+        }
+        if time.record >= step && time.record < time.statistics_interval {
+            let message = format!(
+                "= {} s is shorter than time.statistics_interval, {} s: nothing would be known of it",
+                time.record, time.statistics_interval
+            );
+            let fix = format!("use at least {} s, or a shorter interval", time.statistics_interval);
+            faults.push(fault(("time", "record"), message, "too short", fix));
         }
         let all = time.spin_up + time.record;
         if all / time.statistics_interval > MOST_STATISTICS {

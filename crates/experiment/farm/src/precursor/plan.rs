@@ -11,8 +11,6 @@ use flow::lattice::{Ends, Ground, LatticeSettings, Stencil};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Rate at which the earth turns (rad/s).
-const EARTH: f64 = 7.2921e-5;
 /// Geostrophic wind of a chosen step, in cells a step: gusts and jets blow faster.
 const CHOSEN_SPEED: f64 = 0.1;
 /// Steps in the shortest period of a buoyancy oscillation, and a little more (–).
@@ -21,6 +19,8 @@ const STEPS_OF_A_PERIOD: f64 = 21.0;
 const MOST_DAMPED: f64 = 0.4;
 /// Time that is a whole number of chosen steps (s).
 const MINUTE: f64 = 60.0;
+/// Time between two updates of the control that holds the wind at hub height (s), which acts over hours.
+const CONTROL_INTERVAL: f64 = 10.0;
 /// Cells that the geostrophic wind crosses between two planes where no interval is given (–).
 const CELLS_BETWEEN: f64 = 0.5;
 /// Departure of the first temperatures from their profile, at most (K), and up to which height over that of
@@ -45,6 +45,8 @@ pub struct PrecursorPlan {
     pub plane_stride: u64,
     /// Steps from one record of statistics to the next (–).
     pub statistics_stride: u64,
+    /// Steps from one update of the control of the wind at hub height to the next (–).
+    pub control_stride: u64,
     /// Points of the planes. Their speed is the geostrophic one, until that of the record is known.
     pub grid: PlaneGrid,
 }
@@ -79,7 +81,7 @@ impl Precursor {
 
     /// The step that is taken where none is given (s).
     fn chosen_step(&self) -> f64 {
-        let by_wind = CHOSEN_SPEED * self.domain.cell / self.air.geostrophic_wind;
+        let by_wind = CHOSEN_SPEED * self.domain.cell / self.geostrophic_speed();
         let by_damping = MOST_DAMPED / self.air.damping_rate;
         let longest = by_wind.min(by_damping).min(self.shortest_period() / STEPS_OF_A_PERIOD);
         MINUTE / (MINUTE / longest).ceil()
@@ -96,7 +98,7 @@ impl Precursor {
     pub fn plan(&self) -> PrecursorPlan {
         let (cell, time) = (self.domain.cell, &self.time);
         let interval = time.step.unwrap_or_else(|| self.chosen_step());
-        let usual = CELLS_BETWEEN * cell / self.air.geostrophic_wind;
+        let usual = CELLS_BETWEEN * cell / self.geostrophic_speed();
         let steps = |duration: f64| ((duration / interval + 1e-6).floor() as u64).max(1);
         let plane_stride = steps(self.planes.interval.unwrap_or(usual));
         let first_plane = (time.spin_up / interval - 1e-6).ceil() as u64;
@@ -110,7 +112,7 @@ impl Precursor {
             spacing: [cell; 2],
             first: [-0.5 * (n_y - 1) as f64 * cell, 0.5 * cell],
             interval: plane_stride as f64 * interval,
-            speed: self.air.geostrophic_wind,
+            speed: self.geostrophic_speed(),
             n_steps: n_planes as usize,
             repeats: false,
         };
@@ -122,6 +124,7 @@ impl Precursor {
             n_steps: first_plane.saturating_add((n_planes - 1).saturating_mul(plane_stride)),
             plane_stride,
             statistics_stride: steps(time.statistics_interval),
+            control_stride: steps(CONTROL_INTERVAL),
             grid,
         }
     }
@@ -136,7 +139,7 @@ impl Precursor {
             spacing,
             plan.n_cells,
             plan.interval,
-            air.geostrophic_wind,
+            self.geostrophic_speed(),
         );
         settings.ends = Ends::Periodic;
         settings.ground = Ground::WallStress { roughness_length: air.roughness_length };
@@ -160,7 +163,7 @@ impl Precursor {
         };
         let noise = NOISE_BELOW * air.inversion_height;
         Atmosphere {
-            coriolis: 2.0 * EARTH * air.latitude.sin(),
+            coriolis: self.coriolis(),
             driving: Driving::Geostrophic(self.geostrophic()),
             temperature: vec![
                 [0.0, low],

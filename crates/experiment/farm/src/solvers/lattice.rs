@@ -8,8 +8,8 @@ use crate::domain::{self, Sides};
 use crate::plan::{self, Plan};
 use flow::lattice::Lattice;
 
-/// Bytes of a cell in the flow field, boundaries included.
-const CELL_BYTES: u64 = 80;
+/// Bytes of a cell in the flow field beside its populations of four bytes, boundaries included.
+const FURTHER_BYTES: u64 = 4;
 
 /// Cells per diameter below which wakes are smeared (–).
 const CELLS_TO_WARN: f64 = 16.0;
@@ -33,7 +33,7 @@ pub static LATTICE: SolverKind = SolverKind {
     warnings,
     sound_speed: |plan| Some(plan::LATTICE_SOUND_SPEED * plan.spacing / plan.interval),
     plan: plan::in_a_box,
-    memory: |plan| plan.cells() as u64 * CELL_BYTES,
+    memory: |plan| plan.cells() as u64 * (4 * plan.method.stencil.n_directions() + FURTHER_BYTES),
     begin,
     begin_alone,
     updates_alone: |tunnel, diameter| tunnel.n_cells(diameter).iter().product::<usize>() as f64,

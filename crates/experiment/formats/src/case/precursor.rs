@@ -15,7 +15,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Keys that decide nothing of the air before the end of a record.
-const UNDECISIVE: [&str; 5] = ["name", "description", "threads", "spin_up", "record"];
+const UNDECISIVE: [&str; 6] =
+    ["name", "description", "threads", "spin_up", "record", "rotor_diameter"];
 /// Time of an hour (s).
 const HOUR: f64 = 3600.0;
 
@@ -117,6 +118,7 @@ fn precursor_of(values: &Values) -> Precursor {
         Some(Value::Whole(number)) => Some(*number),
         _ => None,
     };
+    let optional_angle = |key| air.has(key).then(|| air.angle(key));
     let text = |key| values.has(key).then(|| values.word(key).to_owned());
     Precursor {
         name: values.word("name").to_owned(),
@@ -130,8 +132,10 @@ fn precursor_of(values: &Values) -> Precursor {
         air: AirColumn {
             latitude: air.angle("latitude_deg"),
             roughness_length: air.number("roughness_length"),
-            geostrophic_wind: air.number("geostrophic_wind"),
-            geostrophic_direction: air.angle("geostrophic_direction_deg"),
+            geostrophic_wind: air.optional_number("geostrophic_wind"),
+            geostrophic_direction: optional_angle("geostrophic_direction_deg"),
+            hub_wind: air.optional_number("hub_wind"),
+            hub_direction: optional_angle("hub_direction_deg"),
             temperature: air.number("temperature"),
             inversion_height: air.number("inversion_height"),
             inversion_strength: air.number("inversion_strength"),
@@ -150,6 +154,7 @@ fn precursor_of(values: &Values) -> Precursor {
         },
         planes: WantedPlanes {
             hub_height: planes.number("hub_height"),
+            rotor_diameter: planes.optional_number("rotor_diameter"),
             width: planes.optional_number("width"),
             height: planes.optional_number("height"),
             interval: planes.optional_number("interval"),

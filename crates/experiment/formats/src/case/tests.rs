@@ -6,7 +6,8 @@ mod numbers;
 use super::*;
 use control::meandering::{Followed, Leader, MeanderingSettings, Reference};
 use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
-use farm::case::{Control, Ground, Position, Sense, Sides};
+use farm::case::{Control, Ground, Method, Position, Sense, Sides};
+use flow::lattice::Stencil;
 use proptest::prelude::*;
 use std::fs;
 
@@ -218,6 +219,8 @@ fn overrides_reach_every_key() {
         "wind.speed = 8",
         "flow.sides=slip",
         "flow.ground={ roughness_length = 0.001 }",
+        "flow.velocity_set=d3q27",
+        "flow.smagorinsky_constant=0.1",
         "turbine.0.model=iea-22mw",
         "turbine.T2.position_diameters=[7, 0]",
         "run.helix.control.T1.amplitude_deg=3",
@@ -227,6 +230,8 @@ fn overrides_reach_every_key() {
     assert_eq!(case.wind.speed, 8.0);
     assert_eq!(case.flow.domain().sides, Sides::Slip);
     assert_eq!(case.flow.domain().ground, Ground::Rough { roughness_length: 0.001 });
+    let method = Method { stencil: Stencil::D3Q27, smagorinsky: Some(0.1) };
+    assert_eq!(case.flow.domain().method, method);
     assert_eq!(case.turbines[0].model, "iea-22mw");
     assert_eq!(case.turbines[1].position, Position::Diameters([7.0, 0.0]));
     let helix = &case.runs[1].control[0];

@@ -13,7 +13,7 @@ mod statistics;
 pub use instants::InstantWriter;
 pub use read::{read_phases, read_plane, read_planes};
 pub use setting::{PlacedTurbine, PlaneSetting};
-pub use statistics::{Column, TimeHeight, write_statistics};
+pub use statistics::{Column, StoredStatistics, TimeHeight, read_statistics, write_statistics};
 
 use crate::{FileError, atomic};
 use basis::records::{Plane, PlaneAxes};

@@ -117,7 +117,7 @@ fn velocities(file: &NcFile, n_values: usize) -> Result<[Vec<f32>; 3], String> {
 }
 
 /// The values of the coordinate `name` in a file of `most` bytes.
-fn coordinate(file: &NcFile, name: &str, most: usize) -> Result<Vec<f64>, String> {
+pub(super) fn coordinate(file: &NcFile, name: &str, most: usize) -> Result<Vec<f64>, String> {
     let shape = file.variable(name).map_err(|_| lacks(name))?.shape();
     let size = shape.iter().try_fold(1_u64, |n, m| n.checked_mul(*m));
     let size = size.and_then(|size| usize::try_from(size).ok());
@@ -128,7 +128,7 @@ fn coordinate(file: &NcFile, name: &str, most: usize) -> Result<Vec<f64>, String
     Ok(values)
 }
 
-fn lacks(name: &str) -> String {
+pub(super) fn lacks(name: &str) -> String {
     format!("it lacks `{name}`")
 }
 

@@ -1,11 +1,14 @@
 //! Statistics over time and height in a NetCDF file, for xarray, Panoply and the like.
 
+use super::read::{coordinate, lacks};
 use super::{text, unwritable};
 use crate::{FileError, atomic};
+use netcdf_reader::NcFile;
 use netcdf_writer::{DimensionId, Error, NcFileBuilder, NcWriteOptions};
 use std::path::Path;
 
 const WHAT: &str = "statistics over time and height (NetCDF)";
+const FIX: &str = "restore the file, or make the precursor again";
 
 /// Values of one quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +36,62 @@ pub struct TimeHeight<'a> {
     pub series: Vec<Column<'a>>,
     /// What has one for each time and height.
     pub profiles: Vec<Column<'a>>,
+}
+
+/// Statistics as a file holds them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StoredStatistics {
+    /// Times (s).
+    pub times: Vec<f64>,
+    /// Heights (m).
+    pub heights: Vec<f64>,
+    /// Names with their values: one for each time, or for each time and height, heights fastest.
+    columns: Vec<(String, Vec<f64>)>,
+}
+
+impl StoredStatistics {
+    /// Values of the column called `name`: one for each time, or for each time and height, heights fastest;
+    /// empty where there is none.
+    pub fn column(&self, name: &str) -> &[f64] {
+        let column = self.columns.iter().find(|(other, _)| other == name);
+        column.map_or(&[], |(_, values)| values)
+    }
+}
+
+/// Reads the columns called `series`, over time, and `profiles`, over time and height, out of `path`.
+///
+/// # Errors
+/// [`FileError::System`] when it cannot be read, [`FileError::Content`] when it is something else.
+pub fn read_statistics(
+    path: &Path,
+    series: &[&str],
+    profiles: &[&str],
+) -> Result<StoredStatistics, FileError> {
+    let bytes = atomic::read_bytes(path, WHAT)?;
+    decode(&bytes, series, profiles).map_err(|problem| FileError::content(WHAT, path, problem, FIX))
+}
+
+/// The columns called `series` and `profiles` in `bytes`.
+pub(crate) fn decode(
+    bytes: &[u8],
+    series: &[&str],
+    profiles: &[&str],
+) -> Result<StoredStatistics, String> {
+    let most = bytes.len();
+    let file = NcFile::from_bytes(bytes).map_err(|error| error.to_string())?;
+    let (times, heights) = (coordinate(&file, "time", most)?, coordinate(&file, "z", most)?);
+    let mut columns = Vec::new();
+    for (names, n_each) in [(series, 1), (profiles, heights.len())] {
+        for name in names {
+            file.variable(name).map_err(|_| lacks(name))?;
+            let values = coordinate(&file, name, most)?;
+            if Some(values.len()) != times.len().checked_mul(n_each) {
+                return Err(format!("`{name}` holds {} values", values.len()));
+            }
+            columns.push(((*name).to_owned(), values));
+        }
+    }
+    Ok(StoredStatistics { times, heights, columns })
 }
 
 /// Writes `statistics` to `path`.
@@ -97,6 +156,17 @@ mod tests {
         };
         assert_eq!((read("time"), read("z")), (vec![0.0, 60.0], vec![10.0, 30.0, 50.0]));
         assert_eq!((read("friction_velocity"), read("speed")), (series.to_vec(), profile.to_vec()));
+        let stored = read_statistics(&path, &["friction_velocity"], &["speed"]).unwrap();
+        assert_eq!(
+            (&stored.times[..], &stored.heights[..]),
+            (&[0.0, 60.0][..], statistics.heights)
+        );
+        assert_eq!(stored.column("friction_velocity"), series);
+        assert_eq!((stored.column("speed"), stored.column("other")), (&profile[..], &[][..]));
+        let lacking = read_statistics(&path, &["speed"], &[]).unwrap_err().to_string();
+        assert!(lacking.contains("`speed` holds 6 values"), "{lacking}");
+        let lacking = read_statistics(&path, &["depth"], &[]).unwrap_err().to_string();
+        assert!(lacking.contains("it lacks `depth`"), "{lacking}");
         let speed = file.variable("speed").unwrap();
         assert_eq!(speed.shape(), [2, 3]);
     }

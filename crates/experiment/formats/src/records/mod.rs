@@ -293,24 +293,35 @@ pub fn read_summary(folder: &RunFolder) -> Result<Summary, FileError> {
     read_layout(&folder.summary_path(), SUMMARY, SCHEMA_VERSION)
 }
 
-/// Reads what stands at `path` in the layout `expected`.
+/// Reads what stands at `path` in the layout `expected`, of a study.
 fn read_layout<T: DeserializeOwned>(
     path: &Path,
     what: &'static str,
     expected: u32,
 ) -> Result<T, FileError> {
     const AGAIN: &str = "make the run again with `wakemix run CASE --overwrite`, or read it with the wakemix that manifest.json names";
+    const LATER: &str = "use the wakemix that manifest.json names, or a later one";
+    read_layout_or(path, what, expected, AGAIN, LATER)
+}
+
+/// Reads what stands at `path` in the layout `expected`; `again` and `later` are the fixes for an earlier
+/// layout and for a later one.
+fn read_layout_or<T: DeserializeOwned>(
+    path: &Path,
+    what: &'static str,
+    expected: u32,
+    again: &'static str,
+    later: &'static str,
+) -> Result<T, FileError> {
     let text = atomic::read_text(path, what)?;
     // Another version holds other fields: what it is comes before what it lacks.
     let (found, fix) = match version_of(&text, path, what)? {
-        None => ("it has no schema_version, as that of an earlier wakemix".to_owned(), AGAIN),
+        None => ("it has no schema_version, as that of an earlier wakemix".to_owned(), again),
         Some(version) => {
             let (writer, fix) = match version.cmp(&expected) {
                 Ordering::Equal => return parse_json(&text, path, what),
-                Ordering::Less => ("an earlier", AGAIN),
-                Ordering::Greater => {
-                    ("a later", "use the wakemix that manifest.json names, or a later one")
-                }
+                Ordering::Less => ("an earlier", again),
+                Ordering::Greater => ("a later", later),
             };
             (format!("its schema_version is {version}, that of {writer} wakemix"), fix)
         }

@@ -1,6 +1,6 @@
 //! What a precursor leaves behind: `DIR/` with its case, statistics, planes of wind and result.
 
-use super::{gone, parse_json, write_json};
+use super::{gone, read_layout_or, write_json};
 use crate::lock::Lock;
 use crate::{FileError, atomic, leftovers};
 use serde::{Deserialize, Serialize};
@@ -8,8 +8,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Version of the layout of [`PrecursorResult`].
-pub const PRECURSOR_VERSION: u32 = 1;
+pub const PRECURSOR_VERSION: u32 = 2;
 const WHAT: &str = "the result of a precursor";
+/// Changes from block to block of a wind that is steady: of speed and friction velocity (–), of direction
+/// (deg).
+const STEADY_SPEED: f64 = 0.01;
+const STEADY_FRICTION: f64 = 0.03;
+const STEADY_DIRECTION: f64 = 1.0;
 
 /// What came of a precursor. It is complete with it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +31,8 @@ pub struct PrecursorResult {
     pub backend: String,
     /// When it was complete (UTC, RFC 3339).
     pub finished: String,
+    /// What a reader of the numbers must know.
+    pub warnings: Vec<String>,
     /// The planes of wind.
     pub planes: RecordedPlanes,
     /// What changed from one half of the end of the spin-up to the other; absent without a spin-up.
@@ -36,8 +43,12 @@ pub struct PrecursorResult {
     pub profile: Vec<ProfileRow>,
     /// Friction velocity over the time that was recorded (m/s).
     pub friction_velocity: f64,
-    /// Height where the stress is a twentieth of the ground's, over 0.95, in that time (m).
+    /// Height where the mean stress of that time is a twentieth of the ground's, over 0.95 (m).
     pub boundary_layer_height: f64,
+    /// Speed of the geostrophic wind that drove it at the end (m/s).
+    pub geostrophic_speed: f64,
+    /// Where that came from (deg, clockwise from north).
+    pub geostrophic_direction_deg: f64,
     /// Cells (–).
     pub n_cells: u64,
     /// Steps (–).
@@ -86,6 +97,14 @@ pub struct Drift {
 }
 
 impl Drift {
+    /// Whether it is that of a wind that has become steady: at most 1 % in speed at hub height, 3 % in
+    /// friction velocity and 1° in direction from one block to the next.
+    pub fn is_steady(&self) -> bool {
+        self.of_speed().abs() <= STEADY_SPEED
+            && self.of_friction().abs() <= STEADY_FRICTION
+            && self.of_direction().abs() <= STEADY_DIRECTION
+    }
+
     /// Change of the speed at hub height over its mean (–).
     pub fn of_speed(&self) -> f64 {
         change(self.hub_speed)
@@ -168,10 +187,16 @@ impl PrecursorFolder {
         self.path.join("precursor.json")
     }
 
+    /// `report.html`; its figures lie in `figures`.
+    pub fn report_path(&self) -> PathBuf {
+        self.path.join("report.html")
+    }
+
     /// All of them, the result first.
-    fn files(&self) -> [PathBuf; 6] {
+    fn files(&self) -> [PathBuf; 7] {
         [
             self.result_path(),
+            self.report_path(),
             self.checkpoint_path(),
             self.planes_path(),
             atomic::part_of(&self.planes_path()),
@@ -198,13 +223,13 @@ impl PrecursorFolder {
         self.files().iter().try_for_each(|file| gone(fs::remove_file(file), file))
     }
 
-    /// Makes the precursor one that is under way again, without result and planes, which will be others; what
-    /// it goes on from stays.
+    /// Makes the precursor one that is under way again, without result, report and planes, which will be
+    /// others; what it goes on from stays.
     ///
     /// # Errors
     /// [`FileError::System`].
     pub fn reopen(&self) -> Result<(), FileError> {
-        let files = [self.result_path(), self.planes_path()];
+        let files = [self.result_path(), self.report_path(), self.planes_path()];
         files.iter().try_for_each(|file| gone(fs::remove_file(file), file))
     }
 
@@ -245,6 +270,46 @@ impl PrecursorFolder {
     /// [`FileError::System`], and [`FileError::Content`] when it is something else.
     pub fn read_result(&self) -> Result<PrecursorResult, FileError> {
         let path = self.result_path();
-        parse_json(&atomic::read_text(&path, WHAT)?, &path, WHAT)
+        read_layout_or(&path, WHAT, PRECURSOR_VERSION, AGAIN, LATER)
+    }
+}
+
+/// What helps where the result is of another layout.
+const AGAIN: &str = "make the precursor again with `wakemix inflow precursor CASE --overwrite`, or read it with the wakemix that made it";
+const LATER: &str = "use the wakemix that made it, or a later one";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_result_of_an_earlier_program_is_refused_with_what_to_do() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = PrecursorFolder::new(folder.path());
+        std::fs::create_dir_all(folder.result_path().parent().unwrap()).unwrap();
+        std::fs::write(folder.result_path(), r#"{ "schema_version": 1 }"#).unwrap();
+        let FileError::Content { problem, fix, .. } = folder.read_result().unwrap_err() else {
+            panic!("another error than that of the version");
+        };
+        assert!(problem.contains("its schema_version is 1") && fix.contains("inflow precursor"));
+    }
+
+    #[test]
+    fn a_wind_that_changes_little_is_steady() {
+        let steady = Drift {
+            block: 3600.0,
+            hub_speed: [9.0, 9.05],
+            direction_deg: [359.6, 0.4],
+            friction_velocity: [0.3, 0.295],
+        };
+        assert!(steady.is_steady());
+        for unsteady in [
+            Drift { hub_speed: [9.0, 9.2], ..steady },
+            Drift { direction_deg: [359.6, 1.4], ..steady },
+            Drift { friction_velocity: [0.3, 0.28], ..steady },
+            Drift { friction_velocity: [0.3, f64::NAN], ..steady },
+        ] {
+            assert!(!unsteady.is_steady(), "{unsteady:?}");
+        }
     }
 }

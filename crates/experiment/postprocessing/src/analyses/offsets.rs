@@ -1,6 +1,7 @@
 //! `offsets`: power and loads over the phase offset, and the best offset with its interval.
 
 use super::{Analysis, Answer, Of, Request, with_interval};
+use crate::synchronisation::curve::CURVES;
 use crate::{PostprocessingError, over_offset};
 use report::{CurveEnd, CurvePoint, OffsetFigure, OffsetPanel};
 use serde_json::json;
@@ -18,6 +19,9 @@ pub(super) const ANALYSIS: Analysis = Analysis {
 };
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
+    if !CURVES {
+        return Err(PostprocessingError::NoCurves);
+    }
     let found = over_offset(request.run())?;
     let texts: Vec<String> = found.iter().flat_map(|(_, figures)| figures).map(text).collect();
     let json = found.iter().map(|(name, figures)| {
@@ -112,6 +116,7 @@ mod tests {
     use basis::records::Statistic;
     use report::OffsetPoint;
 
+    #[cfg(feature = "curves")]
     #[test]
     fn the_best_offset_stands_with_its_interval_in_text_and_json() {
         let best = 150_f64.to_radians();

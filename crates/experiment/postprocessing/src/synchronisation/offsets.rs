@@ -1,6 +1,6 @@
 //! Power and loads over the phase offset, with the curve that a Gaussian process puts through them.
 
-use super::curve::offset_panel;
+use super::curve::{CURVES, offset_panel};
 use super::{Joined, Synchronised};
 use crate::PostprocessingError;
 use analysis::statistics::{BLOCK_LENGTH, gain};
@@ -38,10 +38,11 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, Postpro
     let names: Vec<&str> =
         places.iter().map(|&index| study.case.turbines[index].name.as_str()).collect();
     let joining = &study.case.turbines[study.turbine].name;
+    let without = if CURVES { "" } else { "; built without the curve" };
     let mut figures = vec![OffsetFigure {
         name: "power-over-offset".into(),
         title: format!("Power over the phase offset of {joining}"),
-        label: format!("power against the run {against} (%)"),
+        label: format!("power against the run {against} (%){without}"),
         panels: power(study, &joined, &names)?,
     }];
     for (channel, title) in LOADS {
@@ -53,7 +54,7 @@ pub(super) fn offsets(study: &Synchronised) -> Result<Vec<OffsetFigure>, Postpro
         figures.push(OffsetFigure {
             name: format!("load-over-offset-{channel}"),
             title: format!("Fatigue over the phase offset of {joining}: {title}"),
-            label: format!("equivalent load against {against} (%)"),
+            label: format!("equivalent load against {against} (%){without}"),
             panels,
         });
     }

@@ -3,6 +3,7 @@
 mod gains;
 pub(crate) mod pitch;
 pub(crate) mod power;
+pub(crate) mod precursor;
 mod profiles;
 mod rotors;
 mod sheet;

@@ -2,6 +2,7 @@
 
 mod control;
 mod loads;
+pub(crate) mod precursor;
 pub(crate) mod sweep;
 mod tables;
 
@@ -17,6 +18,8 @@ use minijinja::{Environment, Value, context};
 use std::fmt::Write;
 
 const TEMPLATE: &str = include_str!("report.html");
+/// How every page begins.
+const HEAD: &str = include_str!("head.html");
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 /// Zoom and pointer of D3, and its licences.
@@ -27,9 +30,6 @@ const D3_LICENCES: &str = include_str!("d3/LICENSE");
 pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportError> {
     let records = study.records;
     let best = study.best();
-    let mut environment = Environment::new();
-    // The name's ending turns escaping on.
-    environment.add_template("report.html", TEMPLATE)?;
     let warnings = warnings(study);
     let (glance_heads, glance) = tables::glance(study);
     let lead = leading(figures);
@@ -40,12 +40,10 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
         .filter(|run| best.is_some_and(|best| best.summary.run != run.summary.run))
         .filter_map(|run| Some(vec![run.summary.run.clone(), sentence::short_gain(study, run)?]))
         .collect();
-    let page = environment.get_template("report.html")?.render(context! {
+    let own = context! {
         title => records.case_name.clone(),
         description => records.description.clone(),
         version => records.version.clone(),
-        style => Value::from_safe_string(format!("{}{STYLE}", inks())),
-        script => Value::from_safe_string(format!("/*\n{D3_LICENCES}*/\n{D3}\n{SCRIPT}")),
         incomplete => sentence::incomplete(study),
         headline => sentence::headline(study),
         confidence => sentence::confidence(study),
@@ -74,6 +72,21 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
         phases => control::phases(study),
         costs => tables::costs(study),
         case_text => records.case_text.clone(),
+    };
+    filled("report.html", TEMPLATE, own)
+}
+
+/// The page of the `template` called `name`, filled in with what is its `own`; head, style and script are
+/// those of every page.
+fn filled(name: &'static str, template: &'static str, own: Value) -> Result<String, ReportError> {
+    let mut environment = Environment::new();
+    // The name's ending turns escaping on.
+    environment.add_template("head.html", HEAD)?;
+    environment.add_template(name, template)?;
+    let page = environment.get_template(name)?.render(context! {
+        style => Value::from_safe_string(format!("{}{STYLE}", inks())),
+        script => Value::from_safe_string(format!("/*\n{D3_LICENCES}*/\n{D3}\n{SCRIPT}")),
+        ..own
     })?;
     Ok(page + "\n")
 }

@@ -1,11 +1,11 @@
 //! The page of a sweep.
 
-use super::{D3, D3_LICENCES, SCRIPT, STYLE, drawing, inks};
+use super::{drawing, filled};
 use crate::draw::Figure;
 use crate::figures::sweep::{key_name, settings};
 use crate::{ReportError, words};
 use basis::records::{Statistic, SweepPart, SweepRow, SweepTable, SweptKey};
-use minijinja::{Environment, Value, context};
+use minijinja::{Value, context};
 
 const TEMPLATE: &str = include_str!("sweep.html");
 /// Reports of studies that a row links to at most.
@@ -17,25 +17,20 @@ pub(crate) fn render(
     figures: &[Figure],
     version: &str,
 ) -> Result<String, ReportError> {
-    let mut environment = Environment::new();
-    // The name's ending turns escaping on.
-    environment.add_template("sweep.html", TEMPLATE)?;
     let drawings = figures.iter().map(drawing).collect::<Result<Vec<_>, _>>()?;
     let parts = table.part_names();
-    let page = environment.get_template("sweep.html")?.render(context! {
+    let own = context! {
         title => table.case.clone(),
         description => description(table),
         version => version,
-        style => Value::from_safe_string(format!("{}{STYLE}", inks())),
-        script => Value::from_safe_string(format!("/*\n{D3_LICENCES}*/\n{D3}\n{SCRIPT}")),
         headline => headline(table),
         convention => convention(table),
         remarks => table.remarks.iter().map(|remark| words::capitalised(remark)).collect::<Vec<_>>(),
         figures => drawings,
         heads => heads(table, &parts),
         rows => table.rows.iter().map(|row| line(table, row, &parts)).collect::<Vec<_>>(),
-    })?;
-    Ok(page + "\n")
+    };
+    filled("sweep.html", TEMPLATE, own)
 }
 
 fn description(table: &SweepTable) -> String {

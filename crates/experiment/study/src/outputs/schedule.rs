@@ -71,6 +71,7 @@ mod tests {
             positions: Vec::new(),
             blockage: 0.0,
             lattice_speed: 0.0,
+            method: Default::default(),
         }
     }
 

@@ -43,7 +43,10 @@ control.T2 = {{ kind = "phase-sync", offset_deg = 90.0, amplitude_deg = 2.0{keys
 }
 
 fn key(keys: &str) -> String {
-    let setup = setup(keys, &[]);
+    key_of(&setup(keys, &[]))
+}
+
+fn key_of(setup: &Prepared) -> String {
     let control = &setup.case.runs[0].control[1];
     let needed = control.kind().identification(control).expect("a calibration");
     setup.key(1, &Needed::Control(needed))
@@ -75,6 +78,18 @@ fn noise_that_is_given_is_another_calibration_and_none_leaves_no_trace() {
     assert_ne!(given, usual);
     assert_ne!(key(", measurement_noise_1s_mnm = 0.6"), given);
     assert_ne!(key(", process_noise_amplitude = 0.5"), given);
+}
+
+#[test]
+fn another_velocity_set_or_constant_is_another_calibration() {
+    let key = |more: &[&str]| {
+        let resolved = ["flow.solver=lattice", "flow.cells_per_diameter=8", "flow.step=0.05"];
+        key_of(&setup("", &[&resolved[..], more].concat()))
+    };
+    let usual = key(&[]);
+    assert_eq!(key(&["flow.velocity_set=d3q19"]), usual);
+    assert_ne!(key(&["flow.velocity_set=d3q27"]), usual);
+    assert_ne!(key(&["flow.smagorinsky_constant=0.1"]), usual);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! What a precursor will cost, known before it starts.
 
 use super::error::PrecursorError;
+use super::levels::OF_LEVELS;
 use farm::precursor::{Precursor, PrecursorPlan};
 use flow::FlowSolver;
 use flow::lattice::Lattice;
@@ -14,7 +15,7 @@ const CELL_BYTES: u64 = 146;
 /// the full field.
 const POINT_BYTES: u64 = 3 * (size_of::<f32>() + size_of::<i16>()) as u64;
 /// Bytes that a level takes in a record of statistics, in the file and in each checkpoint.
-const LEVEL_BYTES: u64 = 17 * size_of::<f64>() as u64;
+const LEVEL_BYTES: u64 = (OF_LEVELS.len() * size_of::<f64>()) as u64;
 /// Most cells of a trial along x and y (–), and how long it takes.
 const TRIAL_CELLS: usize = 64;
 const TRIAL: Duration = Duration::from_millis(300);

@@ -1,8 +1,8 @@
 //! Statistics of the levels over time: kept, written, averaged over blocks.
 
 use super::levels::{
-    DEPTH, FRICTION, HEAT_FLUX, HUB_DIRECTION, HUB_SPEED, INTENSITY, OF_LAYER, OF_LEVELS, STRESS,
-    TEMPERATURE, direction, wind,
+    FRICTION, GEOSTROPHIC, HEAT_FLUX, HUB_DIRECTION, HUB_SPEED, INTENSITY, Instant, OF_LAYER,
+    OF_LEVELS, RESOLVED_STRESS, TEMPERATURE, UNRESOLVED_STRESS, depth, direction, wind,
 };
 use flow::lattice::atmosphere::LevelStatistics;
 use formats::FileError;
@@ -26,8 +26,9 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Adds what `levels` tell at `time` (s), with a hub at the height `hub` (m).
-    pub(super) fn add(&mut self, time: f64, levels: &[LevelStatistics], hub: f64) {
+    /// Adds what the box tells at `time` (s).
+    pub(super) fn add(&mut self, time: f64, instant: Instant) {
+        let levels = instant.levels;
         if self.times.is_empty() {
             self.heights = levels.iter().map(|level| level.height).collect();
             self.series = vec![Vec::new(); OF_LAYER.len()];
@@ -35,7 +36,7 @@ impl History {
         }
         self.times.push(time);
         for (column, quantity) in self.series.iter_mut().zip(&OF_LAYER) {
-            column.push((quantity.of)(levels, hub));
+            column.push((quantity.of)(instant));
         }
         for (column, quantity) in self.profiles.iter_mut().zip(&OF_LEVELS) {
             column.extend(levels.iter().map(quantity.of));
@@ -58,6 +59,12 @@ impl History {
     pub(super) fn latest(&self) -> Option<[f64; 2]> {
         let last = self.times.len().checked_sub(1)?;
         Some([self.series[HUB_SPEED][last], self.series[FRICTION][last]])
+    }
+
+    /// Speed of the geostrophic wind (m/s) and where it comes from (deg) at the latest time.
+    pub(super) fn last_geostrophic(&self) -> Option<[f64; 2]> {
+        let last = self.times.len().checked_sub(1)?;
+        Some(GEOSTROPHIC.map(|which| self.series[which][last]))
     }
 
     /// Writes all of it as `statistics.nc` at `path`, under `title`.
@@ -112,9 +119,29 @@ impl History {
         values.iter().sum::<f64>() / values.len() as f64
     }
 
-    /// Friction velocity (m/s) and depth of the layer (m) after `from` and up to `to` (s).
+    /// Friction velocity (m/s) and depth of the layer (m) after `from` and up to `to` (s). The depth is that
+    /// of the mean stress: waves and streaks of an instant carry momentum up and down beyond the layer, which
+    /// a mean of the depths of instants would count.
     pub(super) fn layer(&self, from: f64, to: f64) -> [f64; 2] {
-        [FRICTION, DEPTH].map(|which| self.mean(which, from, to))
+        [self.mean(FRICTION, from, to), depth(&self.mean_stress(from, to))]
+    }
+
+    /// Heights of the levels with the mean of their stress, as a vector, after `from` and up to `to` (s).
+    fn mean_stress(&self, from: f64, to: f64) -> Vec<LevelStatistics> {
+        let places = self.places(from, to);
+        let level = |(level, height): (usize, &f64)| LevelStatistics {
+            height: *height,
+            stress: RESOLVED_STRESS.map(|which| self.level_mean(which, level, &places)),
+            subgrid_stress: UNRESOLVED_STRESS.map(|which| self.level_mean(which, level, &places)),
+            ..LevelStatistics::default()
+        };
+        self.heights.iter().enumerate().map(level).collect()
+    }
+
+    /// Mean of a quantity of a level over the times at `places`.
+    fn level_mean(&self, which: usize, level: usize, places: &Range<usize>) -> f64 {
+        let at = |place: usize| self.profiles[which][place * self.heights.len() + level];
+        places.clone().map(at).sum::<f64>() / places.len() as f64
     }
 
     /// What changed between the two blocks of length `block` (s) that end at `to` (s); none where nothing is
@@ -135,11 +162,12 @@ impl History {
 
     /// Means of the levels after `from` and up to `to` (s).
     pub(super) fn profile(&self, from: f64, to: f64) -> Vec<ProfileRow> {
-        let (places, n_levels) = (self.places(from, to), self.heights.len());
-        let mean = |which: usize, level: usize| {
-            let at = |place: usize| self.profiles[which][place * n_levels + level];
-            places.clone().map(at).sum::<f64>() / places.len() as f64
-        };
+        let places = self.places(from, to);
+        if places.is_empty() {
+            return Vec::new();
+        }
+        let stress = self.mean_stress(from, to);
+        let mean = |which: usize, level: usize| self.level_mean(which, level, &places);
         let row = |level: usize| {
             let wind = [mean(0, level), mean(1, level)];
             ProfileRow {
@@ -147,12 +175,12 @@ impl History {
                 speed: wind[0].hypot(wind[1]),
                 direction_deg: direction(wind),
                 turbulence_intensity: mean(INTENSITY, level),
-                stress: mean(STRESS, level),
+                stress: stress[level].whole_stress(),
                 temperature: mean(TEMPERATURE, level),
                 heat_flux: mean(HEAT_FLUX, level),
             }
         };
-        if places.is_empty() { Vec::new() } else { (0..n_levels).map(row).collect() }
+        (0..self.heights.len()).map(row).collect()
     }
 }
 
@@ -173,7 +201,8 @@ mod tests {
                 temperature: 288.0 + time,
                 ..LevelStatistics::default()
             };
-            history.add(time, &[level(10.0), level(30.0), level(50.0)], 30.0);
+            let levels = [level(10.0), level(30.0), level(50.0)];
+            history.add(time, Instant { levels: &levels, hub: 30.0, geostrophic: [9.0, 0.0] });
         }
         history
     }
@@ -188,6 +217,30 @@ mod tests {
         assert!(drift.of_friction().abs() < 1e-12);
         assert!(history().drift(70.0, 120.0).is_some() && history().drift(5.0, 120.0).is_none());
         assert_eq!(history().hub_wind(1000.0, 2000.0), history().hub_wind(110.0, 120.0));
+    }
+
+    #[test]
+    fn the_depth_is_that_of_the_mean_stress() {
+        let mut history = History::default();
+        for index in 0..20 {
+            // Waves swing about a stress that falls to nothing at 95 m: as much up as down.
+            let wave = if index % 2 == 0 { 0.03 } else { -0.03 };
+            let level = |index: u32| {
+                let height = 10.0 + 20.0 * f64::from(index);
+                let mean = (0.09 * (1.0 - height / 95.0)).max(0.0);
+                let aloft = if index >= 2 { wave } else { 0.0 };
+                LevelStatistics { height, stress: [-mean, aloft], ..LevelStatistics::default() }
+            };
+            let levels: Vec<LevelStatistics> = (0..10).map(level).collect();
+            let at = Instant { levels: &levels, hub: 30.0, geostrophic: [9.0, 0.0] };
+            assert_eq!(depth(&levels), 190.0);
+            history.add(10.0 * f64::from(index), at);
+        }
+        let [_, found] = history.layer(-1.0, 200.0);
+        // A twentieth of the ground's lies between the levels at 70 and 110 m, where the mean is zero.
+        assert!((90.0..100.0).contains(&found), "{found} m");
+        let profile = history.profile(-1.0, 200.0);
+        assert!(profile[9].stress < 1e-12 && (profile[0].stress - 0.0805).abs() < 1e-3);
     }
 
     #[test]

@@ -1,10 +1,8 @@
 //! What the levels of a box tell at an instant: over height, and of the layer as a whole.
 
-use flow::lattice::atmosphere::LevelStatistics;
-
-/// Stress over the ground's where the layer ends, before the rest is added (–): the definition of the
-/// intercomparison of stable layers (Beare et al. 2006, Bound.-Layer Meteorol. 118, 247).
-const LEAST_STRESS: f64 = 0.05;
+use flow::lattice::atmosphere::{
+    LevelStatistics, friction_velocity, ground_heat_flux, layer_depth,
+};
 
 /// A quantity that every level has.
 pub(super) struct OfLevel {
@@ -14,20 +12,31 @@ pub(super) struct OfLevel {
     pub(super) of: fn(&LevelStatistics) -> f64,
 }
 
+/// A box at an instant.
+#[derive(Clone, Copy)]
+pub(super) struct Instant<'a> {
+    /// Its levels, from the ground up.
+    pub(super) levels: &'a [LevelStatistics],
+    /// Height of the hub (m).
+    pub(super) hub: f64,
+    /// The geostrophic wind that drives it, towards east and north (m/s).
+    pub(super) geostrophic: [f64; 2],
+}
+
 /// A quantity of the layer as a whole.
 pub(super) struct OfLayer {
     pub(super) name: &'static str,
     pub(super) unit: &'static str,
     pub(super) meaning: &'static str,
-    /// Of levels, and of the hub's height (m).
-    pub(super) of: fn(&[LevelStatistics], f64) -> f64,
+    pub(super) of: fn(Instant) -> f64,
 }
 
 /// Places in [`OF_LEVELS`].
 pub(super) const INTENSITY: usize = 4;
 pub(super) const TEMPERATURE: usize = 5;
-pub(super) const STRESS: usize = 6;
 pub(super) const HEAT_FLUX: usize = 7;
+pub(super) const RESOLVED_STRESS: [usize; 2] = [11, 12];
+pub(super) const UNRESOLVED_STRESS: [usize; 2] = [13, 14];
 
 macro_rules! of_level {
     ($name:literal, $unit:literal, $meaning:literal, $of:expr) => {
@@ -39,9 +48,9 @@ macro_rules! of_level {
 pub(super) const OF_LEVELS: [OfLevel; 17] = [
     of_level!("u", "m s-1", "mean wind towards east, along the box's x axis", |l| l.velocity[0]),
     of_level!("v", "m s-1", "mean wind towards north, along the box's y axis", |l| l.velocity[1]),
-    of_level!("speed", "m s-1", "speed of the mean wind", |l| speed(l.velocity)),
+    of_level!("speed", "m s-1", "speed of the mean wind", |l| speed(horizontal(l))),
     of_level!("direction", "degree", "where the mean wind comes from, clockwise from north", |l| {
-        direction([l.velocity[0], l.velocity[1]])
+        direction(horizontal(l))
     }),
     of_level!(
         "turbulence_intensity",
@@ -50,8 +59,18 @@ pub(super) const OF_LEVELS: [OfLevel; 17] = [
         intensity
     ),
     of_level!("temperature", "K", "mean potential temperature", |l| l.temperature),
-    of_level!("stress", "m2 s-2", "magnitude of the flux of momentum, unresolved included", stress),
-    of_level!("heat_flux", "K m s-1", "flux of heat upwards, unresolved included", heat_flux),
+    of_level!(
+        "stress",
+        "m2 s-2",
+        "magnitude of the flux of momentum, unresolved included",
+        LevelStatistics::whole_stress
+    ),
+    of_level!(
+        "heat_flux",
+        "K m s-1",
+        "flux of heat upwards, unresolved included",
+        LevelStatistics::whole_heat_flux
+    ),
     of_level!("uu", "m2 s-2", "variance of u", |l| l.variance[0]),
     of_level!("vv", "m2 s-2", "variance of v", |l| l.variance[1]),
     of_level!("ww", "m2 s-2", "variance of w", |l| l.variance[2]),
@@ -69,50 +88,66 @@ pub(super) const OF_LEVELS: [OfLevel; 17] = [
 pub(super) const HUB_SPEED: usize = 0;
 pub(super) const HUB_DIRECTION: usize = 1;
 pub(super) const FRICTION: usize = 2;
-pub(super) const DEPTH: usize = 3;
+pub(super) const GEOSTROPHIC: [usize; 2] = [6, 7];
 
 /// What is kept of the layer.
-pub(super) const OF_LAYER: [OfLayer; 6] = [
+pub(super) const OF_LAYER: [OfLayer; 8] = [
     OfLayer {
         name: "hub_speed",
         unit: "m s-1",
         meaning: "speed of the mean wind at hub height",
-        of: |levels, hub| {
-            let [east, north] = hub_wind(levels, hub);
-            east.hypot(north)
-        },
+        of: |at| speed(hub_wind(at.levels, at.hub)),
     },
     OfLayer {
         name: "hub_direction",
         unit: "degree",
         meaning: "where the mean wind at hub height comes from, clockwise from north",
-        of: |levels, hub| direction(hub_wind(levels, hub)),
+        of: |at| direction(hub_wind(at.levels, at.hub)),
     },
     OfLayer {
         name: "friction_velocity",
         unit: "m s-1",
         meaning: "friction velocity at the ground, from the second and third level",
-        of: |levels, _| at_ground(levels, stress).max(0.0).sqrt(),
+        of: |at| friction_velocity(at.levels),
     },
     OfLayer {
         name: "boundary_layer_height",
         unit: "m",
-        meaning: "height where the stress is a twentieth of the ground's, over 0.95",
-        of: |levels, _| depth(levels),
+        meaning: "height where the stress of this instant is a twentieth of the ground's, over 0.95",
+        of: |at| depth(at.levels),
     },
     OfLayer {
         name: "inversion_height",
         unit: "m",
         meaning: "height where temperature rises most",
-        of: |levels, _| inversion(levels),
+        of: |at| inversion(at.levels),
     },
     OfLayer {
         name: "ground_heat_flux",
         unit: "K m s-1",
         meaning: "flux of heat upwards at the ground, from the second and third level",
-        of: |levels, _| at_ground(levels, heat_flux),
+        of: |at| ground_heat_flux(at.levels),
+    },
+    OfLayer {
+        name: "geostrophic_speed",
+        unit: "m s-1",
+        meaning: "speed of the geostrophic wind that drives the air",
+        of: |at| speed(at.geostrophic),
+    },
+    OfLayer {
+        name: "geostrophic_direction",
+        unit: "degree",
+        meaning: "where the geostrophic wind comes from, clockwise from north",
+        of: |at| direction(at.geostrophic),
     },
 ];
+
+/// Height where the stress is a twentieth of the ground's, over 0.95 (m); the highest level's where it never
+/// gets so small.
+pub(super) fn depth(levels: &[LevelStatistics]) -> f64 {
+    let highest = levels.last().map_or(f64::NAN, |level| level.height);
+    layer_depth(levels).unwrap_or(highest)
+}
 
 /// Where a wind towards `east` and `north` comes from (deg, clockwise from north).
 pub(super) fn direction([east, north]: [f64; 2]) -> f64 {
@@ -125,47 +160,21 @@ pub(super) fn wind(speed: f64, direction: f64) -> [f64; 2] {
     [-speed * s, -speed * c]
 }
 
-fn speed([east, north, _]: [f64; 3]) -> f64 {
+/// Speed of a wind towards `east` and `north`.
+fn speed([east, north]: [f64; 2]) -> f64 {
     east.hypot(north)
+}
+
+/// Mean wind of `level` towards east and north (m/s).
+fn horizontal(level: &LevelStatistics) -> [f64; 2] {
+    let [east, north, _] = level.velocity;
+    [east, north]
 }
 
 fn intensity(level: &LevelStatistics) -> f64 {
     let [uu, vv, ww] = level.variance;
-    let speed = speed(level.velocity);
+    let speed = speed(horizontal(level));
     if speed > 0.0 { ((uu + vv + ww) / 3.0).sqrt() / speed } else { 0.0 }
-}
-
-fn stress(level: &LevelStatistics) -> f64 {
-    let [x, y] = level.stress;
-    let [unresolved_x, unresolved_y] = level.subgrid_stress;
-    (x + unresolved_x).hypot(y + unresolved_y)
-}
-
-fn heat_flux(level: &LevelStatistics) -> f64 {
-    level.heat_flux + level.subgrid_heat_flux
-}
-
-/// A flux at the ground: that of the second and third level drawn on, for in the first the ground's part
-/// enters as a force.
-fn at_ground(levels: &[LevelStatistics], flux: fn(&LevelStatistics) -> f64) -> f64 {
-    match levels {
-        [_, second, third, ..] => 2.5 * flux(second) - 1.5 * flux(third),
-        _ => f64::NAN,
-    }
-}
-
-/// Depth of the layer (m); the highest level's where stress never gets small.
-fn depth(levels: &[LevelStatistics]) -> f64 {
-    let limit = LEAST_STRESS * at_ground(levels, stress);
-    for pair in levels.windows(2).skip(1) {
-        let [below, above] = [stress(&pair[0]), stress(&pair[1])];
-        if above < limit {
-            let share = ((below - limit) / (below - above)).clamp(0.0, 1.0);
-            let height = pair[0].height + share * (pair[1].height - pair[0].height);
-            return height / (1.0 - LEAST_STRESS);
-        }
-    }
-    levels.last().map_or(f64::NAN, |level| level.height)
 }
 
 /// Height between the levels between which temperature rises most (m).
@@ -176,12 +185,9 @@ fn inversion(levels: &[LevelStatistics]) -> f64 {
 }
 
 /// Mean wind towards east and north (m/s) at the height `hub` (m), linear between levels.
-fn hub_wind(levels: &[LevelStatistics], hub: f64) -> [f64; 2] {
+pub(super) fn hub_wind(levels: &[LevelStatistics], hub: f64) -> [f64; 2] {
     let above = levels.partition_point(|level| level.height <= hub);
-    let at = |index: usize| {
-        let [east, north, _] = levels[index.min(levels.len() - 1)].velocity;
-        [east, north]
-    };
+    let at = |index: usize| horizontal(&levels[index.min(levels.len() - 1)]);
     let (Some(low), true) = (above.checked_sub(1), above < levels.len()) else { return at(above) };
     let share = (hub - levels[low].height) / (levels[above].height - levels[low].height);
     let [low, high] = [at(low), at(above)];
@@ -212,17 +218,20 @@ mod tests {
 
     #[test]
     fn the_layer_is_told_from_its_levels() {
-        let of = |which: usize| (OF_LAYER[which].of)(&levels(), 60.0);
+        let levels = levels();
+        let at = Instant { levels: &levels, hub: 60.0, geostrophic: [0.0, 7.0] };
+        let of = |which: usize| (OF_LAYER[which].of)(at);
         assert!((of(HUB_SPEED) - 6.0).abs() < 1e-12);
         assert!((of(HUB_DIRECTION) - 270.0).abs() < 1e-12);
         assert!((of(FRICTION) - 0.3).abs() < 1e-12);
         // A twentieth at 85.5 m, over 0.95.
-        assert!((of(DEPTH) - 90.0).abs() < 1e-9, "{}", of(DEPTH));
+        assert!((of(3) - 90.0).abs() < 1e-9, "{}", of(3));
         assert_eq!(of(4), 80.0);
         assert!((of(5) - 0.02).abs() < 1e-12);
-        let at = |hub: f64| hub_wind(&levels(), hub)[0];
+        assert_eq!([of(6), of(7)], [7.0, 180.0]);
+        let at = |hub: f64| hub_wind(&levels, hub)[0];
         assert_eq!([at(0.0), at(200.0)], [1.0, 9.0]);
-        let level = &levels()[0];
+        let level = &levels[0];
         assert!(((OF_LEVELS[INTENSITY].of)(level) - 0.2f64.sqrt()).abs() < 1e-12);
     }
 

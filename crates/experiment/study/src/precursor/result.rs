@@ -12,22 +12,13 @@ use formats::records::{
 /// Most that a block of the spin-up may be long (s), and over the spin-up (–).
 const LONGEST_BLOCK: f64 = 3600.0;
 const BLOCK_SHARE: f64 = 0.25;
-/// Changes from block to block of a wind that is steady: of speed and friction velocity (–), of direction
-/// (deg).
-const STEADY_SPEED: f64 = 0.01;
-const STEADY_FRICTION: f64 = 0.03;
-const STEADY_DIRECTION: f64 = 1.0;
-
-/// Whether `drift` is that of a wind that has become steady: at most 1 % in speed at hub height, 3 % in
-/// friction velocity and 1° in direction from one block to the next.
-pub fn is_steady(drift: &Drift) -> bool {
-    drift.of_speed().abs() <= STEADY_SPEED
-        && drift.of_friction().abs() <= STEADY_FRICTION
-        && drift.of_direction().abs() <= STEADY_DIRECTION
-}
+/// What is said of a record that changes, and of a wind that is not steady when it begins.
+const CHANGES: &str =
+    "the wind changes while it is recorded: its first half differs from its second one";
+pub(super) const UNSTEADY: &str = "the wind is not steady yet when its record begins: stop, raise time.spin_up and go on with --resume, or look at statistics.nc and take it as it is";
 
 /// That a layer of `depth` (m) has grown through its inversion from `foot` to `top` (m), where it has.
-pub(super) fn outgrown(depth: f64, foot: f64, top: f64) -> Option<String> {
+fn outgrown(depth: f64, foot: f64, top: f64) -> Option<String> {
     (depth > top).then(|| {
         format!(
             "the layer is {depth:.0} m deep while it is recorded: it has grown through its inversion, which began at {foot:.0} to {top:.0} m"
@@ -56,6 +47,15 @@ impl Job {
         history.hub_wind(self.spin_up() - self.block(), self.spin_up())
     }
 
+    /// What a record tells of itself, whose layer is `depth` (m) deep.
+    pub(super) fn of_record(&self, record: &Option<Drift>, depth: f64) -> Vec<String> {
+        let precursor = &self.file.precursor;
+        let (foot, top) = (precursor.air.inversion_height, precursor.inversion_top());
+        let changes = record.is_some_and(|drift| !drift.is_steady());
+        let changes = changes.then(|| CHANGES.to_owned());
+        changes.into_iter().chain(outgrown(depth, foot, top)).collect()
+    }
+
     /// What came of it, from its `history` and the planes along `along`, after `wall_time` (s) on `backend`.
     ///
     /// # Errors
@@ -72,7 +72,17 @@ impl Job {
         let AtHub { speed, aside, intensity, n_planes } = at_hub(&path, hub_height)??;
         let (start, end) = (self.spin_up(), plan.time(plan.n_steps));
         let [friction_velocity, boundary_layer_height] = history.layer(start, end);
+        let [geostrophic_speed, geostrophic_direction_deg] =
+            history.last_geostrophic().unwrap_or([f64::NAN; 2]);
+        let spin_up = self.drift_of_spin_up(history);
+        let record = history.drift(0.5 * (end - start), end);
+        let mut warnings = self.warnings();
+        if !spin_up.is_some_and(|drift| drift.is_steady()) {
+            warnings.push("the wind was not steady yet when its record began".to_owned());
+        }
+        warnings.extend(self.of_record(&record, boundary_layer_height));
         Ok(PrecursorResult {
+            warnings,
             schema_version: PRECURSOR_VERSION,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             name: self.file.precursor.name.clone(),
@@ -91,11 +101,13 @@ impl Job {
                 direction_deg: direction(along),
                 turned_deg: aside.atan().to_degrees(),
             },
-            spin_up: self.drift_of_spin_up(history),
-            record: history.drift(0.5 * (end - start), end),
+            spin_up,
+            record,
             profile: history.profile(start, end),
             friction_velocity,
             boundary_layer_height,
+            geostrophic_speed,
+            geostrophic_direction_deg,
             n_cells: plan.cells() as u64,
             n_steps: plan.n_steps,
             wall_time,
@@ -113,24 +125,5 @@ mod tests {
         let told = outgrown(394.0, 200.0, 250.0).unwrap();
         assert!(told.contains("394 m deep") && told.contains("200 to 250 m"), "{told}");
         assert_eq!(outgrown(f64::NAN, 200.0, 250.0), None);
-    }
-
-    #[test]
-    fn a_wind_that_changes_little_is_steady() {
-        let steady = Drift {
-            block: 3600.0,
-            hub_speed: [9.0, 9.05],
-            direction_deg: [359.6, 0.4],
-            friction_velocity: [0.3, 0.295],
-        };
-        assert!(is_steady(&steady));
-        for unsteady in [
-            Drift { hub_speed: [9.0, 9.2], ..steady },
-            Drift { direction_deg: [359.6, 1.4], ..steady },
-            Drift { friction_velocity: [0.3, 0.28], ..steady },
-            Drift { friction_velocity: [0.3, f64::NAN], ..steady },
-        ] {
-            assert!(!is_steady(&unsteady), "{unsteady:?}");
-        }
     }
 }

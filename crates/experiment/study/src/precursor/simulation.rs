@@ -1,12 +1,13 @@
 //! The precursor itself: from the first step, or from its checkpoint, to the last plane.
 
+use super::Job;
 use super::error::PrecursorError;
 use super::history::History;
-use super::levels::direction;
+use super::levels::{Instant as BoxInstant, direction, hub_wind};
 use super::observer::{PrecursorObserver, PrecursorProgress};
 use super::recording::{Recording, RecordingState};
-use super::result::outgrown;
-use super::{Job, is_steady};
+use super::result::UNSTEADY;
+use farm::precursor::HubControl;
 use flow::lattice::Lattice;
 use flow::{FlowError, FlowSolver};
 use formats::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
@@ -37,6 +38,10 @@ struct RunState {
     step: u64,
     wall_time: f64,
     recording: Option<RecordingState>,
+    /// The geostrophic wind that drives the air, towards east and north (m/s).
+    geostrophic: [f64; 2],
+    /// State of the control that has set it; none without one.
+    control: Option<[f64; 2]>,
 }
 
 /// A precursor under way.
@@ -45,6 +50,10 @@ pub(super) struct Simulation<'a> {
     air: Lattice,
     history: History,
     recording: Option<Recording>,
+    /// The geostrophic wind that drives the air, towards east and north (m/s).
+    geostrophic: [f64; 2],
+    /// What sets it, where the wind at hub height is held.
+    control: Option<HubControl>,
     /// What of the machine decides its bits, in words.
     backend: String,
     started: Instant,
@@ -61,11 +70,17 @@ impl<'a> Simulation<'a> {
         let precursor = &job.file.precursor;
         let air = Lattice::new(precursor.settings(&job.plan), precursor.start())?;
         let backend = format!("{}, air {}", flow::numerics(), air.backend());
+        let geostrophic = precursor.geostrophic();
+        let wanted = precursor.held_wind();
+        let control =
+            wanted.map(|wanted| HubControl::new(wanted, precursor.coriolis(), geostrophic));
         let mut simulation = Self {
             job,
             air,
             history: History::default(),
             recording: None,
+            geostrophic,
+            control,
             backend,
             started: Instant::now(),
             before: (0, 0.0),
@@ -103,6 +118,11 @@ impl<'a> Simulation<'a> {
         let kept = job.recorded(&state)?;
         let air = &mut self.air;
         reader.stream(AIR, |bytes| air.read_state(bytes))?;
+        if let (Some(control), Some(integral)) = (&mut self.control, state.control) {
+            control.set_state(integral);
+            self.geostrophic = state.geostrophic;
+            air.drive(self.geostrophic);
+        }
         self.before = (state.step, state.wall_time);
         if let Some(kept) = kept {
             let path = job.folder.planes_path();
@@ -148,6 +168,9 @@ impl<'a> Simulation<'a> {
             return Err(self.diverged(error));
         }
         let step = self.air.n_steps();
+        if step.is_multiple_of(plan.control_stride) {
+            self.hold_wind();
+        }
         if step.is_multiple_of(plan.statistics_stride) {
             self.tell_levels();
         }
@@ -162,10 +185,23 @@ impl<'a> Simulation<'a> {
         }
     }
 
+    /// Where the wind at hub height is held, the control of it takes another look, and drives the air. It
+    /// goes on while planes are recorded, or a longer spin-up would not have the same bits as one at once.
+    fn hold_wind(&mut self) {
+        let (Some(control), plan) = (&mut self.control, &self.job.plan) else { return };
+        let hub = self.job.file.precursor.planes.hub_height;
+        let below = (hub / plan.spacing - 0.5).floor().max(0.0) as usize;
+        let wind = hub_wind(&self.air.statistics_of(below..below + 2), hub);
+        self.geostrophic = control.update(wind, plan.time(plan.control_stride));
+        self.air.drive(self.geostrophic);
+    }
+
     /// Adds what the levels tell now to the history.
     fn tell_levels(&mut self) {
         let hub = self.job.file.precursor.planes.hub_height;
-        self.history.add(self.air.time(), &self.air.level_statistics(), hub);
+        let levels = self.air.level_statistics();
+        let instant = BoxInstant { levels: &levels, hub, geostrophic: self.geostrophic };
+        self.history.add(self.air.time(), instant);
     }
 
     /// Begins the record with its first plane, where that is due now.
@@ -180,10 +216,8 @@ impl<'a> Simulation<'a> {
         let wind = self.job.wind_of_spin_up(&self.history);
         let drift = self.job.drift_of_spin_up(&self.history);
         observer.spun_up(drift.as_ref(), direction(wind));
-        if drift.is_none_or(|drift| !is_steady(&drift)) {
-            observer.warned(
-                "the wind is not steady yet when its record begins: stop, raise time.spin_up and go on with --resume, or look at statistics.nc and take it as it is",
-            );
+        if drift.is_none_or(|drift| !drift.is_steady()) {
+            observer.warned(UNSTEADY);
         }
         let path = self.job.folder.planes_path();
         let mut recording = Recording::begin(&path, &plan.grid, plan.first_plane, wind)?;
@@ -202,7 +236,13 @@ impl<'a> Simulation<'a> {
         }
         self.write_statistics()?;
         let recording = self.recording.as_mut().map(Recording::flush).transpose()?;
-        let state = RunState { step: self.air.n_steps(), wall_time: self.wall_time(), recording };
+        let state = RunState {
+            step: self.air.n_steps(),
+            wall_time: self.wall_time(),
+            recording,
+            geostrophic: self.geostrophic,
+            control: self.control.map(|control| control.state()),
+        };
         let print = self.job.file.fingerprint();
         let identity = Self::identity(&print, self.job, &self.backend);
         let path = self.job.folder.checkpoint_path();
@@ -268,15 +308,8 @@ impl<'a> Simulation<'a> {
             None => [f64::NAN; 2],
         };
         let result = job.result(&self.history, along, wall_time, &self.backend)?;
-        if result.record.is_some_and(|drift| !is_steady(&drift)) {
-            observer.warned(
-                "the wind changes while it is recorded: its first half differs from its second one",
-            );
-        }
-        let (foot, top) = (precursor.air.inversion_height, precursor.inversion_top());
-        if let Some(warning) = outgrown(result.boundary_layer_height, foot, top) {
-            observer.warned(&warning);
-        }
+        let warnings = job.of_record(&result.record, result.boundary_layer_height);
+        warnings.iter().for_each(|warning| observer.warned(warning));
         // The result comes last: with it the precursor is complete.
         job.folder.write_result(&result)?;
         Ok(Ending::Complete(Box::new(result)))

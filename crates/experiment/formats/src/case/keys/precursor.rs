@@ -58,14 +58,17 @@ pub(in crate::case) static BOX: Table = Table {
 /// `[atmosphere]`.
 pub(in crate::case) static ATMOSPHERE: Table = Table {
     heading: "[atmosphere]",
-    about: "The air at the start and what drives it. Temperatures are potential ones. The pressure gradient is that of a geostrophic wind; the wind near the ground follows, slower and turned towards low pressure.",
+    about: "The air at the start and what drives it. Temperatures are potential ones. The pressure gradient is that of a geostrophic wind; the wind near the ground follows, slower and turned towards low pressure. The geostrophic wind is given, or the wind at hub height that it is to make.",
     keys: &[
         key("latitude_deg", from(-90.0, 90.0), "deg", Required, "Latitude, positive on the northern half; 5° from the equator at least. The Coriolis parameter is 2 Ω sin(latitude)."),
         key("roughness_length", above(0.0, 5.0), "m", Required, "Roughness length z₀: about 0.0002 on calm sea, 0.001 on open sea, 0.03 on farmland.")
             .mistaken(&[Slip { unit: "mm", factor: 0.001 }]),
-        key("geostrophic_wind", above(0.0, 60.0), "m/s", Required, "Speed of the geostrophic wind, which blows above the layer. At hub height offshore it is about a tenth less.")
+        key("geostrophic_wind", above(0.0, 60.0), "m/s", Otherwise("`hub_wind` is given"), "Speed of the geostrophic wind, which blows above the layer. At hub height offshore it is about a tenth less.")
             .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }]),
-        key("geostrophic_direction_deg", from(0.0, 360.0), "deg", Value("270"), "Where it comes from, clockwise from north: 270 is along the box's x axis. Where it blows aslant to the box, long streaks do not come back into themselves."),
+        key("geostrophic_direction_deg", from(0.0, 360.0), "deg", Otherwise("270, where `geostrophic_wind` is given"), "Where it comes from, clockwise from north: 270 is along the box's x axis. Where it blows aslant to the box, long streaks do not come back into themselves."),
+        key("hub_wind", above(0.0, 60.0), "m/s", Otherwise("`geostrophic_wind` is given"), "In its place: speed of the mean wind at `planes.hub_height`. The geostrophic wind follows, by a control that acts over hours.")
+            .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }]),
+        key("hub_direction_deg", from(0.0, 360.0), "deg", Otherwise("270, where `hub_wind` is given"), "Where that wind comes from, clockwise from north."),
         key("temperature", from(200.0, 350.0), "K", Value("288.15"), "Temperature from the ground to the inversion."),
         key("inversion_height", above(0.0, 2e4), "m", Required, "Height where the inversion begins."),
         key("inversion_strength", from(0.0, 50.0), "K", Required, "Rise of temperature through the inversion; 0 leaves it out."),
@@ -126,6 +129,13 @@ pub(in crate::case) static PLANES: Table = Table {
             "m",
             Required,
             "Height whose mean wind the planes stand across, and whose speed carries them along; the statistics tell of it, too.",
+        ),
+        key(
+            "rotor_diameter",
+            above(0.0, 1000.0),
+            "m",
+            Otherwise("the hub alone is marked"),
+            "Diameter of the rotors that the wind is for: the report marks what they span. It changes nothing else.",
         ),
         key(
             "width",

@@ -102,10 +102,43 @@ fn a_step_that_breaks_the_scheme_is_refused_with_one_that_does_not() {
     assert!(lines.contains("buoyancy swings in fewer than 20 steps"), "{lines}");
     // Left to itself the step follows.
     assert!(parsed(&text, &[]).is_ok());
+    refused("record=30", 17, &["`time.record`", "shorter than time.statistics_interval, 60 s"]);
     refused("statistics_interval=0.1", 18, &["`time.statistics_interval`", "shorter than a step"]);
     refused("record=0.01", 17, &["`time.record`", "shorter than a step"]);
     let lines = parsed(TEXT, &["atmosphere.heat_flux=0.01", "atmosphere.cooling_rate=0.25"]);
     assert!(lines.unwrap_err().contains("leave one of the two out"));
+}
+
+#[test]
+fn the_wind_is_given_aloft_or_at_hub_height() {
+    let held = TEXT.replace("geostrophic_wind = 10.0", "hub_wind = 9.0");
+    let held = held.replace("geostrophic_direction", "hub_direction");
+    let precursor = parsed(&held, &[]).unwrap().precursor;
+    let wind = precursor.held_wind().unwrap();
+    let towards = [9.0 * 60f64.to_radians().sin(), 4.5];
+    assert!((0..2).all(|axis| (wind[axis] - towards[axis]).abs() < 1e-12), "{wind:?}");
+    // The geostrophic wind is faster, and comes from further to the right of who looks into it.
+    let [east, north] = precursor.geostrophic();
+    let ratio = east.hypot(north) / 9.0;
+    assert!((1.05..1.25).contains(&ratio), "{ratio}");
+    let turned = (wind[0] * north - wind[1] * east).atan2(wind[0] * east + wind[1] * north);
+    assert!((-20.0..-5.0).contains(&turned.to_degrees()), "{}", turned.to_degrees());
+    let south = parsed(&held, &["atmosphere.latitude_deg=-52.6"]).unwrap().precursor.geostrophic();
+    assert!(wind[0] * south[1] - wind[1] * south[0] > 0.0 && parsed(TEXT, &[]).is_ok());
+    // It starts with the wind that is asked for.
+    let mut start = [basis::Vector3::ZERO];
+    let above_hub = basis::Vector3::new(0.0, 0.0, 90.0);
+    precursor.start().sample(0.0, &[above_hub], &mut start);
+    let wave = start[0] - basis::Vector3::new(wind[0], wind[1], 0.0);
+    assert!(wave.length() < 0.1 * 9.0 * ratio, "{start:?}");
+
+    let lines = parsed(&TEXT.replace("geostrophic_wind = 10.0\n", ""), &[]).unwrap_err();
+    assert!(lines.contains("geostrophic_wind` is missing, and so is"), "{lines}");
+    assert!(lines.contains("give geostrophic_wind, or hub_wind"), "{lines}");
+    refused("hub_wind=9", 15, &["`atmosphere.hub_wind`", "leave one of the two out"]);
+    refused("hub_direction_deg=9", 15, &["`atmosphere.hub_direction_deg`", "use geostrophic_dir"]);
+    let lines = parsed(&held, &["atmosphere.geostrophic_direction_deg=230"]).unwrap_err();
+    assert!(lines.contains("use hub_direction_deg"), "{lines}");
 }
 
 #[test]
