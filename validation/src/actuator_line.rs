@@ -95,6 +95,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
         averaging: AVERAGING,
         spacing,
         interval: TIP_CELLS * spacing / model.footprint(wind_speed).tip_speed,
+        method: Default::default(),
     };
     let wind = Wind {
         speed: wind_speed,

@@ -3,9 +3,11 @@
 
 mod pitch;
 mod profile;
+mod trials;
 
 pub use pitch::helix_pitch;
 pub use profile::wake_profile;
+pub use trials::{wake_grid, wake_trials};
 
 use crate::Row;
 use crate::row::Tolerance::{AtLeast, Within};

@@ -32,6 +32,7 @@ pub mod meandering;
 pub mod memory;
 pub mod pages;
 pub mod phase_estimator;
+mod random;
 pub mod record;
 mod recorded;
 pub mod resume;

@@ -1,6 +1,7 @@
 //! Kills at random moments: a run that is killed and resumed ends with the same bits as one that is not.
 
 use crate::Row;
+use crate::random::Random;
 use crate::row::Tolerance::Within;
 use crate::studies::command;
 use std::collections::BTreeSet;
@@ -99,13 +100,10 @@ fn kill_and_compare() -> Result<Compared, String> {
     // About how long a whole run takes; others on the machine may come and go.
     let mut undisturbed = started.elapsed();
 
-    // Knuth's generator is random enough to spread the kills.
-    let mut random: u64 = 20_261_121;
+    let mut random = Random(20_261_121);
     let mut kills = 0;
     while kills < N_KILLS {
-        random =
-            random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let share = (random >> 33) as f64 / f64::from(u32::MAX >> 1);
+        let share = (random.bits() >> 33) as f64 / f64::from(u32::MAX >> 1);
         let mut child = command(&case, &broken).spawn().map_err(|error| error.to_string())?;
         sleep(undisturbed.mul_f64(0.2 + 0.3 * share));
         let ended = child.try_wait().map_err(|error| error.to_string())?;

@@ -2,6 +2,7 @@
 
 use super::lattice;
 use crate::Row;
+use crate::random::Random;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
 use flow::FlowSolver;
@@ -76,13 +77,8 @@ fn decayed(stencil: Stencil, wind: f64) -> [f64; 2] {
 /// Wave number, amplitude and phase of waves without divergence in a box of edge `length` (m), down to a
 /// tenth of it, with the spectrum of inertial turbulence.
 fn modes(length: f64) -> Vec<(Vector3, Vector3, f64)> {
-    let mut state = 1_u64;
-    let mut number = || {
-        // Knuth's congruential generator: any numbers do, as long as they are always the same.
-        state =
-            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as f64 / (1_u64 << 31) as f64
-    };
+    let mut random = Random(1);
+    let mut number = || (random.bits() >> 33) as f64 / (1_u64 << 31) as f64;
     let mut modes = Vec::new();
     let most = 10_i32;
     for (x, y, z) in (-most..=most)

@@ -8,7 +8,8 @@ use crate::folds::worst;
 use crate::row::Tolerance::Within;
 use basis::Vector3;
 use flow::lattice::atmosphere::{
-    Atmosphere, Damping, Driving, Heating, LevelStatistics, Perturbation,
+    Atmosphere, Damping, Driving, Heating, LevelStatistics, Perturbation, friction_velocity,
+    layer_depth,
 };
 use flow::lattice::{Ends, Ground, Lattice, LatticeSettings, Stencil};
 use flow::{FlowSolver, Inflow};
@@ -88,7 +89,7 @@ fn stable(n: usize, hours: f64) -> Stable {
             tell!(
                 "{:.1} h: u* {:.3} m/s, jet {jet:.2} m/s, w'² {:.4}",
                 air.time() / HOUR,
-                surface_stress(&now).sqrt(),
+                friction_velocity(&now),
                 now[4].variance[2]
             );
         }
@@ -96,39 +97,7 @@ fn stable(n: usize, hours: f64) -> Stable {
     Stable { levels, spacing }
 }
 
-/// Magnitude of the momentum flux through the ground (m²/s²), from the levels next to it.
-fn surface_stress(levels: &[LevelStatistics]) -> f64 {
-    let total = |level: &LevelStatistics| {
-        let [x, y] = level.stress;
-        let [sub_x, sub_y] = level.subgrid_stress;
-        (x + sub_x).hypot(y + sub_y)
-    };
-    // Extrapolated from the second and third cell: in the first, stress enters as a force.
-    2.5 * total(&levels[1]) - 1.5 * total(&levels[2])
-}
-
 impl Stable {
-    /// Friction velocity (m/s).
-    fn friction_velocity(&self) -> f64 {
-        surface_stress(&self.levels).sqrt()
-    }
-
-    /// Depth (m): where the stress is 5 % of the ground's, over 0.95; the box's own where it never is.
-    fn depth(&self) -> f64 {
-        let limit = 0.05 * surface_stress(&self.levels);
-        let stress: Vec<f64> = self
-            .levels
-            .iter()
-            .map(|level| {
-                (level.stress[0] + level.subgrid_stress[0])
-                    .hypot(level.stress[1] + level.subgrid_stress[1])
-            })
-            .collect();
-        let Some(above) = (1..stress.len()).find(|at| stress[*at] < limit) else { return EDGE };
-        let share = (stress[above - 1] - limit) / (stress[above - 1] - stress[above]);
-        (self.levels[above - 1].height + share * self.spacing) / 0.95
-    }
-
     /// Speed (m/s) and height (m) of the jet: the top of a parabola through three levels.
     fn jet(&self) -> [f64; 2] {
         let speed: Vec<f64> =
@@ -144,8 +113,13 @@ impl Stable {
     fn rows(&self) -> Vec<Row> {
         let [jet, height] = self.jet();
         [
-            ("depth of the boundary layer", self.depth(), [150.0, 200.0], "m"),
-            ("friction velocity", self.friction_velocity(), [0.25, 0.30], "m/s"),
+            (
+                "depth of the boundary layer",
+                layer_depth(&self.levels).unwrap_or(EDGE),
+                [150.0, 200.0],
+                "m",
+            ),
+            ("friction velocity", friction_velocity(&self.levels), [0.25, 0.30], "m/s"),
             ("speed of the jet", jet, [9.4, 9.7], "m/s"),
             ("height of the jet", height, [160.0, 180.0], "m"),
         ]

@@ -4,11 +4,13 @@ use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
 use crate::studies::{Carried, failure, summaries};
 use basis::records::{Plane, PlaneAxes, Summary};
+use std::path::Path;
 
 /// Where the expected values come from.
-const SOURCE: &str = "van der Hoek's large-eddy simulation, github.com/matteobaricchi/msr";
+pub(super) const SOURCE: &str =
+    "van der Hoek's large-eddy simulation, github.com/matteobaricchi/msr";
 /// The same study's power and thrust of the turbine without a helix, file power_curves_TI2p.csv (W, N).
-const POWER: f64 = 16.924e6;
+pub(super) const POWER: f64 = 16.924e6;
 const THRUST: f64 = 3.0727e6;
 /// Winds that are averaged over.
 const SEEDS: [u64; 3] = [1, 2, 3];
@@ -17,12 +19,12 @@ const DISTANCES: [f64; 6] = [3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
 /// Distance at which gains are told: where a second turbine would stand.
 const SECOND: usize = 2;
 /// Half-widths (diameters) over which the mean speed, its cube, and the shape are compared.
-const CORE: f64 = 0.4;
-const ROTOR: f64 = 0.5;
+pub(super) const CORE: f64 = 0.4;
+pub(super) const ROTOR: f64 = 0.5;
 const WAKE: f64 = 0.95;
 
 /// A profile across a wake: places (diameters) with speeds (m/s).
-type Profile = Vec<(f64, f64)>;
+pub(super) type Profile = Vec<(f64, f64)>;
 
 /// `validation/cases/wake-profile.toml`: mean hub-height wind across the wake, baseline first, then the
 /// helix, then what the helix gains.
@@ -34,24 +36,15 @@ pub fn wake_profile() -> Vec<Row> {
         let name = format!("wake-profile-{seed}");
         let made = summaries(case, &name, vec![format!("wind.seed={seed}")]);
         let read = made.and_then(|(summaries, folder)| {
-            let study = formats::records::read_study(&folder).map_err(|error| error.to_string())?;
-            Ok((summaries, study))
+            Ok((summaries, [profiles(&folder, BASELINE)?, profiles(&folder, HELIX)?]))
         });
-        let (summaries, study) = match read {
+        let (summaries, of_seed) = match read {
             Ok(read) => read,
             Err(problem) => return failure(problem),
         };
-        for (run, found) in RUNS.iter().zip(&mut found) {
-            let records = study.runs.iter().find(|records| records.summary.run == *run);
-            let plane = records.and_then(|records| {
-                records.mean_planes.iter().find(|plane| plane.axes == PlaneAxes::Horizontal)
-            });
-            let (Some(plane), Some(records)) = (plane, records) else {
-                return failure(format!("the run {run} has no mean plane at hub height"));
-            };
-            let diameter = records.summary.conditions.rotor_diameter;
-            for (profile, distance) in found.iter_mut().zip(DISTANCES) {
-                add(profile, &across(plane, distance * diameter, diameter));
+        for (found, of_seed) in found.iter_mut().zip(&of_seed) {
+            for (profile, other) in found.iter_mut().zip(of_seed) {
+                add(profile, other);
             }
         }
         let baseline = summaries.iter().find(|summary| summary.run == RUNS[0]);
@@ -68,7 +61,21 @@ pub fn wake_profile() -> Vec<Row> {
 }
 
 /// The runs, as case and published file name them.
-const RUNS: [&str; 2] = ["baseline", "ccw-4"];
+pub(super) const BASELINE: &str = "baseline";
+pub(super) const HELIX: &str = "ccw-4";
+const RUNS: [&str; 2] = [BASELINE, HELIX];
+
+/// The mean hub-height wind across the wake of `run` at each of [`DISTANCES`], from the records in `folder`.
+pub(super) fn profiles(folder: &Path, run: &str) -> Result<Vec<Profile>, String> {
+    let study = formats::records::read_study(folder).map_err(|error| error.to_string())?;
+    let records = study.runs.iter().find(|records| records.summary.run == run);
+    let records = records.ok_or_else(|| format!("there is no run {run}"))?;
+    let level = |plane: &&Plane| plane.axes == PlaneAxes::Horizontal;
+    let plane = records.mean_planes.iter().find(level);
+    let plane = plane.ok_or_else(|| format!("the run {run} has no mean plane at hub height"))?;
+    let diameter = records.summary.conditions.rotor_diameter;
+    Ok(DISTANCES.map(|distance| across(plane, distance * diameter, diameter)).to_vec())
+}
 
 fn first_turbine(summary: &Summary) -> [f64; 2] {
     [summary.turbines[0].power.mean, summary.turbines[0].thrust.mean]
@@ -114,17 +121,13 @@ fn of_wake(run: &str, found: &[Profile]) -> Vec<Row> {
 
 /// What the helix gives the wind where a second turbine would stand.
 fn gains(found: &[Vec<Profile>; 2]) -> Vec<Row> {
-    let of = |profiles: [&Profile; 2], half_width, power| {
-        let [baseline, helix] = profiles.map(|profile| mean(profile, half_width, power));
-        100.0 * (helix / baseline - 1.0)
-    };
     let published = RUNS.map(|run| published(run, SECOND));
     let published = [&published[0], &published[1]];
     let ours = [&found[0][SECOND], &found[1][SECOND]];
     let row = |what: String, half_width, power, tolerance| Row {
         what,
-        measured: of(ours, half_width, power),
-        expected: of(published, half_width, power),
+        measured: gain(ours, half_width, power),
+        expected: gain(published, half_width, power),
         tolerance: Within(tolerance),
         unit: "%",
         source: SOURCE,
@@ -133,6 +136,13 @@ fn gains(found: &[Vec<Profile>; 2]) -> Vec<Row> {
         row(format!("gain of the mean speed over |y| < {CORE} D at 5 D, ccw 4°"), CORE, 1, 3.0),
         row(format!("gain of the mean cube over |y| < {ROTOR} D at 5 D, ccw 4°"), ROTOR, 3, 8.0),
     ]
+}
+
+/// By how much (%) the mean of the speed to the `power` over the disc of `half_width` (diameters) is greater
+/// in the second profile than in the first.
+pub(super) fn gain(profiles: [&Profile; 2], half_width: f64, power: i32) -> f64 {
+    let [baseline, helix] = profiles.map(|profile| mean(profile, half_width, power));
+    100.0 * (helix / baseline - 1.0)
 }
 
 /// Adds a seed's share of `other` to `profile`.
@@ -162,7 +172,7 @@ fn across(plane: &Plane, x: f64, diameter: f64) -> Profile {
 }
 
 /// The published profile of `run` at distance number `index`.
-fn published(run: &str, index: usize) -> Profile {
+pub(super) fn published(run: &str, index: usize) -> Profile {
     let table = include_str!("../../data/wake-iea-22mw-10-m-s.csv");
     let rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
     rows.filter(|row| row[0] == run)
@@ -182,7 +192,7 @@ const N_PLACES: i32 = 400;
 
 /// Mean of the speed to the `power` over the disc of `half_width` (diameters), were the wake round: each
 /// place counts as the ring that it lies on.
-fn mean(profile: &Profile, half_width: f64, power: i32) -> f64 {
+pub(super) fn mean(profile: &Profile, half_width: f64, power: i32) -> f64 {
     let places = (-N_PLACES..=N_PLACES).map(|n| half_width * f64::from(n) / f64::from(N_PLACES));
     let (sum, weight) = places.fold((0.0, 0.0), |(sum, weight), y| {
         (sum + y.abs() * at(profile, y).powi(power), weight + y.abs())

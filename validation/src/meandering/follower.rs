@@ -1,6 +1,7 @@
 //! The loop closed around three masses on springs: the source's figure 3-2.
 
 use super::spring_mass::{SpringMass, answer};
+use crate::random::Random;
 use control::meandering::Followed;
 use estimation::phase_locked::{
     Estimate, GeneratorKind, LoopSettings, Order, PhaseLockedError, PhaseLockedLoop,
@@ -105,7 +106,7 @@ pub(super) fn run(
     let mut masses = SpringMass::default();
     // What the added force does, known as a turbine knows its own: from a model, here a true one.
     let mut own = SpringMass::default();
-    let mut noise = Noise(1);
+    let mut noise = Random(1);
     let (mut swing, mut middle) = (Action::default(), Action::default());
     let ([static_gain, _], [gain, _]) = (answer(1e-9), answer(rate_of(0.2)));
     let reference = case.factor * case.amplitudes[0] * gain;
@@ -124,7 +125,7 @@ pub(super) fn run(
         let rate = rate_of(strouhal);
         let offset = if time >= 600.0 { case.offset } else { 0.0 };
         let mut force = offset + case.amplitudes[late] * f64::sin(phase);
-        force += case.noise * case.amplitudes[0] * noise.normal();
+        force += case.noise * case.amplitudes[0] * normal(&mut noise);
         let followed = match case.followed {
             Followed::Load => masses.place(),
             Followed::Wake => masses.place() - own.place(),
@@ -162,20 +163,7 @@ pub(super) fn run(
     Ok(run)
 }
 
-/// White noise of deviation one, the same in every run.
-struct Noise(u64);
-
-impl Noise {
-    /// Uniform between 0 and 1, neither of them.
-    fn uniform(&mut self) -> f64 {
-        // Knuth's MMIX generator; its upper bits are good.
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    /// Normal, by Box and Muller.
-    fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (TAU * self.uniform()).cos()
-    }
+/// The next value of white noise of deviation one, by Box and Muller.
+fn normal(random: &mut Random) -> f64 {
+    (-2.0 * random.uniform().ln()).sqrt() * (TAU * random.uniform()).cos()
 }

@@ -33,7 +33,7 @@ enum Command {
     Init(commands::init::InitArguments),
     /// List the cases that come with the program, or write one of them out
     Cases(commands::cases::CasesArguments),
-    /// Rebuild report.html and its figures from the records of a study
+    /// Rebuild report.html and its figures from the records of a study or a precursor
     Report {
         /// Folder that `wakemix run` wrote
         directory: PathBuf,

@@ -144,6 +144,10 @@ fn a_precursor_tells_its_cost_and_what_is_wrong() {
     let output = wakemix(&shipped, folder.path());
     assert!(output.status.success(), "{}", said(&output));
     assert!(said(&output).contains("224 × 224 × 64 = 3.21 million cells"), "{}", said(&output));
+    let output =
+        wakemix(&["inflow", "precursor", "precursor-seed-000", "--dry-run"], folder.path());
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(said(&output).contains("268 × 160 × 80 = 3.43 million cells"), "{}", said(&output));
     let output = wakemix(&[&shipped[..], &["--set", "box.height=700"]].concat(), folder.path());
     assert_eq!(output.status.code(), Some(2));
     assert!(said(&output).contains("`atmosphere.inversion_height` = 700 m"), "{}", said(&output));

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 use wakemix::formats::records::{Drift, PrecursorFolder, PrecursorResult};
+use wakemix::postprocessing;
 use wakemix::report::text_table::{Column, TextTable, wrapped};
 use wakemix::study::precursor::{
     self, PrecursorError, PrecursorEstimate, PrecursorObserver, PrecursorOptions, PrecursorOutcome,
@@ -88,6 +89,11 @@ pub(crate) fn run(arguments: &PrecursorArguments) -> ExitCode {
 fn done(result: &PrecursorResult, folder: &PrecursorFolder, as_json: bool) -> miette::Result<()> {
     tell(&format!("statistics: {}", folder.statistics_path().display()));
     tell(&format!("planes: {}", folder.planes_path().display()));
+    // Statistics and planes stand without it.
+    match postprocessing::report_of_precursor(folder.path()) {
+        Ok(page) => tell(&format!("report: {}", page.display())),
+        Err(error) => warn(&format!("no report: {error}")),
+    }
     if as_json {
         return print(&(serde_json::to_string_pretty(result).into_diagnostic()? + "\n"));
     }
@@ -138,7 +144,7 @@ fn text(result: &PrecursorResult, width: usize) -> String {
 
 /// What changed between the last two blocks of `what`, as a line.
 fn drift_text(what: &str, drift: &Drift) -> String {
-    let steady = if precursor::is_steady(drift) { "steady" } else { "not steady" };
+    let steady = if drift.is_steady() { "steady" } else { "not steady" };
     format!(
         "{what}, last two blocks of {:.0} s: speed at the hub {:+.1} %, direction {:+.1}°, friction velocity {:+.1} %: {steady}\n",
         drift.block,
@@ -258,7 +264,7 @@ impl PrecursorObserver for Screen {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wakemix::formats::records::{ProfileRow, RecordedPlanes};
+    use wakemix::formats::records::{PRECURSOR_VERSION, ProfileRow, RecordedPlanes};
 
     #[test]
     fn what_came_of_it_fits_the_screen() {
@@ -278,7 +284,10 @@ mod tests {
             heat_flux: -0.001,
         };
         let result = PrecursorResult {
-            schema_version: 1,
+            warnings: Vec::new(),
+            geostrophic_speed: 10.0,
+            geostrophic_direction_deg: 250.0,
+            schema_version: PRECURSOR_VERSION,
             version: "0.1.0".to_owned(),
             name: "small".to_owned(),
             case_text: String::new(),
