@@ -1,10 +1,12 @@
 //! What the helix costs the first turbine, what it gives the array, and how the wake recovers, beside
 //! published large-eddy figures.
 
+mod in_atmosphere;
 mod pitch;
 mod profile;
 mod trials;
 
+pub use in_atmosphere::helix_in_atmosphere;
 pub use pitch::helix_pitch;
 pub use profile::wake_profile;
 pub use trials::{wake_grid, wake_trials};

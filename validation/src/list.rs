@@ -163,6 +163,15 @@ pub const VALIDATIONS: &[Validation] = &[
         recorded: include_str!("../recorded/wake-grid.toml"),
     },
     Validation {
+        name: "helix-in-atmosphere",
+        about: "a precursor's wind, a wake and the gains of two turbines in it, beside Mann's wind and published large-eddy figures",
+        cost: Cost::Minutes(40),
+        run: helix::helix_in_atmosphere,
+        pictures: None,
+        page: "helix",
+        recorded: include_str!("../recorded/helix-in-atmosphere.toml"),
+    },
+    Validation {
         name: "structure",
         about: "natural frequencies beside published ones, energy of free motion, loads of a spinning rotor in closed form",
         cost: Cost::UnderAMinute,

@@ -6,12 +6,13 @@ use crate::row::Tolerance::Within;
 use basis::records::Summary;
 use formats::atomic;
 use formats::lock::Lock;
-use formats::records::sha256;
+use formats::records::{PrecursorFolder, PrecursorResult, sha256};
 use miette::Diagnostic;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::AtomicBool;
 use std::{env, fs, io};
+use study::precursor::{PrecursorObserver, PrecursorOptions, PrecursorOutcome, PrecursorProgress};
 use study::{Observer, Outcome, StudyError, StudyOptions};
 
 /// Where the expected values come from.
@@ -28,6 +29,21 @@ impl Observer for Lines {
         let line = format!("{} {share}0 %", progress.run);
         if line != self.last {
             tell!("{line}, {:.0} s left in all", progress.time_left);
+            self.last = line;
+        }
+    }
+
+    fn warned(&mut self, warning: &str) {
+        tell!("warning: {warning}");
+    }
+}
+
+impl PrecursorObserver for Lines {
+    fn advanced(&mut self, progress: &PrecursorProgress) {
+        let share = 10 * progress.step / progress.n_steps.max(1);
+        let line = format!("precursor {share}0 %");
+        if line != self.last {
+            tell!("{line}, {:.0} s left", progress.time_left);
             self.last = line;
         }
     }
@@ -58,12 +74,7 @@ pub(crate) fn summaries(
     name: &str,
     overrides: Vec<String>,
 ) -> Result<(Vec<Summary>, PathBuf), String> {
-    let output = Path::new("runs").join(format!("validate-{name}"));
-    let lock = Path::new("runs").join(format!(".validate-{name}.lock"));
-    let what = format!("{} of this validation", output.display());
-    let _lock = Lock::take(&lock, &what).map_err(|error| words(&error))?;
-    let there = claimed(&output, &this_build()?)?;
-    tell!("{there} {}", output.display());
+    let (output, _lock) = folder_of(name)?;
     let path = match case {
         Carried::Shipped(name) => PathBuf::from(name),
         Carried::Own(text) => {
@@ -85,6 +96,44 @@ pub(crate) fn summaries(
         Ok(Outcome::Done { summaries, .. }) => Ok((summaries, output)),
         Ok(other) => Err(format!("the study ended early: {other:?}")),
         Err(StudyError::Case(error)) => Err(error.to_lines().trim_end().to_owned()),
+        Err(error) => Err(words(&error)),
+    }
+}
+
+/// The folder of what is made under this `name`, claimed for this build, and the lock on it.
+fn folder_of(name: &str) -> Result<(PathBuf, Lock), String> {
+    let output = Path::new("runs").join(format!("validate-{name}"));
+    let lock = Path::new("runs").join(format!(".validate-{name}.lock"));
+    let what = format!("{} of this validation", output.display());
+    let lock = Lock::take(&lock, &what).map_err(|error| words(&error))?;
+    let there = claimed(&output, &this_build()?)?;
+    tell!("{there} {}", output.display());
+    Ok((output, lock))
+}
+
+/// Makes the shipped precursor `case` with `overrides` of its keys, likewise; gives what came of it and the
+/// file of its planes.
+pub(crate) fn precursor(
+    case: &str,
+    name: &str,
+    overrides: Vec<String>,
+) -> Result<(PrecursorResult, PathBuf), String> {
+    let (output, _lock) = folder_of(name)?;
+    let options = PrecursorOptions {
+        case: PathBuf::from(case),
+        output: Some(output.clone()),
+        overrides,
+        resume: PrecursorFolder::new(&output).case_path().exists(),
+        ..PrecursorOptions::default()
+    };
+    let mut observer = Lines { last: String::new() };
+    match study::precursor::precursor(&options, &AtomicBool::new(false), &mut observer) {
+        Ok(PrecursorOutcome::Done { result, folder }) => {
+            let planes = fs::canonicalize(folder.planes_path());
+            let planes = planes.map_err(|error| format!("the planes: {error}"))?;
+            Ok((*result, planes))
+        }
+        Ok(other) => Err(format!("the precursor ended early: {other:?}")),
         Err(error) => Err(words(&error)),
     }
 }

@@ -9,13 +9,13 @@ use crate::studies::{Carried, failure, find, summaries};
 use basis::records::Summary;
 
 /// One change of the case.
-struct Trial {
+pub(super) struct Trial {
     /// What is changed, in words that follow "with".
-    name: &'static str,
+    pub(super) name: &'static str,
     /// Name of its folder.
-    folder: &'static str,
+    pub(super) folder: &'static str,
     /// The keys that it sets.
-    keys: &'static [&'static str],
+    pub(super) keys: &'static [&'static str],
 }
 
 /// The study as it is, then with one thing changed at a time.
@@ -79,7 +79,7 @@ const SMALL: [&str; 5] = [
 const CASE: &str = include_str!("../../cases/wake-profile.toml");
 
 /// Where the mean wind is told of (diameters behind the turbine), with its place among the published ones.
-const PLACES: [(f64, usize); 3] = [(3.0, 0), (5.0, 2), (8.0, 5)];
+pub(super) const PLACES: [(f64, usize); 3] = [(3.0, 0), (5.0, 2), (8.0, 5)];
 /// Accepted distance from the published speed (m/s) and power (MW), as for the profile itself, and from the
 /// published gain of the cube (percentage points).
 const SPEED: f64 = 0.2;
@@ -103,7 +103,12 @@ fn without_last_run(case: &str) -> &str {
 }
 
 /// The rows of `trial` of the `case` with the `shared` keys, with speeds at `places`.
-fn rows(trial: &Trial, case: &'static str, shared: &[&str], places: &[(f64, usize)]) -> Vec<Row> {
+pub(super) fn rows(
+    trial: &Trial,
+    case: &'static str,
+    shared: &[&str],
+    places: &[(f64, usize)],
+) -> Vec<Row> {
     let name = format!("wake-{}", trial.folder);
     let keys = shared.iter().chain(trial.keys).map(|&key| key.to_owned()).collect();
     let read = summaries(Carried::Own(case), &name, keys).and_then(|(summaries, folder)| {

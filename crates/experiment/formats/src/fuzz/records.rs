@@ -3,6 +3,7 @@
 use super::{Refusal, survives};
 use crate::case;
 use crate::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
+use crate::netcdf::{Column, TimeHeight, read_statistics, write_statistics};
 use crate::records::{self, AtPhase, Manifest, PlaneSetting, RunFolder, SeriesWriter, read_study};
 use basis::records::{Plane, PlaneAxes, examples};
 use farm::case::{Case, Time, Wind};
@@ -62,6 +63,30 @@ fn studies() {
         for run in read_study(folder)?.runs {
             run.series.read(|_| true)?;
         }
+        Ok(())
+    });
+}
+
+/// The statistics of a precursor.
+fn statistics() -> Vec<(&'static str, Vec<u8>)> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("statistics.nc");
+    let column = |name, values| Column { name, unit: "m s-1", meaning: "speed", values };
+    let statistics = TimeHeight {
+        title: "small",
+        times: &[60.0, 120.0],
+        heights: &[10.0, 30.0, 50.0],
+        series: vec![column("hub_speed", &[9.0, 9.1])],
+        profiles: vec![column("speed", &[7.0, 8.0, 9.0, 7.1, 8.1, 9.1])],
+    };
+    write_statistics(&path, &statistics).unwrap();
+    vec![("statistics.nc", fs::read(path).unwrap())]
+}
+
+#[test]
+fn statistics_of_precursors() {
+    survives(statistics(), |folder| {
+        read_statistics(&folder.join("statistics.nc"), &["hub_speed"], &["speed"])?;
         Ok(())
     });
 }

@@ -64,9 +64,9 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Vec<(Option<f64>, Plane)>, String> 
         let size = file.dimension(name).map_err(|_| lacks(name))?.size;
         *count = usize::try_from(size).map_err(|_| format!("`{name}` has {size} points"))?;
     }
-    let times = coordinate(&file, "time", most)?;
+    let times = variable(&file, "time", most)?;
     let phases = if file.dimension("phase").is_ok() {
-        Some(coordinate(&file, "phase", most)?)
+        Some(variable(&file, "phase", most)?)
     } else {
         None
     };
@@ -116,8 +116,8 @@ fn velocities(file: &NcFile, n_values: usize) -> Result<[Vec<f32>; 3], String> {
     Ok(velocity)
 }
 
-/// The values of the coordinate `name` in a file of `most` bytes.
-pub(super) fn coordinate(file: &NcFile, name: &str, most: usize) -> Result<Vec<f64>, String> {
+/// The values of the variable `name` in a file of `most` bytes.
+pub(super) fn variable(file: &NcFile, name: &str, most: usize) -> Result<Vec<f64>, String> {
     let shape = file.variable(name).map_err(|_| lacks(name))?.shape();
     let size = shape.iter().try_fold(1_u64, |n, m| n.checked_mul(*m));
     let size = size.and_then(|size| usize::try_from(size).ok());

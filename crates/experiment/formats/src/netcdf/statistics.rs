@@ -1,6 +1,6 @@
 //! Statistics over time and height in a NetCDF file, for xarray, Panoply and the like.
 
-use super::read::{coordinate, lacks};
+use super::read::{lacks, variable};
 use super::{text, unwritable};
 use crate::{FileError, atomic};
 use netcdf_reader::NcFile;
@@ -79,12 +79,11 @@ pub(crate) fn decode(
 ) -> Result<StoredStatistics, String> {
     let most = bytes.len();
     let file = NcFile::from_bytes(bytes).map_err(|error| error.to_string())?;
-    let (times, heights) = (coordinate(&file, "time", most)?, coordinate(&file, "z", most)?);
+    let (times, heights) = (variable(&file, "time", most)?, variable(&file, "z", most)?);
     let mut columns = Vec::new();
     for (names, n_each) in [(series, 1), (profiles, heights.len())] {
         for name in names {
-            file.variable(name).map_err(|_| lacks(name))?;
-            let values = coordinate(&file, name, most)?;
+            let values = variable(&file, name, most)?;
             if Some(values.len()) != times.len().checked_mul(n_each) {
                 return Err(format!("`{name}` holds {} values", values.len()));
             }

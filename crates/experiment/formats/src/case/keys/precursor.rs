@@ -63,10 +63,10 @@ pub(in crate::case) static ATMOSPHERE: Table = Table {
         key("latitude_deg", from(-90.0, 90.0), "deg", Required, "Latitude, positive on the northern half; 5° from the equator at least. The Coriolis parameter is 2 Ω sin(latitude)."),
         key("roughness_length", above(0.0, 5.0), "m", Required, "Roughness length z₀: about 0.0002 on calm sea, 0.001 on open sea, 0.03 on farmland.")
             .mistaken(&[Slip { unit: "mm", factor: 0.001 }]),
-        key("geostrophic_wind", above(0.0, 60.0), "m/s", Otherwise("`hub_wind` is given"), "Speed of the geostrophic wind, which blows above the layer. At hub height offshore it is about a tenth less.")
+        key("geostrophic_wind", above(0.0, 60.0), "m/s", Otherwise("as `hub_wind` needs it"), "Speed of the geostrophic wind, which blows above the layer. At hub height offshore it is about a tenth less.")
             .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }]),
         key("geostrophic_direction_deg", from(0.0, 360.0), "deg", Otherwise("270, where `geostrophic_wind` is given"), "Where it comes from, clockwise from north: 270 is along the box's x axis. Where it blows aslant to the box, long streaks do not come back into themselves."),
-        key("hub_wind", above(0.0, 60.0), "m/s", Otherwise("`geostrophic_wind` is given"), "In its place: speed of the mean wind at `planes.hub_height`. The geostrophic wind follows, by a control that acts over hours.")
+        key("hub_wind", above(0.0, 60.0), "m/s", Otherwise("what `geostrophic_wind` makes of it"), "In its place: speed of the mean wind at `planes.hub_height`. The geostrophic wind follows, by a control that acts over hours.")
             .mistaken(&[Slip { unit: "km/h", factor: 1.0 / 3.6 }]),
         key("hub_direction_deg", from(0.0, 360.0), "deg", Otherwise("270, where `hub_wind` is given"), "Where that wind comes from, clockwise from north."),
         key("temperature", from(200.0, 350.0), "K", Value("288.15"), "Temperature from the ground to the inversion."),

@@ -1,0 +1,127 @@
+//! Wake and helix in the wind of a neutral atmosphere, beside Mann's wind and published large-eddy figures.
+
+use super::ARRAY_GAINS;
+use super::trials::{PLACES, Trial, rows};
+use crate::Row;
+use crate::row::Tolerance::{AtMost, Within};
+use crate::studies::{Carried, failure, find, precursor, summaries};
+use basis::records::Summary;
+use formats::records::{PrecursorResult, ProfileRow};
+
+/// A smaller and coarser `precursor-offshore`, so that it can be waited for.
+const SMALLER: [&str; 7] = [
+    "box.length=3360",
+    "box.width=2800",
+    "box.height=1120",
+    "box.cell=28",
+    "time.spin_up=21600",
+    "time.record=4800",
+    "planes.width=1700",
+];
+/// What the studies share in its planes, and in Mann's wind.
+const IN_PLANES: [&str; 3] =
+    ["wind.turbulence_intensity=0.05", "wind.roughness_length=0.001", "wind.beyond_planes=mean"];
+const IN_BOX: [&str; 4] = [
+    "wind.turbulence_intensity=0.055",
+    "wind.shear_exponent=0.08",
+    "wind.length_scale=115",
+    "wind.seed=1",
+];
+const HUB_WIND: f64 = 10.0;
+/// Turbulence intensity over the rotor (%): the middle of the published 3 to 6 %, and how far that reaches.
+const INTENSITY: (f64, f64) = (4.5, 1.5);
+const SOURCE: &str = "van der Hoek, Dammann, van Wingerden, section 2.1.1";
+const CASE_ITSELF: &str = "the case itself";
+
+/// A precursor's wind, the wake in it, and the gains of an array in it and in Mann's wind.
+pub fn helix_in_atmosphere() -> Vec<Row> {
+    let own = SMALLER.map(str::to_owned).to_vec();
+    let (wind, planes) = match precursor("precursor-offshore", "helix-in-atmosphere-wind", own) {
+        Ok(done) => done,
+        Err(problem) => return failure(problem),
+    };
+    let planes = format!("wind.planes=\"{}\"", planes.display());
+    let keys = || [planes.as_str()].into_iter().chain(IN_PLANES);
+    let mut found = of_wind(&wind);
+
+    let trial =
+        Trial { name: "the wind of an atmosphere", folder: "helix-in-atmosphere-1", keys: &[] };
+    let case = include_str!("../../cases/wake-in-atmosphere.toml");
+    found.extend(rows(&trial, case, &keys().collect::<Vec<_>>(), &PLACES));
+
+    found.extend(of_array("an atmosphere's wind", "helix-in-atmosphere-2", keys()));
+    found.extend(of_array("Mann's wind", "helix-in-atmosphere-mann", IN_BOX.into_iter()));
+    found
+}
+
+/// What the precursor's wind is like.
+fn of_wind(wind: &PrecursorResult) -> Vec<Row> {
+    let row = |what: &str, measured, expected, tolerance, unit, source| Row {
+        what: format!("precursor: {what}"),
+        measured,
+        expected,
+        tolerance,
+        unit,
+        source,
+    };
+    let hub = wind.planes.hub_height;
+    // The IEA 22 MW turbine.
+    let radius = 142.0;
+    let over_rotor = |level: &&ProfileRow| (level.height - hub).abs() <= radius;
+    let intensities: Vec<_> = wind
+        .profile
+        .iter()
+        .filter(over_rotor)
+        .map(|level| 100.0 * level.turbulence_intensity)
+        .collect();
+    let least = intensities.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = intensities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (middle, reach) = INTENSITY;
+    let drift = wind.record.as_ref();
+    vec![
+        row("speed at the hub", wind.planes.hub_speed, HUB_WIND, Within(0.1), "m/s", CASE_ITSELF),
+        row("least intensity over the rotor", least, middle, Within(reach), "%", SOURCE),
+        row("greatest intensity over the rotor", greatest, middle, Within(reach), "%", SOURCE),
+        row("depth of the layer", wind.boundary_layer_height, 700.0, AtMost, "m", SOURCE),
+        row(
+            "change of the friction velocity from half to half of the record",
+            drift.map_or(f64::NAN, |drift| 100.0 * drift.of_friction()),
+            0.0,
+            Within(3.0),
+            "%",
+            CASE_ITSELF,
+        ),
+    ]
+}
+
+/// Gains of two turbines in the `wind` that `keys` set, in the folder of this name.
+fn of_array<'a>(wind: &str, folder: &str, keys: impl Iterator<Item = &'a str>) -> Vec<Row> {
+    let case = Carried::Own(include_str!("../../cases/helix-in-atmosphere.toml"));
+    let summaries = match summaries(case, folder, keys.map(str::to_owned).collect()) {
+        Ok((summaries, _)) => summaries,
+        Err(problem) => return failure(problem),
+    };
+    let rows: Vec<_> =
+        ARRAY_GAINS.iter().map(|published| of_gain(wind, &summaries, published)).collect();
+    let more = rows[0].measured - rows[1].measured;
+    let more = super::positive(format!("in {wind}: array gain of ccw 4° less that of cw 4°"), more);
+    rows.into_iter().chain([more]).collect()
+}
+
+/// Gain of the array beside the `published` one: run, gain, half width of what is accepted (%).
+fn of_gain(wind: &str, summaries: &[Summary], published: &(&str, f64, f64)) -> Row {
+    let (run, expected, accepted) = *published;
+    let gain = find(summaries, run).and_then(|summary| summary.array_power_gain);
+    if let Some(gain) = gain {
+        let half_width = gain.half_width_95.map_or(f64::NAN, |half| 100.0 * half);
+        tell!("in {wind}: array gain, {run}: {:.2} ± {half_width:.2} %", 100.0 * gain.mean);
+    }
+    Row {
+        what: format!("in {wind}: array gain, {run}, two turbines at 5 D, 10 m/s"),
+        measured: gain.map_or(f64::NAN, |gain| 100.0 * gain.mean),
+        expected,
+        tolerance: Within(accepted),
+        unit: "%",
+        source: super::ARRAY,
+    }
+}
