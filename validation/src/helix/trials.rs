@@ -98,7 +98,7 @@ pub fn wake_grid() -> Vec<Row> {
 }
 
 /// The text of a case without its last run.
-fn without_last_run(case: &str) -> &str {
+pub(super) fn without_last_run(case: &str) -> &str {
     case.rfind("[[run]]").map_or(case, |end| &case[..end])
 }
 

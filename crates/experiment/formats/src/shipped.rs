@@ -15,7 +15,7 @@ pub struct ShippedCase {
     file: &'static str,
     /// Wall time of all its runs on two cores (min), about.
     pub minutes: f64,
-    /// The shipped case that has to be run before, where it reads what another one leaves.
+    /// The shipped case or precursor that has to be run before, where it reads what another one leaves.
     pub after: Option<&'static str>,
 }
 
@@ -86,6 +86,18 @@ pub const CASES: &[ShippedCase] = &[
         file: include_str!("../../../../cases/meandering-in-wake.toml"),
         minutes: 2.0,
         after: Some("wake-inflow"),
+    },
+    ShippedCase {
+        name: "helix-offshore",
+        file: include_str!("../../../../cases/helix-offshore.toml"),
+        minutes: 12.0,
+        after: Some("precursor-offshore"),
+    },
+    ShippedCase {
+        name: "synchronised-offshore",
+        file: include_str!("../../../../cases/synchronised-offshore.toml"),
+        minutes: 24.0,
+        after: Some("precursor-seed-000"),
     },
 ];
 
@@ -259,6 +271,8 @@ mod tests {
             let before = shipped.after.map(|name| format!("runs/{name}/"));
             assert_eq!(planes.is_some(), before.is_some());
             assert!(planes.zip(before).is_none_or(|(file, folder)| file.starts_with(&folder)));
+            let is_there = |name| find(name).is_some() || find_precursor(name).is_some();
+            assert!(shipped.after.is_none_or(is_there));
             let text = shipped.text();
             assert!(!text.contains("../") && !text.contains("cases/"), "{text}");
         }

@@ -65,11 +65,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Vec<(Option<f64>, Plane)>, String> 
         *count = usize::try_from(size).map_err(|_| format!("`{name}` has {size} points"))?;
     }
     let times = variable(&file, "time", most)?;
-    let phases = if file.dimension("phase").is_ok() {
-        Some(variable(&file, "phase", most)?)
-    } else {
-        None
-    };
+    let phases =
+        if file.dimension("phase").is_ok() { Some(variable(&file, "phase", most)?) } else { None };
     let n_planes = phases.as_ref().map_or(times.len(), Vec::len);
     let n_values = n_points[0].checked_mul(n_points[1]).filter(|n| *n > 0);
     let in_all = n_values.and_then(|n| n.checked_mul(n_planes));

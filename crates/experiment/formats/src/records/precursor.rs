@@ -72,9 +72,9 @@ pub struct RecordedPlanes {
     pub interval: f64,
     /// Hub height (m).
     pub hub_height: f64,
-    /// Mean speed across the planes in the row nearest hub height (m/s).
+    /// Mean speed across the planes at hub height, linear between their rows (m/s).
     pub hub_speed: f64,
-    /// Standard deviation of u in that row over its mean (–).
+    /// Standard deviation of u there over its mean (–).
     pub turbulence_intensity: f64,
     /// Where the wind of the file comes from in the box (deg, clockwise from north).
     pub direction_deg: f64,

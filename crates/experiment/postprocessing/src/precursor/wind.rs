@@ -85,6 +85,7 @@ pub(super) fn spectra(row: &HubRow, hub: &HubWind) -> Option<DensityFigure> {
         name: "spectra".to_owned(),
         title: "Spectra at hub height".to_owned(),
         caption: "Power spectral densities at hub height, mean over all points across the wind, beside Kaimal's of IEC 61400-1 (2005, eq. B.14) with the same hub height, speed and standard deviation of u. Beyond a wave of some cells the box resolves none.".to_owned(),
+        lowest_frequency: Some(1.0 / (row.n_segment() as f64 * row.interval)),
         highest_frequency: (0.5 * hub.speed / row.spacing).min(0.5 / row.interval),
         marks: Vec::new(),
         band: None,

@@ -247,6 +247,7 @@ impl Place<'_> {
             name: format!("{name}-{}", self.name),
             title,
             caption,
+            lowest_frequency: None,
             highest_frequency: highest,
             marks: all,
             band: None,

@@ -12,6 +12,11 @@ pub(crate) const MEDIUM: f64 = 12.5;
 /// Size of panel titles.
 pub(crate) const LARGE: f64 = 13.5;
 
+/// Ratio of the ends of a logarithmic axis from which on powers of ten are ticks enough.
+const LONG: f64 = 1e3;
+/// Multiples of a power of ten that are ticks of a shorter one.
+const MULTIPLES: [f64; 3] = [1.0, 2.0, 5.0];
+
 /// Values along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scale {
@@ -68,13 +73,26 @@ impl Scale {
         }
     }
 
+    /// The words for a tick of so many decimals.
+    fn label(&self, tick: f64, decimals: usize) -> String {
+        if self.logarithmic { power(tick) } else { words::number(tick, decimals) }
+    }
+
     /// Round values between the ends, about `n_wanted` of them, and their decimals.
     pub(crate) fn ticks(&self, n_wanted: usize) -> (Vec<f64>, usize) {
         let (low, high) = (self.low.min(self.high), self.low.max(self.high));
         if self.logarithmic {
             let first = low.log10().ceil() as i32;
             let last = high.log10().floor() as i32;
-            return ((first..=last).map(|power| 10f64.powi(power)).collect(), 0);
+            let powers = |power: i32| MULTIPLES.map(|multiple| multiple * 10f64.powi(power));
+            let is_long = high > LONG * low;
+            let shown = |tick: &f64| (low..=high).contains(tick);
+            let ticks = if is_long {
+                (first..=last).map(|power| 10f64.powi(power)).collect()
+            } else {
+                (first - 1..=last).flat_map(powers).filter(shown).collect()
+            };
+            return (ticks, 0);
         }
         let rough = (high - low) / n_wanted.max(1) as f64;
         if !(rough.is_finite() && rough > 0.0) {
@@ -102,8 +120,8 @@ pub(crate) struct Readout {
     pub(crate) frame: [f64; 4],
     /// Values at the left, right, lower and upper end.
     pub(crate) range: [f64; 4],
-    /// Whether the vertical axis is logarithmic.
-    pub(crate) logarithmic: bool,
+    /// Whether the horizontal and the vertical axis are logarithmic.
+    pub(crate) logarithmic: [bool; 2],
     /// Unit of the horizontal axis.
     pub(crate) x_unit: String,
     /// Unit of the vertical axis.
@@ -188,8 +206,7 @@ impl Frame {
             if !labelled {
                 continue;
             }
-            let label =
-                if self.y.logarithmic { power(tick) } else { words::number(tick, decimals) };
+            let label = self.y.label(tick, decimals);
             let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
             inner.push(text([left - 7.0, y + 4.0], label, setting));
         }
@@ -222,7 +239,7 @@ impl Frame {
             inner.push(segment([x, base], [x, base + 4.0], Look::line(Ink::Axis, 1.0)));
             if labelled {
                 let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(0.5);
-                inner.push(text([x, base + 17.0], words::number(tick, decimals), setting));
+                inner.push(text([x, base + 17.0], self.x.label(tick, decimals), setting));
             }
         }
         self.ticks(Axis::X, inner, shapes);
@@ -264,7 +281,7 @@ impl Frame {
         Readout {
             frame: self.area,
             range: [self.x.low, self.x.high, self.y.low, self.y.high],
-            logarithmic: self.y.logarithmic,
+            logarithmic: [self.x.logarithmic, self.y.logarithmic],
             x_unit: units[0].to_owned(),
             y_unit: units[1].to_owned(),
             along: Axis::X,
@@ -311,10 +328,15 @@ pub(crate) fn legend(
     y - base + LINE
 }
 
-/// A power of ten in words that a reader of axes knows.
+/// A power of ten, or a multiple of it by one digit, in words that a reader of axes knows.
 fn power(value: f64) -> String {
-    let exponent = value.log10().round() as i32;
-    if exponent >= -3 { format!("{value}") } else { format!("1e−{}", -exponent) }
+    let exponent = (value.log10() + 1e-9).floor() as i32;
+    let digit = (value / 10f64.powi(exponent)).round();
+    if exponent >= -3 {
+        words::number(value, usize::try_from(-exponent).unwrap_or(0))
+    } else {
+        format!("{digit}e−{}", -exponent)
+    }
 }
 
 #[cfg(test)]
@@ -331,6 +353,10 @@ mod tests {
         assert_eq!(Scale::linear(2.0, -2.0).ticks(4).0.len(), 5);
         let logarithmic = Scale { low: 1e-3, high: 10.0, logarithmic: true };
         assert_eq!(logarithmic.ticks(4).0.len(), 5);
+        let of = [1e-5, 2e-4, 0.001, 0.05, 1.0, 200.0].map(power);
+        assert_eq!(of, ["1e−5", "2e−4", "0.001", "0.05", "1", "200"]);
+        let short = Scale { low: 1.5, high: 60.0, logarithmic: true };
+        assert_eq!(short.ticks(4).0, [2.0, 5.0, 10.0, 20.0, 50.0]);
         assert!(Scale::linear(1.0, 1.0).ticks(4).0.is_empty());
     }
 

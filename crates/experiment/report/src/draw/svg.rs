@@ -160,10 +160,11 @@ impl Writer<'_> {
 /// What the page's script must know of a pair of axes.
 fn of_panel(readout: &Readout) -> String {
     let mut text = format!(
-        " data-panel=\"{} {}\" data-log=\"{}\" data-x=\"{}\" data-y=\"{}\" data-along=\"{}\" data-zoom=\"{}\"",
+        " data-panel=\"{} {}\" data-log=\"{} {}\" data-x=\"{}\" data-y=\"{}\" data-along=\"{}\" data-zoom=\"{}\"",
         numbers(&readout.frame),
         numbers(&readout.range),
-        u8::from(readout.logarithmic),
+        u8::from(readout.logarithmic[0]),
+        u8::from(readout.logarithmic[1]),
         escaped(&readout.x_unit),
         escaped(&readout.y_unit),
         if readout.along == Axis::X { "x" } else { "y" },

@@ -63,20 +63,19 @@
     const [left, top, width, height, x0, x1, y0, y1] = data.panel.split(" ").map(Number);
     const key = data.panel.split(" ").slice(0, 4).join(" ");
     const svg = group.ownerSVGElement;
-    const both = data.zoom === "xy", log = data.log === "1";
-    const share = (value, low, high) =>
+    const both = data.zoom === "xy";
+    const [logX, logY] = data.log.split(" ").map((flag) => flag === "1");
+    const share = (value, low, high, log) =>
       log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+    const valueAt = (part, low, high, log) => log ? low * Math.pow(high / low, part) : low + part * (high - low);
     const panel = {
       group, svg, left, top, width, height, both, data,
       zoomed: [group, ...svg.querySelectorAll('[data-behind="' + key + '"]')].map((one) => one.querySelector(".zoom")),
       transform: d3.zoomIdentity,
       // Panels that show the same are enlarged together.
       kin: data.zoom + data.panel.split(" ").slice(4, both ? 8 : 6).join(" ") + [width, both && height],
-      xOf: (at) => x0 + (at - left) / width * (x1 - x0),
-      yOf(at) {
-        const part = 1 - (at - top) / height;
-        return log ? y0 * Math.pow(y1 / y0, part) : y0 + part * (y1 - y0);
-      },
+      xOf: (at) => valueAt((at - left) / width, x0, x1, logX),
+      yOf: (at) => valueAt(1 - (at - top) / height, y0, y1, logY),
       // From the sheet to the sheet as it was drawn, and back.
       undo([x, y]) {
         const t = panel.transform;
@@ -133,12 +132,12 @@
         return of(axis === "x" ? point[0] : point[1]);
       });
       const count = drawn.filter((shape) => shape.tagName === "path").length;
-      const values = axis === "y" && log ? powersOf(low, high) : ticksOf(low, high, count);
+      const values = (axis === "x" ? logX : logY) ? powersOf(low, high) : ticksOf(low, high, count);
       const shapes = [];
       values.forEach(([value, words]) => {
         const place = axis === "x"
-          ? panel.redo([left + (value - x0) / (x1 - x0) * width, top])[0]
-          : panel.redo([left, top + (1 - share(value, y0, y1)) * height])[1];
+          ? panel.redo([left + share(value, x0, x1, logX) * width, top])[0]
+          : panel.redo([left, top + (1 - share(value, y0, y1, logY)) * height])[1];
         const move = "translate(" + (axis === "x" ? [place - from, 0] : [0, place - from]) + ")";
         const mark = path.cloneNode(false);
         mark.setAttribute("transform", move);

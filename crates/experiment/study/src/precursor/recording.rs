@@ -32,7 +32,7 @@ pub(super) struct RecordingState {
     pub(super) along: [f64; 2],
 }
 
-/// What the planes of a file hold in the row nearest hub height.
+/// What the planes of a file hold at hub height, linear between their rows.
 pub(super) struct AtHub {
     /// Mean speed across the planes (m/s).
     pub(super) speed: f64,
@@ -132,7 +132,7 @@ impl Recording {
     }
 }
 
-/// What the planes of the file at `path` hold in the row nearest `hub_height` (m).
+/// What the planes of the file at `path` hold at `hub_height` (m), linear between their rows.
 ///
 /// # Errors
 /// [`FileError`], and [`InflowError::Plane`] for a plane that cannot be read.
@@ -142,20 +142,25 @@ pub(super) fn at_hub(
 ) -> Result<Result<AtHub, InflowError>, FileError> {
     let mut planes = turbulence_box::open(path)?;
     let grid = planes.grid();
-    let row = ((hub_height - grid.first[1]) / grid.spacing[1]).round().max(0.0) as usize;
-    let start = row.min(grid.n_z - 1) * grid.n_y;
+    let place = ((hub_height - grid.first[1]) / grid.spacing[1]).clamp(0.0, grid.n_z as f64 - 1.0);
+    let (row, weight) = (place.floor() as usize, place.fract());
+    let start = [row, (row + 1).min(grid.n_z - 1)].map(|row| row * grid.n_y);
     let mut plane = vec![[0.0; 3]; grid.n_y * grid.n_z];
     let (mut u, mut v, mut uu) = (0.0, 0.0, 0.0);
     for step in 0..grid.n_steps {
         if let Err(error) = planes.read(step, &mut plane) {
             return Ok(Err(error));
         }
-        for wind in &plane[start..start + grid.n_y] {
+        for index in 0..grid.n_y {
+            let wind = [0, 1].map(|axis| {
+                let [below, above] = start.map(|start| f64::from(plane[start + index][axis]));
+                below + weight * (above - below)
+            });
             // From the file's own mean, so that squares of the mean do not drown the deviation.
-            let departure = f64::from(wind[0]) - grid.speed;
+            let departure = wind[0] - grid.speed;
             u += departure;
             uu += departure * departure;
-            v += f64::from(wind[1]);
+            v += wind[1];
         }
     }
     let n = (grid.n_steps * grid.n_y) as f64;

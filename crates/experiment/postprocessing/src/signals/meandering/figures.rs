@@ -163,6 +163,7 @@ fn spectra(
         title: format!("Spectra of tilt and yaw moment of {turbine}"),
         caption: "Power spectral densities by Welch's method; the frequencies that the loop may follow are shaded."
             .to_owned(),
+        lowest_frequency: None,
         highest_frequency: band.map_or(0.0, |[_, high]| SHOWN * high),
         marks: Vec::new(),
         band,

@@ -15,7 +15,7 @@ const DECADES: f64 = 6.0;
 /// Millihertz of a hertz.
 const MILLI: f64 = 1e3;
 
-/// A pair of axes for each row, over one frequency from zero to the highest.
+/// A pair of axes for each row, over frequencies up to the highest.
 pub(super) fn densities(figure: &DensityFigure) -> Option<Figure> {
     let rows: Vec<Drawn> = figure.rows.iter().filter_map(|row| Drawn::new(figure, row)).collect();
     if rows.is_empty() {
@@ -30,7 +30,7 @@ pub(super) fn densities(figure: &DensityFigure) -> Option<Figure> {
         let last = index + 1 == n_rows;
         let frame = Frame {
             area: [LEFT, top + (HEIGHT + GAP) * index as f64, WIDTH - LEFT - 24.0, HEIGHT],
-            x: Scale::linear(0.0, MILLI * figure.highest_frequency),
+            x: frequencies(figure),
             y: drawn.scale,
         };
         if let Some([low, high]) = figure.band {
@@ -62,6 +62,15 @@ pub(super) fn densities(figure: &DensityFigure) -> Option<Figure> {
         height: top + (HEIGHT + GAP) * n_rows as f64 - GAP + 50.0,
         shapes,
     })
+}
+
+/// The axis of frequencies (mHz).
+fn frequencies(figure: &DensityFigure) -> Scale {
+    Scale {
+        low: MILLI * figure.lowest_frequency.unwrap_or(0.0),
+        high: MILLI * figure.highest_frequency,
+        logarithmic: figure.lowest_frequency.is_some(),
+    }
 }
 
 /// A row's lines as points, and the scale that holds them.
@@ -111,6 +120,7 @@ mod tests {
             name: "d".into(),
             title: String::new(),
             caption: String::new(),
+            lowest_frequency: None,
             highest_frequency: 3e-3,
             marks: vec![(2e-3, "here".into())],
             band: Some([1e-3, 2e-3]),
@@ -124,6 +134,15 @@ mod tests {
         let drawn = Drawn::new(&figure, &figure.rows[0]).expect("a row");
         assert_eq!(drawn.points, [[[1.0, 4.0], [3.0, 0.01]]]);
         assert!(drawn.scale.low < 0.01 && drawn.scale.high > 4.0);
+        assert!(densities(&figure).is_some());
+    }
+
+    #[test]
+    fn frequencies_are_logarithmic_from_a_lowest_on() {
+        let linear = figure(vec![9.0, 4.0, 1.0]);
+        let figure = DensityFigure { lowest_frequency: Some(3e-5), ..linear.clone() };
+        assert_eq!(frequencies(&linear), Scale::linear(0.0, 3.0));
+        assert_eq!(frequencies(&figure).ticks(9).0, [0.05, 0.1, 0.2, 0.5, 1.0, 2.0]);
         assert!(densities(&figure).is_some());
     }
 

@@ -215,6 +215,8 @@ pub struct DensityFigure {
     pub title: String,
     /// What to look for.
     pub caption: String,
+    /// Lowest frequency that is shown (Hz), on a logarithmic axis; a linear one from zero where absent.
+    pub lowest_frequency: Option<f64>,
     /// Highest frequency that is shown (Hz).
     pub highest_frequency: f64,
     /// Frequencies to mark (Hz), each with its name, which may be empty.
