@@ -1,6 +1,6 @@
 //! Statistics over time and height in a NetCDF file, for xarray, Panoply and the like.
 
-use super::read::{lacks, variable};
+use super::read::variable;
 use super::{text, unwritable};
 use crate::{FileError, atomic};
 use netcdf_reader::NcFile;

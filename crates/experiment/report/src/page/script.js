@@ -49,10 +49,15 @@
     const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     return values.map((value) => [value, value.toFixed(Math.min(decimals, 8)).replace("-", "−")]);
   }
+  // As on the sheet: powers of ten, and two and five times them where there are few.
   function powersOf(low, high) {
-    const values = [];
-    for (let power = Math.ceil(Math.log10(low)); power <= Math.log10(high); power += 1) {
-      values.push([Math.pow(10, power), "1e" + String(power).replace("-", "−")]);
+    const values = [], multiples = high > 1e3 * low ? [1] : [1, 2, 5];
+    for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power += 1) {
+      multiples.forEach((multiple) => {
+        const value = multiple * Math.pow(10, power);
+        const words = power < -3 ? multiple + "e−" + -power : value.toFixed(Math.max(0, -power));
+        if (value >= low && value <= high) values.push([value, words]);
+      });
     }
     return values.length > 1 ? values : ticksOf(low, high, 4);
   }
