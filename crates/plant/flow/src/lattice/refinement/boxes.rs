@@ -8,7 +8,9 @@ use thiserror::Error;
 
 /// Cells of the grid around a box between it and a side that it does not stand on, and between two boxes: one
 /// takes part in the exchange, the next one knows its slope.
-const MARGIN: usize = 2;
+pub const MARGIN: usize = 2;
+/// Memory of the exchange for each face of a box's cells that looks at the grid around it (bytes), about.
+const BYTES_OF_FACE: u64 = 330;
 
 /// A box of cells of half the size, moved by steps of half the length.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -90,6 +92,23 @@ impl Refinement {
         let (first_cell, end): ([usize; 3], [usize; 3]) = (cell(low), cell(high));
         let n_cells = std::array::from_fn(|axis| end[axis].saturating_sub(first_cell[axis]));
         Self { first_cell, n_cells, within: Vec::new() }
+    }
+
+    /// Cells of half the size along x, y, z (–).
+    pub fn fine_cells(&self) -> [usize; 3] {
+        self.n_cells.map(|n| 2 * n)
+    }
+
+    /// Boxes within one another, this one included (–).
+    pub fn depth(&self) -> u32 {
+        1 + self.within.iter().map(Self::depth).max().unwrap_or(0)
+    }
+
+    /// Memory (bytes) of its exchange with the grid around it, about: what it is where nineteen directions
+    /// cross all six sides.
+    pub fn exchange_memory(&self) -> u64 {
+        let [x, y, z] = self.fine_cells().map(|n| n as u64);
+        2 * (x * y + y * z + z * x) * BYTES_OF_FACE
     }
 
     /// The cells around it that it covers.
