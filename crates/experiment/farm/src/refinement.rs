@@ -38,7 +38,7 @@ pub static TABLE: Table = Table {
             "downstream_diameters",
             from(0.5, 100.0),
             "D",
-            Value("4"),
+            Value("2"),
             "From the last of them downstream to its end.",
         ),
         key(

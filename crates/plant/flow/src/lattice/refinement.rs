@@ -45,7 +45,7 @@ use super::solver::{Lattice, steps_in};
 use crate::{FlowError, FlowSolver, Inflow};
 use basis::{PointForce, Vector3};
 use boxes::Beyond;
-pub use boxes::{MARGIN, Refinement, RefinementError};
+pub use boxes::{MARGIN, Refinement, RefinementError, check};
 use coupling::Coupling;
 use paths::Paths;
 use std::io::{Error, ErrorKind, Read, Result as IoResult, Write};

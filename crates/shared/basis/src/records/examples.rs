@@ -137,7 +137,11 @@ pub fn full() -> Summary {
     Summary {
         compare_with: Some("baseline".to_owned()),
         conditions: Conditions { roughness_length: Some(0.01), ..conditions() },
-        flow: Some(FlowSummary { solver: "lattice".to_owned(), has_wakes: true }),
+        flow: Some(FlowSummary {
+            solver: "lattice".to_owned(),
+            has_wakes: true,
+            grids: Vec::new(),
+        }),
         array_power: with_interval(4e7),
         array_power_gain: Some(gain),
         cost: Cost {

@@ -70,6 +70,26 @@ pub enum RefinementError {
 /// inlet, an outlet or the grid around.
 pub(super) type Beyond = [[Option<Edge>; 2]; 3];
 
+/// Checks that `boxes`, and those within them, suit their places in the grid of `settings`.
+///
+/// # Errors
+/// [`RefinementError`] for the first that does not.
+pub fn check(settings: &LatticeSettings, boxes: &[Refinement]) -> Result<(), RefinementError> {
+    check_in(settings.n_cells, &beyond(settings), boxes)
+}
+
+fn check_in(
+    n_cells: [usize; 3],
+    beyond: &Beyond,
+    boxes: &[Refinement],
+) -> Result<(), RefinementError> {
+    check_apart(boxes, n_cells)?;
+    boxes.iter().try_for_each(|one| {
+        one.check(n_cells, beyond)?;
+        check_in(one.fine_cells(), &one.beyond(n_cells, beyond), &one.within)
+    })
+}
+
 /// What lies beyond the box of `settings`.
 pub(super) fn beyond(settings: &LatticeSettings) -> Beyond {
     let ends = match settings.ends {
