@@ -36,7 +36,7 @@ mod random;
 pub mod record;
 mod recorded;
 pub mod refined_rotor;
-mod resume;
+pub mod resume;
 pub mod row;
 pub mod structure;
 mod studies;

@@ -87,9 +87,6 @@ impl TurbineModel {
     }
 }
 
-/// Gaussian width over cell size (–): two cells is the least that the lattice carries without ringing.
-pub const SMEARING_CELLS: f64 = 2.0;
-
 /// Smagorinsky's constant above a rough ground (–): with 0.16 the slope of the mean wind gives the friction
 /// velocity 7 % above the logarithmic law's, with the 0.12 of wakes in free air 20 % below it
 /// (docs/validation/flow.md).

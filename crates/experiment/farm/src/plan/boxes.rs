@@ -1,8 +1,8 @@
 //! Boxes of finer cells: from the layout to cells, and checked before anything runs.
 
 use super::{Footprint, Layout, PlanError};
-use crate::assemble::SMEARING_CELLS;
 use crate::case::{Case, Placement};
+use crate::domain::SMEARING_CELLS;
 use crate::refinement::{Asked, asked};
 use basis::Vector3;
 use flow::lattice::LatticeSettings;

@@ -2,9 +2,9 @@
 
 use super::{Alone, Fault, Objection, Smearing, SolverError, SolverKind, Start, WindSource};
 use crate::air::Air;
-use crate::assemble::{SMEARING_CELLS, lattice_settings};
+use crate::assemble::lattice_settings;
 use crate::case::{Case, Flow, TurbulenceModel, Wind};
-use crate::domain::{self, Sides};
+use crate::domain::{self, SMEARING_CELLS, Sides};
 use crate::plan::{self, Plan};
 use crate::refinement;
 use basis::keys::Key;
