@@ -1,6 +1,7 @@
 //! The grids of a plan: that of the domain, and those of the boxes of finer cells in it.
 
 use super::Plan;
+use flow::lattice::Stencil;
 use flow::lattice::refinement::Refinement;
 
 /// Cells of one size.
@@ -88,10 +89,11 @@ impl Plan {
 
     /// Memory of what grids hand each other (bytes), about.
     pub fn exchange_memory(&self) -> u64 {
-        fn of(boxes: &[Refinement]) -> u64 {
-            boxes.iter().map(|one| one.exchange_memory() + of(&one.within)).sum()
+        fn of(boxes: &[Refinement], stencil: Stencil) -> u64 {
+            let of_box = |one: &Refinement| one.exchange_memory(stencil) + of(&one.within, stencil);
+            boxes.iter().map(of_box).sum()
         }
-        of(&self.boxes)
+        of(&self.boxes, self.method.stencil)
     }
 
     /// Time between rows of the series (s).

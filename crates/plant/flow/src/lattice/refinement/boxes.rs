@@ -2,15 +2,16 @@
 
 use crate::lattice::cell_box::CellBox;
 use crate::lattice::layout::Edge;
-use crate::lattice::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides};
+use crate::lattice::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil};
 use basis::Vector3;
 use thiserror::Error;
 
 /// Cells of the grid around a box between it and a side that it does not stand on, and between two boxes: one
 /// takes part in the exchange, the next one knows its slope.
 pub const MARGIN: usize = 2;
-/// Memory of the exchange for each face of a box's cells that looks at the grid around it (bytes), about.
-const BYTES_OF_FACE: u64 = 330;
+/// Memory of the exchange for each population that leaves a box through a face of a cell (bytes), about: as
+/// measured of a box of 64 × 32 × 32 cells on the ground.
+const BYTES_OF_LINK: u64 = 125;
 
 /// A box of cells of half the size, moved by steps of half the length.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -124,11 +125,16 @@ impl Refinement {
         1 + self.within.iter().map(Self::depth).max().unwrap_or(0)
     }
 
-    /// Memory (bytes) of its exchange with the grid around it, about: what it is where nineteen directions
-    /// cross all six sides.
-    pub fn exchange_memory(&self) -> u64 {
+    /// Memory (bytes) of its exchange with the grid around it in populations of `stencil`, about: what it is
+    /// where they cross all six sides.
+    pub fn exchange_memory(&self, stencil: Stencil) -> u64 {
         let [x, y, z] = self.fine_cells().map(|n| n as u64);
-        2 * (x * y + y * z + z * x) * BYTES_OF_FACE
+        // Directions that lead through a face.
+        let n_links = match stencil {
+            Stencil::D3Q19 => 5,
+            Stencil::D3Q27 => 9,
+        };
+        2 * (x * y + y * z + z * x) * n_links * BYTES_OF_LINK
     }
 
     /// The cells around it that it covers.
