@@ -92,8 +92,8 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "refined-rotor",
-        about: "power, thrust and wake of a turbine in a box of finer cells, and in a box in a box, beside fine cells everywhere; time and memory",
-        cost: Cost::Minutes(4),
+        about: "power, thrust and wake of a turbine in a box of finer cells beside fine cells everywhere; time and memory",
+        cost: Cost::Minutes(2),
         run: refined_rotor::refined_rotor,
         pictures: None,
         page: "flow",

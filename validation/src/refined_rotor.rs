@@ -1,10 +1,10 @@
-//! A rotor and its wake in boxes of finer cells beside the same on fine cells everywhere: whole studies, as a
+//! A rotor and its wake in a box of finer cells beside the same on fine cells everywhere: whole studies, as a
 //! case asks for them.
 
 use crate::Row;
 use crate::row::Tolerance::{self, AtMost, Within};
 use crate::studies::{Carried, failure, summaries};
-use basis::records::{Plane, PlaneAxes, Summary};
+use basis::records::{Cost, Plane, PlaneAxes, Summary};
 
 const CASE: &str = include_str!("../cases/refined-rotor.toml");
 /// Where expected values come from.
@@ -19,53 +19,28 @@ const WIND: [f64; 2] = [0.01, 0.02];
 /// Share of wall time and memory on fine cells everywhere that a box is to take at most (–).
 const SHARE: f64 = 0.5;
 
-/// A flow that is made on cells of several sizes.
-struct Flow {
-    name: &'static str,
-    /// Name of its folders.
-    folder: &'static str,
-    /// What all of its studies set.
-    shared: &'static [&'static str],
-    /// What those on fine cells everywhere, in boxes, and on coarse cells alone set.
-    cells: [&'static str; 3],
-    boxes: &'static str,
-    steps: [&'static str; 3],
-    /// Planes behind the rotor (diameters), and whether they lie in a box.
-    planes: &'static [(f64, bool)],
-}
-
-const FLOWS: [Flow; 2] = [
-    Flow {
-        name: "16 cells a diameter in a box, 8 around it",
-        folder: "one",
-        shared: &["output.crosswind_diameters=[1.0, 2.0, 4.0, 5.0]"],
-        cells: ["16", "8", "8"],
-        boxes: "[{ upstream_diameters = 1.0, downstream_diameters = 3.0 }]",
-        steps: ["0.05", "0.05", "0.1"],
-        planes: &[(1.0, true), (2.0, true), (4.0, false), (5.0, false)],
-    },
-    Flow {
-        name: "32 cells a diameter in a box in a box, 8 around them",
-        folder: "two",
-        shared: &[
-            "output.crosswind_diameters=[0.5, 1.5, 3.0]",
-            "flow.upstream_diameters=2.0",
-            "flow.downstream_diameters=4.0",
-            "flow.width_diameters=3.0",
-            "flow.height_diameters=3.0",
-            "time.spin_up=90.0",
-            "time.duration=120.0",
+/// What names every row.
+const NAME: &str = "16 cells a diameter in a box, 8 around it";
+/// The studies: on fine cells everywhere, in a box of them, on coarse cells alone; with the keys that each
+/// sets.
+const STUDIES: [(&str, &[&str]); 3] = [
+    ("fine", &["flow.cells_per_diameter=16", "flow.step=0.05"]),
+    (
+        "boxed",
+        &[
+            "flow.cells_per_diameter=8",
+            "flow.step=0.05",
+            "flow.refinement=[{ upstream_diameters = 1.0, downstream_diameters = 3.0 }]",
         ],
-        cells: ["32", "8", "8"],
-        boxes: "[{ upstream_diameters = 1.25, downstream_diameters = 2.25, width_diameters = 2.25, height_diameters = 2.25 }, { upstream_diameters = 0.8, downstream_diameters = 1.0, width_diameters = 1.75, height_diameters = 1.75 }]",
-        steps: ["0.025", "0.025", "0.1"],
-        planes: &[(0.5, true), (1.5, true), (3.0, false)],
-    },
+    ),
+    ("coarse", &["flow.cells_per_diameter=8", "flow.step=0.1"]),
 ];
+/// Planes behind the rotor (diameters), and whether they lie in the box.
+const PLANES: [(f64, bool); 4] = [(1.0, true), (2.0, true), (4.0, false), (5.0, false)];
 
-/// Power, thrust, wake, time and memory of a rotor in one box and in a box in a box.
+/// Power, thrust, wake, time and memory of a rotor in a box of finer cells.
 pub fn refined_rotor() -> Vec<Row> {
-    FLOWS.iter().flat_map(|flow| rows(flow).unwrap_or_else(failure)).collect()
+    rows().unwrap_or_else(failure)
 }
 
 /// What a study left.
@@ -74,17 +49,11 @@ struct Made {
     planes: Vec<Plane>,
 }
 
-/// The study of `flow` number `which`: on fine cells everywhere, in boxes, on coarse cells alone.
-fn made(flow: &Flow, which: usize) -> Result<Made, String> {
-    let names = ["fine", "boxed", "coarse"];
-    let name = format!("refined-rotor-{}-{}", flow.folder, names[which]);
-    let mut keys: Vec<String> = flow.shared.iter().map(|&key| key.to_owned()).collect();
-    keys.push(format!("flow.cells_per_diameter={}", flow.cells[which]));
-    keys.push(format!("flow.step={}", flow.steps[which]));
-    if which == 1 {
-        keys.push(format!("flow.refinement={}", flow.boxes));
-    }
-    let (_, folder) = summaries(Carried::Own(CASE), &name, keys)?;
+/// What the study called `name` leaves, which sets `keys`.
+fn made((name, keys): (&str, &[&str])) -> Result<Made, String> {
+    let folder = format!("refined-rotor-{name}");
+    let keys = keys.iter().map(|&key| key.to_owned()).collect();
+    let (_, folder) = summaries(Carried::Own(CASE), &folder, keys)?;
     let study = formats::records::read_study(&folder).map_err(|error| error.to_string())?;
     let records = study.runs.into_iter().next().ok_or("the study left no run")?;
     let across = |plane: &Plane| plane.axes == PlaneAxes::Crosswind;
@@ -92,79 +61,93 @@ fn made(flow: &Flow, which: usize) -> Result<Made, String> {
     Ok(Made { summary: records.summary, planes })
 }
 
-fn rows(flow: &Flow) -> Result<Vec<Row>, String> {
-    let [fine, boxed, coarse] = [made(flow, 0)?, made(flow, 1)?, made(flow, 2)?];
-    let name = flow.name;
-    let of_rotor = |made: &Made| {
-        let turbine = &made.summary.turbines[0];
-        [turbine.power.mean, turbine.thrust.mean]
-    };
-    let of_cost = |made: &Made| [made.summary.cost.wall_time, made.summary.cost.memory as f64];
-    let row = |what: String, measured: f64, expected: f64, tolerance: Tolerance, source| Row {
-        what: format!("{name}: {what}"),
-        measured,
-        expected,
-        tolerance,
-        unit: "-",
-        source,
-    };
-    let mut rows = Vec::new();
-    let of_rotors = [&fine, &boxed, &coarse].map(of_rotor);
-    for (index, what) in ["power", "thrust"].into_iter().enumerate() {
-        let [fine, boxed, coarse] = of_rotors.map(|values| values[index]);
+fn rows() -> Result<Vec<Row>, String> {
+    let [fine, boxed, coarse] = STUDIES;
+    let studies = [made(fine)?, made(boxed)?, made(coarse)?];
+    let mut rows = of_rotor(&studies);
+    for (place, plane) in PLANES.into_iter().enumerate() {
+        rows.extend(of_wake(&studies, place, plane));
+    }
+    rows.extend(of_cost(&studies));
+    Ok(rows)
+}
+
+fn row(
+    what: &str,
+    measured: f64,
+    expected: f64,
+    tolerance: Tolerance,
+    source: &'static str,
+) -> Row {
+    Row { what: format!("{NAME}: {what}"), measured, expected, tolerance, unit: "-", source }
+}
+
+/// Power and thrust.
+fn of_rotor(studies: &[Made; 3]) -> [Row; 2] {
+    let power = |made: &Made| made.summary.turbines[0].power.mean;
+    let thrust = |made: &Made| made.summary.turbines[0].thrust.mean;
+    let compare = |what: &str, values: [f64; 3]| {
+        let [fine, boxed, coarse] = values;
         tell!(
-            "{name}: {what} {:.4} of that on fine cells; {:.4} on coarse ones",
+            "{what}: {:.5} of that on fine cells; {:.5} on coarse ones",
             boxed / fine,
             coarse / fine
         );
         let what = format!("{what} over that on fine cells everywhere");
-        rows.push(row(what, boxed / fine, 1.0, Within(POWER), UNIFORM));
-    }
-    for (place, (distance, inside)) in flow.planes.iter().enumerate() {
-        let of = |made: &Made| Wake::of(&made.planes[place], &made.summary);
-        let [fine, boxed, coarse] = [of(&fine), of(&boxed), of(&coarse)];
-        let where_ = if *inside { "in a box" } else { "past the boxes" };
-        let (off, off_coarse) = (boxed.off(&fine), coarse.off(&fine));
-        tell!(
-            "{name}, {distance} D, {where_}: wind over the disc {:.4} fine, {:.4} boxed, {:.4} coarse; off by {off:.4}, coarse {off_coarse:.4}",
-            fine.over_disc(),
-            boxed.over_disc(),
-            coarse.over_disc()
-        );
-        let what = format!(
-            "wind over the disc {distance} D behind, {where_}, less that on fine cells everywhere, over free stream"
-        );
-        let tolerance = Within(WIND[usize::from(!inside)]);
-        rows.push(row(what, boxed.over_disc() - fine.over_disc(), 0.0, tolerance, UNIFORM));
-        let what = format!(
-            "wake {distance} D behind, {where_}: root of the mean square difference from fine cells, over that of coarse cells alone"
-        );
-        rows.push(row(what, off / off_coarse, 1.0, AtMost, COARSE));
-    }
-    let [[time, memory], boxed_cost] = [of_cost(&fine), of_cost(&boxed)];
+        row(&what, boxed / fine, 1.0, Within(POWER), UNIFORM)
+    };
+    [
+        compare("power", studies.each_ref().map(power)),
+        compare("thrust", studies.each_ref().map(thrust)),
+    ]
+}
+
+/// The wake on plane number `place`.
+fn of_wake(studies: &[Made; 3], place: usize, (distance, inside): (f64, bool)) -> [Row; 2] {
+    let of = |made: &Made| Wake::of(&made.planes[place], &made.summary);
+    let [fine, boxed, coarse] = studies.each_ref().map(of);
+    let place = if inside { "in a box" } else { "past the boxes" };
+    let (off, off_coarse) = (boxed.off(&fine), coarse.off(&fine));
     tell!(
-        "{name}: {time:.0} s and {:.0} MB on fine cells everywhere, {:.0} s and {:.0} MB in boxes; {:.2} and {:.2} million cells",
-        1e-6 * memory,
-        boxed_cost[0],
-        1e-6 * boxed_cost[1],
-        1e-6 * fine.summary.cost.n_cells as f64,
-        1e-6 * boxed.summary.cost.n_cells as f64,
+        "{distance} D, {place}: wind over the disc {:.4} fine, {:.4} boxed, {:.4} coarse; off by {off:.4}, coarse {off_coarse:.4}",
+        fine.over_disc(),
+        boxed.over_disc(),
+        coarse.over_disc()
     );
-    rows.push(row(
-        "wall time over that on fine cells everywhere".to_owned(),
-        boxed_cost[0] / time,
-        SHARE,
-        AtMost,
-        LIMIT,
-    ));
-    rows.push(row(
-        "memory of the air over that on fine cells everywhere".to_owned(),
-        boxed_cost[1] / memory,
-        SHARE,
-        AtMost,
-        LIMIT,
-    ));
-    Ok(rows)
+    let [disc, shape] = [
+        format!(
+            "wind over the disc {distance} D behind, {place}, less that on fine cells everywhere, over free stream"
+        ),
+        format!(
+            "wake {distance} D behind, {place}: root of the mean square difference from fine cells, over that of coarse cells alone"
+        ),
+    ];
+    let tolerance = Within(WIND[usize::from(!inside)]);
+    [
+        row(&disc, boxed.over_disc() - fine.over_disc(), 0.0, tolerance, UNIFORM),
+        row(&shape, off / off_coarse, 1.0, AtMost, COARSE),
+    ]
+}
+
+/// Wall time and memory.
+fn of_cost(studies: &[Made; 3]) -> [Row; 2] {
+    let [fine, boxed, _] = studies.each_ref().map(|made| made.summary.cost);
+    let millions = |cost: Cost| 1e-6 * cost.n_cells as f64;
+    tell!(
+        "{:.0} s and {:.1} MB on {:.2} million fine cells, {:.0} s and {:.1} MB with a box, {:.2} million cells",
+        fine.wall_time,
+        1e-6 * fine.memory as f64,
+        millions(fine),
+        boxed.wall_time,
+        1e-6 * boxed.memory as f64,
+        millions(boxed)
+    );
+    let [time, memory] = ["wall time", "memory of the air"]
+        .map(|what| format!("{what} over that on fine cells everywhere"));
+    [
+        row(&time, boxed.wall_time / fine.wall_time, SHARE, AtMost, LIMIT),
+        row(&memory, boxed.memory as f64 / fine.memory as f64, SHARE, AtMost, LIMIT),
+    ]
 }
 
 /// Mean streamwise wind across a wake, on the coarse cells (free streams), with the distance of each from the
