@@ -64,7 +64,7 @@ fn made((name, keys): (&str, &[&str])) -> Result<Made, String> {
 fn rows() -> Result<Vec<Row>, String> {
     let [fine, boxed, coarse] = STUDIES;
     let studies = [made(fine)?, made(boxed)?, made(coarse)?];
-    let mut rows = of_rotor(&studies);
+    let mut rows = of_rotor(&studies).to_vec();
     for (place, plane) in PLANES.into_iter().enumerate() {
         rows.extend(of_wake(&studies, place, plane));
     }
@@ -158,6 +158,8 @@ struct Wake {
 
 /// Coarse cells a diameter (–).
 const COARSE_CELLS: f64 = 8.0;
+/// The turbine's hub above the ground (m).
+const HUB: f64 = 90.0;
 
 impl Wake {
     /// The wake on `plane`, as the means over coarse cells.
@@ -166,8 +168,6 @@ impl Wake {
         // Cells a coarse one holds along an axis.
         let n = (diameter / COARSE_CELLS / plane.spacing[0]).round().max(1.0) as usize;
         let [n_y, n_z] = plane.n_points.map(|points| points / n);
-        // The hub of the turbine, 90 m above the ground.
-        const HUB: f64 = 90.0;
         let mut points = Vec::with_capacity(n_y * n_z);
         for (y, z) in (0..n_z).flat_map(|z| (0..n_y).map(move |y| (y, z))) {
             let mut sum = 0.0;
