@@ -67,8 +67,10 @@ fn a_stopped_study_in_a_box_leaves_what_one_that_was_left_alone_does() {
     let summary = &summaries[0];
     let grids = &summary.flow.as_ref().expect("it tells").grids;
     assert_eq!(grids.len(), 2);
-    assert_eq!((grids[0].spacing, grids[1].spacing), (126.0 / 8.0, 126.0 / 16.0));
-    assert_eq!(grids[1].size, [4.0 * 126.0, 2.0 * 126.0, 2.0 * 126.0]);
+    let diameter = summary.conditions.rotor_diameter;
+    assert_eq!((grids[0].spacing, grids[1].spacing), (diameter / 8.0, diameter / 16.0));
+    let size = grids[1].size.map(|length| length / diameter);
+    assert!(size.iter().zip([4.0, 2.0, 2.0]).all(|(a, b)| (a - b).abs() < 1e-9), "{size:?}");
     assert_eq!(summary.conditions.cells_per_diameter, Some(16.0));
     assert_eq!(summary.cost.n_cells, setup.plan.cells() as u64);
     let told = (setup.case.flow.solver.memory)(&setup.plan) as f64;

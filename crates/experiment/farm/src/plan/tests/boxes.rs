@@ -91,7 +91,7 @@ fn what_boxes_cannot_do_is_named_with_its_fix() {
     let before = error(&one(&[("upstream_diameters", 3.0)]));
     assert_eq!(before.key(), ["flow", "refinement", "0", "upstream_diameters"]);
     let words = before.to_string();
-    assert!(words.contains("spans x = -720 to 2160 m, and has room from -690 to"), "{words}");
+    assert!(words.contains("spans x = -720 to 1680 m, and has room from -690 to"), "{words}");
     assert!(words.contains("or raise flow.upstream_diameters"), "{words}");
 
     // A tenth of the 192 cells before the outlet at 2160 m, and two of them.

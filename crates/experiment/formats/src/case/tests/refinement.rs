@@ -69,6 +69,6 @@ fn a_box_is_pointed_at_by_its_number() {
     let (path, overrides) = (PathBuf::from("small.toml"), Vec::new());
     let file = CaseFile { case, text, overrides, path, study: 0 };
     let at = |path: &[&str]| objection(&file, path, "why".to_owned()).to_lines();
-    assert!(at(&["flow", "refinement", "0", "width_diameters"]).starts_with("small.toml:11: why"));
-    assert!(at(&["flow", "refinement", "1", "width_diameters"]).starts_with("small.toml:12: why"));
+    assert!(at(&["flow", "refinement", "0", "width_diameters"]).starts_with("small.toml:10: why"));
+    assert!(at(&["flow", "refinement", "1", "width_diameters"]).starts_with("small.toml:11: why"));
 }
