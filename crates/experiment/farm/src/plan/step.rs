@@ -12,7 +12,7 @@ const LONGEST_STEP: f64 = 0.5;
 /// and a run would take more than a hundred times as long as it needs.
 const LEAST_SHARE: f64 = 0.01;
 
-/// The step (s) of the finest cells of `case`, on cells of `spacing` (m) and `depth` boxes within one another.
+/// The step (s) of the finest cells of `case`, in cells of `spacing` (m) with `depth` boxes in one another.
 ///
 /// Cells of half the size make steps of half the length: tips and wind move as many cells a step on all.
 ///
