@@ -263,7 +263,8 @@ pub struct Conditions {
     pub seed: u64,
     /// Rotor diameter of the first turbine (m).
     pub rotor_diameter: f64,
-    /// Cells per diameter of the first turbine, of those that it stands in (–); absent where the wind is prescribed.
+    /// Cells per diameter of the first turbine, of those that it stands in (–); absent where the wind is
+    /// prescribed.
     pub cells_per_diameter: Option<f64>,
     /// Flow step, of the finest cells (s).
     pub interval: f64,
