@@ -5,7 +5,6 @@ mod error;
 mod grids;
 mod step;
 
-pub use boxes::MOST_LEVELS;
 pub use error::PlanError;
 pub use grids::GridOfPlan;
 
@@ -27,6 +26,10 @@ pub const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
 /// Farthest that a wind which veers may turn between hub height and the ends of the domain below and above
 /// (rad): wind comes in at every height of the inlet.
 const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_3;
+
+/// Boxes of finer cells within one another at most (–): a step of the cells around all of them is cut into
+/// sixteen.
+pub const MOST_LEVELS: u32 = 4;
 
 /// Step of turbines in prescribed wind unless the case says otherwise (s): a thirtieth of the fastest period
 /// that carries load.

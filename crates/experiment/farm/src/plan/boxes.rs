@@ -1,6 +1,6 @@
 //! Boxes of finer cells: from the layout to cells, and checked before anything runs.
 
-use super::{Footprint, Layout, PlanError};
+use super::{Footprint, Layout, MOST_LEVELS, PlanError};
 use crate::case::{Case, Placement};
 use crate::domain::SMEARING_CELLS;
 use crate::refinement::{Asked, asked};
@@ -9,8 +9,6 @@ use flow::lattice::LatticeSettings;
 use flow::lattice::refinement::{MARGIN, Refinement};
 use flow::lattice::spreading::REACH;
 
-/// Boxes within one another at most (–): a step of the cells around all of them is cut into sixteen.
-pub const MOST_LEVELS: u32 = 4;
 /// Rounding of lengths in cells (–).
 const ROUNDING: f64 = 1e-6;
 const AXES: [&str; 3] = ["x", "y", "z"];
