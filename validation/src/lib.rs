@@ -35,6 +35,7 @@ pub mod phase_estimator;
 mod random;
 pub mod record;
 mod recorded;
+pub mod refined_rotor;
 pub mod resume;
 pub mod row;
 pub mod structure;

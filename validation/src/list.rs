@@ -4,7 +4,7 @@
 use crate::{Cost, Elsewhere, Validation};
 use crate::{
     actuator_line, aeroelastic, atmosphere, blade_element, flow, helix, inflow, meandering, memory,
-    phase_estimator, resume, structure,
+    phase_estimator, refined_rotor, resume, structure,
 };
 
 /// All that the program repeats.
@@ -89,6 +89,15 @@ pub const VALIDATIONS: &[Validation] = &[
         pictures: None,
         page: "flow",
         recorded: include_str!("../recorded/refinement.toml"),
+    },
+    Validation {
+        name: "refined-rotor",
+        about: "power, thrust and wake of a turbine in a box of finer cells beside fine cells everywhere; time and memory",
+        cost: Cost::Minutes(2),
+        run: refined_rotor::refined_rotor,
+        pictures: None,
+        page: "flow",
+        recorded: include_str!("../recorded/refined-rotor.toml"),
     },
     Validation {
         name: "atmosphere",

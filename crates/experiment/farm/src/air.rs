@@ -4,6 +4,7 @@ use flow::fields::FieldSource;
 use flow::inflow::PrescribedWind;
 use flow::inflow::prescribed::Clock;
 use flow::lattice::Lattice;
+use flow::lattice::refinement::Refined;
 use flow::{FlowError, FlowSolver};
 use std::io::{Error, ErrorKind, Read, Result, Write};
 
@@ -78,6 +79,36 @@ impl FarmFlow for Lattice {
 
     fn n_threads(&self) -> usize {
         Self::n_threads(self)
+    }
+
+    fn memory(&self) -> u64 {
+        Self::memory(self)
+    }
+}
+
+impl FarmFlow for Refined {
+    fn write_state(&mut self, writer: &mut dyn Write) -> Result<()> {
+        Self::write_state(self, writer)
+    }
+
+    fn read_state(&mut self, reader: &mut dyn Read) -> Result<()> {
+        Self::read_state(self, reader)
+    }
+
+    fn check(&mut self) -> std::result::Result<(), FlowError> {
+        Self::check(self)
+    }
+
+    fn fields(&self) -> Option<&dyn FieldSource> {
+        Some(self)
+    }
+
+    fn backend(&self) -> &'static str {
+        self.base().backend()
+    }
+
+    fn n_threads(&self) -> usize {
+        self.base().n_threads()
     }
 
     fn memory(&self) -> u64 {

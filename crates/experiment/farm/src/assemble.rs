@@ -87,21 +87,18 @@ impl TurbineModel {
     }
 }
 
-/// Gaussian width over cell size (–): two cells is the least that the lattice carries without ringing.
-pub const SMEARING_CELLS: f64 = 2.0;
-
 /// Smagorinsky's constant above a rough ground (–): with 0.16 the slope of the mean wind gives the friction
 /// velocity 7 % above the logarithmic law's, with the 0.12 of wakes in free air 20 % below it
 /// (docs/validation/flow.md).
 pub const SMAGORINSKY_OVER_GROUND: f64 = 0.16;
 
-/// Settings of the air for `plan`.
+/// Settings of the air for `plan`, boxes of finer cells aside.
 pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
     let mut settings = lattice::LatticeSettings::new(
         plan.origin,
         plan.spacing,
         plan.n_cells,
-        plan.interval,
+        plan.base_interval(),
         case.wind.speed,
     );
     settings.air_density = case.wind.air_density;
@@ -156,17 +153,18 @@ pub fn site<'a>(model: &'a TurbineModel, case: &Case, plan: &Plan) -> Site<'a> {
     }
 }
 
-/// How a turbine of `model` at `placement` stands in the air when time begins; `tower` is what its blades
-/// feel of its tower, where the wind is prescribed.
+/// How turbine number `index` of `case`, of `model`, stands in the air when time begins; `tower` is what its
+/// blades feel of its tower, where the wind is prescribed.
 pub(crate) fn turbine_settings(
     case: &Case,
     plan: &Plan,
     model: &TurbineModel,
-    placement: &Placement,
+    index: usize,
     tower: Option<TowerInfluence>,
 ) -> turbine::TurbineSettings {
+    let placement = &case.turbines[index];
     turbine::TurbineSettings {
-        induction: induction(case, plan, placement, tower),
+        induction: induction(case, plan, index, tower),
         flexible: placement.flexible,
         air_density: case.wind.air_density,
         yaw: placement.yaw,
@@ -206,7 +204,7 @@ pub fn farm(
         let (model, placement, foot) =
             (&models[index], &case.turbines[index], plan.positions[index]);
         let tower = tower_influence(model, placement, foot);
-        let settings = turbine_settings(case, plan, model, placement, tower);
+        let settings = turbine_settings(case, plan, model, index, tower);
         let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)?;
         let turbine = in_air_of(solver, turbine);
         let control = controller(&run.control[index], model, case, plan)?;
@@ -260,16 +258,12 @@ fn tower_influence(
 }
 
 /// Who makes the induction: the flow itself, or momentum theory with the wake's delay and its skew.
-fn induction(
-    case: &Case,
-    plan: &Plan,
-    placement: &Placement,
-    tower: Option<TowerInfluence>,
-) -> Induction {
+fn induction(case: &Case, plan: &Plan, index: usize, tower: Option<TowerInfluence>) -> Induction {
+    let placement = &case.turbines[index];
     let dynamic_stall = placement.dynamic_stall;
     let solver = case.flow.solver;
     if solver.resolves_induction {
-        let Smearing { length, sample_spacing } = (solver.smearing)(plan);
+        let Smearing { length, sample_spacing } = (solver.smearing)(plan, index);
         Induction::ByFlow { smearing_length: length, sample_spacing, dynamic_stall }
     } else {
         Induction::ByMomentum(rotor::BemSettings {

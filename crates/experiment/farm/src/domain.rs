@@ -4,6 +4,10 @@ use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Key, Slip, Table, Values, above, from, key};
 use flow::lattice::{LatticeSettings, Stencil};
 
+/// Gaussian width of forces over cell size (–): two cells is the least that the lattice carries without
+/// ringing.
+pub const SMEARING_CELLS: f64 = 2.0;
+
 /// Keys of `[flow]` for a box of cells.
 pub static KEYS: [Key; 10] = [
     key(

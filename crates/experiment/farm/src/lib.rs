@@ -12,6 +12,7 @@ pub mod outputs;
 pub mod pitch_response;
 pub mod plan;
 pub mod precursor;
+pub mod refinement;
 pub mod self_check;
 pub mod solvers;
 pub mod tracking;

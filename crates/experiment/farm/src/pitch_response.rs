@@ -239,8 +239,7 @@ fn pitching(
         Helix::new(pitch.sense, pitch.amplitude, strouhal, alone.wind.speed, plan.diameter);
     helix.azimuth_offset = pitch.azimuth_offset;
     // The rotor alone, facing the wind: no tower stands in its wind.
-    let placement = &alone.turbines[index];
-    let settings = assemble::turbine_settings(&alone, plan, model, placement, None);
+    let settings = assemble::turbine_settings(&alone, plan, model, index, None);
     let settings = TurbineSettings { yaw: 0.0, ..settings };
     let foot = Vector3::new(0.0, 0.0, -model.definition.rotor.hub_height);
     let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)

@@ -1,13 +1,18 @@
 //! From layout to domain: cells, step, memory and cost, checked before anything runs.
 
+mod boxes;
 mod error;
+mod grids;
 mod step;
 
 pub use error::PlanError;
+pub use grids::GridOfPlan;
 
 use crate::case::{Case, Method, Placement, Shear};
 use basis::Vector3;
 use flow::inflow::GREATEST_ROUGHNESS;
+use flow::lattice::LatticeSettings;
+use flow::lattice::refinement::Refinement;
 use std::collections::BTreeMap;
 use step::step;
 
@@ -21,6 +26,10 @@ pub const LATTICE_SOUND_SPEED: f64 = 0.577_350_269_189_625_8;
 /// Farthest that a wind which veers may turn between hub height and the ends of the domain below and above
 /// (rad): wind comes in at every height of the inlet.
 const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_3;
+
+/// Boxes of finer cells within one another at most (–): a step of the cells around all of them is cut into
+/// sixteen.
+pub const MOST_LEVELS: u32 = 4;
 
 /// Step of turbines in prescribed wind unless the case says otherwise (s): a thirtieth of the fastest period
 /// that carries load.
@@ -65,11 +74,15 @@ impl Layout<'_> {
 pub struct Plan {
     /// Corner of the domain with the least coordinates, farm frame (m).
     pub origin: Vector3,
-    /// Edge of a cell (m).
+    /// Edge of a cell outside all boxes of finer ones (m).
     pub spacing: f64,
-    /// Cells along x, y, z (–).
+    /// Such cells along x, y, z, those beneath boxes included (–).
     pub n_cells: [usize; 3],
-    /// Flow step, which is the control interval (s).
+    /// Boxes of finer cells, in cells of the domain.
+    pub boxes: Vec<Refinement>,
+    /// How many boxes within one another each turbine stands in, in the case's order (–).
+    pub levels: Vec<u32>,
+    /// Step of the finest cells, which is the control interval (s).
     pub interval: f64,
     /// Steps of one run (–).
     pub n_steps: u64,
@@ -114,8 +127,9 @@ pub fn plan(case: &Case, footprints: &BTreeMap<String, Footprint>) -> Result<Pla
 
 /// The plan of turbines in a box of cells, as the lattice needs it.
 ///
-/// The step is the longest one that keeps tips well below the speed of sound on the lattice and the free
-/// stream within [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole number of steps.
+/// The step of the finest cells is the longest one that keeps tips well below the speed of sound on the
+/// lattice and the free stream within [`MAXIMUM_LATTICE_SPEED`], rounded down so that a minute is a whole
+/// number of steps of the domain's own cells.
 ///
 /// # Errors
 /// [`PlanError`] names what does not fit and the key that fixes it.
@@ -124,29 +138,37 @@ pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
     let diameter = layout.diameter();
     let cells_per_diameter = case.flow.domain().cells_per_diameter;
     let spacing = diameter / cells_per_diameter;
-    check_resolution(machines, spacing, cells_per_diameter)?;
-
     let (origin, n_cells) = domain(case, positions, diameter, spacing);
-    let plan_without_step = |interval: f64| {
-        let area = n_cells[1] as f64 * n_cells[2] as f64 * spacing * spacing;
-        let widest = machines.iter().map(|(_, f)| f.diameter).fold(0.0, f64::max);
-        Plan {
-            origin,
-            spacing,
-            n_cells,
-            interval,
-            n_steps: (case.time.duration / interval).round() as u64,
-            n_spin_up_steps: (case.time.spin_up / interval).round() as u64,
-            row_stride: stride(case.output.interval.unwrap_or(0.0), interval),
-            diameter,
-            hub_height: layout.hub_height(),
-            positions: positions.clone(),
-            blockage: std::f64::consts::PI / 4.0 * widest * widest / area,
-            lattice_speed: case.wind.speed * interval / spacing,
-            method: case.flow.domain().method,
-        }
+    // Boxes want to know the cells, not the step.
+    let cells = LatticeSettings::new(origin, spacing, n_cells, 1.0, case.wind.speed);
+    let boxes::Boxes { outermost, levels } = boxes::lay_out(case, layout, &cells)?;
+    let area = n_cells[1] as f64 * n_cells[2] as f64 * spacing * spacing;
+    let widest = machines.iter().map(|(_, f)| f.diameter).fold(0.0, f64::max);
+    let mut plan = Plan {
+        origin,
+        spacing,
+        n_cells,
+        boxes: outermost,
+        levels,
+        interval: 0.0,
+        n_steps: 0,
+        n_spin_up_steps: 0,
+        row_stride: 1,
+        diameter,
+        hub_height: layout.hub_height(),
+        positions: positions.clone(),
+        blockage: std::f64::consts::PI / 4.0 * widest * widest / area,
+        lattice_speed: 0.0,
+        method: case.flow.domain().method,
     };
-    let plan = plan_without_step(step(case, machines, spacing)?);
+    check_resolution(machines, &plan, cells_per_diameter)?;
+    plan.interval = step(case, machines, spacing, plan.depth())?;
+    // Whole steps of the domain's own cells.
+    let in_one = 1 << plan.depth();
+    let steps = |duration: f64| in_one * (duration / plan.base_interval()).round() as u64;
+    (plan.n_steps, plan.n_spin_up_steps) = (steps(case.time.duration), steps(case.time.spin_up));
+    plan.row_stride = stride(case.output.interval.unwrap_or(0.0), plan.interval);
+    plan.lattice_speed = case.wind.speed * plan.base_interval() / spacing;
     check_extent(machines, &plan)?;
     check_veer(case.wind.veer, &plan)?;
     check_planes(&case.output.crosswind_diameters, &plan)?;
@@ -216,6 +238,8 @@ pub(crate) fn without_air(
         origin: Vector3::ZERO,
         spacing: 0.0,
         n_cells: [0; 3],
+        boxes: Vec::new(),
+        levels: Vec::new(),
         interval,
         n_steps: (case.time.duration / interval).round() as u64,
         n_spin_up_steps,
@@ -252,11 +276,11 @@ fn check_distances(
 
 fn check_resolution(
     machines: &[(&Placement, Footprint)],
-    spacing: f64,
+    plan: &Plan,
     cells_per_diameter: f64,
 ) -> Result<(), PlanError> {
-    for (placement, footprint) in machines {
-        let cells = footprint.diameter / spacing;
+    for (index, (placement, footprint)) in machines.iter().enumerate() {
+        let cells = footprint.diameter / plan.spacing_at(index);
         if cells < MINIMUM_CELLS_PER_DIAMETER {
             return Err(PlanError::TooCoarse {
                 name: placement.name.clone(),
@@ -338,23 +362,6 @@ fn check_extent(machines: &[(&Placement, Footprint)], plan: &Plan) -> Result<(),
         }
     }
     Ok(())
-}
-
-impl Plan {
-    /// Cells in all (–).
-    pub fn cells(&self) -> usize {
-        self.n_cells.iter().product()
-    }
-
-    /// Time between rows of the series (s).
-    pub fn row_interval(&self) -> f64 {
-        self.row_stride as f64 * self.interval
-    }
-
-    /// Cell updates of one run (–).
-    pub fn updates(&self) -> f64 {
-        self.cells() as f64 * self.n_steps as f64
-    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,9 @@
 //! says?
 
 use crate::Progress;
-use crate::assemble::{SMEARING_CELLS, TurbineModel};
+use crate::assemble::TurbineModel;
 use crate::case::{Method, Wind};
+use crate::domain::SMEARING_CELLS;
 use crate::plan::Plan;
 use basis::{Commands, PerBlade, Vector3};
 use flow::inflow::MeanProfile;

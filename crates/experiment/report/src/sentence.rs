@@ -246,7 +246,9 @@ fn air(summary: &Summary) -> String {
     match (summary.conditions.cells_per_diameter, solver) {
         (Some(cells), solver) => {
             items.extend(solver.map(str::to_owned));
-            items.push(format!("{} cells per diameter", number(cells, 0)));
+            let boxed = summary.flow.as_ref().is_some_and(|flow| !flow.grids.is_empty());
+            let place = if boxed { " at the first turbine" } else { "" };
+            items.push(format!("{} cells per diameter{place}", number(cells, 0)));
         }
         (None, Some(solver)) => items.push(format!("flow solver {solver}")),
         (None, None) => items.push("prescribed wind".to_owned()),

@@ -6,6 +6,7 @@ use farm::Air;
 use farm::solvers::{SolverError, Start, WindSource};
 use flow::Inflow;
 use flow::inflow::Planes;
+use flow::lattice::refinement::RefinementError;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -24,7 +25,10 @@ pub(crate) fn begin(
     let planes = if solver.wind == WindSource::Planes { Some(planes(setup)?) } else { None };
     let start = Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress };
     (solver.begin)(start).map_err(|error| match error {
-        SolverError::Lattice(error) => error.into(),
+        SolverError::Lattice(error) | SolverError::Refinement(RefinementError::Lattice(error)) => {
+            error.into()
+        }
+        SolverError::Refinement(error) => StudyError::Solver(Box::new(error)),
         SolverError::Inflow(error) => error.into(),
         SolverError::Other(error) => StudyError::Solver(error),
         error @ SolverError::NoPlanes { .. } => StudyError::Solver(Box::new(error)),

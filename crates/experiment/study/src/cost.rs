@@ -86,6 +86,8 @@ impl Prepared {
             identification_work: costs.iter().map(|cost| cost.work).sum(),
             n_cells: plan.n_cells,
             spacing: plan.spacing,
+            grids: plan.grids(),
+            updates: plan.updates().max(plan.n_steps as f64),
             interval: plan.interval,
             n_steps: plan.n_steps,
             memory: field + turbulence.unwrap_or(0) + volumes::memory(self),

@@ -2,6 +2,7 @@
 
 use crate::prepared::Prepared;
 use basis::records::{PitchResponse, Summary};
+use farm::plan::GridOfPlan;
 use farm::self_check::SelfCheck;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -25,11 +26,15 @@ pub struct Estimate {
     pub n_identification_steps: u64,
     /// Cell updates of all identifications together, or what takes as long (–); steps in prescribed wind.
     pub identification_work: f64,
-    /// Cells along x, y, z (–).
+    /// Cells of the domain along x, y, z, those beneath boxes of finer ones included (–).
     pub n_cells: [usize; 3],
-    /// Edge of a cell (m).
+    /// Edge of such a cell (m).
     pub spacing: f64,
-    /// Flow step (s).
+    /// The grid of the domain, and those of all boxes of finer cells.
+    pub grids: Vec<GridOfPlan>,
+    /// Cell updates of one run, steps in prescribed wind (–).
+    pub updates: f64,
+    /// Flow step, of the finest cells (s).
     pub interval: f64,
     /// Steps of one run (–).
     pub n_steps: u64,
@@ -67,8 +72,7 @@ impl Estimate {
 
     /// Work of the identifications over that of one run (–).
     pub fn identification_share(&self) -> f64 {
-        let cells = self.n_cells.iter().product::<usize>().max(1) as f64;
-        self.identification_work / (cells * self.n_steps as f64)
+        self.identification_work / self.updates
     }
 }
 

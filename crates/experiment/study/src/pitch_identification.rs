@@ -109,7 +109,7 @@ impl Prepared {
                 identification.places.push((run, index));
                 continue;
             }
-            let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
+            let (case, plan, model) = (&self.case, &self.plan.alone(index), &self.models[index]);
             let cost = match &needed {
                 Needed::IndividualPitch => individual_pitch_offset_cost(case, plan, model),
                 Needed::Control(Identification::OwnPitch(sync)) => {
@@ -127,7 +127,7 @@ impl Prepared {
     /// Digest of everything that decides what is found for turbine number `index`: offset, start and fallback
     /// do not.
     fn key(&self, index: usize, needed: &Needed) -> String {
-        let (case, plan) = (&self.case, &self.plan);
+        let (case, plan) = (&self.case, &self.plan.alone(index));
         let placement = &case.turbines[index];
         let text = |name: &String| self.turbine_texts.get(name).map_or("", String::as_str);
         let turbine = text(&placement.model);
@@ -257,7 +257,7 @@ impl Prepared {
         needed: &Needed,
         progress: Progress,
     ) -> Result<PitchResponse, CalibrationError> {
-        let (case, plan, model) = (&self.case, &self.plan, &self.models[index]);
+        let (case, plan, model) = (&self.case, &self.plan.alone(index), &self.models[index]);
         match needed {
             Needed::IndividualPitch => individual_pitch_offset(case, plan, model, index, progress)
                 .map(|azimuth_offset| PitchResponse::IndividualPitch { azimuth_offset }),

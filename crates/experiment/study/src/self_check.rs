@@ -38,14 +38,15 @@ impl Prepared {
         if !self.case.flow.solver.needs_self_check {
             return Ok(ControlFlow::Continue(found));
         }
-        let mut checked: Vec<(&str, Option<&str>)> = Vec::new();
-        for (model, placement) in self.models.iter().zip(&self.case.turbines) {
-            let machine = (model.definition.name.as_str(), placement.discon.as_deref());
+        let mut checked: Vec<(&str, Option<&str>, f64)> = Vec::new();
+        for (index, placement) in self.case.turbines.iter().enumerate() {
+            let (model, spacing) = (&self.models[index], self.plan.spacing_at(index));
+            let machine = (model.definition.name.as_str(), placement.discon.as_deref(), spacing);
             if checked.contains(&machine) {
                 continue;
             }
             checked.push(machine);
-            let check = match self.check(model, stop, observer) {
+            let check = match self.check(index, stop, observer) {
                 Err(SelfCheckError::BrokenOff) => return Ok(ControlFlow::Break(())),
                 check => check?,
             };
@@ -78,7 +79,7 @@ impl Prepared {
             found.updates_per_second = self.timed_in_place(run)?;
         } else {
             let diameter = model.definition.rotor_diameter();
-            let tunnel = Tunnel::for_timing(diameter, &self.plan);
+            let tunnel = Tunnel::for_timing(diameter, &self.plan.alone(0));
             let speed =
                 updates_per_second(model, &self.case.wind, &tunnel, self.case.flow.threads)?;
             found.updates_per_second = Some(speed);
@@ -104,13 +105,18 @@ impl Prepared {
         let mut advance = || farm.advance(&mut Unrecorded).is_ok();
         // The first step touches memory for the first time.
         let mut is_sound = advance();
+        // Grids of longer steps make theirs now and then: as often as they do in a run.
+        let in_one = 1 << self.plan.depth();
+        for _ in 1..in_one {
+            is_sound = is_sound && advance();
+        }
         let started = Instant::now();
         let mut n_steps = 0;
-        while is_sound && (n_steps == 0 || started.elapsed() < TIMED) {
+        while is_sound && (n_steps % in_one != 0 || n_steps == 0 || started.elapsed() < TIMED) {
             is_sound = advance();
             n_steps += 1;
         }
-        let updates = self.plan.cells() as f64 * f64::from(n_steps);
+        let updates = self.plan.updates_of_step() * f64::from(n_steps);
         Ok(is_sound.then(|| updates / started.elapsed().as_secs_f64()))
     }
 
@@ -121,22 +127,25 @@ impl Prepared {
         wind.seed = 0;
         let machines: Vec<String> =
             self.case.turbines.iter().map(farm::case::Placement::machine).collect();
-        let (spacing, interval) = (self.plan.spacing, self.plan.interval);
-        format!("{wind:?} {machines:?} {spacing:?} {interval:?} {:?}", self.case.flow.solver)
+        let interval = self.plan.interval;
+        let cells: Vec<f64> = (0..machines.len()).map(|it| self.plan.spacing_at(it)).collect();
+        format!("{wind:?} {machines:?} {cells:?} {interval:?} {:?}", self.case.flow.solver)
     }
 
-    /// One model alone in a tunnel with the study's cells and step.
+    /// The model of turbine number `index` alone in a tunnel with the cells that it stands in and the study's
+    /// step.
     fn check(
         &self,
-        model: &TurbineModel,
+        index: usize,
         stop: &AtomicBool,
         observer: &mut dyn Observer,
     ) -> Result<SelfCheck, SelfCheckError> {
+        let model = &self.models[index];
         let what = format!("checking {}", model.definition.name);
         self_check(
             model,
             &self.case.wind,
-            &Tunnel::of_study(&self.plan),
+            &Tunnel::of_study(&self.plan.alone(index)),
             self.case.flow.threads,
             &mut |share| {
                 observer.preparing(&what, share);

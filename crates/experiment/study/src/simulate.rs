@@ -199,7 +199,7 @@ impl<'a> Simulation<'a> {
             n_runs,
             step: self.farm.step(),
             n_steps: plan.n_steps,
-            updates_per_second: plan.cells() as f64 * steps_per_second,
+            updates_per_second: plan.updates_of_step() * steps_per_second,
             time_left: left / steps_per_second,
             first_step: self.before.step,
             n_at_a_time: 1,

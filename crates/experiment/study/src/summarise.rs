@@ -14,13 +14,14 @@ use analysis::statistics::{BLOCK_LENGTH, mean, statistic};
 use basis::Channel;
 use basis::channels::{AZIMUTH, BLD_PITCH, GEN_PWR, NAC_YAW, ROT_SPEED, RT_AERO_FXH, TIME, WIND_U};
 use basis::records::{
-    Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding, FlowSummary, Load,
-    PitchExcitation, Rotor, SCHEMA_VERSION, Statistic, Summary, TurbineSummary, Warning,
-    WarningKind,
+    Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding, FlowSummary,
+    GridSummary, Load, PitchExcitation, Rotor, SCHEMA_VERSION, Statistic, Summary, TurbineSummary,
+    Warning, WarningKind,
 };
 use control::{MissingChannel, Pitching, TurbineRecord};
 use farm::assemble::controller;
 use farm::case::{Control, Run, Shear, TurbulenceModel};
+use farm::plan::GridOfPlan;
 use farm::solvers::WindSource;
 
 /// What a turbine leaves beside its series.
@@ -331,7 +332,18 @@ fn outrun(
 /// What moves the air of `setup`.
 fn flow(setup: &Prepared) -> FlowSummary {
     let solver = setup.case.flow.solver;
-    FlowSummary { solver: solver.name.to_owned(), has_wakes: solver.has_wakes }
+    let grids = setup.plan.grids();
+    let several = if setup.plan.boxes.is_empty() { &[] } else { grids.as_slice() };
+    FlowSummary {
+        solver: solver.name.to_owned(),
+        has_wakes: solver.has_wakes,
+        grids: several.iter().map(grid_summary).collect(),
+    }
+}
+
+fn grid_summary(grid: &GridOfPlan) -> GridSummary {
+    let size = grid.n_cells.map(|n| n as f64 * grid.spacing);
+    GridSummary { origin: grid.origin, size, spacing: grid.spacing, n_cells: grid.cells() as u64 }
 }
 
 fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, StudyError> {
@@ -369,12 +381,14 @@ fn turbulence_length_scale(setup: &Prepared) -> Option<f64> {
     is_made.then(|| farm::wind::length_scale(wind, setup.plan.hub_height))
 }
 
-/// Cells per diameter of the first turbine (–), as the case says or else as they were laid out; none where
-/// there are no cells.
+/// Cells per diameter of the first turbine, of those that it stands in (–), as the case says or else as they
+/// were laid out; none where there are no cells.
 fn cells_per_diameter(setup: &Prepared) -> Option<f64> {
     let plan = &setup.plan;
     let given = setup.case.flow.values.optional_number("cells_per_diameter");
-    (plan.cells() > 0).then(|| given.unwrap_or(plan.diameter / plan.spacing))
+    let halvings = plan.levels.first().map_or(1.0, |level| f64::from(1_u32 << level));
+    let around = || given.unwrap_or(plan.diameter / plan.spacing);
+    (plan.cells() > 0).then(|| halvings * around())
 }
 
 #[cfg(test)]

@@ -4,9 +4,9 @@ mod small;
 
 use formats::records::SeriesFile;
 use formats::table::{Column, TableReader};
-use small::{HALFWAY, STOP, written};
+use small::{HALFWAY, STOP, assert_alike, left, written};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use study::{Estimate, Observer, Outcome, Outputs, Prepared, Silent, StudyOptions};
 
@@ -48,40 +48,6 @@ crosswind_diameters = [1.0]
 
 fn options(folder: &Path, output: &str) -> StudyOptions {
     StudyOptions { output: Some(folder.join(output)), ..small::options(folder) }
-}
-
-/// What tells of the machine and the hour, with how long a run took.
-const OF_THE_HOUR: [&str; 3] = ["manifest.json", "summary.json", "checkpoint"];
-
-/// Everything that a run left but what tells of the machine and the hour, by its place in the run's folder.
-fn left(run: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut files = Vec::new();
-    for folder in [run.to_owned(), run.join("planes"), run.join("volumes")] {
-        for entry in fs::read_dir(&folder).expect("a folder") {
-            let path = entry.expect("an entry").path();
-            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-            if path.is_file() && !OF_THE_HOUR.contains(&name.as_str()) {
-                let place = path.strip_prefix(run).expect("in the run").to_owned();
-                files.push((place, fs::read(&path).expect("a file")));
-            }
-        }
-    }
-    files.sort();
-    files
-}
-
-/// Whether the runs in both folders have left the same files with the same bits.
-fn assert_alike(whole: &Path, other: &Path) {
-    let (whole, other) = (left(whole), left(other));
-    let names = |files: &[(PathBuf, Vec<u8>)]| -> Vec<PathBuf> {
-        files.iter().map(|(name, _)| name.clone()).collect()
-    };
-    assert_eq!(names(&whole), names(&other));
-    assert!(whole.len() > 10, "{:?}", names(&whole));
-    assert!(names(&whole).contains(&PathBuf::from("T1.outb")), "{:?}", names(&whole));
-    for ((name, before), (_, after)) in whole.iter().zip(&other) {
-        assert!(before == after, "{} has other bits", name.display());
-    }
 }
 
 #[test]

@@ -1,6 +1,10 @@
 //! Keys that a person may write: what a table of a case file is made of, as data that reader, reference and
 //! schema share.
 
+mod range;
+
+pub use range::Range;
+
 /// One table of the case file.
 #[derive(Debug)]
 pub struct Table {
@@ -86,31 +90,6 @@ pub enum Holds {
     Sweep,
 }
 
-/// Numbers from `low` to `high`, `high` included, `low` only when not `open`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// Lower end (in the key's unit).
-    pub low: f64,
-    /// Whether the lower end itself is out.
-    pub open: bool,
-    /// Upper end (in the key's unit).
-    pub high: f64,
-}
-
-impl Range {
-    /// Whether `value` is in it; what is not a number never is.
-    pub fn contains(&self, value: f64) -> bool {
-        value <= self.high && if self.open { value > self.low } else { value >= self.low }
-    }
-
-    /// In words, such as `0 < speed <= 40 m/s`.
-    pub fn describe(&self, name: &str, unit: &str) -> String {
-        let sign = if self.open { "<" } else { "<=" };
-        let unit = if unit == "–" { String::new() } else { format!(" {unit}") };
-        format!("{} {sign} {name} <= {}{unit}", self.low, self.high)
-    }
-}
-
 /// What holds when a key is left out.
 #[derive(Clone, Copy, Debug)]
 pub enum LeftOut {
@@ -175,6 +154,9 @@ impl Holds {
                     .iter()
                     .all(|(name, value)| knows(name).is_some_and(|k| k.holds.accepts(value)))
             }
+            (Self::Tables(table), Value::Tables(tables)) => tables
+                .iter()
+                .all(|values| Self::Table(table).accepts(&Value::Table(values.clone()))),
             _ => false,
         }
     }
@@ -238,6 +220,8 @@ pub enum Value {
     Names(Vec<String>),
     /// What the keys of a table hold.
     Table(Values),
+    /// What the keys of each of several tables under one heading hold.
+    Tables(Vec<Values>),
 }
 
 impl From<f64> for Value {
@@ -359,6 +343,14 @@ impl Values {
         match self.get(key) {
             Some(Value::Table(values)) => Some(values),
             _ => None,
+        }
+    }
+
+    /// The tables under `key`, in the order of the file; none when there are none.
+    pub fn tables(&self, key: &str) -> &[Values] {
+        match self.get(key) {
+            Some(Value::Tables(tables)) => tables,
+            _ => &[],
         }
     }
 

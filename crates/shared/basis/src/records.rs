@@ -222,9 +222,9 @@ impl TurbineSummary {
 pub struct Cost {
     /// Wall time of the run (s).
     pub wall_time: f64,
-    /// Cells of the flow grid (–).
+    /// Cells of the flow, of all grids (–).
     pub n_cells: u64,
-    /// Flow steps (–).
+    /// Flow steps, of the finest cells (–).
     pub n_steps: u64,
     /// Cell updates per second, everything included (1/s).
     pub updates_per_second: f64,
@@ -263,9 +263,10 @@ pub struct Conditions {
     pub seed: u64,
     /// Rotor diameter of the first turbine (m).
     pub rotor_diameter: f64,
-    /// Cells per diameter of the first turbine (–); absent where the wind is prescribed.
+    /// Cells per diameter of the first turbine, of those that it stands in (–); absent where the wind is
+    /// prescribed.
     pub cells_per_diameter: Option<f64>,
-    /// Flow step (s).
+    /// Flow step, of the finest cells (s).
     pub interval: f64,
     /// Time before the analysis starts (s).
     pub spin_up: f64,
@@ -279,12 +280,29 @@ fn from_west() -> f64 {
 }
 
 /// What moved the air.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlowSummary {
     /// Name of the flow solver, the word of `flow.solver`.
     pub solver: String,
     /// Whether its wind holds the rotors' wakes, so that turbines feel one another.
     pub has_wakes: bool,
+    /// The grid of the domain and those of all boxes of finer cells, each before those in it; none where all
+    /// cells are alike.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub grids: Vec<GridSummary>,
+}
+
+/// Cells of one size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GridSummary {
+    /// Corner with the least coordinates, farm frame (m).
+    pub origin: [f64; 3],
+    /// Extent along x, y, z (m).
+    pub size: [f64; 3],
+    /// Edge of a cell (m).
+    pub spacing: f64,
+    /// Cells, those beneath boxes included (–).
+    pub n_cells: u64,
 }
 
 /// One run in numbers; `summary.json` is this, written out.

@@ -1,6 +1,6 @@
 //! Why a case cannot be run as it stands, and the key that decides.
 
-use super::{MAXIMUM_LATTICE_SPEED, MINIMUM_CELLS_PER_DIAMETER};
+use super::{MAXIMUM_LATTICE_SPEED, MINIMUM_CELLS_PER_DIAMETER, MOST_LEVELS};
 use thiserror::Error;
 
 /// Why a case cannot be run as it stands.
@@ -152,6 +152,66 @@ pub enum PlanError {
         /// As above.
         high: f64,
     },
+    /// A box of finer cells reaches too far.
+    #[error(
+        "the box flow.refinement.{number} spans {axis} = {low:.0} to {high:.0} m, and has room from {least:.0} to {most:.0} m in {around}: two cells before its sides and before the cells at the outlet that still eddies; {fix}"
+    )]
+    BoxOutside {
+        /// Its number.
+        number: String,
+        /// Key that decides.
+        key: &'static str,
+        /// Axis, in words.
+        axis: &'static str,
+        /// Its ends (m).
+        low: f64,
+        /// As above.
+        high: f64,
+        /// What is around it, in words.
+        around: String,
+        /// Ends that it may have (m).
+        least: f64,
+        /// As above.
+        most: f64,
+        /// What to change.
+        fix: String,
+    },
+    /// Two boxes of finer cells touch, and none lies within the other.
+    #[error(
+        "the boxes flow.refinement.{first} and flow.refinement.{second} overlap, or are less than two cells apart, and neither lies within the other; lay one box around the turbines of both, or make them smaller"
+    )]
+    BoxesMeet {
+        /// Number of one.
+        first: usize,
+        /// Number of the other.
+        second: String,
+    },
+    /// Boxes within boxes within boxes.
+    #[error(
+        "{depth} boxes of flow.refinement lie within one another, at most {MOST_LEVELS} can; leave some out and raise flow.cells_per_diameter"
+    )]
+    TooManyLevels {
+        /// How many lie within one another (–).
+        depth: u32,
+    },
+    /// A rotor's forces reach over the edge of a box of finer cells.
+    #[error(
+        "turbine {name} stands neither in the box flow.refinement.{number} nor clear of it: rotor and tower with six cells around them, as far as forces are spread, reach {missing:.0} m beyond it {end}; to take it in, raise its {key} by {missing_diameters} (or name the turbine in its `around`), or make the box smaller"
+    )]
+    RotorAtEdge {
+        /// Turbine.
+        name: String,
+        /// Number of the box.
+        number: String,
+        /// Key that decides.
+        key: &'static str,
+        /// Where it ends too early, in words.
+        end: &'static str,
+        /// How much too early (m).
+        missing: f64,
+        /// What the key lacks (diameters of the first turbine).
+        missing_diameters: f64,
+    },
     /// A turbine without its model.
     #[error("turbine {name} has the model `{model}`, which was not loaded")]
     UnknownModel {
@@ -177,6 +237,11 @@ impl PlanError {
             Self::TooRough { .. } => vec!["wind", "roughness_length"],
             Self::VeersTooFar { .. } => vec!["wind", "veer_deg_per_m"],
             Self::CrosswindOutside { .. } => vec!["output", "crosswind_diameters"],
+            Self::BoxOutside { number, key, .. } | Self::RotorAtEdge { number, key, .. } => {
+                vec!["flow", "refinement", number, key]
+            }
+            Self::BoxesMeet { second, .. } => vec!["flow", "refinement", second],
+            Self::TooManyLevels { .. } => vec!["flow", "refinement"],
             Self::UnknownModel { name, .. } => vec!["turbine", name, "model"],
         }
     }

@@ -12,7 +12,9 @@ const LONGEST_STEP: f64 = 0.5;
 /// and a run would take more than a hundred times as long as it needs.
 const LEAST_SHARE: f64 = 0.01;
 
-/// The step (s) of `case` on cells of `spacing` (m).
+/// The step (s) of the finest cells of `case`, in cells of `spacing` (m) with `depth` boxes in one another.
+///
+/// Cells of half the size make steps of half the length: tips and wind move as many cells a step on all.
 ///
 /// # Errors
 /// [`PlanError`] for a step that is too long for tips or wind, or too short for either.
@@ -20,7 +22,10 @@ pub(super) fn step(
     case: &Case,
     machines: &[(&Placement, Footprint)],
     spacing: f64,
+    depth: u32,
 ) -> Result<f64, PlanError> {
+    let in_one = f64::from(1_u32 << depth);
+    let spacing = spacing / in_one;
     let (fastest, tip_speed) = machines
         .iter()
         .map(|(placement, footprint)| (placement, footprint.tip_speed))
@@ -50,7 +55,8 @@ pub(super) fn step(
         None => {
             let safe = FASTEST_TIP * spacing / tip_speed;
             let longest = safe.min(speed_limit).min(LONGEST_STEP);
-            Ok(60.0 / (60.0 / longest).ceil())
+            // A minute is a whole number of the longest steps, too.
+            Ok(60.0 / (60.0 / (longest * in_one)).ceil() / in_one)
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Domains that fit, steps that tips do not outrun, and errors that name what does not fit.
 
+mod boxes;
+
 use super::step::FASTEST_TIP;
 use super::*;
 use crate::case::{

@@ -2,11 +2,14 @@
 
 use super::{Alone, Fault, Objection, Smearing, SolverError, SolverKind, Start, WindSource};
 use crate::air::Air;
-use crate::assemble::{SMEARING_CELLS, lattice_settings};
+use crate::assemble::lattice_settings;
 use crate::case::{Case, Flow, TurbulenceModel, Wind};
-use crate::domain::{self, Sides};
+use crate::domain::{self, SMEARING_CELLS, Sides};
 use crate::plan::{self, Plan};
+use crate::refinement;
+use basis::keys::Key;
 use flow::lattice::Lattice;
+use flow::lattice::refinement::Refined;
 
 /// Bytes of a cell in the flow field beside its populations of four bytes, boundaries included.
 const FURTHER_BYTES: u64 = 4;
@@ -14,26 +17,37 @@ const FURTHER_BYTES: u64 = 4;
 /// Cells per diameter below which wakes are smeared (–).
 const CELLS_TO_WARN: f64 = 16.0;
 
+/// Those of a box of cells, and that of finer ones in it.
+static KEYS: [Key; domain::KEYS.len() + 1] = {
+    let mut keys = [refinement::KEY; domain::KEYS.len() + 1];
+    let mut n = 0;
+    while n < domain::KEYS.len() {
+        keys[n] = domain::KEYS[n];
+        n += 1;
+    }
+    keys
+};
+
 /// Lattice-Boltzmann large-eddy simulation, which feels the turbines.
 pub static LATTICE: SolverKind = SolverKind {
     name: "lattice",
     about: "lattice Boltzmann large-eddy simulation with actuator lines; turbines are in each other's wakes",
-    keys: &domain::KEYS,
-    check: |_| Vec::new(),
+    keys: &KEYS,
+    check: refinement::check,
     wind: WindSource::AtInlet,
     resolves_induction: true,
     has_wakes: true,
-    smearing: |plan| Smearing {
-        length: SMEARING_CELLS * plan.spacing,
-        sample_spacing: plan.spacing,
+    smearing: |plan, index| Smearing {
+        length: SMEARING_CELLS * plan.spacing_at(index),
+        sample_spacing: plan.spacing_at(index),
     },
     uses_bound_vortices: false,
     needs_self_check: true,
     objections,
     warnings,
-    sound_speed: |plan| Some(plan::LATTICE_SOUND_SPEED * plan.spacing / plan.interval),
+    sound_speed: |plan| Some(plan::LATTICE_SOUND_SPEED * plan.spacing / plan.base_interval()),
     plan: plan::in_a_box,
-    memory: |plan| plan.cells() as u64 * (4 * plan.method.stencil.n_directions() + FURTHER_BYTES),
+    memory,
     begin,
     begin_alone,
     updates_alone: |tunnel, diameter| tunnel.n_cells(diameter).iter().product::<usize>() as f64,
@@ -41,7 +55,16 @@ pub static LATTICE: SolverKind = SolverKind {
 
 fn begin(start: Start) -> Result<Air, SolverError> {
     let settings = lattice_settings(start.site.case, start.site.plan);
-    Ok(Box::new(Lattice::new(settings, start.inflow)?))
+    let boxes = &start.site.plan.boxes;
+    if boxes.is_empty() {
+        return Ok(Box::new(Lattice::new(settings, start.inflow)?));
+    }
+    Ok(Box::new(Refined::new(settings, boxes, start.inflow)?))
+}
+
+fn memory(plan: &Plan) -> u64 {
+    let bytes = 4 * plan.method.stencil.n_directions() + FURTHER_BYTES;
+    plan.cells() as u64 * bytes + plan.exchange_memory()
 }
 
 fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
@@ -49,8 +72,9 @@ fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
     Ok(Box::new(tunnel.air(wind, diameter, threads)?))
 }
 
-fn warnings(case: &Case, _: &Plan) -> Vec<String> {
-    let cells = case.flow.domain().cells_per_diameter;
+fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
+    let level = plan.levels.iter().copied().min().unwrap_or(0);
+    let cells = case.flow.domain().cells_per_diameter * f64::from(1_u32 << level);
     let coarse = || {
         format!(
             "{cells:.0} cells per diameter are coarse: wakes mix later than they should; 16 and more are for results"

@@ -19,6 +19,7 @@ use basis::registry::{Named, Registry};
 use flow::Inflow;
 use flow::inflow::{InflowError, Planes};
 use flow::lattice::LatticeError;
+use flow::lattice::refinement::RefinementError;
 use std::fmt;
 use std::ops::{ControlFlow, Deref};
 use std::sync::Arc;
@@ -48,8 +49,9 @@ pub struct SolverKind {
     pub resolves_induction: bool,
     /// Whether the wind that it gives holds the rotors' wakes, so that turbines feel one another.
     pub has_wakes: bool,
-    /// How it wants forces spread, and interpolates the wind, where it resolves induction.
-    pub smearing: fn(&Plan) -> Smearing,
+    /// How it wants forces spread, and interpolates the wind, where it resolves induction: of the turbine of
+    /// this number.
+    pub smearing: fn(&Plan, usize) -> Smearing,
     /// Whether it asks for the bound vortices of blades, not for their forces alone.
     pub uses_bound_vortices: bool,
     /// Whether rotors are checked in it, each alone, before a study.
@@ -153,6 +155,9 @@ pub enum SolverError {
     /// A lattice cannot be set up.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
+    /// Nor boxes of finer cells in it.
+    #[error(transparent)]
+    Refinement(#[from] RefinementError),
     /// Its wind cannot be read.
     #[error(transparent)]
     Inflow(#[from] InflowError),

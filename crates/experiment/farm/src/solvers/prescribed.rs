@@ -17,7 +17,7 @@ pub const PRESCRIBED: SolverKind = SolverKind {
     wind: WindSource::Deterministic,
     resolves_induction: false,
     has_wakes: false,
-    smearing: |_| Smearing { length: 0.0, sample_spacing: 0.0 },
+    smearing: |_, _| Smearing { length: 0.0, sample_spacing: 0.0 },
     uses_bound_vortices: false,
     needs_self_check: false,
     objections: |_, _| Vec::new(),

@@ -110,7 +110,7 @@ impl Recorded {
             let (across, top) = (grid.across(), grid.up()[1]);
             return Err(ForeignWind::Small { across, top, needed_across, need_top });
         }
-        let lattice = grid.speed * site.plan.interval / site.plan.spacing;
+        let lattice = grid.speed * site.plan.base_interval() / site.plan.spacing;
         if lattice > MAXIMUM_LATTICE_SPEED * (1.0 + SLACK) {
             let most = MAXIMUM_LATTICE_SPEED;
             return Err(ForeignWind::Fast { found: grid.speed, lattice, most });

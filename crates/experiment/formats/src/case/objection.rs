@@ -30,7 +30,8 @@ fn within(node: &Node, path: &[&str]) -> Option<Range<usize>> {
         _ if path.is_empty() => Some(node.span.clone()),
         Value::Table(entries) => place(entries, path),
         Value::List(items) => {
-            let item = items.iter().find(|item| named(item, path[0]))?;
+            let by_name = items.iter().find(|item| named(item, path[0]));
+            let item = by_name.or_else(|| items.get(path[0].parse::<usize>().ok()?))?;
             within(item, &path[1..]).or_else(|| Some(item.span.clone()))
         }
         _ => None,

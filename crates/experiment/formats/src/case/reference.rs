@@ -9,6 +9,7 @@ use control::CONTROLLERS;
 use farm::case::Solver;
 use farm::domain::GROUND;
 use farm::outputs::OUTPUTS;
+use farm::refinement::TABLE as REFINEMENT;
 use farm::solvers::SOLVERS;
 use sensing::SENSORS;
 use serde_json::{Map, Value, json};
@@ -32,7 +33,7 @@ pub fn reference() -> String {
         let _ = write_table(&mut page, table, None);
     }
     let _ = write_solvers(&mut page);
-    for table in [&GROUND].into_iter().chain(turbines).chain([&RUN]) {
+    for table in [&GROUND, &REFINEMENT].into_iter().chain(turbines).chain([&RUN]) {
         let _ = write_table(&mut page, table, None);
     }
     for kind in CONTROLLERS.all() {

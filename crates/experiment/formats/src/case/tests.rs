@@ -2,6 +2,7 @@
 
 mod errors;
 mod numbers;
+mod refinement;
 
 use super::*;
 use control::meandering::{Followed, Leader, MeanderingSettings, Reference};

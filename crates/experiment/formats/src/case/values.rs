@@ -18,8 +18,7 @@ pub(super) fn values_of(section: &Section, keys: &[Key]) -> Values {
 /// What `key` holds in `section`; none when it is left out.
 ///
 /// # Panics
-/// For what no kind can have a key for: tables under one heading, events, what belongs to `[[turbine]]` and
-/// `[[run]]`.
+/// For what no kind can have a key for: events, what belongs to `[[turbine]]` and `[[run]]`.
 fn value_of(section: &Section, key: &Key) -> Option<Value> {
     let name = key.name;
     match key.holds {
@@ -39,6 +38,10 @@ fn value_of(section: &Section, key: &Key) -> Option<Value> {
         Holds::Turbines => section.entry(name).map(|_| Value::Names(section.turbines(name))),
         Holds::Ground(table) => ground_of(section, name, table),
         Holds::Table(table) => section.entry(name).map(|_| inner(section, name, table)),
+        Holds::Tables(table) => section.entry(name).map(|_| {
+            let sections = section.sections(name, table);
+            Value::Tables(sections.iter().map(|one| values_of(one, table.keys)).collect())
+        }),
         holds => panic!("no kind can have a key like `{name}`, which holds {holds:?}"),
     }
 }
@@ -70,11 +73,18 @@ pub(super) fn text_of(value: &Value) -> String {
         Value::Names(names) => {
             format!("[{}]", names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", "))
         }
-        Value::Table(values) => {
-            let keys: Vec<String> = assignments(values).collect();
-            if keys.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", keys.join(", ")) }
+        Value::Tables(tables) => {
+            let tables: Vec<String> = tables.iter().map(table_text).collect();
+            format!("[{}]", tables.join(", "))
         }
+        Value::Table(values) => table_text(values),
     }
+}
+
+/// A table as it stands in a file, in a line.
+fn table_text(values: &Values) -> String {
+    let keys: Vec<String> = assignments(values).collect();
+    if keys.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", keys.join(", ")) }
 }
 
 /// `key = value` for each of `values`.

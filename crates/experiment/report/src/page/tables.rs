@@ -5,7 +5,7 @@ use crate::draw::colour::Ink;
 use crate::sentence;
 use crate::study::Study;
 use crate::words::{self, SPACE, number, percent, three_figures};
-use basis::records::{Conditions, Statistic, Summary, TurbineSummary};
+use basis::records::{Conditions, GridSummary, Statistic, Summary, TurbineSummary};
 use minijinja::{Value, context};
 use std::f64::consts::TAU;
 
@@ -130,9 +130,10 @@ fn grid(summary: &Summary) -> Value {
             "Grid",
             format!("{} cells per D", number(cells, 0)),
             format!(
-                "{}{}{SPACE}m cells, {}{SPACE}s flow step",
+                "{}{}{SPACE}m cells{}, {}{SPACE}s flow step",
                 solver.map_or(String::new(), |solver| format!("{solver}, ")),
                 number(conditions.rotor_diameter / cells, 1),
+                around_boxes(summary),
                 number(conditions.interval, 3)
             ),
         ),
@@ -142,6 +143,19 @@ fn grid(summary: &Summary) -> Value {
             format!("{wakes}, {}{SPACE}s step", number(conditions.interval, 3)),
         ),
     }
+}
+
+/// Which cells are where, in a few words: " (5.0 m in 1200 × 480 × 240 m; 10.0 m elsewhere)".
+fn around_boxes(summary: &Summary) -> String {
+    let grids = summary.flow.as_ref().map_or(&[][..], |flow| flow.grids.as_slice());
+    let Some((domain, boxes)) = grids.split_first() else { return String::new() };
+    let of_box = |grid: &GridSummary| {
+        let [length, width, height] = grid.size.map(|length| number(length, 0));
+        let cells = number(grid.spacing, 1);
+        format!("{cells}{SPACE}m in {length} × {width} × {height}{SPACE}m")
+    };
+    let boxes: Vec<String> = boxes.iter().map(of_box).collect();
+    format!(" ({}; {}{SPACE}m elsewhere)", boxes.join(", "), number(domain.spacing, 1))
 }
 
 fn fact(label: &str, value: String, remark: String) -> Value {

@@ -41,7 +41,8 @@ pub(crate) fn without_wakes() -> StudyRecords {
     let mut study = two_runs();
     for run in &mut study.runs {
         let summary = &mut run.summary;
-        summary.flow = Some(FlowSummary { solver: "uniform".into(), has_wakes: false });
+        summary.flow =
+            Some(FlowSummary { solver: "uniform".into(), has_wakes: false, grids: Vec::new() });
         summary.conditions.cells_per_diameter = None;
         run.mean_planes.clear();
         run.instant_planes.clear();

@@ -61,6 +61,8 @@ mod tests {
         Plan {
             origin: Vector3::ZERO,
             spacing: 0.0,
+            boxes: Vec::new(),
+            levels: Vec::new(),
             n_cells: [0; 3],
             interval: 0.2,
             n_steps: N_STEPS,

@@ -32,7 +32,9 @@ pub(super) static KIND: OutputKind = OutputKind {
 
 /// Steps from one plane to the next (–).
 fn stride(setup: &Prepared) -> u64 {
-    let crossing = CELLS_BETWEEN * setup.plan.spacing / setup.case.wind.speed;
+    let spacings = setup.case.output.inflow_at.iter().map(|&index| setup.plan.spacing_at(index));
+    let spacing = spacings.fold(setup.plan.spacing, f64::min);
+    let crossing = CELLS_BETWEEN * spacing / setup.case.wind.speed;
     (crossing / setup.plan.interval).floor().max(1.0) as u64
 }
 
@@ -51,7 +53,7 @@ fn places<'a>(setup: &'a Prepared, run: &'a Run) -> impl Iterator<Item = usize> 
 /// A grid as fine as the cells, with a point at the hub, as far down as half a cell above the ground.
 fn grid(setup: &Prepared, index: usize) -> PlaneGrid {
     let (plan, rotor) = (&setup.plan, &setup.models[index].definition);
-    let (spacing, hub_height) = (plan.spacing, rotor.rotor.hub_height);
+    let (spacing, hub_height) = (plan.spacing_at(index), rotor.rotor.hub_height);
     let reach = rotor.rotor_radius() + MARGIN * rotor.rotor_diameter();
     let n_aside = (reach / spacing).ceil();
     let n_down = n_aside.min((hub_height / spacing - 0.5).floor()).max(0.0);

@@ -146,7 +146,8 @@ impl Parts<'_> {
         let mut tasks = Vec::new();
         for (part, Part { study, stage, .. }) in self.list.iter().enumerate() {
             let Stage::Prepared(prepared) = &*held(stage) else { continue };
-            let (work, n_steps) = (prepared.0.plan.cells().max(1) as f64, prepared.0.plan.n_steps);
+            let plan = &prepared.0.plan;
+            let (work, n_steps) = (plan.updates_of_step().max(1.0), plan.n_steps);
             tasks.extend(study.open.iter().map(|&index| Task { part, index, work, n_steps }));
         }
         tasks

@@ -18,7 +18,7 @@ use super::memory::Memory;
 use super::pool::Pool;
 use super::probe::{RowState, View};
 use super::scaling::Scaling;
-use super::settings::{Ends, LatticeError, LatticeSettings, Stencil};
+use super::settings::{LatticeError, LatticeSettings, Stencil};
 use super::simd::{Backend, MAXIMUM_LANES};
 use super::stencil::D3Q19;
 use super::stencil27::D3Q27;
@@ -31,10 +31,6 @@ use std::io::{Read, Result, Write};
 use std::sync::Mutex;
 use worker::{Worker, own};
 
-/// Longest zone of raised viscosity before the outlet, in cells.
-const LONGEST_SPONGE: usize = 24;
-/// Share of the box's length that it may take, as a divisor.
-const SPONGE_DIVISOR: usize = 10;
 /// Viscosity at the outlet, in cells² per step.
 const SPONGE_VISCOSITY: f64 = 0.05;
 /// Pull of the outlet's pressure to the undisturbed one: 0.25 is what Poinsot and Lele (1992) found to work.
@@ -348,10 +344,7 @@ impl Engine for Cpu {
 fn relaxation_times(settings: &LatticeSettings, scaling: &Scaling) -> Vec<f32> {
     let n = settings.n_cells[0];
     let viscosity = scaling.to_lattice_viscosity(settings.kinematic_viscosity);
-    let length = match settings.ends {
-        Ends::InletOutlet => (n / SPONGE_DIVISOR).min(LONGEST_SPONGE),
-        Ends::Periodic => 0,
-    };
+    let length = settings.sponge_cells();
     (0..n.next_multiple_of(MAXIMUM_LANES))
         .map(|x| {
             let depth = (x + length + 1).saturating_sub(n).min(length);

@@ -34,17 +34,18 @@ mod boxes;
 mod coupling;
 mod fields;
 mod paths;
+mod steps;
 #[cfg(test)]
 mod tests;
 
 use super::cell_box::CellBox;
 use super::links::Exchange;
 use super::settings::LatticeSettings;
-use super::solver::Lattice;
+use super::solver::{Lattice, steps_in};
 use crate::{FlowError, FlowSolver, Inflow};
 use basis::{PointForce, Vector3};
 use boxes::Beyond;
-pub use boxes::{Refinement, RefinementError};
+pub use boxes::{MARGIN, Refinement, RefinementError, check};
 use coupling::Coupling;
 use paths::Paths;
 use std::io::{Error, ErrorKind, Read, Result as IoResult, Write};
@@ -56,8 +57,16 @@ use std::sync::Arc;
 /// it is gathered within. What reaches into a box from outside is lost, as cells under a box mean nothing. So
 /// let boxes end a few smearing lengths from what pushes the air. The same settings, inflow and forces give
 /// the same bits on any number of threads.
+///
+/// It moves on by steps of its finest cells, and may be looked at and pushed between any two of them: forces
+/// act on a grid from the next step that it begins. Grids of longer steps are ahead then, by less than one of
+/// their own.
 pub struct Refined {
     grid: Grid,
+    /// Steps of the finest cells that were made (–).
+    n_steps: u64,
+    /// How many of them make a step of the grid that holds all others (–).
+    span: u64,
 }
 
 /// A lattice and the boxes in it.
@@ -94,7 +103,8 @@ impl Refined {
             return Err(RefinementError::Atmosphere);
         }
         let beyond = boxes::beyond(&settings);
-        Ok(Self { grid: Grid::new(settings, boxes, &beyond, &inflow)? })
+        let grid = Grid::new(settings, boxes, &beyond, &inflow)?;
+        Ok(Self { span: 1 << grid.depth(), grid, n_steps: 0 })
     }
 
     /// The grid that holds all others; its cells under boxes mean nothing.
@@ -109,9 +119,14 @@ impl Refined {
         all
     }
 
+    /// Duration of a step of the finest cells (s).
+    pub fn interval(&self) -> f64 {
+        self.base().scaling().interval() / self.span as f64
+    }
+
     /// Time since the start (s).
     pub fn time(&self) -> f64 {
-        self.base().time()
+        self.n_steps as f64 * self.interval()
     }
 
     /// Memory of the field (bytes).
@@ -119,12 +134,12 @@ impl Refined {
         self.grid.memory()
     }
 
-    /// Mass of the air (kg).
+    /// Mass of the air (kg), between two steps of the [base](Self::base).
     pub fn mass(&self) -> f64 {
         self.grid.totals().0
     }
 
-    /// Momentum of the air, forces of the last step not counted (kg m/s).
+    /// Momentum of the air likewise, forces of the last step not counted (kg m/s).
     pub fn momentum(&self) -> Vector3 {
         self.grid.totals().1
     }
@@ -137,12 +152,13 @@ impl Refined {
         self.grid.each(&mut Lattice::check)
     }
 
-    /// Writes the state, grid by grid as [`Lattice::write_state`] does.
+    /// Writes the state, grid by grid as [`Lattice::write_state`] does, and what is on its way between them.
     ///
     /// # Errors
     /// Those of `writer`, and [`ErrorKind::InvalidData`] when the field has diverged.
     pub fn write_state(&mut self, writer: &mut dyn Write) -> IoResult<()> {
-        self.grid.each(&mut |lattice| lattice.write_state(writer))
+        writer.write_all(&self.n_steps.to_le_bytes())?;
+        self.grid.write_state(writer)
     }
 
     /// Reads a state that [`write_state`](Self::write_state) wrote from the same settings and boxes.
@@ -151,8 +167,11 @@ impl Refined {
     /// Those of `reader`, and [`ErrorKind::InvalidData`] when it is no state or one of other grids. The field
     /// is undefined after an error and must be read or built again.
     pub fn read_state(&mut self, reader: &mut dyn Read) -> IoResult<()> {
-        self.grid.each(&mut |lattice| lattice.read_state(reader))?;
-        match self.grid.in_step() {
+        let mut bytes = [0; 8];
+        reader.read_exact(&mut bytes)?;
+        self.n_steps = u64::from_le_bytes(bytes);
+        self.grid.read_state(reader)?;
+        match self.grid.in_step(self.n_steps, self.span) {
             true => Ok(()),
             false => Err(Error::new(ErrorKind::InvalidData, "the state's grids are out of step")),
         }
@@ -161,11 +180,12 @@ impl Refined {
 
 impl FlowSolver for Refined {
     fn advance(&mut self, duration: f64, forces: &[PointForce]) -> Result<(), FlowError> {
-        let n_steps = self.grid.lattice.steps_in(duration)?;
-        self.grid.hold(forces);
+        let n_steps = steps_in(duration, self.interval())?;
+        self.grid.take(forces);
         for _ in 0..n_steps {
-            self.grid.step();
-            self.grid.each(&mut Lattice::watch)?;
+            self.grid.advance(self.n_steps, self.span);
+            self.grid.watch(self.n_steps, self.span)?;
+            self.n_steps += 1;
         }
         Ok(())
     }
@@ -191,55 +211,10 @@ impl Grid {
         Ok(Self { lattice, boxes, forces: Vec::new() })
     }
 
-    /// Holds `forces` from now on, each in the finest grid that holds its position.
-    fn hold(&mut self, forces: &[PointForce]) {
-        self.forces.clear();
-        self.boxes.iter_mut().for_each(|one| one.forces.clear());
-        for force in forces {
-            let cell = (self.lattice.scaling().to_lattice_position(force.position)
-                + Vector3::splat(0.5))
-            .to_array();
-            let held = cell.iter().all(|place| *place >= 0.0);
-            let cell = cell.map(|place| place as usize);
-            match self.boxes.iter_mut().find(|one| held && one.covered.contains(cell)) {
-                Some(one) => one.forces.push(*force),
-                None => self.forces.push(*force),
-            }
-        }
-        self.lattice.hold(&self.forces);
-        for one in &mut self.boxes {
-            one.grid.hold(&one.forces);
-        }
-    }
-
-    /// Makes a step, and two in each box.
-    fn step(&mut self) {
-        self.lattice.step();
-        let n_steps = self.lattice.n_steps();
-        let around = exchange(&mut self.lattice);
-        for one in &mut self.boxes {
-            one.coupling.take(around, n_steps);
-        }
-        for one in &mut self.boxes {
-            for step in 0..2 {
-                one.grid.step();
-                one.coupling.cross(exchange(&mut one.grid.lattice), step);
-            }
-            one.coupling.give(around, n_steps);
-        }
-    }
-
     /// Calls `act` on each lattice, until one fails.
     fn each<E>(&mut self, act: &mut dyn FnMut(&mut Lattice) -> Result<(), E>) -> Result<(), E> {
         act(&mut self.lattice)?;
         self.boxes.iter_mut().try_for_each(|one| one.grid.each(act))
-    }
-
-    /// Whether each box has made twice the steps of the grid around it.
-    fn in_step(&self) -> bool {
-        self.boxes.iter().all(|one| {
-            one.grid.lattice.n_steps() == 2 * self.lattice.n_steps() && one.grid.in_step()
-        })
     }
 
     fn list<'a>(&'a self, all: &mut Vec<&'a Lattice>) {

@@ -14,6 +14,10 @@ const MOST_VISCOUS: f64 = 0.5;
 const MOST_CONDUCTING: f64 = 0.08;
 /// Fewest cells between inlet and outlet, or along a periodic axis.
 const FEWEST_CELLS: usize = 4;
+/// Longest zone of raised viscosity before the outlet, in cells.
+const LONGEST_SPONGE: usize = 24;
+/// Share of the box's length that it may take, as a divisor.
+const SPONGE_DIVISOR: usize = 10;
 
 /// A box of air, in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,6 +99,14 @@ impl LatticeSettings {
     /// Cells in all (–).
     pub fn cells(&self) -> usize {
         self.n_cells.iter().product()
+    }
+
+    /// Cells before the outlet in which a raised viscosity stills eddies (–).
+    pub fn sponge_cells(&self) -> usize {
+        match self.ends {
+            Ends::InletOutlet => (self.n_cells[0] / SPONGE_DIVISOR).min(LONGEST_SPONGE),
+            Ends::Periodic => 0,
+        }
     }
 
     /// Reference speed in cells per step (–).

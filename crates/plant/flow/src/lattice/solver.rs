@@ -116,15 +116,6 @@ impl Lattice {
         self.look(0, 1)
     }
 
-    /// Steps in `duration` (s), which is to be a whole number of them.
-    pub(super) fn steps_in(&self, duration: f64) -> Result<u64, FlowError> {
-        let step = self.scaling.interval();
-        let n_steps = (duration / step).round();
-        // Written so that a duration that is not a number is refused.
-        let whole = n_steps >= 0.0 && (duration / step - n_steps).abs() <= 1e-6 * n_steps.max(1.0);
-        if whole { Ok(n_steps as u64) } else { Err(FlowError::FractionalStep { duration, step }) }
-    }
-
     /// Holds `forces` from now on.
     pub(super) fn hold(&mut self, forces: &[PointForce]) {
         self.forces.clear();
@@ -166,7 +157,7 @@ impl Lattice {
 
 impl FlowSolver for Lattice {
     fn advance(&mut self, duration: f64, forces: &[PointForce]) -> Result<(), FlowError> {
-        let n_steps = self.steps_in(duration)?;
+        let n_steps = steps_in(duration, self.scaling.interval())?;
         self.hold(forces);
         for _ in 0..n_steps {
             self.step();
@@ -178,4 +169,12 @@ impl FlowSolver for Lattice {
     fn resolves_induction(&self) -> bool {
         true
     }
+}
+
+/// Steps of `step` (s) in `duration` (s), which is to be a whole number of them.
+pub(super) fn steps_in(duration: f64, step: f64) -> Result<u64, FlowError> {
+    let n_steps = (duration / step).round();
+    // Written so that a duration that is not a number is refused.
+    let whole = n_steps >= 0.0 && (duration / step - n_steps).abs() <= 1e-6 * n_steps.max(1.0);
+    if whole { Ok(n_steps as u64) } else { Err(FlowError::FractionalStep { duration, step }) }
 }

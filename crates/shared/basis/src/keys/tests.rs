@@ -31,3 +31,16 @@ fn a_table_within_a_table_is_accepted_key_by_key() {
         assert!(!holds.accepts(&wrong), "{wrong:?}");
     }
 }
+
+#[test]
+fn tables_under_one_heading_are_accepted_one_by_one() {
+    static ROUGH: Table = Table { heading: "", about: "", keys: &KEYS };
+    let one = |length: f64| Values(vec![("length", length.into())]);
+    let holds = Holds::Tables(&ROUGH);
+    assert!(holds.accepts(&Value::Tables(vec![one(0.1), one(5.0)])));
+    assert!(!holds.accepts(&Value::Tables(vec![one(0.1), one(6.0)])));
+    let mut values = Values::none();
+    values.set("rough", Value::Tables(vec![one(0.1), one(5.0)]));
+    assert_eq!(values.tables("rough")[1].number("length"), 5.0);
+    assert!(values.tables("length").is_empty());
+}

@@ -80,6 +80,8 @@ pub enum SettingValue {
     Names(Vec<String>),
     /// The keys of a table.
     Table(Vec<ControlSetting>),
+    /// The keys of each of several tables.
+    Tables(Vec<Vec<ControlSetting>>),
 }
 
 impl From<&Value> for SettingValue {
@@ -91,6 +93,7 @@ impl From<&Value> for SettingValue {
             Value::Numbers(numbers) => Self::Numbers(numbers.clone()),
             Value::Names(names) => Self::Names(names.clone()),
             Value::Table(values) => Self::Table(ControlSetting::all(values)),
+            Value::Tables(tables) => Self::Tables(tables.iter().map(ControlSetting::all).collect()),
         }
     }
 }

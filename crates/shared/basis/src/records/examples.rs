@@ -2,9 +2,9 @@
 
 use super::{
     BearingLoad, Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding,
-    FlowSummary, Load, LoadKind, MeanderingAxis, MeanderingSummary, PitchDuty, PitchExcitation,
-    PitchResponse, Rotor, SCHEMA_VERSION, SettingValue, Statistic, Summary, TurbineSummary,
-    Warning, WarningKind,
+    FlowSummary, GridSummary, Load, LoadKind, MeanderingAxis, MeanderingSummary, PitchDuty,
+    PitchExcitation, PitchResponse, Rotor, SCHEMA_VERSION, SettingValue, Statistic, Summary,
+    TurbineSummary, Warning, WarningKind,
 };
 use crate::Sense;
 
@@ -134,10 +134,17 @@ pub fn full() -> Summary {
         turbine: Some("T1".to_owned()),
         message: "a warning".to_owned(),
     });
+    let size = [1920.0, 1440.0, 960.0];
+    let domain =
+        GridSummary { origin: [-720.0, -720.0, 0.0], size, spacing: 15.0, n_cells: 786_432 };
     Summary {
         compare_with: Some("baseline".to_owned()),
         conditions: Conditions { roughness_length: Some(0.01), ..conditions() },
-        flow: Some(FlowSummary { solver: "lattice".to_owned(), has_wakes: true }),
+        flow: Some(FlowSummary {
+            solver: "lattice".to_owned(),
+            has_wakes: true,
+            grids: vec![domain],
+        }),
         array_power: with_interval(4e7),
         array_power_gain: Some(gain),
         cost: Cost {

@@ -11,6 +11,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use wakemix::basis::records::{PitchResponse, Summary};
+use wakemix::farm::plan::GridOfPlan;
 use wakemix::farm::self_check::{SelfCheck, TOLERANCE};
 use wakemix::study::{Estimate, IdentificationProgress, Observer, Prepared, Progress};
 
@@ -44,6 +45,19 @@ fn disk(estimate: &Estimate) -> String {
         0 | 1 => format!("disk up to {run}{kept}{rows}"),
         _ => format!("disk up to {run} a run, {all} in all{kept}{rows}"),
     }
+}
+
+/// The cells of `estimate`, in words: "96 × 48 × 32 = 0.15 million cells of 10.0 m", and those of boxes.
+fn cells(estimate: &Estimate) -> String {
+    let of_grid = |grid: &GridOfPlan| {
+        let [n_x, n_y, n_z] = grid.n_cells;
+        let millions = grid.cells() as f64 / 1e6;
+        format!("{n_x} × {n_y} × {n_z} = {millions:.2} million cells of {:.1} m", grid.spacing)
+    };
+    let Some((domain, boxes)) = estimate.grids.split_first() else { return String::new() };
+    let boxes: Vec<String> = boxes.iter().map(of_grid).collect();
+    let place = if boxes.is_empty() { "" } else { ", in boxes " };
+    of_grid(domain) + place + &boxes.join(", ")
 }
 
 /// The runs of `estimate`, in words: "12 runs in 3 studies, 2 at a time".
@@ -180,7 +194,6 @@ impl Observer for Screen {
     fn estimated(&mut self, estimate: &Estimate) {
         self.pace.take(estimate);
         self.so_far.take(estimate);
-        let [n_x, n_y, n_z] = estimate.n_cells;
         match (estimate.updates_per_second, estimate.wall_time()) {
             (Some(speed), Some(wall_time)) => self.say(&format!(
                 "cost: about {} for {}{} at {:.0} million cell updates a second",
@@ -189,7 +202,7 @@ impl Observer for Screen {
                 identifications(estimate),
                 speed / 1e6
             )),
-            _ if n_x == 0 => self.say(&format!(
+            _ if estimate.n_cells[0] == 0 => self.say(&format!(
                 "prescribed wind: {} of {} steps of {:.4} s, {:.0} steps in all; {}{}",
                 runs(estimate),
                 estimate.n_steps,
@@ -199,11 +212,10 @@ impl Observer for Screen {
                 identifications(estimate),
             )),
             _ => self.say(&format!(
-                "{}grid: {n_x} × {n_y} × {n_z} = {:.2} million cells of {:.1} m, {} steps of {:.4} s a run; \
+                "{}grid: {}, {} steps of {:.4} s a run; \
                  memory {}, {}; blockage {:.1} % raises power by {:.1} % in every run; wind {:.3} cells a step",
                 if estimate.n_studies > 1 { format!("{}; the first: ", runs(estimate)) } else { String::new() },
-                (n_x * n_y * n_z) as f64 / 1e6,
-                estimate.spacing,
+                cells(estimate),
                 estimate.n_steps,
                 estimate.interval,
                 HumanBytes(estimate.memory),

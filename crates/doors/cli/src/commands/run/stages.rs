@@ -4,6 +4,7 @@ use crate::commands::{manner, output::detail};
 use indicatif::HumanBytes;
 use std::path::Path;
 use std::time::Instant;
+use wakemix::farm::plan::GridOfPlan;
 use wakemix::formats::shipped;
 use wakemix::study::Prepared;
 
@@ -53,13 +54,14 @@ pub(super) fn say_prepared(path: &Path, prepared: &Prepared) {
         detail(&format!("read: wind {planes}"));
     }
     detail(&format!(
-        "built: {} turbines, {} runs; flow solver {}, domain {} × {} × {} cells, {} steps of {:.4} s",
+        "built: {} turbines, {} runs; flow solver {}, domain {} × {} × {} cells{}, {} steps of {:.4} s",
         case.turbines.len(),
         case.runs.len(),
         case.flow.solver.name,
         prepared.plan.n_cells[0],
         prepared.plan.n_cells[1],
         prepared.plan.n_cells[2],
+        boxes(prepared),
         prepared.plan.n_steps,
         prepared.plan.interval,
     ));
@@ -70,4 +72,16 @@ pub(super) fn say_prepared(path: &Path, prepared: &Prepared) {
             .collect();
         detail(&format!("built: run {}: {}", run.name, kinds.join(", ")));
     }
+}
+
+/// Boxes of finer cells, each with its place in the wind's frame.
+fn boxes(prepared: &Prepared) -> String {
+    let of_grid = |grid: &GridOfPlan| {
+        let [x, y, z] = std::array::from_fn(|axis| {
+            let end = grid.origin[axis] + grid.n_cells[axis] as f64 * grid.spacing;
+            format!("{:.0} to {end:.0} m", grid.origin[axis])
+        });
+        format!("; cells of {:.2} m in x = {x}, y = {y}, z = {z}", grid.spacing)
+    };
+    prepared.plan.grids().iter().skip(1).map(of_grid).collect()
 }

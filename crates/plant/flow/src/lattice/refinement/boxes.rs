@@ -2,13 +2,16 @@
 
 use crate::lattice::cell_box::CellBox;
 use crate::lattice::layout::Edge;
-use crate::lattice::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides};
+use crate::lattice::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil};
 use basis::Vector3;
 use thiserror::Error;
 
 /// Cells of the grid around a box between it and a side that it does not stand on, and between two boxes: one
 /// takes part in the exchange, the next one knows its slope.
-const MARGIN: usize = 2;
+pub const MARGIN: usize = 2;
+/// Memory of the exchange for each population that leaves a box through a face of a cell (bytes), about: as
+/// measured of a box of 64 × 32 × 32 cells on the ground.
+const BYTES_OF_LINK: u64 = 125;
 
 /// A box of cells of half the size, moved by steps of half the length.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,6 +71,26 @@ pub enum RefinementError {
 /// inlet, an outlet or the grid around.
 pub(super) type Beyond = [[Option<Edge>; 2]; 3];
 
+/// Checks that `boxes`, and those within them, suit their places in the grid of `settings`.
+///
+/// # Errors
+/// [`RefinementError`] for the first that does not.
+pub fn check(settings: &LatticeSettings, boxes: &[Refinement]) -> Result<(), RefinementError> {
+    check_in(settings.n_cells, &beyond(settings), boxes)
+}
+
+fn check_in(
+    n_cells: [usize; 3],
+    beyond: &Beyond,
+    boxes: &[Refinement],
+) -> Result<(), RefinementError> {
+    check_apart(boxes, n_cells)?;
+    boxes.iter().try_for_each(|one| {
+        one.check(n_cells, beyond)?;
+        check_in(one.fine_cells(), &one.beyond(n_cells, beyond), &one.within)
+    })
+}
+
 /// What lies beyond the box of `settings`.
 pub(super) fn beyond(settings: &LatticeSettings) -> Beyond {
     let ends = match settings.ends {
@@ -90,6 +113,28 @@ impl Refinement {
         let (first_cell, end): ([usize; 3], [usize; 3]) = (cell(low), cell(high));
         let n_cells = std::array::from_fn(|axis| end[axis].saturating_sub(first_cell[axis]));
         Self { first_cell, n_cells, within: Vec::new() }
+    }
+
+    /// Cells of half the size along x, y, z (–).
+    pub fn fine_cells(&self) -> [usize; 3] {
+        self.n_cells.map(|n| 2 * n)
+    }
+
+    /// Boxes within one another, this one included (–).
+    pub fn depth(&self) -> u32 {
+        1 + self.within.iter().map(Self::depth).max().unwrap_or(0)
+    }
+
+    /// Memory (bytes) of its exchange with the grid around it in populations of `stencil`, about: what it is
+    /// where they cross all six sides.
+    pub fn exchange_memory(&self, stencil: Stencil) -> u64 {
+        let [x, y, z] = self.fine_cells().map(|n| n as u64);
+        // Directions that lead through a face.
+        let n_links = match stencil {
+            Stencil::D3Q19 => 5,
+            Stencil::D3Q27 => 9,
+        };
+        2 * (x * y + y * z + z * x) * n_links * BYTES_OF_LINK
     }
 
     /// The cells around it that it covers.

@@ -2,6 +2,8 @@
 
 use super::paths::{Arrival, Part, Paths, Source};
 use crate::lattice::links::{Exchange, Way};
+use crate::lattice::values::{read_values, write_values};
+use std::io::{Read, Result, Write};
 
 /// Populations between a box and the grid around it.
 pub(super) struct Coupling {
@@ -26,6 +28,8 @@ pub(super) struct Coupling {
     divided: Vec<[f32; 4]>,
     /// What left in the first step, in the second, and what passes the box by.
     carried: Vec<f32>,
+    /// What arrived around the box before the present step there.
+    arrived: Vec<f32>,
 }
 
 /// Parts of sources by what becomes of them.
@@ -50,6 +54,7 @@ impl Coupling {
             known: vec![0.0; paths.asked.len()],
             divided: vec![[0.0; 4]; paths.sources.len()],
             carried: vec![0.0; 2 * n_leaving + paths.passing.len()],
+            arrived: vec![0.0; arriving.len()],
             asked: [0, 1].map(|n| around.places(Way::Leaving, &paths.asked, n)),
             leaving: [1, 2].map(|n| inside.places(Way::Leaving, &paths.leaving, n)),
             entering: [
@@ -63,6 +68,20 @@ impl Coupling {
             sources: paths.sources,
             parts: Parts { entering: [first_parts, second_parts], passing: paths.passing },
         }
+    }
+
+    /// Keeps what arrives in the grid `around`, which has made `n_steps` steps, for [`lend`](Self::lend).
+    pub(super) fn keep(&mut self, around: &mut dyn Exchange, n_steps: u64) {
+        around.read(&self.arriving[(n_steps % 2) as usize], &mut self.arrived);
+    }
+
+    /// Lends the grid `around`, which has made `n_steps` steps, what arrived there before the last of them:
+    /// who looks at it before the box has made its steps sees no air from beneath the box.
+    pub(super) fn lend(&self, around: &mut dyn Exchange, n_steps: u64) {
+        around.write(&self.arriving[(n_steps % 2) as usize], &|first, values| {
+            let n = values.len();
+            values.copy_from_slice(&self.arrived[first..first + n]);
+        });
     }
 
     /// Takes up what leaves the grid `around`, which has made `n_steps` steps.
@@ -106,13 +125,28 @@ impl Coupling {
         });
     }
 
+    /// Writes what is on its way between two steps of the box.
+    pub(super) fn write_state(&self, writer: &mut dyn Write) -> Result<()> {
+        let mut bytes = Vec::new();
+        write_values(writer, &mut bytes, self.divided.as_flattened())?;
+        write_values(writer, &mut bytes, &self.carried[..self.leaving[0].len()])
+    }
+
+    /// Reads what [`write_state`](Self::write_state) wrote.
+    pub(super) fn read_state(&mut self, reader: &mut dyn Read) -> Result<()> {
+        let mut bytes = Vec::new();
+        read_values(reader, &mut bytes, self.divided.as_flattened_mut())?;
+        let n_leaving = self.leaving[0].len();
+        read_values(reader, &mut bytes, &mut self.carried[..n_leaving])
+    }
+
     /// Memory that it holds (bytes).
     pub(super) fn memory(&self) -> u64 {
         let places = [&self.asked, &self.leaving, &self.entering, &self.arriving];
         let n_places: usize = places.into_iter().flatten().map(Vec::len).sum();
         let n_parts =
             self.parts.entering.iter().map(Vec::len).sum::<usize>() + self.parts.passing.len();
-        let n_values = self.known.len() + self.carried.len();
+        let n_values = self.known.len() + self.carried.len() + self.arrived.len();
         (size_of::<usize>() * (n_places + self.returning.len())
             + size_of::<Part>() * n_parts
             + size_of::<Source>() * self.sources.len()

@@ -21,18 +21,19 @@ impl FieldSource for Refined {
     /// At the cell centres of the [base](Refined::base); in a box, the mean over its cells in each.
     fn plane(&self, name: &str, axes: PlaneAxes, position: f64) -> Plane {
         let mut plane = self.base().plane(name, axes, position);
-        self.grid.overlay(&mut plane);
+        self.show_boxes(&mut plane);
         plane
     }
 
     fn refresh(&self, plane: &mut Plane) {
         self.base().refresh(plane);
-        self.grid.overlay(plane);
+        self.show_boxes(plane);
     }
 
     /// At cells of the [base](Refined::base), as planes.
     fn volume(&self, stride: usize) -> Volume {
         let mut volume = self.base().volume(stride);
+        volume.time = self.time();
         let unit = self.base().scaling().si_velocity_unit() as f32;
         let stride = stride.max(1);
         let [n_x, n_y, _] = volume.n_points;
@@ -50,6 +51,14 @@ impl FieldSource for Refined {
             }
         }
         volume
+    }
+}
+
+impl Refined {
+    /// On return `plane`, which the base has filled, shows the boxes and tells the time.
+    fn show_boxes(&self, plane: &mut Plane) {
+        self.grid.overlay(plane);
+        plane.time = self.time();
     }
 }
 

@@ -104,6 +104,78 @@ fn mass_and_momentum_are_kept() {
     }
 }
 
+/// The state of `air`, as it is written.
+fn state(air: &mut Refined) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    air.write_state(&mut bytes).expect("a sound state");
+    bytes
+}
+
+/// A force in each of the grids of [`disorder`].
+fn pushes() -> Vec<PointForce> {
+    let places = [[12.5, 1.0, 12.0], [4.0, 4.0, 4.0], [7.0, 7.0, 6.0], [15.0, 7.0, 7.0]];
+    let push = |place| {
+        PointForce::of_body(Vector3::from_array(place), Vector3::new(-2e-3, 1e-3, 0.0), 0.7)
+    };
+    places.map(push).to_vec()
+}
+
+#[test]
+fn the_finest_steps_one_by_one_make_the_same_bits() {
+    let [mut whole, mut parts] = [0; 2].map(|_| disorder(Stencil::D3Q19));
+    assert_eq!(parts.interval(), 0.25);
+    whole.advance(6.0, &pushes()).expect("no divergence");
+    for step in 0..24 {
+        // What is told of a force between two steps of a grid does not change the one under way.
+        let forces = pushes();
+        parts.advance(0.25, &forces).expect("no divergence");
+        assert_eq!(parts.time(), 0.25 * f64::from(step + 1));
+    }
+    assert!(state(&mut whole) == state(&mut parts));
+}
+
+#[test]
+fn a_state_between_two_steps_of_the_base_goes_on_to_the_same_bits() {
+    for n_steps in 4..8 {
+        let mut air = disorder(Stencil::D3Q19);
+        air.advance(0.25 * f64::from(n_steps), &pushes()).expect("no divergence");
+        let bytes = state(&mut air);
+        let mut other = disorder(Stencil::D3Q19);
+        other.read_state(&mut bytes.as_slice()).expect("what was written");
+        assert_eq!(other.time(), air.time());
+        for air in [&mut air, &mut other] {
+            air.advance(2.5, &pushes()).expect("no divergence");
+        }
+        assert!(state(&mut air) == state(&mut other), "{n_steps}");
+        assert!(other.read_state(&mut &bytes[..bytes.len() - 4]).is_err());
+    }
+}
+
+#[test]
+fn nobody_sees_air_from_beneath_a_box() {
+    // A body in the box holds the air back; beneath the box it goes on as it came.
+    let mut settings = periodic_box([30, 12, 12], 1e-5);
+    (settings.ends, settings.smagorinsky) = (Ends::InletOutlet, DEFAULT_SMAGORINSKY);
+    let mut air = refined(settings, &[cells([8, 2, 2], [8, 8, 8])], |_, _| Vector3::X * 0.1);
+    let force = Vector3::X * -0.04;
+    let body = PointForce::of_body(Vector3::new(12.0, 6.0, 6.0), force, 1.5);
+    air.advance(200.0, &[body]).expect("no divergence");
+    let behind: Vec<Vector3> =
+        (0..8).map(|n| Vector3::new(16.0 + 0.5 * f64::from(n), 6.0, 6.0)).collect();
+    let winds = [0.0, 0.5, 0.5].map(|duration| {
+        air.advance(duration, &[body]).expect("no divergence");
+        let mut winds = vec![Vector3::ZERO; behind.len()];
+        air.sample(&behind, &mut winds);
+        winds
+    });
+    let [before, between, after] = winds;
+    assert!(before[0].x < 0.07, "no wake: {}", before[0]);
+    for (between, others) in between.iter().zip(before.iter().zip(&after)) {
+        let change = (*between - *others.0).length().max((*between - *others.1).length());
+        assert!(change < 1e-3 * others.0.x, "{} {between} {}", others.0, others.1);
+    }
+}
+
 #[test]
 fn a_box_on_a_slippery_ground_keeps_what_can_be_kept() {
     let mut settings = periodic_box([16, 12, 10], 1e-4);
