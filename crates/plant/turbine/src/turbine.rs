@@ -2,6 +2,7 @@
 //! the flow.
 
 mod aerodynamics;
+mod answering;
 mod nacelle;
 mod separation;
 mod settings;
@@ -20,7 +21,7 @@ use crate::structure::{
     AppliedLoads, DegreeOfFreedom, GRAVITY, Pitch, Projection, Structure, StructureError,
 };
 use aerodynamics::Aerodynamics;
-use basis::{Channel, Commands, PerBlade, PointForce, Truth, Vector3};
+use basis::{Answer, Channel, Commands, PerBlade, PointForce, Truth, Vector3};
 use nacelle::Facing;
 use state::Readings;
 use std::sync::Arc;
@@ -70,7 +71,7 @@ impl Turbine {
         );
         let frame = frame_at(position, &definition);
         let mut bodies = bodies::of(&definition, position, &frame, smearing_length);
-        if matches!(settings.induction, Induction::ByMomentum(_)) {
+        if !matches!(settings.induction, Induction::ByFlow { .. }) {
             bodies.iter_mut().for_each(Body::use_free_wind);
         }
         let aerodynamics = Aerodynamics::new(&definition, &line, &settings);
@@ -156,6 +157,19 @@ impl Turbine {
     /// far as the flow resolves it. On return [`Turbine::forces`] holds the forces that act on the air
     /// throughout the interval.
     pub fn advance(&mut self, interval: f64, winds: &[Vector3], commands: &Commands) {
+        self.advance_answered(interval, winds, None, commands);
+    }
+
+    /// As [`advance`](Self::advance), in winds that answer to the circulation of the blades as `answer` says:
+    /// circulation and what it brings about are found together ([`Induction::ByBoundVortices`]; others have
+    /// no use for it).
+    pub fn advance_answered(
+        &mut self,
+        interval: f64,
+        winds: &[Vector3],
+        answer: Option<Answer<'_>>,
+        commands: &Commands,
+    ) {
         let n_steps = (interval / LONGEST_STRUCTURAL_STEP - 1e-9).ceil().max(1.0) as usize;
         let step = interval / n_steps as f64;
         // A generator holds the rotor back and never drives it backwards.
@@ -186,6 +200,7 @@ impl Turbine {
                 interval: step,
                 first: index == 0,
                 winds: element_winds,
+                answer,
                 motions,
                 pitch: &pitch,
                 frame: &frame,
@@ -210,6 +225,7 @@ impl Turbine {
         self.state.structure.clone_from(self.structure.state());
         self.workspace.push(self.line.elements(), self.smearing_length);
         self.place_stations();
+        self.workspace.tell_places(self.line.elements());
     }
 
     /// Forces on the air over the last interval: blade elements with their bound vortices, blade after blade
@@ -371,7 +387,9 @@ fn lengths(induction: &Induction, definition: &Definition) -> (f64, f64) {
             (smearing_length, sample_spacing)
         }
         // Nothing is smeared; the length only divides the tower into segments.
-        Induction::ByMomentum(_) => (0.1 * definition.rotor_radius(), 0.0),
+        Induction::ByBoundVortices { .. } | Induction::ByMomentum(_) => {
+            (0.1 * definition.rotor_radius(), 0.0)
+        }
     }
 }
 

@@ -79,11 +79,24 @@ impl Workspace {
             let bound = circulations.get(index).map(|&circulation| {
                 let (blade, station) = (index / elements.len(), index % elements.len());
                 let along = axes.span * elements[station].width;
-                BoundVortex { blade, station, circulation, along }
+                let (position_after, along_after) = (*position, along);
+                BoundVortex { blade, station, circulation, along, position_after, along_after }
             });
             let position = *position;
             forces.push(PointForce { position, force: -force, smearing_length, turbine: 0, bound });
         }
         forces.rotate_left(n_bodies);
+    }
+
+    /// On return the bound vortices among the forces of blades of `elements` know where they stand now.
+    pub(super) fn tell_places(&mut self, elements: &[Element]) {
+        let Self { forces, stations, axes, .. } = self;
+        let places = stations.iter().zip(&*axes).zip(elements.iter().cycle());
+        for (force, ((position, axes), element)) in forces.iter_mut().zip(places) {
+            if let Some(bound) = &mut force.bound {
+                bound.position_after = *position;
+                bound.along_after = axes.span * element.width;
+            }
+        }
     }
 }

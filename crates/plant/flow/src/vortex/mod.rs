@@ -1,0 +1,24 @@
+//! A free-vortex wake: lifting lines shed their vorticity into the wind, which carries it, and which it
+//! moves.
+
+mod direct;
+mod field;
+mod interpolation;
+mod rotor;
+mod segment;
+mod settings;
+mod sheet;
+mod state;
+mod strip;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod wake;
+
+pub use direct::direct;
+pub use field::Accuracy;
+pub use interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};
+pub use segment::{Cores, Segment};
+pub use settings::{WakeError, WakeSettings};
+pub use sheet::Resolution;
+pub use wake::FreeWake;
