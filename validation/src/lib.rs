@@ -22,6 +22,7 @@ pub mod atmosphere;
 mod axisymmetric;
 pub mod blade_element;
 pub mod flow;
+pub mod free_vortex;
 mod folds;
 pub mod gate;
 pub mod helix;

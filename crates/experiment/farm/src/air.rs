@@ -4,6 +4,7 @@ use flow::fields::FieldSource;
 use flow::inflow::PrescribedWind;
 use flow::inflow::prescribed::Clock;
 use flow::lattice::Lattice;
+use flow::vortex::FreeWake;
 use flow::{FlowError, FlowSolver};
 use std::io::{Error, ErrorKind, Read, Result, Write};
 
@@ -74,6 +75,28 @@ impl FarmFlow for Lattice {
 
     fn backend(&self) -> &'static str {
         Lattice::backend(self)
+    }
+
+    fn n_threads(&self) -> usize {
+        Self::n_threads(self)
+    }
+
+    fn memory(&self) -> u64 {
+        Self::memory(self)
+    }
+}
+
+impl FarmFlow for FreeWake {
+    fn write_state(&mut self, writer: &mut dyn Write) -> Result<()> {
+        Self::write_state(self, writer)
+    }
+
+    fn read_state(&mut self, reader: &mut dyn Read) -> Result<()> {
+        Self::read_state(self, reader)
+    }
+
+    fn backend(&self) -> &'static str {
+        Self::backend(self)
     }
 
     fn n_threads(&self) -> usize {

@@ -268,7 +268,9 @@ fn induction(
 ) -> Induction {
     let dynamic_stall = placement.dynamic_stall;
     let solver = case.flow.solver;
-    if solver.resolves_induction {
+    if solver.resolves_induction && solver.uses_bound_vortices {
+        Induction::ByBoundVortices { dynamic_stall }
+    } else if solver.resolves_induction {
         let Smearing { length, sample_spacing } = (solver.smearing)(plan);
         Induction::ByFlow { smearing_length: length, sample_spacing, dynamic_stall }
     } else {

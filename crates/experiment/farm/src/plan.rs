@@ -2,8 +2,10 @@
 
 mod error;
 mod step;
+mod turning;
 
 pub use error::PlanError;
+pub use turning::by_turns;
 
 use crate::case::{Case, Method, Placement, Shear};
 use basis::Vector3;
@@ -87,6 +89,8 @@ pub struct Plan {
     pub blockage: f64,
     /// Free-stream speed in cells per step (–).
     pub lattice_speed: f64,
+    /// Angle by which the fastest rotor turns in a step in the mean wind, where the air has no cells (rad).
+    pub turn: f64,
     /// How the air of the cells is computed.
     pub method: Method,
 }
@@ -143,6 +147,7 @@ pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
             positions: positions.clone(),
             blockage: std::f64::consts::PI / 4.0 * widest * widest / area,
             lattice_speed: case.wind.speed * interval / spacing,
+            turn: 0.0,
             method: case.flow.domain().method,
         }
     };
@@ -225,6 +230,7 @@ pub(crate) fn without_air(
         positions,
         blockage: 0.0,
         lattice_speed: 0.0,
+        turn: 0.0,
         method: case.flow.domain().method,
     }
 }

@@ -42,6 +42,8 @@ pub struct Element {
     pub cone_angle: f64,
     /// Length along the blade's line (m).
     pub width: f64,
+    /// Share of it that lies inside of the middle, which is one of angles where elements become narrow (–).
+    pub inner_share: f64,
     /// Chord (m).
     pub chord: f64,
     /// Twist, positive to feather (rad).
@@ -155,6 +157,7 @@ impl ActuatorLine {
                     radius: radius(&middle),
                     cone_angle: geometry.precone + bend.atan2(length),
                     width: length.hypot(bend),
+                    inner_share: (middle.span - ends[0].span) / length,
                     chord: middle.chord,
                     twist: middle.twist,
                     polars,

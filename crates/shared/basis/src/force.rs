@@ -32,9 +32,11 @@ pub struct BoundVortex {
     pub station: usize,
     /// Circulation Γ, the mean over the interval in which the force acts (m²/s).
     pub circulation: f64,
-    /// From the element's inner to its outer end, its middle at the force's position, farm frame (m).
+    /// From the element's inner to its outer end, farm frame (m).
     pub along: Vector3,
-    /// Its middle at the end of the interval in which the force acts, farm frame (m).
+    /// Share of it that lies inside of the force's position (–): about a half.
+    pub inner_share: f64,
+    /// Where the force's position has come to at the end of the interval in which it acts, farm frame (m).
     pub position_after: Vector3,
     /// As `along`, at the end of that interval (m).
     pub along_after: Vector3,

@@ -25,6 +25,29 @@ pub struct Accuracy {
     pub opening: f64,
 }
 
+impl Accuracy {
+    /// That of cases which say nothing of it: an error of some 1e-4 of the velocity.
+    pub const USUAL: Self = Self { degree: 3, opening: 0.6 };
+}
+
+/// On return `velocities` (m/s) holds what `segments` induce at each of `positions` (m, farm frame), of the
+/// same length, boxes taken as `accuracy` has it; on one thread. For many calls a [`FreeWake`] keeps the
+/// boxes.
+///
+/// [`FreeWake`]: super::FreeWake
+pub fn induced(
+    segments: &[Segment],
+    accuracy: Accuracy,
+    positions: &[Vector3],
+    velocities: &mut [Vector3],
+) {
+    let mut field = Field::with_capacity(accuracy, Backend::detect(), segments.len());
+    field.rebuild(segments);
+    for (position, velocity) in positions.iter().zip(velocities) {
+        *velocity = field.velocity(*position);
+    }
+}
+
 /// The velocity field of segments.
 pub(super) struct Field {
     opening: f64,

@@ -16,7 +16,7 @@ mod tree;
 mod wake;
 
 pub use direct::direct;
-pub use field::Accuracy;
+pub use field::{Accuracy, induced};
 pub use interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};
 pub use segment::{Cores, Segment};
 pub use settings::{WakeError, WakeSettings};

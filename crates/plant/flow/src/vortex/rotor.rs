@@ -91,9 +91,9 @@ impl Rotor {
             for (nodes, middle, along) in ends {
                 // Neighbours' ends meet half-way.
                 let share = if bound.station == 0 { 1.0 } else { 0.5 };
-                nodes[node] += share * (middle - 0.5 * along);
+                nodes[node] += share * (middle - bound.inner_share * along);
                 let share = if last { 1.0 } else { 0.5 };
-                nodes[node + 1] += share * (middle + 0.5 * along);
+                nodes[node + 1] += share * (middle + (1.0 - bound.inner_share) * along);
             }
         }
     }

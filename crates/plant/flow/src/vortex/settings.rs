@@ -2,7 +2,7 @@
 
 use super::field::Accuracy;
 use super::segment::Cores;
-use super::sheet::Resolution;
+use super::sheet::{Resolution, Sheet};
 use thiserror::Error;
 
 /// Settings of a free wake.
@@ -18,7 +18,9 @@ pub struct WakeSettings {
     pub accuracy: Accuracy,
     /// Whether there is a ground at z = 0, which the air does not pass: every vortex has an image below it.
     pub ground: bool,
-    /// Blade elements in all (–): memory is made for their wakes.
+    /// Blades in all (–), for whose wakes memory is made.
+    pub n_blades: usize,
+    /// Elements of a blade (–).
     pub n_elements: usize,
     /// Threads; all cores when absent. The result does not depend on it.
     pub threads: Option<usize>,
@@ -40,6 +42,11 @@ pub enum WakeError {
 }
 
 impl WakeSettings {
+    /// Most segments that the wakes can have (–).
+    pub fn most_segments(&self) -> usize {
+        self.n_blades * Sheet::most_segments(self.n_elements, &self.resolution)
+    }
+
     /// # Errors
     /// [`WakeError`] names what cannot be.
     pub fn check(&self) -> Result<(), WakeError> {

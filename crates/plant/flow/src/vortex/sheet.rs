@@ -59,10 +59,6 @@ impl Sheet {
         self.near.n_nodes() - 1
     }
 
-    /// Nodes now (–).
-    pub(super) fn n_nodes(&self) -> usize {
-        self.near.positions.len() + self.far.positions.len()
-    }
 
     /// Most segments that a blade's wake of `n_elements` can have at `resolution` (–).
     pub(super) fn most_segments(n_elements: usize, resolution: &Resolution) -> usize {

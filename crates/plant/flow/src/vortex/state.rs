@@ -69,19 +69,17 @@ impl FreeWake {
         reader.read_exact(&mut clock)?;
         let mut rotors = Vec::new();
         let mut sheets = Vec::new();
-        let mut n_elements = 0;
         for index in 0..read_count(reader)? as usize {
             let rotor = read_rotor(reader)?;
             for (blade, n) in rotor.blades().enumerate() {
-                n_elements += n;
                 sheets.push(Sheet::new([index, blade], n, self.settings.resolution));
             }
             rotors.push(rotor);
         }
-        if n_elements > self.settings.n_elements {
-            let expected = self.settings.n_elements;
+        if sheets.len() > self.settings.n_blades {
+            let (found, expected) = (sheets.len(), self.settings.n_blades);
             return Err(invalid(format!(
-                "the state has {n_elements} blade elements, this wake at most {expected}"
+                "the state has {found} blades, this wake at most {expected}"
             )));
         }
         for strip in sheets.iter_mut().flat_map(|sheet| [&mut sheet.near, &mut sheet.far]) {

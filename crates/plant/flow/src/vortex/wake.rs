@@ -52,7 +52,7 @@ impl FreeWake {
         settings.check()?;
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         let n_threads = settings.threads.unwrap_or_else(cores).max(1);
-        let most = Sheet::most_segments(settings.n_elements, &settings.resolution);
+        let most = settings.most_segments();
         let field = Field::with_capacity(settings.accuracy, Backend::detect(), most);
         Ok(Self {
             wind,
@@ -89,12 +89,17 @@ impl FreeWake {
         &self.segments
     }
 
-    /// Memory that it takes (bytes) with `n_elements` blade elements in all at most.
-    pub fn memory(settings: &WakeSettings) -> u64 {
+    /// Memory that wakes take at `settings` (bytes).
+    pub fn memory_of(settings: &WakeSettings) -> u64 {
         // A segment in double precision, its lanes and its share of boxes; two of three have a node with
         // position, velocities, wind and what is induced.
         const OF_SEGMENT: u64 = 64 + 4 + 32 + 200 + 5 * 24;
-        Sheet::most_segments(settings.n_elements, &settings.resolution) as u64 * OF_SEGMENT
+        settings.most_segments() as u64 * OF_SEGMENT
+    }
+
+    /// The same for these.
+    pub fn memory(&self) -> u64 {
+        Self::memory_of(&self.settings)
     }
 
     fn pool(&self) -> MutexGuard<'_, Pool> {

@@ -78,9 +78,17 @@ impl Workspace {
             let force = axes.normal * sum[0] + axes.tangent * sum[1];
             let bound = circulations.get(index).map(|&circulation| {
                 let (blade, station) = (index / elements.len(), index % elements.len());
-                let along = axes.span * elements[station].width;
-                let (position_after, along_after) = (*position, along);
-                BoundVortex { blade, station, circulation, along, position_after, along_after }
+                let Element { width, inner_share, .. } = elements[station];
+                let along = axes.span * width;
+                BoundVortex {
+                    blade,
+                    station,
+                    circulation,
+                    along,
+                    inner_share,
+                    position_after: *position,
+                    along_after: along,
+                }
             });
             let position = *position;
             forces.push(PointForce { position, force: -force, smearing_length, turbine: 0, bound });

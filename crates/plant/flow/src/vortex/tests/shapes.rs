@@ -60,7 +60,7 @@ pub(super) fn of_thin_ring(radius: f64, x: f64, r: f64) -> [f64; 2] {
 /// Speed (m/s) with which a ring of `radius` and `core` (m) and unit circulation moves where each piece of it
 /// is regularised over the distance from its own tangent, h = 2 R sin²(φ/2): the integral along the ring.
 pub(super) fn speed_of_ring(radius: f64, core: f64) -> f64 {
-    const N: usize = 200_000;
+    const N: usize = 20_000;
     let ratio = core / radius;
     // φ = π s³ puts points where the core decides.
     let integrand = |s: f64| {
