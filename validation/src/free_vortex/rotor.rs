@@ -6,7 +6,7 @@ use crate::row::Tolerance::Within;
 use basis::{Commands, PerBlade, Vector3};
 use farm::assemble::TurbineModel;
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, Cores, FreeWake, Resolution, WakeSettings};
+use flow::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
 use flow::{FlowSolver, WindField};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -54,8 +54,7 @@ pub(super) fn rows() -> Vec<Row> {
 fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
     let model = flat(name);
     let found = coefficients(&model, wind_speed, USUAL);
-    let ratio =
-        model.rotor_speed(wind_speed) * model.definition.rotor_radius() / wind_speed;
+    let ratio = model.rotor_speed(wind_speed) * model.definition.rotor_radius() / wind_speed;
     let pitch = model.constants.fine_pitch;
     let [upstream, downstream, wall] = DUCT;
     let together = axisymmetric::coefficients(
@@ -69,7 +68,12 @@ fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
         .coefficients(ratio, pitch);
     tell!(
         "{name}, {wind_speed} m/s: power {:.4}, thrust {:.4}; axisymmetric flow {:.4}, {:.4}; momentum {:.4}, {:.4}",
-        found.power, found.thrust, together.power, together.thrust, momentum.power, momentum.thrust
+        found.power,
+        found.thrust,
+        together.power,
+        together.thrust,
+        momentum.power,
+        momentum.thrust
     );
     let row = |what: &str, over: &'static str, tolerance: f64, measured: f64, expected: f64| Row {
         what: format!(
@@ -81,8 +85,7 @@ fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
         unit: "–",
         source: over,
     };
-    let [by_rings, by_momentum] =
-        ["blade elements in axisymmetric flow", "blade-element momentum"];
+    let [by_rings, by_momentum] = ["blade elements in axisymmetric flow", "blade-element momentum"];
     vec![
         row("power", by_rings, TOGETHER, found.power, together.power),
         row("thrust", by_rings, TOGETHER, found.thrust, together.thrust),
@@ -145,7 +148,11 @@ pub(super) fn coefficients(
         }
         if step % (n_steps / 8) == 0 {
             let read = rotor.truth(wake.time(), interval);
-            tell!("{step} of {n_steps}: {} segments, thrust {:.1} kN", wake.segments().len(), 1e-3 * read.thrust);
+            tell!(
+                "{step} of {n_steps}: {} segments, thrust {:.1} kN",
+                wake.segments().len(),
+                1e-3 * read.thrust
+            );
         }
     }
     let force = 0.5 * AIR_DENSITY * definition.rotor_area() * wind_speed * wind_speed;
@@ -175,6 +182,7 @@ fn wake(model: &TurbineModel, wind_speed: f64, interval: f64, fineness: Fineness
         },
         accuracy: Accuracy { degree: 3, opening: 0.6 },
         ground: false,
+        shown: Points::NONE,
         n_blades: definition.n_blades,
         n_elements: N_ELEMENTS,
         threads: None,

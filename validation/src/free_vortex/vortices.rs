@@ -88,7 +88,7 @@ fn boxes() -> Vec<Row> {
             let (mut exact, mut found) =
                 (vec![Vector3::ZERO; positions.len()], vec![Vector3::ZERO; positions.len()]);
             direct(&segments, &positions, &mut exact);
-            induced(&segments, Accuracy::USUAL, &positions, &mut found);
+            induced(&segments, Accuracy::USUAL, 1, &positions, &mut found);
             let missed: f64 = exact.iter().zip(&found).map(|(a, b)| (*a - *b).length_squared()).sum();
             let whole: f64 = exact.iter().map(|a| a.length_squared()).sum();
             Row {

@@ -4,7 +4,7 @@ use crate::Row;
 use crate::row::Tolerance::Within;
 use basis::{BoundVortex, PointForce, Vector3};
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, Cores, FreeWake, Resolution, WakeSettings};
+use flow::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
 use flow::{FlowSolver, WindField};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -106,8 +106,11 @@ fn solve(wake: &FreeWake, places: &[[f64; 3]], winds: &[Vector3], circulations: 
         for (k, place) in places.iter().enumerate() {
             let row = &answer.influence[k * n..(k + 1) * n];
             let changes = circulations.iter().zip(answer.circulations);
-            let answered: f64 =
-                row.iter().zip(changes).map(|(velocity, (now, then))| velocity.z * (now - then)).sum();
+            let answered: f64 = row
+                .iter()
+                .zip(changes)
+                .map(|(velocity, (now, then))| velocity.z * (now - then))
+                .sum();
             let (found, slope) = of_section(place, winds[k].z + answered);
             let step = (found - circulations[k]) / (1.0 - (slope * row[k].z).min(0.0));
             circulations[k] += step;
@@ -132,6 +135,7 @@ fn settings(n: usize, interval: f64) -> WakeSettings {
         cores: Cores { initial_widths: 0.1, kinematic_viscosity: 0.0, eddy_constant: 0.0 },
         accuracy: Accuracy { degree: 3, opening: 0.0 },
         ground: false,
+        shown: Points::NONE,
         n_blades: 1,
         n_elements: n,
         threads: None,

@@ -95,6 +95,10 @@ impl FarmFlow for FreeWake {
         Self::read_state(self, reader)
     }
 
+    fn fields(&self) -> Option<&dyn FieldSource> {
+        Some(self)
+    }
+
     fn backend(&self) -> &'static str {
         Self::backend(self)
     }

@@ -5,7 +5,7 @@ mod step;
 mod turning;
 
 pub use error::PlanError;
-pub use turning::by_turns;
+pub use turning::{Turning, by_turns};
 
 use crate::case::{Case, Method, Placement, Shear};
 use basis::Vector3;
@@ -71,6 +71,9 @@ pub struct Plan {
     pub spacing: f64,
     /// Cells along x, y, z (–).
     pub n_cells: [usize; 3],
+    /// Points of planes and volumes along x, y, z, half a `spacing` inside of the domain (–): the middles of
+    /// the cells, where there are any.
+    pub n_points: [usize; 3],
     /// Flow step, which is the control interval (s).
     pub interval: f64,
     /// Steps of one run (–).
@@ -138,6 +141,7 @@ pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
             origin,
             spacing,
             n_cells,
+            n_points: n_cells,
             interval,
             n_steps: (case.time.duration / interval).round() as u64,
             n_spin_up_steps: (case.time.spin_up / interval).round() as u64,
@@ -183,7 +187,7 @@ fn check_veer(veer: f64, plan: &Plan) -> Result<(), PlanError> {
 
 fn check_planes(distances: &[f64], plan: &Plan) -> Result<(), PlanError> {
     let low = plan.origin.x;
-    let high = low + plan.n_cells[0] as f64 * plan.spacing;
+    let high = low + plan.n_points[0] as f64 * plan.spacing;
     for &distance in distances {
         let x = plan.positions[0].x + distance * plan.diameter;
         if !(low..=high).contains(&x) {
@@ -221,6 +225,7 @@ pub(crate) fn without_air(
         origin: Vector3::ZERO,
         spacing: 0.0,
         n_cells: [0; 3],
+        n_points: [0; 3],
         interval,
         n_steps: (case.time.duration / interval).round() as u64,
         n_spin_up_steps,

@@ -21,7 +21,8 @@ pub(crate) fn begin(
     progress: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<Air, StudyError> {
     let solver = setup.case.flow.solver;
-    let planes = if setup.case.wind_source() == WindSource::Planes { Some(planes(setup)?) } else { None };
+    let planes =
+        if setup.case.wind_source() == WindSource::Planes { Some(planes(setup)?) } else { None };
     let start = Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress };
     (solver.begin)(start).map_err(|error| match error {
         SolverError::Lattice(error) => error.into(),

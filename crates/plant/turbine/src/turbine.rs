@@ -5,6 +5,7 @@ mod aerodynamics;
 mod answering;
 mod nacelle;
 mod separation;
+mod set_up;
 mod settings;
 mod state;
 mod workspace;
@@ -23,6 +24,7 @@ use crate::structure::{
 use aerodynamics::Aerodynamics;
 use basis::{Answer, Channel, Commands, PerBlade, PointForce, Truth, Vector3};
 use nacelle::Facing;
+use set_up::{all_but_the_generator, frame_at, lengths};
 use state::Readings;
 use std::sync::Arc;
 use workspace::Workspace;
@@ -378,36 +380,6 @@ impl Turbine {
         stations.extend(motions.iter().map(|motion| motion.position));
         stations.extend(self.bodies.iter().map(|body| body.position));
     }
-}
-
-/// Smearing length and distance of sample points (m).
-fn lengths(induction: &Induction, definition: &Definition) -> (f64, f64) {
-    match *induction {
-        Induction::ByFlow { smearing_length, sample_spacing, .. } => {
-            (smearing_length, sample_spacing)
-        }
-        // Nothing is smeared; the length only divides the tower into segments.
-        Induction::ByBoundVortices { .. } | Induction::ByMomentum(_) => {
-            (0.1 * definition.rotor_radius(), 0.0)
-        }
-    }
-}
-
-/// Centre and attitude of the undeflected rotor whose tower stands at `position` (m).
-fn frame_at(position: Vector3, definition: &Definition) -> Frame {
-    let geometry = definition.rotor;
-    let shaft = Frame::new(Vector3::ZERO, geometry.shaft_tilt).shaft;
-    // The overhang runs along the shaft; the hub height is the apex's own.
-    let apex = position + Vector3::new(-geometry.overhang * shaft.x, 0.0, geometry.hub_height);
-    Frame::new(apex, geometry.shaft_tilt)
-}
-
-/// What does not move where only the rotor turns.
-fn all_but_the_generator() -> Vec<DegreeOfFreedom> {
-    DegreeOfFreedom::ALL
-        .into_iter()
-        .filter(|degree| *degree != DegreeOfFreedom::Generator)
-        .collect()
 }
 
 #[cfg(test)]

@@ -34,7 +34,9 @@ pub static LATTICE: SolverKind = SolverKind {
     sound_speed: |plan| Some(plan::LATTICE_SOUND_SPEED * plan.spacing / plan.interval),
     plan: plan::in_a_box,
     reach: |_, _| 0.0,
-    memory: |_, plan| plan.cells() as u64 * (4 * plan.method.stencil.n_directions() + FURTHER_BYTES),
+    memory: |_, plan| {
+        plan.cells() as u64 * (4 * plan.method.stencil.n_directions() + FURTHER_BYTES)
+    },
     begin,
     begin_alone,
     updates_alone: |tunnel, diameter| tunnel.n_cells(diameter).iter().product::<usize>() as f64,

@@ -4,12 +4,13 @@ use super::prescribed::{planes_objections, turbulence_objections, uniform_object
 use super::{Alone, Objection, PRESCRIBED, SolverError, SolverKind, Start, WindSource};
 use crate::air::Air;
 use crate::case::{Case, Flow, Wind};
-use crate::plan::{self, Plan};
+use crate::plan::{self, Layout, Plan, PlanError, Turning};
 use crate::wind;
+use basis::Vector3;
 use basis::keys::LeftOut::Value;
 use basis::keys::{Holds, Key, Values, above, from, key};
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, Cores, FreeWake, Resolution, WakeSettings};
+use flow::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
 use std::sync::Arc;
 
 /// Speed at which a wake is carried at least, over the wind's (–): rows are there for so slow a wake.
@@ -24,7 +25,7 @@ const LENGTH_TO_WARN: f64 = 8.0;
 const N_BLADES: usize = 3;
 
 /// Keys of `[flow]` for a free wake.
-static KEYS: [Key; 10] = [
+static KEYS: [Key; 11] = [
     key(
         "steps_per_turn",
         from(8.0, 720.0),
@@ -95,6 +96,13 @@ static KEYS: [Key; 10] = [
         Value("0.6"),
         "A box of vortices is far where its radius is less than this share of its distance; 0 sums them one by one.",
     ),
+    key(
+        "points_per_diameter",
+        from(4.0, 200.0),
+        "–",
+        Value("16"),
+        "Points of planes and volumes across the first rotor. They show the wake; nothing is computed on them.",
+    ),
 ];
 
 /// Lifting lines that shed free vortices.
@@ -108,15 +116,23 @@ pub static VORTEX: SolverKind = SolverKind {
     uses_bound_vortices: true,
     objections,
     warnings,
-    plan: |case, layout| {
-        plan::by_turns(case, layout, case.flow.values.number("steps_per_turn"))
-    },
+    plan: laid_out,
     reach: |case, plan| length(&case.flow.values, plan.diameter),
     memory: |case, plan| FreeWake::memory_of(&settings(case, plan, N_BLADES * case.turbines.len())),
     begin,
     begin_alone,
     ..PRESCRIBED
 };
+
+fn laid_out(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
+    let values = &case.flow.values;
+    let turning = Turning {
+        steps_per_turn: values.number("steps_per_turn"),
+        points_per_diameter: values.number("points_per_diameter"),
+        length: values.number("wake_length_diameters"),
+    };
+    plan::by_turns(case, layout, &turning)
+}
 
 fn length(values: &Values, diameter: f64) -> f64 {
     values.number("wake_length_diameters") * diameter
@@ -145,11 +161,13 @@ fn settings(case: &Case, plan: &Plan, n_blades: usize) -> WakeSettings {
             kinematic_viscosity: case.wind.kinematic_viscosity,
             eddy_constant: values.number("core_growth"),
         },
-        accuracy: Accuracy {
-            degree: count("tree_degree"),
-            opening: values.number("tree_opening"),
-        },
+        accuracy: Accuracy { degree: count("tree_degree"), opening: values.number("tree_opening") },
         ground: values.word("ground_effect") == "image",
+        shown: Points {
+            first: plan.origin + Vector3::splat(0.5 * plan.spacing),
+            spacing: plan.spacing,
+            n: plan.n_points,
+        },
         n_blades,
         n_elements: turbine::N_ELEMENTS,
         threads: case.flow.threads,
@@ -190,6 +208,7 @@ fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
         },
         accuracy: Accuracy { degree: 3, opening: 0.6 },
         ground: false,
+        shown: Points::NONE,
         n_blades: N_BLADES,
         n_elements: turbine::N_ELEMENTS,
         threads: alone.threads,

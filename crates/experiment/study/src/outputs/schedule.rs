@@ -62,6 +62,7 @@ mod tests {
             origin: Vector3::ZERO,
             spacing: 0.0,
             n_cells: [0; 3],
+            n_points: [0; 3],
             interval: 0.2,
             n_steps: N_STEPS,
             n_spin_up_steps,
@@ -71,6 +72,7 @@ mod tests {
             positions: Vec::new(),
             blockage: 0.0,
             lattice_speed: 0.0,
+            turn: 0.0,
             method: Default::default(),
         }
     }

@@ -6,6 +6,7 @@
 use super::interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};
 use super::segment::Segment;
 use super::tree::{Cluster, Tree, UNIT};
+use crate::pool::Pool;
 use crate::simd::{Backend, MAXIMUM_LANES, Portable, Simd};
 use basis::Vector3;
 
@@ -30,22 +31,28 @@ impl Accuracy {
     pub const USUAL: Self = Self { degree: 3, opening: 0.6 };
 }
 
+/// Positions that a thread takes at once (–).
+pub(super) const CHUNK: usize = 32;
+
 /// On return `velocities` (m/s) holds what `segments` induce at each of `positions` (m, farm frame), of the
-/// same length, boxes taken as `accuracy` has it; on one thread. For many calls a [`FreeWake`] keeps the
-/// boxes.
+/// same length, boxes taken as `accuracy` has it, on `n_threads` threads, whose number changes no bit. For
+/// many calls a [`FreeWake`] keeps boxes and threads.
 ///
 /// [`FreeWake`]: super::FreeWake
 pub fn induced(
     segments: &[Segment],
     accuracy: Accuracy,
+    n_threads: usize,
     positions: &[Vector3],
     velocities: &mut [Vector3],
 ) {
     let mut field = Field::with_capacity(accuracy, Backend::detect(), segments.len());
     field.rebuild(segments);
-    for (position, velocity) in positions.iter().zip(velocities) {
-        *velocity = field.velocity(*position);
-    }
+    Pool::new(n_threads).for_chunks(velocities, CHUNK, &|first, chunk| {
+        for (velocity, position) in chunk.iter_mut().zip(&positions[first..]) {
+            *velocity = field.velocity(*position);
+        }
+    });
 }
 
 /// The velocity field of segments.

@@ -4,6 +4,7 @@
 mod direct;
 mod field;
 mod interpolation;
+mod planes;
 mod rotor;
 mod segment;
 mod settings;
@@ -19,6 +20,6 @@ pub use direct::direct;
 pub use field::{Accuracy, induced};
 pub use interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};
 pub use segment::{Cores, Segment};
-pub use settings::{WakeError, WakeSettings};
+pub use settings::{Points, WakeError, WakeSettings};
 pub use sheet::Resolution;
 pub use wake::FreeWake;

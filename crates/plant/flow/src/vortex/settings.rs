@@ -3,6 +3,7 @@
 use super::field::Accuracy;
 use super::segment::Cores;
 use super::sheet::{Resolution, Sheet};
+use basis::Vector3;
 use thiserror::Error;
 
 /// Settings of a free wake.
@@ -18,12 +19,30 @@ pub struct WakeSettings {
     pub accuracy: Accuracy,
     /// Whether there is a ground at z = 0, which the air does not pass: every vortex has an image below it.
     pub ground: bool,
+    /// Points of planes and volumes.
+    pub shown: Points,
     /// Blades in all (–), for whose wakes memory is made.
     pub n_blades: usize,
     /// Elements of a blade (–).
     pub n_elements: usize,
     /// Threads; all cores when absent. The result does not depend on it.
     pub threads: Option<usize>,
+}
+
+/// Points of a box at which planes and volumes show the wind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Points {
+    /// The first one, farm frame (m).
+    pub first: Vector3,
+    /// Distance of neighbours (m).
+    pub spacing: f64,
+    /// Points along x, y, z (–).
+    pub n: [usize; 3],
+}
+
+impl Points {
+    /// None at all.
+    pub const NONE: Self = Self { first: Vector3::ZERO, spacing: 1.0, n: [0; 3] };
 }
 
 /// Why a wake cannot be set up.

@@ -59,7 +59,6 @@ impl Sheet {
         self.near.n_nodes() - 1
     }
 
-
     /// Most segments that a blade's wake of `n_elements` can have at `resolution` (–).
     pub(super) fn most_segments(n_elements: usize, resolution: &Resolution) -> usize {
         let rows = |n_rows: usize, n_nodes: usize| n_rows * (2 * n_nodes - 1);
@@ -136,63 +135,77 @@ impl Sheet {
         }
     }
 
-    /// What of the circulation of rings at `place` along x (m) is left where the wake fades (–).
-    fn share(&self, place: f64, line: f64) -> f64 {
-        let left = 1.0 - (place - line) / self.resolution.length;
+    /// What of the circulation of rings between two places along x (m) is left where the wake fades (–).
+    fn share(&self, places: [f64; 2], line: f64) -> f64 {
+        let left = 1.0 - (0.5 * (places[0] + places[1]) - line) / self.resolution.length;
         let share = (left / FADING).clamp(0.0, 1.0);
         share * share * (3.0 - 2.0 * share)
     }
 
     /// Adds the segments of all rings to `segments`, neighbours joined.
     pub(super) fn push_segments(&self, cores: &Cores, segments: &mut Vec<Segment>) {
-        let Self { near, far, kept, .. } = self;
-        let Some(newest) = near.n_rows().checked_sub(1) else { return };
-        let line = near.place(newest);
-        let births = Births::of(near.row(newest), cores);
-        // Circulation of the rings on the old side of a row, each share of the fading wake on them.
-        let ring = |strip: &Strip, row: usize, s: usize, next: f64| {
-            strip.rings(row)[s] * self.share(0.5 * (strip.place(row) + next), line)
-        };
-        let next_far = |row: usize| {
-            if row + 1 < far.n_rows() { far.place(row + 1) } else { near.place(0) }
-        };
+        let Some(newest) = self.near.n_rows().checked_sub(1) else { return };
+        let line = self.near.place(newest);
+        let births = Births::of(self.near.row(newest), cores);
         let mut filaments = Filaments { cores, segments };
+        let share = self.push_far(line, &births, &mut filaments);
+        self.push_near(line, &births, share, &mut filaments);
+    }
+
+    /// Adds those of the rings further down; gives what is left of the youngest of them (–).
+    fn push_far(&self, line: f64, births: &Births, filaments: &mut Filaments) -> f64 {
+        let Self { near, far, kept, .. } = self;
+        let born = |s: usize| births.at(kept[s]);
+        let mut older_share = 0.0;
         for row in 0..far.n_rows() {
-            let next = next_far(row);
-            let young: &[Vector3] = if row + 1 < far.n_rows() { far.row(row + 1) } else { &[] };
-            let at = |s: usize| young.get(s).copied().unwrap_or(near.positions[kept[s]]);
-            let age = if row + 1 < far.n_rows() { far.ages[row + 1] } else { near.ages[0] };
-            let gamma = |s: usize| ring(far, row, s, next);
-            let older = |s: usize| {
-                if row == 0 { 0.0 } else { ring(far, row - 1, s, far.place(row)) }
+            let is_last = row + 1 == far.n_rows();
+            let young = if is_last { near.row(0) } else { far.row(row + 1) };
+            let node = |s: usize| young[if is_last { kept[s] } else { s }];
+            let (age, place) = match is_last {
+                true => (near.ages[0], near.place(0)),
+                false => (far.ages[row + 1], far.place(row + 1)),
             };
-            let born = |s: usize| births.at(kept[s]);
-            let old = far.row(row);
-            filaments.trailing(old, at, [far.ages[row], age], gamma, born);
-            let spanwise = |s: usize| older(s) - gamma(s);
-            filaments.spanwise(old, far.ages[row], spanwise, |s| 0.5 * (born(s) + born(s + 1)));
+            let share = self.share([far.place(row), place], line);
+            let (old, rings) = (far.row(row), far.rings(row));
+            let older = &far.circulations[row.saturating_sub(1) * rings.len()..];
+            filaments.trailing(old, node, [far.ages[row], age], |s| share * rings[s], born);
+            let excess = |s: usize| older_share * older[s] - share * rings[s];
+            let core = |s: usize| 0.5 * (born(s) + born(s + 1));
+            filaments.spanwise(old, far.ages[row], excess, core);
+            older_share = share;
         }
-        for row in 0..=newest {
-            let old = near.row(row);
-            let next = if row < newest { near.place(row + 1) } else { line };
-            let gamma = |s: usize| if row < newest { ring(near, row, s, next) } else { 0.0 };
-            let born = |s: usize| births.at(s);
-            if row < newest {
-                let young = near.row(row + 1);
-                let ages = [near.ages[row], near.ages[row + 1]];
-                filaments.trailing(old, |s| young[s], ages, gamma, born);
-            }
-            let older = |s: usize| match row {
-                0 => far.n_rows().checked_sub(1).map_or(0.0, |last| {
-                    let group = kept.partition_point(|&k| k <= s) - 1;
-                    ring(far, last, group, near.place(0))
-                }),
-                _ => ring(near, row - 1, s, near.place(row)),
+        older_share
+    }
+
+    /// Adds those of the rings near the blade, behind which rings are left with `older_share` (–).
+    fn push_near(
+        &self,
+        line: f64,
+        births: &Births,
+        mut older_share: f64,
+        filaments: &mut Filaments,
+    ) {
+        let Self { near, far, kept, .. } = self;
+        let newest = near.n_rows() - 1;
+        let born = |s: usize| births.at(s);
+        for row in 0..newest {
+            let share = self.share([near.place(row), near.place(row + 1)], line);
+            let (old, young, rings) = (near.row(row), near.row(row + 1), near.rings(row));
+            let ages = [near.ages[row], near.ages[row + 1]];
+            filaments.trailing(old, |s| young[s], ages, |s| share * rings[s], born);
+            let older = |s: usize| match (row, far.n_rows()) {
+                (0, 0) => 0.0,
+                (0, n) => far.rings(n - 1)[kept.partition_point(|&k| k <= s) - 1],
+                _ => near.rings(row - 1)[s],
             };
-            let core = |s: usize| {
-                if row < newest { 0.5 * (births.at(s) + births.at(s + 1)) } else { births.bound(s) }
-            };
-            filaments.spanwise(old, near.ages[row], |s| older(s) - gamma(s), core);
+            let excess = |s: usize| older_share * older(s) - share * rings[s];
+            let core = |s: usize| 0.5 * (born(s) + born(s + 1));
+            filaments.spanwise(old, near.ages[row], excess, core);
+            older_share = share;
+        }
+        if let Some(last) = newest.checked_sub(1) {
+            let bound = |s: usize| older_share * near.rings(last)[s];
+            filaments.spanwise(near.row(newest), 0.0, bound, |s| births.bound(s));
         }
     }
 

@@ -1,6 +1,6 @@
 //! The wakes of all blades in the wind, as a flow.
 
-use super::field::Field;
+use super::field::{CHUNK, Field};
 use super::rotor::Rotor;
 use super::segment::Segment;
 use super::settings::{WakeError, WakeSettings};
@@ -16,8 +16,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 const FASTEST: f64 = 340.0;
 /// Lowest that a node of a wake over ground comes (m).
 const LOWEST: f64 = 0.01;
-/// Positions that a thread takes at once (–).
-const CHUNK: usize = 32;
 
 /// Lifting lines in the wind, and the wakes that they shed.
 ///
@@ -40,6 +38,8 @@ pub struct FreeWake {
     winds: Vec<Vector3>,
     induced: Vec<Vector3>,
     pool: Mutex<Pool>,
+    /// Room for the wind on planes.
+    pub(super) room: Mutex<Vec<Vector3>>,
     n_threads: usize,
 }
 
@@ -64,6 +64,7 @@ impl FreeWake {
             winds: Vec::with_capacity(most),
             induced: Vec::with_capacity(most),
             pool: Mutex::new(Pool::new(n_threads)),
+            room: Mutex::new(Vec::new()),
             n_threads,
             settings,
         })
@@ -102,7 +103,7 @@ impl FreeWake {
         Self::memory_of(&self.settings)
     }
 
-    fn pool(&self) -> MutexGuard<'_, Pool> {
+    pub(super) fn pool(&self) -> MutexGuard<'_, Pool> {
         self.pool.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -25,7 +25,9 @@ fn rates(pair: &Pair) -> Pair {
 /// Runge and Kutta's step of the fourth order.
 fn stepped(pair: Pair, interval: f64) -> Pair {
     let with = |rates: &Pair, share: f64| -> Pair {
-        std::array::from_fn(|i| std::array::from_fn(|j| pair[i][j] + share * interval * rates[i][j]))
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| pair[i][j] + share * interval * rates[i][j])
+        })
     };
     let a = rates(&pair);
     let b = rates(&with(&a, 0.5));

@@ -1,8 +1,10 @@
 //! Wakes of rotors that turn at will: what must hold whatever they do.
 
+use crate::fields::FieldSource;
 use crate::inflow::{MeanProfile, PrescribedWind};
-use crate::vortex::{Accuracy, Cores, FreeWake, Resolution, WakeSettings};
+use crate::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
 use crate::{FlowError, FlowSolver, WindField};
+use basis::records::PlaneAxes;
 use basis::{BoundVortex, PointForce, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -25,6 +27,7 @@ fn settings() -> WakeSettings {
         cores: Cores { initial_widths: 0.3, kinematic_viscosity: 1.5e-5, eddy_constant: 1e-4 },
         accuracy: Accuracy { degree: 3, opening: 0.5 },
         ground: true,
+        shown: Points { first: Vector3::new(-45.0, -55.0, 5.0), spacing: 10.0, n: [24, 12, 15] },
         n_blades: 2,
         n_elements: N_ELEMENTS,
         threads: Some(1),
@@ -163,7 +166,10 @@ fn the_wind_answers_as_it_is_said_to() {
     for ((before, after), expected) in before.iter().zip(sampled(&wake)).zip(expected) {
         let answered = after - *before;
         // Cores grow with circulation, of which the answer knows that of before; the rest is rounding.
-        assert!((answered - expected).length() < 2e-3 * (1.0 + expected.length()), "{answered} {expected}");
+        assert!(
+            (answered - expected).length() < 2e-3 * (1.0 + expected.length()),
+            "{answered} {expected}"
+        );
     }
 }
 
@@ -190,6 +196,31 @@ fn a_rotor_that_holds_the_wind_back_makes_a_wake() {
     let at = |y: f64| HUB + Vector3::new(40.0, y, 0.0);
     wake.sample(&[at(20.0), at(80.0)], &mut velocities);
     assert!(velocities[0].x < 0.9 * WIND && velocities[1].x > 0.98 * WIND, "{velocities:?}");
+}
+
+#[test]
+fn planes_and_volumes_show_the_wind_at_their_points() {
+    let mut wake = wake(settings());
+    advanced(&mut wake, 0..30);
+    let wind = |position: Vector3| {
+        let mut velocity = [Vector3::ZERO];
+        wake.sample(&[position], &mut velocity);
+        velocity[0].as_vec3().to_array()
+    };
+    for (axes, position, index, place) in [
+        (PlaneAxes::Horizontal, 80.0, 5 * 24 + 7, Vector3::new(25.0, -5.0, 80.0)),
+        (PlaneAxes::Streamwise, 3.0, 9 * 24 + 7, Vector3::new(25.0, 3.0, 95.0)),
+        (PlaneAxes::Crosswind, 40.0, 9 * 12 + 5, Vector3::new(40.0, -5.0, 95.0)),
+    ] {
+        let plane = wake.plane("here", axes, position);
+        assert_eq!((plane.spacing, plane.time), ([10.0; 2], wake.time()));
+        assert_eq!([0, 1, 2].map(|c| plane.velocity[c][index]), wind(place), "{axes:?}");
+    }
+    let volume = wake.volume(2);
+    assert_eq!(volume.n_points, [12, 6, 8]);
+    let index = (3 * 6 + 2) * 12 + 4;
+    let place = volume.origin + 20.0 * Vector3::new(4.0, 2.0, 3.0);
+    assert_eq!([0, 1, 2].map(|c| volume.velocity[c][index]), wind(place));
 }
 
 #[test]
