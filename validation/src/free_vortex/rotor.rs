@@ -37,13 +37,13 @@ pub(super) struct Fineness {
 
 /// What cases have.
 pub(super) const USUAL: Fineness = Fineness {
-    steps_per_turn: 60.0,
-    length: 6.0,
-    near: 0.5,
+    steps_per_turn: 48.0,
+    length: 4.0,
+    near: 0.25,
     far_filaments: 9,
     far_stride: 2,
     core_widths: 0.3,
-    duration: 14.0,
+    duration: 8.0,
 };
 
 /// Power and thrust of three rotors without tilt, precone and prebend at 8 m/s.
@@ -77,7 +77,7 @@ fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
     );
     let row = |what: &str, over: &'static str, tolerance: f64, measured: f64, expected: f64| Row {
         what: format!(
-            "{name} flat, {wind_speed} m/s, best tip-speed ratio, 60 steps a turn: {what} over that of {over}"
+            "{name} flat, {wind_speed} m/s, best tip-speed ratio, 48 steps a turn, wake of 4 D: {what} over that of {over}"
         ),
         measured: measured / expected,
         expected: 1.0,

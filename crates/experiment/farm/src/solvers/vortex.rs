@@ -44,7 +44,7 @@ static KEYS: [Key; 11] = [
         "near_wake_diameters",
         above(0.0, 40.0),
         "D",
-        Value("0.5"),
+        Value("0.25"),
         "Length of wake that keeps every step and every blade element.",
     ),
     key(

@@ -47,8 +47,9 @@ pub fn induced(
     velocities: &mut [Vector3],
 ) {
     let mut field = Field::with_capacity(accuracy, Backend::detect(), segments.len());
-    field.rebuild(segments);
-    Pool::new(n_threads).for_chunks(velocities, CHUNK, &|first, chunk| {
+    let mut pool = Pool::new(n_threads);
+    field.rebuild(segments, &mut pool);
+    pool.for_chunks(velocities, CHUNK, &|first, chunk| {
         for (velocity, position) in chunk.iter_mut().zip(&positions[first..]) {
             *velocity = field.velocity(*position);
         }
@@ -85,13 +86,13 @@ impl Field {
     }
 
     /// Becomes the field of `segments`.
-    pub(super) fn rebuild(&mut self, segments: &[Segment]) {
-        self.tree.rebuild(segments);
+    pub(super) fn rebuild(&mut self, segments: &[Segment], pool: &mut Pool) {
+        self.tree.rebuild(segments, pool);
     }
 
     /// As [`rebuild`](Self::rebuild) where only circulations and cores have changed since.
-    pub(super) fn refresh(&mut self, segments: &[Segment]) {
-        self.tree.refresh(segments);
+    pub(super) fn refresh(&mut self, segments: &[Segment], pool: &mut Pool) {
+        self.tree.refresh(segments, pool);
     }
 
     /// Velocity (m/s) at `position` (m, farm frame).

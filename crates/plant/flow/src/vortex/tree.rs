@@ -2,6 +2,7 @@
 
 use super::interpolation::Points;
 use super::segment::Segment;
+use crate::pool::Pool;
 use crate::simd::MAXIMUM_LANES;
 use basis::Vector3;
 use std::f64::consts::PI;
@@ -89,7 +90,7 @@ impl Tree {
     }
 
     /// Makes the boxes of `segments` anew.
-    pub(super) fn rebuild(&mut self, segments: &[Segment]) {
+    pub(super) fn rebuild(&mut self, segments: &[Segment], pool: &mut Pool) {
         self.clusters.clear();
         self.order.clear();
         self.order.extend(0..segments.len() as u32);
@@ -100,7 +101,7 @@ impl Tree {
         let (n, padded) = (self.points.n_in_cube(), self.n_padded());
         self.exact.resize(self.clusters.len() * n, Vector3::ZERO);
         self.moments.iter_mut().for_each(|m| m.resize(self.clusters.len() * padded, 0.0));
-        self.refresh(segments);
+        self.refresh(segments, pool);
     }
 
     /// Makes the box of segments `first .. first + n` of the order and those inside of it, lanes from `lanes`
@@ -152,14 +153,21 @@ impl Tree {
 
     /// Takes the circulations and cores of `segments` up, which stand where they stood at the last
     /// [`rebuild`](Self::rebuild).
-    pub(super) fn refresh(&mut self, segments: &[Segment]) {
-        self.exact.fill(Vector3::ZERO);
+    pub(super) fn refresh(&mut self, segments: &[Segment], pool: &mut Pool) {
         let n = self.points.n_in_cube();
+        let Self { points, clusters, order, exact, .. } = self;
+        pool.for_chunks(exact, n, &|first, moments| {
+            moments.fill(Vector3::ZERO);
+            let cluster = &clusters[first / n];
+            for &index in cluster.segments(order) {
+                add_moments(points, cluster, &segments[index as usize], moments);
+            }
+        });
+        self.fill_lanes(segments);
         // Boxes come before those inside of them.
         for index in (0..self.clusters.len()).rev() {
             let cluster = self.clusters[index];
             if cluster.n_lanes > 0 || cluster.n == 0 {
-                self.fill_leaf(index, segments);
                 continue;
             }
             let second = self.clusters[index + 1].next as usize;
@@ -181,36 +189,46 @@ impl Tree {
         }
     }
 
-    /// Lanes and moments of the box `index`, which is not divided.
-    fn fill_leaf(&mut self, index: usize, segments: &[Segment]) {
-        let cluster = self.clusters[index];
-        let (n, per_axis) = (self.points.n_in_cube(), self.points.n());
-        let moments = &mut self.exact[index * n..(index + 1) * n];
-        for k in 0..cluster.n_lanes as usize {
-            let lane = cluster.lanes as usize + k;
-            let Some(&of) = self.order[cluster.first as usize..][..cluster.n as usize].get(k)
-            else {
-                self.lanes.fill_up(lane);
-                continue;
-            };
-            let segment = &segments[of as usize];
-            self.lanes.put(lane, segment, cluster.centre);
-            let along = segment.to - segment.from;
-            let strength = along * (0.5 * segment.circulation / (4.0 * PI));
-            for at in [-1.0, 1.0] {
-                // Gauss's two points, at which the way to the ends' fourth powers is free of error.
-                let share = 0.5 + at * 0.5 / 3.0_f64.sqrt();
-                let place = (segment.from + along * share - cluster.centre) / cluster.half;
-                let shares = self.points.shares(place);
-                let mut point = 0;
-                for x in &shares[0][..per_axis] {
-                    for y in &shares[1][..per_axis] {
-                        let source = strength * (x * y);
-                        for z in &shares[2][..per_axis] {
-                            moments[point] += source * *z;
-                            point += 1;
-                        }
-                    }
+    /// Lanes of all boxes that are not divided.
+    fn fill_lanes(&mut self, segments: &[Segment]) {
+        let Self { clusters, order, lanes, .. } = self;
+        for cluster in clusters {
+            let mut mine = cluster.segments(order).iter();
+            for lane in cluster.lanes..cluster.lanes + cluster.n_lanes {
+                match mine.next() {
+                    Some(&of) => lanes.put(lane as usize, &segments[of as usize], cluster.centre),
+                    None => lanes.fill_up(lane as usize),
+                }
+            }
+        }
+    }
+}
+
+impl Cluster {
+    /// Its segments in `order`, if it is not divided; else none.
+    fn segments<'a>(&self, order: &'a [u32]) -> &'a [u32] {
+        let n = if self.n_lanes > 0 { self.n as usize } else { 0 };
+        &order[self.first as usize..][..n]
+    }
+}
+
+/// Adds what `segment` amounts to in the points of `cluster` to its `moments`.
+fn add_moments(points: &Points, cluster: &Cluster, segment: &Segment, moments: &mut [Vector3]) {
+    let n = points.n();
+    let along = segment.to - segment.from;
+    let strength = along * (0.5 * segment.circulation / (4.0 * PI));
+    for at in [-1.0, 1.0] {
+        // Gauss's two points, at which the way to the ends' fourth powers is free of error.
+        let share = 0.5 + at * 0.5 / 3.0_f64.sqrt();
+        let place = (segment.from + along * share - cluster.centre) / cluster.half;
+        let shares = points.shares(place);
+        let mut point = 0;
+        for x in &shares[0][..n] {
+            for y in &shares[1][..n] {
+                let source = strength * (x * y);
+                for z in &shares[2][..n] {
+                    moments[point] += source * *z;
+                    point += 1;
                 }
             }
         }

@@ -139,10 +139,12 @@ impl FreeWake {
         for sheet in &self.sheets {
             sheet.push_segments(&self.settings.cores, &mut self.segments);
         }
+        let Self { field, segments, pool, .. } = self;
+        let pool = pool.get_mut().unwrap_or_else(PoisonError::into_inner);
         if is_new {
-            self.field.rebuild(&self.segments);
+            field.rebuild(segments, pool);
         } else {
-            self.field.refresh(&self.segments);
+            field.refresh(segments, pool);
         }
     }
 

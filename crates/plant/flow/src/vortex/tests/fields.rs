@@ -1,6 +1,7 @@
 //! Boxes of segments against the sum over segments.
 
 use super::shapes::chain;
+use crate::pool::Pool;
 use crate::simd::Backend;
 use crate::vortex::field::Field;
 use crate::vortex::{Accuracy, Segment, direct};
@@ -44,7 +45,7 @@ fn error(field: &Field, segments: &[Segment]) -> f64 {
 fn field(degree: usize, opening: f64, backend: Backend, segments: &[Segment]) -> Field {
     let accuracy = Accuracy { degree, opening };
     let mut field = Field::with_capacity(accuracy, backend, segments.len());
-    field.rebuild(segments);
+    field.rebuild(segments, &mut Pool::new(2));
     field
 }
 
@@ -76,7 +77,7 @@ fn what_changes_in_place_is_what_is_made_anew() {
         segment.circulation *= 1.0 + 0.2 * (0.01 * k as f64).sin();
     }
     let mut changed = field(3, 0.6, Backend::detect(), &before);
-    changed.refresh(&after);
+    changed.refresh(&after, &mut Pool::new(1));
     let anew = field(3, 0.6, Backend::detect(), &after);
     for position in [before[40].from, Vector3::new(50.0, 20.0, 70.0)] {
         assert_eq!(changed.velocity(position), anew.velocity(position));
