@@ -1,5 +1,5 @@
-//! Cost of the velocity that the segments of a wake induce at their own nodes: `cargo bench -p wakemix-benches
-//! --bench vortex`.
+//! Cost of the velocity that the segments of a wake induce at their own nodes: `cargo bench -p
+//! wakemix-benches --bench vortex`.
 //!
 //! Wakes of three blades of 60 m, eleven trailing vortices each; boxes made anew in every call. Beside it the
 //! sum over all segments in single precision, and the error of either against the sum in double precision. A

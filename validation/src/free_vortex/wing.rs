@@ -42,8 +42,8 @@ pub(super) fn rows() -> Vec<Row> {
     rows
 }
 
-/// Coefficients of lift and induced drag of the wing in `n` elements, when its wake is 50 spans long. It leaves
-/// the wing straight for five of them, as Prandtl's does for ever.
+/// Coefficients of lift and induced drag of the wing in `n` elements, when its wake is 50 spans long. It
+/// leaves the wing straight for five of them, as Prandtl's does for ever.
 fn coefficients(n: usize) -> [f64; 2] {
     let interval = 5.0 * SPAN / WIND;
     let mut wake = FreeWake::new(settings(n, interval), wind()).expect("such a wake can be");

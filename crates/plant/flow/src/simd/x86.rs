@@ -29,7 +29,8 @@ unsafe fn select256(sign: __m256, negative: __m256, other: __m256) -> __m256 {
 macro_rules! vector {
     ($(#[$doc:meta])* $name:ident, $register:ty, $lanes:expr, $load:ident, $store:ident, $splat:ident,
      $add:ident,
-     $sub:ident, $mul:ident, $fmadd:ident, $fnmadd:ident, $div:ident, $sqrt:ident, $max:ident, $select:expr) => {
+     $sub:ident, $mul:ident, $fmadd:ident, $fnmadd:ident, $div:ident, $sqrt:ident, $max:ident,
+     $select:expr) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
         pub(crate) struct $name($register);

@@ -95,8 +95,9 @@ impl Sheet {
         self.near.circulations[row * n..(row + 1) * n].copy_from_slice(circulations);
     }
 
-    /// Makes one row further down of the oldest rows near the blade. A ring has as much circulation times area
-    /// as those that it stands for, so that the impulse of the wake stays although chords cut arcs short.
+    /// Makes one row further down of the oldest rows near the blade. A ring has as much circulation times
+    /// area as those that it stands for, so that the impulse of the wake stays although chords cut arcs
+    /// short.
     fn coarsen(&mut self) {
         let Self { near, far, kept, resolution, .. } = self;
         let stride = resolution.far_stride;

@@ -8,8 +8,8 @@ use crate::vortex::{Accuracy, Segment, direct};
 use basis::Vector3;
 use std::f64::consts::TAU;
 
-/// A wake like that of three blades of 60 m: trailing vortices on helices, `per_blade` of them, `n` nodes each,
-/// tip and root strong.
+/// A wake like that of three blades of 60 m: trailing vortices on helices, `per_blade` of them, `n` nodes
+/// each, tip and root strong.
 pub(super) fn wake(per_blade: usize, n: usize) -> Vec<Segment> {
     let filament = |blade: usize, k: usize| {
         let radius = 3.0 + 57.0 * k as f64 / (per_blade - 1) as f64;
