@@ -267,7 +267,7 @@ fn its_keys_are_checked_like_all_others_and_stand_in_the_reference() {
         ),
         (
             "\"wake\"",
-            "own.toml:7: `flow.solver` = \"wake\" is unknown; expected one of \"lattice\", \"uniform\", \"turbulence\", \"planes\", \"wakes\"; did you mean \"wakes\"?",
+            "own.toml:7: `flow.solver` = \"wake\" is unknown; expected one of \"lattice\", \"uniform\", \"turbulence\", \"planes\", \"vortex\", \"wakes\"; did you mean \"wakes\"?",
         ),
         // Keys of other solvers may stand there, and are right or wrong whoever moves the air.
         ("\"uniform\"\nexpansion = 5", "own.toml:8: `flow.expansion` = 5 is out of range"),
