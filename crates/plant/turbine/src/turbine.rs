@@ -195,7 +195,7 @@ impl Turbine {
         for index in 0..n_steps {
             let pitch = self.pitch_blades(step, commands, &mut limited);
             self.structure.turn(self.state.nacelle.advance(step, commands.yaw_rate));
-            let Workspace { motions, loads, sums, circulations, tower, .. } = &mut self.workspace;
+            let Workspace { motions, loads, circulations, .. } = &mut self.workspace;
             self.structure.observe(0.5 * step, &pitch, motions);
             let frame = self.structure.frame(0.5 * step);
             let now = aerodynamics::Instant {
@@ -210,14 +210,8 @@ impl Turbine {
             };
             self.aerodynamics.loads(&self.line, &now, &mut self.state.aerodynamics, loads);
             self.aerodynamics.add_circulations(&self.line, 1.0 / n_steps as f64, circulations);
-            for ((load, motion), sum) in loads.iter().zip(&*motions).zip(sums) {
-                let share = 1.0 / n_steps as f64;
-                sum[0] += share * load.force.dot(motion.axes.normal);
-                sum[1] += share * load.force.dot(motion.axes.tangent);
-                let arm = motion.position - frame.hub;
-                readings.thrust += share * load.force.dot(frame.shaft);
-                readings.aerodynamic_torque += share * arm.cross(load.force).dot(frame.shaft);
-            }
+            self.workspace.add_loads(1.0 / n_steps as f64, &frame, &mut readings);
+            let Workspace { loads, tower, .. } = &self.workspace;
             let applied = AppliedLoads { elements: loads, tower, nacelle, generator_torque };
             self.structure.advance(step, &applied, &pitch);
         }

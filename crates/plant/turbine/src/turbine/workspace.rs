@@ -1,10 +1,11 @@
 //! Working memory of a turbine: what one interval needs at its points, and the forces on the air that it ends
 //! with.
 
+use super::state::Readings;
 use crate::actuator_line::Element;
 use crate::bodies::Body;
 use crate::motion::ElementMotion;
-use crate::rotor::BladeFrame;
+use crate::rotor::{BladeFrame, Frame};
 use crate::structure::ElementLoad;
 use basis::{BoundVortex, PointForce, Vector3};
 
@@ -65,6 +66,19 @@ impl Workspace {
             forces.push(force);
         }
         nacelle
+    }
+
+    /// Adds `share` (–) of the loads of a step, in which the rotor stands as `frame` has it, to the sums over
+    /// the interval and to `readings`.
+    pub(super) fn add_loads(&mut self, share: f64, frame: &Frame, readings: &mut Readings) {
+        let Self { loads, motions, sums, .. } = self;
+        for ((load, motion), sum) in loads.iter().zip(&*motions).zip(sums) {
+            sum[0] += share * load.force.dot(motion.axes.normal);
+            sum[1] += share * load.force.dot(motion.axes.tangent);
+            let arm = motion.position - frame.hub;
+            readings.thrust += share * load.force.dot(frame.shaft);
+            readings.aerodynamic_torque += share * arm.cross(load.force).dot(frame.shaft);
+        }
     }
 
     /// On return it holds the forces on the air of blades of `elements` too, where the winds were sampled:
