@@ -3,8 +3,8 @@
 
 use crate::{Cost, Elsewhere, Validation};
 use crate::{
-    actuator_line, aeroelastic, atmosphere, blade_element, flow, helix, inflow, meandering, memory,
-    phase_estimator, refined_rotor, resume, structure,
+    actuator_line, aeroelastic, atmosphere, blade_element, flow, free_vortex, helix, inflow,
+    meandering, memory, phase_estimator, refined_rotor, resume, structure,
 };
 
 /// All that the program repeats.
@@ -53,6 +53,24 @@ pub const VALIDATIONS: &[Validation] = &[
         pictures: None,
         page: "actuator-line",
         recorded: include_str!("../recorded/actuator-line-flat.toml"),
+    },
+    Validation {
+        name: "free-vortex",
+        about: "free vortices against closed forms: rings, helices, an elliptic wing; boxes of them against their sum",
+        cost: Cost::UnderAMinute,
+        run: free_vortex::free_vortex,
+        pictures: None,
+        page: "free-vortex",
+        recorded: include_str!("../recorded/free-vortex.toml"),
+    },
+    Validation {
+        name: "free-vortex-rotor",
+        about: "power and thrust of three rotors with free wakes against blade elements in axisymmetric flow, and blade-element momentum",
+        cost: Cost::Minutes(5),
+        run: free_vortex::free_vortex_rotor,
+        pictures: None,
+        page: "free-vortex",
+        recorded: include_str!("../recorded/free-vortex-rotor.toml"),
     },
     Validation {
         name: "flow",

@@ -5,6 +5,7 @@ use flow::inflow::PrescribedWind;
 use flow::inflow::prescribed::Clock;
 use flow::lattice::Lattice;
 use flow::lattice::refinement::Refined;
+use flow::vortex::FreeWake;
 use flow::{FlowError, FlowSolver};
 use std::io::{Error, ErrorKind, Read, Result, Write};
 
@@ -109,6 +110,32 @@ impl FarmFlow for Refined {
 
     fn n_threads(&self) -> usize {
         self.base().n_threads()
+    }
+
+    fn memory(&self) -> u64 {
+        Self::memory(self)
+    }
+}
+
+impl FarmFlow for FreeWake {
+    fn write_state(&mut self, writer: &mut dyn Write) -> Result<()> {
+        Self::write_state(self, writer)
+    }
+
+    fn read_state(&mut self, reader: &mut dyn Read) -> Result<()> {
+        Self::read_state(self, reader)
+    }
+
+    fn fields(&self) -> Option<&dyn FieldSource> {
+        Some(self)
+    }
+
+    fn backend(&self) -> &'static str {
+        Self::backend(self)
+    }
+
+    fn n_threads(&self) -> usize {
+        Self::n_threads(self)
     }
 
     fn memory(&self) -> u64 {

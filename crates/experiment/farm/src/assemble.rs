@@ -262,7 +262,9 @@ fn induction(case: &Case, plan: &Plan, index: usize, tower: Option<TowerInfluenc
     let placement = &case.turbines[index];
     let dynamic_stall = placement.dynamic_stall;
     let solver = case.flow.solver;
-    if solver.resolves_induction {
+    if solver.resolves_induction && solver.uses_bound_vortices {
+        Induction::ByBoundVortices { dynamic_stall }
+    } else if solver.resolves_induction {
         let Smearing { length, sample_spacing } = (solver.smearing)(plan, index);
         Induction::ByFlow { smearing_length: length, sample_spacing, dynamic_stall }
     } else {

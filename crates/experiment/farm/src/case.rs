@@ -3,7 +3,7 @@
 pub use crate::domain::{Blockage, Domain, Ground, Method, Sides};
 pub use crate::layout::{FROM_WEST, Position};
 pub use crate::outputs::Requested;
-pub use crate::solvers::Solver;
+pub use crate::solvers::{Solver, WindSource};
 pub use control::{Control, Sense};
 pub use flow::inflow::deterministic::Change;
 pub use flow::inflow::recorded::Beyond;
@@ -283,6 +283,11 @@ pub fn places(turbines: &[Placement], direction: f64) -> Vec<[f64; 2]> {
 }
 
 impl Case {
+    /// Which wind its air takes in.
+    pub fn wind_source(&self) -> WindSource {
+        self.flow.solver.wind.of(&self.wind)
+    }
+
     /// Feet of the towers in the wind's frame, in the layout's own unit: x downwind, y to the left.
     pub fn places(&self) -> Vec<[f64; 2]> {
         places(&self.turbines, self.wind.direction)

@@ -100,10 +100,12 @@ impl Machine {
         truth
     }
 
-    /// Feels the wind of `flow` where the blades are, and moves on by `interval` (s) under the last commands.
-    fn advance(&mut self, interval: f64, flow: &impl FlowSolver) {
+    /// Feels the wind of `flow` where the blades are, and moves on by `interval` (s) under the last commands;
+    /// its place among the machines is `index`.
+    fn advance(&mut self, interval: f64, flow: &impl FlowSolver, index: usize) {
         flow.sample(self.turbine.stations(), &mut self.winds);
-        self.turbine.advance(interval, &self.winds, &self.commands);
+        let answer = flow.answer(index);
+        self.turbine.advance_answered(interval, &self.winds, answer, &self.commands);
     }
 
     fn shown_name(&self) -> String {
@@ -189,11 +191,14 @@ impl<Flow: FlowSolver + Sync> Farm<Flow> {
             recorder.record(index, &truth, &machine.commands);
         }
         let (flow, interval) = (&self.flow, self.interval);
+        let advance = |(index, machine): (usize, &mut Machine)| {
+            machine.advance(interval, flow, index);
+        };
         match &self.threads {
             Some(threads) => threads.install(|| {
-                self.machines.par_iter_mut().for_each(|machine| machine.advance(interval, flow));
+                self.machines.par_iter_mut().enumerate().for_each(advance);
             }),
-            None => self.machines.iter_mut().for_each(|machine| machine.advance(interval, flow)),
+            None => self.machines.iter_mut().enumerate().for_each(advance),
         }
         let after = (self.step + 1) as f64 * interval;
         for (index, machine) in self.machines.iter().enumerate() {

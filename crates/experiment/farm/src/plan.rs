@@ -4,9 +4,11 @@ mod boxes;
 mod error;
 mod grids;
 mod step;
+mod turning;
 
 pub use error::PlanError;
 pub use grids::GridOfPlan;
+pub use turning::{Turning, by_turns};
 
 use crate::case::{Case, Method, Placement, Shear};
 use basis::Vector3;
@@ -82,7 +84,10 @@ pub struct Plan {
     pub boxes: Vec<Refinement>,
     /// How many boxes within one another each turbine stands in, in the case's order (–).
     pub levels: Vec<u32>,
-    /// Step of the finest cells, which is the control interval (s).
+    /// Points of planes and volumes along x, y, z, half a `spacing` inside of the domain (–): the middles of
+    /// the cells outside all boxes, where there are any.
+    pub n_points: [usize; 3],
+    /// Step of the flow, on a lattice that of its finest cells, which is the control interval (s).
     pub interval: f64,
     /// Steps of one run (–).
     pub n_steps: u64,
@@ -100,6 +105,8 @@ pub struct Plan {
     pub blockage: f64,
     /// Free-stream speed in cells per step (–).
     pub lattice_speed: f64,
+    /// Angle by which the fastest rotor turns in a step in the mean wind, where the air has no cells (rad).
+    pub turn: f64,
     /// How the air of the cells is computed.
     pub method: Method,
 }
@@ -148,6 +155,7 @@ pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
         origin,
         spacing,
         n_cells,
+        n_points: n_cells,
         boxes: outermost,
         levels,
         interval: 0.0,
@@ -159,6 +167,7 @@ pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
         positions: positions.clone(),
         blockage: std::f64::consts::PI / 4.0 * widest * widest / area,
         lattice_speed: 0.0,
+        turn: 0.0,
         method: case.flow.domain().method,
     };
     check_resolution(machines, &plan, cells_per_diameter)?;
@@ -200,7 +209,7 @@ fn check_veer(veer: f64, plan: &Plan) -> Result<(), PlanError> {
 
 fn check_planes(distances: &[f64], plan: &Plan) -> Result<(), PlanError> {
     let low = plan.origin.x;
-    let high = low + plan.n_cells[0] as f64 * plan.spacing;
+    let high = low + plan.n_points[0] as f64 * plan.spacing;
     for &distance in distances {
         let x = plan.positions[0].x + distance * plan.diameter;
         if !(low..=high).contains(&x) {
@@ -240,6 +249,7 @@ pub(crate) fn without_air(
         n_cells: [0; 3],
         boxes: Vec::new(),
         levels: Vec::new(),
+        n_points: [0; 3],
         interval,
         n_steps: (case.time.duration / interval).round() as u64,
         n_spin_up_steps,
@@ -249,6 +259,7 @@ pub(crate) fn without_air(
         positions,
         blockage: 0.0,
         lattice_speed: 0.0,
+        turn: 0.0,
         method: case.flow.domain().method,
     }
 }

@@ -34,6 +34,12 @@ pub const CASES: &[ShippedCase] = &[
         after: None,
     },
     ShippedCase {
+        name: "free-wake",
+        file: include_str!("../../../../cases/free-wake.toml"),
+        minutes: 2.0,
+        after: None,
+    },
+    ShippedCase {
         name: "helix-two-turbines",
         file: include_str!("../../../../cases/helix-two-turbines.toml"),
         minutes: 35.0,

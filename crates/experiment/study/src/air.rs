@@ -22,7 +22,8 @@ pub(crate) fn begin(
     progress: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<Air, StudyError> {
     let solver = setup.case.flow.solver;
-    let planes = if solver.wind == WindSource::Planes { Some(planes(setup)?) } else { None };
+    let planes =
+        if setup.case.wind_source() == WindSource::Planes { Some(planes(setup)?) } else { None };
     let start = Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress };
     (solver.begin)(start).map_err(|error| match error {
         SolverError::Lattice(error) | SolverError::Refinement(RefinementError::Lattice(error)) => {
@@ -30,6 +31,7 @@ pub(crate) fn begin(
         }
         SolverError::Refinement(error) => StudyError::Solver(Box::new(error)),
         SolverError::Inflow(error) => error.into(),
+        error @ SolverError::Wake(_) => StudyError::Solver(Box::new(error)),
         SolverError::Other(error) => StudyError::Solver(error),
         error @ SolverError::NoPlanes { .. } => StudyError::Solver(Box::new(error)),
     })
@@ -50,7 +52,7 @@ pub(crate) fn planes(setup: &Prepared) -> Result<Box<dyn Planes>, StudyError> {
 /// # Errors
 /// Those of [`begin`].
 pub(crate) fn try_recorded(setup: &Prepared) -> Result<(), StudyError> {
-    if setup.case.flow.solver.wind == WindSource::Planes {
+    if setup.case.wind_source() == WindSource::Planes {
         begin(setup, &setup.mean_inflow, &|_| ControlFlow::Continue(()))?;
     }
     Ok(())

@@ -54,7 +54,7 @@ impl Prepared {
     /// Bytes of one checkpoint of run number `index`.
     fn checkpoint_of_run(&self, index: usize) -> u64 {
         let n_turbines = self.case.runs[index].present().count() as u64;
-        (self.case.flow.solver.memory)(&self.plan) + n_turbines * TURBINE_STATE
+        (self.case.flow.solver.memory)(&self.case, &self.plan) + n_turbines * TURBINE_STATE
     }
 
     /// Bytes of the checkpoint that run number `index` keeps when it is complete.
@@ -71,7 +71,7 @@ impl Prepared {
         outputs: &Outputs,
     ) -> Estimate {
         let plan = &self.plan;
-        let field = (self.case.flow.solver.memory)(plan);
+        let field = (self.case.flow.solver.memory)(&self.case, plan);
         let made = farm::wind::turbulence(&self.site()).map(|turbulence| turbulence.memory);
         let turbulence = made.or(self.recorded.map(|recorded| recorded.memory));
         let checkpoints = || open.iter().map(|&index| self.checkpoints_of_run(index));

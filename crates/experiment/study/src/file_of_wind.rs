@@ -46,7 +46,7 @@ pub(crate) fn table(
 /// [`StudyError::Case`] at `wind.planes`.
 pub(crate) fn planes(file: &CaseFile) -> Result<Option<Box<dyn Planes>>, StudyError> {
     let case = &file.case;
-    if case.flow.solver.wind != WindSource::Planes && !wind::enters_from_file(case) {
+    if case.wind_source() != WindSource::Planes && !wind::enters_from_file(case) {
         return Ok(None);
     }
     let name = case.wind.planes.as_deref().unwrap_or_default();

@@ -373,7 +373,7 @@ fn conditions(analysed: &Analysed, setup: &Prepared) -> Result<Conditions, Study
 
 /// Length scale of Mann's tensor (m); none where the turbulence is not Mann's.
 fn turbulence_length_scale(setup: &Prepared) -> Option<f64> {
-    let (wind, made) = (&setup.case.wind, setup.case.flow.solver.wind);
+    let (wind, made) = (&setup.case.wind, setup.case.wind_source());
     let is_made = wind.turbulence_intensity > 0.0
         && wind.turbulence_model == TurbulenceModel::Mann
         && wind.planes.is_none()

@@ -73,7 +73,7 @@ fn a_stopped_study_in_a_box_leaves_what_one_that_was_left_alone_does() {
     assert!(size.iter().zip([4.0, 2.0, 2.0]).all(|(a, b)| (a - b).abs() < 1e-9), "{size:?}");
     assert_eq!(summary.conditions.cells_per_diameter, Some(16.0));
     assert_eq!(summary.cost.n_cells, setup.plan.cells() as u64);
-    let told = (setup.case.flow.solver.memory)(&setup.plan) as f64;
+    let told = (setup.case.flow.solver.memory)(&setup.case, &setup.plan) as f64;
     let taken = summary.cost.memory as f64;
     assert!((0.9..1.2).contains(&(told / taken)), "{told} told, {taken} taken");
     let told = Outputs::standard().disk_of_run(&setup, &setup.case.runs[0]) as f64;

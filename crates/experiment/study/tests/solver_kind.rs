@@ -198,7 +198,7 @@ fn advanced(farm: &mut Farm<Air>, n_steps: usize) -> [f64; 2] {
 #[test]
 fn a_kind_from_outside_moves_the_air_of_a_farm() {
     let (case, plan, mut farm) = farm_of("\"wakes\"");
-    assert_eq!((plan.cells(), (case.flow.solver.memory)(&plan)), (0, 0));
+    assert_eq!((plan.cells(), (case.flow.solver.memory)(&case, &plan)), (0, 0));
     assert!(farm.flow().fields().is_none() && case.flow.solver == Solver(&WAKES));
     let [first, second] = advanced(&mut farm, 200);
     let [alone, unwaked] = advanced(&mut farm_of("\"uniform\"").2, 200);
@@ -267,7 +267,7 @@ fn its_keys_are_checked_like_all_others_and_stand_in_the_reference() {
         ),
         (
             "\"wake\"",
-            "own.toml:7: `flow.solver` = \"wake\" is unknown; expected one of \"lattice\", \"uniform\", \"turbulence\", \"planes\", \"wakes\"; did you mean \"wakes\"?",
+            "own.toml:7: `flow.solver` = \"wake\" is unknown; expected one of \"lattice\", \"uniform\", \"turbulence\", \"planes\", \"vortex\", \"wakes\"; did you mean \"wakes\"?",
         ),
         // Keys of other solvers may stand there, and are right or wrong whoever moves the air.
         ("\"uniform\"\nexpansion = 5", "own.toml:8: `flow.expansion` = 5 is out of range"),

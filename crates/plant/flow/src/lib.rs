@@ -6,10 +6,13 @@ pub mod fields;
 pub mod inflow;
 pub mod lattice;
 mod numerics;
+mod pool;
+mod simd;
+pub mod vortex;
 
 pub use numerics::numerics;
 
-use basis::{PointForce, Vector3};
+use basis::{Answer, PointForce, Vector3};
 use thiserror::Error;
 
 /// A wind field that can be sampled.
@@ -30,6 +33,14 @@ pub trait FlowSolver: WindField {
 
     /// Whether sampled velocities already contain the rotors' induction.
     fn resolves_induction(&self) -> bool;
+
+    /// How the wind at the blade elements of `turbine`, its place among the farm's machines, answers to their
+    /// circulation within the step ahead; none where the air feels forces alone, or has not met the turbine
+    /// yet.
+    fn answer(&self, turbine: usize) -> Option<Answer<'_>> {
+        let _ = turbine;
+        None
+    }
 }
 
 impl<Field: WindField + ?Sized> WindField for Box<Field> {
@@ -45,6 +56,10 @@ impl<Flow: FlowSolver + ?Sized> FlowSolver for Box<Flow> {
 
     fn resolves_induction(&self) -> bool {
         (**self).resolves_induction()
+    }
+
+    fn answer(&self, turbine: usize) -> Option<Answer<'_>> {
+        (**self).answer(turbine)
     }
 }
 

@@ -42,6 +42,8 @@ pub struct Element {
     pub cone_angle: f64,
     /// Length along the blade's line (m).
     pub width: f64,
+    /// Share of it that lies inside of the middle, which is one of angles where elements become narrow (–).
+    pub inner_share: f64,
     /// Chord (m).
     pub chord: f64,
     /// Twist, positive to feather (rad).
@@ -155,6 +157,7 @@ impl ActuatorLine {
                     radius: radius(&middle),
                     cone_angle: geometry.precone + bend.atan2(length),
                     width: length.hypot(bend),
+                    inner_share: (middle.span - ends[0].span) / length,
                     chord: middle.chord,
                     twist: middle.twist,
                     polars,
@@ -243,10 +246,7 @@ impl ActuatorLine {
         loads: &mut [Load],
     ) {
         for (index, (load, onset)) in loads.iter_mut().zip(onsets).enumerate() {
-            let [axial, tangential] = corrections[index];
-            let felt =
-                Onset { normal: onset.normal + axial, tangential: onset.tangential - tangential };
-            *load = self.load(index, felt, pitch[index], sections);
+            *load = self.load(index, onset.with(corrections[index]), pitch[index], sections);
         }
     }
 
@@ -294,7 +294,13 @@ impl ActuatorLine {
     }
 
     /// Load of element number `index` in the wind `onset`, turned by `pitch` (rad) beside its twist.
-    fn load(&self, index: usize, onset: Onset, pitch: f64, sections: &mut impl Sections) -> Load {
+    pub(crate) fn load(
+        &self,
+        index: usize,
+        onset: Onset,
+        pitch: f64,
+        sections: &mut impl Sections,
+    ) -> Load {
         let element = &self.elements[index % self.elements.len()];
         let speed = onset.normal.hypot(onset.tangential);
         if speed == 0.0 {
@@ -312,6 +318,13 @@ impl ActuatorLine {
             tangential: lift * sine - drag * cosine,
             circulation: 0.5 * speed * element.chord * lift_coefficient,
         }
+    }
+}
+
+impl Onset {
+    /// The same with an induced velocity on top: axial, downwind, and tangential, along the rotation (m/s).
+    pub(crate) fn with(self, [axial, tangential]: [f64; 2]) -> Self {
+        Self { normal: self.normal + axial, tangential: self.tangential - tangential }
     }
 }
 

@@ -2,8 +2,10 @@
 //! the flow.
 
 mod aerodynamics;
+mod answering;
 mod nacelle;
 mod separation;
+mod set_up;
 mod settings;
 mod state;
 mod workspace;
@@ -20,8 +22,9 @@ use crate::structure::{
     AppliedLoads, DegreeOfFreedom, GRAVITY, Pitch, Projection, Structure, StructureError,
 };
 use aerodynamics::Aerodynamics;
-use basis::{Channel, Commands, PerBlade, PointForce, Truth, Vector3};
+use basis::{Answer, Channel, Commands, PerBlade, PointForce, Truth, Vector3};
 use nacelle::Facing;
+use set_up::{all_but_the_generator, frame_at, lengths};
 use state::Readings;
 use std::sync::Arc;
 use workspace::Workspace;
@@ -70,7 +73,7 @@ impl Turbine {
         );
         let frame = frame_at(position, &definition);
         let mut bodies = bodies::of(&definition, position, &frame, smearing_length);
-        if matches!(settings.induction, Induction::ByMomentum(_)) {
+        if !matches!(settings.induction, Induction::ByFlow { .. }) {
             bodies.iter_mut().for_each(Body::use_free_wind);
         }
         let aerodynamics = Aerodynamics::new(&definition, &line, &settings);
@@ -156,6 +159,19 @@ impl Turbine {
     /// far as the flow resolves it. On return [`Turbine::forces`] holds the forces that act on the air
     /// throughout the interval.
     pub fn advance(&mut self, interval: f64, winds: &[Vector3], commands: &Commands) {
+        self.advance_answered(interval, winds, None, commands);
+    }
+
+    /// As [`advance`](Self::advance), in winds that answer to the circulation of the blades as `answer` says:
+    /// circulation and what it brings about are found together ([`Induction::ByBoundVortices`]; others have
+    /// no use for it).
+    pub fn advance_answered(
+        &mut self,
+        interval: f64,
+        winds: &[Vector3],
+        answer: Option<Answer<'_>>,
+        commands: &Commands,
+    ) {
         let n_steps = (interval / LONGEST_STRUCTURAL_STEP - 1e-9).ceil().max(1.0) as usize;
         let step = interval / n_steps as f64;
         // A generator holds the rotor back and never drives it backwards.
@@ -179,13 +195,14 @@ impl Turbine {
         for index in 0..n_steps {
             let pitch = self.pitch_blades(step, commands, &mut limited);
             self.structure.turn(self.state.nacelle.advance(step, commands.yaw_rate));
-            let Workspace { motions, loads, sums, circulations, tower, .. } = &mut self.workspace;
+            let Workspace { motions, loads, circulations, .. } = &mut self.workspace;
             self.structure.observe(0.5 * step, &pitch, motions);
             let frame = self.structure.frame(0.5 * step);
             let now = aerodynamics::Instant {
                 interval: step,
                 first: index == 0,
                 winds: element_winds,
+                answer,
                 motions,
                 pitch: &pitch,
                 frame: &frame,
@@ -193,14 +210,8 @@ impl Turbine {
             };
             self.aerodynamics.loads(&self.line, &now, &mut self.state.aerodynamics, loads);
             self.aerodynamics.add_circulations(&self.line, 1.0 / n_steps as f64, circulations);
-            for ((load, motion), sum) in loads.iter().zip(&*motions).zip(sums) {
-                let share = 1.0 / n_steps as f64;
-                sum[0] += share * load.force.dot(motion.axes.normal);
-                sum[1] += share * load.force.dot(motion.axes.tangent);
-                let arm = motion.position - frame.hub;
-                readings.thrust += share * load.force.dot(frame.shaft);
-                readings.aerodynamic_torque += share * arm.cross(load.force).dot(frame.shaft);
-            }
+            self.workspace.add_loads(1.0 / n_steps as f64, &frame, &mut readings);
+            let Workspace { loads, tower, .. } = &self.workspace;
             let applied = AppliedLoads { elements: loads, tower, nacelle, generator_torque };
             self.structure.advance(step, &applied, &pitch);
         }
@@ -210,6 +221,7 @@ impl Turbine {
         self.state.structure.clone_from(self.structure.state());
         self.workspace.push(self.line.elements(), self.smearing_length);
         self.place_stations();
+        self.workspace.tell_places(self.line.elements());
     }
 
     /// Forces on the air over the last interval: blade elements with their bound vortices, blade after blade
@@ -362,34 +374,6 @@ impl Turbine {
         stations.extend(motions.iter().map(|motion| motion.position));
         stations.extend(self.bodies.iter().map(|body| body.position));
     }
-}
-
-/// Smearing length and distance of sample points (m).
-fn lengths(induction: &Induction, definition: &Definition) -> (f64, f64) {
-    match *induction {
-        Induction::ByFlow { smearing_length, sample_spacing, .. } => {
-            (smearing_length, sample_spacing)
-        }
-        // Nothing is smeared; the length only divides the tower into segments.
-        Induction::ByMomentum(_) => (0.1 * definition.rotor_radius(), 0.0),
-    }
-}
-
-/// Centre and attitude of the undeflected rotor whose tower stands at `position` (m).
-fn frame_at(position: Vector3, definition: &Definition) -> Frame {
-    let geometry = definition.rotor;
-    let shaft = Frame::new(Vector3::ZERO, geometry.shaft_tilt).shaft;
-    // The overhang runs along the shaft; the hub height is the apex's own.
-    let apex = position + Vector3::new(-geometry.overhang * shaft.x, 0.0, geometry.hub_height);
-    Frame::new(apex, geometry.shaft_tilt)
-}
-
-/// What does not move where only the rotor turns.
-fn all_but_the_generator() -> Vec<DegreeOfFreedom> {
-    DegreeOfFreedom::ALL
-        .into_iter()
-        .filter(|degree| *degree != DegreeOfFreedom::Generator)
-        .collect()
 }
 
 #[cfg(test)]

@@ -32,8 +32,27 @@ pub struct BoundVortex {
     pub station: usize,
     /// Circulation Γ, the mean over the interval in which the force acts (m²/s).
     pub circulation: f64,
-    /// From the element's inner to its outer end, its middle at the force's position, farm frame (m).
+    /// From the element's inner to its outer end, farm frame (m).
     pub along: Vector3,
+    /// Share of it that lies inside of the force's position (–): about a half.
+    pub inner_share: f64,
+    /// Where the force's position has come to at the end of the interval in which it acts, farm frame (m).
+    pub position_after: Vector3,
+    /// As `along`, at the end of that interval (m).
+    pub along_after: Vector3,
+}
+
+/// How the wind at a turbine's blade elements answers to their circulation, where the air feels bound
+/// vortices and the answer comes at once: what is bound and what leaves the blades in this very interval.
+///
+/// The wind at element i is what was sampled there plus Σⱼ `influence`[i, j] (Γⱼ − `circulations`[j]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer<'a> {
+    /// Circulation of each element with which the wind was sampled, blade after blade from root to tip
+    /// (m²/s).
+    pub circulations: &'a [f64],
+    /// Wind at an element (row) per unit of circulation of another (column), farm frame (1/m).
+    pub influence: &'a [Vector3],
 }
 
 impl PointForce {

@@ -27,7 +27,7 @@ pub mod signals;
 
 pub use blades::PerBlade;
 pub use channels::{Channel, Unit};
-pub use force::{BoundVortex, PointForce};
+pub use force::{Answer, BoundVortex, PointForce};
 pub use glam::{DMat3 as Matrix3, DVec3 as Vector3};
 pub use mbc::FixedFrame;
 pub use sense::Sense;

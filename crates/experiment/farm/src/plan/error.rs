@@ -92,6 +92,22 @@ pub enum PlanError {
         /// Shortest step (s).
         shortest: f64,
     },
+    /// A rotor turns so far in a step that the wake behind it is no helix.
+    #[error(
+        "flow.step = {step} s is too long: {name} turns by {turn_deg:.0}° in it, the maximum is {most_deg:.0}°; use at most {longest:.3} s, or leave the key out"
+    )]
+    TurnsTooFar {
+        /// Turbine.
+        name: String,
+        /// Step given (s).
+        step: f64,
+        /// Angle (deg).
+        turn_deg: f64,
+        /// Greatest angle (deg).
+        most_deg: f64,
+        /// Longest step (s).
+        longest: f64,
+    },
     /// A turbine stands still in this wind.
     #[error(
         "{what} gives {name} a mean wind of {speed:.2} m/s at its hub, and it works from {cut_in} to {cut_out} m/s: it would stand still; {fix}"
@@ -230,7 +246,10 @@ impl PlanError {
             Self::OutsideDomain { name, .. } => vec!["turbine", name, "position_diameters"],
             Self::Overlap { second, .. } => vec!["turbine", second, "position_diameters"],
             Self::TooCoarse { .. } => vec!["flow", "cells_per_diameter"],
-            Self::TipOutruns { .. } | Self::TooFast { .. } | Self::TooSlow { .. } => {
+            Self::TipOutruns { .. }
+            | Self::TooFast { .. }
+            | Self::TooSlow { .. }
+            | Self::TurnsTooFar { .. } => {
                 vec!["flow", "step"]
             }
             Self::NotInOperation { key, .. } => vec!["wind", *key],

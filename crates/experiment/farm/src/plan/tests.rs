@@ -135,7 +135,7 @@ fn the_lattice_is_computed_as_the_case_asks() {
     let settings_and_memory = |case: &Case| {
         let plan = plan(case, &footprints()).unwrap();
         let settings = crate::assemble::lattice_settings(case, &plan);
-        ((settings.stencil, settings.smagorinsky), (case.flow.solver.memory)(&plan))
+        ((settings.stencil, settings.smagorinsky), (case.flow.solver.memory)(case, &plan))
     };
     let plain = case(&[[0.0, 0.0]]);
     let (method, memory) = settings_and_memory(&plain);

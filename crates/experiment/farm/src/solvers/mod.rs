@@ -5,9 +5,11 @@
 
 mod lattice;
 mod prescribed;
+mod vortex;
 
 pub use lattice::LATTICE;
 pub use prescribed::{PLANES, PRESCRIBED, TURBULENCE, UNIFORM};
+pub use vortex::VORTEX;
 
 use crate::air::Air;
 use crate::case::{Case, Flow, Wind};
@@ -20,6 +22,7 @@ use flow::Inflow;
 use flow::inflow::{InflowError, Planes};
 use flow::lattice::LatticeError;
 use flow::lattice::refinement::RefinementError;
+use flow::vortex::WakeError;
 use std::fmt;
 use std::ops::{ControlFlow, Deref};
 use std::sync::Arc;
@@ -27,7 +30,7 @@ use std::sync::Arc;
 /// The kinds of flow solvers. A new kind is a file beside this one and a line here; a program built on
 /// wakemix [adds](Registry::add) its own.
 pub static SOLVERS: Registry<SolverKind> =
-    Registry::new(&[&LATTICE, &UNIFORM, &TURBULENCE, &PLANES]);
+    Registry::new(&[&LATTICE, &UNIFORM, &TURBULENCE, &PLANES, &VORTEX]);
 
 /// Everything that belongs to one kind of flow solver.
 ///
@@ -64,8 +67,11 @@ pub struct SolverKind {
     pub sound_speed: fn(&Plan) -> Option<f64>,
     /// Domain and step for a layout.
     pub plan: fn(&Case, &Layout) -> Result<Plan, PlanError>,
+    /// How far downstream of the last rotor it asks for its wind (m), where that is made or read around the
+    /// rotors.
+    pub reach: fn(&Case, &Plan) -> f64,
     /// Memory that its field takes (bytes).
-    pub memory: fn(&Plan) -> u64,
+    pub memory: fn(&Case, &Plan) -> u64,
     /// The air at time zero.
     pub begin: fn(Start) -> Result<Air, SolverError>,
     /// The air about one rotor alone, in a steady wind, at time zero.
@@ -92,6 +98,22 @@ pub enum WindSource {
     AroundRotors,
     /// Planes from a file.
     Planes,
+    /// Any of these but the inlet: what the case's wind says.
+    Any,
+}
+
+impl WindSource {
+    /// What it is for `wind`, [`Any`](Self::Any) decided.
+    pub fn of(self, wind: &Wind) -> Self {
+        match self {
+            Self::Any if wind.planes.is_some() => Self::Planes,
+            Self::Any if wind.turbulence_intensity > 0.0 && wind.table.is_none() => {
+                Self::AroundRotors
+            }
+            Self::Any => Self::Deterministic,
+            other => other,
+        }
+    }
 }
 
 /// Lengths over which a flow that resolves induction smears.
@@ -158,6 +180,9 @@ pub enum SolverError {
     /// Nor boxes of finer cells in it.
     #[error(transparent)]
     Refinement(#[from] RefinementError),
+    /// A free wake cannot be set up.
+    #[error(transparent)]
+    Wake(#[from] WakeError),
     /// Its wind cannot be read.
     #[error(transparent)]
     Inflow(#[from] InflowError),
@@ -249,7 +274,7 @@ mod tests {
             assert_eq!(keys.len(), kind.keys.len());
             assert!(!kind.about.is_empty() && !kind.about.ends_with('.'), "{}", kind.name);
         }
-        assert_eq!(Solver::named("vortex"), None);
+        assert_eq!(Solver::named("vortices"), None);
     }
 
     #[test]

@@ -24,7 +24,8 @@ pub const PRESCRIBED: SolverKind = SolverKind {
     warnings: |_, _| Vec::new(),
     sound_speed: |_| None,
     plan: plan::without_cells,
-    memory: |_| 0,
+    reach: |_, _| 0.0,
+    memory: |_, _| 0,
     begin,
     begin_alone,
     updates_alone: |_, _| 1.0,
@@ -58,7 +59,7 @@ pub static PLANES: SolverKind = SolverKind {
 
 fn begin(start: Start) -> Result<Air, SolverError> {
     let solver = start.site.case.flow.solver;
-    if solver.wind == WindSource::Planes && start.planes.is_none() {
+    if start.site.case.wind_source() == WindSource::Planes && start.planes.is_none() {
         return Err(SolverError::NoPlanes { solver: solver.name });
     }
     Ok(Box::new(wind::prescribed(&start.site, start.inflow, start.planes, start.progress)?))
@@ -69,19 +70,19 @@ fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
     Ok(Box::new(PrescribedWind::everywhere(Arc::new(profile))))
 }
 
-fn uniform_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
+pub(super) fn uniform_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
     let why = "flow.solver = \"uniform\" reads no wind from a file";
     Vec::from_iter(wind.planes.is_some().then(|| no_file(why)))
 }
 
-fn turbulence_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
+pub(super) fn turbulence_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
     let file = wind.planes.is_some().then(|| no_file("flow.solver = \"turbulence\" makes its own"));
     let event =
         wind.event.is_some().then(|| no_event("flow.solver = \"turbulence\" is not deterministic"));
     file.into_iter().chain(event).collect()
 }
 
-fn planes_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
+pub(super) fn planes_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
     const AS_IT_IS: &str = "flow.solver = \"planes\" takes the wind as the file has it";
     let no_use = |key, fix| Objection { key, fault: Fault::NoUse(AS_IT_IS), fix };
     let mut objections = Vec::new();

@@ -77,7 +77,7 @@ struct MadeGrid {
 /// The grid of the turbulence that `site` has made around its rotors; none where it has none.
 fn made_grid(site: &Site) -> Option<MadeGrid> {
     let (case, wind) = (site.case, &site.case.wind);
-    if case.flow.solver.wind != WindSource::AroundRotors || wind.turbulence_intensity == 0.0 {
+    if case.wind_source() != WindSource::AroundRotors || wind.turbulence_intensity == 0.0 {
         return None;
     }
     let [low, high] = around_rotors(site);
@@ -90,7 +90,7 @@ fn made_grid(site: &Site) -> Option<MadeGrid> {
     let points = |length: f64| (length / across).ceil() as usize + 1;
     let along = wind.speed * PLANE_INTERVAL;
     let [n_y, n_z] = [points(2.0 * half_width), points(height)];
-    let length = (high.x - low.x) + 2.0 * reach_along(site);
+    let length = (high.x - low.x) + 2.0 * reach_along(site) + reach_of_wakes(site);
     // Whole records only: 2, 3 and 5 are the only factors, which transforms like best.
     let whole = smooth((case.time.duration / PLANE_INTERVAL + length / along).ceil() as usize);
     let (along, whole, n_across) = match wind.turbulence_model {
@@ -175,7 +175,7 @@ fn over_rotors(site: &Site, planes: Box<dyn Planes>) -> Result<PrescribedWind, I
     let [left, right] = grid.across();
     let origin_x = if grid.repeats { 0.0 } else { 0.5 * (right - left) };
     let reach = reach_along(site);
-    let extent = [low.x - reach, high.x + reach];
+    let extent = [low.x - reach, high.x + reach + reach_of_wakes(site)];
     let placement = Placement { origin_x, shift_y: 0.0, extent };
     let wind = PrescribedWind::over_planes(planes, placement)?;
     wind.covers(low, high, site.case.time.duration)?;
@@ -191,6 +191,11 @@ fn reach_along(site: &Site) -> f64 {
         || controls.any(|control| control.kind().turns_nacelle());
     let radii = site.models.iter().map(|model| model.definition.rotor_radius());
     if turns { REACH + radii.fold(0.0, f64::max) } else { REACH }
+}
+
+/// How far downstream of the outermost rotor wakes ask for the wind (m).
+fn reach_of_wakes(site: &Site) -> f64 {
+    (site.case.flow.solver.reach)(site.case, site.plan)
 }
 
 /// Corners of the box around all rotors (m).

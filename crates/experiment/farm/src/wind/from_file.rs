@@ -93,7 +93,7 @@ pub enum ForeignWind {
 
 /// Whether the wind that enters the domain of `case` comes from a file of planes.
 pub fn enters_from_file(case: &Case) -> bool {
-    case.flow.solver.wind == WindSource::AtInlet && case.wind.planes.is_some()
+    case.wind_source() == WindSource::AtInlet && case.wind.planes.is_some()
 }
 
 impl Recorded {

@@ -78,7 +78,7 @@ pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
 /// Why the profile that blows into `case` is not the one that its rough ground keeps, with the fix; none
 /// where it is, where a file brings it, and where no air meets a rough ground.
 pub fn off_balance(case: &Case) -> Option<String> {
-    if case.flow.solver.wind != WindSource::AtInlet || case.wind.planes.is_some() {
+    if case.wind_source() != WindSource::AtInlet || case.wind.planes.is_some() {
         return None;
     }
     let Ground::Rough { roughness_length: ground } = case.flow.domain().ground else { return None };

@@ -10,7 +10,7 @@ const USUAL_THRUST: f64 = 0.8;
 
 /// Wind that blows in over the case's (–): one, or less where the case asks for a correction of blockage.
 pub fn inflow_share(case: &Case, plan: &Plan) -> f64 {
-    let is_corrected = case.flow.solver.wind == WindSource::AtInlet
+    let is_corrected = case.wind_source() == WindSource::AtInlet
         && case.flow.domain().blockage == Blockage::Corrected;
     if is_corrected { 1.0 / equivalent_speed_ratio(USUAL_THRUST, plan.blockage) } else { 1.0 }
 }

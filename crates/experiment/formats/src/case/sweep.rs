@@ -353,7 +353,7 @@ pub(super) fn check_seeds(
         turbine.instruments == Instruments::default() && turbine.sensors.is_empty()
     };
     let is_still = |case: &Case| {
-        let is_made = case.flow.solver.wind != WindSource::Planes && case.wind.planes.is_none();
+        let is_made = case.wind_source() != WindSource::Planes && case.wind.planes.is_none();
         let is_turbulent = is_made && case.wind.turbulence_intensity > 0.0;
         !is_turbulent && case.turbines.iter().all(is_exact)
     };

@@ -90,7 +90,7 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
         check_table(section, wind, flow);
     }
     if wind.beyond_planes.is_some()
-        && (wind.planes.is_none() || flow.solver.wind != WindSource::AtInlet)
+        && (wind.planes.is_none() || flow.solver.wind.of(wind) != WindSource::AtInlet)
     {
         let why = "it is for a file of wind.planes at the inlet of resolved flow".to_owned();
         let kind = ProblemKind::NoUse { key: section.key_path("beyond_planes"), why };
@@ -111,8 +111,9 @@ fn check_table(section: &Section, wind: &Wind, flow: &Flow) {
         let kind = ProblemKind::NoUse { key: section.key_path(key), why };
         section.findings().note(section.span_of(key), kind, Some(fix.to_owned()));
     };
-    if flow.solver.wind != WindSource::Deterministic {
-        let why = if flow.solver.wind == WindSource::AtInlet {
+    let source = flow.solver.wind.of(wind);
+    if source != WindSource::Deterministic {
+        let why = if source == WindSource::AtInlet {
             format!(
                 "flow.solver = \"{}\" would answer wind that changes everywhere at once with pressure waves",
                 flow.solver.name

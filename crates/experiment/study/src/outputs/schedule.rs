@@ -64,6 +64,7 @@ mod tests {
             boxes: Vec::new(),
             levels: Vec::new(),
             n_cells: [0; 3],
+            n_points: [0; 3],
             interval: 0.2,
             n_steps: N_STEPS,
             n_spin_up_steps,
@@ -73,6 +74,7 @@ mod tests {
             positions: Vec::new(),
             blockage: 0.0,
             lattice_speed: 0.0,
+            turn: 0.0,
             method: Default::default(),
         }
     }

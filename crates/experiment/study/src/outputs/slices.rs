@@ -116,13 +116,13 @@ pub(super) fn setting(setup: &Prepared, run: &Run) -> PlaneSetting {
 
 /// Points of the plane at hub height (–).
 pub(super) fn n_points_at_hub_height(setup: &Prepared) -> u64 {
-    let [n_x, n_y, _] = setup.plan.n_cells.map(|n| n as u64);
+    let [n_x, n_y, _] = setup.plan.n_points.map(|n| n as u64);
     n_x * n_y
 }
 
 /// Points of all planes together (–).
 pub(super) fn n_points(setup: &Prepared) -> u64 {
-    let [n_x, n_y, n_z] = setup.plan.n_cells.map(|n| n as u64);
+    let [n_x, n_y, n_z] = setup.plan.n_points.map(|n| n as u64);
     let n_across = setup.case.output.crosswind_diameters.len() as u64;
     n_x * n_y + along(setup).len() as u64 * n_x * n_z + n_across * n_y * n_z
 }

@@ -28,7 +28,7 @@ fn schedule(setup: &Prepared) -> Option<Schedule> {
 /// Bytes of the points of a volume, on the disk as in memory.
 fn bytes(setup: &Prepared) -> u64 {
     let stride = setup.case.output.volume_stride;
-    let n_points = setup.plan.n_cells.map(|n| n.div_ceil(stride) as u64);
+    let n_points = setup.plan.n_points.map(|n| n.div_ceil(stride) as u64);
     n_points.iter().product::<u64>() * POINT_BYTES
 }
 

@@ -7,8 +7,8 @@
 //! 066705; De Rosis, Huang, Coreixas 2019, Phys. Fluids 31, 117102; cumulants: Geier, Schönherr, Pasquali,
 //! Krafczyk 2015, Comput. Math. Appl. 70, 507).
 
-use super::simd::Simd;
 use super::stencil::Moments;
+use crate::simd::Simd;
 
 /// What a collision needs to know beside the cell's own state, in lattice units.
 #[derive(Clone, Copy)]

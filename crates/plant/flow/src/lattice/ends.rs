@@ -9,9 +9,9 @@
 
 use super::layout::write_direction;
 use super::settings::Ends;
-use super::simd::{MAXIMUM_LANES, Simd};
 use super::stencil::{Moments, Stencil};
 use super::sweep::Step;
+use crate::simd::{MAXIMUM_LANES, Simd};
 
 /// State at the ends of one thread's rows, in lattice units; each array holds a value per row, padded to
 /// whole vectors.

@@ -6,11 +6,11 @@ use super::atmosphere::transport::{self, Transport};
 use super::forces::ForceBlock;
 use super::probe::{self, RowState, View};
 use super::settings::Stencil as Set;
-use super::simd::{Backend, Portable};
 use super::stencil::{D3Q19, Stencil};
 use super::stencil27::D3Q27;
 use super::still::Still;
 use super::sweep::{self, Share, Step};
+use crate::simd::{Backend, Portable};
 use std::ops::Range;
 
 /// Loops for one velocity set, compiled for one instruction set.
@@ -77,15 +77,15 @@ impl Kernel {
     pub(crate) fn new(set: Set, backend: Backend) -> Self {
         match (set, backend) {
             #[cfg(target_arch = "x86_64")]
-            (Set::D3Q19, Backend::Avx512) => kernel!(super::simd::Avx512, D3Q19, 19, "avx512f,fma"),
+            (Set::D3Q19, Backend::Avx512) => kernel!(crate::simd::Avx512, D3Q19, 19, "avx512f,fma"),
             #[cfg(target_arch = "x86_64")]
-            (Set::D3Q19, Backend::Avx2) => kernel!(super::simd::Avx2, D3Q19, 19, "avx2,fma"),
+            (Set::D3Q19, Backend::Avx2) => kernel!(crate::simd::Avx2, D3Q19, 19, "avx2,fma"),
             #[cfg(target_arch = "x86_64")]
             (Set::D3Q27, Backend::Avx512) => {
-                kernel!(super::simd::Avx512, D3Q27, 27, "avx512f,fma")
+                kernel!(crate::simd::Avx512, D3Q27, 27, "avx512f,fma")
             }
             #[cfg(target_arch = "x86_64")]
-            (Set::D3Q27, Backend::Avx2) => kernel!(super::simd::Avx2, D3Q27, 27, "avx2,fma"),
+            (Set::D3Q27, Backend::Avx2) => kernel!(crate::simd::Avx2, D3Q27, 27, "avx2,fma"),
             (Set::D3Q19, _) => kernel!(Portable, D3Q19, 19),
             (Set::D3Q27, _) => kernel!(Portable, D3Q27, 27),
         }

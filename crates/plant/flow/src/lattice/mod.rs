@@ -24,13 +24,11 @@ mod levels;
 mod links;
 mod memory;
 mod planes;
-mod pool;
 mod probe;
 pub mod refinement;
 mod sampling;
 mod scaling;
 mod settings;
-mod simd;
 mod solver;
 pub mod spreading;
 mod state;
@@ -44,6 +42,7 @@ mod values;
 mod wall;
 
 pub use crate::fields::{PlaneAverage, PlaneAverageState, PlaneSizeError, Volume};
+pub use crate::simd::Backend;
 pub use engine::Engine;
 pub use forces::ForceBlock;
 pub use links::{Exchange, Fill, Link, Way};
@@ -52,6 +51,5 @@ pub use scaling::Scaling;
 pub use settings::{
     DEFAULT_SMAGORINSKY, Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil,
 };
-pub use simd::Backend;
 pub use solver::Lattice;
 pub use wall::VON_KARMAN;

@@ -1,8 +1,8 @@
 //! Reading density and velocity out of populations, and writing them in.
 
 use super::layout::{Layout, Parity, read_direction};
-use super::simd::{MAXIMUM_LANES, Simd};
 use super::stencil::{Moments, Stencil};
+use crate::simd::{MAXIMUM_LANES, Simd};
 
 /// The air between two steps.
 #[derive(Clone, Copy)]

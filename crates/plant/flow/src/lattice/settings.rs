@@ -2,7 +2,7 @@
 
 use super::atmosphere::{Atmosphere, AtmosphereError};
 use super::scaling::Scaling;
-use super::simd::Backend;
+use crate::simd::Backend;
 use basis::Vector3;
 use thiserror::Error;
 

@@ -1,6 +1,6 @@
 //! What a velocity set must bring along: its directions, its moments and their exact inverse.
 
-use super::simd::Simd;
+use crate::simd::Simd;
 
 /// Local state of the air in lattice units, one lane per cell.
 #[derive(Clone, Copy)]

@@ -6,8 +6,8 @@
     reason = "loops over constants, to be unrolled; iterators hide the symmetry"
 )]
 
-use super::simd::Simd;
 use super::stencil::{D3Q19, Moments, Stencil, Sums};
+use crate::simd::Simd;
 
 /// Rest, faces, edges and corners of the cube.
 pub(crate) struct D3Q27;

@@ -2,8 +2,8 @@
 //! everywhere.
 
 use super::collision::{Relaxation, relaxation_rate};
-use super::simd::Simd;
 use super::stencil::Moments;
+use crate::simd::Simd;
 
 /// What acts on the air during a step.
 pub(crate) trait Air {

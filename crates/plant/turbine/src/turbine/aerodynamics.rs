@@ -1,6 +1,7 @@
 //! Aerodynamic loads on the blades: by actuator lines where the flow resolves the induction, by momentum
 //! theory where not.
 
+use super::answering::Answering;
 use super::separation::{Flow, Separation};
 use super::{Induction, N_ELEMENTS, TurbineSettings};
 use crate::actuator_line::{ActuatorLine, Load, Onset, QuasiSteady, Scratch, Sections};
@@ -9,7 +10,7 @@ use crate::definition::Definition;
 use crate::motion::ElementMotion;
 use crate::rotor::Frame;
 use crate::structure::{ElementLoad, Pitch};
-use basis::{PerBlade, Vector3};
+use basis::{Answer, PerBlade, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// One of the two models, with its working memory.
@@ -29,6 +30,8 @@ pub(super) struct LineMemory {
     pitch: Vec<f64>,
     loads: Vec<Load>,
     scratch: Scratch,
+    /// Where the air answers to the circulation of elements.
+    answering: Option<Answering>,
 }
 
 /// State of the aerodynamics.
@@ -49,6 +52,7 @@ pub(super) struct Instant<'a> {
     /// Whether it is the first step since the winds were sampled.
     pub(super) first: bool,
     pub(super) winds: &'a [Vector3],
+    pub(super) answer: Option<Answer<'a>>,
     pub(super) motions: &'a [ElementMotion],
     pub(super) pitch: &'a PerBlade<Pitch>,
     pub(super) frame: &'a Frame,
@@ -62,13 +66,16 @@ impl Aerodynamics {
         settings: &TurbineSettings,
     ) -> Self {
         match &settings.induction {
-            Induction::ByFlow { dynamic_stall, .. } => {
+            Induction::ByFlow { dynamic_stall, .. }
+            | Induction::ByBoundVortices { dynamic_stall } => {
                 let n = definition.n_blades * N_ELEMENTS;
+                let answers = matches!(settings.induction, Induction::ByBoundVortices { .. });
                 let memory = LineMemory {
                     onsets: vec![Onset::default(); n],
                     pitch: vec![0.0; n],
                     loads: vec![Load::default(); n],
                     scratch: Scratch::new(definition.n_blades, N_ELEMENTS),
+                    answering: answers.then(|| Answering::new(n)),
                 };
                 let separation =
                     dynamic_stall.then(|| Separation::new(definition, line.elements()));
@@ -188,12 +195,17 @@ impl LineMemory {
                 tangential: -relative.dot(motion.axes.tangent),
             };
         }
-        if now.first {
-            let Self { onsets, pitch, loads, scratch } = self;
+        let Self { onsets, pitch, loads, scratch, answering } = self;
+        if let Some(answering) = answering {
+            if now.first {
+                answering.begin(now.answer, now.motions);
+            }
+            answering.loads(line, onsets, pitch, sections, corrections, loads);
+        } else if now.first {
             line.loads(onsets, now.rotor_speed, pitch, sections, corrections, loads, scratch);
         } else {
             // The wind has not been sampled anew, so the smearing correction is held as well.
-            line.loads_under(&self.onsets, &self.pitch, sections, corrections, &mut self.loads);
+            line.loads_under(onsets, pitch, sections, corrections, loads);
         }
     }
 

@@ -34,6 +34,12 @@ pub enum Induction {
         /// Whether sections have dynamic stall; otherwise their polars hold at once.
         dynamic_stall: bool,
     },
+    /// The resolved flow, which feels bound vortices: the winds given to the turbine contain what all of them
+    /// induce, and the turbine is told how they [answer](basis::Answer) to the circulation of its elements.
+    ByBoundVortices {
+        /// As for [`ByFlow`](Self::ByFlow).
+        dynamic_stall: bool,
+    },
     /// Blade-element momentum theory in the turbine: the winds given do not contain it.
     ByMomentum(rotor::BemSettings),
 }

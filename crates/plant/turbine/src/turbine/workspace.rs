@@ -1,10 +1,11 @@
 //! Working memory of a turbine: what one interval needs at its points, and the forces on the air that it ends
 //! with.
 
+use super::state::Readings;
 use crate::actuator_line::Element;
 use crate::bodies::Body;
 use crate::motion::ElementMotion;
-use crate::rotor::BladeFrame;
+use crate::rotor::{BladeFrame, Frame};
 use crate::structure::ElementLoad;
 use basis::{BoundVortex, PointForce, Vector3};
 
@@ -67,6 +68,19 @@ impl Workspace {
         nacelle
     }
 
+    /// Adds `share` (–) of the loads of a step, in which the rotor stands as `frame` has it, to the sums over
+    /// the interval and to `readings`.
+    pub(super) fn add_loads(&mut self, share: f64, frame: &Frame, readings: &mut Readings) {
+        let Self { loads, motions, sums, .. } = self;
+        for ((load, motion), sum) in loads.iter().zip(&*motions).zip(sums) {
+            sum[0] += share * load.force.dot(motion.axes.normal);
+            sum[1] += share * load.force.dot(motion.axes.tangent);
+            let arm = motion.position - frame.hub;
+            readings.thrust += share * load.force.dot(frame.shaft);
+            readings.aerodynamic_torque += share * arm.cross(load.force).dot(frame.shaft);
+        }
+    }
+
     /// On return it holds the forces on the air of blades of `elements` too, where the winds were sampled:
     /// half the force of a step acts before the instant and half after it, so that a blade's bound vortex
     /// does not induce a velocity on itself.
@@ -78,12 +92,33 @@ impl Workspace {
             let force = axes.normal * sum[0] + axes.tangent * sum[1];
             let bound = circulations.get(index).map(|&circulation| {
                 let (blade, station) = (index / elements.len(), index % elements.len());
-                let along = axes.span * elements[station].width;
-                BoundVortex { blade, station, circulation, along }
+                let Element { width, inner_share, .. } = elements[station];
+                let along = axes.span * width;
+                BoundVortex {
+                    blade,
+                    station,
+                    circulation,
+                    along,
+                    inner_share,
+                    position_after: *position,
+                    along_after: along,
+                }
             });
             let position = *position;
             forces.push(PointForce { position, force: -force, smearing_length, turbine: 0, bound });
         }
         forces.rotate_left(n_bodies);
+    }
+
+    /// On return the bound vortices among the forces of blades of `elements` know where they stand now.
+    pub(super) fn tell_places(&mut self, elements: &[Element]) {
+        let Self { forces, stations, axes, .. } = self;
+        let places = stations.iter().zip(&*axes).zip(elements.iter().cycle());
+        for (force, ((position, axes), element)) in forces.iter_mut().zip(places) {
+            if let Some(bound) = &mut force.bound {
+                bound.position_after = *position;
+                bound.along_after = axes.span * element.width;
+            }
+        }
     }
 }

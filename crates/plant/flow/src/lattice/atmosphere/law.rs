@@ -4,9 +4,9 @@
 use super::coefficients::{Coefficients, Level};
 use super::fields::{Field, Fields};
 use crate::lattice::collision::{Relaxation, twice_relaxation_time};
-use crate::lattice::simd::Simd;
 use crate::lattice::stencil::Moments;
 use crate::lattice::still::{Air, RowAir};
+use crate::simd::Simd;
 
 /// The atmosphere that a step finds.
 pub(crate) struct Stratified<'a> {

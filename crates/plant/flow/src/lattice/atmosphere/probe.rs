@@ -3,8 +3,8 @@
 use super::stratification::Stratification;
 use crate::lattice::layout::read_direction;
 use crate::lattice::probe::View;
-use crate::lattice::simd::{MAXIMUM_LANES, Portable, Simd};
 use crate::lattice::stencil::Stencil;
+use crate::simd::{MAXIMUM_LANES, Portable, Simd};
 
 /// State of a row of cells, in lattice units but for kelvin; padded to whole vectors.
 #[derive(Clone, Debug)]

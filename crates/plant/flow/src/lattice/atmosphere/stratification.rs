@@ -8,8 +8,8 @@ use super::surface::{Surface, SurfaceMemory};
 use super::transport::{Ghosts, Transport, close_row};
 use crate::lattice::layout::{Edge, LINE, Layout};
 use crate::lattice::settings::{Ends, LatticeSettings};
-use crate::lattice::simd::Simd;
 use crate::lattice::values::{read_values, write_values};
+use crate::simd::Simd;
 use std::io::{Read, Result, Write};
 use std::ops::Range;
 

@@ -14,7 +14,7 @@ use super::fields::{Field, Fields, REACH};
 use super::law::beyond;
 use super::stratification::HeatShare;
 use crate::lattice::layout::Edge;
-use crate::lattice::simd::{MAXIMUM_LANES, Simd};
+use crate::simd::{MAXIMUM_LANES, Simd};
 use std::ops::Range;
 
 /// What all rows of a step share.

@@ -9,10 +9,10 @@ use crate::lattice::layout::Layout;
 use crate::lattice::probe::{RowState, View};
 use crate::lattice::scaling::Scaling;
 use crate::lattice::settings::LatticeSettings;
-use crate::lattice::simd::MAXIMUM_LANES;
 use crate::lattice::spreading::Spreader;
 use crate::lattice::sweep::Share;
 use crate::lattice::wall::WallMemory;
+use crate::simd::MAXIMUM_LANES;
 use basis::Vector3;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

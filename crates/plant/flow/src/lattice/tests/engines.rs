@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::lattice::collision::{Relaxation, SUBGRID_FACTOR, collide, relaxation_rate};
-use crate::lattice::simd::{MAXIMUM_LANES, Portable, Simd};
 use crate::lattice::spreading::Spreader;
 use crate::lattice::stencil::{D3Q19, Moments, Stencil as _};
+use crate::simd::{MAXIMUM_LANES, Portable, Simd};
 use crate::{FlowSolver, WindField};
 use basis::PointForce;
 use basis::records::PlaneAxes;

@@ -1,8 +1,8 @@
 //! A velocity set's moments and their inverse.
 
-use super::super::simd::{Portable, Simd};
 use super::super::stencil::{D3Q19, Moments, Stencil as Set, opposite};
 use super::super::stencil27::D3Q27;
+use crate::simd::{Portable, Simd};
 
 fn first_lane(value: Portable) -> f64 {
     let mut lanes = [0.0; 4];

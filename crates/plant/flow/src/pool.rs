@@ -95,6 +95,43 @@ impl Pool {
     }
 }
 
+impl Pool {
+    /// Calls `job(first, chunk)` once for every chunk of `size` of `values`, the last one shorter; `first` is
+    /// the place of its first value. Threads take the next chunk when they are done with one.
+    ///
+    /// # Panics
+    /// When a call does.
+    pub(crate) fn for_chunks<T: Send>(
+        &mut self,
+        values: &mut [T],
+        size: usize,
+        job: &(dyn Fn(usize, &mut [T]) + Sync),
+    ) {
+        let next = AtomicUsize::new(0);
+        let (start, n) = (Start(values.as_mut_ptr()), values.len());
+        let start = &start;
+        self.run(&|_| {
+            loop {
+                let first = next.fetch_add(size, Ordering::Relaxed);
+                if first >= n {
+                    break;
+                }
+                // SAFETY: each chunk is taken by one thread, and `values` is borrowed until all are done.
+                let chunk = unsafe {
+                    std::slice::from_raw_parts_mut(start.0.add(first), size.min(n - first))
+                };
+                job(first, chunk);
+            }
+        });
+    }
+}
+
+/// Where values begin that threads share among them.
+struct Start<T>(*mut T);
+
+// SAFETY: every thread writes to chunks of its own.
+unsafe impl<T: Send> Sync for Start<T> {}
+
 impl Drop for Pool {
     fn drop(&mut self) {
         {
@@ -175,6 +212,19 @@ mod tests {
                 });
             }
             assert!(counts.iter().all(|count| count.load(Ordering::Relaxed) == 200));
+        }
+    }
+
+    #[test]
+    fn chunks_are_made_once_each() {
+        for n_threads in [1, 3] {
+            let mut values = vec![0; 101];
+            Pool::new(n_threads).for_chunks(&mut values, 8, &|first, chunk| {
+                for (k, value) in chunk.iter_mut().enumerate() {
+                    *value += first + k;
+                }
+            });
+            assert!(values.iter().enumerate().all(|(k, value)| k == *value));
         }
     }
 

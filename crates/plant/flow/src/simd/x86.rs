@@ -4,10 +4,33 @@ use super::Simd;
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Sub};
 
+/// # Safety
+/// On a machine with AVX-512F.
+#[inline(always)]
+unsafe fn select512(sign: __m512, negative: __m512, other: __m512) -> __m512 {
+    // SAFETY: the caller promises the instructions.
+    unsafe {
+        let mask = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(sign, _mm512_setzero_ps());
+        _mm512_mask_blend_ps(mask, other, negative)
+    }
+}
+
+/// # Safety
+/// On a machine with AVX.
+#[inline(always)]
+unsafe fn select256(sign: __m256, negative: __m256, other: __m256) -> __m256 {
+    // SAFETY: the caller promises the instructions.
+    unsafe {
+        let mask = _mm256_cmp_ps::<_CMP_LT_OQ>(sign, _mm256_setzero_ps());
+        _mm256_blendv_ps(other, negative, mask)
+    }
+}
+
 macro_rules! vector {
     ($(#[$doc:meta])* $name:ident, $register:ty, $lanes:expr, $load:ident, $store:ident, $splat:ident,
      $add:ident,
-     $sub:ident, $mul:ident, $fmadd:ident, $fnmadd:ident, $div:ident, $sqrt:ident, $max:ident) => {
+     $sub:ident, $mul:ident, $fmadd:ident, $fnmadd:ident, $div:ident, $sqrt:ident, $max:ident,
+     $select:expr) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
         pub(crate) struct $name($register);
@@ -68,6 +91,12 @@ macro_rules! vector {
                 // SAFETY: as above.
                 Self(unsafe { $max(self.0, other.0) })
             }
+
+            #[inline(always)]
+            fn where_negative(self, negative: Self, other: Self) -> Self {
+                // SAFETY: as above.
+                Self(unsafe { $select(self.0, negative.0, other.0) })
+            }
         }
 
         impl Add for $name {
@@ -102,10 +131,12 @@ macro_rules! vector {
 vector!(
     /// Sixteen lanes.
     Avx512, __m512, 16, _mm512_loadu_ps, _mm512_storeu_ps, _mm512_set1_ps, _mm512_add_ps, _mm512_sub_ps,
-    _mm512_mul_ps, _mm512_fmadd_ps, _mm512_fnmadd_ps, _mm512_div_ps, _mm512_sqrt_ps, _mm512_max_ps
+    _mm512_mul_ps, _mm512_fmadd_ps, _mm512_fnmadd_ps, _mm512_div_ps, _mm512_sqrt_ps, _mm512_max_ps,
+    select512
 );
 vector!(
     /// Eight lanes.
     Avx2, __m256, 8, _mm256_loadu_ps, _mm256_storeu_ps, _mm256_set1_ps, _mm256_add_ps, _mm256_sub_ps,
-    _mm256_mul_ps, _mm256_fmadd_ps, _mm256_fnmadd_ps, _mm256_div_ps, _mm256_sqrt_ps, _mm256_max_ps
+    _mm256_mul_ps, _mm256_fmadd_ps, _mm256_fnmadd_ps, _mm256_div_ps, _mm256_sqrt_ps, _mm256_max_ps,
+    select256
 );

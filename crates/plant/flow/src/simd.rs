@@ -8,14 +8,14 @@ pub(crate) use x86::{Avx2, Avx512};
 
 use std::ops::{Add, Mul, Sub};
 
-/// Instruction set that a lattice runs on.
+/// Instruction set that a solver runs on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Backend {
-    /// x86-64 with AVX-512F: sixteen cells at once.
+    /// x86-64 with AVX-512F: sixteen values at once.
     Avx512,
-    /// x86-64 with AVX2 and FMA: eight cells at once.
+    /// x86-64 with AVX2 and FMA: eight values at once.
     Avx2,
-    /// Any machine: four cells at once, as far as the compiler sees them.
+    /// Any machine: four values at once, as far as the compiler sees them.
     Portable,
 }
 
@@ -51,7 +51,7 @@ impl Backend {
     }
 }
 
-/// A vector of `f32`, one lane per cell.
+/// A vector of `f32`, one lane per cell or element.
 ///
 /// Every implementation is `#[inline(always)]`, so that a kernel generic over it compiles into the
 /// instructions of whichever `#[target_feature]` function it is inlined into; a closure in between would not
@@ -62,7 +62,7 @@ impl Backend {
 pub(crate) trait Simd:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
-    /// Cells in a vector (–).
+    /// Values in a vector (–).
     const LANES: usize;
 
     /// # Safety
@@ -93,6 +93,9 @@ pub(crate) trait Simd:
 
     /// The greater of two numbers.
     fn maximum(self, other: Self) -> Self;
+
+    /// `negative` in lanes below zero, `other` in all others.
+    fn where_negative(self, negative: Self, other: Self) -> Self;
 }
 
 /// Widest vector of any back-end (–).
@@ -176,6 +179,12 @@ impl Simd for Portable {
     fn maximum(self, other: Self) -> Self {
         let (a, b) = (self.0, other.0);
         Self([a[0].max(b[0]), a[1].max(b[1]), a[2].max(b[2]), a[3].max(b[3])])
+    }
+
+    #[inline(always)]
+    fn where_negative(self, negative: Self, other: Self) -> Self {
+        let lane = |i: usize| if self.0[i] < 0.0 { negative.0[i] } else { other.0[i] };
+        Self([lane(0), lane(1), lane(2), lane(3)])
     }
 }
 

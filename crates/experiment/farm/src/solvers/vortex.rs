@@ -1,0 +1,242 @@
+//! `vortex`: lifting lines shed free vortices into the wind.
+
+use super::prescribed::{planes_objections, turbulence_objections, uniform_objections};
+use super::{Alone, Objection, PRESCRIBED, SolverError, SolverKind, Start, WindSource};
+use crate::air::Air;
+use crate::case::{Case, Flow, Wind};
+use crate::plan::{self, Layout, Plan, PlanError, Turning};
+use crate::wind;
+use basis::Vector3;
+use basis::keys::LeftOut::Value;
+use basis::keys::{Holds, Key, Values, above, from, key};
+use flow::inflow::{MeanProfile, PrescribedWind};
+use flow::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
+use std::sync::Arc;
+
+/// Speed at which a wake is carried at least, over the wind's (–): rows are there for so slow a wake.
+const SLOWEST: f64 = 0.4;
+/// Usual speed of a wake over the wind's (–).
+const USUAL: f64 = 0.65;
+/// Angle by which a rotor turns in a step beyond which a reader must know (rad).
+const TURN_TO_WARN: f64 = 20.0 * std::f64::consts::PI / 180.0;
+/// Length of a wake beyond which a reader must know what it is not (diameters).
+const LENGTH_TO_WARN: f64 = 8.0;
+/// Blades of a turbine, before turbines are known (–).
+const N_BLADES: usize = 3;
+
+/// Keys of `[flow]` for a free wake.
+static KEYS: [Key; 11] = [
+    key(
+        "steps_per_turn",
+        from(8.0, 720.0),
+        "–",
+        Value("60"),
+        "Steps to a turn of the fastest rotor, where `step` is left out.",
+    ),
+    key(
+        "wake_length_diameters",
+        above(0.0, 40.0),
+        "D",
+        Value("6"),
+        "Length of the wake behind each rotor; its last 15 % fade. Time grows a little faster than it.",
+    ),
+    key(
+        "near_wake_diameters",
+        above(0.0, 40.0),
+        "D",
+        Value("0.25"),
+        "Length of wake that keeps every step and every blade element.",
+    ),
+    key(
+        "far_wake_filaments",
+        Holds::Whole { least: 2, most: 33 },
+        "–",
+        Value("9"),
+        "Trailing vortices of each blade further down.",
+    ),
+    key(
+        "far_wake_steps",
+        Holds::Whole { least: 1, most: 8 },
+        "–",
+        Value("2"),
+        "Steps to a segment further down.",
+    ),
+    key(
+        "core_widths",
+        above(0.0, 5.0),
+        "–",
+        Value("0.3"),
+        "Radius of a vortex' core where it leaves the blade, over the width of the blade elements there.",
+    ),
+    key(
+        "core_growth",
+        from(0.0, 0.1),
+        "–",
+        Value("0.0001"),
+        "Squire's constant a₁: cores grow as √(4 α (ν + a₁ |Γ|) t). Bhagwat and Leishman found 0.00006 to 0.0002.",
+    ),
+    key(
+        "ground_effect",
+        Holds::Choice(&["image", "none"]),
+        "",
+        Value("\"image\""),
+        "`image`: the air does not pass the ground, every vortex has an image below it. `none`: there is no ground.",
+    ),
+    key(
+        "tree_degree",
+        Holds::Whole { least: 2, most: 6 },
+        "–",
+        Value("3"),
+        "Degree of the polynomials by which vortices are felt from afar.",
+    ),
+    key(
+        "tree_opening",
+        from(0.0, 0.9),
+        "–",
+        Value("0.6"),
+        "A box of vortices is far where its radius is less than this share of its distance; 0 sums them one by one.",
+    ),
+    key(
+        "points_per_diameter",
+        from(4.0, 200.0),
+        "–",
+        Value("16"),
+        "Points of planes and volumes across the first rotor. They show the wake; nothing is computed on them.",
+    ),
+];
+
+/// Lifting lines that shed free vortices.
+pub static VORTEX: SolverKind = SolverKind {
+    name: "vortex",
+    about: "free-vortex wakes of lifting lines in prescribed wind of any kind; turbines are in each other's wakes",
+    keys: &KEYS,
+    wind: WindSource::Any,
+    resolves_induction: true,
+    has_wakes: true,
+    uses_bound_vortices: true,
+    objections,
+    warnings,
+    plan: laid_out,
+    reach: |case, plan| length(&case.flow.values, plan.diameter),
+    memory: |case, plan| FreeWake::memory_of(&settings(case, plan, N_BLADES * case.turbines.len())),
+    begin,
+    begin_alone,
+    ..PRESCRIBED
+};
+
+fn laid_out(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
+    let values = &case.flow.values;
+    let turning = Turning {
+        steps_per_turn: values.number("steps_per_turn"),
+        points_per_diameter: values.number("points_per_diameter"),
+        length: values.number("wake_length_diameters"),
+    };
+    plan::by_turns(case, layout, &turning)
+}
+
+fn length(values: &Values, diameter: f64) -> f64 {
+    values.number("wake_length_diameters") * diameter
+}
+
+/// Settings of the wakes of `n_blades` blades in all.
+fn settings(case: &Case, plan: &Plan, n_blades: usize) -> WakeSettings {
+    let mut values = Values::defaults(&KEYS);
+    values.extend(case.flow.values.iter().map(|(key, value)| (key, value.clone())));
+    let count = |name: &str| values.number(name) as usize;
+    let rows = |length: f64, share: f64| length / (share * case.wind.speed * plan.interval);
+    let near = values.number("near_wake_diameters") * plan.diameter;
+    let (length, stride) = (length(&values, plan.diameter), count("far_wake_steps"));
+    let far_rows = rows((length - near).max(0.0), SLOWEST) / stride as f64;
+    WakeSettings {
+        interval: plan.interval,
+        resolution: Resolution {
+            near_rows: rows(near, USUAL).ceil() as usize,
+            far_stride: stride,
+            far_filaments: count("far_wake_filaments"),
+            length,
+            far_rows: far_rows.ceil() as usize + 2,
+        },
+        cores: Cores {
+            initial_widths: values.number("core_widths"),
+            kinematic_viscosity: case.wind.kinematic_viscosity,
+            eddy_constant: values.number("core_growth"),
+        },
+        accuracy: Accuracy { degree: count("tree_degree"), opening: values.number("tree_opening") },
+        ground: values.word("ground_effect") == "image",
+        shown: Points {
+            first: plan.origin + Vector3::splat(0.5 * plan.spacing),
+            spacing: plan.spacing,
+            n: plan.n_points,
+        },
+        n_blades,
+        n_elements: turbine::N_ELEMENTS,
+        threads: case.flow.threads,
+    }
+}
+
+fn begin(start: Start) -> Result<Air, SolverError> {
+    let Start { site, inflow, planes, progress } = start;
+    let blades: usize = site.models.iter().map(|model| model.definition.n_blades).sum();
+    let settings = settings(site.case, site.plan, blades);
+    if site.case.wind_source() == WindSource::Planes && planes.is_none() {
+        return Err(SolverError::NoPlanes { solver: VORTEX.name });
+    }
+    let wind = wind::prescribed(&site, inflow, planes, progress)?;
+    Ok(Box::new(FreeWake::new(settings, wind)?))
+}
+
+fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
+    let profile = MeanProfile::Uniform { speed: alone.wind.speed };
+    let wind = PrescribedWind::everywhere(Arc::new(profile));
+    let rows = |diameters: f64| {
+        let speed = USUAL * alone.wind.speed * alone.tunnel.interval;
+        (diameters * alone.diameter / speed).ceil() as usize
+    };
+    let settings = WakeSettings {
+        interval: alone.tunnel.interval,
+        resolution: Resolution {
+            near_rows: rows(0.25),
+            far_stride: 4,
+            far_filaments: 9,
+            length: 4.0 * alone.diameter,
+            far_rows: 2 * rows(4.0) / 4,
+        },
+        cores: Cores {
+            initial_widths: 0.3,
+            kinematic_viscosity: alone.wind.kinematic_viscosity,
+            eddy_constant: 1e-4,
+        },
+        accuracy: Accuracy { degree: 3, opening: 0.6 },
+        ground: false,
+        shown: Points::NONE,
+        n_blades: N_BLADES,
+        n_elements: turbine::N_ELEMENTS,
+        threads: alone.threads,
+    };
+    Ok(Box::new(FreeWake::new(settings, wind)?))
+}
+
+fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let turn = plan.turn.to_degrees();
+    if plan.turn > TURN_TO_WARN {
+        warnings.push(format!(
+            "a rotor turns by {turn:.0}° in a step: its wake is a polygon more than a helix; lower flow.step or raise flow.steps_per_turn"
+        ));
+    }
+    let length = case.flow.values.number("wake_length_diameters");
+    if length > LENGTH_TO_WARN {
+        warnings.push(format!(
+            "wakes of {length} diameters: free vortices do not break down as a wake does beyond some 4 diameters, for they know no eddies smaller than themselves; take flow.solver = \"lattice\" for the far wake"
+        ));
+    }
+    warnings
+}
+
+fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
+    match WindSource::Any.of(wind) {
+        WindSource::Planes => planes_objections(wind, flow),
+        WindSource::AroundRotors => turbulence_objections(wind, flow),
+        _ => uniform_objections(wind, flow),
+    }
+}

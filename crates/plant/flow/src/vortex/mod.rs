@@ -1,0 +1,25 @@
+//! A free-vortex wake: lifting lines shed their vorticity into the wind, which carries it, and which it
+//! moves.
+
+mod direct;
+mod field;
+mod interpolation;
+mod planes;
+mod rotor;
+mod segment;
+mod settings;
+mod sheet;
+mod state;
+mod strip;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod wake;
+
+pub use direct::direct;
+pub use field::{Accuracy, induced};
+pub use interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};
+pub use segment::{Cores, Segment};
+pub use settings::{Points, WakeError, WakeSettings};
+pub use sheet::Resolution;
+pub use wake::FreeWake;

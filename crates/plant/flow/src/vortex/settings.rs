@@ -1,0 +1,105 @@
+//! What a free wake is set up with.
+
+use super::field::Accuracy;
+use super::segment::Cores;
+use super::sheet::{Resolution, Sheet};
+use basis::Vector3;
+use thiserror::Error;
+
+/// Settings of a free wake.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WakeSettings {
+    /// Step (s), the only one that it is advanced by.
+    pub interval: f64,
+    /// How wakes are resolved, and where they end.
+    pub resolution: Resolution,
+    /// How cores begin and grow.
+    pub cores: Cores,
+    /// How exact induced velocities are.
+    pub accuracy: Accuracy,
+    /// Whether there is a ground at z = 0, which the air does not pass: every vortex has an image below it.
+    pub ground: bool,
+    /// Points of planes and volumes.
+    pub shown: Points,
+    /// Blades in all (–), for whose wakes memory is made.
+    pub n_blades: usize,
+    /// Elements of a blade (–).
+    pub n_elements: usize,
+    /// Threads; all cores when absent. The result does not depend on it.
+    pub threads: Option<usize>,
+}
+
+/// Points of a box at which planes and volumes show the wind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Points {
+    /// The first one, farm frame (m).
+    pub first: Vector3,
+    /// Distance of neighbours (m).
+    pub spacing: f64,
+    /// Points along x, y, z (–).
+    pub n: [usize; 3],
+}
+
+impl Points {
+    /// None at all.
+    pub const NONE: Self = Self { first: Vector3::ZERO, spacing: 1.0, n: [0; 3] };
+}
+
+/// Why a wake cannot be set up.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum WakeError {
+    /// A number that cannot be.
+    #[error("a free wake cannot have {name} = {value}; expected {expected}")]
+    Setting {
+        /// What it is.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What would do.
+        expected: &'static str,
+    },
+}
+
+impl WakeSettings {
+    /// Most segments that the wakes can have (–).
+    pub fn most_segments(&self) -> usize {
+        self.n_blades * Sheet::most_segments(self.n_elements, &self.resolution)
+    }
+
+    /// # Errors
+    /// [`WakeError`] names what cannot be.
+    pub fn check(&self) -> Result<(), WakeError> {
+        let Self { interval, resolution, cores, accuracy, .. } = self;
+        let positive = [
+            ("step (s)", *interval),
+            ("length (m)", resolution.length),
+            ("rows near the blade", resolution.near_rows as f64),
+            ("steps from row to row", resolution.far_stride as f64),
+            ("core at birth over widths", cores.initial_widths),
+        ];
+        let not_negative = [
+            ("viscosity (m²/s)", cores.kinematic_viscosity),
+            ("eddy constant of cores", cores.eddy_constant),
+            ("opening of the tree", accuracy.opening),
+        ];
+        let refuse = |name, value, expected| Err(WakeError::Setting { name, value, expected });
+        for (name, value) in positive {
+            if !(value.is_finite() && value > 0.0) {
+                return refuse(name, value, "a positive number");
+            }
+        }
+        for (name, value) in not_negative {
+            if !(value.is_finite() && value >= 0.0) {
+                return refuse(name, value, "zero or a positive number");
+            }
+        }
+        if accuracy.opening >= 1.0 {
+            return refuse("opening of the tree", accuracy.opening, "less than 1");
+        }
+        if resolution.far_filaments < 2 {
+            let value = resolution.far_filaments as f64;
+            return refuse("trailing vortices of a blade", value, "two at least");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,365 @@
+//! The wake of one blade: a strip of rings as fine as its elements, which becomes coarser further down.
+
+use super::segment::{Cores, Segment};
+use super::strip::Strip;
+use basis::Vector3;
+
+/// Share of the wake's length over which its end fades (–).
+const FADING: f64 = 0.15;
+/// Least area of a ring over that of those which it stands for (–).
+const LEAST_AREA: f64 = 0.7;
+/// Core of a blade's bound vortex over the width of its elements (–): a bent blade is no straight line, and
+/// its bound vortex is to have no effect on its own elements.
+const BOUND_CORE: f64 = 0.5;
+
+/// How the wakes of blades are resolved, and where they end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Rows behind the blade that are as fine as steps and elements (–).
+    pub near_rows: usize,
+    /// Steps from row to row further down (–).
+    pub far_stride: usize,
+    /// Trailing vortices of a blade further down (–).
+    pub far_filaments: usize,
+    /// Length of the wake along x behind its blade (m); its last part fades.
+    pub length: f64,
+    /// Most rows further down (–); the oldest ones end beyond.
+    pub far_rows: usize,
+}
+
+/// The wake of one blade, its youngest row the blade's bound vortex itself.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Sheet {
+    /// Turbine and blade that it belongs to.
+    pub(super) owner: [usize; 2],
+    pub(super) near: Strip,
+    /// Its youngest rings end at the oldest row of `near`.
+    pub(super) far: Strip,
+    /// Nodes of `near` that `far` keeps.
+    kept: Vec<usize>,
+    resolution: Resolution,
+}
+
+impl Sheet {
+    /// Nothing yet, behind blade `owner` (turbine, blade) of `n_elements`.
+    pub(super) fn new(owner: [usize; 2], n_elements: usize, resolution: Resolution) -> Self {
+        let n_kept = resolution.far_filaments.clamp(2, n_elements + 1) - 1;
+        let kept: Vec<usize> =
+            (0..=n_kept).map(|k| (2 * k * n_elements + n_kept) / (2 * n_kept)).collect();
+        let near_rows = resolution.near_rows + resolution.far_stride + 2;
+        Self {
+            owner,
+            near: Strip::with_capacity(n_elements + 1, near_rows),
+            far: Strip::with_capacity(kept.len(), resolution.far_rows + 1),
+            kept,
+            resolution,
+        }
+    }
+
+    /// Elements of its blade (–).
+    pub(super) fn n_elements(&self) -> usize {
+        self.near.n_nodes() - 1
+    }
+
+    /// Most segments that a blade's wake of `n_elements` can have at `resolution` (–).
+    pub(super) fn most_segments(n_elements: usize, resolution: &Resolution) -> usize {
+        let rows = |n_rows: usize, n_nodes: usize| n_rows * (2 * n_nodes - 1);
+        rows(resolution.near_rows + resolution.far_stride + 1, n_elements + 1)
+            + rows(resolution.far_rows + 1, resolution.far_filaments.min(n_elements + 1))
+    }
+
+    /// The bound vortex now has the nodes of `line`, and rings of `circulations` (m²/s) leave it. The rings
+    /// of what was the youngest row before end here.
+    pub(super) fn place_line(&mut self, line: &[Vector3], circulations: &[f64]) {
+        let at_rest = line.iter().map(|node| (*node, Vector3::ZERO));
+        self.near.push(at_rest, 0.0, circulations.iter().copied());
+        if self.near.n_rows() > 1 {
+            let row = self.near.n_rows() - 2;
+            self.leave(row, circulations);
+        }
+        if self.near.n_rows() > self.resolution.near_rows + self.resolution.far_stride {
+            self.coarsen();
+        }
+        self.shorten();
+    }
+
+    /// The rings that leave the blade in this step have `circulations` (m²/s).
+    pub(super) fn release(&mut self, circulations: &[f64]) {
+        if let Some(row) = self.near.n_rows().checked_sub(2) {
+            self.leave(row, circulations);
+        }
+    }
+
+    fn leave(&mut self, row: usize, circulations: &[f64]) {
+        let n = circulations.len();
+        self.near.circulations[row * n..(row + 1) * n].copy_from_slice(circulations);
+    }
+
+    /// Makes one row further down of the oldest rows near the blade. A ring has as much circulation times
+    /// area as those that it stands for, so that the impulse of the wake stays although chords cut arcs
+    /// short.
+    fn coarsen(&mut self) {
+        let Self { near, far, kept, resolution, .. } = self;
+        let stride = resolution.far_stride;
+        let area = |rows: [usize; 2], nodes: [usize; 2]| {
+            let [old, young] = rows.map(|row| near.row(row));
+            let diagonals = [young[nodes[1]] - old[nodes[0]], young[nodes[0]] - old[nodes[1]]];
+            0.5 * diagonals[0].cross(diagonals[1]).length()
+        };
+        let ring = |pair: &[usize]| {
+            let (mut impulse, mut areas) = (0.0, 0.0);
+            for row in 0..stride {
+                for s in pair[0]..pair[1] {
+                    let of_ring = area([row, row + 1], [s, s + 1]);
+                    impulse += of_ring * near.rings(row)[s];
+                    areas += of_ring;
+                }
+            }
+            // A folded ring has no area to speak of.
+            let own = area([0, stride], [pair[0], pair[1]]).max(LEAST_AREA * areas);
+            if own > 0.0 { impulse / own } else { 0.0 }
+        };
+        let nodes = kept.iter().map(|&s| (near.positions[s], near.velocities[s]));
+        far.push(nodes, near.ages[0], kept.windows(2).map(ring));
+        near.drop_oldest(stride);
+    }
+
+    /// Drops rows that lie beyond the wake's length.
+    fn shorten(&mut self) {
+        let line = self.near.place(self.near.n_rows() - 1);
+        let end = line + self.resolution.length;
+        let beyond = |strip: &Strip, rows: usize| {
+            (0..rows).take_while(|&row| strip.place(row) > end).count()
+        };
+        // A row stays as long as the next one is within reach: a ring fades before it goes.
+        let n_far = self.far.n_rows();
+        let n = beyond(&self.far, n_far)
+            .saturating_sub(1)
+            .max(n_far.saturating_sub(self.resolution.far_rows));
+        self.far.drop_oldest(n);
+        if self.far.n_rows() == 0 {
+            let rows = self.near.n_rows().saturating_sub(2);
+            let n = beyond(&self.near, rows).saturating_sub(1);
+            self.near.drop_oldest(n);
+        }
+    }
+
+    /// What of the circulation of rings between two places along x (m) is left where the wake fades (–).
+    fn share(&self, places: [f64; 2], line: f64) -> f64 {
+        let left = 1.0 - (0.5 * (places[0] + places[1]) - line) / self.resolution.length;
+        let share = (left / FADING).clamp(0.0, 1.0);
+        share * share * (3.0 - 2.0 * share)
+    }
+
+    /// Adds the segments of all rings to `segments`, neighbours joined.
+    pub(super) fn push_segments(&self, cores: &Cores, segments: &mut Vec<Segment>) {
+        let Some(newest) = self.near.n_rows().checked_sub(1) else { return };
+        let line = self.near.place(newest);
+        let births = Births::of(self.near.row(newest), cores);
+        let mut filaments = Filaments { cores, segments };
+        let share = self.push_far(line, &births, &mut filaments);
+        self.push_near(line, &births, share, &mut filaments);
+    }
+
+    /// Adds those of the rings further down; gives what is left of the youngest of them (–).
+    fn push_far(&self, line: f64, births: &Births, filaments: &mut Filaments) -> f64 {
+        let Self { near, far, kept, .. } = self;
+        let born = |s: usize| births.at(kept[s]);
+        let mut older_share = 0.0;
+        for row in 0..far.n_rows() {
+            let is_last = row + 1 == far.n_rows();
+            let young = if is_last { near.row(0) } else { far.row(row + 1) };
+            let node = |s: usize| young[if is_last { kept[s] } else { s }];
+            let (age, place) = match is_last {
+                true => (near.ages[0], near.place(0)),
+                false => (far.ages[row + 1], far.place(row + 1)),
+            };
+            let share = self.share([far.place(row), place], line);
+            let (old, rings) = (far.row(row), far.rings(row));
+            let older = &far.circulations[row.saturating_sub(1) * rings.len()..];
+            filaments.trailing(old, node, [far.ages[row], age], |s| share * rings[s], born);
+            let excess = |s: usize| older_share * older[s] - share * rings[s];
+            let core = |s: usize| 0.5 * (born(s) + born(s + 1));
+            filaments.spanwise(old, far.ages[row], excess, core);
+            older_share = share;
+        }
+        older_share
+    }
+
+    /// Adds those of the rings near the blade, behind which rings are left with `older_share` (–).
+    fn push_near(
+        &self,
+        line: f64,
+        births: &Births,
+        mut older_share: f64,
+        filaments: &mut Filaments,
+    ) {
+        let Self { near, far, kept, .. } = self;
+        let newest = near.n_rows() - 1;
+        let born = |s: usize| births.at(s);
+        for row in 0..newest {
+            let share = self.share([near.place(row), near.place(row + 1)], line);
+            let (old, young, rings) = (near.row(row), near.row(row + 1), near.rings(row));
+            let ages = [near.ages[row], near.ages[row + 1]];
+            filaments.trailing(old, |s| young[s], ages, |s| share * rings[s], born);
+            let older = |s: usize| match (row, far.n_rows()) {
+                (0, 0) => 0.0,
+                (0, n) => far.rings(n - 1)[kept.partition_point(|&k| k <= s) - 1],
+                _ => near.rings(row - 1)[s],
+            };
+            let excess = |s: usize| older_share * older(s) - share * rings[s];
+            let core = |s: usize| 0.5 * (born(s) + born(s + 1));
+            filaments.spanwise(old, near.ages[row], excess, core);
+            older_share = share;
+        }
+        if let Some(last) = newest.checked_sub(1) {
+            let bound = |s: usize| older_share * near.rings(last)[s];
+            filaments.spanwise(near.row(newest), 0.0, bound, |s| births.bound(s));
+        }
+    }
+
+    /// The four sides of the youngest ring of element number `s`, of unit circulation; none as long as the
+    /// blade has left nothing.
+    pub(super) fn youngest_ring(&self, cores: &Cores, s: usize) -> Option<[Segment; 4]> {
+        let near = &self.near;
+        let newest = near.n_rows().checked_sub(2)? + 1;
+        let (old, young) = (near.row(newest - 1), near.row(newest));
+        let births = Births::of(young, cores);
+        let gamma = near.rings(newest - 1)[s];
+        let age = near.ages[newest - 1];
+        let grown = |born: f64, age: f64| cores.squared(born, age, gamma);
+        let side = |from: Vector3, to: Vector3, core_squared: f64| Segment {
+            from,
+            to,
+            circulation: 1.0,
+            core_squared,
+        };
+        let spanwise = 0.5 * (births.at(s) + births.at(s + 1));
+        Some([
+            side(young[s], young[s + 1], births.bound(s)),
+            side(young[s + 1], old[s + 1], grown(births.at(s + 1), 0.5 * age)),
+            side(old[s + 1], old[s], grown(spanwise, age)),
+            side(old[s], young[s], grown(births.at(s), 0.5 * age)),
+        ])
+    }
+}
+
+/// Squares of cores at birth (m²) on the bound vortex `line`.
+struct Births<'a> {
+    line: &'a [Vector3],
+    initial_widths: f64,
+}
+
+impl<'a> Births<'a> {
+    fn of(line: &'a [Vector3], cores: &Cores) -> Self {
+        Self { line, initial_widths: cores.initial_widths }
+    }
+
+    /// Of what trails from node `s`, between elements whose mean width decides.
+    fn at(&self, s: usize) -> f64 {
+        let (low, high) = (s.saturating_sub(1), (s + 1).min(self.line.len() - 1));
+        let width = (self.line[high] - self.line[low]).length() / (high - low) as f64;
+        (self.initial_widths * width).powi(2)
+    }
+
+    /// Of the bound vortex of element `s`.
+    fn bound(&self, s: usize) -> f64 {
+        BOUND_CORE.powi(2) * (self.line[s + 1] - self.line[s]).length_squared()
+    }
+}
+
+/// Segments as they are added.
+struct Filaments<'a> {
+    cores: &'a Cores,
+    segments: &'a mut Vec<Segment>,
+}
+
+impl Filaments<'_> {
+    /// From the younger row, whose nodes are `young`, to the `old` one: what a ring has more than its outer
+    /// neighbour. `ages` (s) are those of old and young, `gamma` the rings' circulations.
+    fn trailing(
+        &mut self,
+        old: &[Vector3],
+        young: impl Fn(usize) -> Vector3,
+        ages: [f64; 2],
+        gamma: impl Fn(usize) -> f64,
+        born: impl Fn(usize) -> f64,
+    ) {
+        let (n, age) = (old.len() - 1, 0.5 * (ages[0] + ages[1]));
+        let mut inner = 0.0;
+        for (s, to) in old.iter().enumerate() {
+            let outer = if s < n { gamma(s) } else { 0.0 };
+            self.push(young(s), *to, inner - outer, born(s), age);
+            inner = outer;
+        }
+    }
+
+    /// Along a `row` of `age` (s), from root to tip.
+    fn spanwise(
+        &mut self,
+        row: &[Vector3],
+        age: f64,
+        gamma: impl Fn(usize) -> f64,
+        born: impl Fn(usize) -> f64,
+    ) {
+        for (s, ends) in row.windows(2).enumerate() {
+            self.push(ends[0], ends[1], gamma(s), born(s), age);
+        }
+    }
+
+    fn push(&mut self, from: Vector3, to: Vector3, circulation: f64, born: f64, age: f64) {
+        let core_squared = self.cores.squared(born, age, circulation);
+        self.segments.push(Segment { from, to, circulation, core_squared });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Impulse over density, ½ Σ Γ x × dl, of the wake that a blade of 60 m leaves in two turns at
+    /// `resolution` (m⁴/s).
+    fn impulse(resolution: Resolution) -> Vector3 {
+        const N: usize = 16;
+        let cores = Cores { initial_widths: 0.1, kinematic_viscosity: 1.5e-5, eddy_constant: 0.0 };
+        let mut sheet = Sheet::new([0, 0], N, resolution);
+        let circulations: Vec<f64> = (0..N)
+            .map(|s| 30.0 * (1.0 - ((s as f64 + 0.5) / N as f64 * 2.0 - 1.0).powi(4)))
+            .collect();
+        for step in 0..=96 {
+            let angle = std::f64::consts::TAU * f64::from(step) / 48.0;
+            let radial = Vector3::new(0.0, -angle.sin(), angle.cos());
+            let place = Vector3::X * (-0.8 * f64::from(step));
+            let line: Vec<Vector3> =
+                (0..=N).map(|s| place + radial * (4.0 + 56.0 * s as f64 / N as f64)).collect();
+            sheet.place_line(&line, &circulations);
+        }
+        let mut segments = Vec::new();
+        sheet.push_segments(&cores, &mut segments);
+        let of = |segment: &Segment| {
+            let middle = 0.5 * (segment.from + segment.to);
+            middle.cross(segment.to - segment.from) * (0.5 * segment.circulation)
+        };
+        segments.iter().map(of).sum()
+    }
+
+    #[test]
+    fn a_coarser_wake_has_the_same_impulse() {
+        let fine = Resolution {
+            near_rows: 100,
+            far_stride: 1,
+            far_filaments: 17,
+            length: 1e6,
+            far_rows: 100,
+        };
+        let whole = impulse(fine);
+        // The blade pushes the air upwind: its rings point that way.
+        assert!(whole.x.abs() > 1e5 && whole.x.abs() > 10.0 * whole.y.hypot(whole.z), "{whole}");
+        for (far_stride, far_filaments) in [(1, 5), (2, 9), (4, 5), (4, 2)] {
+            let coarse = impulse(Resolution { near_rows: 8, far_stride, far_filaments, ..fine });
+            // Rings are tilted by their pitch, each by another angle: of that squared, a hundredth, some.
+            let error = (coarse.x / whole.x - 1.0).abs();
+            assert!(error < 5e-3, "{far_stride} {far_filaments}: {coarse} {whole}");
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Vortices with closed forms, and solvers against each other.
+
+mod closed_forms;
+mod coaxial;
+mod fields;
+mod shapes;
+mod wakes;

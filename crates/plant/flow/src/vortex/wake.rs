@@ -1,0 +1,255 @@
+//! The wakes of all blades in the wind, as a flow.
+
+use super::field::{CHUNK, Field};
+use super::rotor::Rotor;
+use super::segment::Segment;
+use super::settings::{WakeError, WakeSettings};
+use super::sheet::Sheet;
+use crate::inflow::PrescribedWind;
+use crate::pool::Pool;
+use crate::simd::Backend;
+use crate::{FlowError, FlowSolver, WindField};
+use basis::{Answer, PointForce, Vector3};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Speed that no air has that these equations hold for (m/s): sound.
+const FASTEST: f64 = 340.0;
+/// Lowest that a node of a wake over ground comes (m).
+const LOWEST: f64 = 0.01;
+
+/// Lifting lines in the wind, and the wakes that they shed.
+///
+/// Each step every node of the wake moves with the wind and with what all vortices induce, second order in
+/// time. The rings that leave the blades in a step carry the circulation of that very step: the flow tells a
+/// turbine how its wind [answers](FlowSolver::answer), and both are found together. The lift that goes with a
+/// circulation is the turbine's (Kutta-Joukowski); forces without a bound vortex leave no trace.
+///
+/// Limits: the air is incompressible and free of turbulence of its own making; vorticity of shear in the wind
+/// is carried by the wind as it is and not by nodes; bodies such as towers do not push the air aside.
+pub struct FreeWake {
+    pub(super) settings: WakeSettings,
+    pub(super) wind: PrescribedWind,
+    pub(super) sheets: Vec<Sheet>,
+    /// One for each turbine that was met, in the order of their places in the farm.
+    pub(super) rotors: Vec<Rotor>,
+    segments: Vec<Segment>,
+    field: Field,
+    nodes: Vec<Vector3>,
+    winds: Vec<Vector3>,
+    induced: Vec<Vector3>,
+    pool: Mutex<Pool>,
+    /// Room for the wind on planes.
+    pub(super) room: Mutex<Vec<Vector3>>,
+    n_threads: usize,
+}
+
+impl FreeWake {
+    /// No wake yet in `wind`.
+    ///
+    /// # Errors
+    /// [`WakeError`] for settings that cannot be.
+    pub fn new(settings: WakeSettings, wind: PrescribedWind) -> Result<Self, WakeError> {
+        settings.check()?;
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        let n_threads = settings.threads.unwrap_or_else(cores).max(1);
+        let most = settings.most_segments();
+        let field = Field::with_capacity(settings.accuracy, Backend::detect(), most);
+        Ok(Self {
+            wind,
+            sheets: Vec::new(),
+            rotors: Vec::new(),
+            segments: Vec::with_capacity(most),
+            field,
+            nodes: Vec::with_capacity(most),
+            winds: Vec::with_capacity(most),
+            induced: Vec::with_capacity(most),
+            pool: Mutex::new(Pool::new(n_threads)),
+            room: Mutex::new(Vec::new()),
+            n_threads,
+            settings,
+        })
+    }
+
+    /// Time (s).
+    pub fn time(&self) -> f64 {
+        self.wind.time()
+    }
+
+    /// Threads (–).
+    pub fn n_threads(&self) -> usize {
+        self.n_threads
+    }
+
+    /// Instructions that it runs on.
+    pub fn backend(&self) -> &'static str {
+        self.field.backend().name()
+    }
+
+    /// All vortices now.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// Memory that wakes take at `settings` (bytes).
+    pub fn memory_of(settings: &WakeSettings) -> u64 {
+        // A segment in double precision, its lanes and its share of boxes; two of three have a node with
+        // position, velocities, wind and what is induced.
+        const OF_SEGMENT: u64 = 64 + 4 + 32 + 200 + 5 * 24;
+        settings.most_segments() as u64 * OF_SEGMENT
+    }
+
+    /// The same for these.
+    pub fn memory(&self) -> u64 {
+        Self::memory_of(&self.settings)
+    }
+
+    pub(super) fn pool(&self) -> MutexGuard<'_, Pool> {
+        self.pool.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What all vortices induce at `position` (m/s), images included.
+    fn induced_at(&self, position: Vector3) -> Vector3 {
+        let direct = self.field.velocity(position);
+        if !self.settings.ground {
+            return direct;
+        }
+        // An image below the ground induces here what its vortex does below the ground, upside down.
+        let upside_down = Vector3::new(1.0, 1.0, -1.0);
+        direct + upside_down * self.field.velocity(upside_down * position)
+    }
+
+    /// What bound vortices among `forces` say of their turbines; makes sheets of blades that are new.
+    fn meet(&mut self, forces: &[PointForce]) {
+        if self.rotors.is_empty() {
+            self.rotors = Rotor::all_of(forces);
+            for (index, rotor) in self.rotors.iter().enumerate() {
+                for (blade, n) in rotor.blades().enumerate() {
+                    self.sheets.push(Sheet::new([index, blade], n, self.settings.resolution));
+                }
+            }
+        }
+        for rotor in &mut self.rotors {
+            rotor.read(forces);
+        }
+    }
+
+    /// On return segments and field are those of the rings.
+    pub(super) fn gather(&mut self, is_new: bool) {
+        self.segments.clear();
+        for sheet in &self.sheets {
+            sheet.push_segments(&self.settings.cores, &mut self.segments);
+        }
+        let Self { field, segments, pool, .. } = self;
+        let pool = pool.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if is_new {
+            field.rebuild(segments, pool);
+        } else {
+            field.refresh(segments, pool);
+        }
+    }
+
+    /// On return `winds` holds the velocity at each of the nodes of all sheets.
+    fn feel(&mut self) -> Result<(), FlowError> {
+        self.nodes.clear();
+        for sheet in &self.sheets {
+            self.nodes.extend_from_slice(&sheet.far.positions);
+            self.nodes.extend_from_slice(&sheet.near.positions);
+        }
+        self.winds.resize(self.nodes.len(), Vector3::ZERO);
+        self.induced.resize(self.nodes.len(), Vector3::ZERO);
+        self.wind.sample(&self.nodes, &mut self.winds);
+        let mut induced = std::mem::take(&mut self.induced);
+        self.pool().for_chunks(&mut induced, CHUNK, &|first, chunk| {
+            for (velocity, position) in chunk.iter_mut().zip(&self.nodes[first..]) {
+                *velocity = self.induced_at(*position);
+            }
+        });
+        self.induced = induced;
+        for ((wind, induced), position) in self.winds.iter_mut().zip(&self.induced).zip(&self.nodes)
+        {
+            *wind += *induced;
+            let speed = wind.length();
+            if speed.is_nan() || speed > FASTEST {
+                let (time, position) = (self.wind.time(), *position);
+                return Err(FlowError::Diverged { time, position, speed });
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves the nodes of all sheets with the velocities of [`feel`](Self::feel).
+    fn carry(&mut self, duration: f64) {
+        let mut start = 0;
+        for sheet in &mut self.sheets {
+            for strip in [&mut sheet.far, &mut sheet.near] {
+                let end = start + strip.positions.len();
+                strip.advance(duration, &self.winds[start..end]);
+                if self.settings.ground {
+                    strip.positions.iter_mut().for_each(|node| node.z = node.z.max(LOWEST));
+                }
+                start = end;
+            }
+        }
+    }
+
+    /// Tells every rotor what its youngest rings do to its elements.
+    pub(super) fn tell_rotors(&mut self) {
+        let Self { rotors, sheets, settings, pool, .. } = self;
+        let pool = pool.get_mut().unwrap_or_else(PoisonError::into_inner);
+        for (index, rotor) in rotors.iter_mut().enumerate() {
+            let mine = sheets.iter().filter(|sheet| sheet.owner[0] == index);
+            rotor.feel_rings(mine, &settings.cores, pool);
+        }
+    }
+}
+
+impl WindField for FreeWake {
+    fn sample(&self, positions: &[Vector3], velocities: &mut [Vector3]) {
+        self.wind.sample(positions, velocities);
+        for (position, velocity) in positions.iter().zip(velocities) {
+            *velocity += self.induced_at(*position);
+        }
+    }
+}
+
+impl FlowSolver for FreeWake {
+    fn advance(&mut self, duration: f64, forces: &[PointForce]) -> Result<(), FlowError> {
+        if duration != self.settings.interval {
+            return Err(FlowError::FractionalStep { duration, step: self.settings.interval });
+        }
+        self.meet(forces);
+        let mut is_new = false;
+        for sheet in &mut self.sheets {
+            let rotor = &self.rotors[sheet.owner[0]];
+            let circulations = rotor.circulations_of(sheet.owner[1]);
+            if sheet.near.n_rows() == 0 {
+                sheet.place_line(rotor.line_of(sheet.owner[1]), circulations);
+                is_new = true;
+            }
+            sheet.release(circulations);
+        }
+        self.gather(is_new);
+        self.feel()?;
+        self.carry(duration);
+        self.wind.advance(duration, forces)?;
+        for rotor in &mut self.rotors {
+            rotor.move_on();
+        }
+        for sheet in &mut self.sheets {
+            let rotor = &self.rotors[sheet.owner[0]];
+            let blade = sheet.owner[1];
+            sheet.place_line(rotor.line_of(blade), rotor.circulations_of(blade));
+        }
+        self.gather(true);
+        self.tell_rotors();
+        Ok(())
+    }
+
+    fn resolves_induction(&self) -> bool {
+        true
+    }
+
+    fn answer(&self, turbine: usize) -> Option<Answer<'_>> {
+        self.rotors.iter().find(|rotor| rotor.turbine() == turbine)?.answer()
+    }
+}
