@@ -76,7 +76,7 @@ fn a_stopped_study_in_a_box_leaves_what_one_that_was_left_alone_does() {
     let told = (setup.case.flow.solver.memory)(&setup.case, &setup.plan) as f64;
     let taken = summary.cost.memory as f64;
     assert!((0.9..1.2).contains(&(told / taken)), "{told} told, {taken} taken");
-    let told = Outputs::standard().disk_of_run(&setup, &setup.case.runs[0]) as f64;
+    let told = setup.disk_of_run(0, &Outputs::standard()) as f64;
     let checkpoint = fs::metadata(run.join("checkpoint")).expect("a checkpoint").len();
     let files: usize = left(&run).iter().map(|(_, bytes)| bytes.len()).sum();
     let taken = files as f64 + 2.0 * checkpoint as f64;

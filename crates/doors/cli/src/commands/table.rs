@@ -1,6 +1,6 @@
 //! The tables of a study on the terminal.
 
-use wakemix::basis::records::{Conditions, Load, LoadKind, Statistic, Summary, TurbineSummary};
+use wakemix::basis::records::{Load, LoadKind, Statistic, Summary, TurbineSummary};
 use wakemix::postprocessing::analyses::with_interval;
 use wakemix::report::text_table::{Column, TextTable, wrapped};
 
@@ -44,7 +44,7 @@ pub(crate) fn render(summaries: &[Summary], width: usize) -> String {
             ]);
         }
     }
-    let head = format!("{}: {}\n", first.case, conditions(&first.conditions));
+    let head = format!("{}: {}\n", first.case, conditions(first));
     let mut below = "± 95 % from blocks of the analysed time; gains and changes compare the same blocks of the same wind\n".to_owned();
     if !loads.is_empty() {
         let printed: Vec<String> = loads.iter().map(LoadColumn::printed).collect();
@@ -56,17 +56,21 @@ pub(crate) fn render(summaries: &[Summary], width: usize) -> String {
     wrapped(&head, width) + &table.fitted(width) + &wrapped(&below, width)
 }
 
-/// Wind, length and grid.
-fn conditions(wind: &Conditions) -> String {
-    let grid = wind
-        .cells_per_diameter
-        .map_or("prescribed wind".to_owned(), |cells| format!("{cells:.0} cells per diameter"));
+/// Wind, length, and what moves the air.
+fn conditions(summary: &Summary) -> String {
+    let wind = &summary.conditions;
+    let solver = summary.flow.as_ref().map(|flow| flow.solver.as_str());
+    let air = match (wind.cells_per_diameter, solver) {
+        (Some(cells), _) => format!("{cells:.0} cells per diameter"),
+        (None, Some(solver)) if summary.has_wakes() => format!("flow solver {solver}"),
+        (None, _) => "prescribed wind".to_owned(),
+    };
     let from = match wind.direction_deg {
         270.0 => String::new(),
         degrees => format!(" from {degrees}°"),
     };
     format!(
-        "{:.1} m/s{from}, turbulence intensity {:.1} % target, {:.1} % realised; {:.0} min analysed after {:.0} s; {grid}",
+        "{:.1} m/s{from}, turbulence intensity {:.1} % target, {:.1} % realised; {:.0} min analysed after {:.0} s; {air}",
         wind.target_wind_speed,
         100.0 * wind.target_turbulence_intensity,
         100.0 * wind.realised_turbulence_intensity,

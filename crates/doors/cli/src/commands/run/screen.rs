@@ -118,6 +118,8 @@ pub(super) struct Screen {
     case: PathBuf,
     pace: Pace,
     so_far: SoFar,
+    /// What moves the air where no cells do.
+    air: String,
 }
 
 impl Screen {
@@ -142,6 +144,7 @@ impl Screen {
             case: case.to_owned(),
             pace: Pace::default(),
             so_far: SoFar::default(),
+            air: "prescribed wind".to_owned(),
         }
     }
 
@@ -188,6 +191,10 @@ impl Screen {
 impl Observer for Screen {
     fn prepared(&mut self, prepared: &Prepared) {
         self.enter("checking files and machine");
+        let solver = prepared.case.flow.solver;
+        if solver.resolves_induction {
+            self.air = format!("flow solver {}", solver.name);
+        }
         say_prepared(&self.case, prepared);
     }
 
@@ -203,7 +210,8 @@ impl Observer for Screen {
                 speed / 1e6
             )),
             _ if estimate.n_cells[0] == 0 => self.say(&format!(
-                "prescribed wind: {} of {} steps of {:.4} s, {:.0} steps in all; {}{}",
+                "{}: {} of {} steps of {:.4} s, {:.0} steps in all; {}{}",
+                self.air,
                 runs(estimate),
                 estimate.n_steps,
                 estimate.interval,

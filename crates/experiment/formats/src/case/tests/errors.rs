@@ -166,8 +166,8 @@ fn errors_name_file_line_key_and_fix() {
         ),
         (
             "[time]",
-            "[flow]\nsolver = \"vortex\"\n[time]",
-            "`flow.solver` = \"vortex\" is unknown; expected one of \"lattice\"",
+            "[flow]\nsolver = \"potential\"\n[time]",
+            "`flow.solver` = \"potential\" is unknown; expected one of \"lattice\"",
         ),
         ("[time]", "[flow]\ncells_per_diameter = 6\n[time]", "8 <= cells_per_diameter <= 200"),
         (

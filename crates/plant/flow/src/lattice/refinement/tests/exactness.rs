@@ -171,8 +171,11 @@ fn nobody_sees_air_from_beneath_a_box() {
     let [before, between, after] = winds;
     assert!(before[0].x < 0.07, "no wake: {}", before[0]);
     for (between, others) in between.iter().zip(before.iter().zip(&after)) {
+        // The wake still grows a little in a step; what is seen on the way lies no further off.
+        let of_a_step = (*others.1 - *others.0).length();
         let change = (*between - *others.0).length().max((*between - *others.1).length());
-        assert!(change < 1e-3 * others.0.x, "{} {between} {}", others.0, others.1);
+        assert!(of_a_step < 2e-3 * others.0.x, "no steady wake: {} {}", others.0, others.1);
+        assert!(change < of_a_step + 1e-4 * others.0.x, "{} {between} {}", others.0, others.1);
     }
 }
 
