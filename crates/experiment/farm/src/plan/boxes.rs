@@ -226,10 +226,10 @@ impl Around {
             axis: AXES[axis],
             low,
             high,
-            around,
+            around: around.into(),
             least: start + if axis == 2 { 0.0 } else { margin },
             most: start + length * self.spacing - margin - kept,
-            fix: format!("lower its {own}, or raise {further}{whole}"),
+            fix: format!("lower its {own}, or raise {further}{whole}").into(),
         }
     }
 }

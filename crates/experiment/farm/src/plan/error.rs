@@ -184,13 +184,13 @@ pub enum PlanError {
         /// As above.
         high: f64,
         /// What is around it, in words.
-        around: String,
+        around: Box<str>,
         /// Ends that it may have (m).
         least: f64,
         /// As above.
         most: f64,
         /// What to change.
-        fix: String,
+        fix: Box<str>,
     },
     /// Two boxes of finer cells touch, and none lies within the other.
     #[error(
