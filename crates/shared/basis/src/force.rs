@@ -45,7 +45,8 @@ pub struct BoundVortex {
 /// How the wind at a turbine's blade elements answers to their circulation, where the air feels bound
 /// vortices and the answer comes at once: what is bound and what leaves the blades in this very interval.
 ///
-/// The wind at element i is what was sampled there plus Σⱼ `influence`[i, j] (Γⱼ − `circulations`[j]).
+/// The wind at element i is what was sampled there plus the sum over j of `influence[i, j]` times
+/// (Γⱼ − `circulations[j]`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer<'a> {
     /// Circulation of each element with which the wind was sampled, blade after blade from root to tip
