@@ -6,10 +6,11 @@
 //! number after `--` is that of the threads.
 
 use basis::Vector3;
-use flow::vortex::{Accuracy, Segment, direct, induced};
-use std::f64::consts::TAU;
+use flow::vortex::examples::wake;
+use flow::vortex::{Accuracy, direct, induced};
 use std::time::Instant;
 
+/// Trailing vortices of each blade (–).
 const PER_BLADE: usize = 11;
 /// Nodes at which errors are taken (–).
 const N_COMPARED: usize = 300;
@@ -24,7 +25,7 @@ fn main() {
     );
     println!("{:>9} {:>7} {:>8} {:>10} {:>10}", "segments", "degree", "opening", "time", "error");
     for n in [1_000, 3_300, 10_000, 34_000, 100_000, 300_000] {
-        let segments = wake(n);
+        let segments = wake(PER_BLADE, n / (3 * PER_BLADE) + 1);
         let positions: Vec<Vector3> = segments.iter().map(|segment| segment.from).collect();
         let step = (positions.len() / N_COMPARED).max(1);
         let compared: Vec<Vector3> = positions.iter().step_by(step).copied().collect();
@@ -50,33 +51,4 @@ fn main() {
             println!("{n:>9} {degree:>7} {opening:>8} {best:>10.5} {error:>10.2e}");
         }
     }
-}
-
-/// A wake of three blades of 60 m in about `n` segments, tip and root strong.
-fn wake(n: usize) -> Vec<Segment> {
-    let n_nodes = n / (3 * PER_BLADE) + 1;
-    let all = (0..3).flat_map(|blade| (0..PER_BLADE).map(move |k| (blade, k)));
-    all.flat_map(|(blade, k)| filament(blade, k, n_nodes)).collect()
-}
-
-fn filament(blade: usize, k: usize, n_nodes: usize) -> Vec<Segment> {
-    let radius = 3.0 + 57.0 * k as f64 / (PER_BLADE - 1) as f64;
-    let node = |step: usize| {
-        let angle = TAU * (blade as f64 / 3.0 - step as f64 / 50.0);
-        let x = 0.6 * step as f64 + 4.0 * (0.05 * step as f64).sin();
-        Vector3::new(x, radius * angle.sin(), 90.0 + radius * angle.cos())
-    };
-    let circulation = match k {
-        0 => 35.0,
-        k if k + 1 == PER_BLADE => -40.0,
-        k => 3.0 - 0.4 * k as f64,
-    };
-    (0..n_nodes - 1)
-        .map(|step| Segment {
-            from: node(step),
-            to: node(step + 1),
-            circulation,
-            core_squared: 0.16,
-        })
-        .collect()
 }

@@ -3,6 +3,7 @@
 use crate::Row;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
+use flow::vortex::examples::{chain, wake};
 use flow::vortex::{Accuracy, Segment, direct, induced};
 use std::f64::consts::TAU;
 
@@ -12,6 +13,8 @@ const RADIUS: f64 = 100.0;
 const PITCH: f64 = 104.72;
 const CIRCULATION: f64 = 232.7106;
 const WIND: f64 = 10.0;
+/// Trailing vortices of each blade of the wake that boxes are tried on (–).
+const PER_BLADE: usize = 11;
 const HELIX: &str = "infinite helices: B Γ over pitch inside, half of it at their end";
 const RING: &str = "Lamb, Hydrodynamics, § 161: thin ring";
 const SUM: &str = "direct summation in double precision";
@@ -82,7 +85,7 @@ fn helices() -> Vec<Row> {
 fn boxes() -> Vec<Row> {
     [1_000, 10_000, 34_000]
         .map(|n| {
-            let segments = wake(n);
+            let segments = wake(PER_BLADE, n / (3 * PER_BLADE) + 1);
             let positions: Vec<Vector3> =
                 segments.iter().step_by(n / 500).map(|segment| segment.from).collect();
             let (mut exact, mut found) =
@@ -101,37 +104,6 @@ fn boxes() -> Vec<Row> {
             }
         })
         .into()
-}
-
-/// A wake like that of three blades of 60 m in `n` segments: eleven trailing vortices each, tip and root
-/// strong.
-fn wake(n: usize) -> Vec<Segment> {
-    const PER_BLADE: usize = 11;
-    let n_nodes = n / (3 * PER_BLADE) + 1;
-    let filament = |blade: usize, k: usize| {
-        let radius = 3.0 + 57.0 * k as f64 / (PER_BLADE - 1) as f64;
-        let node = move |step: usize| {
-            let angle = TAU * (blade as f64 / 3.0 - step as f64 / 50.0);
-            let x = 0.6 * step as f64 + 4.0 * (0.05 * step as f64).sin();
-            Vector3::new(x, radius * angle.sin(), 90.0 + radius * angle.cos())
-        };
-        let circulation = match k {
-            0 => 35.0,
-            k if k + 1 == PER_BLADE => -40.0,
-            k => 3.0 - 0.4 * k as f64,
-        };
-        chain((0..n_nodes).map(node), circulation, 0.4)
-    };
-    let all = (0..3).flat_map(|blade| (0..PER_BLADE).map(move |k| (blade, k)));
-    all.flat_map(|(blade, k)| filament(blade, k)).collect()
-}
-
-fn chain(nodes: impl Iterator<Item = Vector3>, circulation: f64, core: f64) -> Vec<Segment> {
-    let nodes: Vec<Vector3> = nodes.collect();
-    let core_squared = core * core;
-    let segment =
-        |ends: &[Vector3]| Segment { from: ends[0], to: ends[1], circulation, core_squared };
-    nodes.windows(2).map(segment).collect()
 }
 
 fn at(segments: &[Segment], position: Vector3) -> Vector3 {

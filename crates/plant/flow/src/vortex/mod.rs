@@ -2,6 +2,7 @@
 //! moves.
 
 mod direct;
+pub mod examples;
 mod field;
 mod interpolation;
 mod planes;

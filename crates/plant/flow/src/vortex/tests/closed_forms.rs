@@ -1,6 +1,7 @@
 //! Rings and helices against what is known of them.
 
-use super::shapes::{chain, of_thin_ring, ring, speed_of_ring};
+use super::shapes::{of_thin_ring, ring, speed_of_ring};
+use crate::vortex::examples::chain;
 use crate::vortex::{Segment, direct};
 use basis::Vector3;
 use std::f64::consts::TAU;

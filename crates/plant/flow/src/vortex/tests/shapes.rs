@@ -1,6 +1,7 @@
 //! Filaments of well-known shape, cut into segments, and what is known of them.
 
 use crate::vortex::Segment;
+use crate::vortex::examples::chain;
 use basis::Vector3;
 use std::f64::consts::{PI, TAU};
 
@@ -12,22 +13,6 @@ pub(super) fn ring(x: f64, radius: f64, circulation: f64, core: f64, n: usize) -
         Vector3::new(x, radius * angle.cos(), radius * angle.sin())
     };
     chain((0..=n).map(at), circulation, core)
-}
-
-/// Segments through `nodes`.
-pub(super) fn chain(
-    nodes: impl Iterator<Item = Vector3>,
-    circulation: f64,
-    core: f64,
-) -> Vec<Segment> {
-    let nodes: Vec<Vector3> = nodes.collect();
-    let segment = |ends: &[Vector3]| Segment {
-        from: ends[0],
-        to: ends[1],
-        circulation,
-        core_squared: core * core,
-    };
-    nodes.windows(2).map(segment).collect()
 }
 
 /// Complete elliptic integrals of the first and second kind of the parameter m = k², by the
