@@ -2,7 +2,7 @@
 //! that rings make together: power and thrust in a steady uniform wind.
 
 use crate::Row;
-use crate::axisymmetric::{self, Flow};
+use crate::axisymmetric::{self, Flow, Swirl};
 use crate::row::Tolerance::Within;
 use farm::assemble::TurbineModel;
 use farm::case::{Shear, TurbulenceModel, Wind};
@@ -157,7 +157,8 @@ fn in_axisymmetric_flow(model: &TurbineModel, tip_speed_ratio: f64) -> Coefficie
     // A round duct as wide as the square tunnel is, in radii.
     let wall = 2.0 * WIDTH / PI.sqrt();
     let flow = Flow::new(2.0 * UPSTREAM, 2.0 * DOWNSTREAM, wall);
-    let together = axisymmetric::coefficients(&model.definition, tip_speed_ratio, pitch, flow);
+    let together =
+        axisymmetric::coefficients(&model.definition, tip_speed_ratio, pitch, flow, Swirl::LeftOut);
     let mut upright = (*model.definition).clone();
     upright.rotor.shaft_tilt = 0.0;
     let [tilted, upright] = [&*model.definition, &upright].map(|definition| {

@@ -41,6 +41,15 @@ impl Table {
     }
 }
 
+/// What becomes of the angular momentum that the rotor gives the air.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Swirl {
+    /// Its pressure moves the air that passes the disc.
+    Felt,
+    /// Blades meet it, the flow does not feel it: as in momentum theory ring by ring.
+    LeftOut,
+}
+
 /// Power and thrust coefficient of `definition` without its tilt, at `tip_speed_ratio` (–) and `pitch` (rad),
 /// in the duct `flow`.
 ///
@@ -53,6 +62,7 @@ pub(crate) fn coefficients(
     tip_speed_ratio: f64,
     pitch: f64,
     mut flow: Flow,
+    kind: Swirl,
 ) -> Coefficients {
     let mut definition = definition.clone();
     definition.rotor.shaft_tilt = 0.0;
@@ -78,6 +88,7 @@ pub(crate) fn coefficients(
                 swirl: point.inflow.tangential_induction,
                 loss: point.inflow.loss_factor,
                 head: 0.5 * n_blades * point.normal_force / (2.0 * PI * element.radius),
+                momentum: 0.0,
             }
         })
         .collect();
@@ -111,18 +122,27 @@ pub(crate) fn coefficients(
                 let swirl = n_blades * load.tangential / (2.0 * around * onset.normal * ring.loss);
                 ring.loss += RELAXATION * (loss - ring.loss);
                 ring.swirl += RELAXATION * (swirl / (rotor_speed * element.radius) - ring.swirl);
-                ring.head += RELAXATION * (n_blades * load.normal / around - ring.head);
                 let through = flow.at_disc(element.radius / radius)[1];
+                if kind == Swirl::Felt {
+                    let won = n_blades * load.tangential * element.radius / (around * through);
+                    ring.momentum += RELAXATION * (won / radius - ring.momentum);
+                }
+                let kinetic = 0.5 * (ring.momentum * radius / element.radius).powi(2);
+                let head = n_blades * load.normal / around - kinetic;
+                ring.head += RELAXATION * (head - ring.head);
                 ring.felt += RELAXATION * (1.0 - (1.0 - through) / ring.loss - ring.felt);
             }
         }
-        let mut table = Table::default();
-        table.push(flow.at_disc(hub_radius / radius)[0], 0.0);
+        let (mut head, mut swirl) = (Table::default(), Table::default());
+        let ends = [hub_radius / radius, 1.0].map(|end| flow.at_disc(end)[0]);
+        [&mut head, &mut swirl].into_iter().for_each(|table| table.push(ends[0], 0.0));
         for (ring, element) in states.iter().zip(elements) {
-            table.push(flow.at_disc(element.radius / radius)[0], ring.head);
+            let surface = flow.at_disc(element.radius / radius)[0];
+            head.push(surface, ring.head);
+            swirl.push(surface, 0.5 * ring.momentum * ring.momentum);
         }
-        table.push(flow.at_disc(1.0)[0], 0.0);
-        flow.relax(|psi| table.at(psi));
+        [&mut head, &mut swirl].into_iter().for_each(|table| table.push(ends[1], 0.0));
+        flow.relax(|psi| head.at(psi), |psi| swirl.at(psi));
 
         let last = found.power;
         let area = 0.5 * definition.rotor_area() / n_blades;
@@ -146,6 +166,8 @@ struct Ring {
     swirl: f64,
     /// Prandtl's factor (–).
     loss: f64,
-    /// Head lost: load over the air's density (over the wind squared).
+    /// Head lost: load over the air's density, less the swirl's kinetic energy (over the wind squared).
     head: f64,
+    /// Angular momentum C won (over radius and wind).
+    momentum: f64,
 }

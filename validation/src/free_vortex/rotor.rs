@@ -1,23 +1,21 @@
 //! Rotors at held speed in a steady uniform wind, their wakes free.
 
+use super::held::{Steady, Trial, flat, turn};
 use crate::Row;
-use crate::axisymmetric::{self, Flow};
+use crate::axisymmetric::{self, Flow, Swirl};
 use crate::row::Tolerance::Within;
-use basis::{Commands, PerBlade, Vector3};
 use farm::assemble::TurbineModel;
 use flow::inflow::{MeanProfile, PrescribedWind};
 use flow::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
-use flow::{FlowSolver, WindField};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
 use turbine::steady::{Coefficients, SteadyRotor};
-use turbine::{Induction, N_ELEMENTS, Turbine, TurbineSettings};
+use turbine::{Induction, N_ELEMENTS};
 
 /// Accepted distance from blade elements in axisymmetric flow, and from blade-element momentum (–).
 const TOGETHER: f64 = 0.02;
 const MOMENTUM: f64 = 0.04;
-const AIR_DENSITY: f64 = 1.225;
 /// The duct of the axisymmetric flow (radii): so wide that its walls are not felt.
 const DUCT: [f64; 3] = [10.0, 12.0, 12.0];
 
@@ -31,8 +29,8 @@ pub(super) struct Fineness {
     pub(super) far_filaments: usize,
     pub(super) far_stride: usize,
     pub(super) core_widths: f64,
-    /// Time over the wind's time for a diameter (–).
-    pub(super) duration: f64,
+    /// Time before the means begin, over the wind's time for a diameter (–).
+    pub(super) settling: f64,
 }
 
 /// What cases have.
@@ -42,8 +40,8 @@ pub(super) const USUAL: Fineness = Fineness {
     near: 0.25,
     far_filaments: 9,
     far_stride: 2,
-    core_widths: 0.3,
-    duration: 8.0,
+    core_widths: 0.1,
+    settling: 14.0,
 };
 
 /// Power and thrust of three rotors without tilt, precone and prebend at 8 m/s.
@@ -53,111 +51,65 @@ pub(super) fn rows() -> Vec<Row> {
 
 fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
     let model = flat(name);
-    let found = coefficients(&model, wind_speed, USUAL);
+    let (found, _) = turned(&model, wind_speed, USUAL, &[]);
+    let [with_swirl, without] = [Swirl::Felt, Swirl::LeftOut].map(|swirl| {
+        let ratio = model.rotor_speed(wind_speed) * model.definition.rotor_radius() / wind_speed;
+        let [upstream, downstream, wall] = DUCT;
+        let flow = Flow::new(upstream, downstream, wall);
+        let pitch = model.constants.fine_pitch;
+        axisymmetric::coefficients(&model.definition, ratio, pitch, flow, swirl)
+    });
+    let momentum = momentum(&model, wind_speed);
+    let references = [
+        ("blade elements in axisymmetric flow with swirl", with_swirl, TOGETHER),
+        ("blade elements in axisymmetric flow without swirl", without, TOGETHER),
+        ("blade-element momentum", momentum, MOMENTUM),
+    ];
+    let Coefficients { power, thrust, .. } = found.coefficients;
+    tell!("{name}, {wind_speed} m/s: power {power:.4}, thrust {thrust:.4}");
+    let mut rows = Vec::new();
+    for (source, theory, tolerance) in references {
+        tell!("{source}: power {:.4}, thrust {:.4}", theory.power, theory.thrust);
+        let values = [("power", power, theory.power), ("thrust", thrust, theory.thrust)];
+        rows.extend(values.map(|(what, measured, expected)| Row {
+            what: format!(
+                "{name} flat, {wind_speed} m/s, best tip-speed ratio, 48 steps a turn, wake of 4 D: {what} over that of {source}"
+            ),
+            measured: measured / expected,
+            expected: 1.0,
+            tolerance: Within(tolerance),
+            unit: "–",
+            source,
+        }));
+    }
+    rows
+}
+
+/// What blade-element momentum says of `model` at its best tip-speed ratio and least pitch.
+pub(super) fn momentum(model: &TurbineModel, wind_speed: f64) -> Coefficients {
     let ratio = model.rotor_speed(wind_speed) * model.definition.rotor_radius() / wind_speed;
-    let pitch = model.constants.fine_pitch;
-    let [upstream, downstream, wall] = DUCT;
-    let together = axisymmetric::coefficients(
-        &model.definition,
-        ratio,
-        pitch,
-        Flow::new(upstream, downstream, wall),
-    );
-    let momentum = SteadyRotor::new(&model.definition, Theory::default())
-        .along_shaft()
-        .coefficients(ratio, pitch);
-    tell!(
-        "{name}, {wind_speed} m/s: power {:.4}, thrust {:.4}; axisymmetric flow {:.4}, {:.4}; momentum {:.4}, {:.4}",
-        found.power,
-        found.thrust,
-        together.power,
-        together.thrust,
-        momentum.power,
-        momentum.thrust
-    );
-    let row = |what: &str, over: &'static str, tolerance: f64, measured: f64, expected: f64| Row {
-        what: format!(
-            "{name} flat, {wind_speed} m/s, best tip-speed ratio, 48 steps a turn, wake of 4 D: {what} over that of {over}"
-        ),
-        measured: measured / expected,
-        expected: 1.0,
-        tolerance: Within(tolerance),
-        unit: "–",
-        source: over,
-    };
-    let [by_rings, by_momentum] = ["blade elements in axisymmetric flow", "blade-element momentum"];
-    vec![
-        row("power", by_rings, TOGETHER, found.power, together.power),
-        row("thrust", by_rings, TOGETHER, found.thrust, together.thrust),
-        row("power", by_momentum, MOMENTUM, found.power, momentum.power),
-        row("thrust", by_momentum, MOMENTUM, found.thrust, momentum.thrust),
-    ]
+    let rotor = SteadyRotor::new(&model.definition, Theory::default());
+    rotor.along_shaft().coefficients(ratio, model.constants.fine_pitch)
 }
 
-/// The library's turbine `name` without tilt, precone and prebend: what the theories are about.
-fn flat(name: &str) -> TurbineModel {
-    let file = formats::library::load(name).expect("the library's own turbines are readable");
-    let mut definition = file.definition;
-    definition.rotor.precone = 0.0;
-    definition.rotor.shaft_tilt = 0.0;
-    definition.blade.iter_mut().for_each(|station| station.prebend = 0.0);
-    TurbineModel { definition: Arc::new(definition), constants: file.controller }
-}
-
-/// Coefficients over the last turn of the stiff rotor of `model` at its best tip-speed ratio and least pitch.
-pub(super) fn coefficients(
+/// `model` turned until its wake stands, and that wake.
+pub(super) fn turned(
     model: &TurbineModel,
     wind_speed: f64,
     fineness: Fineness,
-) -> Coefficients {
-    let (definition, rotor_speed) = (&model.definition, model.rotor_speed(wind_speed));
-    let diameter = definition.rotor_diameter();
-    let interval = TAU / rotor_speed / fineness.steps_per_turn;
+    distances: &[f64],
+) -> (Steady, FreeWake) {
+    let interval = TAU / model.rotor_speed(wind_speed) / fineness.steps_per_turn;
     let mut wake = wake(model, wind_speed, interval, fineness);
-    let pitch = model.constants.fine_pitch;
-    let foot = Vector3::Z * -definition.rotor.hub_height;
-    let settings = TurbineSettings {
-        induction: Induction::ByBoundVortices { dynamic_stall: false },
-        flexible: false,
-        air_density: AIR_DENSITY,
-        yaw: 0.0,
-        rotor_speed,
-        azimuth: 0.0,
-        pitch,
+    let trial = Trial {
+        wind_speed,
+        interval,
+        settling: fineness.settling * model.definition.rotor_diameter() / wind_speed,
+        distances,
     };
-    let rotor = Turbine::new(Arc::clone(definition), foot, settings);
-    let mut rotor =
-        rotor.expect("the library's own turbines stand").without_bodies().at_held_speed();
-    let commands = Commands {
-        pitch: PerBlade::splat(definition.n_blades, pitch),
-        generator_torque: 0.0,
-        yaw_rate: 0.0,
-    };
-    let n_steps = (fineness.duration * diameter / wind_speed / interval).ceil() as usize;
-    let n_averaged = fineness.steps_per_turn as usize;
-    let mut winds = vec![Vector3::ZERO; rotor.stations().len()];
-    let (mut power, mut thrust) = (0.0, 0.0);
-    for step in 0..n_steps {
-        wake.sample(rotor.stations(), &mut winds);
-        rotor.advance_answered(interval, &winds, wake.answer(0), &commands);
-        wake.advance(interval, rotor.forces()).expect("a wake in steady wind stays finite");
-        if step + n_averaged >= n_steps {
-            let read = rotor.truth(wake.time(), interval);
-            power += read.aerodynamic_torque * read.rotor_speed / n_averaged as f64;
-            thrust += read.thrust / n_averaged as f64;
-        }
-        if step % (n_steps / 8) == 0 {
-            let read = rotor.truth(wake.time(), interval);
-            tell!(
-                "{step} of {n_steps}: {} segments, thrust {:.1} kN",
-                wake.segments().len(),
-                1e-3 * read.thrust
-            );
-        }
-    }
-    let force = 0.5 * AIR_DENSITY * definition.rotor_area() * wind_speed * wind_speed;
-    let torque = power / rotor_speed / (force * definition.rotor_radius());
-    Coefficients { power: power / (force * wind_speed), thrust: thrust / force, torque }
+    let induction = Induction::ByBoundVortices { dynamic_stall: false };
+    let found = turn(model, &mut wake, induction, &trial);
+    (found, wake)
 }
 
 fn wake(model: &TurbineModel, wind_speed: f64, interval: f64, fineness: Fineness) -> FreeWake {

@@ -4,7 +4,7 @@ use super::bench::CASES;
 use super::follower::{Case, END, INTERVAL, Instant, START, run};
 use super::loops::kinds;
 use basis::angle::wrap_to_half_turn;
-use report::{ReportError, Synchronisation, TrackFigure, TrackLine, TrackRow};
+use report::{Along, ReportError, Synchronisation, TrackFigure, TrackLine, TrackRow};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -33,6 +33,7 @@ fn figure(case: &Case) -> TrackFigure {
     rate.lines.insert(0, truth(|now| millihertz(now.rate)));
     amplitude.lines.insert(0, truth(|now| now.reference));
     TrackFigure {
+        along: Along::TIME,
         name: format!("figure-{}", case.figure),
         title: format!("Three masses on springs: {}", case.name),
         caption: "A loop with each generator brings the swing of the first mass to its reference. The phase error is the \
@@ -54,6 +55,7 @@ fn tracking_errors(case: &Case) -> TrackFigure {
     let mut bias = row("bias error (m)", &runs, |now| -now.estimate.offset);
     bias.lines.retain(|line| line.name != NO_OFFSET);
     TrackFigure {
+        along: Along::TIME,
         name: "figure-3-6".to_owned(),
         title: format!("Three masses on springs: tracking errors, {}", case.name),
         caption: "What is lacking of the reference amplitude, and minus the bias, both as the loop estimates them. A SOGI estimates no bias, \

@@ -2,7 +2,7 @@
 //! (2025).
 
 use crate::phase::{PhaseAnswer, PhaseAxis};
-use report::{TrackFigure, TrackLine, TrackRow};
+use report::{Along, TrackFigure, TrackLine, TrackRow};
 
 /// How well one component of the wind was estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +81,7 @@ pub(crate) fn figure(answer: &PhaseAnswer, mark: Option<f64>) -> TrackFigure {
         " The band about an estimate is one standard deviation of it to either side, as the estimator has it."
     };
     TrackFigure {
+        along: Along::TIME,
         name: format!("phases-{run}"),
         title: format!("Wind and phase of the helix at {turbine}, estimated and true: {run}"),
         caption: format!(

@@ -13,9 +13,9 @@ mod words;
 
 use basis::records::{Plane, Series, Summary, SweepTable};
 pub use figures::synchronisation::{
-    CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, DensityFigure,
-    DensityRow, OffsetFigure, OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow, Signals,
-    SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, Synchronisation,
+    Along, CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel,
+    DensityFigure, DensityRow, OffsetFigure, OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow,
+    Signals, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, Synchronisation,
     TrackFigure, TrackLine, TrackRow,
 };
 pub use precursor::{CoherenceLine, DriftRow, HubWind, LevelRow, PrecursorRecords, TimeHeightMap};

@@ -9,8 +9,8 @@ mod tables;
 use basis::Sense;
 use basis::records::{ControlSummary, PitchExcitation, Series, examples};
 use report::{
-    PhaseNumbers, PhaseRow, ReportError, StudyRecords, Synchronisation, TrackFigure, TrackLine,
-    TrackRow,
+    Along, PhaseNumbers, PhaseRow, ReportError, StudyRecords, Synchronisation, TrackFigure,
+    TrackLine, TrackRow,
 };
 use std::fs;
 use std::path::Path;
@@ -298,6 +298,7 @@ fn joined(name: &str) -> Synchronisation {
     let line = TrackLine { name: "true".into(), colour: 0, times, values, band: Vec::new() };
     let row = TrackRow { label: "tilt (m/s)".into(), is_angle: false, lines: vec![line] };
     let track = TrackFigure {
+        along: Along::TIME,
         name: "phases-helix-ccw".into(),
         title: format!("Phase of the helix at {name}"),
         caption: "True phases.".into(),

@@ -2,7 +2,7 @@
 
 use flow::lattice::atmosphere::{LevelStatistics, layer_depth};
 use formats::netcdf::StoredStatistics;
-use report::{TrackFigure, TrackLine, TrackRow};
+use report::{Along, TrackFigure, TrackLine, TrackRow};
 
 /// Columns over time that are shown.
 pub(super) const SERIES: [&str; 5] =
@@ -26,6 +26,7 @@ pub(super) fn histories(statistics: &StoredStatistics, record_from: f64) -> Trac
     let times = statistics.times.as_slice();
     let (middles, depths) = depths(statistics);
     TrackFigure {
+        along: Along::TIME,
         name: "histories".to_owned(),
         title: "Over time".to_owned(),
         caption: "Means over each level. The layer ends where the stress, averaged over blocks of time first, is a twentieth of the ground's, over 0.95. The dashed line is the beginning of the record.".to_owned(),

@@ -16,7 +16,7 @@ use estimation::helix::{HelixOptions, HelixSettings, MeasurementModel, Wake};
 use farm::assemble::AssemblyError;
 use farm::case::Case;
 use formats::records::{self, RunFolder};
-use report::{TrackFigure, TrackLine, TrackRow};
+use report::{Along, TrackFigure, TrackLine, TrackRow};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -317,6 +317,7 @@ fn figure(record: &Record, run: &str, turbine: &str, tracks: &Tracks) -> TrackFi
         lines: tracks.iter().enumerate().map(|(index, track)| line(index, track, blade)).collect(),
     };
     TrackFigure {
+        along: Along::TIME,
         name: format!("blade-moments-{run}-{turbine}"),
         title: format!("Moments at the blade roots of {turbine}, measured and modelled: {run}"),
         caption: "Models are those of the phase estimator, in a steady uniform wind in which their mean moment is the measured one; they \

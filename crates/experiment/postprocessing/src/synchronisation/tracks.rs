@@ -11,7 +11,7 @@ use basis::PerBlade;
 use basis::channels::{AZIMUTH, BLD_PITCH, BladeChannel, EST_WIND_WAVES, ROOT_MYC, TIME};
 use basis::mbc::to_fixed_frame;
 use basis::records::Series;
-use report::{PhaseRow, SpectrumFigure, SpectrumLine, TrackFigure, TrackLine, TrackRow};
+use report::{Along, PhaseRow, SpectrumFigure, SpectrumLine, TrackFigure, TrackLine, TrackRow};
 
 /// Cases that one figure of signals shows at most (–).
 const MOST_CASES: usize = 5;
@@ -110,6 +110,7 @@ fn answer(study: &Synchronised, name: &str) -> Result<Option<TrackFigure>, Postp
         }
     }
     Ok((!rows[0].lines.is_empty()).then(|| TrackFigure {
+        along: Along::TIME,
         name: "answer-to-pitch".into(),
         title: format!("Response of {name} to the incoming helix: tilt, around the excitation frequency"),
         caption: "Pitch in phase with the wind (offset 0°) lowers the load; in opposite phase (180°) it adds load.".into(),

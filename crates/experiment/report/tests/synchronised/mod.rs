@@ -2,9 +2,9 @@
 
 use basis::records::{Plane, PlaneAxes, Statistic};
 use report::{
-    CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel, OffsetFigure,
-    OffsetPanel, OffsetPoint, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine,
-    Synchronisation, TrackFigure, TrackLine, TrackRow,
+    Along, CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel,
+    OffsetFigure, OffsetPanel, OffsetPoint, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure,
+    SpectrumLine, Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -118,6 +118,7 @@ fn estimates() -> TrackFigure {
         ],
     };
     TrackFigure {
+        along: Along::TIME,
         name: "phases".into(),
         title: "Estimated and true wind of the helix at T2".into(),
         caption: "Wind and wind phases in the run bl-helix.".into(),
@@ -150,6 +151,7 @@ fn responses() -> TrackFigure {
             .collect(),
     };
     TrackFigure {
+        along: Along::TIME,
         name: "tilt-responses".into(),
         title: "Tilt of wind, pitch and moment at T2".into(),
         caption: "Moments below 0.01 Hz.".into(),

@@ -7,7 +7,7 @@ use crate::phase::moments;
 use analysis::smooth::smoothed;
 use basis::FixedFrame;
 use basis::channels::{MEAND_AXES, MEAND_RATE};
-use report::{DensityFigure, DensityRow, SpectrumLine, TrackFigure, TrackLine, TrackRow};
+use report::{Along, DensityFigure, DensityRow, SpectrumLine, TrackFigure, TrackLine, TrackRow};
 use std::f64::consts::TAU;
 
 /// Corner of the low pass for moments over time, over the highest frequency that is followed (–).
@@ -107,6 +107,7 @@ impl Figures {
         };
         let [tilt, yaw] = self.loads;
         let loads = TrackFigure {
+            along: Along::TIME,
             name: format!("meandering-loads-{turbine}"),
             title: format!("Tilt and yaw moment of {turbine}"),
             caption: "Moments of the blades in the fixed frame, without what is faster than three times the highest frequency followed, and \
@@ -126,6 +127,7 @@ impl Figures {
         ];
         rows.retain(|row| !row.lines.is_empty());
         let tracking = TrackFigure {
+            along: Along::TIME,
             name: format!("meandering-tracking-{turbine}"),
             title: format!("Amplitude error, bias and frequency of the load of {turbine}"),
             caption: "Error: target amplitude minus the loop's estimate; bias: the moment's own mean as the loop estimates it. Both, and the \

@@ -130,9 +130,25 @@ pub struct CurvePoint {
     pub band_95: [f64; 2],
 }
 
-/// Signals over time, one row of axes below the other.
+/// What the rows of a figure run along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Along {
+    /// Label of the axis, with its unit.
+    pub label: &'static str,
+    /// The unit alone.
+    pub unit: &'static str,
+}
+
+impl Along {
+    /// Time.
+    pub const TIME: Self = Self { label: "time (s)", unit: "s" };
+}
+
+/// Signals over time or a length, one row of axes below the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackFigure {
+    /// What the rows run along: time, if it is not said otherwise.
+    pub along: Along,
     /// Name of the figure's files.
     pub name: String,
     /// Title.
@@ -156,14 +172,14 @@ pub struct TrackRow {
     pub lines: Vec<TrackLine>,
 }
 
-/// One signal over time.
+/// One signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackLine {
     /// Name in the legend.
     pub name: String,
     /// Its colour: 0 is that of the run which others compare with.
     pub colour: usize,
-    /// Times (s).
+    /// Times (s), or places along the axis of the figure in its unit.
     pub times: Vec<f64>,
     /// Values (unit of the row; rad for angles), as many.
     pub values: Vec<f64>,

@@ -40,7 +40,7 @@ pub(super) fn tracks(figure: &TrackFigure) -> Option<Figure> {
         frame.columns(9, index + 1 == n_rows, &mut shapes);
         frame.y_label(&row.label, 50.0, &mut shapes);
         if index + 1 == n_rows {
-            frame.x_label("time (s)", &mut shapes);
+            frame.x_label(figure.along.label, &mut shapes);
         }
         let mut inner: Vec<Shape> = Vec::new();
         if let Some(mark) = figure.mark {
@@ -54,7 +54,7 @@ pub(super) fn tracks(figure: &TrackFigure) -> Option<Figure> {
             let pieces = pieces.iter().map(|piece| frame.line(piece, look)).collect();
             inner.push(named(&line.name, pieces));
         }
-        let readout = frame.readout(["s", if row.is_angle { "°" } else { "" }]);
+        let readout = frame.readout([figure.along.unit, if row.is_angle { "°" } else { "" }]);
         shapes.push(Readout { both: false, ..readout }.group(0.0, inner));
     }
     Some(Figure {
