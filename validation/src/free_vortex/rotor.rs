@@ -6,7 +6,7 @@ use crate::row::Tolerance::Within;
 use basis::{Commands, PerBlade, Vector3};
 use farm::assemble::TurbineModel;
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
+use flow::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
 use flow::{FlowSolver, WindField};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use turbine::{Induction, N_ELEMENTS, Turbine, TurbineSettings};
 /// Accepted distance from blade elements in axisymmetric flow, and from blade-element momentum (–).
 const TOGETHER: f64 = 0.02;
 const MOMENTUM: f64 = 0.04;
-const AIR_DENSITY: f64 = 1.225;
+pub(super) const AIR_DENSITY: f64 = 1.225;
 /// The duct of the axisymmetric flow (radii): so wide that its walls are not felt.
 const DUCT: [f64; 3] = [10.0, 12.0, 12.0];
 
@@ -95,7 +95,7 @@ fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
 }
 
 /// The library's turbine `name` without tilt, precone and prebend: what the theories are about.
-fn flat(name: &str) -> TurbineModel {
+pub(super) fn flat(name: &str) -> TurbineModel {
     let file = formats::library::load(name).expect("the library's own turbines are readable");
     let mut definition = file.definition;
     definition.rotor.precone = 0.0;
@@ -117,7 +117,7 @@ pub(super) fn coefficients(
     let pitch = model.constants.fine_pitch;
     let foot = Vector3::Z * -definition.rotor.hub_height;
     let settings = TurbineSettings {
-        induction: Induction::ByBoundVortices { dynamic_stall: false },
+        induction: Induction::ByBoundVortices { dynamic_stall: false, tower: None },
         flexible: false,
         air_density: AIR_DENSITY,
         yaw: 0.0,
@@ -160,7 +160,12 @@ pub(super) fn coefficients(
     Coefficients { power: power / (force * wind_speed), thrust: thrust / force, torque }
 }
 
-fn wake(model: &TurbineModel, wind_speed: f64, interval: f64, fineness: Fineness) -> FreeWake {
+pub(super) fn wake(
+    model: &TurbineModel,
+    wind_speed: f64,
+    interval: f64,
+    fineness: Fineness,
+) -> FreeWake {
     let definition = &model.definition;
     let diameter = definition.rotor_diameter();
     let rows = |diameters: f64, share: f64| {
@@ -179,7 +184,10 @@ fn wake(model: &TurbineModel, wind_speed: f64, interval: f64, fineness: Fineness
             initial_widths: fineness.core_widths,
             kinematic_viscosity: 1.5e-5,
             eddy_constant: 1e-4,
+            strain: false,
         },
+        bodies: BodyWakes::NONE,
+        air_density: AIR_DENSITY,
         accuracy: Accuracy { degree: 3, opening: 0.6 },
         ground: false,
         shown: Points::NONE,
