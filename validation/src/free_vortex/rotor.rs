@@ -1,12 +1,12 @@
 //! Rotors at held speed in a steady uniform wind, their wakes free.
 
-use super::held::{Steady, Trial, flat, turn};
+use super::held::{AIR_DENSITY, Steady, Trial, flat, turn};
 use crate::Row;
 use crate::axisymmetric::{self, Flow, Swirl};
 use crate::row::Tolerance::Within;
 use farm::assemble::TurbineModel;
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
+use flow::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
@@ -107,12 +107,17 @@ pub(super) fn turned(
         settling: fineness.settling * model.definition.rotor_diameter() / wind_speed,
         distances,
     };
-    let induction = Induction::ByBoundVortices { dynamic_stall: false };
+    let induction = Induction::ByBoundVortices { dynamic_stall: false, tower: None };
     let found = turn(model, &mut wake, induction, &trial);
     (found, wake)
 }
 
-fn wake(model: &TurbineModel, wind_speed: f64, interval: f64, fineness: Fineness) -> FreeWake {
+pub(super) fn wake(
+    model: &TurbineModel,
+    wind_speed: f64,
+    interval: f64,
+    fineness: Fineness,
+) -> FreeWake {
     let definition = &model.definition;
     let diameter = definition.rotor_diameter();
     let rows = |diameters: f64, share: f64| {
@@ -131,7 +136,10 @@ fn wake(model: &TurbineModel, wind_speed: f64, interval: f64, fineness: Fineness
             initial_widths: fineness.core_widths,
             kinematic_viscosity: 1.5e-5,
             eddy_constant: 1e-4,
+            strain: false,
         },
+        bodies: BodyWakes::NONE,
+        air_density: AIR_DENSITY,
         accuracy: Accuracy { degree: 3, opening: 0.6 },
         ground: false,
         shown: Points::NONE,

@@ -4,7 +4,7 @@ use crate::Row;
 use crate::row::Tolerance::Within;
 use basis::{BoundVortex, PointForce, Vector3};
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
+use flow::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
 use flow::{FlowSolver, WindField};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -133,7 +133,14 @@ fn settings(n: usize, interval: f64) -> WakeSettings {
             length: 100.0 * SPAN,
             far_rows: 60,
         },
-        cores: Cores { initial_widths: 0.1, kinematic_viscosity: 0.0, eddy_constant: 0.0 },
+        cores: Cores {
+            initial_widths: 0.1,
+            kinematic_viscosity: 0.0,
+            eddy_constant: 0.0,
+            strain: false,
+        },
+        bodies: BodyWakes::NONE,
+        air_density: 1.0,
         accuracy: Accuracy { degree: 3, opening: 0.0 },
         ground: false,
         shown: Points::NONE,

@@ -154,7 +154,7 @@ pub fn site<'a>(model: &'a TurbineModel, case: &Case, plan: &Plan) -> Site<'a> {
 }
 
 /// How turbine number `index` of `case`, of `model`, stands in the air when time begins; `tower` is what its
-/// blades feel of its tower, where the wind is prescribed.
+/// blades feel of its tower, where the air does not feel the tower itself.
 pub(crate) fn turbine_settings(
     case: &Case,
     plan: &Plan,
@@ -263,7 +263,7 @@ fn induction(case: &Case, plan: &Plan, index: usize, tower: Option<TowerInfluenc
     let dynamic_stall = placement.dynamic_stall;
     let solver = case.flow.solver;
     if solver.resolves_induction && solver.uses_bound_vortices {
-        Induction::ByBoundVortices { dynamic_stall }
+        Induction::ByBoundVortices { dynamic_stall, tower }
     } else if solver.resolves_induction {
         let Smearing { length, sample_spacing } = (solver.smearing)(plan, index);
         Induction::ByFlow { smearing_length: length, sample_spacing, dynamic_stall }

@@ -22,6 +22,8 @@ pub struct Body {
     self_induction: f64,
     /// Axis of the body, along which it has no drag; zero for a compact one.
     axis: Vector3,
+    /// Radius of the disc from whose edge its wake leaves it (m); none for a piece of something longer.
+    disc_radius: Option<f64>,
 }
 
 /// The bodies of a turbine of `definition` with its tower's foot at `position` (m): tower from the bottom up,
@@ -52,7 +54,9 @@ pub fn of(
         }
     }
     let frontal_area = PI * definition.rotor.hub_radius.powi(2);
-    bodies.push(Body::compact(frame.hub, NACELLE_DRAG_COEFFICIENT * frontal_area, smearing_length));
+    let nacelle =
+        Body::compact(frame.hub, NACELLE_DRAG_COEFFICIENT * frontal_area, smearing_length);
+    bodies.push(Body { disc_radius: Some(definition.rotor.hub_radius), ..nacelle });
     bodies
 }
 
@@ -85,13 +89,14 @@ impl Body {
             drag_area: drag_coefficient * diameter * height,
             self_induction: drag_coefficient * diameter / (4.0 * PI.sqrt() * smearing_length),
             axis: Vector3::Z,
+            disc_radius: None,
         }
     }
 
     /// A compact body such as a nacelle; its smeared wake takes c_d A / (4 π ε²) from the wind at its centre.
     pub fn compact(position: Vector3, drag_area: f64, smearing_length: f64) -> Self {
         let self_induction = drag_area / (4.0 * PI * smearing_length * smearing_length);
-        Self { position, drag_area, self_induction, axis: Vector3::ZERO }
+        Self { position, drag_area, self_induction, axis: Vector3::ZERO, disc_radius: None }
     }
 
     /// From now on the wind given to the body is the free wind, without the effect of its own drag.
@@ -107,7 +112,8 @@ impl Body {
         // restored.
         let free = across / (1.0 - self.self_induction.min(0.5));
         let force = free * (-0.5 * air_density * self.drag_area * free.length());
-        PointForce::of_body(self.position, force, smearing_length)
+        let disc_radius = self.disc_radius;
+        PointForce { disc_radius, ..PointForce::of_body(self.position, force, smearing_length) }
     }
 }
 

@@ -181,6 +181,7 @@ impl Turbine {
         let nacelle = self.workspace.drag_of_bodies(
             &self.bodies,
             body_winds,
+            answer.map_or(Vector3::ZERO, |answer| answer.at_nacelle),
             self.air_density,
             self.smearing_length,
         );

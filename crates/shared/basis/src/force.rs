@@ -16,6 +16,9 @@ pub struct PointForce {
     /// The bound vortex behind it; none for a body without circulation, such as a tower or a nacelle, and in
     /// air that does not ask for bound vortices.
     pub bound: Option<BoundVortex>,
+    /// Radius of the disc across which it acts (m), for air that follows the wakes of bodies: that of a
+    /// nacelle. None for a blade element, and for a body whose wake is not followed, such as a tower.
+    pub disc_radius: Option<f64>,
 }
 
 /// Element of a lifting line: what a solver that sheds vorticity needs beside the force.
@@ -54,11 +57,14 @@ pub struct Answer<'a> {
     pub circulations: &'a [f64],
     /// Wind at an element (row) per unit of circulation of another (column), farm frame (1/m).
     pub influence: &'a [Vector3],
+    /// What the wake of the turbine's own nacelle brings about where the nacelle stands (m/s): its drag
+    /// coefficient is that of the wind without it.
+    pub at_nacelle: Vector3,
 }
 
 impl PointForce {
     /// The force (N) of a body without circulation at `position` (m), spread over `smearing_length` (m).
     pub fn of_body(position: Vector3, force: Vector3, smearing_length: f64) -> Self {
-        Self { position, force, smearing_length, turbine: 0, bound: None }
+        Self { position, force, smearing_length, turbine: 0, bound: None, disc_radius: None }
     }
 }

@@ -10,7 +10,7 @@ use basis::Vector3;
 use basis::keys::LeftOut::Value;
 use basis::keys::{Holds, Key, Values, above, from, key};
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
+use flow::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
 use std::sync::Arc;
 
 /// Speed at which a wake is carried at least, over the wind's (–): rows are there for so slow a wake.
@@ -21,11 +21,15 @@ const USUAL: f64 = 0.65;
 const TURN_TO_WARN: f64 = 20.0 * std::f64::consts::PI / 180.0;
 /// Length of a wake beyond which a reader must know what it is not (diameters).
 const LENGTH_TO_WARN: f64 = 8.0;
+/// Radius of a hub over the rotor's diameter, at least (–): rings of nacelles follow one another at half of
+/// it, and come closer in their own wake.
+const SMALLEST_HUB: f64 = 0.01;
+const CLOSEST_RINGS: f64 = 0.5 / 3.0;
 /// Blades of a turbine, before turbines are known (–).
 const N_BLADES: usize = 3;
 
 /// Keys of `[flow]` for a free wake.
-static KEYS: [Key; 11] = [
+static KEYS: [Key; 13] = [
     key(
         "steps_per_turn",
         from(8.0, 720.0),
@@ -74,6 +78,20 @@ static KEYS: [Key; 11] = [
         "–",
         Value("0.0001"),
         "Squire's constant a₁: cores grow as √(4 α (ν + a₁ |Γ|) t). Bhagwat and Leishman found 0.00006 to 0.0002.",
+    ),
+    key(
+        "core_strain",
+        Holds::Choice(&["volume", "none"]),
+        "",
+        Value("\"volume\""),
+        "What stretching does to cores. `volume`: they keep it, and become thinner where their vortex is stretched. `none`: nothing.",
+    ),
+    key(
+        "nacelle_wake_diameters",
+        from(0.0, 40.0),
+        "D",
+        Value("2"),
+        "Length of the wake of each hub and nacelle, whose drag leaves vortex rings behind; its last 15 % fade. 0: they leave none.",
     ),
     key(
         "ground_effect",
@@ -160,7 +178,10 @@ fn settings(case: &Case, plan: &Plan, n_blades: usize) -> WakeSettings {
             initial_widths: values.number("core_widths"),
             kinematic_viscosity: case.wind.kinematic_viscosity,
             eddy_constant: values.number("core_growth"),
+            strain: values.word("core_strain") == "volume",
         },
+        bodies: bodies(values.number("nacelle_wake_diameters"), plan, case.turbines.len()),
+        air_density: case.wind.air_density,
         accuracy: Accuracy { degree: count("tree_degree"), opening: values.number("tree_opening") },
         ground: values.word("ground_effect") == "image",
         shown: Points {
@@ -172,6 +193,12 @@ fn settings(case: &Case, plan: &Plan, n_blades: usize) -> WakeSettings {
         n_elements: turbine::N_ELEMENTS,
         threads: case.flow.threads,
     }
+}
+
+/// Wakes of `n_bodies` nacelles that are `diameters` long.
+fn bodies(diameters: f64, plan: &Plan, n_bodies: usize) -> BodyWakes {
+    let most_rings = (diameters / (CLOSEST_RINGS * SMALLEST_HUB)).ceil() as usize;
+    BodyWakes { length: diameters * plan.diameter, n_bodies, most_rings }
 }
 
 fn begin(start: Start) -> Result<Air, SolverError> {
@@ -205,7 +232,10 @@ fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
             initial_widths: 0.3,
             kinematic_viscosity: alone.wind.kinematic_viscosity,
             eddy_constant: 1e-4,
+            strain: true,
         },
+        bodies: BodyWakes::NONE,
+        air_density: alone.wind.air_density,
         accuracy: Accuracy { degree: 3, opening: 0.6 },
         ground: false,
         shown: Points::NONE,

@@ -190,7 +190,7 @@ pub(super) static TURBINE: Table = Table {
             Holds::Choice(&["none", "potential", "potential-with-drag", "potential-and-shadow"]),
             "",
             Value("\"none\""),
-            "What the tower does to the wind that the blades meet, in prescribed wind only: in resolved flow its drag acts on the flow itself. `potential`: the wind parts as about a cylinder (AeroDyn's `TwrPotent` 1). `potential-with-drag`: and its drag slows the wind ahead, after Bak (`TwrPotent` 2). `potential-and-shadow`: as about a cylinder, and slow behind it, after Powles (`TwrShadow` 1).",
+            "What the tower does to the wind that the blades meet, in prescribed wind and among free vortices: in the lattice its drag acts on the flow itself. `potential`: the wind parts as about a cylinder (AeroDyn's `TwrPotent` 1). `potential-with-drag`: and its drag slows the wind ahead, after Bak (`TwrPotent` 2). `potential-and-shadow`: as about a cylinder, and slow behind it, after Powles (`TwrShadow` 1).",
         ),
         key(
             "instruments",

@@ -1,4 +1,5 @@
-//! Keys of `[[turbine]]` that only momentum theory uses, where the wind is prescribed: read and written.
+//! Keys of `[[turbine]]` that only momentum theory uses, where the wind is prescribed, and that of the tower,
+//! which blades among free vortices feel too: read and written.
 
 use super::error::ProblemKind;
 use super::section::Section;
@@ -42,7 +43,8 @@ pub(super) fn tower_influence_of(turbine: &Section, solver: Solver) -> TowerInfl
     let word = turbine.choice("tower_influence");
     let known = TOWER_INFLUENCES.iter().find(|(name, _)| *name == word);
     let influence = known.map_or(TowerInfluence::None, |(_, influence)| *influence);
-    if influence != TowerInfluence::None && solver.resolves_induction {
+    let air_feels_it = solver.resolves_induction && !solver.uses_bound_vortices;
+    if influence != TowerInfluence::None && air_feels_it {
         let name = solver.name;
         let why = format!("in flow.solver = \"{name}\" the tower's drag acts on the air itself");
         note_no_use(turbine, "tower_influence", &why, &other_solver());
@@ -178,6 +180,10 @@ name = "baseline"
             let lines = message(keys, solver);
             assert!(lines.contains(expected), "{keys}\nexpected {expected}\nfound    {lines}");
         }
+        // Free vortices do not feel the tower: its blades do.
+        let free = text("tower_influence = \"potential\"").replace("\"uniform\"", "\"vortex\"");
+        let free = parse("small.toml", &free, &[]).expect("a sound case");
+        assert_eq!(free.turbines[0].tower_influence, TowerInfluence::Potential);
         // This much is true of resolved flow too.
         let still = text("tower_influence = \"none\"").replace("\"uniform\"", "\"lattice\"");
         assert!(parse("small.toml", &still, &[]).is_ok());

@@ -1,9 +1,12 @@
 //! A free-vortex wake: lifting lines shed their vorticity into the wind, which carries it, and which it
 //! moves.
 
+mod body;
 mod direct;
+mod division;
 pub mod examples;
 mod field;
+mod filaments;
 mod interpolation;
 mod planes;
 mod rotor;
@@ -11,12 +14,14 @@ mod segment;
 mod settings;
 mod sheet;
 mod state;
+mod strain;
 mod strip;
 #[cfg(test)]
 mod tests;
 mod tree;
 mod wake;
 
+pub use body::BodyWakes;
 pub use direct::direct;
 pub use field::{Accuracy, induced};
 pub use interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};

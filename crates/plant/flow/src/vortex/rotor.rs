@@ -25,6 +25,8 @@ pub(super) struct Rotor {
     /// Wind at an element (row) per unit of circulation of another (column) (1/m).
     influence: Vec<Vector3>,
     answers: bool,
+    /// What the wake of its nacelle brings about where that stands (m/s).
+    pub(super) at_nacelle: Vector3,
 }
 
 impl Rotor {
@@ -59,6 +61,7 @@ impl Rotor {
             rings: Vec::with_capacity(n),
             influence: vec![Vector3::ZERO; n * n],
             answers: false,
+            at_nacelle: Vector3::ZERO,
         }
     }
 
@@ -148,7 +151,7 @@ impl Rotor {
 
     /// How its wind answers; none before it has a wake.
     pub(super) fn answer(&self) -> Option<Answer<'_>> {
-        let Self { circulations, influence, answers, .. } = self;
-        answers.then_some(Answer { circulations, influence })
+        let Self { circulations, influence, answers, at_nacelle, .. } = self;
+        answers.then_some(Answer { circulations, influence, at_nacelle: *at_nacelle })
     }
 }

@@ -4,7 +4,7 @@ use basis::Vector3;
 use std::f64::consts::PI;
 
 /// Lamb's constant α (–): a Lamb-Oseen vortex turns fastest at √(4 α ν t).
-const LAMB: f64 = 1.256_43;
+pub(super) const LAMB: f64 = 1.256_43;
 
 /// A straight piece of vortex filament.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,11 +57,13 @@ pub struct Cores {
     pub kinematic_viscosity: f64,
     /// How eddies in the core speed its growth, a₁ in Squire's 1 + a₁ |Γ|/ν (–).
     pub eddy_constant: f64,
+    /// Whether cores become thinner where their vortex is stretched, their volume being kept.
+    pub strain: bool,
 }
 
 impl Cores {
     /// Square of the radius (m²) of a core that was `born` with such a square (m²), at `age` (s), of a
-    /// segment of `circulation` (m²/s): r² = r₀² + 4 α δ ν t with δ = 1 + a₁ |Γ|/ν.
+    /// segment of `circulation` (m²/s) that keeps its length: r² = r₀² + 4 α δ ν t, δ = 1 + a₁ |Γ|/ν.
     /// Sources: Squire (1965); Bhagwat and Leishman (2002), a₁ between 6·10⁻⁵ and 2·10⁻⁴.
     pub fn squared(&self, born: f64, age: f64, circulation: f64) -> f64 {
         let viscosity = self.kinematic_viscosity + self.eddy_constant * circulation.abs();
@@ -149,8 +151,12 @@ mod tests {
 
     #[test]
     fn cores_grow_as_squire_has_it() {
-        let cores =
-            Cores { initial_widths: 0.25, kinematic_viscosity: 1.5e-5, eddy_constant: 1e-4 };
+        let cores = Cores {
+            initial_widths: 0.25,
+            kinematic_viscosity: 1.5e-5,
+            eddy_constant: 1e-4,
+            strain: false,
+        };
         // Γ/ν = 2e6: δ = 201.
         let squared = cores.squared(0.04, 10.0, -30.0);
         assert!((squared - (0.04 + 4.0 * 1.25643 * 201.0 * 1.5e-5 * 10.0)).abs() < 1e-12);

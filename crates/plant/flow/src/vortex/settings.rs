@@ -1,5 +1,6 @@
 //! What a free wake is set up with.
 
+use super::body::BodyWakes;
 use super::field::Accuracy;
 use super::segment::Cores;
 use super::sheet::{Resolution, Sheet};
@@ -15,6 +16,10 @@ pub struct WakeSettings {
     pub resolution: Resolution,
     /// How cores begin and grow.
     pub cores: Cores,
+    /// How far the wakes of bodies such as nacelles are followed.
+    pub bodies: BodyWakes,
+    /// Density of the air (kg/m³).
+    pub air_density: f64,
     /// How exact induced velocities are.
     pub accuracy: Accuracy,
     /// Whether there is a ground at z = 0, which the air does not pass: every vortex has an image below it.
@@ -63,23 +68,26 @@ pub enum WakeError {
 impl WakeSettings {
     /// Most segments that the wakes can have (–).
     pub fn most_segments(&self) -> usize {
-        self.n_blades * Sheet::most_segments(self.n_elements, &self.resolution)
+        let of_blade = Sheet::most_segments(self.n_elements, &self.resolution);
+        self.n_blades * of_blade + self.bodies.most_segments()
     }
 
     /// # Errors
     /// [`WakeError`] names what cannot be.
     pub fn check(&self) -> Result<(), WakeError> {
-        let Self { interval, resolution, cores, accuracy, .. } = self;
+        let Self { interval, resolution, cores, bodies, air_density, accuracy, .. } = self;
         let positive = [
             ("step (s)", *interval),
             ("length (m)", resolution.length),
             ("rows near the blade", resolution.near_rows as f64),
             ("steps from row to row", resolution.far_stride as f64),
             ("core at birth over widths", cores.initial_widths),
+            ("density of the air (kg/m³)", *air_density),
         ];
         let not_negative = [
             ("viscosity (m²/s)", cores.kinematic_viscosity),
             ("eddy constant of cores", cores.eddy_constant),
+            ("length of wakes of bodies (m)", bodies.length),
             ("opening of the tree", accuracy.opening),
         ];
         let refuse = |name, value, expected| Err(WakeError::Setting { name, value, expected });
@@ -95,6 +103,9 @@ impl WakeSettings {
         }
         if accuracy.opening >= 1.0 {
             return refuse("opening of the tree", accuracy.opening, "less than 1");
+        }
+        if bodies.length > 0.0 && bodies.most_rings == 0 {
+            return refuse("rings of a body's wake", 0.0, "one at least");
         }
         if resolution.far_filaments < 2 {
             let value = resolution.far_filaments as f64;

@@ -1,6 +1,8 @@
 //! The wake of one blade: a strip of rings as fine as its elements, which becomes coarser further down.
 
+use super::filaments::{Births, Filaments};
 use super::segment::{Cores, Segment};
+use super::strain::Life;
 use super::strip::Strip;
 use basis::Vector3;
 
@@ -8,10 +10,6 @@ use basis::Vector3;
 const FADING: f64 = 0.15;
 /// Least area of a ring over that of those which it stands for (–).
 const LEAST_AREA: f64 = 0.7;
-/// Core of a blade's bound vortex over the width of its elements (–): a bent blade is no straight line, and
-/// its bound vortex is to have no effect on its own elements.
-const BOUND_CORE: f64 = 0.5;
-
 /// How the wakes of blades are resolved, and where they end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
@@ -76,6 +74,7 @@ impl Sheet {
         if self.near.n_rows() > 1 {
             let row = self.near.n_rows() - 2;
             self.leave(row, circulations);
+            self.near.begin_trailing(row);
         }
         if self.near.n_rows() > self.resolution.near_rows + self.resolution.far_stride {
             self.coarsen();
@@ -121,7 +120,44 @@ impl Sheet {
         };
         let nodes = kept.iter().map(|&s| (near.positions[s], near.velocities[s]));
         far.push(nodes, near.ages[0], kept.windows(2).map(ring));
-        near.drop_oldest(stride);
+        self.join_lives();
+        self.near.drop_oldest(stride);
+    }
+
+    /// On return what lies along the youngest row further down and trails from it has the lives of what it
+    /// stands for: the rows near the blade up to the next one that stays.
+    fn join_lives(&mut self) {
+        let Self { near, far, kept, resolution, .. } = self;
+        let stride = resolution.far_stride;
+        let last = far.n_rows() - 1;
+        let between = |from: Vector3, to: Vector3| (to - from).length();
+        for (k, &s) in kept.iter().enumerate() {
+            let (mut life, mut lengths) = (Life::default(), 0.0);
+            for row in 0..stride {
+                life += near.trailing(row)[s];
+                lengths += between(near.row(row)[s], near.row(row + 1)[s]);
+            }
+            let length = between(near.row(0)[s], near.row(stride)[s]);
+            far.trailing[last * kept.len() + k] = life.joined(lengths, length);
+        }
+        for (k, pair) in kept.windows(2).enumerate() {
+            let (mut life, mut lengths) = (Life::default(), 0.0);
+            for s in pair[0]..pair[1] {
+                life += near.spanwise(0)[s];
+                lengths += between(near.row(0)[s], near.row(0)[s + 1]);
+            }
+            let length = between(near.row(0)[pair[0]], near.row(0)[pair[1]]);
+            far.spanwise[last * (kept.len() - 1) + k] = life.joined(lengths, length);
+        }
+    }
+
+    /// All filaments live on for `duration` (s) where they are.
+    pub(super) fn live(&mut self, duration: f64) {
+        let Self { near, far, kept, .. } = self;
+        if near.n_rows() > 0 {
+            far.live(duration, Some(&|k| near.row(0)[kept[k]]));
+        }
+        near.live(duration, None);
     }
 
     /// Drops rows that lie beyond the wake's length.
@@ -177,10 +213,11 @@ impl Sheet {
             let share = self.share([far.place(row), place], line);
             let (old, rings) = (far.row(row), far.rings(row));
             let older = &far.circulations[row.saturating_sub(1) * rings.len()..];
-            filaments.trailing(old, node, [far.ages[row], age], |s| share * rings[s], born);
+            let ages = [far.ages[row], age];
+            filaments.trailing(old, node, ages, |s| share * rings[s], born, far.trailing(row));
             let excess = |s: usize| older_share * older[s] - share * rings[s];
             let core = |s: usize| 0.5 * (born(s) + born(s + 1));
-            filaments.spanwise(old, far.ages[row], excess, core);
+            filaments.spanwise(old, far.ages[row], excess, core, far.spanwise(row));
             older_share = share;
         }
         older_share
@@ -201,7 +238,8 @@ impl Sheet {
             let share = self.share([near.place(row), near.place(row + 1)], line);
             let (old, young, rings) = (near.row(row), near.row(row + 1), near.rings(row));
             let ages = [near.ages[row], near.ages[row + 1]];
-            filaments.trailing(old, |s| young[s], ages, |s| share * rings[s], born);
+            let lives = near.trailing(row);
+            filaments.trailing(old, |s| young[s], ages, |s| share * rings[s], born, lives);
             let older = |s: usize| match (row, far.n_rows()) {
                 (0, 0) => 0.0,
                 (0, n) => far.rings(n - 1)[kept.partition_point(|&k| k <= s) - 1],
@@ -209,12 +247,13 @@ impl Sheet {
             };
             let excess = |s: usize| older_share * older(s) - share * rings[s];
             let core = |s: usize| 0.5 * (born(s) + born(s + 1));
-            filaments.spanwise(old, near.ages[row], excess, core);
+            filaments.spanwise(old, near.ages[row], excess, core, near.spanwise(row));
             older_share = share;
         }
         if let Some(last) = newest.checked_sub(1) {
             let bound = |s: usize| older_share * near.rings(last)[s];
-            filaments.spanwise(near.row(newest), 0.0, bound, |s| births.bound(s));
+            let (line, lives) = (near.row(newest), near.spanwise(newest));
+            filaments.spanwise(line, 0.0, bound, |s| births.bound(s), lives);
         }
     }
 
@@ -227,89 +266,19 @@ impl Sheet {
         let births = Births::of(young, cores);
         let gamma = near.rings(newest - 1)[s];
         let age = near.ages[newest - 1];
-        let grown = |born: f64, age: f64| cores.squared(born, age, gamma);
-        let side = |from: Vector3, to: Vector3, core_squared: f64| Segment {
-            from,
-            to,
-            circulation: 1.0,
-            core_squared,
+        let side = |from: Vector3, to: Vector3, born: f64, age: f64, life: &Life| {
+            let core_squared = cores.of(born, age, (to - from).length(), gamma, life);
+            Segment { from, to, circulation: 1.0, core_squared }
         };
         let spanwise = 0.5 * (births.at(s) + births.at(s + 1));
+        let (bound, shed) = (near.spanwise(newest), near.spanwise(newest - 1));
+        let trailing = near.trailing(newest - 1);
         Some([
-            side(young[s], young[s + 1], births.bound(s)),
-            side(young[s + 1], old[s + 1], grown(births.at(s + 1), 0.5 * age)),
-            side(old[s + 1], old[s], grown(spanwise, age)),
-            side(old[s], young[s], grown(births.at(s), 0.5 * age)),
+            side(young[s], young[s + 1], births.bound(s), 0.0, &bound[s]),
+            side(young[s + 1], old[s + 1], births.at(s + 1), 0.5 * age, &trailing[s + 1]),
+            side(old[s + 1], old[s], spanwise, age, &shed[s]),
+            side(old[s], young[s], births.at(s), 0.5 * age, &trailing[s]),
         ])
-    }
-}
-
-/// Squares of cores at birth (m²) on the bound vortex `line`.
-struct Births<'a> {
-    line: &'a [Vector3],
-    initial_widths: f64,
-}
-
-impl<'a> Births<'a> {
-    fn of(line: &'a [Vector3], cores: &Cores) -> Self {
-        Self { line, initial_widths: cores.initial_widths }
-    }
-
-    /// Of what trails from node `s`, between elements whose mean width decides.
-    fn at(&self, s: usize) -> f64 {
-        let (low, high) = (s.saturating_sub(1), (s + 1).min(self.line.len() - 1));
-        let width = (self.line[high] - self.line[low]).length() / (high - low) as f64;
-        (self.initial_widths * width).powi(2)
-    }
-
-    /// Of the bound vortex of element `s`.
-    fn bound(&self, s: usize) -> f64 {
-        BOUND_CORE.powi(2) * (self.line[s + 1] - self.line[s]).length_squared()
-    }
-}
-
-/// Segments as they are added.
-struct Filaments<'a> {
-    cores: &'a Cores,
-    segments: &'a mut Vec<Segment>,
-}
-
-impl Filaments<'_> {
-    /// From the younger row, whose nodes are `young`, to the `old` one: what a ring has more than its outer
-    /// neighbour. `ages` (s) are those of old and young, `gamma` the rings' circulations.
-    fn trailing(
-        &mut self,
-        old: &[Vector3],
-        young: impl Fn(usize) -> Vector3,
-        ages: [f64; 2],
-        gamma: impl Fn(usize) -> f64,
-        born: impl Fn(usize) -> f64,
-    ) {
-        let (n, age) = (old.len() - 1, 0.5 * (ages[0] + ages[1]));
-        let mut inner = 0.0;
-        for (s, to) in old.iter().enumerate() {
-            let outer = if s < n { gamma(s) } else { 0.0 };
-            self.push(young(s), *to, inner - outer, born(s), age);
-            inner = outer;
-        }
-    }
-
-    /// Along a `row` of `age` (s), from root to tip.
-    fn spanwise(
-        &mut self,
-        row: &[Vector3],
-        age: f64,
-        gamma: impl Fn(usize) -> f64,
-        born: impl Fn(usize) -> f64,
-    ) {
-        for (s, ends) in row.windows(2).enumerate() {
-            self.push(ends[0], ends[1], gamma(s), born(s), age);
-        }
-    }
-
-    fn push(&mut self, from: Vector3, to: Vector3, circulation: f64, born: f64, age: f64) {
-        let core_squared = self.cores.squared(born, age, circulation);
-        self.segments.push(Segment { from, to, circulation, core_squared });
     }
 }
 
@@ -321,7 +290,12 @@ mod tests {
     /// `resolution` (m⁴/s).
     fn impulse(resolution: Resolution) -> Vector3 {
         const N: usize = 16;
-        let cores = Cores { initial_widths: 0.1, kinematic_viscosity: 1.5e-5, eddy_constant: 0.0 };
+        let cores = Cores {
+            initial_widths: 0.1,
+            kinematic_viscosity: 1.5e-5,
+            eddy_constant: 0.0,
+            strain: false,
+        };
         let mut sheet = Sheet::new([0, 0], N, resolution);
         let circulations: Vec<f64> = (0..N)
             .map(|s| 30.0 * (1.0 - ((s as f64 + 0.5) / N as f64 * 2.0 - 1.0).powi(4)))

@@ -1,11 +1,13 @@
 //! The state written out and read back, bit for bit.
 //!
 //! Little-endian: magic, version, clock of the wind; then for each rotor its turbine, blades, elements of
-//! each, their circulations and places, and for each blade its two strips: rows, ages, nodes, velocities,
-//! rings. Segments, boxes and how the wind answers follow from these.
+//! each, their circulations and places, for each blade its two strips: rows, ages, nodes, velocities, rings,
+//! lengths; and for each body whose wake is followed its turbine, radius, place and rings. Segments, boxes and how the wind answers follow from these.
 
+use super::body::{Body, N_SIDES};
 use super::rotor::Rotor;
 use super::sheet::Sheet;
+use super::strain::Life;
 use super::strip::Strip;
 use super::wake::FreeWake;
 use crate::inflow::prescribed::Clock;
@@ -13,7 +15,7 @@ use basis::Vector3;
 use std::io::{Error, ErrorKind, Read, Result, Write};
 
 const MAGIC: [u8; 8] = *b"wmvortex";
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 /// More of anything than this is a sign of a damaged file.
 const MOST: u64 = 1 << 24;
 
@@ -44,8 +46,11 @@ impl FreeWake {
             write_vectors(writer, &strip.positions)?;
             write_vectors(writer, &strip.velocities)?;
             write_values(writer, &strip.circulations)?;
+            write_lives(writer, &strip.trailing)?;
+            write_lives(writer, &strip.spanwise)?;
         }
-        Ok(())
+        write_count(writer, self.bodies.len() as u64)?;
+        self.bodies.iter().try_for_each(|body| write_body(writer, body))
     }
 
     /// Reads a state that [`write_state`](Self::write_state) wrote from a wake of the same settings.
@@ -85,13 +90,55 @@ impl FreeWake {
         for strip in sheets.iter_mut().flat_map(|sheet| [&mut sheet.near, &mut sheet.far]) {
             read_strip(reader, strip)?;
         }
+        let n_bodies = read_count(reader)?;
+        let bodies = (0..n_bodies).map(|_| self.read_body(reader)).collect::<Result<Vec<_>>>()?;
         let clock = Clock::from_bytes(clock);
         self.wind.restore(clock).map_err(|error| Error::new(ErrorKind::InvalidData, error))?;
-        (self.rotors, self.sheets) = (rotors, sheets);
+        (self.rotors, self.sheets, self.bodies) = (rotors, sheets, bodies);
         self.gather(true);
         self.tell_rotors();
         Ok(())
     }
+
+    fn read_body(&self, reader: &mut dyn Read) -> Result<Body> {
+        let turbine = read_count(reader)? as usize;
+        let mut radius = [0.0];
+        read_values(reader, &mut radius)?;
+        let mut body = Body::new(turbine, radius[0], self.settings.bodies);
+        let mut places = [Vector3::ZERO; 2];
+        read_vectors(reader, &mut places)?;
+        [body.position, body.way] = places;
+        let n = read_count(reader)? as usize;
+        if n > self.settings.bodies.most_rings {
+            let most = self.settings.bodies.most_rings;
+            return Err(invalid(format!(
+                "the state has {n} rings of a body, this wake at most {most}"
+            )));
+        }
+        body.ages.resize(n, 0.0);
+        read_values(reader, &mut body.ages)?;
+        body.circulations.resize(n, 0.0);
+        read_values(reader, &mut body.circulations)?;
+        body.lives.resize(n, Life::default());
+        read_lives(reader, &mut body.lives)?;
+        body.positions.resize(n * N_SIDES, Vector3::ZERO);
+        read_vectors(reader, &mut body.positions)?;
+        body.velocities.resize(n * N_SIDES, Vector3::ZERO);
+        read_vectors(reader, &mut body.velocities)?;
+        Ok(body)
+    }
+}
+
+fn write_body(writer: &mut dyn Write, body: &Body) -> Result<()> {
+    write_count(writer, body.turbine as u64)?;
+    write_values(writer, &[body.radius])?;
+    write_vectors(writer, &[body.position, body.way])?;
+    write_count(writer, body.n_rings() as u64)?;
+    write_values(writer, &body.ages)?;
+    write_values(writer, &body.circulations)?;
+    write_lives(writer, &body.lives)?;
+    write_vectors(writer, &body.positions)?;
+    write_vectors(writer, &body.velocities)
 }
 
 fn read_rotor(reader: &mut dyn Read) -> Result<Rotor> {
@@ -118,7 +165,11 @@ fn read_strip(reader: &mut dyn Read, strip: &mut Strip) -> Result<()> {
     strip.velocities.resize(n_rows * n_nodes, Vector3::ZERO);
     read_vectors(reader, &mut strip.velocities)?;
     strip.circulations.resize(n_rows * (n_nodes - 1), 0.0);
-    read_values(reader, &mut strip.circulations)
+    read_values(reader, &mut strip.circulations)?;
+    strip.trailing.resize(n_rows * n_nodes, Life::default());
+    read_lives(reader, &mut strip.trailing)?;
+    strip.spanwise.resize(n_rows * (n_nodes - 1), Life::default());
+    read_lives(reader, &mut strip.spanwise)
 }
 
 fn invalid(message: String) -> Error {
@@ -135,6 +186,19 @@ fn write_values(writer: &mut dyn Write, values: &[f64]) -> Result<()> {
 
 fn write_vectors(writer: &mut dyn Write, vectors: &[Vector3]) -> Result<()> {
     vectors.iter().try_for_each(|vector| write_values(writer, &vector.to_array()))
+}
+
+fn write_lives(writer: &mut dyn Write, lives: &[Life]) -> Result<()> {
+    lives.iter().try_for_each(|life| write_values(writer, &[life.at_birth, life.swept]))
+}
+
+fn read_lives(reader: &mut dyn Read, lives: &mut [Life]) -> Result<()> {
+    for life in lives {
+        let mut values = [0.0; 2];
+        read_values(reader, &mut values)?;
+        [life.at_birth, life.swept] = values;
+    }
+    Ok(())
 }
 
 fn read_count(reader: &mut dyn Read) -> Result<u64> {

@@ -1,5 +1,6 @@
 //! Rows of nodes, and the vortex rings between them: oldest first.
 
+use super::strain::Life;
 use basis::Vector3;
 
 /// A strip of vortex rings: between each row and the next, younger one a ring between neighbouring nodes.
@@ -14,6 +15,10 @@ pub(super) struct Strip {
     pub(super) ages: Vec<f64>,
     /// Circulation of the rings between a row and the next, younger one (m²/s): `n_nodes − 1` for each row.
     pub(super) circulations: Vec<f64>,
+    /// Lengths of what trails from the nodes of each row to the next, younger one: `n_nodes` for each row.
+    pub(super) trailing: Vec<Life>,
+    /// Lengths of what lies along each row: `n_nodes − 1` for each.
+    pub(super) spanwise: Vec<Life>,
 }
 
 impl Strip {
@@ -25,6 +30,8 @@ impl Strip {
             velocities: Vec::with_capacity(n_rows * n_nodes),
             ages: Vec::with_capacity(n_rows),
             circulations: Vec::with_capacity(n_rows * (n_nodes - 1)),
+            trailing: Vec::with_capacity(n_rows * n_nodes),
+            spanwise: Vec::with_capacity(n_rows * (n_nodes - 1)),
         }
     }
 
@@ -49,8 +56,19 @@ impl Strip {
         &self.circulations[row * n..(row + 1) * n]
     }
 
+    /// What trails from row number `row`.
+    pub(super) fn trailing(&self, row: usize) -> &[Life] {
+        &self.trailing[row * self.n_nodes..(row + 1) * self.n_nodes]
+    }
+
+    /// What lies along row number `row`.
+    pub(super) fn spanwise(&self, row: usize) -> &[Life] {
+        let n = self.n_nodes - 1;
+        &self.spanwise[row * n..(row + 1) * n]
+    }
+
     /// Adds a youngest row of `nodes` with their velocities at `age`, and `rings` between it and what comes
-    /// next.
+    /// next. What lies along it is born; what trails from it begins when it is [told](Self::begin_trailing).
     pub(super) fn push(
         &mut self,
         nodes: impl Iterator<Item = (Vector3, Vector3)>,
@@ -63,6 +81,42 @@ impl Strip {
         }
         self.ages.push(age);
         self.circulations.extend(rings);
+        let row = &self.positions[self.positions.len() - self.n_nodes..];
+        self.spanwise
+            .extend(row.windows(2).map(|ends| Life::new((ends[1] - ends[0]).length(), 0.0)));
+        self.trailing.resize(self.positions.len(), Life::default());
+    }
+
+    /// What trails from row number `row` to the next one begins, as old as its ends are on the mean.
+    pub(super) fn begin_trailing(&mut self, row: usize) {
+        let n = self.n_nodes;
+        let age = 0.5 * (self.ages[row] + self.ages[row + 1]);
+        for node in row * n..(row + 1) * n {
+            let length = (self.positions[node + n] - self.positions[node]).length();
+            self.trailing[node] = Life::new(length, age);
+        }
+    }
+
+    /// All filaments live on for `duration` (s) where they are; `younger` gives where those that trail from
+    /// the youngest row end.
+    pub(super) fn live(&mut self, duration: f64, younger: Option<&dyn Fn(usize) -> Vector3>) {
+        let n = self.n_nodes;
+        for (node, from) in self.positions.iter().enumerate() {
+            let to = match self.positions.get(node + n) {
+                Some(to) => *to,
+                None => match younger {
+                    Some(younger) => younger(node % n),
+                    None => continue,
+                },
+            };
+            self.trailing[node].live((to - *from).length(), duration);
+        }
+        let rows = self.positions.chunks_exact(n).zip(self.spanwise.chunks_exact_mut(n - 1));
+        for (row, lives) in rows {
+            for (ends, life) in row.windows(2).zip(lives) {
+                life.live((ends[1] - ends[0]).length(), duration);
+            }
+        }
     }
 
     /// Removes the `n` oldest rows.
@@ -71,6 +125,8 @@ impl Strip {
         self.velocities.drain(..n * self.n_nodes);
         self.ages.drain(..n);
         self.circulations.drain(..n * (self.n_nodes - 1));
+        self.trailing.drain(..n * self.n_nodes);
+        self.spanwise.drain(..n * (self.n_nodes - 1));
     }
 
     /// Mean place of row number `row` along x (m).

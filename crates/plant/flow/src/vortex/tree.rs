@@ -1,5 +1,6 @@
 //! Segments in boxes within boxes.
 
+use super::division::{LEAF, MOST_SHARES, Share, shape};
 use super::interpolation::Points;
 use super::segment::Segment;
 use crate::pool::Pool;
@@ -7,16 +8,12 @@ use crate::simd::MAXIMUM_LANES;
 use basis::Vector3;
 use std::f64::consts::PI;
 
-/// Most segments of a box that is not divided (–).
-const LEAF: usize = 64;
-/// Flattest box over its longest edge (–): points on a plane would coincide.
-const FLATTEST: f64 = 1e-3;
 /// Lengths are divided by so much in single precision, so that fourth powers stay within its range (m); a
 /// power of two, which loses nothing.
 pub(super) const UNIT: f64 = 64.0;
 
 /// A box of segments; those inside of it follow, and `next` is the first after them.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cluster {
     pub(super) centre: Vector3,
     /// Half of its edges (m).
@@ -26,8 +23,8 @@ pub(super) struct Cluster {
     /// The widest core of its segments, squared (m²).
     pub(super) core_squared: f64,
     /// Its segments in the tree's order.
-    first: u32,
-    n: u32,
+    pub(super) first: u32,
+    pub(super) n: u32,
     /// Where its lanes begin, if it is not divided.
     pub(super) lanes: u32,
     /// How many there are, a multiple of the widest vector's; 0 where it is divided.
@@ -56,7 +53,14 @@ pub(super) struct Tree {
     /// Vector strengths Γ l/4π in the points of each box, [`padded`](Self::n_padded), in single precision.
     pub(super) moments: [Vec<f32>; 3],
     exact: Vec<Vector3>,
-    order: Vec<u32>,
+    pub(super) order: Vec<u32>,
+    /// Boxes that threads make, each with all inside of it; in order.
+    pub(super) shares: Vec<Share>,
+    /// Boxes around these.
+    pub(super) tops: Vec<usize>,
+    /// Segments as boxes know them, and the boxes in which there are others now.
+    known: Vec<Segment>,
+    changed: Vec<bool>,
 }
 
 impl Tree {
@@ -70,11 +74,17 @@ impl Tree {
             moments: std::array::from_fn(|_| Vec::new()),
             exact: Vec::new(),
             order: Vec::new(),
+            shares: Vec::with_capacity(MOST_SHARES),
+            tops: Vec::with_capacity(MOST_SHARES),
+            known: Vec::new(),
+            changed: Vec::new(),
         };
         // Halves of halves: at least LEAF/2 segments in each box that is not divided.
         let leaves = 2 * most / LEAF + 2;
         tree.clusters.reserve(2 * leaves);
+        tree.changed.reserve(2 * leaves);
         tree.order.reserve(most);
+        tree.known.reserve(most);
         tree.exact.reserve(2 * leaves * tree.points.n_in_cube());
         let padded = tree.n_padded();
         tree.moments.iter_mut().for_each(|m| m.reserve(2 * leaves * padded));
@@ -91,96 +101,99 @@ impl Tree {
 
     /// Makes the boxes of `segments` anew.
     pub(super) fn rebuild(&mut self, segments: &[Segment], pool: &mut Pool) {
-        self.clusters.clear();
         self.order.clear();
         self.order.extend(0..segments.len() as u32);
-        let n_lanes = self.divide(segments, 0, segments.len(), 0);
+        let [n_clusters, n_lanes] = shape(segments.len());
+        self.clusters.clear();
+        self.clusters.resize(n_clusters, Cluster::default());
+        self.shares.clear();
+        self.tops.clear();
+        let whole = Share { n_clusters, n: segments.len(), ..Share::default() };
+        self.divide_tops(segments, whole, 0);
+        self.divide_shares(segments, pool);
         let Lanes { from, to, strength, core } = &mut self.lanes;
         let all = from.iter_mut().chain(to).chain([strength, core]);
         all.for_each(|lane| lane.resize(n_lanes, 0.0));
         let (n, padded) = (self.points.n_in_cube(), self.n_padded());
-        self.exact.resize(self.clusters.len() * n, Vector3::ZERO);
-        self.moments.iter_mut().for_each(|m| m.resize(self.clusters.len() * padded, 0.0));
-        self.refresh(segments, pool);
-    }
-
-    /// Makes the box of segments `first .. first + n` of the order and those inside of it, lanes from `lanes`
-    /// on; gives the end of the lanes.
-    fn divide(&mut self, segments: &[Segment], first: usize, n: usize, lanes: usize) -> usize {
-        let mine = &mut self.order[first..first + n];
-        let (mut low, mut high) = (Vector3::INFINITY, Vector3::NEG_INFINITY);
-        let mut core_squared = 0.0_f64;
-        for &index in &*mine {
-            let Segment { from, to, core_squared: core, .. } = segments[index as usize];
-            low = low.min(from).min(to);
-            high = high.max(from).max(to);
-            core_squared = core_squared.max(core);
-        }
-        if n == 0 {
-            (low, high) = (Vector3::ZERO, Vector3::ZERO);
-        }
-        let edges = high - low;
-        let half = 0.5 * edges.max(Vector3::splat((FLATTEST * edges.max_element()).max(1e-6)));
-        let here = self.clusters.len();
-        let is_leaf = n <= LEAF;
-        let n_lanes = if is_leaf { n.next_multiple_of(MAXIMUM_LANES) } else { 0 };
-        self.clusters.push(Cluster {
-            centre: 0.5 * (low + high),
-            half,
-            radius: half.length(),
-            core_squared,
-            first: first as u32,
-            n: n as u32,
-            lanes: lanes as u32,
-            n_lanes: n_lanes as u32,
-            next: 0,
-        });
-        let end = if is_leaf {
-            lanes + n_lanes
-        } else {
-            let axis = (0..3).max_by(|&a, &b| edges[a].total_cmp(&edges[b])).unwrap_or(0);
-            let key = |index: u32| {
-                let segment = &segments[index as usize];
-                segment.from[axis] + segment.to[axis]
-            };
-            mine.select_nth_unstable_by(n / 2, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
-            let middle = self.divide(segments, first, n / 2, lanes);
-            self.divide(segments, first + n / 2, n - n / 2, middle)
-        };
-        self.clusters[here].next = self.clusters.len() as u32;
-        end
+        self.exact.resize(n_clusters * n, Vector3::ZERO);
+        self.moments.iter_mut().for_each(|m| m.resize(n_clusters * padded, 0.0));
+        self.take_up(segments, true, pool);
     }
 
     /// Takes the circulations and cores of `segments` up, which stand where they stood at the last
-    /// [`rebuild`](Self::rebuild).
+    /// [`rebuild`](Self::rebuild). Boxes in which nothing has changed stay as they are.
     pub(super) fn refresh(&mut self, segments: &[Segment], pool: &mut Pool) {
+        self.take_up(segments, false, pool);
+    }
+
+    /// Moments and lanes of `all` boxes, or of those in which `segments` are others than they were.
+    fn take_up(&mut self, segments: &[Segment], all: bool, pool: &mut Pool) {
+        self.find_changed(segments, all);
         let n = self.points.n_in_cube();
-        let Self { points, clusters, order, exact, .. } = self;
-        pool.for_chunks(exact, n, &|first, moments| {
-            moments.fill(Vector3::ZERO);
-            let cluster = &clusters[first / n];
-            for &index in cluster.segments(order) {
-                add_moments(points, cluster, &segments[index as usize], moments);
+        let Self { points, clusters, order, exact, shares, changed, .. } = self;
+        let mut parts: [Option<(Share, &mut [Vector3])>; MOST_SHARES] =
+            std::array::from_fn(|_| None);
+        let (mut rest, mut next) = (&mut exact[..], 0);
+        for (part, share) in parts.iter_mut().zip(&*shares) {
+            let (_, others) = rest.split_at_mut((share.cluster - next) * n);
+            let (mine, others) = others.split_at_mut(share.n_clusters * n);
+            *part = Some((*share, mine));
+            (rest, next) = (others, share.cluster + share.n_clusters);
+        }
+        let (clusters, changed) = (&clusters[..], &changed[..]);
+        pool.for_chunks(&mut parts, 1, &|_, part| {
+            for (share, exact) in part.iter_mut().flatten() {
+                // Boxes come before those inside of them.
+                for index in (share.cluster..share.cluster + share.n_clusters).rev() {
+                    let from = (index - share.cluster) * n;
+                    if !changed[index] {
+                        continue;
+                    }
+                    let cluster = &clusters[index];
+                    if cluster.n_lanes == 0 {
+                        gather(points, clusters, index, &mut exact[from..]);
+                        continue;
+                    }
+                    let moments = &mut exact[from..from + n];
+                    moments.fill(Vector3::ZERO);
+                    for &segment in cluster.segments(order) {
+                        add_moments(points, cluster, &segments[segment as usize], moments);
+                    }
+                }
             }
         });
+        for &index in self.tops.iter().rev().filter(|&&index| changed[index]) {
+            gather(points, clusters, index, &mut exact[index * n..]);
+        }
         self.fill_lanes(segments);
-        // Boxes come before those inside of them.
-        for index in (0..self.clusters.len()).rev() {
-            let cluster = self.clusters[index];
-            if cluster.n_lanes > 0 || cluster.n == 0 {
-                continue;
-            }
-            let second = self.clusters[index + 1].next as usize;
-            let (mine, inside) = self.exact[index * n..].split_at_mut(n);
-            for child in [index + 1, second] {
-                let Cluster { centre, half, .. } = self.clusters[child];
-                let place = (centre - cluster.centre) / cluster.half;
-                let from = &inside[(child - index - 1) * n..(child - index) * n];
-                self.points.raise(from, place, half / cluster.half, mine);
+        self.round();
+    }
+
+    /// On return boxes know which of them hold other segments than they knew of: `all`, where they are new.
+    fn find_changed(&mut self, segments: &[Segment], all: bool) {
+        let Self { clusters, order, known, changed, .. } = self;
+        changed.clear();
+        changed.resize(clusters.len(), all);
+        if !all {
+            for (index, cluster) in clusters.iter().enumerate().rev() {
+                let mut mine = cluster.segments(order).iter().map(|&of| of as usize);
+                changed[index] = if cluster.n_lanes > 0 {
+                    mine.any(|of| known[of] != segments[of])
+                } else {
+                    cluster.n > 0
+                        && (changed[index + 1] || changed[clusters[index + 1].next as usize])
+                };
             }
         }
-        let padded = self.n_padded();
-        for (index, exact) in self.exact.chunks_exact(n).enumerate() {
+        known.clear();
+        known.extend_from_slice(segments);
+    }
+
+    /// Moments of changed boxes in single precision.
+    fn round(&mut self) {
+        let (n, padded) = (self.points.n_in_cube(), self.n_padded());
+        let all = self.exact.chunks_exact(n).zip(&self.changed).enumerate();
+        for (index, (exact, _)) in all.filter(|(_, (_, changed))| **changed) {
             for (k, moment) in exact.iter().enumerate() {
                 for (axis, moments) in self.moments.iter_mut().enumerate() {
                     moments[index * padded + k] = moment[axis] as f32;
@@ -189,10 +202,10 @@ impl Tree {
         }
     }
 
-    /// Lanes of all boxes that are not divided.
+    /// Lanes of all changed boxes that are not divided.
     fn fill_lanes(&mut self, segments: &[Segment]) {
-        let Self { clusters, order, lanes, .. } = self;
-        for cluster in clusters {
+        let Self { clusters, order, lanes, changed, .. } = self;
+        for (cluster, _) in clusters.iter().zip(&*changed).filter(|(_, changed)| **changed) {
             let mut mine = cluster.segments(order).iter();
             for lane in cluster.lanes..cluster.lanes + cluster.n_lanes {
                 match mine.next() {
@@ -209,6 +222,23 @@ impl Cluster {
     fn segments<'a>(&self, order: &'a [u32]) -> &'a [u32] {
         let n = if self.n_lanes > 0 { self.n as usize } else { 0 };
         &order[self.first as usize..][..n]
+    }
+}
+
+/// Moments of box number `index` from those of the two inside of it, all of which follow it in `exact`.
+fn gather(points: &Points, clusters: &[Cluster], index: usize, exact: &mut [Vector3]) {
+    let cluster = &clusters[index];
+    let n = points.n_in_cube();
+    let (mine, inside) = exact.split_at_mut(n);
+    mine.fill(Vector3::ZERO);
+    if cluster.n == 0 {
+        return;
+    }
+    for child in [index + 1, clusters[index + 1].next as usize] {
+        let Cluster { centre, half, .. } = clusters[child];
+        let place = (centre - cluster.centre) / cluster.half;
+        let from = &inside[(child - index - 1) * n..(child - index) * n];
+        points.raise(from, place, half / cluster.half, mine);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The wakes of all blades in the wind, as a flow.
 
+use super::body::Body;
 use super::field::{CHUNK, Field};
 use super::rotor::Rotor;
 use super::segment::Segment;
@@ -22,16 +23,19 @@ const LOWEST: f64 = 0.01;
 /// Each step every node of the wake moves with the wind and with what all vortices induce, second order in
 /// time. The rings that leave the blades in a step carry the circulation of that very step: the flow tells a
 /// turbine how its wind [answers](FlowSolver::answer), and both are found together. The lift that goes with a
-/// circulation is the turbine's (Kutta-Joukowski); forces without a bound vortex leave no trace.
+/// circulation is the turbine's (Kutta-Joukowski). Forces of discs, such as nacelles, leave rings behind;
+/// others without a bound vortex, such as the blades' drag and the tower's, leave no trace.
 ///
 /// Limits: the air is incompressible and free of turbulence of its own making; vorticity of shear in the wind
-/// is carried by the wind as it is and not by nodes; bodies such as towers do not push the air aside.
+/// is carried by the wind as it is and not by nodes; bodies do not push the air aside.
 pub struct FreeWake {
     pub(super) settings: WakeSettings,
     pub(super) wind: PrescribedWind,
     pub(super) sheets: Vec<Sheet>,
     /// One for each turbine that was met, in the order of their places in the farm.
     pub(super) rotors: Vec<Rotor>,
+    /// Those whose wakes are followed.
+    pub(super) bodies: Vec<Body>,
     segments: Vec<Segment>,
     field: Field,
     nodes: Vec<Vector3>,
@@ -58,6 +62,7 @@ impl FreeWake {
             wind,
             sheets: Vec::new(),
             rotors: Vec::new(),
+            bodies: Vec::new(),
             segments: Vec::with_capacity(most),
             field,
             nodes: Vec::with_capacity(most),
@@ -94,7 +99,7 @@ impl FreeWake {
     pub fn memory_of(settings: &WakeSettings) -> u64 {
         // A segment in double precision, its lanes and its share of boxes; two of three have a node with
         // position, velocities, wind and what is induced.
-        const OF_SEGMENT: u64 = 64 + 4 + 32 + 200 + 5 * 24;
+        const OF_SEGMENT: u64 = 64 + 4 + 32 + 200 + 16 + 5 * 24;
         settings.most_segments() as u64 * OF_SEGMENT
     }
 
@@ -118,10 +123,12 @@ impl FreeWake {
         direct + upside_down * self.field.velocity(upside_down * position)
     }
 
-    /// What bound vortices among `forces` say of their turbines; makes sheets of blades that are new.
-    fn meet(&mut self, forces: &[PointForce]) {
-        if self.rotors.is_empty() {
+    /// What bound vortices among `forces` say of their turbines, and what drag leaves behind; makes sheets of
+    /// blades that are new. Says whether there are new vortices.
+    fn meet(&mut self, forces: &[PointForce]) -> bool {
+        if self.rotors.is_empty() && self.bodies.is_empty() {
             self.rotors = Rotor::all_of(forces);
+            self.bodies = Body::all_of(forces, self.settings.bodies);
             for (index, rotor) in self.rotors.iter().enumerate() {
                 for (blade, n) in rotor.blades().enumerate() {
                     self.sheets.push(Sheet::new([index, blade], n, self.settings.resolution));
@@ -131,6 +138,13 @@ impl FreeWake {
         for rotor in &mut self.rotors {
             rotor.read(forces);
         }
+        let WakeSettings { interval, air_density, .. } = self.settings;
+        let discs = forces.iter().filter(|force| force.disc_radius.is_some());
+        let mut is_new = false;
+        for (body, force) in self.bodies.iter_mut().zip(discs) {
+            is_new |= body.shed(force, interval, air_density);
+        }
+        is_new
     }
 
     /// On return segments and field are those of the rings.
@@ -138,6 +152,9 @@ impl FreeWake {
         self.segments.clear();
         for sheet in &self.sheets {
             sheet.push_segments(&self.settings.cores, &mut self.segments);
+        }
+        for body in &self.bodies {
+            body.push_segments(&self.settings.cores, &mut self.segments);
         }
         let Self { field, segments, pool, .. } = self;
         let pool = pool.get_mut().unwrap_or_else(PoisonError::into_inner);
@@ -148,12 +165,15 @@ impl FreeWake {
         }
     }
 
-    /// On return `winds` holds the velocity at each of the nodes of all sheets.
+    /// On return `winds` holds the velocity at each of the nodes of all sheets, then of all bodies' rings.
     fn feel(&mut self) -> Result<(), FlowError> {
         self.nodes.clear();
         for sheet in &self.sheets {
             self.nodes.extend_from_slice(&sheet.far.positions);
             self.nodes.extend_from_slice(&sheet.near.positions);
+        }
+        for body in &self.bodies {
+            self.nodes.extend_from_slice(&body.positions);
         }
         self.winds.resize(self.nodes.len(), Vector3::ZERO);
         self.induced.resize(self.nodes.len(), Vector3::ZERO);
@@ -177,28 +197,45 @@ impl FreeWake {
         Ok(())
     }
 
-    /// Moves the nodes of all sheets with the velocities of [`feel`](Self::feel).
+    /// Moves the nodes of all sheets and bodies' rings with the velocities of [`feel`](Self::feel).
     fn carry(&mut self, duration: f64) {
+        let WakeSettings { ground, cores, .. } = self.settings;
         let mut start = 0;
         for sheet in &mut self.sheets {
+            if cores.strain {
+                sheet.live(0.5 * duration);
+            }
             for strip in [&mut sheet.far, &mut sheet.near] {
                 let end = start + strip.positions.len();
                 strip.advance(duration, &self.winds[start..end]);
-                if self.settings.ground {
+                if ground {
                     strip.positions.iter_mut().for_each(|node| node.z = node.z.max(LOWEST));
                 }
                 start = end;
             }
+            if cores.strain {
+                sheet.live(0.5 * duration);
+            }
+        }
+        for body in &mut self.bodies {
+            let end = start + body.positions.len();
+            body.advance(duration, &self.winds[start..end]);
+            if ground {
+                body.positions.iter_mut().for_each(|node| node.z = node.z.max(LOWEST));
+            }
+            start = end;
         }
     }
 
-    /// Tells every rotor what its youngest rings do to its elements.
+    /// Tells every rotor what its youngest rings do to its elements, and its nacelle's to the nacelle.
     pub(super) fn tell_rotors(&mut self) {
-        let Self { rotors, sheets, settings, pool, .. } = self;
+        let Self { rotors, sheets, bodies, settings, pool, .. } = self;
         let pool = pool.get_mut().unwrap_or_else(PoisonError::into_inner);
         for (index, rotor) in rotors.iter_mut().enumerate() {
             let mine = sheets.iter().filter(|sheet| sheet.owner[0] == index);
             rotor.feel_rings(mine, &settings.cores, pool);
+            let mine = bodies.iter().filter(|body| body.turbine == rotor.turbine());
+            rotor.at_nacelle = mine.map(|body| body.own_velocity(&settings.cores)).sum();
         }
     }
 }
@@ -217,8 +254,7 @@ impl FlowSolver for FreeWake {
         if duration != self.settings.interval {
             return Err(FlowError::FractionalStep { duration, step: self.settings.interval });
         }
-        self.meet(forces);
-        let mut is_new = false;
+        let mut is_new = self.meet(forces);
         for sheet in &mut self.sheets {
             let rotor = &self.rotors[sheet.owner[0]];
             let circulations = rotor.circulations_of(sheet.owner[1]);

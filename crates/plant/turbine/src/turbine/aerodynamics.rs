@@ -5,6 +5,7 @@ use super::answering::Answering;
 use super::separation::{Flow, Separation};
 use super::{Induction, N_ELEMENTS, TurbineSettings};
 use crate::actuator_line::{ActuatorLine, Load, Onset, QuasiSteady, Scratch, Sections};
+use crate::aero::TowerInfluence;
 use crate::aero::rotor::{self, RotorAerodynamics, RotorKinematics};
 use crate::definition::Definition;
 use crate::motion::ElementMotion;
@@ -32,6 +33,8 @@ pub(super) struct LineMemory {
     scratch: Scratch,
     /// Where the air answers to the circulation of elements.
     answering: Option<Answering>,
+    /// The tower, where the air does not hold its influence.
+    tower: Option<TowerInfluence>,
 }
 
 /// State of the aerodynamics.
@@ -67,15 +70,19 @@ impl Aerodynamics {
     ) -> Self {
         match &settings.induction {
             Induction::ByFlow { dynamic_stall, .. }
-            | Induction::ByBoundVortices { dynamic_stall } => {
+            | Induction::ByBoundVortices { dynamic_stall, .. } => {
                 let n = definition.n_blades * N_ELEMENTS;
-                let answers = matches!(settings.induction, Induction::ByBoundVortices { .. });
+                let (answers, tower) = match &settings.induction {
+                    Induction::ByBoundVortices { tower, .. } => (true, tower.clone()),
+                    _ => (false, None),
+                };
                 let memory = LineMemory {
                     onsets: vec![Onset::default(); n],
                     pitch: vec![0.0; n],
                     loads: vec![Load::default(); n],
                     scratch: Scratch::new(definition.n_blades, N_ELEMENTS),
                     answering: answers.then(|| Answering::new(n)),
+                    tower,
                 };
                 let separation =
                     dynamic_stall.then(|| Separation::new(definition, line.elements()));
@@ -189,13 +196,17 @@ impl LineMemory {
         let inputs = self.onsets.iter_mut().zip(&mut self.pitch);
         for (((onset, pitch), motion), wind) in inputs.zip(now.motions).zip(now.winds) {
             *pitch = motion.pitch;
-            let relative = *wind - motion.velocity;
+            let wind = match &self.tower {
+                Some(tower) => tower.felt(motion.position, *wind),
+                None => *wind,
+            };
+            let relative = wind - motion.velocity;
             *onset = Onset {
                 normal: relative.dot(motion.axes.normal),
                 tangential: -relative.dot(motion.axes.tangent),
             };
         }
-        let Self { onsets, pitch, loads, scratch, answering } = self;
+        let Self { onsets, pitch, loads, scratch, answering, .. } = self;
         if let Some(answering) = answering {
             if now.first {
                 answering.begin(now.answer, now.motions);

@@ -6,6 +6,7 @@ use super::*;
 use crate::aero::blade_element::Theory;
 use crate::aero::induction::TwoConstant;
 use crate::aero::rotor;
+use crate::aero::tower_influence::{Effects, Potential, TowerInfluence};
 use crate::rotor::BladeFrame;
 
 /// Short, so that blades stand where they stood when their wind was sampled.
@@ -133,4 +134,66 @@ fn without_bound_vortices_all_else_is_the_same() {
         }
         assert_eq!(with.forces().len(), without.forces().len());
     }
+}
+
+#[test]
+fn blades_among_bound_vortices_feel_the_tower() {
+    let induction =
+        |tower: Option<TowerInfluence>| Induction::ByBoundVortices { dynamic_stall: false, tower };
+    let bare = built(false, induction(None));
+    let effects = Effects { potential: Potential::WithDrag, shadow: true };
+    let foot = Vector3::new(100.0, -20.0, 0.0);
+    let tower = TowerInfluence::new(bare.definition(), foot, effects);
+    let wind = Vector3::new(9.0, 0.5, 0.0);
+    let even = vec![wind; bare.stations().len()];
+    let n = 3 * N_ELEMENTS;
+    let parted: Vec<Vector3> = bare
+        .stations()
+        .iter()
+        .enumerate()
+        .map(|(index, at)| if index < n { tower.felt(*at, wind) } else { wind })
+        .collect();
+    let forces = |tower: Option<TowerInfluence>, winds: &[Vector3]| {
+        let mut turbine = built(false, induction(tower));
+        turbine.advance(INSTANT, winds, &commands(0.02));
+        turbine.forces().to_vec()
+    };
+    let (told, felt) = (forces(None, &parted), forces(Some(tower), &even));
+    let without = forces(None, &even);
+    let mut greatest = 0.0_f64;
+    for ((told, felt), without) in told.iter().zip(&felt).zip(&without) {
+        let scale = without.force.length();
+        assert!((told.force - felt.force).length() < TOLERANCE * scale);
+        greatest = greatest.max((felt.force - without.force).length() / scale);
+    }
+    // One blade hangs before the tower or passes near it.
+    assert!(greatest > 0.02, "{greatest}");
+}
+
+#[test]
+fn the_drag_of_a_nacelle_is_that_of_the_wind_without_its_own_wake() {
+    let built = || built(false, Induction::ByBoundVortices { dynamic_stall: false, tower: None });
+    let (mut with, mut without) = (built(), built());
+    let n = 3 * N_ELEMENTS;
+    let (circulations, influence) = (vec![0.0; n], vec![Vector3::ZERO; n * n]);
+    let at_nacelle = Vector3::X * -2.0;
+    let answer = |at_nacelle: Vector3| {
+        let (circulations, influence) = (&circulations[..], &influence[..]);
+        Some(Answer { circulations, influence, at_nacelle })
+    };
+    let winds = vec![Vector3::X * 9.0; with.stations().len()];
+    let slowed: Vec<Vector3> = winds
+        .iter()
+        .enumerate()
+        .map(|(index, wind)| if index + 1 == winds.len() { *wind + at_nacelle } else { *wind })
+        .collect();
+    with.advance_answered(INSTANT, &slowed, answer(at_nacelle), &commands(0.02));
+    without.advance_answered(INSTANT, &winds, answer(Vector3::ZERO), &commands(0.02));
+    assert_eq!(with.forces(), without.forces());
+    let nacelle = with.forces().last().expect("bodies come last");
+    let radius = with.definition().rotor.hub_radius;
+    assert_eq!(nacelle.disc_radius, Some(radius));
+    let area = std::f64::consts::PI * radius * radius;
+    let drag = 0.5 * DENSITY * 0.85 * area * 81.0;
+    assert!((nacelle.force.x + drag).abs() < 1e-9 * drag, "{}", nacelle.force);
 }

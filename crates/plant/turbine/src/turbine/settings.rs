@@ -1,6 +1,6 @@
 //! What a turbine is built with besides its definition.
 
-use crate::aero::rotor;
+use crate::aero::{TowerInfluence, rotor};
 
 /// Aerodynamic model and initial condition of a turbine.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +39,8 @@ pub enum Induction {
     ByBoundVortices {
         /// As for [`ByFlow`](Self::ByFlow).
         dynamic_stall: bool,
+        /// What the blades feel of the tower, which such air knows nothing of.
+        tower: Option<TowerInfluence>,
     },
     /// Blade-element momentum theory in the turbine: the winds given do not contain it.
     ByMomentum(rotor::BemSettings),

@@ -46,11 +46,12 @@ impl Workspace {
 
     /// On return it holds the drag of the tower in `winds` (m/s) of `air_density` (kg/m³), and the forces of
     /// all `bodies` on the air, smeared over `smearing_length` (m), are its only ones; gives the drag of the
-    /// nacelle (N).
+    /// nacelle (N), the last of them, in whose wind its own wake makes for `own_wake` (m/s).
     pub(super) fn drag_of_bodies(
         &mut self,
         bodies: &[Body],
         winds: &[Vector3],
+        own_wake: Vector3,
         air_density: f64,
         smearing_length: f64,
     ) -> Vector3 {
@@ -58,7 +59,9 @@ impl Workspace {
         forces.clear();
         let mut nacelle = Vector3::ZERO;
         for (index, (body, wind)) in bodies.iter().zip(winds).enumerate() {
-            let force = body.force(*wind, air_density, smearing_length);
+            let is_nacelle = index + 1 == bodies.len();
+            let free = if is_nacelle { *wind - own_wake } else { *wind };
+            let force = body.force(free, air_density, smearing_length);
             match tower.get_mut(index) {
                 Some(point) => *point = -force.force,
                 None => nacelle = -force.force,
@@ -105,7 +108,10 @@ impl Workspace {
                 }
             });
             let position = *position;
-            forces.push(PointForce { position, force: -force, smearing_length, turbine: 0, bound });
+            forces.push(PointForce {
+                bound,
+                ..PointForce::of_body(position, -force, smearing_length)
+            });
         }
         forces.rotate_left(n_bodies);
     }

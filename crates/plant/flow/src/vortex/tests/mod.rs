@@ -1,5 +1,6 @@
 //! Vortices with closed forms, and solvers against each other.
 
+mod bodies;
 mod closed_forms;
 mod coaxial;
 mod fields;

@@ -2,7 +2,7 @@
 
 use crate::fields::FieldSource;
 use crate::inflow::{MeanProfile, PrescribedWind};
-use crate::vortex::{Accuracy, Cores, FreeWake, Points, Resolution, WakeSettings};
+use crate::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
 use crate::{FlowError, FlowSolver, WindField};
 use basis::records::PlaneAxes;
 use basis::{BoundVortex, PointForce, Vector3};
@@ -10,11 +10,12 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 const INTERVAL: f64 = 0.2;
+const DENSITY: f64 = 1.2;
 const N_ELEMENTS: usize = 6;
 const WIND: f64 = 8.0;
-const HUB: Vector3 = Vector3::new(0.0, 0.0, 80.0);
+pub(super) const HUB: Vector3 = Vector3::new(0.0, 0.0, 80.0);
 
-fn settings() -> WakeSettings {
+pub(super) fn settings() -> WakeSettings {
     WakeSettings {
         interval: INTERVAL,
         resolution: Resolution {
@@ -24,7 +25,14 @@ fn settings() -> WakeSettings {
             length: 150.0,
             far_rows: 60,
         },
-        cores: Cores { initial_widths: 0.3, kinematic_viscosity: 1.5e-5, eddy_constant: 1e-4 },
+        cores: Cores {
+            initial_widths: 0.3,
+            kinematic_viscosity: 1.5e-5,
+            eddy_constant: 1e-4,
+            strain: true,
+        },
+        bodies: BodyWakes { length: 100.0, n_bodies: 1, most_rings: 200 },
+        air_density: DENSITY,
         accuracy: Accuracy { degree: 3, opening: 0.5 },
         ground: true,
         shown: Points { first: Vector3::new(-45.0, -55.0, 5.0), spacing: 10.0, n: [24, 12, 15] },
@@ -34,7 +42,7 @@ fn settings() -> WakeSettings {
     }
 }
 
-fn wake(settings: WakeSettings) -> FreeWake {
+pub(super) fn wake(settings: WakeSettings) -> FreeWake {
     let profile = MeanProfile::PowerLaw { hub_height: HUB.z, speed: WIND, exponent: 0.1 };
     FreeWake::new(settings, PrescribedWind::everywhere(Arc::new(profile))).expect("sound settings")
 }
@@ -46,6 +54,8 @@ fn forces(step: usize, circulation: f64) -> Vec<PointForce> {
         let radial = Vector3::new(0.0, -angle.sin(), angle.cos());
         (HUB + radial * (4.0 + 6.0 * (station as f64 + 0.5)), radial * 6.0)
     };
+    let nacelle =
+        PointForce { disc_radius: Some(2.0), ..PointForce::of_body(HUB, Vector3::X * -300.0, 0.0) };
     let all = (0..2).flat_map(|blade| (0..N_ELEMENTS).map(move |station| (blade, station)));
     all.map(|(blade, station)| {
         let (position, along) = middle(step, blade, station);
@@ -62,10 +72,11 @@ fn forces(step: usize, circulation: f64) -> Vec<PointForce> {
         });
         PointForce { bound, ..PointForce::of_body(position, Vector3::ZERO, 0.0) }
     })
+    .chain([nacelle])
     .collect()
 }
 
-fn advanced(wake: &mut FreeWake, steps: std::ops::Range<usize>) {
+pub(super) fn advanced(wake: &mut FreeWake, steps: std::ops::Range<usize>) {
     for step in steps {
         wake.advance(INTERVAL, &forces(step, 25.0)).expect("it stays finite");
     }
@@ -139,7 +150,13 @@ fn a_wake_goes_on_from_what_it_wrote() {
 
 #[test]
 fn the_wind_answers_as_it_is_said_to() {
-    let mut wake = wake(WakeSettings { ground: false, ..settings() });
+    // Images answer too, too little to be told of: the ground is as far away as the blades are long.
+    for ground in [false, true] {
+        answers_as_it_is_said_to(wake(WakeSettings { ground, ..settings() }));
+    }
+}
+
+fn answers_as_it_is_said_to(mut wake: FreeWake) {
     advanced(&mut wake, 0..30);
     let answer = wake.answer(0).expect("it has met the rotor");
     let n = 2 * N_ELEMENTS;
