@@ -1,9 +1,12 @@
 //! A free-vortex wake: lifting lines shed their vorticity into the wind, which carries it, and which it
 //! moves.
 
+mod close;
 mod direct;
 pub mod examples;
 mod field;
+mod filaments;
+mod full_length;
 mod interpolation;
 mod planes;
 mod rotor;
@@ -22,5 +25,5 @@ pub use field::{Accuracy, induced};
 pub use interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};
 pub use segment::{Cores, Segment};
 pub use settings::{Points, WakeError, WakeSettings};
-pub use sheet::Resolution;
+pub use sheet::{LASTING, Resolution};
 pub use wake::FreeWake;

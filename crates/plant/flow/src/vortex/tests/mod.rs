@@ -3,5 +3,6 @@
 mod closed_forms;
 mod coaxial;
 mod fields;
+mod filaments;
 mod shapes;
 mod wakes;

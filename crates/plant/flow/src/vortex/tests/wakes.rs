@@ -9,12 +9,12 @@ use basis::{BoundVortex, PointForce, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-const INTERVAL: f64 = 0.2;
+pub(super) const INTERVAL: f64 = 0.2;
 const N_ELEMENTS: usize = 6;
 const WIND: f64 = 8.0;
 const HUB: Vector3 = Vector3::new(0.0, 0.0, 80.0);
 
-fn settings() -> WakeSettings {
+pub(super) fn settings() -> WakeSettings {
     WakeSettings {
         interval: INTERVAL,
         resolution: Resolution {
@@ -34,13 +34,13 @@ fn settings() -> WakeSettings {
     }
 }
 
-fn wake(settings: WakeSettings) -> FreeWake {
+pub(super) fn wake(settings: WakeSettings) -> FreeWake {
     let profile = MeanProfile::PowerLaw { hub_height: HUB.z, speed: WIND, exponent: 0.1 };
     FreeWake::new(settings, PrescribedWind::everywhere(Arc::new(profile))).expect("sound settings")
 }
 
 /// Two blades of 40 m in step number `step`, each element with a circulation of its own.
-fn forces(step: usize, circulation: f64) -> Vec<PointForce> {
+pub(super) fn forces(step: usize, circulation: f64) -> Vec<PointForce> {
     let middle = |step: usize, blade: usize, station: usize| {
         let angle = TAU * blade as f64 / 2.0 + 0.15 * step as f64;
         let radial = Vector3::new(0.0, -angle.sin(), angle.cos());
@@ -65,7 +65,7 @@ fn forces(step: usize, circulation: f64) -> Vec<PointForce> {
     .collect()
 }
 
-fn advanced(wake: &mut FreeWake, steps: std::ops::Range<usize>) {
+pub(super) fn advanced(wake: &mut FreeWake, steps: std::ops::Range<usize>) {
     for step in steps {
         wake.advance(INTERVAL, &forces(step, 25.0)).expect("it stays finite");
     }
