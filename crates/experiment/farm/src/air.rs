@@ -43,8 +43,8 @@ pub trait FarmFlow: FlowSolver + Send + Sync {
         None
     }
 
-    /// Blade elements of machine number `machine` that stand in the cores of other turbines' vortices, and all
-    /// of its elements (–); none of none where there are no such things.
+    /// Blade elements of machine number `machine` that stand in the cores of other turbines' vortices, and
+    /// all of its elements (–); none of none where there are no such things.
     fn elements_in_cores(&self, _machine: usize) -> [u64; 2] {
         [0; 2]
     }

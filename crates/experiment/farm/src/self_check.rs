@@ -173,8 +173,8 @@ impl Tunnel {
 /// optimum (or rated), pitch at its least, tower and nacelle left out, polars holding at once; `progress`
 /// receives the share done.
 ///
-/// The tunnel is small, so the expectation is taken in the wind that an open sky would need for the same rotor
-/// state ([`SolverKind::equivalent_speed`](crate::solvers::SolverKind::equivalent_speed)).
+/// The tunnel is small, so the expectation is taken in the wind that an open sky would need for the same
+/// rotor state ([`SolverKind::equivalent_speed`](crate::solvers::SolverKind::equivalent_speed)).
 ///
 /// # Errors
 /// [`SelfCheckError`] when the flow cannot be set up or does not stay finite.
@@ -302,8 +302,8 @@ fn bare_rotor(
     Ok(assemble::in_air_of(solver, rotor.without_bodies()).at_held_speed())
 }
 
-/// Power (W) and thrust (N) of blade-element momentum in unbounded air of the speed, over that of `wind`, that
-/// is `equivalent` for a rotor of such a thrust coefficient there.
+/// Power (W) and thrust (N) of blade-element momentum in unbounded air of the speed, over that of `wind`,
+/// that is `equivalent` for a rotor of such a thrust coefficient there.
 fn expectation(
     definition: &Definition,
     wind: &Wind,

@@ -14,11 +14,11 @@ const WHAT: &str = "a volume of velocities (VTK)";
 /// Points that are converted at a time.
 const CHUNK: usize = 16 * 1024;
 
-/// Writes `volume` to `path`: point data `velocity` (m/s) and `vorticity` (1/s), three components each in single
-/// precision, and its instant (s) as ParaView's time.
+/// Writes `volume` to `path`: point data `velocity` (m/s) and `vorticity` (1/s), three components each in
+/// single precision, and its instant (s) as ParaView's time.
 ///
-/// The vorticity is the curl of what is written: by central differences between the volume's points, one-sided
-/// at its faces, and without the slopes along an axis that has one point. Vortices thinner than the points'
+/// The vorticity is the curl of what is written: by central differences between the volume's points,
+/// one-sided at its faces, and without the slopes along an axis that has one point. Vortices thinner than the points'
 /// distance are smeared over it.
 ///
 /// # Errors

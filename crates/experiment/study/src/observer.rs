@@ -26,7 +26,8 @@ pub struct Estimate {
     pub n_identifications: usize,
     /// Steps of all identifications together (–).
     pub n_identification_steps: u64,
-    /// Cell updates of all identifications together, or what takes as long (–); steps where there are no cells.
+    /// Cell updates of all identifications together, or what takes as long (–); steps where there are no
+    /// cells.
     pub identification_work: f64,
     /// Cells of the domain along x, y, z, those beneath boxes of finer ones included (–).
     pub n_cells: [usize; 3],

@@ -254,8 +254,8 @@ fn tunnel(plan: &Plan, flow: &Flow) -> Tunnel {
 /// A wake that ends induces less at its rotor, which is then in the state of one in faster air.
 ///
 /// The cylinder of vortices behind a disc with even load, of length l and radius R, induces the share
-/// s = l/√(l² + R²) of what an endless one does in the middle of the disc. With u = 1 − s a for the wind at the disc
-/// and C_T = 4 a (1 − a), momentum theory has the same u and the same thrust in the wind u + C_T/4u.
+/// s = l/√(l² + R²) of what an endless one does in the middle of the disc. With u = 1 − s a for the wind at
+/// the disc and C_T = 4 a (1 − a), momentum theory has the same u and the same thrust in the wind u + C_T/4u.
 fn with_an_end(tunnel: &Tunnel, _: f64, thrust_coefficient: f64) -> f64 {
     let radii = 2.0 * flow::vortex::LASTING * tunnel.downstream;
     let share = radii / (radii * radii + 1.0).sqrt();

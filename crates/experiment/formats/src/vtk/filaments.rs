@@ -1,4 +1,5 @@
-//! Vortices of wakes as VTK polydata (`.vtp`) for ParaView, written, and read back from files of this program.
+//! Vortices of wakes as VTK polydata (`.vtp`) for ParaView, written, and read back from the program's own
+//! files.
 
 use crate::FileError;
 use crate::atomic::AtomicFile;

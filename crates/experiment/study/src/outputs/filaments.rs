@@ -1,5 +1,5 @@
-//! The vortices of wakes at instants of the analysed time, `volumes/filaments-0000.vtp`, and at the run's last
-//! instant, which the report shows: `volumes/filaments-last.vtp`.
+//! The vortices of wakes at instants of the analysed time, `volumes/filaments-0000.vtp`, and at the run's
+//! last instant, which the report shows: `volumes/filaments-last.vtp`.
 
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;

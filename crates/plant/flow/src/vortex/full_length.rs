@@ -1,4 +1,5 @@
-//! Wakes placed at once as long as they become: what a step costs then is timed without making the steps before.
+//! Wakes placed at once as long as they become: what a step costs then is timed without making the steps
+//! before.
 
 use super::sheet::Sheet;
 use super::wake::FreeWake;
