@@ -133,11 +133,11 @@ fn cost_and_rotors_are_told_before_the_runs() {
     assert!((share - 0.5 * 20.0 / 43.1).abs() < 0.01, "{share}");
     assert!(memory > 100_000 && estimates[0].updates_per_second.is_none());
     assert!(estimates[1].wall_time().is_some_and(|time| time > 0.01 && time < 600.0));
-    // Both turbines are of one kind, and steps of 22° coarse: a tenth is what tells a wake from none.
+    // Both turbines are of one kind. Steps of 22° are coarse, but a rotor without a wake has some 40 % more.
     let Told(estimates, checks) = told(true);
     assert_eq!(checks.len(), 1);
     assert!(estimates.last().is_some_and(|estimate| estimate.updates_per_second.is_some()));
-    assert!(checks[0].thrust_error().abs() < 0.1, "{:?}", checks[0]);
+    assert!(checks[0].thrust_error().abs() < 0.2, "{:?}", checks[0]);
 }
 
 #[test]

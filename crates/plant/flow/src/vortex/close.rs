@@ -26,7 +26,7 @@ impl FreeWake {
             first = segments.end;
             (sheet.owner[0] != index).then_some(segments)
         };
-        self.sheets.iter().filter_map(of_blade).filter_map(|place| self.segments().get(place))
+        self.sheets.iter().filter_map(of_blade).filter_map(move |place| self.segments().get(place))
     }
 }
 

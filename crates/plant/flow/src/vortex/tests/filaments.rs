@@ -2,7 +2,7 @@
 
 use super::wakes::{INTERVAL, advanced, forces, settings, wake};
 use crate::FlowSolver;
-use crate::vortex::WakeSettings;
+use crate::vortex::{Resolution, WakeSettings};
 use basis::records::PieceKind;
 use basis::{PointForce, Vector3};
 use std::collections::BTreeSet;
@@ -40,7 +40,9 @@ fn pieces_are_the_segments_that_are_summed() {
 
 #[test]
 fn a_wake_of_full_length_is_there_at_once_and_goes_on() {
-    let mut wake = wake(settings());
+    // Room for all of it, slow as it is taken to be.
+    let resolution = Resolution { far_rows: 100, ..settings().resolution };
+    let mut wake = wake(WakeSettings { resolution, ..settings() });
     advanced(&mut wake, 0..1);
     let young = wake.segments().len();
     wake.reach_full_length();
