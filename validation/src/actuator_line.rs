@@ -2,10 +2,11 @@
 //! that rings make together: power and thrust in a steady uniform wind.
 
 use crate::Row;
-use crate::axisymmetric::{self, Flow, Swirl};
+use crate::axisymmetric::{self, Swirl};
 use crate::row::Tolerance::Within;
+use basis::keys::Values;
 use farm::assemble::TurbineModel;
-use farm::case::{Shear, TurbulenceModel, Wind};
+use farm::case::{Flow, Shear, Solver, TurbulenceModel, Wind};
 use farm::self_check::{Tunnel, self_check};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -115,7 +116,8 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
         event: None,
     };
     let mut whole = |_| ControlFlow::Continue(());
-    let check = self_check(&model, &wind, &tunnel, None, &mut whole)
+    let flow = Flow { solver: Solver::LATTICE, values: Values::none(), step: None, threads: None };
+    let check = self_check(&model, &wind, &tunnel, &flow, &mut whole)
         .expect("a rotor in a steady wind stays finite");
     let together = in_axisymmetric_flow(&model, check.tip_speed_ratio);
     let definition = &model.definition;
@@ -156,7 +158,7 @@ fn in_axisymmetric_flow(model: &TurbineModel, tip_speed_ratio: f64) -> Coefficie
     let pitch = model.constants.fine_pitch;
     // A round duct as wide as the square tunnel is, in radii.
     let wall = 2.0 * WIDTH / PI.sqrt();
-    let flow = Flow::new(2.0 * UPSTREAM, 2.0 * DOWNSTREAM, wall);
+    let flow = axisymmetric::Flow::new(2.0 * UPSTREAM, 2.0 * DOWNSTREAM, wall);
     let together =
         axisymmetric::coefficients(&model.definition, tip_speed_ratio, pitch, flow, Swirl::LeftOut);
     let mut upright = (*model.definition).clone();

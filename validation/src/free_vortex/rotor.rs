@@ -40,7 +40,7 @@ pub(super) const USUAL: Fineness = Fineness {
     near: 0.25,
     far_filaments: 9,
     far_stride: 2,
-    core_widths: 0.1,
+    core_widths: 0.23,
     settling: 14.0,
 };
 

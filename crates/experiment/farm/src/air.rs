@@ -1,5 +1,6 @@
 //! The air of a farm, whatever moves it.
 
+use basis::records::Filaments;
 use flow::fields::FieldSource;
 use flow::inflow::PrescribedWind;
 use flow::inflow::prescribed::Clock;
@@ -36,6 +37,21 @@ pub trait FarmFlow: FlowSolver + Send + Sync {
     fn fields(&self) -> Option<&dyn FieldSource> {
         None
     }
+
+    /// The vortices of its wakes; none where it has none to give.
+    fn filaments(&self) -> Option<Filaments> {
+        None
+    }
+
+    /// Blade elements of machine number `machine` that stand in the cores of other turbines' vortices, and
+    /// all of its elements (–); none of none where there are no such things.
+    fn elements_in_cores(&self, _machine: usize) -> [u64; 2] {
+        [0; 2]
+    }
+
+    /// On return a step costs as much as one does once wakes have their length. What blows is then no wind
+    /// of the case: this is for timing alone. Air whose steps cost all the same stays as it is.
+    fn reach_full_cost(&mut self) {}
 
     /// What of the machine decides its bits beside [`flow::numerics`], such as `avx512`; empty where nothing
     /// does.
@@ -128,6 +144,18 @@ impl FarmFlow for FreeWake {
 
     fn fields(&self) -> Option<&dyn FieldSource> {
         Some(self)
+    }
+
+    fn filaments(&self) -> Option<Filaments> {
+        Some(Self::filaments(self))
+    }
+
+    fn elements_in_cores(&self, machine: usize) -> [u64; 2] {
+        Self::elements_in_cores(self, machine)
+    }
+
+    fn reach_full_cost(&mut self) {
+        self.reach_full_length();
     }
 
     fn backend(&self) -> &'static str {

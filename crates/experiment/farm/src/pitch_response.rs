@@ -253,7 +253,7 @@ fn pitching(
         tunnel,
         wind: &alone.wind,
         diameter,
-        threads: alone.flow.threads,
+        flow: &alone.flow,
     })?;
     let mut farm = Farm::new(vec![Machine::new(turbine, controller)], air, plan.interval, 1)
         .map_err(AssemblyError::from)?;

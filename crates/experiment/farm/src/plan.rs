@@ -1,11 +1,13 @@
 //! From layout to domain: cells, step, memory and cost, checked before anything runs.
 
 mod boxes;
+mod effort;
 mod error;
 mod grids;
 mod step;
 mod turning;
 
+pub use effort::Effort;
 pub use error::PlanError;
 pub use grids::GridOfPlan;
 pub use turning::{Turning, by_turns};
@@ -93,6 +95,8 @@ pub struct Plan {
     pub n_steps: u64,
     /// Steps before the analysis starts (–).
     pub n_spin_up_steps: u64,
+    /// Steps in which wakes get their length, and a step its full cost (–); 0 where all steps cost alike.
+    pub n_growing_steps: u64,
     /// Steps from one row of the series to the next (–).
     pub row_stride: u64,
     /// Diameter that "diameters" in the case file means: the first turbine's (m).
@@ -161,6 +165,7 @@ pub fn in_a_box(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
         interval: 0.0,
         n_steps: 0,
         n_spin_up_steps: 0,
+        n_growing_steps: 0,
         row_stride: 1,
         diameter,
         hub_height: layout.hub_height(),
@@ -253,6 +258,7 @@ pub(crate) fn without_air(
         interval,
         n_steps: (case.time.duration / interval).round() as u64,
         n_spin_up_steps,
+        n_growing_steps: 0,
         row_stride,
         diameter,
         hub_height,

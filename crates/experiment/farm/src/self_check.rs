@@ -1,11 +1,12 @@
-//! Before a study: does each rotor, alone in a steady wind on this grid, give what blade-element momentum
-//! says?
+//! Before a study: does each rotor, alone in a steady wind in air like the study's, give what blade-element
+//! momentum says?
 
 use crate::Progress;
-use crate::assemble::TurbineModel;
-use crate::case::{Method, Wind};
+use crate::assemble::{self, TurbineModel};
+use crate::case::{Flow, Method, Solver, Wind};
 use crate::domain::SMEARING_CELLS;
 use crate::plan::Plan;
+use crate::solvers::{Alone, SolverError};
 use basis::{Commands, PerBlade, Vector3};
 use flow::inflow::MeanProfile;
 use flow::lattice::{self, Lattice};
@@ -14,12 +15,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use thiserror::Error;
 use turbine::aero::blade_element::Theory;
-use turbine::blockage::equivalent_speed_ratio;
 use turbine::steady::SteadyRotor;
 use turbine::structure::StructureError;
 use turbine::{Definition, Induction, Turbine};
 
-/// Power and thrust of one turbine in steady uniform flow, by the actuator line and by blade-element
+/// Power and thrust of one turbine in steady uniform flow, by the air of a study and by blade-element
 /// momentum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SelfCheck {
@@ -29,15 +29,16 @@ pub struct SelfCheck {
     pub wind_speed: f64,
     /// Tip-speed ratio held during the check (–).
     pub tip_speed_ratio: f64,
-    /// Aerodynamic power of the actuator line (W).
+    /// Aerodynamic power in that air (W).
     pub power: f64,
-    /// Power of blade-element momentum in the unbounded air that gives the box's speed-up (W).
+    /// Power of blade-element momentum in the unbounded air that gives the rotor the same state (W).
     pub expected_power: f64,
-    /// Thrust of the actuator line (N).
+    /// Thrust in that air (N).
     pub thrust: f64,
     /// Thrust of blade-element momentum, likewise (N).
     pub expected_thrust: f64,
-    /// Cell updates a second that the check reached, everything included (1/s).
+    /// Cell updates a second that the check reached, everything included (1/s); steps where there are no
+    /// cells.
     pub updates_per_second: f64,
 }
 
@@ -168,12 +169,12 @@ impl Tunnel {
     }
 }
 
-/// Checks `model` in the steady speed of `wind` in `tunnel`, rotor speed held at its optimum (or rated),
-/// pitch at its least, tower and nacelle left out, polars holding at once; `progress` receives the share
-/// done.
+/// Checks `model` in the steady speed of `wind` in `tunnel`, its air that of `flow`, rotor speed held at its
+/// optimum (or rated), pitch at its least, tower and nacelle left out, polars holding at once; `progress`
+/// receives the share done.
 ///
-/// The tunnel is narrow, so the expectation is taken in the wind that an open sky would need for the same
-/// rotor state ([`turbine::blockage`]).
+/// The tunnel is small, so the expectation is taken in the wind that an open sky would need for the same
+/// rotor state ([`SolverKind::equivalent_speed`](crate::solvers::SolverKind::equivalent_speed)).
 ///
 /// # Errors
 /// [`SelfCheckError`] when the flow cannot be set up or does not stay finite.
@@ -181,16 +182,16 @@ pub fn self_check(
     model: &TurbineModel,
     wind: &Wind,
     tunnel: &Tunnel,
-    threads: Option<usize>,
+    flow: &Flow,
     progress: Progress,
 ) -> Result<SelfCheck, SelfCheckError> {
     let definition = &model.definition;
     let diameter = definition.rotor_diameter();
     let interval = tunnel.interval;
-    let mut air = tunnel.air(wind, diameter, threads)?;
+    let mut air = (flow.solver.begin_alone)(&Alone { tunnel: *tunnel, wind, diameter, flow })?;
     let pitch = model.constants.fine_pitch;
     let rotor_speed = model.rotor_speed(wind.speed);
-    let mut rotor = bare_rotor(model, wind, tunnel)?;
+    let mut rotor = bare_rotor(model, wind, tunnel, flow.solver)?;
     let commands = Commands {
         pitch: PerBlade::splat(definition.n_blades, pitch),
         generator_torque: 0.0,
@@ -205,10 +206,10 @@ pub fn self_check(
     let started = Instant::now();
     for step in 0..n_steps {
         air.sample(rotor.stations(), &mut winds);
-        rotor.advance(interval, &winds, &commands);
+        rotor.advance_answered(interval, &winds, air.answer(0), &commands);
         air.advance(interval, rotor.forces())?;
         if step >= n_settling {
-            let read = rotor.truth(air.time(), interval);
+            let read = rotor.truth((step + 1) as f64 * interval, interval);
             power += read.aerodynamic_torque * read.rotor_speed / n_averaging as f64;
             thrust += read.thrust / n_averaging as f64;
         }
@@ -218,10 +219,9 @@ pub fn self_check(
     }
     let wall_time = started.elapsed().as_secs_f64();
 
-    let n_cells = air.n_cells();
-    let width = n_cells[1] as f64 * tunnel.spacing;
-    let area_ratio = definition.rotor_area() / (width * width);
-    let expected = expectation(definition, wind, rotor_speed, pitch, area_ratio);
+    let equivalent = |thrust| (flow.solver.equivalent_speed)(tunnel, diameter, thrust);
+    let expected = expectation(definition, wind, rotor_speed, pitch, equivalent);
+    let updates = (flow.solver.updates_alone)(tunnel, diameter) * n_steps as f64;
     Ok(SelfCheck {
         model: definition.name.clone(),
         wind_speed: wind.speed,
@@ -230,11 +230,11 @@ pub fn self_check(
         expected_power: expected.0,
         thrust,
         expected_thrust: expected.1,
-        updates_per_second: n_cells.iter().product::<usize>() as f64 * n_steps as f64 / wall_time,
+        updates_per_second: updates / wall_time,
     })
 }
 
-/// Cell updates a second (1/s) of `model` in `tunnel`, everything included, timed for [`TIMED`].
+/// Cell updates a second (1/s) of `model` in `tunnel` of a lattice, everything included, timed for [`TIMED`].
 ///
 /// # Errors
 /// Those of [`self_check`].
@@ -244,8 +244,9 @@ pub fn updates_per_second(
     tunnel: &Tunnel,
     threads: Option<usize>,
 ) -> Result<f64, SelfCheckError> {
-    let mut air = tunnel.air(wind, model.definition.rotor_diameter(), threads)?;
-    let mut rotor = bare_rotor(model, wind, tunnel)?;
+    let air = tunnel.air(wind, model.definition.rotor_diameter(), threads);
+    let mut air = air.map_err(SolverError::from)?;
+    let mut rotor = bare_rotor(model, wind, tunnel, Solver::LATTICE)?;
     let n_blades = model.definition.n_blades;
     let pitch = PerBlade::splat(n_blades, model.constants.fine_pitch);
     let commands = Commands { pitch, generator_torque: 0.0, yaw_rate: 0.0 };
@@ -267,23 +268,29 @@ pub fn updates_per_second(
     Ok(air.n_cells().iter().product::<usize>() as f64 * f64::from(n_steps) / wall_time)
 }
 
-/// The rotor of `model` at the origin of `tunnel`, stiff, with no tower or nacelle in the wind, at held
-/// speed.
+/// The rotor of `model` at the origin of `tunnel` in air of `solver`, stiff, with no tower or nacelle in the
+/// wind, at held speed.
 fn bare_rotor(
     model: &TurbineModel,
     wind: &Wind,
     tunnel: &Tunnel,
+    solver: Solver,
 ) -> Result<Turbine, StructureError> {
     let definition = &model.definition;
+    let induction = if solver.uses_bound_vortices {
+        Induction::ByBoundVortices { dynamic_stall: false }
+    } else {
+        Induction::ByFlow {
+            smearing_length: SMEARING_CELLS * tunnel.spacing,
+            sample_spacing: tunnel.spacing,
+            dynamic_stall: false,
+        }
+    };
     let rotor = Turbine::new(
         Arc::clone(definition),
         Vector3::new(0.0, 0.0, -definition.rotor.hub_height),
         turbine::TurbineSettings {
-            induction: Induction::ByFlow {
-                smearing_length: SMEARING_CELLS * tunnel.spacing,
-                sample_spacing: tunnel.spacing,
-                dynamic_stall: false,
-            },
+            induction,
             flexible: false,
             air_density: wind.air_density,
             yaw: 0.0,
@@ -292,17 +299,17 @@ fn bare_rotor(
             pitch: model.constants.fine_pitch,
         },
     )?;
-    // A lattice feels forces alone.
-    Ok(rotor.without_bodies().without_bound_vortices().at_held_speed())
+    Ok(assemble::in_air_of(solver, rotor.without_bodies()).at_held_speed())
 }
 
-/// Power (W) and thrust (N) of blade-element momentum in a channel of which the rotor takes `area_ratio` (–).
+/// Power (W) and thrust (N) of blade-element momentum in unbounded air of the speed, over that of `wind`,
+/// that is `equivalent` for a rotor of such a thrust coefficient there.
 fn expectation(
     definition: &Definition,
     wind: &Wind,
     rotor_speed: f64,
     pitch: f64,
-    area_ratio: f64,
+    equivalent: impl Fn(f64) -> f64,
 ) -> (f64, f64) {
     let rotor = SteadyRotor::new(definition, Theory::default()).along_shaft();
     let at = |ratio: f64| {
@@ -313,7 +320,7 @@ fn expectation(
     let mut ratio = 1.0;
     for _ in 0..8 {
         let (_, coefficients) = at(ratio);
-        ratio = equivalent_speed_ratio(coefficients.thrust * ratio * ratio, area_ratio);
+        ratio = equivalent(coefficients.thrust * ratio * ratio);
     }
     let (speed, coefficients) = at(ratio);
     let dynamic = 0.5 * wind.air_density * definition.rotor_area() * speed * speed;
@@ -328,7 +335,7 @@ pub enum SelfCheckError {
     BrokenOff,
     /// The flow cannot be set up.
     #[error("the flow of the self-check cannot be set up")]
-    Settings(#[from] lattice::LatticeError),
+    Settings(#[from] SolverError),
     /// The turbine has no structure.
     #[error(transparent)]
     Structure(#[from] StructureError),

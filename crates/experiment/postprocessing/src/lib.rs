@@ -122,6 +122,7 @@ fn report_of_study(
             series,
             mean_planes: run.mean_planes,
             instant_planes: run.last_planes,
+            filaments: run.last_filaments,
         });
     }
     let study = report::StudyRecords {

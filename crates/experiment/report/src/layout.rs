@@ -157,6 +157,7 @@ mod tests {
             series: Series::default(),
             mean_planes: Vec::new(),
             instant_planes: Vec::new(),
+            filaments: None,
         };
         StudyRecords {
             case_name: "case".into(),

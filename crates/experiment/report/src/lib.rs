@@ -11,7 +11,7 @@ pub mod text_table;
 mod trace;
 mod words;
 
-use basis::records::{Plane, Series, Summary, SweepTable};
+use basis::records::{Filaments, Plane, Series, Summary, SweepTable};
 pub use figures::synchronisation::{
     Along, CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel,
     DensityFigure, DensityRow, OffsetFigure, OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow,
@@ -59,6 +59,8 @@ pub struct RunRecords {
     pub mean_planes: Vec<Plane>,
     /// The same planes at single instants.
     pub instant_planes: Vec<Plane>,
+    /// The vortices of its wakes at the last instant; none where the air has none to show.
+    pub filaments: Option<Filaments>,
 }
 
 /// Whether the report of a run with this `summary` draws `channel` of its series.

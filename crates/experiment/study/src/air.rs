@@ -3,7 +3,9 @@
 use crate::StudyError;
 use crate::prepared::Prepared;
 use farm::Air;
+use farm::case::Case;
 use farm::solvers::{SolverError, Start, WindSource};
+use farm::wind::Site;
 use flow::Inflow;
 use flow::inflow::Planes;
 use flow::lattice::refinement::RefinementError;
@@ -21,11 +23,25 @@ pub(crate) fn begin(
     inflow: &Arc<dyn Inflow>,
     progress: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<Air, StudyError> {
-    let solver = setup.case.flow.solver;
     let planes =
         if setup.case.wind_source() == WindSource::Planes { Some(planes(setup)?) } else { None };
-    let start = Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress };
-    (solver.begin)(start).map_err(|error| match error {
+    begun(Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress })
+}
+
+/// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes.
+///
+/// # Errors
+/// [`StudyError`] when its solver cannot be set up.
+pub(crate) fn steady(setup: &Prepared, case: &mut Case) -> Result<Air, StudyError> {
+    case.wind.turbulence_intensity = 0.0;
+    case.wind.planes = None;
+    let site = Site { case, ..setup.site() };
+    let (inflow, planes) = (Arc::clone(&setup.mean_inflow), None);
+    begun(Start { site, inflow, planes, progress: &|_| ControlFlow::Continue(()) })
+}
+
+fn begun(start: Start) -> Result<Air, StudyError> {
+    (start.site.case.flow.solver.begin)(start).map_err(|error| match error {
         SolverError::Lattice(error) | SolverError::Refinement(RefinementError::Lattice(error)) => {
             error.into()
         }

@@ -4,6 +4,7 @@ use crate::StudyError;
 use crate::observer::Estimate;
 use crate::outputs::{Outputs, outb, series, volumes};
 use crate::prepared::Prepared;
+use farm::case::Solver;
 use farm::pitch_response::IdentificationCost;
 use formats::machine;
 use formats::records::RunFolder;
@@ -87,7 +88,7 @@ impl Prepared {
             n_cells: plan.n_cells,
             spacing: plan.spacing,
             grids: plan.grids(),
-            updates: plan.updates().max(plan.n_steps as f64),
+            updates: plan.effort().until(plan.n_steps),
             interval: plan.interval,
             n_steps: plan.n_steps,
             memory: field + turbulence.unwrap_or(0) + volumes::memory(self),
@@ -102,7 +103,8 @@ impl Prepared {
             passing_checkpoint: passing,
             n_studies: 1,
             n_jobs: 1,
-            work: open.len() as f64 * plan.updates().max(plan.n_steps as f64),
+            work: open.len() as f64 * plan.effort().until(plan.n_steps),
+            n_steps_in_all: open.len() as u64 * plan.n_steps,
             updates_per_second: None,
             blockage: plan.blockage,
             wall_gain: farm::wind::wall_gain(&self.case, plan),
@@ -124,6 +126,7 @@ pub(crate) fn together(of_studies: &[Estimate], n_jobs: usize) -> Estimate {
         n_studies: of_studies.len(),
         n_jobs,
         work: of_studies.iter().map(|estimate| estimate.work).sum(),
+        n_steps_in_all: sum(|estimate| estimate.n_steps_in_all),
         memory: n_jobs as u64 * most(|estimate| estimate.memory),
         disk: most(|estimate| estimate.disk),
         n_rows: most(|estimate| estimate.n_rows),
@@ -135,15 +138,17 @@ pub(crate) fn together(of_studies: &[Estimate], n_jobs: usize) -> Estimate {
     }
 }
 
-/// Whether this machine's free memory carries `estimate`; passes where the system does not report it.
+/// Whether this machine's free memory carries `estimate` of a study in the air of `solver`; passes where the
+/// system does not report it.
 ///
 /// # Errors
 /// [`StudyError::Memory`].
-pub(crate) fn check_memory(estimate: &Estimate) -> Result<(), StudyError> {
+pub(crate) fn check_memory(estimate: &Estimate, solver: Solver) -> Result<(), StudyError> {
     let needed = estimate.memory as f64 / GIB;
     match machine::free_memory() {
         Some(free) if (free as f64) < estimate.memory as f64 => {
-            Err(StudyError::Memory { needed, available: free as f64 / GIB })
+            let (available, fix) = (free as f64 / GIB, solver.less_memory);
+            Err(StudyError::Memory { needed, available, fix })
         }
         _ => Ok(()),
     }

@@ -249,14 +249,14 @@ pub enum StudyError {
     },
     /// The machine has too little memory.
     #[error("the study needs {needed:.1} GiB of memory, {available:.1} GiB are free")]
-    #[diagnostic(help(
-        "lower flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters; or make fewer runs at once with --jobs"
-    ))]
+    #[diagnostic(help("lower {fix}; or make fewer runs at once with --jobs"))]
     Memory {
         /// Needed (GiB).
         needed: f64,
         /// Free (GiB).
         available: f64,
+        /// What needs less where it is lower.
+        fix: &'static str,
     },
     /// The disk has too little room.
     #[error(

@@ -3,6 +3,7 @@
 use crate::observer::{Estimate, IdentificationProgress, Observer, Progress};
 use crate::threads::cores;
 use basis::records::{PitchResponse, Summary};
+use farm::plan::Effort;
 use farm::self_check::SelfCheck;
 use formats::machine;
 use std::collections::BTreeMap;
@@ -114,9 +115,14 @@ impl<'o> Shared<'o> {
     }
 
     /// What the run number `place` of the study in the folder `study`, empty without a sweep of studies,
-    /// tells; each of its steps is `work`.
-    pub(crate) fn of_run<'s>(&'s self, study: &'s str, place: usize, work: f64) -> OfRun<'s, 'o> {
-        OfRun { shared: self, study, place, work }
+    /// tells; `effort` is what its steps cost.
+    pub(crate) fn of_run<'s>(
+        &'s self,
+        study: &'s str,
+        place: usize,
+        effort: Effort,
+    ) -> OfRun<'s, 'o> {
+        OfRun { shared: self, study, place, effort }
     }
 }
 
@@ -125,8 +131,7 @@ pub(crate) struct OfRun<'s, 'o> {
     shared: &'s Shared<'o>,
     study: &'s str,
     place: usize,
-    /// Work of one step.
-    work: f64,
+    effort: Effort,
 }
 
 impl OfRun<'_, '_> {
@@ -150,7 +155,7 @@ impl OfRun<'_, '_> {
 
     /// Takes in that the run, of `n_steps`, is complete.
     pub(crate) fn complete(&self, n_steps: u64) {
-        held(&self.shared.inner).tally.complete(self.place, self.work * n_steps as f64);
+        held(&self.shared.inner).tally.complete(self.place, self.effort.until(n_steps));
     }
 }
 
@@ -181,8 +186,8 @@ impl Observer for OfRun<'_, '_> {
     }
 
     fn advanced(&mut self, progress: &Progress) {
-        let work = |steps: u64| self.work * steps as f64;
-        let (before, now) = (work(progress.first_step), work(progress.step));
+        let [before, now] =
+            [progress.first_step, progress.step].map(|step| self.effort.until(step));
         let Shared { n_runs, n_jobs, .. } = *self.shared;
         self.with(|inner| {
             inner.tally.advance(self.place, before, now);

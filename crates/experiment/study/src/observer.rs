@@ -18,13 +18,16 @@ pub struct Estimate {
     pub n_studies: usize,
     /// Runs that are made at a time (–).
     pub n_jobs: usize,
-    /// Cell updates of all runs together, steps in prescribed wind (–).
+    /// Cell updates of all runs together; where there are no cells, steps with wakes of full length (–).
     pub work: f64,
+    /// Steps of all runs together (–).
+    pub n_steps_in_all: u64,
     /// Pitch-response identifications before them (–).
     pub n_identifications: usize,
     /// Steps of all identifications together (–).
     pub n_identification_steps: u64,
-    /// Cell updates of all identifications together, or what takes as long (–); steps in prescribed wind.
+    /// Cell updates of all identifications together, or what takes as long (–); steps where there are no
+    /// cells.
     pub identification_work: f64,
     /// Cells of the domain along x, y, z, those beneath boxes of finer ones included (–).
     pub n_cells: [usize; 3],
@@ -32,7 +35,7 @@ pub struct Estimate {
     pub spacing: f64,
     /// The grid of the domain, and those of all boxes of finer cells.
     pub grids: Vec<GridOfPlan>,
-    /// Cell updates of one run, steps in prescribed wind (–).
+    /// Cell updates of one run; where there are no cells, steps with wakes of full length (–).
     pub updates: f64,
     /// Flow step, of the finest cells (s).
     pub interval: f64,
@@ -53,7 +56,8 @@ pub struct Estimate {
     pub kept_checkpoints: u64,
     /// Most that a run under way has of checkpoints beside what it keeps (bytes).
     pub passing_checkpoint: u64,
-    /// Cell updates a second, measured on this machine in the self-check; absent before it (1/s).
+    /// Cell updates a second, or steps with wakes of full length where there are no cells, measured on this
+    /// machine in the self-check; absent before it (1/s).
     pub updates_per_second: Option<f64>,
     /// Share of the domain's cross-section that a rotor takes (–).
     pub blockage: f64,

@@ -8,7 +8,7 @@ use crate::observer::{Observer, Progress, making_turbulence};
 use crate::outputs::{Outputs, Stage, Writers};
 use crate::ready::Ready;
 use crate::summarise::Left;
-use basis::records::Cost;
+use basis::records::{Cost, Warning};
 use checkpoint::Before;
 use farm::case::Run;
 use farm::{Air, Farm, FarmError, Machine, Plan};
@@ -59,6 +59,8 @@ pub(crate) enum Ending {
         cost: Cost,
         /// What its turbines leave beside the series, turbine by turbine.
         left: Vec<Left>,
+        /// What a reader of its numbers must know of what its outputs took in.
+        warnings: Vec<Warning>,
         /// What of the machine decided its bits, in words.
         backend: String,
     },
@@ -189,21 +191,22 @@ impl<'a> Simulation<'a> {
     fn progress(&self) -> Progress<'a> {
         let Job { run, place: (run_index, n_runs), .. } = *self.job;
         let plan = &self.job.ready.prepared.plan;
-        let made = (self.farm.step() - self.before.step) as f64;
-        let steps_per_second = made / self.started.elapsed().as_secs_f64();
-        let runs_after = (n_runs - run_index - 1) as f64;
-        let left = (plan.n_steps - self.farm.step()) as f64 + runs_after * plan.n_steps as f64;
+        let (effort, step) = (plan.effort(), self.farm.step());
+        let elapsed = self.started.elapsed().as_secs_f64();
+        let steps_per_second = (step - self.before.step) as f64 / elapsed;
+        let [before, now, all] = [self.before.step, step, plan.n_steps].map(|n| effort.until(n));
+        let left = all - now + (n_runs - run_index - 1) as f64 * all;
         Progress {
             run: &run.name,
             run_index,
             n_runs,
-            step: self.farm.step(),
+            step,
             n_steps: plan.n_steps,
             updates_per_second: plan.updates_of_step() * steps_per_second,
-            time_left: left / steps_per_second,
+            time_left: left * elapsed / (now - before),
             first_step: self.before.step,
             n_at_a_time: 1,
-            share_of_all: 1.0 - left / (n_runs as f64 * plan.n_steps as f64),
+            share_of_all: 1.0 - left / (n_runs as f64 * all),
         }
     }
 
@@ -212,11 +215,12 @@ impl<'a> Simulation<'a> {
             // Before the outputs complete their files: from here they can go on.
             self.checkpoint()?;
         }
+        let warnings = self.outputs.warnings(&self.job.stage(&self.farm));
         self.outputs.finish(&self.job.stage(&self.farm))?;
         let (plan, made) = (&self.job.ready.prepared.plan, self.made());
         let cost = cost(plan, &self.farm, made.wall_time, made.peak_memory);
         let left = left(&self.farm);
-        Ok(Ending::Complete { cost, left, backend: self.backend })
+        Ok(Ending::Complete { cost, left, warnings, backend: self.backend })
     }
 }
 

@@ -183,8 +183,9 @@ impl<'a> Study<'a> {
         let job = Job { ready, run, folder, outputs, resume, place };
         match simulate(&job, stop, observer)? {
             Ending::Interrupted => Ok(ControlFlow::Break(())),
-            Ending::Complete { cost, left, backend } => {
-                let summary = self.summary(ready, index, &left, cost)?;
+            Ending::Complete { cost, left, warnings, backend } => {
+                let mut summary = self.summary(ready, index, &left, cost)?;
+                summary.warnings.extend(warnings);
                 let known = &ready.prepared.warnings;
                 let n_known = known.iter().filter(|warning| warning.concerns(&run.name)).count();
                 for warning in &summary.warnings[n_known..] {

@@ -337,6 +337,7 @@ fn flow(setup: &Prepared) -> FlowSummary {
     FlowSummary {
         solver: solver.name.to_owned(),
         has_wakes: solver.has_wakes,
+        limits: solver.limits.to_owned(),
         grids: several.iter().map(grid_summary).collect(),
     }
 }

@@ -203,7 +203,7 @@ impl<'a> All<'a> {
         let n_jobs = jobs::number(options.jobs, n_runs, is_threaded, memory);
         let mut estimate = together(&estimates, n_jobs);
         observer.estimated(&estimate);
-        check_memory(&estimate)?;
+        check_memory(&estimate, self.studies[0].prepared.case.flow.solver)?;
         let studies = self.studies.iter().map(|opened| &opened.study);
         let folders = studies.flat_map(|study| study.open.iter().map(|&run| &study.folders[run]));
         check_disk(&estimate, &self.directory, folders)?;
@@ -214,7 +214,7 @@ impl<'a> All<'a> {
             }
         }
         let is_quick = options.dry_run && !options.check;
-        if self.check_rotors(is_quick, stop, observer)?.is_break() {
+        if self.check_rotors(is_quick, n_jobs, stop, observer)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
         let speeds = self.studies.iter().filter_map(|opened| opened.checked.updates_per_second);
@@ -247,6 +247,7 @@ impl<'a> All<'a> {
     fn check_rotors(
         &mut self,
         is_quick: bool,
+        n_jobs: usize,
         stop: &AtomicBool,
         observer: &mut dyn Observer,
     ) -> Result<ControlFlow<()>, StudyError> {
@@ -260,8 +261,9 @@ impl<'a> All<'a> {
                 *checked = known.clone();
                 continue;
             }
+            let timed = || prepared.timed(&prepared.case.runs[study.open[0]], n_jobs);
             if is_quick {
-                *checked = prepared.timed(&prepared.case.runs[study.open[0]])?;
+                *checked = timed()?;
                 known.insert(alike, checked.clone());
                 continue;
             }
@@ -269,6 +271,9 @@ impl<'a> All<'a> {
                 ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
                 ControlFlow::Continue(checked) => checked,
             };
+            if checked.updates_per_second.is_none() {
+                checked.updates_per_second = timed()?.updates_per_second;
+            }
             known.insert(alike, checked.clone());
         }
         Ok(ControlFlow::Continue(()))
@@ -286,7 +291,7 @@ impl<'a> All<'a> {
         let list: Vec<Part> = studies.into_iter().map(Part::new).collect();
         let parts = Parts { directory, list, known: Mutex::new(known), cleared: Mutex::new(false) };
         let tasks = parts.tasks();
-        let work = tasks.iter().map(|task| task.work * task.n_steps as f64).sum();
+        let work = tasks.iter().map(|task| task.effort.until(task.n_steps)).sum();
         let shared = Shared::new(observer, stop, (tasks.len(), work), n_jobs);
         let (next, failed, broken) =
             (AtomicUsize::new(0), Mutex::new(None), AtomicBool::new(false));

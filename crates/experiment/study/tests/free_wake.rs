@@ -3,10 +3,14 @@
 
 mod small;
 
+use farm::FarmError;
+use farm::self_check::SelfCheck;
+use flow::FlowError;
 use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::Path;
-use study::{Outcome, Outputs, Prepared, Silent, StudyError, StudyOptions};
+use std::sync::atomic::AtomicBool;
+use study::{Estimate, Observer, Outcome, Outputs, Prepared, Silent, StudyError, StudyOptions};
 
 /// Two turbines so close that the first one's wake reaches the second, in sheared turbulence.
 const CASE: &str = r#"
@@ -41,6 +45,7 @@ control.T1 = { kind = "helix", sense = "ccw", amplitude_deg = 3.0, strouhal = 0.
 [output]
 crosswind_diameters = [1.0]
 volume_interval = 10.0
+filament_interval = 5.0
 "#;
 
 fn options(folder: &Path, name: &str) -> StudyOptions {
@@ -56,7 +61,7 @@ fn physics(folder: &Path) -> Vec<(String, Vec<u8>)> {
             .map(|entry| entry.expect("an entry").path())
             .filter(|path| {
                 let kind = path.extension().and_then(|kind| kind.to_str());
-                kind.is_some_and(|kind| ["csv", "nc", "vti", "vtk", "outb"].contains(&kind))
+                kind.is_some_and(|kind| ["csv", "nc", "vti", "vtp", "outb"].contains(&kind))
             })
             .collect();
         names.sort();
@@ -84,9 +89,106 @@ fn a_stopped_study_leaves_what_one_that_was_left_alone_does() {
     let whole = physics(&folder.path().join("whole/helix"));
     assert_eq!(physics(&folder.path().join("stopped/helix")), whole);
     let names: Vec<&str> = whole.iter().map(|(name, _)| name.as_str()).collect();
-    for name in ["series.csv", "T2.outb", "hub-height-mean.nc"] {
+    // The instants 10, 15 and 20 s, and the last one.
+    for name in ["series.csv", "T2.outb", "hub-height-mean.nc", "filaments-0002.vtp"] {
         assert!(names.contains(&name), "{name} of {names:?}");
     }
+    assert_eq!(names.iter().filter(|name| name.ends_with(".vtp")).count(), 4);
+    let records = formats::records::read_study(&folder.path().join("whole")).expect("records");
+    let last = records.runs[0].last_filaments.as_ref().expect("vortices");
+    assert!((last.time - 20.0).abs() < 0.2, "{}", last.time);
+    let of = |turbine: u32| last.pieces.iter().filter(|piece| piece.turbine == turbine).count();
+    assert!(of(0) > 500 && of(0) + of(1) == last.pieces.len(), "{} {}", of(0), of(1));
+    assert!(records.runs[0].summary.flow.as_ref().is_some_and(|flow| !flow.limits.is_empty()));
+}
+
+/// Keeps what is told of cost and rotors.
+#[derive(Default)]
+struct Told(Vec<Estimate>, Vec<SelfCheck>);
+
+impl Observer for Told {
+    fn estimated(&mut self, estimate: &Estimate) {
+        self.0.push(estimate.clone());
+    }
+
+    fn checked(&mut self, check: &SelfCheck) {
+        self.1.push(check.clone());
+    }
+}
+
+#[test]
+fn cost_and_rotors_are_told_before_the_runs() {
+    let folder = written(CASE);
+    let told = |check: bool| {
+        let mut told = Told::default();
+        let dry = StudyOptions { dry_run: true, check, ..options(folder.path(), "dry") };
+        study::run(&dry, &AtomicBool::new(false), &mut told).expect("a sound case");
+        told
+    };
+    let Told(estimates, checks) = told(false);
+    assert!(checks.is_empty() && estimates.len() == 2, "{}", estimates.len());
+    let Estimate { work, n_steps_in_all, memory, .. } = estimates[1];
+    // Wakes of 2 D are not whole before 2 × 126 m / (0.65 × 9 m/s) = 43 s, so that no step of 20 s costs all.
+    let share = work / n_steps_in_all as f64;
+    assert!((share - 0.5 * 20.0 / 43.1).abs() < 0.01, "{share}");
+    assert!(memory > 100_000 && estimates[0].updates_per_second.is_none());
+    assert!(estimates[1].wall_time().is_some_and(|time| time > 0.01 && time < 600.0));
+    // Both turbines are of one kind. Steps of 22° are coarse, but a rotor without a wake has some 40 % more.
+    let Told(estimates, checks) = told(true);
+    assert_eq!(checks.len(), 1);
+    assert!(estimates.last().is_some_and(|estimate| estimate.updates_per_second.is_some()));
+    assert!(checks[0].thrust_error().abs() < 0.2, "{:?}", checks[0]);
+}
+
+#[test]
+fn a_wake_that_blows_up_ends_its_run_and_leaves_the_checkpoint_before() {
+    // Wind that rises beyond the speed of sound, on a stiff turbine that knows no cut-out.
+    let event =
+        "event = { kind = \"staircase\", start = 25.0, rise = 40.0, n_steps = 10, hold = 2.0 }";
+    let case = |duration: f64| {
+        CASE.replace("turbulence_intensity = 0.06", "turbulence_intensity = 0.0")
+            .replace("turbulence_model = \"kaimal\"", event)
+            .replace("duration = 20.0", &format!("duration = {duration:?}"))
+            .replace("model = \"nrel-5mw\"", "model = \"any-wind.toml\"\nstructure = \"rigid\"")
+    };
+    let folder = written(&case(20.0));
+    let library = include_str!("../../../../turbines/nrel-5mw.toml");
+    let (before, rest) = library.split_once("[operation]").expect("the group");
+    let (_, after) = rest.split_once("[controller]").expect("the group behind it");
+    let turbine = format!("{before}[controller]{after}");
+    fs::write(folder.path().join("any-wind.toml"), turbine).expect("a turbine file");
+    small::done(&options(folder.path(), "out"));
+    fs::write(folder.path().join("case.toml"), case(60.0)).expect("a case file");
+    let longer = StudyOptions { resume: true, ..options(folder.path(), "out") };
+    for _ in 0..2 {
+        let error = small::run(&longer).expect_err("no wake is as fast");
+        let StudyError::Diverged { source, checkpoint, series, .. } = error else {
+            panic!("{error:?}")
+        };
+        let FarmError::Flow(FlowError::Diverged { time, speed, position }) = *source else {
+            panic!("{source:?}")
+        };
+        assert!((25.0..45.0).contains(&time) && speed > 340.0, "{time} {speed}");
+        assert!(position.x.is_finite() && position.x > -10.0, "{position}");
+        // From the checkpoint it comes to the same end again.
+        assert!(checkpoint.is_some_and(|path| path.is_file()) && series.is_some());
+    }
+}
+
+#[test]
+fn vortices_are_asked_for_where_there_are_some() {
+    let text = CASE
+        .replace("solver = \"vortex\"", "solver = \"turbulence\"")
+        .replace("volume_interval = 10.0\n", "");
+    let keys = ["steps_per_turn", "wake_length", "near_wake", "far_wake", "points_per"];
+    let kept = text.lines().filter(|line| !keys.iter().any(|key| line.starts_with(key)));
+    let folder = written(&kept.collect::<Vec<_>>().join("\n"));
+    let Err(StudyError::Case(error)) = Prepared::read(&folder.path().join("case.toml"), &[]) else {
+        panic!("it is taken")
+    };
+    let text = error.to_lines();
+    let expected = "`output.filament_interval` has no effect here: flow.solver = \"turbulence\" has no vortices";
+    assert!(text.contains(expected), "{text}");
 }
 
 #[test]

@@ -2,11 +2,13 @@
 
 mod control;
 pub mod examples;
+mod filaments;
 mod load;
 mod sweep;
 mod warning;
 
 pub use control::{ControlSetting, ControlSummary, Finding, PitchExcitation, SettingValue};
+pub use filaments::{Filaments, Piece, PieceKind};
 pub use load::{Load, LoadKind};
 use serde::{Deserialize, Serialize};
 pub use sweep::{
@@ -286,6 +288,9 @@ pub struct FlowSummary {
     pub solver: String,
     /// Whether its wind holds the rotors' wakes, so that turbines feel one another.
     pub has_wakes: bool,
+    /// What it cannot show, in sentences; empty where nothing is said of it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub limits: String,
     /// The grid of the domain and those of all boxes of finer cells, each before those in it; none where all
     /// cells are alike.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

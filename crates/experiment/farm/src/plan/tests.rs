@@ -65,6 +65,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             helix_phases: None,
             crosswind_diameters: Vec::new(),
             volume_interval: None,
+            filament_interval: None,
             volume_stride: 2,
             checkpoint_interval: 60.0,
             keeps_checkpoint: true,

@@ -23,6 +23,8 @@ pub struct Turning {
     pub points_per_diameter: f64,
     /// Length of wakes, which planes and volumes show (diameters of the first turbine).
     pub length: f64,
+    /// Usual speed of a wake (m/s).
+    pub wake_speed: f64,
 }
 
 /// The plan of turbines in air without cells whose step follows the fastest rotor; a minute is a whole number
@@ -54,7 +56,9 @@ pub fn by_turns(case: &Case, layout: &Layout, turning: &Turning) -> Result<Plan,
     stepped.flow.step = Some(step);
     let plan = shown(without_cells(&stepped, layout)?, layout, turning);
     check_planes(&case.output.crosswind_diameters, &plan)?;
-    Ok(Plan { turn, ..plan })
+    let n_growing_steps =
+        (turning.length * plan.diameter / (turning.wake_speed * step)).ceil() as u64;
+    Ok(Plan { turn, n_growing_steps, ..plan })
 }
 
 /// `plan` with the points of planes and volumes about the turbines of `layout` and their wakes.

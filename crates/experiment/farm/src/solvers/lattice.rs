@@ -7,9 +7,12 @@ use crate::case::{Case, Flow, TurbulenceModel, Wind};
 use crate::domain::{self, SMEARING_CELLS, Sides};
 use crate::plan::{self, Plan};
 use crate::refinement;
+use crate::self_check::Tunnel;
 use basis::keys::Key;
 use flow::lattice::Lattice;
 use flow::lattice::refinement::Refined;
+use std::f64::consts::FRAC_PI_4;
+use turbine::blockage::equivalent_speed_ratio;
 
 /// Bytes of a cell in the flow field beside its populations of four bytes, boundaries included.
 const FURTHER_BYTES: u64 = 4;
@@ -32,6 +35,7 @@ static KEYS: [Key; domain::KEYS.len() + 1] = {
 pub static LATTICE: SolverKind = SolverKind {
     name: "lattice",
     about: "lattice Boltzmann large-eddy simulation with actuator lines; turbines are in each other's wakes",
+    limits: "",
     keys: &KEYS,
     check: refinement::check,
     wind: WindSource::AtInlet,
@@ -42,13 +46,17 @@ pub static LATTICE: SolverKind = SolverKind {
         sample_spacing: plan.spacing_at(index),
     },
     uses_bound_vortices: false,
+    most_filaments: None,
     needs_self_check: true,
+    tunnel: |plan, _| Tunnel::of_study(plan),
+    equivalent_speed: in_a_channel,
     objections,
     warnings,
     sound_speed: |plan| Some(plan::LATTICE_SOUND_SPEED * plan.spacing / plan.base_interval()),
     plan: plan::in_a_box,
     reach: |_, _| 0.0,
     memory: |_, plan| memory(plan),
+    less_memory: "flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters",
     begin,
     begin_alone,
     updates_alone: |tunnel, diameter| tunnel.n_cells(diameter).iter().product::<usize>() as f64,
@@ -69,8 +77,15 @@ fn memory(plan: &Plan) -> u64 {
 }
 
 fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
-    let Alone { tunnel, wind, diameter, threads } = *alone;
-    Ok(Box::new(tunnel.air(wind, diameter, threads)?))
+    let Alone { tunnel, wind, diameter, flow } = *alone;
+    Ok(Box::new(tunnel.air(wind, diameter, flow.threads)?))
+}
+
+/// The speed-up between the walls of `tunnel`, as [`SolverKind::equivalent_speed`] has it.
+fn in_a_channel(tunnel: &Tunnel, diameter: f64, thrust_coefficient: f64) -> f64 {
+    let width = tunnel.n_cells(diameter)[1] as f64 * tunnel.spacing;
+    let area_ratio = FRAC_PI_4 * (diameter / width).powi(2);
+    equivalent_speed_ratio(thrust_coefficient, area_ratio)
 }
 
 fn warnings(case: &Case, plan: &Plan) -> Vec<String> {

@@ -40,6 +40,8 @@ pub struct SolverKind {
     pub name: &'static str,
     /// What it does, in a sentence without a full stop.
     pub about: &'static str,
+    /// What its wind cannot show, in sentences for a reader of results; empty where there is nothing to say.
+    pub limits: &'static str,
     /// Keys of `[flow]` that it uses, beside those of all kinds; what they hold is [`Flow::values`]. Other
     /// kinds may have keys of the same names.
     pub keys: &'static [Key],
@@ -57,8 +59,15 @@ pub struct SolverKind {
     pub smearing: fn(&Plan, usize) -> Smearing,
     /// Whether it asks for the bound vortices of blades, not for their forces alone.
     pub uses_bound_vortices: bool,
+    /// Most pieces of vortices that its wakes have (–); none where they are nothing of the kind.
+    pub most_filaments: Option<fn(&Case, &Plan) -> u64>,
     /// Whether rotors are checked in it, each alone, before a study.
     pub needs_self_check: bool,
+    /// The tunnel in which they are, in a flow like the case's as it is laid out.
+    pub tunnel: fn(&Plan, &Flow) -> Tunnel,
+    /// Speed of unbounded air over that in such a tunnel (–) in which a rotor of a diameter (m) and a thrust
+    /// coefficient (–) in the tunnel is in the same state.
+    pub equivalent_speed: fn(&Tunnel, f64, f64) -> f64,
     /// What of the case's wind and domain it cannot take.
     pub objections: fn(&Wind, &Flow) -> Vec<Objection>,
     /// What a reader of the numbers must know of a case in it, as it is laid out.
@@ -72,6 +81,8 @@ pub struct SolverKind {
     pub reach: fn(&Case, &Plan) -> f64,
     /// Memory that its field takes (bytes).
     pub memory: fn(&Case, &Plan) -> u64,
+    /// Keys that need less memory where they are lower, in words that follow “lower”.
+    pub less_memory: &'static str,
     /// The air at time zero.
     pub begin: fn(Start) -> Result<Air, SolverError>,
     /// The air about one rotor alone, in a steady wind, at time zero.
@@ -145,8 +156,8 @@ pub struct Alone<'a> {
     pub wind: &'a Wind,
     /// Its diameter (m).
     pub diameter: f64,
-    /// Threads; all cores when absent.
-    pub threads: Option<usize>,
+    /// What moves the air, and how.
+    pub flow: &'a Flow,
 }
 
 /// A key of `[wind]` that a solver cannot take as it is.

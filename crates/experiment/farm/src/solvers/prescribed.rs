@@ -4,6 +4,7 @@
 use super::{Alone, Fault, Objection, Smearing, SolverError, SolverKind, Start, WindSource};
 use crate::air::Air;
 use crate::case::{Flow, Shear, Wind};
+use crate::self_check::Tunnel;
 use crate::{plan, wind};
 use flow::inflow::{MeanProfile, PrescribedWind};
 use std::sync::Arc;
@@ -12,6 +13,7 @@ use std::sync::Arc;
 pub const PRESCRIBED: SolverKind = SolverKind {
     name: "prescribed",
     about: "wind that the turbines do not change",
+    limits: "",
     keys: &[],
     check: |_| Vec::new(),
     wind: WindSource::Deterministic,
@@ -19,13 +21,17 @@ pub const PRESCRIBED: SolverKind = SolverKind {
     has_wakes: false,
     smearing: |_, _| Smearing { length: 0.0, sample_spacing: 0.0 },
     uses_bound_vortices: false,
+    most_filaments: None,
     needs_self_check: false,
+    tunnel: |plan, _| Tunnel::of_study(plan),
+    equivalent_speed: |_, _, _| 1.0,
     objections: |_, _| Vec::new(),
     warnings: |_, _| Vec::new(),
     sound_speed: |_| None,
     plan: plan::without_cells,
     reach: |_, _| 0.0,
     memory: |_, _| 0,
+    less_memory: "time.duration, for which turbulence is made",
     begin,
     begin_alone,
     updates_alone: |_, _| 1.0,

@@ -5,6 +5,7 @@ use super::{Alone, Objection, PRESCRIBED, SolverError, SolverKind, Start, WindSo
 use crate::air::Air;
 use crate::case::{Case, Flow, Wind};
 use crate::plan::{self, Layout, Plan, PlanError, Turning};
+use crate::self_check::Tunnel;
 use crate::wind;
 use basis::Vector3;
 use basis::keys::LeftOut::Value;
@@ -17,8 +18,14 @@ use std::sync::Arc;
 const SLOWEST: f64 = 0.4;
 /// Usual speed of a wake over the wind's (–).
 const USUAL: f64 = 0.65;
+/// Longest wake of the check before a study (diameters).
+const LONGEST_CHECKED: f64 = 1.0;
 /// Angle by which a rotor turns in a step beyond which a reader must know (rad).
 const TURN_TO_WARN: f64 = 20.0 * std::f64::consts::PI / 180.0;
+/// Core at birth over the width of the blade elements next to it, below which a reader must know (–): of a
+/// vortex with the circulation Γ of a sheet's strip of width w the fastest velocity is Γ/(2√2 π r), that of
+/// the sheet Γ/2w, and they are equal at r/w = 1/(√2 π).
+const NARROWEST: f64 = std::f64::consts::FRAC_1_SQRT_2 * std::f64::consts::FRAC_1_PI;
 /// Length of a wake beyond which a reader must know what it is not (diameters).
 const LENGTH_TO_WARN: f64 = 8.0;
 /// Radius of a hub over the rotor's diameter, at least (–): rings of nacelles follow one another at half of
@@ -27,6 +34,11 @@ const SMALLEST_HUB: f64 = 0.01;
 const CLOSEST_RINGS: f64 = 0.5 / 3.0;
 /// Blades of a turbine, before turbines are known (–).
 const N_BLADES: usize = 3;
+
+/// What a free wake cannot show.
+const LIMITS: &str = "Free vortices know no eddies smaller than themselves: the wind carries a wake about, but it neither breaks down in ambient turbulence \
+                      nor mixes with the air around it as a wake does beyond some 4 diameters, where its deficit lasts too long. Take the far wake, and the power of \
+                      turbines in it, from flow.solver = “lattice”.";
 
 /// Keys of `[flow]` for a free wake.
 static KEYS: [Key; 13] = [
@@ -69,8 +81,8 @@ static KEYS: [Key; 13] = [
         "core_widths",
         above(0.0, 5.0),
         "–",
-        Value("0.3"),
-        "Radius of a vortex' core where it leaves the blade, over the width of the blade elements there.",
+        Value("0.23"),
+        "Radius of a vortex' core where it leaves the blade, over the width of the blade elements there. Wider ones hide from a blade what leaves it close by (0.3: 1 % too much power), narrower ones are single vortices where a sheet is meant.",
     ),
     key(
         "core_growth",
@@ -127,16 +139,22 @@ static KEYS: [Key; 13] = [
 pub static VORTEX: SolverKind = SolverKind {
     name: "vortex",
     about: "free-vortex wakes of lifting lines in prescribed wind of any kind; turbines are in each other's wakes",
+    limits: LIMITS,
     keys: &KEYS,
     wind: WindSource::Any,
     resolves_induction: true,
     has_wakes: true,
     uses_bound_vortices: true,
+    most_filaments: Some(|case, plan| of_all(case, plan).most_segments() as u64),
+    needs_self_check: true,
+    tunnel,
+    equivalent_speed: with_an_end,
     objections,
     warnings,
     plan: laid_out,
     reach: |case, plan| length(&case.flow.values, plan.diameter),
-    memory: |case, plan| FreeWake::memory_of(&settings(case, plan, N_BLADES * case.turbines.len())),
+    memory: |case, plan| FreeWake::memory_of(&of_all(case, plan)),
+    less_memory: "flow.wake_length_diameters, flow.near_wake_diameters, flow.far_wake_filaments or flow.steps_per_turn",
     begin,
     begin_alone,
     ..PRESCRIBED
@@ -148,6 +166,7 @@ fn laid_out(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
         steps_per_turn: values.number("steps_per_turn"),
         points_per_diameter: values.number("points_per_diameter"),
         length: values.number("wake_length_diameters"),
+        wake_speed: USUAL * case.wind.speed,
     };
     plan::by_turns(case, layout, &turning)
 }
@@ -158,47 +177,80 @@ fn length(values: &Values, diameter: f64) -> f64 {
 
 /// Settings of the wakes of `n_blades` blades in all.
 fn settings(case: &Case, plan: &Plan, n_blades: usize) -> WakeSettings {
-    let mut values = Values::defaults(&KEYS);
-    values.extend(case.flow.values.iter().map(|(key, value)| (key, value.clone())));
-    let count = |name: &str| values.number(name) as usize;
-    let rows = |length: f64, share: f64| length / (share * case.wind.speed * plan.interval);
-    let near = values.number("near_wake_diameters") * plan.diameter;
-    let (length, stride) = (length(&values, plan.diameter), count("far_wake_steps"));
-    let far_rows = rows((length - near).max(0.0), SLOWEST) / stride as f64;
-    WakeSettings {
+    let shown = Points {
+        first: plan.origin + Vector3::splat(0.5 * plan.spacing),
+        spacing: plan.spacing,
+        n: plan.n_points,
+    };
+    let resolved = Resolved {
+        diameter: plan.diameter,
         interval: plan.interval,
-        resolution: Resolution {
-            near_rows: rows(near, USUAL).ceil() as usize,
-            far_stride: stride,
-            far_filaments: count("far_wake_filaments"),
-            length,
-            far_rows: far_rows.ceil() as usize + 2,
-        },
-        cores: Cores {
-            initial_widths: values.number("core_widths"),
-            kinematic_viscosity: case.wind.kinematic_viscosity,
-            eddy_constant: values.number("core_growth"),
-            strain: values.word("core_strain") == "volume",
-        },
-        bodies: bodies(values.number("nacelle_wake_diameters"), plan, case.turbines.len()),
-        air_density: case.wind.air_density,
-        accuracy: Accuracy { degree: count("tree_degree"), opening: values.number("tree_opening") },
-        ground: values.word("ground_effect") == "image",
-        shown: Points {
-            first: plan.origin + Vector3::splat(0.5 * plan.spacing),
-            spacing: plan.spacing,
-            n: plan.n_points,
-        },
         n_blades,
-        n_elements: turbine::N_ELEMENTS,
-        threads: case.flow.threads,
-    }
+        n_nacelles: case.turbines.len(),
+    };
+    WakeSettings { shown, ..resolved.settings(&case.flow, &case.wind) }
 }
 
-/// Wakes of `n_bodies` nacelles that are `diameters` long.
-fn bodies(diameters: f64, plan: &Plan, n_bodies: usize) -> BodyWakes {
-    let most_rings = (diameters / (CLOSEST_RINGS * SMALLEST_HUB)).ceil() as usize;
-    BodyWakes { length: diameters * plan.diameter, n_bodies, most_rings }
+/// The same of all turbines of `case`, before they are known.
+fn of_all(case: &Case, plan: &Plan) -> WakeSettings {
+    settings(case, plan, N_BLADES * case.turbines.len())
+}
+
+/// What wakes are resolved for.
+struct Resolved {
+    /// Diameter that lengths are given in (m).
+    diameter: f64,
+    /// Step (s).
+    interval: f64,
+    n_blades: usize,
+    /// Nacelles that leave a wake.
+    n_nacelles: usize,
+}
+
+impl Resolved {
+    /// What `flow` says of wakes in `wind`; nothing is shown of them.
+    fn settings(&self, flow: &Flow, wind: &Wind) -> WakeSettings {
+        let mut values = Values::defaults(&KEYS);
+        values.extend(flow.values.iter().map(|(key, value)| (key, value.clone())));
+        let count = |name: &str| values.number(name) as usize;
+        let rows = |length: f64, share: f64| length / (share * wind.speed * self.interval);
+        let near = values.number("near_wake_diameters") * self.diameter;
+        let (length, stride) = (length(&values, self.diameter), count("far_wake_steps"));
+        let far_rows = rows((length - near).max(0.0), SLOWEST) / stride as f64;
+        WakeSettings {
+            interval: self.interval,
+            resolution: Resolution {
+                near_rows: rows(near, USUAL).ceil() as usize,
+                far_stride: stride,
+                far_filaments: count("far_wake_filaments"),
+                length,
+                far_rows: far_rows.ceil() as usize + 2,
+            },
+            cores: Cores {
+                initial_widths: values.number("core_widths"),
+                kinematic_viscosity: wind.kinematic_viscosity,
+                eddy_constant: values.number("core_growth"),
+                strain: values.word("core_strain") == "volume",
+            },
+            bodies: self.bodies(values.number("nacelle_wake_diameters")),
+            air_density: wind.air_density,
+            accuracy: Accuracy {
+                degree: count("tree_degree"),
+                opening: values.number("tree_opening"),
+            },
+            ground: values.word("ground_effect") == "image",
+            shown: Points::NONE,
+            n_blades: self.n_blades,
+            n_elements: turbine::N_ELEMENTS,
+            threads: flow.threads,
+        }
+    }
+
+    /// Wakes of nacelles that are `diameters` long.
+    fn bodies(&self, diameters: f64) -> BodyWakes {
+        let most_rings = (diameters / (CLOSEST_RINGS * SMALLEST_HUB)).ceil() as usize;
+        BodyWakes { length: diameters * self.diameter, n_bodies: self.n_nacelles, most_rings }
+    }
 }
 
 fn begin(start: Start) -> Result<Air, SolverError> {
@@ -212,38 +264,39 @@ fn begin(start: Start) -> Result<Air, SolverError> {
     Ok(Box::new(FreeWake::new(settings, wind)?))
 }
 
+/// As the case has it, but in even wind without a ground, and the wake no longer than the tunnel is.
 fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
-    let profile = MeanProfile::Uniform { speed: alone.wind.speed };
-    let wind = PrescribedWind::everywhere(Arc::new(profile));
-    let rows = |diameters: f64| {
-        let speed = USUAL * alone.wind.speed * alone.tunnel.interval;
-        (diameters * alone.diameter / speed).ceil() as usize
-    };
-    let settings = WakeSettings {
-        interval: alone.tunnel.interval,
-        resolution: Resolution {
-            near_rows: rows(0.25),
-            far_stride: 4,
-            far_filaments: 9,
-            length: 4.0 * alone.diameter,
-            far_rows: 2 * rows(4.0) / 4,
-        },
-        cores: Cores {
-            initial_widths: 0.3,
-            kinematic_viscosity: alone.wind.kinematic_viscosity,
-            eddy_constant: 1e-4,
-            strain: true,
-        },
-        bodies: BodyWakes::NONE,
-        air_density: alone.wind.air_density,
-        accuracy: Accuracy { degree: 3, opening: 0.6 },
-        ground: false,
-        shown: Points::NONE,
-        n_blades: N_BLADES,
-        n_elements: turbine::N_ELEMENTS,
-        threads: alone.threads,
-    };
-    Ok(Box::new(FreeWake::new(settings, wind)?))
+    let Alone { tunnel, wind, diameter, flow } = *alone;
+    let profile = MeanProfile::Uniform { speed: wind.speed };
+    let air = PrescribedWind::everywhere(Arc::new(profile));
+    let resolved =
+        Resolved { diameter, interval: tunnel.interval, n_blades: N_BLADES, n_nacelles: 0 };
+    let mut settings = WakeSettings { ground: false, ..resolved.settings(flow, wind) };
+    let length = &mut settings.resolution.length;
+    *length = length.min(tunnel.downstream * diameter);
+    Ok(Box::new(FreeWake::new(settings, air)?))
+}
+
+/// The tunnel of the check: a wake so short that the check is quick, and so long that what is missing of it
+/// follows a closed form.
+fn tunnel(plan: &Plan, flow: &Flow) -> Tunnel {
+    let downstream = flow.values.number("wake_length_diameters").min(LONGEST_CHECKED);
+    // Until what was shed at the start has passed the end, and the wake there is that of a steady rotor.
+    let settling = downstream / USUAL + 1.0;
+    Tunnel { downstream, settling, averaging: 0.5, ..Tunnel::of_study(plan) }
+}
+
+/// A wake that ends induces less at its rotor, which is then in the state of one in faster air.
+///
+/// The cylinder of vortices behind a disc with even load, of length l and radius R, induces the share
+/// s = l/√(l² + R²) of what an endless one does in the middle of the disc. With u = 1 − s a for the wind at
+/// the disc and C_T = 4 a (1 − a), momentum theory has the same u and the same thrust in the wind u + C_T/4u.
+fn with_an_end(tunnel: &Tunnel, _: f64, thrust_coefficient: f64) -> f64 {
+    let radii = 2.0 * flow::vortex::LASTING * tunnel.downstream;
+    let share = radii / (radii * radii + 1.0).sqrt();
+    let induction = 0.5 * (1.0 - (1.0 - thrust_coefficient.clamp(0.0, 1.0)).sqrt());
+    let at_disc = 1.0 - share * induction;
+    at_disc + induction * (1.0 - induction) / at_disc
 }
 
 fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
@@ -252,6 +305,12 @@ fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
     if plan.turn > TURN_TO_WARN {
         warnings.push(format!(
             "a rotor turns by {turn:.0}° in a step: its wake is a polygon more than a helix; lower flow.step or raise flow.steps_per_turn"
+        ));
+    }
+    let widths = case.flow.values.number("core_widths");
+    if widths < NARROWEST {
+        warnings.push(format!(
+            "cores of {widths} element widths: beside its core each trailing vortex is felt more than the sheet that it stands for, which then rolls up by chance; raise flow.core_widths to {NARROWEST:.2} or more"
         ));
     }
     let length = case.flow.values.number("wake_length_diameters");

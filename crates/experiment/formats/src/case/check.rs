@@ -271,7 +271,15 @@ fn output_of(section: &Section, turbines: &[Placement], solver: Solver) -> Outpu
         let fix = "add `volume_interval`, or leave `volume_stride` out".to_owned();
         section.findings().note(section.span_of("volume_stride"), kind, Some(fix));
     }
+    let filament_interval = section.optional_number("filament_interval");
+    if filament_interval.is_some() && solver.most_filaments.is_none() {
+        let why = format!("flow.solver = \"{}\" has no vortices to show", solver.name);
+        let kind = ProblemKind::NoUse { key: section.key_path("filament_interval"), why };
+        let fix = "leave it out, or use flow.solver = \"vortex\"".to_owned();
+        section.findings().note(section.span_of("filament_interval"), kind, Some(fix));
+    }
     Output {
+        filament_interval,
         lines_at: places_of(section, "lines_at", turbines),
         inflow_at: places_of(section, "inflow_at", turbines),
         helix_phases: section

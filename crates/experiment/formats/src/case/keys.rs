@@ -300,7 +300,14 @@ pub(super) static OUTPUT: Table = Table {
             Holds::Whole { least: 1, most: 16 },
             "–",
             Otherwise("2 with `volume_interval`"),
-            "Volumes hold every so many cells along each axis: 2 an eighth of them, 1 all of the flow's resolution. A cell takes 12 bytes on the disk, and as many of memory while a volume is written; `--dry-run` tells both.",
+            "Volumes hold every so many cells along each axis: 2 an eighth of them, 1 all of the flow's resolution. A cell takes 24 bytes on the disk, velocity and vorticity, and 12 of memory while a volume is written; `--dry-run` tells both.",
+        ),
+        key(
+            "filament_interval",
+            above(0.0, 1e6),
+            "s",
+            Otherwise("no vortices but those of the last instant"),
+            "With `flow.solver = \"vortex\"`: the vortices of all wakes every so many seconds of the analysed time, VTK polydata with circulation, core radius, age, turbine and blade: `RUN/volumes/filaments-0000.vtp`. Those of the last instant are always kept, `filaments-last.vtp`; the report draws them.",
         ),
         key(
             "checkpoint_interval",

@@ -96,6 +96,9 @@ fn write_output(text: &mut String, output: &Output, turbines: &[Placement]) -> s
             writeln!(text, "volume_stride = {}", output.volume_stride)?;
         }
     }
+    if let Some(interval) = output.filament_interval {
+        writeln!(text, "filament_interval = {interval:?}")?;
+    }
     writeln!(text, "checkpoint_interval = {:?}", output.checkpoint_interval)?;
     // Only where it is used, so that the text of a case without it stays what it was.
     if !output.keeps_checkpoint {

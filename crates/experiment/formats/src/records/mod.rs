@@ -33,8 +33,9 @@ pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
 pub use sweep::{read_sweep, remove_sweep, sweep_path, write_sweep, write_table};
 
 use crate::lock::Lock;
+pub use crate::vtk::filament_bytes;
 use crate::{FileError, atomic, leftovers, vtk};
-use basis::records::{SCHEMA_VERSION, Summary};
+use basis::records::{Filaments, SCHEMA_VERSION, Summary};
 use flow::lattice::Volume;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,8 @@ const INFLOW: &str = "inflow-";
 /// What the name of a turbine's record in OpenFAST's format ends with.
 const OUTB: &str = ".outb";
 const SUMMARY: &str = "the summary of a run";
+/// Name of the vortices at a run's last instant.
+const LAST_FILAMENTS: &str = "filaments-last.vtp";
 
 /// The folder of one run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -274,6 +277,20 @@ fn gone(removed: std::io::Result<()>, path: &Path) -> Result<(), FileError> {
 /// [`FileError::System`].
 pub fn write_volume(folder: &RunFolder, index: u64, volume: &Volume) -> Result<(), FileError> {
     vtk::write_volume(&folder.volumes_path().join(format!("velocity-{index:04}.vti")), volume)
+}
+
+/// Writes the vortices of wakes, the `index`-th kept: `volumes/filaments-0000.vtp`; without one those of the
+/// last instant: `volumes/filaments-last.vtp`.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn write_filaments(
+    folder: &RunFolder,
+    index: Option<u64>,
+    filaments: &Filaments,
+) -> Result<(), FileError> {
+    let name = index.map_or(LAST_FILAMENTS.to_owned(), |index| format!("filaments-{index:04}.vtp"));
+    vtk::write_filaments(&folder.volumes_path().join(name), filaments)
 }
 
 /// Writes the summary; the run is complete with it.

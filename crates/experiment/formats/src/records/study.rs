@@ -1,9 +1,9 @@
 //! A study read back from its folder.
 
 use super::planes::{LAST, MEAN, PHASES};
-use super::{Manifest, RunFolder, SeriesFile, read_manifest, read_summary};
-use crate::{FileError, case, netcdf};
-use basis::records::{Plane, Summary, Warning, WarningKind};
+use super::{LAST_FILAMENTS, Manifest, RunFolder, SeriesFile, read_manifest, read_summary};
+use crate::{FileError, case, netcdf, vtk};
+use basis::records::{Filaments, Plane, Summary, Warning, WarningKind};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -46,6 +46,8 @@ pub struct RunRecords {
     pub instant_paths: Vec<PathBuf>,
     /// Files of volumes, by time.
     pub volume_paths: Vec<PathBuf>,
+    /// The vortices of its wakes at the last instant; none where the air has none to show.
+    pub last_filaments: Option<Filaments>,
 }
 
 /// Reads the study in the folder `path` back: every run's folder, of its series the channels' names alone.
@@ -216,6 +218,7 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
         phase_planes: Vec::new(),
         instant_paths: Vec::new(),
         volume_paths: Vec::new(),
+        last_filaments: None,
     };
     for path in entries(&folder.planes_path())? {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -233,6 +236,10 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
         }
     }
     records.volume_paths = entries(&folder.volumes_path())?;
+    let last = folder.volumes_path().join(LAST_FILAMENTS);
+    if records.volume_paths.contains(&last) {
+        records.last_filaments = Some(vtk::read_filaments(&last)?);
+    }
     records.volume_paths.retain(|path| path.extension().is_some_and(|ending| ending == "vti"));
     Ok(records)
 }

@@ -1,6 +1,7 @@
 //! The figures of a report.
 
 mod gains;
+mod geometry;
 pub(crate) mod pitch;
 pub(crate) mod power;
 pub(crate) mod precursor;
@@ -51,6 +52,7 @@ pub(crate) fn all(study: &Study) -> Figures {
     figures.extend(slices::instants(study));
     figures.extend(slices::streamwise(study));
     figures.extend(slices::crosswind(study));
+    figures.extend(geometry::geometry(study));
     figures.extend(profiles::profiles(study));
     figures.extend(profiles::centre_line(study));
     figures.extend(pitch::pitch(study));

@@ -173,6 +173,8 @@ fn small_print(study: &Study) -> Vec<String> {
     let summary = &study.runs()[0].summary;
     let conditions = &summary.conditions;
     let mut items = vec![method(summary)];
+    let limits = summary.flow.as_ref().map_or("", |flow| flow.limits.as_str());
+    items.extend((!limits.is_empty()).then(|| limits.to_owned()));
     if let Some(cells) = conditions.cells_per_diameter.filter(|cells| *cells < 24.0) {
         items.push(format!(
             "{} cells per diameter are coarse: the near wake and the tip vortices are blurred, small \
@@ -214,6 +216,7 @@ const PARTS: [(&str, &str, &str, &[&str]); 3] = [
             "instant-hub-height",
             "mean-streamwise",
             "mean-crosswind",
+            "wake-geometry",
             "profiles",
             "recovery",
         ],

@@ -41,8 +41,12 @@ pub(crate) fn without_wakes() -> StudyRecords {
     let mut study = two_runs();
     for run in &mut study.runs {
         let summary = &mut run.summary;
-        summary.flow =
-            Some(FlowSummary { solver: "uniform".into(), has_wakes: false, grids: Vec::new() });
+        summary.flow = Some(FlowSummary {
+            solver: "uniform".into(),
+            has_wakes: false,
+            limits: String::new(),
+            grids: Vec::new(),
+        });
         summary.conditions.cells_per_diameter = None;
         run.mean_planes.clear();
         run.instant_planes.clear();

@@ -158,6 +158,7 @@ fn run(recipe: &Recipe) -> RunRecords {
         },
         series: series(recipe, powers),
         mean_planes: planes(recipe, None),
+        filaments: None,
         instant_planes: [900.0, 2400.0].iter().flat_map(|t| planes(recipe, Some(*t))).collect(),
     }
 }

@@ -7,6 +7,8 @@
 //! Reading order: `output` (what an output is), `schedule` (when it is due), `section` (its state in a
 //! checkpoint), `writers` (those of one run at work), then any output, `volumes` being the shortest.
 
+mod cores;
+mod filaments;
 mod instant_planes;
 mod last_planes;
 mod lines;
@@ -35,13 +37,15 @@ use farm::outputs::OUTPUTS;
 use std::sync::Once;
 
 /// The kinds of output that every study has; they finish in this order.
-pub static STANDARD: [&OutputKind; 8] = [
+pub static STANDARD: [&OutputKind; 10] = [
     &series::KIND,
     &mean_planes::KIND,
     &phase_planes::KIND,
     &instant_planes::KIND,
     &last_planes::KIND,
     &volumes::KIND,
+    &filaments::KIND,
+    &cores::KIND,
     &wind_records::KIND,
     // From the complete series.
     &outb::KIND,

@@ -5,6 +5,7 @@ use super::section::{Section, Stored};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use basis::keys::{Objection, Table, Values};
+use basis::records::Warning;
 use basis::registry::Named;
 use basis::{Commands, Truth};
 use farm::case::{Case, Run};
@@ -168,6 +169,11 @@ pub trait Output {
     /// is of use.
     fn salvage(&mut self) -> Option<PathBuf> {
         None
+    }
+
+    /// What a reader of the run's numbers must know of what it took in; asked for before it finishes.
+    fn warnings(&self, _scene: &Scene) -> Vec<Warning> {
+        Vec::new()
     }
 
     /// Completes its files after the last step of the run. Outputs finish in the order of their list.

@@ -68,6 +68,7 @@ mod tests {
             interval: 0.2,
             n_steps: N_STEPS,
             n_spin_up_steps,
+            n_growing_steps: 0,
             row_stride: 1,
             diameter: 126.0,
             hub_height: 90.0,

@@ -5,6 +5,7 @@ use super::section::{Section, Stored};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use basis::keys::Values;
+use basis::records::Warning;
 use basis::{Commands, Truth};
 use farm::case::{Case, Requested, Run};
 use farm::{Air, Farm, Recorder};
@@ -117,6 +118,13 @@ impl<'a> Writers<'a> {
     /// Puts on the disk what is of use of a run that has broken down; gives the first such file.
     pub(crate) fn salvage(&mut self) -> Option<PathBuf> {
         self.0.iter_mut().filter_map(|writer| writer.output.salvage()).reduce(|first, _| first)
+    }
+
+    /// What a reader of the run's numbers must know of what they took in.
+    pub(crate) fn warnings(&self, stage: &Stage) -> Vec<Warning> {
+        let of =
+            |writer: &Writer| writer.output.warnings(&stage.seen_by(writer.name, writer.values));
+        self.0.iter().flat_map(of).collect()
     }
 
     /// Lets each complete its files.

@@ -9,6 +9,7 @@ use crate::prepared::Prepared;
 use crate::ready::Ready;
 use crate::self_check::SelfChecked;
 use crate::study::Study;
+use farm::plan::Effort;
 use formats::records::{PitchResponseRecord, RunFolder};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -22,8 +23,8 @@ pub(super) struct Task {
     part: usize,
     /// Place of the run in its case.
     index: usize,
-    /// Work of one step, in cell updates or what takes as long.
-    pub(super) work: f64,
+    /// What its steps cost.
+    pub(super) effort: Effort,
     /// Steps of the run (–).
     pub(super) n_steps: u64,
 }
@@ -147,8 +148,8 @@ impl Parts<'_> {
         for (part, Part { study, stage, .. }) in self.list.iter().enumerate() {
             let Stage::Prepared(prepared) = &*held(stage) else { continue };
             let plan = &prepared.0.plan;
-            let (work, n_steps) = (plan.updates_of_step().max(1.0), plan.n_steps);
-            tasks.extend(study.open.iter().map(|&index| Task { part, index, work, n_steps }));
+            let (effort, n_steps) = (plan.effort(), plan.n_steps);
+            tasks.extend(study.open.iter().map(|&index| Task { part, index, effort, n_steps }));
         }
         tasks
     }
@@ -167,7 +168,7 @@ impl Parts<'_> {
         shared: &Shared,
     ) -> Result<ControlFlow<()>, StudyError> {
         let part = &self.list[task.part];
-        let mut observer = shared.of_run(&part.folder, place.0, task.work);
+        let mut observer = shared.of_run(&part.folder, place.0, task.effort);
         let ready = match part.ready(&self.known, stop, &mut observer)? {
             ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
             ControlFlow::Continue(ready) => ready,

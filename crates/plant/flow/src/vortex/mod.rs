@@ -2,11 +2,14 @@
 //! moves.
 
 mod body;
+mod close;
 mod direct;
 mod division;
 pub mod examples;
 mod field;
 mod filaments;
+mod full_length;
+mod graph;
 mod interpolation;
 mod planes;
 mod rotor;
@@ -27,5 +30,5 @@ pub use field::{Accuracy, induced};
 pub use interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};
 pub use segment::{Cores, Segment};
 pub use settings::{Points, WakeError, WakeSettings};
-pub use sheet::Resolution;
+pub use sheet::{LASTING, Resolution};
 pub use wake::FreeWake;

@@ -8,6 +8,8 @@ use basis::Vector3;
 
 /// Share of the wake's length over which its end fades (–).
 const FADING: f64 = 0.15;
+/// Share of the wake's length that would induce as much if none of it faded, about (–): half of what fades.
+pub const LASTING: f64 = 1.0 - 0.5 * FADING;
 /// Least area of a ring over that of those which it stands for (–).
 const LEAST_AREA: f64 = 0.7;
 /// How the wakes of blades are resolved, and where they end.
@@ -52,6 +54,16 @@ impl Sheet {
             kept,
             resolution,
         }
+    }
+
+    /// Nodes of the strip near the blade that the one further down keeps.
+    pub(super) fn kept(&self) -> &[usize] {
+        &self.kept
+    }
+
+    /// Steps from row to row further down (–).
+    pub(super) fn far_stride(&self) -> usize {
+        self.resolution.far_stride
     }
 
     /// Elements of its blade (–).

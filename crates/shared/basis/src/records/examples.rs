@@ -126,6 +126,7 @@ pub fn full() -> Summary {
         WarningKind::Controller,
         WarningKind::TipSpeed,
         WarningKind::Overspeed,
+        WarningKind::VortexCores,
         WarningKind::GainUndefined,
         WarningKind::MixedRuns,
     ];
@@ -143,6 +144,7 @@ pub fn full() -> Summary {
         flow: Some(FlowSummary {
             solver: "lattice".to_owned(),
             has_wakes: true,
+            limits: "What it cannot show.".to_owned(),
             grids: vec![domain],
         }),
         array_power: with_interval(4e7),

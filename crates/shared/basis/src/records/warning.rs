@@ -28,6 +28,8 @@ pub enum WarningKind {
     TipSpeed,
     /// A rotor turned much faster than a real machine is let.
     Overspeed,
+    /// A turbine's blades stood in the cores of other turbines' vortices for more than a little of the time.
+    VortexCores,
     /// A gain is not defined: the run compared with has no power, or no load, to be a share of.
     GainUndefined,
     /// Runs of one study were made with unlike versions of the case, of a turbine, of a file of wind or of

@@ -12,11 +12,21 @@ const TOLERATED: f64 = 0.15;
 /// Wall time left that is worth a word (s).
 const WORTH: f64 = 20.0;
 
+/// A pace of `speed` (1/s) in words: of cell updates, or of steps where the air has no cells.
+pub(super) fn words(speed: f64, has_cells: bool) -> String {
+    match speed {
+        speed if has_cells => format!("{:.0} million cell updates a second", 1e-6 * speed),
+        speed if speed < 10.0 => format!("{speed:.1} steps a second with wakes of full length"),
+        speed => format!("{speed:.0} steps a second with wakes of full length"),
+    }
+}
+
 /// What was told, and where the runs stood at first.
 #[derive(Default)]
 pub(super) struct Pace {
-    /// Cell updates of all runs, and what they were to take (s); none when there is nothing to set right.
+    /// Work of all runs, and what it was to take (s); none when there is nothing to set right.
     told: Option<(f64, f64)>,
+    has_cells: bool,
     first: Option<(Instant, f64)>,
 }
 
@@ -24,6 +34,7 @@ impl Pace {
     /// Takes in what was told of the cost.
     pub(super) fn take(&mut self, estimate: &Estimate) {
         self.told = estimate.updates_per_second.map(|speed| (estimate.work, estimate.work / speed));
+        self.has_cells = estimate.n_cells[0] > 0;
     }
 
     /// What the runs take from here on, in words, where `progress` at `now` shows that it is more than was
@@ -36,13 +47,15 @@ impl Pace {
         }
         let (work, expected) = self.told.take()?;
         let left = elapsed.as_secs_f64() * open / (progress.share_of_all - first);
-        (left >= WORTH && left > (1.0 + TOLERATED) * expected * open && left.is_finite()).then(|| {
-            format!(
-                "cost: rather {} from here on: with all turbines and records the runs make {:.0} million cell updates a second",
-                HumanDuration(Duration::from_secs_f64(left)),
-                1e-6 * work * open / left
-            )
-        })
+        (left >= WORTH && left > (1.0 + TOLERATED) * expected * open && left.is_finite()).then(
+            || {
+                format!(
+                    "cost: rather {} from here on: with all turbines and records the runs make {}",
+                    HumanDuration(Duration::from_secs_f64(left)),
+                    words(work * open / left, self.has_cells)
+                )
+            },
+        )
     }
 }
 
@@ -69,7 +82,7 @@ mod tests {
             pace.set_right(&progress, began + Duration::from_secs_f64(seconds))
         };
         // A hundred seconds for 20 billion updates.
-        let told = || Pace { told: Some((2e10, 100.0)), first: None };
+        let told = || Pace { told: Some((2e10, 100.0)), has_cells: true, first: None };
         let mut slow = told();
         assert_eq!(at(&mut slow, 0.0, 0.1), None);
         assert_eq!(at(&mut slow, 4.0, 0.12), None);

@@ -1,6 +1,6 @@
 //! What a person sees of a study under way: cost, progress, remarks.
 
-use super::pace::Pace;
+use super::pace::{self, Pace};
 use super::so_far::SoFar;
 use super::stages::{Stages, say_prepared};
 use crate::commands::manner;
@@ -44,6 +44,14 @@ fn disk(estimate: &Estimate) -> String {
     match estimate.n_runs {
         0 | 1 => format!("disk up to {run}{kept}{rows}"),
         _ => format!("disk up to {run} a run, {all} in all{kept}{rows}"),
+    }
+}
+
+/// What the memory must hold where the air has no cells, in words; nothing where that is nothing to speak of.
+fn memory(estimate: &Estimate) -> String {
+    match estimate.memory {
+        0 => String::new(),
+        memory => format!("memory {}, ", HumanBytes(memory)),
     }
 }
 
@@ -203,19 +211,20 @@ impl Observer for Screen {
         self.so_far.take(estimate);
         match (estimate.updates_per_second, estimate.wall_time()) {
             (Some(speed), Some(wall_time)) => self.say(&format!(
-                "cost: about {} for {}{} at {:.0} million cell updates a second",
+                "cost: about {} for {}{} at {}",
                 HumanDuration(Duration::from_secs_f64(wall_time.max(1.0))),
                 runs(estimate),
                 identifications(estimate),
-                speed / 1e6
+                pace::words(speed, estimate.n_cells[0] > 0)
             )),
             _ if estimate.n_cells[0] == 0 => self.say(&format!(
-                "{}: {} of {} steps of {:.4} s, {:.0} steps in all; {}{}",
+                "{}: {} of {} steps of {:.4} s, {} steps in all; {}{}{}",
                 self.air,
                 runs(estimate),
                 estimate.n_steps,
                 estimate.interval,
-                estimate.work,
+                estimate.n_steps_in_all,
+                memory(estimate),
                 disk(estimate),
                 identifications(estimate),
             )),

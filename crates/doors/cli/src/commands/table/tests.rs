@@ -78,8 +78,12 @@ fn a_column_that_no_turbine_fills_is_left_out() {
 fn turbines_without_wakes_are_not_added_up() {
     let mut alone = summary(vec![turbine("T1", &[]), turbine("T2", &[])]);
     assert!(render(std::slice::from_ref(&alone), 100).contains(" all "));
-    alone.flow =
-        Some(FlowSummary { solver: "turbulence".to_owned(), has_wakes: false, grids: Vec::new() });
+    alone.flow = Some(FlowSummary {
+        solver: "turbulence".to_owned(),
+        has_wakes: false,
+        limits: String::new(),
+        grids: Vec::new(),
+    });
     let text = render(std::slice::from_ref(&alone), 100);
     assert!(!text.contains("all ") && !text.contains("20000"), "{text}");
     alone.turbines.pop();

@@ -4,5 +4,6 @@ mod bodies;
 mod closed_forms;
 mod coaxial;
 mod fields;
+mod filaments;
 mod shapes;
 mod wakes;

@@ -9,7 +9,7 @@ use basis::{BoundVortex, PointForce, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-const INTERVAL: f64 = 0.2;
+pub(super) const INTERVAL: f64 = 0.2;
 const DENSITY: f64 = 1.2;
 const N_ELEMENTS: usize = 6;
 const WIND: f64 = 8.0;
@@ -48,7 +48,7 @@ pub(super) fn wake(settings: WakeSettings) -> FreeWake {
 }
 
 /// Two blades of 40 m in step number `step`, each element with a circulation of its own.
-fn forces(step: usize, circulation: f64) -> Vec<PointForce> {
+pub(super) fn forces(step: usize, circulation: f64) -> Vec<PointForce> {
     let middle = |step: usize, blade: usize, station: usize| {
         let angle = TAU * blade as f64 / 2.0 + 0.15 * step as f64;
         let radial = Vector3::new(0.0, -angle.sin(), angle.cos());
