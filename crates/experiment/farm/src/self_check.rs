@@ -278,7 +278,7 @@ fn bare_rotor(
 ) -> Result<Turbine, StructureError> {
     let definition = &model.definition;
     let induction = if solver.uses_bound_vortices {
-        Induction::ByBoundVortices { dynamic_stall: false }
+        Induction::ByBoundVortices { dynamic_stall: false, tower: None }
     } else {
         Induction::ByFlow {
             smearing_length: SMEARING_CELLS * tunnel.spacing,
