@@ -17,7 +17,7 @@ use turbine::{Induction, N_ELEMENTS, Turbine, TurbineSettings};
 /// Accepted distance from blade elements in axisymmetric flow, and from blade-element momentum (–).
 const TOGETHER: f64 = 0.02;
 const MOMENTUM: f64 = 0.04;
-pub(super) const AIR_DENSITY: f64 = 1.225;
+const AIR_DENSITY: f64 = 1.225;
 /// The duct of the axisymmetric flow (radii): so wide that its walls are not felt.
 const DUCT: [f64; 3] = [10.0, 12.0, 12.0];
 
@@ -95,7 +95,7 @@ fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
 }
 
 /// The library's turbine `name` without tilt, precone and prebend: what the theories are about.
-pub(super) fn flat(name: &str) -> TurbineModel {
+fn flat(name: &str) -> TurbineModel {
     let file = formats::library::load(name).expect("the library's own turbines are readable");
     let mut definition = file.definition;
     definition.rotor.precone = 0.0;
@@ -160,12 +160,7 @@ pub(super) fn coefficients(
     Coefficients { power: power / (force * wind_speed), thrust: thrust / force, torque }
 }
 
-pub(super) fn wake(
-    model: &TurbineModel,
-    wind_speed: f64,
-    interval: f64,
-    fineness: Fineness,
-) -> FreeWake {
+fn wake(model: &TurbineModel, wind_speed: f64, interval: f64, fineness: Fineness) -> FreeWake {
     let definition = &model.definition;
     let diameter = definition.rotor_diameter();
     let rows = |diameters: f64, share: f64| {
