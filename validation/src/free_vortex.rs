@@ -1,6 +1,5 @@
 //! The free wake against closed forms, and its rotors against momentum theory and the flow of rings together.
 
-mod budget;
 mod held;
 mod rotor;
 mod vortices;
@@ -15,11 +14,6 @@ pub fn free_vortex() -> Vec<Row> {
     let mut rows = vortices::rows();
     rows.extend(wing::rows());
     rows
-}
-
-/// What the blades of a rotor do against what the air behind them has: circulation, momentum, power.
-pub fn free_vortex_budget() -> Vec<Row> {
-    budget::rows()
 }
 
 /// Power and thrust of three rotors at their best tip-speed ratio.

@@ -64,15 +64,6 @@ pub const VALIDATIONS: &[Validation] = &[
         recorded: include_str!("../recorded/free-vortex.toml"),
     },
     Validation {
-        name: "free-vortex-budget",
-        about: "what a rotor's blades do to the air against what its free wake has of it: circulation, momentum, power",
-        cost: Cost::Minutes(1),
-        run: free_vortex::free_vortex_budget,
-        pictures: None,
-        page: "free-vortex",
-        recorded: include_str!("../recorded/free-vortex-budget.toml"),
-    },
-    Validation {
         name: "free-vortex-rotor",
         about: "power and thrust of three rotors with free wakes against blade elements in axisymmetric flow, and blade-element momentum",
         cost: Cost::Minutes(5),

@@ -91,6 +91,12 @@ pub(crate) trait Simd:
     /// Square root, correctly rounded.
     fn sqrt(self) -> Self;
 
+    /// 1/√ of a positive number, to some units of the last place.
+    fn inverse_sqrt(self) -> Self;
+
+    /// 1/ of a positive number, to some units of the last place.
+    fn inverse(self) -> Self;
+
     /// The greater of two numbers.
     fn maximum(self, other: Self) -> Self;
 
@@ -173,6 +179,16 @@ impl Simd for Portable {
     fn sqrt(self) -> Self {
         let a = self.0;
         Self([a[0].sqrt(), a[1].sqrt(), a[2].sqrt(), a[3].sqrt()])
+    }
+
+    #[inline(always)]
+    fn inverse_sqrt(self) -> Self {
+        self.sqrt().inverse()
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        Self::splat(1.0).divide(self)
     }
 
     #[inline(always)]

@@ -13,9 +13,9 @@ const INTERVAL: f64 = 0.2;
 const N_ELEMENTS: usize = 6;
 const HUB: Vector3 = Vector3::new(0.0, 0.0, 80.0);
 /// Steps until the wake has its length (–): 150 m at about 7 m/s.
-const N_WARM: usize = 200;
+const N_WARM: usize = 130;
 /// Steps that are monitored (–).
-const N_WATCHED: usize = 60;
+const N_WATCHED: usize = 30;
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };

@@ -197,7 +197,8 @@ unsafe fn far<V: Simd>(
         };
         let r: [V; 3] = std::array::from_fn(|a| cube[a].sub_from(half[a], at[a]));
         let squared = r[2].mul_add(r[2], r[1].mul_add(r[1], r[0] * r[0]));
-        let weight = V::splat(1.0).divide(squared * squared.sqrt());
+        let inverse = squared.inverse_sqrt();
+        let weight = inverse * inverse * inverse;
         let cross = cross(&m, &r);
         for (sum, cross) in sum.iter_mut().zip(cross) {
             *sum = cross.mul_add(weight, *sum);
@@ -206,7 +207,7 @@ unsafe fn far<V: Simd>(
 }
 
 /// Adds what the segments of `cluster` induce at `from` its centre (m), one by one:
-/// [`Segment::per_circulation`], with one division.
+/// [`Segment::per_circulation`], with one inverse and roots by their inverses.
 ///
 /// # Safety
 /// On a machine with the instructions of `V`.
@@ -231,7 +232,7 @@ unsafe fn near<V: Simd>(field: &Field, cluster: &Cluster, from: Vector3, sum: &m
             )
         };
         let (q1, q2, d) = (dot(&r1, &r1), dot(&r2, &r2), dot(&r1, &r2));
-        let p = (q1 * q2).sqrt();
+        let p = root(q1 * q2, tiny);
         let c = cross(&r1, &r2);
         let squared = dot(&c, &c);
         // s = p + |d|; the difference p − d is c²/s ahead of both ends, and s between them.
@@ -240,12 +241,19 @@ unsafe fn near<V: Simd>(field: &Field, cluster: &Cluster, from: Vector3, sum: &m
         // (r₁ + r₂)² = q₁ + q₂ + 2p.
         let sums = q1 + q2 + p + p;
         let around = squared.mul_add(squared, core);
-        let weight = (sums * around).sqrt() * difference;
-        let weight = strength * weight.divide((around * p).mul_add(s, tiny));
+        let weight = root(sums * around, tiny) * difference;
+        let weight = strength * weight * (around * p).mul_add(s, tiny).inverse();
         for (sum, c) in sum.iter_mut().zip(c) {
             *sum = c.mul_add(weight, *sum);
         }
     }
+}
+
+/// Square root of a number that is not negative, that of `tiny` at the least.
+#[inline(always)]
+fn root<V: Simd>(value: V, tiny: V) -> V {
+    let value = value.maximum(tiny);
+    value * value.inverse_sqrt()
 }
 
 #[inline(always)]

@@ -63,3 +63,29 @@ fn what_changes_in_place_is_what_is_made_anew() {
     // No segments, no velocity.
     assert_eq!(field(3, 0.6, Backend::detect(), &[]).velocity(Vector3::ONE), Vector3::ZERO);
 }
+
+#[test]
+fn few_changes_and_any_threads_are_what_is_made_anew_by_one() {
+    let before = wake(9, 400);
+    let mut after = before.clone();
+    for segment in after.iter_mut().skip(700).take(30) {
+        segment.circulation += 12.0;
+    }
+    let mut anew = field(3, 0.6, Backend::detect(), &before);
+    anew.rebuild(&after, &mut Pool::new(1));
+    for n_threads in [1, 3] {
+        let mut pool = Pool::new(n_threads);
+        let mut changed = field(3, 0.6, Backend::detect(), &before);
+        let old = changed.velocity(before[710].to);
+        changed.rebuild(&before, &mut pool);
+        assert_eq!(changed.velocity(before[710].to), old);
+        changed.refresh(&after, &mut pool);
+        for position in [before[710].to, before[40].from, Vector3::new(50.0, 20.0, 70.0)] {
+            assert_eq!(changed.velocity(position), anew.velocity(position), "{n_threads}");
+        }
+        assert_ne!(changed.velocity(before[710].to), old);
+        // What is gone leaves nothing behind.
+        changed.rebuild(&[], &mut pool);
+        assert_eq!(changed.velocity(Vector3::ONE), Vector3::ZERO);
+    }
+}
