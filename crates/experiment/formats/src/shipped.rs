@@ -40,6 +40,12 @@ pub const CASES: &[ShippedCase] = &[
         after: None,
     },
     ShippedCase {
+        name: "lidar-open-loop",
+        file: include_str!("../../../../cases/lidar-open-loop.toml"),
+        minutes: 120.0,
+        after: None,
+    },
+    ShippedCase {
         name: "helix-two-turbines",
         file: include_str!("../../../../cases/helix-two-turbines.toml"),
         minutes: 35.0,
@@ -181,12 +187,12 @@ impl ShippedCase {
         text
     }
 
-    /// The case itself.
+    /// The case itself, one for each of its studies.
     ///
     /// # Errors
     /// [`CaseError`] where a kind of output that it asks for is not known yet.
-    pub fn case(&self) -> Result<Case, CaseError> {
-        case::parse(self.name, &self.text(), &[])
+    pub fn cases(&self) -> Result<Vec<Case>, CaseError> {
+        Ok(case::parse_all(self.name, &self.text(), &[])?.0)
     }
 }
 
@@ -265,18 +271,19 @@ mod tests {
         names.sort();
         assert_eq!(names, files);
         for shipped in CASES {
-            let case = shipped.case().unwrap();
-            assert_eq!(case.name, shipped.name);
-            assert!(case.description.is_some_and(|words| words.len() > 20), "{}", shipped.name);
-            // It needs nothing beside it: turbines of the library, and wind that a shipped case leaves.
-            for turbine in &case.turbines {
-                assert!(crate::library::names().any(|name| name == turbine.model));
-                assert_eq!(turbine.discon, None);
+            for case in shipped.cases().unwrap() {
+                assert_eq!(case.name, shipped.name);
+                assert!(case.description.is_some_and(|words| words.len() > 20), "{}", shipped.name);
+                // It needs nothing beside it: turbines of the library, and wind that a shipped case leaves.
+                for turbine in &case.turbines {
+                    assert!(crate::library::names().any(|name| name == turbine.model));
+                    assert_eq!(turbine.discon, None);
+                }
+                let planes = case.wind.planes.as_deref();
+                let before = shipped.after.map(|name| format!("runs/{name}/"));
+                assert_eq!(planes.is_some(), before.is_some());
+                assert!(planes.zip(before).is_none_or(|(file, folder)| file.starts_with(&folder)));
             }
-            let planes = case.wind.planes.as_deref();
-            let before = shipped.after.map(|name| format!("runs/{name}/"));
-            assert_eq!(planes.is_some(), before.is_some());
-            assert!(planes.zip(before).is_none_or(|(file, folder)| file.starts_with(&folder)));
             let is_there = |name| find(name).is_some() || find_precursor(name).is_some();
             assert!(shipped.after.is_none_or(is_there));
             let text = shipped.text();

@@ -53,10 +53,11 @@ fn list(width: usize) -> Result<String> {
     let columns = [Column::number("runs"), Column::words("takes"), Column::words("shows")];
     let mut table = TextTable::new([Column::words("name")], columns);
     for shipped in shipped::CASES {
-        let case = shipped.case()?;
-        let runs = case.runs.len().to_string();
+        let cases = shipped.cases()?;
+        let runs = cases.iter().map(|case| case.runs.len()).sum::<usize>().to_string();
         let takes = takes(shipped.minutes);
-        let mut shows = case.description.unwrap_or_default();
+        let description = cases.into_iter().next().and_then(|case| case.description);
+        let mut shows = description.unwrap_or_default();
         if let Some(before) = shipped.after {
             shows += &format!(" (after {before})");
         }
@@ -83,7 +84,6 @@ fn takes(minutes: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
     use wakemix::study::Prepared;
 
     #[test]
@@ -105,11 +105,14 @@ mod tests {
     /// the lattice, where cells and steps are all there is to it.
     #[test]
     fn costs_are_those_of_the_cases() {
+        wakemix::study::outputs::announce();
         for shipped in shipped::CASES.iter().filter(|case| case.after.is_none()) {
-            let prepared = Prepared::read(Path::new(shipped.name), &[]).unwrap();
-            let cells: usize = prepared.plan.n_cells.iter().product();
-            let work =
-                cells as f64 * prepared.plan.n_steps as f64 * prepared.case.runs.len() as f64;
+            let work = |case| {
+                let prepared = Prepared::of(case).unwrap();
+                let cells: usize = prepared.plan.n_cells.iter().product();
+                cells as f64 * prepared.plan.n_steps as f64 * prepared.case.runs.len() as f64
+            };
+            let work: f64 = shipped.cases().unwrap().into_iter().map(work).sum();
             if work > 0.0 {
                 let minutes = work / 200e6 / 60.0;
                 let ratio = shipped.minutes / minutes;

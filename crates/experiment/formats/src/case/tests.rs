@@ -209,8 +209,10 @@ fn every_shipped_case_reads_and_reads_back() {
             assert_eq!(again, file, "{path:?}");
             continue;
         }
-        let file = read(&path, &[]).unwrap_or_else(|error| panic!("{}", error.to_lines()));
-        assert_eq!(parse("again", &write(&file.case), &[]).unwrap(), file.case, "{path:?}");
+        let files = read_all(&path, &[]).unwrap_or_else(|error| panic!("{}", error.to_lines()));
+        for file in files.files {
+            assert_eq!(parse("again", &write(&file.case), &[]).unwrap(), file.case, "{path:?}");
+        }
     }
 }
 

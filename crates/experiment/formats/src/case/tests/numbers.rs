@@ -2,7 +2,7 @@
 //! be.
 
 use super::{is_precursor, root};
-use crate::case::{parse, parse_precursor};
+use crate::case::{parse_all, parse_precursor};
 use crate::fuzz::numbers::{NEVER, numbers_of};
 use std::fs;
 use std::path::Path;
@@ -31,7 +31,7 @@ fn what_no_number_can_be_is_refused_wherever_it_stands() {
             if is_precursor(&path) {
                 parse_precursor(name, text, &[]).err()
             } else {
-                parse("case.toml", text, &[]).err()
+                parse_all("case.toml", text, &[]).err()
             }
         };
         for number in numbers_of(&text) {
