@@ -1,7 +1,7 @@
 //! Steady axisymmetric flow through a loaded disc in a duct: what momentum theory, ring by ring, leaves out.
 //!
-//! Without mixing, the head H that a stream surface ψ lost at the disc and the angular momentum C = r u_θ that
-//! it won there stay with it, and what differs from surface to surface is vorticity behind the disc:
+//! Without mixing, the head H that a stream surface ψ lost at the disc and the angular momentum C = r u_θ
+//! that it won there stay with it, and what differs from surface to surface is vorticity behind the disc:
 //!
 //! ```text
 //! ∂²ψ/∂x² + r ∂/∂r (1/r ∂ψ/∂r) = r² dH/dψ − C dC/dψ,  u = 1/r ∂ψ/∂r,  H = −Δp/ρ + C²/2r²

@@ -18,8 +18,8 @@ const CHUNK: usize = 16 * 1024;
 /// single precision, and its instant (s) as ParaView's time.
 ///
 /// The vorticity is the curl of what is written: by central differences between the volume's points,
-/// one-sided at its faces, and without the slopes along an axis that has one point. Vortices thinner than the points'
-/// distance are smeared over it.
+/// one-sided at its faces, and without the slopes along an axis that has one point. Vortices thinner than the
+/// points' distance are smeared over it.
 ///
 /// # Errors
 /// [`FileError::System`].

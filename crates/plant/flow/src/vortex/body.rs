@@ -41,8 +41,8 @@ impl BodyWakes {
 /// Theory, division E, ch. III: discs of constant load.
 ///
 /// Limits: no air is pushed aside by the body's volume, and its wake does not grow by eddies of its own. Far
-/// behind a disc the deficit is some 3 % less than momentum theory has it at a drag coefficient of 0.2, 6 % at
-/// 0.5 and 15 % at 0.85: rings with cores move a little faster than the sheet that they stand for.
+/// behind a disc the deficit is some 3 % less than momentum theory has it at a drag coefficient of 0.2, 6 %
+/// at 0.5 and 15 % at 0.85: rings with cores move a little faster than the sheet that they stand for.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Body {
     pub(super) turbine: usize,

@@ -4,18 +4,37 @@
 //! where its own begin, and the order of boxes is that of one thread.
 
 use super::segment::Segment;
-use super::tree::{Cluster, Tree};
-use crate::pool::Pool;
 use crate::simd::MAXIMUM_LANES;
 use basis::Vector3;
 
 /// Most segments of a box that is not divided (–).
 pub(super) const LEAF: usize = 64;
 /// Divisions after which what is left is shared among threads (–), and how many shares that makes.
-const SHARED_AFTER: usize = 5;
+pub(super) const SHARED_AFTER: usize = 5;
 pub(super) const MOST_SHARES: usize = 1 << SHARED_AFTER;
 /// Flattest box over its longest edge (–): points on a plane would coincide.
 const FLATTEST: f64 = 1e-3;
+
+/// A box of segments; those inside of it follow, and `next` is the first after them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cluster {
+    pub(super) centre: Vector3,
+    /// Half of its edges (m).
+    pub(super) half: Vector3,
+    /// From the centre to its corners (m).
+    pub(super) radius: f64,
+    /// The widest core of its segments, squared (m²).
+    pub(super) core_squared: f64,
+    /// Its segments in the tree's order.
+    pub(super) first: u32,
+    pub(super) n: u32,
+    /// Where its lanes begin, if it is not divided.
+    pub(super) lanes: u32,
+    /// How many there are, a multiple of the widest vector's; 0 where it is divided.
+    pub(super) n_lanes: u32,
+    /// Where to go on without looking inside.
+    pub(super) next: u32,
+}
 
 /// A box with all inside of it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,48 +49,6 @@ pub(super) struct Share {
     pub(super) lanes: usize,
 }
 
-impl Tree {
-    /// Makes the box of `share`, after `depth` divisions, and those inside of it as far as one thread makes
-    /// them.
-    pub(super) fn divide_tops(&mut self, segments: &[Segment], share: Share, depth: usize) {
-        let Share { cluster, first, n, .. } = share;
-        if depth == SHARED_AFTER || n <= LEAF {
-            self.shares.push(share);
-            return;
-        }
-        self.tops.push(cluster);
-        let order = &mut self.order[first..first + n];
-        let axis = make_box(segments, order, &share, &mut self.clusters[cluster]);
-        part(segments, order, axis);
-        for half in share.halves() {
-            self.divide_tops(segments, half, depth + 1);
-        }
-    }
-
-    /// Makes the boxes of all shares.
-    pub(super) fn divide_shares(&mut self, segments: &[Segment], pool: &mut Pool) {
-        let Self { shares, clusters, order, .. } = self;
-        let mut parts: [Option<(Share, &mut [Cluster], &mut [u32])>; MOST_SHARES] =
-            std::array::from_fn(|_| None);
-        let (mut clusters, mut order) = (&mut clusters[..], &mut order[..]);
-        let (mut next_cluster, mut next) = (0, 0);
-        for (part, share) in parts.iter_mut().zip(&*shares) {
-            let (_, rest) = clusters.split_at_mut(share.cluster - next_cluster);
-            let (mine, rest) = rest.split_at_mut(share.n_clusters);
-            let (_, others) = order.split_at_mut(share.first - next);
-            let (segments_of_mine, others) = others.split_at_mut(share.n);
-            *part = Some((*share, mine, segments_of_mine));
-            (clusters, order) = (rest, others);
-            (next_cluster, next) = (share.cluster + share.n_clusters, share.first + share.n);
-        }
-        pool.for_chunks(&mut parts, 1, &|_, part| {
-            for (share, clusters, order) in part.iter_mut().flatten() {
-                divide(segments, *share, clusters, order);
-            }
-        });
-    }
-}
-
 /// Boxes and lanes of the box of `n` segments with those inside of it.
 pub(super) fn shape(n: usize) -> [usize; 2] {
     if n <= LEAF {
@@ -83,7 +60,7 @@ pub(super) fn shape(n: usize) -> [usize; 2] {
 
 impl Share {
     /// The two boxes that it is divided into.
-    fn halves(&self) -> [Self; 2] {
+    pub(super) fn halves(&self) -> [Self; 2] {
         let Self { cluster, n_clusters, first, n, lanes } = *self;
         let [of_low, low_lanes] = shape(n / 2);
         let low = Self { cluster: cluster + 1, n_clusters: of_low, first, n: n / 2, lanes };
@@ -99,7 +76,12 @@ impl Share {
 }
 
 /// Makes `cluster`, the box of `share`, whose segments are those of `order`; gives its longest axis.
-fn make_box(segments: &[Segment], order: &[u32], share: &Share, cluster: &mut Cluster) -> usize {
+pub(super) fn make_box(
+    segments: &[Segment],
+    order: &[u32],
+    share: &Share,
+    cluster: &mut Cluster,
+) -> usize {
     let (mut low, mut high) = (Vector3::INFINITY, Vector3::NEG_INFINITY);
     let mut core_squared = 0.0_f64;
     for &index in order {
@@ -129,7 +111,7 @@ fn make_box(segments: &[Segment], order: &[u32], share: &Share, cluster: &mut Cl
 }
 
 /// Puts the half of `order` whose segments lie lower along `axis` first.
-fn part(segments: &[Segment], order: &mut [u32], axis: usize) {
+pub(super) fn part(segments: &[Segment], order: &mut [u32], axis: usize) {
     let key = |index: u32| {
         let segment = &segments[index as usize];
         segment.from[axis] + segment.to[axis]
@@ -139,7 +121,12 @@ fn part(segments: &[Segment], order: &mut [u32], axis: usize) {
 }
 
 /// Makes the boxes of `share` in `clusters`, its segments those of `order`.
-fn divide(segments: &[Segment], share: Share, clusters: &mut [Cluster], order: &mut [u32]) {
+pub(super) fn divide(
+    segments: &[Segment],
+    share: Share,
+    clusters: &mut [Cluster],
+    order: &mut [u32],
+) {
     let axis = make_box(segments, order, &share, &mut clusters[0]);
     if share.n <= LEAF {
         return;

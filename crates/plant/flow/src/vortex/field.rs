@@ -3,9 +3,10 @@
 //! Barycentric Lagrange treecode: Wang, Krasny, Tlupova (2020); boxes with segments of cores, and shares that
 //! are raised from box to box, are this house's.
 
+use super::division::Cluster;
 use super::interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};
 use super::segment::Segment;
-use super::tree::{Cluster, Tree, UNIT};
+use super::tree::{Tree, UNIT};
 use crate::pool::Pool;
 use crate::simd::{Backend, MAXIMUM_LANES, Portable, Simd};
 use basis::Vector3;

@@ -2,7 +2,8 @@
 //!
 //! Little-endian: magic, version, clock of the wind; then for each rotor its turbine, blades, elements of
 //! each, their circulations and places, for each blade its two strips: rows, ages, nodes, velocities, rings,
-//! lengths; and for each body whose wake is followed its turbine, radius, place and rings. Segments, boxes and how the wind answers follow from these.
+//! lengths; and for each body whose wake is followed its turbine, radius, place and rings. Segments, boxes
+//! and how the wind answers follow from these.
 
 use super::body::{Body, N_SIDES};
 use super::rotor::Rotor;

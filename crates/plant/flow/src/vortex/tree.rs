@@ -1,6 +1,8 @@
 //! Segments in boxes within boxes.
 
-use super::division::{LEAF, MOST_SHARES, Share, shape};
+use super::division::{
+    Cluster, LEAF, MOST_SHARES, SHARED_AFTER, Share, divide, make_box, part, shape,
+};
 use super::interpolation::Points;
 use super::segment::Segment;
 use crate::pool::Pool;
@@ -11,27 +13,6 @@ use std::f64::consts::PI;
 /// Lengths are divided by so much in single precision, so that fourth powers stay within its range (m); a
 /// power of two, which loses nothing.
 pub(super) const UNIT: f64 = 64.0;
-
-/// A box of segments; those inside of it follow, and `next` is the first after them.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cluster {
-    pub(super) centre: Vector3,
-    /// Half of its edges (m).
-    pub(super) half: Vector3,
-    /// From the centre to its corners (m).
-    pub(super) radius: f64,
-    /// The widest core of its segments, squared (m²).
-    pub(super) core_squared: f64,
-    /// Its segments in the tree's order.
-    pub(super) first: u32,
-    pub(super) n: u32,
-    /// Where its lanes begin, if it is not divided.
-    pub(super) lanes: u32,
-    /// How many there are, a multiple of the widest vector's; 0 where it is divided.
-    pub(super) n_lanes: u32,
-    /// Where to go on without looking inside.
-    pub(super) next: u32,
-}
 
 /// Segments in single precision, relative to the centre of the box that they are in and in [`UNIT`]s.
 #[derive(Clone, Debug, Default)]
@@ -124,6 +105,46 @@ impl Tree {
     /// [`rebuild`](Self::rebuild). Boxes in which nothing has changed stay as they are.
     pub(super) fn refresh(&mut self, segments: &[Segment], pool: &mut Pool) {
         self.take_up(segments, false, pool);
+    }
+
+    /// Makes the box of `share`, after `depth` divisions, and those inside of it as far as one thread makes
+    /// them.
+    fn divide_tops(&mut self, segments: &[Segment], share: Share, depth: usize) {
+        let Share { cluster, first, n, .. } = share;
+        if depth == SHARED_AFTER || n <= LEAF {
+            self.shares.push(share);
+            return;
+        }
+        self.tops.push(cluster);
+        let order = &mut self.order[first..first + n];
+        let axis = make_box(segments, order, &share, &mut self.clusters[cluster]);
+        part(segments, order, axis);
+        for half in share.halves() {
+            self.divide_tops(segments, half, depth + 1);
+        }
+    }
+
+    /// Makes the boxes of all shares.
+    fn divide_shares(&mut self, segments: &[Segment], pool: &mut Pool) {
+        let Self { shares, clusters, order, .. } = self;
+        let mut parts: [Option<(Share, &mut [Cluster], &mut [u32])>; MOST_SHARES] =
+            std::array::from_fn(|_| None);
+        let (mut clusters, mut order) = (&mut clusters[..], &mut order[..]);
+        let (mut next_cluster, mut next) = (0, 0);
+        for (place, share) in parts.iter_mut().zip(&*shares) {
+            let (_, rest) = clusters.split_at_mut(share.cluster - next_cluster);
+            let (mine, rest) = rest.split_at_mut(share.n_clusters);
+            let (_, others) = order.split_at_mut(share.first - next);
+            let (segments_of_mine, others) = others.split_at_mut(share.n);
+            *place = Some((*share, mine, segments_of_mine));
+            (clusters, order) = (rest, others);
+            (next_cluster, next) = (share.cluster + share.n_clusters, share.first + share.n);
+        }
+        pool.for_chunks(&mut parts, 1, &|_, part| {
+            for (share, clusters, order) in part.iter_mut().flatten() {
+                divide(segments, *share, clusters, order);
+            }
+        });
     }
 
     /// Moments and lanes of `all` boxes, or of those in which `segments` are others than they were.

@@ -135,18 +135,10 @@ pub fn full() -> Summary {
         turbine: Some("T1".to_owned()),
         message: "a warning".to_owned(),
     });
-    let size = [1920.0, 1440.0, 960.0];
-    let domain =
-        GridSummary { origin: [-720.0, -720.0, 0.0], size, spacing: 15.0, n_cells: 786_432 };
     Summary {
         compare_with: Some("baseline".to_owned()),
         conditions: Conditions { roughness_length: Some(0.01), ..conditions() },
-        flow: Some(FlowSummary {
-            solver: "lattice".to_owned(),
-            has_wakes: true,
-            limits: "What it cannot show.".to_owned(),
-            grids: vec![domain],
-        }),
+        flow: Some(flow()),
         array_power: with_interval(4e7),
         array_power_gain: Some(gain),
         cost: Cost {
@@ -160,6 +152,18 @@ pub fn full() -> Summary {
         },
         warnings: warnings.to_vec(),
         ..summary("full", turbines.collect())
+    }
+}
+
+fn flow() -> FlowSummary {
+    let size = [1920.0, 1440.0, 960.0];
+    let domain =
+        GridSummary { origin: [-720.0, -720.0, 0.0], size, spacing: 15.0, n_cells: 786_432 };
+    FlowSummary {
+        solver: "lattice".to_owned(),
+        has_wakes: true,
+        limits: "What it cannot show.".to_owned(),
+        grids: vec![domain],
     }
 }
 
