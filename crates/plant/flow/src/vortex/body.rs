@@ -42,7 +42,7 @@ impl BodyWakes {
 ///
 /// Limits: no air is pushed aside by the body's volume, and its wake does not grow by eddies of its own. Far
 /// behind a disc the deficit is some 3 % less than momentum theory has it at a drag coefficient of 0.2, 6 %
-/// at 0.5 and 15 % at 0.85: rings with cores move a little faster than the sheet that they stand for.
+/// at 0.5 and 15 % at 0.85, and closer rings or thinner cores do not change it; why is not known.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Body {
     pub(super) turbine: usize,
