@@ -3,11 +3,9 @@
 mod held;
 mod rotor;
 mod vortices;
-mod wake;
 mod wing;
 
 use crate::Row;
-pub use wake::{pictures as free_vortex_wake_pictures, rows as free_vortex_wake};
 
 /// Segments, rings and helices, an elliptic wing, and the sum over boxes of vortices.
 pub fn free_vortex() -> Vec<Row> {

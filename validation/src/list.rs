@@ -73,15 +73,6 @@ pub const VALIDATIONS: &[Validation] = &[
         recorded: include_str!("../recorded/free-vortex-rotor.toml"),
     },
     Validation {
-        name: "free-vortex-wake",
-        about: "the wake of a free rotor and the loading of its blades beside the lattice on 32 cells, its tip vortices beside momentum theory",
-        cost: Cost::Minutes(12),
-        run: free_vortex::free_vortex_wake,
-        pictures: Some(free_vortex::free_vortex_wake_pictures),
-        page: "free-vortex",
-        recorded: include_str!("../recorded/free-vortex-wake.toml"),
-    },
-    Validation {
         name: "flow",
         about: "the lattice against closed forms: Taylor-Green, free stream, mass, outlet, a disc in momentum theory",
         cost: Cost::Minutes(1),

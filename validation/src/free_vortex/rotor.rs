@@ -1,6 +1,6 @@
 //! Rotors at held speed in a steady uniform wind, their wakes free.
 
-use super::held::{AIR_DENSITY, Steady, Trial, flat, turn};
+use super::held::{AIR_DENSITY, Trial, flat, turn};
 use crate::Row;
 use crate::axisymmetric::{self, Flow, Swirl};
 use crate::row::Tolerance::Within;
@@ -21,20 +21,20 @@ const DUCT: [f64; 3] = [10.0, 12.0, 12.0];
 
 /// How a rotor's wake is resolved.
 #[derive(Clone, Copy)]
-pub(super) struct Fineness {
-    pub(super) steps_per_turn: f64,
+struct Fineness {
+    steps_per_turn: f64,
     /// Length of the whole wake, and of its part that keeps every element (diameters).
-    pub(super) length: f64,
-    pub(super) near: f64,
-    pub(super) far_filaments: usize,
-    pub(super) far_stride: usize,
-    pub(super) core_widths: f64,
+    length: f64,
+    near: f64,
+    far_filaments: usize,
+    far_stride: usize,
+    core_widths: f64,
     /// Time before the means begin, over the wind's time for a diameter (–).
-    pub(super) settling: f64,
+    settling: f64,
 }
 
 /// What cases have.
-pub(super) const USUAL: Fineness = Fineness {
+const USUAL: Fineness = Fineness {
     steps_per_turn: 48.0,
     length: 4.0,
     near: 0.25,
@@ -51,7 +51,7 @@ pub(super) fn rows() -> Vec<Row> {
 
 fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
     let model = flat(name);
-    let (found, _) = turned(&model, wind_speed, USUAL, &[]);
+    let found = turned(&model, wind_speed, USUAL);
     let [with_swirl, without] = [Swirl::Felt, Swirl::LeftOut].map(|swirl| {
         let ratio = model.rotor_speed(wind_speed) * model.definition.rotor_radius() / wind_speed;
         let [upstream, downstream, wall] = DUCT;
@@ -65,7 +65,7 @@ fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
         ("blade elements in axisymmetric flow without swirl", without, TOGETHER),
         ("blade-element momentum", momentum, MOMENTUM),
     ];
-    let Coefficients { power, thrust, .. } = found.coefficients;
+    let Coefficients { power, thrust, .. } = found;
     tell!("{name}, {wind_speed} m/s: power {power:.4}, thrust {thrust:.4}");
     let mut rows = Vec::new();
     for (source, theory, tolerance) in references {
@@ -86,38 +86,26 @@ fn compare(name: &str, wind_speed: f64) -> Vec<Row> {
 }
 
 /// What blade-element momentum says of `model` at its best tip-speed ratio and least pitch.
-pub(super) fn momentum(model: &TurbineModel, wind_speed: f64) -> Coefficients {
+fn momentum(model: &TurbineModel, wind_speed: f64) -> Coefficients {
     let ratio = model.rotor_speed(wind_speed) * model.definition.rotor_radius() / wind_speed;
     let rotor = SteadyRotor::new(&model.definition, Theory::default());
     rotor.along_shaft().coefficients(ratio, model.constants.fine_pitch)
 }
 
-/// `model` turned until its wake stands, and that wake.
-pub(super) fn turned(
-    model: &TurbineModel,
-    wind_speed: f64,
-    fineness: Fineness,
-    distances: &[f64],
-) -> (Steady, FreeWake) {
+/// `model` turned until its wake stands.
+fn turned(model: &TurbineModel, wind_speed: f64, fineness: Fineness) -> Coefficients {
     let interval = TAU / model.rotor_speed(wind_speed) / fineness.steps_per_turn;
     let mut wake = wake(model, wind_speed, interval, fineness);
     let trial = Trial {
         wind_speed,
         interval,
         settling: fineness.settling * model.definition.rotor_diameter() / wind_speed,
-        distances,
     };
     let induction = Induction::ByBoundVortices { dynamic_stall: false, tower: None };
-    let found = turn(model, &mut wake, induction, &trial);
-    (found, wake)
+    turn(model, &mut wake, induction, &trial)
 }
 
-pub(super) fn wake(
-    model: &TurbineModel,
-    wind_speed: f64,
-    interval: f64,
-    fineness: Fineness,
-) -> FreeWake {
+fn wake(model: &TurbineModel, wind_speed: f64, interval: f64, fineness: Fineness) -> FreeWake {
     let definition = &model.definition;
     let diameter = definition.rotor_diameter();
     let rows = |diameters: f64, share: f64| {
