@@ -1,5 +1,8 @@
-//! The free wake against closed forms, and its rotors against momentum theory and the flow of rings together.
+//! The free wake against closed forms, its rotors against momentum theory and the flow of rings together,
+//! and a helix in it beside a published study.
 
+mod hub_vortex;
+mod open_loop;
 mod rotor;
 mod vortices;
 mod wing;
@@ -16,4 +19,14 @@ pub fn free_vortex() -> Vec<Row> {
 /// Power and thrust of three rotors at their best tip-speed ratio.
 pub fn free_vortex_rotor() -> Vec<Row> {
     rotor::rows()
+}
+
+/// The hub vortex' circle at 1 D against amplitude and Strouhal number of helices drawn at random.
+pub fn free_vortex_helix() -> Vec<Row> {
+    hub_vortex::rows()
+}
+
+/// Power and blade loads of two turbines with a helix in even, sheared and turbulent wind.
+pub fn free_vortex_open_loop() -> Vec<Row> {
+    open_loop::rows()
 }
