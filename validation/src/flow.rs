@@ -1,21 +1,23 @@
 //! The lattice against closed forms: decay, conservation, momentum theory, the logarithmic law, an open
-//! outlet, boxes of finer cells.
+//! outlet, boxes of finer cells, models of unresolved eddies.
 
 mod disc;
 mod ground;
 mod isotropy;
 mod refinement;
+mod subgrid;
 
 pub use disc::momentum_theory;
 pub use ground::log_profile;
 pub use isotropy::isotropy;
 pub use refinement::refinement;
+pub use subgrid::subgrid_models;
 
 use crate::Row;
 use crate::folds::worst;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
-use flow::lattice::{Ends, Ground, Lattice, LatticeSettings};
+use flow::lattice::{Ends, Ground, Lattice, LatticeSettings, Subgrid};
 use flow::{FlowSolver, Inflow, WindField};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -60,7 +62,7 @@ fn periodic_box(n_cells: [usize; 3], viscosity: f64, smagorinsky: f64) -> Lattic
     settings.kinematic_viscosity = viscosity;
     settings.ends = Ends::Periodic;
     settings.ground = Ground::Periodic;
-    settings.smagorinsky = smagorinsky;
+    settings.subgrid = Subgrid::smagorinsky(smagorinsky);
     settings
 }
 
