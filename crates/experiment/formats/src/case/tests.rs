@@ -263,7 +263,7 @@ fn the_model_of_eddies_is_read_and_refused_where_it_does_not_fit() {
             ],
         ),
         (
-            &["flow.subgrid=vreman", "flow.refinement=[{}]"],
+            &["flow.subgrid=vreman", "flow.refinement=[{ upstream_diameters = 2.0 }]"],
             ["needs the wind of neighbours", "leave out [[flow.refinement]]"],
         ),
         (&["flow.subgrid=wall"], ["`flow.subgrid`", "wale"]),
