@@ -249,10 +249,10 @@ mod tests {
                 area * (1.0 - speed * speed - pressure)
             })
             .sum();
-        // Swirl's own part of the load is an eighth: it is not lost in the tolerance.
+        // With the swirl left out of the flow the two differ by 4e-3, with its sign turned by 5e-3.
         let without: f64 =
             places.iter().map(|r| 2.0 * r * TIP_SPEED * won(*r) / f64::from(n)).sum();
         assert!((thrust / without - 1.0) > 0.05, "{thrust} {without}");
-        assert!((lacking / thrust - 1.0).abs() < 0.01, "{lacking} against {thrust}");
+        assert!((lacking / thrust - 1.0).abs() < 1e-3, "{lacking} against {thrust}");
     }
 }

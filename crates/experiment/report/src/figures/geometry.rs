@@ -45,6 +45,7 @@ pub(super) fn geometry(study: &Study) -> Option<Figure> {
         .filter_map(|(run, &colour)| Some((run, colour, lines(run.filaments.as_ref()?))))
         .filter(|(.., lines)| !lines.is_empty())
         .collect();
+    let time = wakes.first()?.0.filaments.as_ref()?.time;
     let unit = study.diameter();
     let [x, y, z] = extent(study, wakes.iter().flat_map(|(.., lines)| lines))?;
     // One scale for both views of all runs: nothing is distorted.
@@ -66,7 +67,6 @@ pub(super) fn geometry(study: &Study) -> Option<Figure> {
         view(&side, PlaneAxes::Streamwise, lines, &rotors, unit, &mut shapes);
         view(&front, PlaneAxes::Crosswind, lines, &rotors, unit, &mut shapes);
     }
-    let time = wakes[0].0.filaments.as_ref().map_or(0.0, |filaments| filaments.time);
     let caption = format!(
         "Vortices that trail from the blades at the last instant ({}{SPACE}s): dark from the tips, light from further in, \
          at most {MOST_INNER} of each blade. Left from the side; right looking downwind, the first {NEAR:.0}{SPACE}D behind \

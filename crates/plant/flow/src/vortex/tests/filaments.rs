@@ -2,6 +2,7 @@
 
 use super::wakes::{INTERVAL, advanced, forces, settings, wake};
 use crate::FlowSolver;
+use crate::vortex::body::N_SIDES;
 use crate::vortex::{Resolution, WakeSettings};
 use basis::records::PieceKind;
 use basis::{PointForce, Vector3};
@@ -13,7 +14,9 @@ fn pieces_are_the_segments_that_are_summed() {
         let mut wake = wake(settings());
         advanced(&mut wake, 0..steps);
         let found = wake.filaments();
-        assert_eq!(found.pieces.len(), wake.segments().len());
+        // The rings of bodies, which are not shown, come after those of blades.
+        let rings: usize = wake.bodies.iter().map(|body| body.n_rings() * N_SIDES).sum();
+        assert_eq!(found.pieces.len() + rings, wake.segments().len());
         assert_eq!(found.time, wake.time());
         for (piece, segment) in found.pieces.iter().zip(wake.segments()) {
             let [from, to] = piece.ends.map(|end| found.nodes[end as usize]);
