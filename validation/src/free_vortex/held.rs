@@ -2,7 +2,7 @@
 
 use basis::{Commands, PerBlade, Vector3};
 use farm::assemble::TurbineModel;
-use flow::{FlowSolver, WindField};
+use flow::FlowSolver;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use turbine::steady::Coefficients;
@@ -32,7 +32,7 @@ pub(super) fn flat(name: &str) -> TurbineModel {
 /// `air`.
 pub(super) fn turn(
     model: &TurbineModel,
-    air: &mut (impl FlowSolver + WindField),
+    air: &mut impl FlowSolver,
     induction: Induction,
     trial: &Trial,
 ) -> Coefficients {

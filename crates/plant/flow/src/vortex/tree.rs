@@ -44,6 +44,9 @@ pub(super) struct Tree {
     changed: Vec<bool>,
 }
 
+/// What a thread makes: a share, its boxes, and its segments in the tree's order.
+type Part<'a> = (Share, &'a mut [Cluster], &'a mut [u32]);
+
 impl Tree {
     /// Memory for `most` segments, boxes seen through polynomials of `degree`.
     pub(super) fn with_capacity(degree: usize, most: usize) -> Self {
@@ -127,8 +130,7 @@ impl Tree {
     /// Makes the boxes of all shares.
     fn divide_shares(&mut self, segments: &[Segment], pool: &mut Pool) {
         let Self { shares, clusters, order, .. } = self;
-        let mut parts: [Option<(Share, &mut [Cluster], &mut [u32])>; MOST_SHARES] =
-            std::array::from_fn(|_| None);
+        let mut parts: [Option<Part<'_>>; MOST_SHARES] = std::array::from_fn(|_| None);
         let (mut clusters, mut order) = (&mut clusters[..], &mut order[..]);
         let (mut next_cluster, mut next) = (0, 0);
         for (place, share) in parts.iter_mut().zip(&*shares) {
