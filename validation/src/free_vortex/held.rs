@@ -28,8 +28,8 @@ pub(super) fn flat(name: &str) -> TurbineModel {
     TurbineModel { definition: Arc::new(definition), constants: file.controller }
 }
 
-/// Means over the last turn of `model` at its best tip-speed ratio and least pitch, its foot at the origin, in
-/// `air`.
+/// Means over the last turn of `model` at its best tip-speed ratio and least pitch, its foot at the origin,
+/// in `air`.
 pub(super) fn turn(
     model: &TurbineModel,
     air: &mut impl FlowSolver,
