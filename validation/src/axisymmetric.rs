@@ -18,7 +18,7 @@
 
 mod rotor;
 
-pub(crate) use rotor::{Swirl, coefficients};
+pub(crate) use rotor::{Outer, Swirl, coefficients, loaded};
 
 use std::f64::consts::PI;
 
@@ -107,6 +107,18 @@ impl Flow {
         }
         let share = (here - middle(node)) / (middle(other) - middle(node));
         [stream, speed(node) + share * (speed(other) - speed(node))]
+    }
+
+    /// Radius of the stream surface `psi` at `place` (radii behind the disc), and axial speed there.
+    fn surface(&self, place: f64, psi: f64) -> [f64; 2] {
+        let n_all = self.radii.len();
+        let row = self.disc - 1 + (place / SPACING).round() as usize;
+        let all = &self.psi[row * n_all..(row + 1) * n_all];
+        let node = all.partition_point(|value| *value < psi).clamp(1, n_all - 1) - 1;
+        let squared = |node: usize| self.radii[node] * self.radii[node];
+        let area = squared(node + 1) - squared(node);
+        let step = all[node + 1] - all[node];
+        [(squared(node) + (psi - all[node]) / step * area).sqrt(), 2.0 * step / area]
     }
 
     /// One round towards the flow in which the stream surface ψ has lost the head `lost(ψ)`, and has C²/2 of

@@ -50,6 +50,56 @@ pub(crate) enum Swirl {
     LeftOut,
 }
 
+/// A rotor in the flow that it makes.
+pub(crate) struct Loaded {
+    pub(crate) coefficients: Coefficients,
+    flow: Flow,
+    /// Head lost, and half the square of the angular momentum won, by stream surface.
+    head: Table,
+    swirl: Table,
+    /// Stream surface that passes the tips, and the blades' speed there (–).
+    outermost: f64,
+    rotor_speed: f64,
+}
+
+/// Vortices that leave the outer part of a blade, between two places behind it.
+pub(crate) struct Outer {
+    /// Radius of the surface that passed the tips (radii).
+    pub(crate) edge: f64,
+    /// Mean radius of the vortices (radii), and their pitch over that of a helix in the free stream (–).
+    pub(crate) radius: f64,
+    pub(crate) pitch: f64,
+}
+
+impl Loaded {
+    /// The vortices further out than `share` of the wake's edge, from `part[0]` to `part[1]` radii behind the
+    /// disc; each weighted with its circulation, which goes as the head lost by what lies inside of it.
+    pub(crate) fn outer_vortices(&self, share: f64, part: [f64; 2]) -> Outer {
+        const N: usize = 200;
+        let [mut edges, mut radii, mut weights, mut turns] = [0.0; 4];
+        let planes = (0..N).map(|k| part[0] + (part[1] - part[0]) * (k as f64 + 0.5) / N as f64);
+        for place in planes {
+            let edge = self.flow.surface(place, self.outermost)[0];
+            edges += edge / N as f64;
+            for k in 0..N {
+                let [inside, outside] = [k, k + 1].map(|k| self.outermost * k as f64 / N as f64);
+                let middle = 0.5 * (inside + outside);
+                let [radius, speed] = self.flow.surface(place, middle);
+                if radius < share * edge {
+                    continue;
+                }
+                let weight = self.head.at(inside) - self.head.at(outside);
+                let turning =
+                    self.rotor_speed + (2.0 * self.swirl.at(middle)).sqrt() / (radius * radius);
+                weights += weight;
+                radii += weight * radius;
+                turns += weight * turning / (speed * self.rotor_speed);
+            }
+        }
+        Outer { edge: edges, radius: radii / weights, pitch: weights / turns }
+    }
+}
+
 /// Power and thrust coefficient of `definition` without its tilt, at `tip_speed_ratio` (–) and `pitch` (rad),
 /// in the duct `flow`.
 ///
@@ -61,9 +111,20 @@ pub(crate) fn coefficients(
     definition: &Definition,
     tip_speed_ratio: f64,
     pitch: f64,
-    mut flow: Flow,
+    flow: Flow,
     kind: Swirl,
 ) -> Coefficients {
+    loaded(definition, tip_speed_ratio, pitch, flow, kind).coefficients
+}
+
+/// The same with the flow that it is found in.
+pub(crate) fn loaded(
+    definition: &Definition,
+    tip_speed_ratio: f64,
+    pitch: f64,
+    mut flow: Flow,
+    kind: Swirl,
+) -> Loaded {
     let mut definition = definition.clone();
     definition.rotor.shaft_tilt = 0.0;
     let definition = Arc::new(definition);
@@ -152,10 +213,14 @@ pub(crate) fn coefficients(
             sum(&|i| loads[i].tangential * elements[i].radius * elements[i].width) / radius;
         found.power = found.torque * tip_speed_ratio;
         if round > N_PREPARING && (found.power - last).abs() < TOLERANCE * last.abs() {
-            return found;
+            let outermost = ends[1];
+            let rotor_speed = tip_speed_ratio;
+            return Loaded { coefficients: found, flow, head, swirl, outermost, rotor_speed };
         }
     }
-    Coefficients { power: f64::NAN, thrust: f64::NAN, torque: f64::NAN }
+    let coefficients = Coefficients { power: f64::NAN, thrust: f64::NAN, torque: f64::NAN };
+    let [head, swirl] = [Table::default(), Table::default()];
+    Loaded { coefficients, flow, head, swirl, outermost: f64::NAN, rotor_speed: f64::NAN }
 }
 
 /// Air and load of one element's ring.

@@ -5,7 +5,7 @@
 
 use super::division::Cluster;
 use super::interpolation::{HIGHEST_DEGREE, LOWEST_DEGREE};
-use super::segment::Segment;
+use super::segment::{BEYOND, Segment};
 use super::tree::{Tree, UNIT};
 use crate::pool::Pool;
 use crate::simd::{Backend, MAXIMUM_LANES, Portable, Simd};
@@ -235,13 +235,15 @@ unsafe fn near<V: Simd>(field: &Field, cluster: &Cluster, from: Vector3, sum: &m
         let (q1, q2, d) = (dot(&r1, &r1), dot(&r2, &r2), dot(&r1, &r2));
         let p = root(q1 * q2, tiny);
         let c = cross(&r1, &r2);
-        let squared = dot(&c, &c);
-        // s = p + |d|; the difference p − d is c²/s ahead of both ends, and s between them.
+        // (h l)², with l for the length, and what is added beyond the ends.
+        let beyond = ((q1 - d) * (d - q2)).maximum(zero);
+        let reach = beyond.mul_add(V::splat(BEYOND as f32), dot(&c, &c));
+        // s = p + |d|; (p − d)/c² is 1/s ahead of both ends, and s/c² between them.
         let s = p + d.maximum(zero - d);
-        let difference = d.where_negative(s * s, squared);
+        let difference = d.where_negative(s * s, reach);
         // (r₁ + r₂)² = q₁ + q₂ + 2p.
         let sums = q1 + q2 + p + p;
-        let around = squared.mul_add(squared, core);
+        let around = reach.mul_add(reach, core);
         let weight = root(sums * around, tiny) * difference;
         let weight = strength * weight * (around * p).mul_add(s, tiny).inverse();
         for (sum, c) in sum.iter_mut().zip(c) {

@@ -12,6 +12,7 @@ mod full_length;
 mod graph;
 mod interpolation;
 mod planes;
+pub mod rings;
 mod rotor;
 mod segment;
 mod settings;

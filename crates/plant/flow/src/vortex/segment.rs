@@ -6,6 +6,10 @@ use std::f64::consts::PI;
 /// Lamb's constant α (–): a Lamb-Oseen vortex turns fastest at √(4 α ν t).
 pub(super) const LAMB: f64 = 1.256_43;
 
+/// Share with which the way beyond a segment's end counts in the distance from it (–), 2/e: with it
+/// infinitely short pieces of a thin ring move it at Saffman's speed, (ln 8R/r − ½) Γ/4πR.
+pub(super) const BEYOND: f64 = 2.0 / std::f64::consts::E;
+
 /// A straight piece of vortex filament.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Segment {
@@ -22,9 +26,12 @@ pub struct Segment {
 impl Segment {
     /// Velocity (m/s) that it induces at `position` (m, farm frame).
     ///
-    /// The law of Biot and Savart, its part across the segment weighted as in a vortex after Vatistas with
-    /// n = 2: h²/√(r⁴ + h⁴), with h the distance from the segment's line and r the core's radius.
-    /// Source: Vatistas, Kozel, Mih (1991), eq. 4; van Garrel, ECN-C--03-079, for the form without angles.
+    /// The law of Biot and Savart, weighted as in a vortex after Vatistas with n = 2: h²/√(r⁴ + h⁴), with h
+    /// the distance from the segment and r the core's radius. Beyond its ends way along
+    /// the line counts too: a bent filament so feels its own bend from a core's radius on, as a bent vortex
+    /// does (short pieces of a thin [ring](super::rings) move it at Saffman's speed), and not from √(2 r R)
+    /// on, with R the radius of the bend.
+    /// Sources: Vatistas, Kozel, Mih (1991), eq. 4; van Garrel, ECN-C--03-079, for the form without angles.
     pub fn velocity(&self, position: Vector3) -> Vector3 {
         self.per_circulation(position) * self.circulation
     }
@@ -35,14 +42,17 @@ impl Segment {
         let (r1, r2) = (position - self.from, position - self.to);
         let p = (r1.length_squared() * r2.length_squared()).sqrt();
         let (d, c) = (r1.dot(r2), r1.cross(r2));
-        let squared = c.length_squared();
-        let core = self.core_squared * (self.to - self.from).length_squared();
-        let around = (core * core + squared * squared).sqrt();
+        let along = self.to - self.from;
+        // (h l)², the length being l; at x beyond an end h² is that from the line and a share of x (x + l).
+        let beyond = (r1.dot(along) * r2.dot(along)).max(0.0);
+        let reach = c.length_squared() + BEYOND * beyond;
+        let core = self.core_squared * along.length_squared();
+        let around = (core * core + reach * reach).sqrt();
         if p == 0.0 || around == 0.0 {
             return Vector3::ZERO;
         }
-        // p − d, which is c²/(p + d): each where it does not cancel.
-        let difference = if d > 0.0 { squared / (p + d) } else { p - d };
+        // (p − d)/c² is 1/(p + d): each where it does not cancel. With d < 0 the position is beside the segment.
+        let difference = if d > 0.0 { reach / (p + d) } else { p - d };
         let sum = (r1.length() + r2.length()) / p;
         c * (sum * difference / (4.0 * PI * around))
     }

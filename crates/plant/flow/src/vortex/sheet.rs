@@ -163,6 +163,33 @@ impl Sheet {
         }
     }
 
+    /// Adds the places at which vortices carry its nodes, those of the strip further down first: as many as
+    /// there are nodes.
+    pub(super) fn push_middles(&self, middles: &mut Vec<Vector3>) {
+        let Self { near, far, kept, .. } = self;
+        if near.n_rows() > 0 {
+            far.push_middles(Some(&|k| near.row(0)[kept[k]]), middles);
+        }
+        near.push_middles(None, middles);
+    }
+
+    /// On return `velocities` (m/s), which held those at its [places](Self::push_middles), hold those with
+    /// which vortices carry its nodes.
+    pub(super) fn to_nodes(&self, velocities: &mut [Vector3]) {
+        let Self { near, far, kept, resolution, .. } = self;
+        let (of_far, of_near) = velocities.split_at_mut(far.positions.len());
+        // Nothing trails from the blade yet: its own nodes are carried by what is there.
+        let Some(trailing) = near.n_rows().checked_sub(2) else { return };
+        near.to_nodes(trailing, of_near);
+        let Some(last) = far.n_rows().checked_sub(1) else { return };
+        // What ends at the oldest row near the blade is longer than what trails from it.
+        let share = 1.0 / (1.0 + resolution.far_stride as f64);
+        for (from, &s) in of_far[last * kept.len()..].iter().zip(kept) {
+            of_near[s] += share * (*from - of_near[s]);
+        }
+        far.to_nodes(last, of_far);
+    }
+
     /// All filaments live on for `duration` (s) where they are.
     pub(super) fn live(&mut self, duration: f64) {
         let Self { near, far, kept, .. } = self;

@@ -119,6 +119,24 @@ impl Strip {
         }
     }
 
+    /// Adds the middle of every filament that trails from a row to the next, younger one, where each is felt
+    /// as [`to_nodes`](Self::to_nodes) says; those of the youngest row end at `younger`. Where nothing
+    /// trails from it, its nodes themselves.
+    pub(super) fn push_middles(
+        &self,
+        younger: Option<&dyn Fn(usize) -> Vector3>,
+        middles: &mut Vec<Vector3>,
+    ) {
+        let n = self.n_nodes;
+        middles.extend(self.positions.iter().enumerate().map(|(node, from)| {
+            match (self.positions.get(node + n), younger) {
+                (Some(to), _) => 0.5 * (*from + *to),
+                (None, Some(younger)) => 0.5 * (*from + younger(node % n)),
+                (None, None) => *from,
+            }
+        }));
+    }
+
     /// Removes the `n` oldest rows.
     pub(super) fn drop_oldest(&mut self, n: usize) {
         self.positions.drain(..n * self.n_nodes);
@@ -132,6 +150,21 @@ impl Strip {
     /// Mean place of row number `row` along x (m).
     pub(super) fn place(&self, row: usize) -> f64 {
         self.row(row).iter().map(|node| node.x).sum::<f64>() / self.n_nodes as f64
+    }
+
+    /// On return `values`, which held something in the middle of what trails from each node, hold the mean of
+    /// what trails from it and what ends there, from row number `first` back to the second oldest; other rows
+    /// keep theirs.
+    ///
+    /// A node lies outside of the arc that its chords stand for: as at the corner of a prism with the angle
+    /// π − θ whose sides are vortex sheets, it is carried with the share (π − θ)/2π of what the wind jumps by
+    /// across them in place of a half, and feels nothing of its own filament's bend. In the middle of a chord
+    /// the share is right, and the bend is felt from a quarter of a chord on. θ is the turn from chord to chord.
+    pub(super) fn to_nodes(&self, first: usize, values: &mut [Vector3]) {
+        let n = self.n_nodes;
+        for node in (n..(first + 1) * n).rev() {
+            values[node] = 0.5 * (values[node] + values[node - n]);
+        }
     }
 
     /// Moves every node on by `interval` (s): `velocities` (m/s) hold that of each now. Second order after

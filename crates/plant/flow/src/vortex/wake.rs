@@ -1,6 +1,6 @@
 //! The wakes of all blades in the wind, as a flow.
 
-use super::body::Body;
+use super::body::{Body, N_SIDES, sides_to_nodes};
 use super::field::{CHUNK, Field};
 use super::rotor::Rotor;
 use super::segment::Segment;
@@ -39,6 +39,8 @@ pub struct FreeWake {
     segments: Vec<Segment>,
     field: Field,
     nodes: Vec<Vector3>,
+    /// Places at which vortices carry the nodes.
+    middles: Vec<Vector3>,
     winds: Vec<Vector3>,
     induced: Vec<Vector3>,
     pool: Mutex<Pool>,
@@ -66,6 +68,7 @@ impl FreeWake {
             segments: Vec::with_capacity(most),
             field,
             nodes: Vec::with_capacity(most),
+            middles: Vec::with_capacity(most),
             winds: Vec::with_capacity(most),
             induced: Vec::with_capacity(most),
             pool: Mutex::new(Pool::new(n_threads)),
@@ -168,23 +171,27 @@ impl FreeWake {
     /// On return `winds` holds the velocity at each of the nodes of all sheets, then of all bodies' rings.
     fn feel(&mut self) -> Result<(), FlowError> {
         self.nodes.clear();
+        self.middles.clear();
         for sheet in &self.sheets {
             self.nodes.extend_from_slice(&sheet.far.positions);
             self.nodes.extend_from_slice(&sheet.near.positions);
+            sheet.push_middles(&mut self.middles);
         }
         for body in &self.bodies {
             self.nodes.extend_from_slice(&body.positions);
+            body.push_middles(&mut self.middles);
         }
         self.winds.resize(self.nodes.len(), Vector3::ZERO);
         self.induced.resize(self.nodes.len(), Vector3::ZERO);
         self.wind.sample(&self.nodes, &mut self.winds);
         let mut induced = std::mem::take(&mut self.induced);
         self.pool().for_chunks(&mut induced, CHUNK, &|first, chunk| {
-            for (velocity, position) in chunk.iter_mut().zip(&self.nodes[first..]) {
+            for (velocity, position) in chunk.iter_mut().zip(&self.middles[first..]) {
                 *velocity = self.induced_at(*position);
             }
         });
         self.induced = induced;
+        self.to_nodes();
         for ((wind, induced), position) in self.winds.iter_mut().zip(&self.induced).zip(&self.nodes)
         {
             *wind += *induced;
@@ -195,6 +202,18 @@ impl FreeWake {
             }
         }
         Ok(())
+    }
+
+    /// On return `induced` holds what vortices induce at nodes, in place of the middles of filaments.
+    fn to_nodes(&mut self) {
+        let mut rest = &mut self.induced[..];
+        for sheet in &self.sheets {
+            let n_nodes = sheet.far.positions.len() + sheet.near.positions.len();
+            let (mine, others) = rest.split_at_mut(n_nodes);
+            sheet.to_nodes(mine);
+            rest = others;
+        }
+        sides_to_nodes(N_SIDES, rest);
     }
 
     /// Moves the nodes of all sheets and bodies' rings with the velocities of [`feel`](Self::feel).

@@ -77,13 +77,13 @@ fn behind_a_disc_the_wind_is_near_that_of_momentum_theory() {
         velocity[0].x / WIND
     };
     for coefficient in [0.2, 0.5] {
-        // The tube of rings is as long as thirty radii. The deficit is known to fall short, by 2.4 % at 0.2
-        // and 6 % at 0.5: this holds it there, and validates nothing.
+        // The tube of rings is as long as thirty radii: 0.3 % is missing of it. Twelve sides and rings half a
+        // radius apart each take an order of a hundredth.
         let wake = behind_disc(coefficient, 0.08, 120, cores());
         let far = f64::sqrt(1.0 - coefficient);
         let found = wind(&wake, 10.0 * RADIUS);
         let deficit = (1.0 - found) / (1.0 - far);
-        assert!((deficit - 1.0).abs() < 0.2 * coefficient, "{coefficient} {found} {far}");
+        assert!((deficit - 1.0).abs() < 0.02, "{coefficient} {found} {far}");
         // Nothing is left far beside.
         let mut beside = [Vector3::ZERO];
         wake.sample(&[Vector3::new(10.0, 40.0, 0.0) * RADIUS], &mut beside);

@@ -120,6 +120,6 @@ fn elements_in_the_cores_of_others_are_counted() {
         }
     }
     // The first one stands in nobody's wake, and there is no third.
-    assert!(sums[0] == 0 && sums[1] > 10, "{sums:?}");
+    assert!(sums[0] == 0 && sums[1] > 3, "{sums:?}");
     assert_eq!(wake.elements_in_cores(2), [0; 2]);
 }

@@ -5,5 +5,4 @@ mod closed_forms;
 mod coaxial;
 mod fields;
 mod filaments;
-mod shapes;
 mod wakes;

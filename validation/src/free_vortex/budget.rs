@@ -1,0 +1,248 @@
+//! Budgets of a rotor and its free wake: what the blades do to the air, and what the air has of it.
+//!
+//! Vortices that nobody holds keep their impulse and their angular impulse, so that both grow by the forces
+//! of the blades alone (Saffman, Vortex Dynamics, 1992, §§ 3.2 and 3.5). Behind a rotor that turns evenly the
+//! flow is steady for who turns with it; where there are no vortices its total pressure is then short of the
+//! wind's by ρ Ω r |w|, w the swirl, and the fluxes of momentum and of angular momentum through a plane are
+//! thrust and torque. The blades' profile drag is left out on both sides: it leaves no vortices.
+
+use super::held::{AIR_DENSITY, flat};
+use super::rotor::{Fineness, USUAL, wake};
+use crate::Row;
+use crate::row::Tolerance::Within;
+use basis::{Commands, PerBlade, PointForce, Vector3};
+use flow::vortex::{FreeWake, Segment};
+use flow::{FlowSolver, WindField};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use turbine::{Induction, Turbine, TurbineSettings};
+
+const CLOSE: f64 = 0.01;
+const WIND: f64 = 8.0;
+const NAME: &str = "nrel-5mw";
+/// Places of the planes behind the rotor and radius of the circle whose circulation is taken (rotor radii).
+const PLANE: f64 = 1.0;
+const CIRCLE: [f64; 2] = [0.1, 0.6];
+/// The plane reaches so far out (rotor radii), in rings of so many points.
+const WIDTH: f64 = 4.0;
+const N_RINGS: usize = 240;
+const N_AROUND: usize = 12;
+
+/// The wake keeps all of its vortices: its end never comes.
+const WHOLE: Fineness = Fineness { length: 10.0, settling: 6.0, ..USUAL };
+
+/// Mean over a turn of what the blades do (lift alone), and of what the plane and the circle behind them see.
+#[derive(Default)]
+struct Budget {
+    thrust: f64,
+    torque: f64,
+    circulation: f64,
+    momentum_flux: f64,
+    angular_flux: f64,
+    circulation_behind: f64,
+    impulse_rate: f64,
+    angular_impulse_rate: f64,
+}
+
+pub(super) fn rows() -> Vec<Row> {
+    let Budget {
+        thrust,
+        torque,
+        circulation,
+        momentum_flux,
+        angular_flux,
+        circulation_behind,
+        impulse_rate,
+        angular_impulse_rate,
+    } = budget();
+    tell!("thrust {:.2} kN, torque {:.1} kN m, lift alone", 1e-3 * thrust, 1e-3 * torque);
+    let row = |what: &str, measured: f64, expected: f64, source: &'static str| Row {
+        what: format!("{NAME} flat, {WIND} m/s, best tip-speed ratio, 36 steps a turn: {what}"),
+        measured: measured / expected,
+        expected: 1.0,
+        tolerance: Within(CLOSE),
+        unit: "–",
+        source,
+    };
+    let [impulse, plane, stokes] = [
+        "Saffman, Vortex Dynamics, §§ 3.2, 3.5: impulse and angular impulse grow by the forces alone",
+        "momentum and Bernoulli's law in the frame that turns with the rotor",
+        "Stokes' theorem: what is bound has left as swirl behind",
+    ];
+    vec![
+        row("growth of the wake's impulse over the blades' thrust", impulse_rate, thrust, impulse),
+        row(
+            "growth of the wake's angular impulse over the blades' torque",
+            angular_impulse_rate,
+            torque,
+            impulse,
+        ),
+        row(
+            "flux of momentum and pressure through a plane half a diameter behind over the blades' thrust",
+            momentum_flux,
+            thrust,
+            plane,
+        ),
+        row(
+            "flux of energy through a plane half a diameter behind over the blades' power",
+            angular_flux,
+            torque,
+            plane,
+        ),
+        row(
+            "circulation around the wake at 0.6 of the radius over that bound to the blades there",
+            circulation_behind,
+            circulation,
+            stokes,
+        ),
+    ]
+}
+
+fn budget() -> Budget {
+    let model = flat(NAME);
+    let (definition, rotor_speed) = (&model.definition, model.rotor_speed(WIND));
+    let radius = definition.rotor_radius();
+    let interval = TAU / rotor_speed / WHOLE.steps_per_turn;
+    let mut wake = wake(&model, WIND, interval, WHOLE);
+    let pitch = model.constants.fine_pitch;
+    let settings = TurbineSettings {
+        induction: Induction::ByBoundVortices { dynamic_stall: false, tower: None },
+        flexible: false,
+        air_density: AIR_DENSITY,
+        yaw: 0.0,
+        rotor_speed,
+        azimuth: 0.0,
+        pitch,
+    };
+    let foot = Vector3::Z * -definition.rotor.hub_height;
+    let rotor = Turbine::new(Arc::clone(definition), foot, settings);
+    let mut rotor =
+        rotor.expect("the library's own turbines stand").without_bodies().at_held_speed();
+    let commands = Commands {
+        pitch: PerBlade::splat(definition.n_blades, pitch),
+        generator_torque: 0.0,
+        yaw_rate: 0.0,
+    };
+    let hub = rotor.frame().hub;
+    let turn = WHOLE.steps_per_turn as usize;
+    let n_steps = (WHOLE.settling * 2.0 * radius / WIND / interval).ceil() as usize;
+    let mut winds = vec![Vector3::ZERO; rotor.stations().len()];
+    let mut budget = Budget::default();
+    let (mut first, share) = ([0.0; 2], 1.0 / turn as f64);
+    for step in 0..n_steps {
+        wake.sample(rotor.stations(), &mut winds);
+        rotor.advance_answered(interval, &winds, wake.answer(0), &commands);
+        let lift = lift(&wake, rotor.forces(), &winds, rotor_speed, hub);
+        wake.advance(interval, rotor.forces()).expect("a wake in steady wind stays finite");
+        if step + turn + 1 == n_steps {
+            first = impulses(wake.segments(), hub);
+        }
+        if step + turn >= n_steps {
+            budget.thrust += share * lift[0];
+            budget.torque += share * lift[1];
+            budget.circulation += share * bound(rotor.forces(), CIRCLE[1] * radius, hub);
+            let fluxes = fluxes(&wake, hub, radius, rotor_speed);
+            budget.momentum_flux += share * fluxes[0];
+            budget.angular_flux += share * fluxes[1];
+            budget.circulation_behind += share * swirl(&wake, hub, radius);
+        }
+    }
+    let last = impulses(wake.segments(), hub);
+    let rate = |k: usize| -AIR_DENSITY * (last[k] - first[k]) / (turn as f64 * interval);
+    (budget.impulse_rate, budget.angular_impulse_rate) = (rate(0), rate(1));
+    budget
+}
+
+/// Thrust (N) and torque (N m) of the lift of all elements: ρ V × Γ on the blade, V the wind relative to it
+/// with what answers to this step's circulation.
+fn lift(
+    wake: &FreeWake,
+    forces: &[PointForce],
+    winds: &[Vector3],
+    rotor_speed: f64,
+    hub: Vector3,
+) -> [f64; 2] {
+    let bound: Vec<_> =
+        forces.iter().filter_map(|force| Some((force.position, force.bound?))).collect();
+    let n = bound.len();
+    let mut sum = [0.0; 2];
+    for (index, (position, element)) in bound.iter().enumerate() {
+        let mut wind = winds[index];
+        if let Some(answer) = wake.answer(0) {
+            let row = &answer.influence[index * n..(index + 1) * n];
+            for ((influence, (_, other)), then) in row.iter().zip(&bound).zip(answer.circulations) {
+                wind += *influence * (other.circulation - then);
+            }
+        }
+        let arm = *position - hub;
+        let relative = wind - (Vector3::X * rotor_speed).cross(arm);
+        let force = AIR_DENSITY * relative.cross(element.circulation * element.along);
+        sum[0] += force.x;
+        sum[1] += arm.cross(force).x;
+    }
+    sum
+}
+
+/// Impulse and angular impulse along the axis through `hub`, over the air's density: ½ ∮ Γ x × dl and
+/// −½ ∮ Γ r² dl.
+fn impulses(segments: &[Segment], hub: Vector3) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    for Segment { from, to, circulation, .. } in segments {
+        let (a, b) = (*from - hub, *to - hub);
+        let along = b - a;
+        sum[0] += 0.5 * circulation * (0.5 * (a + b)).cross(along).x;
+        // The mean of r² along a straight line.
+        let dot = |u: Vector3, v: Vector3| u.y * v.y + u.z * v.z;
+        let square = (dot(a, a) + dot(a, b) + dot(b, b)) / 3.0;
+        sum[1] -= 0.5 * circulation * square * along.x;
+    }
+    sum
+}
+
+/// Sum over the blades of the circulation that is bound at `radius` (m) from the axis through `hub` (m²/s).
+fn bound(forces: &[PointForce], radius: f64, hub: Vector3) -> f64 {
+    let elements: Vec<(f64, f64)> = forces
+        .iter()
+        .filter_map(|force| Some(((force.position - hub).length(), force.bound?.circulation)))
+        .collect();
+    let across = |pair: &[(f64, f64)]| {
+        let [(r0, g0), (r1, g1)] = [pair[0], pair[1]];
+        (r0 <= radius && radius < r1).then(|| g0 + (g1 - g0) * (radius - r0) / (r1 - r0))
+    };
+    elements.windows(2).filter_map(across).sum()
+}
+
+/// Wind along the axis, outwards and around it at `radius` from the axis and `behind` the rotor (m), at
+/// angle number `k` of the points around.
+fn at(wake: &FreeWake, hub: Vector3, behind: f64, radius: f64, k: usize) -> [f64; 3] {
+    let (sine, cosine) = (TAU * k as f64 / N_AROUND as f64).sin_cos();
+    let outwards = Vector3::new(0.0, cosine, sine);
+    let mut wind = [Vector3::ZERO];
+    wake.sample(&[hub + Vector3::X * behind + outwards * radius], &mut wind);
+    [wind[0].x, wind[0].dot(outwards), wind[0].dot(Vector3::X.cross(outwards))]
+}
+
+/// Circulation around the wake on the circle (m²/s), against the rotor's sense.
+fn swirl(wake: &FreeWake, hub: Vector3, radius: f64) -> f64 {
+    let [behind, r] = CIRCLE.map(|share| share * radius);
+    let around = |k: usize| at(wake, hub, behind, r, k)[2];
+    -TAU * r * (0..N_AROUND).map(around).sum::<f64>() / N_AROUND as f64
+}
+
+/// Thrust (N) and torque (N m) by what passes the plane: ∫ ρ u (U − u) + p₀ − p and −∫ ρ u w r, with
+/// p₀ − p = ½ ρ (|u|² − U²) − ρ Ω r w for the swirl w.
+fn fluxes(wake: &FreeWake, hub: Vector3, radius: f64, rotor_speed: f64) -> [f64; 2] {
+    let width = WIDTH * radius / N_RINGS as f64;
+    let mut sum = [0.0; 2];
+    for ring in 0..N_RINGS {
+        let r = (ring as f64 + 0.5) * width;
+        let weight = AIR_DENSITY * TAU * r * width / N_AROUND as f64;
+        for k in 0..N_AROUND {
+            let [u, v, w] = at(wake, hub, PLANE * radius, r, k);
+            let head = 0.5 * (u * u + v * v + w * w - WIND * WIND) - rotor_speed * r * w;
+            sum[0] += weight * (u * (WIND - u) + head);
+            sum[1] -= weight * u * w * r;
+        }
+    }
+    sum
+}
