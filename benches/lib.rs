@@ -1,4 +1,5 @@
 //! What the machine can do, measured beside what a solver does with it.
 
+pub mod arithmetic;
 pub mod bandwidth;
 mod huge;

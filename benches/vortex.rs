@@ -4,8 +4,13 @@
 //! Wakes of three blades of 60 m, eleven trailing vortices each; boxes made anew in every call. Beside it the
 //! sum over all segments in single precision, and the error of either against the sum in double precision. A
 //! number after `--` is that of the threads.
+//!
+//! Last the share that the sum over all segments, one by one, reaches of what arithmetic alone would take on
+//! the machine: [`OPERATIONS`] vector instructions for as many segments as a vector has values, at the rate
+//! that a loop of nothing but such instructions has on as many threads at once.
 
 use basis::Vector3;
+use benches::arithmetic;
 use flow::vortex::examples::wake;
 use flow::vortex::{Accuracy, direct, induced};
 use std::time::Instant;
@@ -16,6 +21,13 @@ const PER_BLADE: usize = 11;
 const N_COMPARED: usize = 300;
 /// Most segments that are summed one by one (–).
 const MOST_SUMMED: usize = 40_000;
+
+/// Segments of the sum that is held against the machine's limit (–).
+const N_LIMIT: usize = 10_000;
+/// Vector instructions that a vector of segments takes in `flow::vortex::field::near`, counted in its source
+/// as it stands for AVX-512: 18 sums, differences and comparisons, 21 products, 23 sums of products, 4
+/// guesses and choices. Loads come with them.
+const OPERATIONS: f64 = 66.0;
 
 fn main() {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -51,4 +63,41 @@ fn main() {
             println!("{n:>9} {degree:>7} {opening:>8} {best:>10.5} {error:>10.2e}");
         }
     }
+    share_of_limit(n_threads);
+}
+
+/// Prints the share of the machine's arithmetic that the sum over segments one by one reaches.
+fn share_of_limit(n_threads: usize) {
+    let limits = || {
+        let threads: Vec<_> =
+            (0..n_threads).map(|_| std::thread::spawn(arithmetic::limit)).collect();
+        let found = threads.into_iter().map(|thread| thread.join().ok().flatten());
+        found.collect::<Option<Vec<_>>>()
+    };
+    let Some(before) = limits() else {
+        println!("no limit is known of a machine without AVX2");
+        return;
+    };
+    let segments = wake(PER_BLADE, N_LIMIT / (3 * PER_BLADE) + 1);
+    let positions: Vec<Vector3> = segments.iter().map(|segment| segment.from).collect();
+    let mut velocities = vec![Vector3::ZERO; positions.len()];
+    let accuracy = Accuracy { degree: 3, opening: 0.0 };
+    let once = || {
+        let started = Instant::now();
+        induced(&segments, accuracy, n_threads, &positions, &mut velocities);
+        started.elapsed().as_secs_f64()
+    };
+    let best = std::iter::repeat_with(once).take(15).fold(f64::INFINITY, f64::min);
+    let after = limits().unwrap_or_default();
+    let rate = |all: &[arithmetic::Limit]| all.iter().map(|limit| limit.rate).sum::<f64>();
+    let limit = rate(&before).max(rate(&after));
+    let lanes = before[0].lanes as f64;
+    let pairs = (segments.len() * positions.len()) as f64;
+    let share = pairs / lanes * OPERATIONS / best / limit;
+    println!(
+        "near field: {:.2} G pairs/s on {n_threads} threads, {:.1} % of {:.2} G vector instructions/s at {OPERATIONS} for {lanes} segments",
+        1e-9 * pairs / best,
+        100.0 * share,
+        1e-9 * limit
+    );
 }

@@ -66,7 +66,7 @@ pub const VALIDATIONS: &[Validation] = &[
     Validation {
         name: "free-vortex-rotor",
         about: "power and thrust of three rotors with free wakes against blade elements in axisymmetric flow, and blade-element momentum",
-        cost: Cost::Minutes(5),
+        cost: Cost::Minutes(10),
         run: free_vortex::free_vortex_rotor,
         pictures: None,
         page: "free-vortex",
@@ -75,7 +75,7 @@ pub const VALIDATIONS: &[Validation] = &[
     Validation {
         name: "free-vortex-budget",
         about: "impulse, momentum, energy and circulation of a rotor and its free wake",
-        cost: Cost::Minutes(4),
+        cost: Cost::UnderAMinute,
         run: free_vortex::free_vortex_budget,
         pictures: None,
         page: "free-vortex",
@@ -84,7 +84,7 @@ pub const VALIDATIONS: &[Validation] = &[
     Validation {
         name: "free-vortex-wake",
         about: "wake and blade loading of a rotor with a free wake beside the lattice on 32 cells a diameter; its outer vortices beside axisymmetric flow",
-        cost: Cost::Minutes(20),
+        cost: Cost::Minutes(8),
         run: free_vortex::free_vortex_wake,
         pictures: Some(free_vortex::free_vortex_wake_pictures),
         page: "free-vortex",
@@ -93,7 +93,7 @@ pub const VALIDATIONS: &[Validation] = &[
     Validation {
         name: "free-vortex-helix",
         about: "where the hub vortex of a rotor with a helix and a free wake is at 1 D, against amplitude and Strouhal number of twelve helices, beside a published study",
-        cost: Cost::Minutes(10),
+        cost: Cost::Minutes(6),
         run: free_vortex::free_vortex_helix,
         pictures: None,
         page: "free-vortex",

@@ -11,12 +11,17 @@ pub struct Effort {
     pub n_growing_steps: u64,
 }
 
+/// What a step costs without any wake, over one with wakes of full length (–): turbines, boxes, outputs.
+const LEAST: f64 = 0.1;
+
 impl Effort {
-    /// Of the first `n_steps` steps of a run (–). A step costs in proportion to the length that wakes have.
+    /// Of the first `n_steps` steps of a run (–). Beside [`LEAST`] a step costs in proportion to the length
+    /// that wakes have.
     pub fn until(&self, n_steps: u64) -> f64 {
         let growing = n_steps.min(self.n_growing_steps) as f64;
         let share = if growing > 0.0 { growing / self.n_growing_steps as f64 } else { 0.0 };
-        self.of_step * (n_steps as f64 - growing + 0.5 * share * growing)
+        let of_growing = LEAST + (1.0 - LEAST) * 0.5 * share;
+        self.of_step * (n_steps as f64 - growing + of_growing * growing)
     }
 }
 
@@ -36,8 +41,11 @@ mod tests {
     fn steps_of_growing_wakes_cost_less() {
         let even = Effort { of_step: 3.0, n_growing_steps: 0 };
         assert_eq!([0, 1, 40].map(|n| even.until(n)), [0.0, 3.0, 120.0]);
-        // The triangle below the line to the full cost, then all of it.
+        // The trapezium below the line to the full cost, then all of it.
         let growing = Effort { of_step: 1.0, n_growing_steps: 100 };
-        assert_eq!([0, 50, 100, 160].map(|n| growing.until(n)), [0.0, 12.5, 50.0, 110.0]);
+        let expected = [0.0, 5.0 + 0.9 * 12.5, 10.0 + 0.9 * 50.0, 70.0 + 0.9 * 50.0];
+        for (n, expected) in [0, 50, 100, 160].into_iter().zip(expected) {
+            assert!((growing.until(n) - expected).abs() < 1e-12, "{n}");
+        }
     }
 }

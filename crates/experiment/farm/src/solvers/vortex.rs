@@ -20,6 +20,8 @@ const SLOWEST: f64 = 0.4;
 const USUAL: f64 = 0.65;
 /// Longest wake of the check before a study (diameters).
 const LONGEST_CHECKED: f64 = 1.0;
+/// Greatest thrust coefficient for which a wake is followed by momentum theory (–).
+const MOST_THRUST: f64 = 0.96;
 /// Angle by which a rotor turns in a step beyond which a reader must know (rad).
 const TURN_TO_WARN: f64 = 20.0 * std::f64::consts::PI / 180.0;
 /// Core at birth over the width of the blade elements next to it, below which a reader must know (–): of a
@@ -288,13 +290,12 @@ fn tunnel(plan: &Plan, flow: &Flow) -> Tunnel {
 
 /// A wake that ends induces less at its rotor, which is then in the state of one in faster air.
 ///
-/// The cylinder of vortices behind a disc with even load, of length l and radius R, induces the share
-/// s = l/√(l² + R²) of what an endless one does in the middle of the disc. With u = 1 − s a for the wind at
-/// the disc and C_T = 4 a (1 − a), momentum theory has the same u and the same thrust in the wind u + C_T/4u.
+/// With s for its [share](flow::vortex::share_of_endless) of what an endless one induces, u = 1 − s a for the
+/// wind at the disc and C_T = 4 a (1 − a), momentum theory has the same u and the same thrust in the wind
+/// u + C_T/4u.
 fn with_an_end(tunnel: &Tunnel, _: f64, thrust_coefficient: f64) -> f64 {
-    let radii = 2.0 * flow::vortex::LASTING * tunnel.downstream;
-    let share = radii / (radii * radii + 1.0).sqrt();
-    let induction = 0.5 * (1.0 - (1.0 - thrust_coefficient.clamp(0.0, 1.0)).sqrt());
+    let induction = 0.5 * (1.0 - (1.0 - thrust_coefficient.clamp(0.0, MOST_THRUST)).sqrt());
+    let share = flow::vortex::share_of_endless(2.0 * tunnel.downstream, induction);
     let at_disc = 1.0 - share * induction;
     at_disc + induction * (1.0 - induction) / at_disc
 }

@@ -1,5 +1,6 @@
 //! The wakes of bluff bodies such as nacelles: rings that leave their edges.
 
+use super::ending::left_at;
 use super::segment::{Cores, Segment};
 use super::strain::{Life, around};
 use basis::{PointForce, Vector3};
@@ -9,8 +10,6 @@ use std::f64::consts::{PI, TAU};
 pub(super) const N_SIDES: usize = 12;
 /// Distance at which one ring follows another at least, over their radius (–).
 const SPACING: f64 = 0.5;
-/// Share of the wake's length over which its end fades (–).
-const FADING: f64 = 0.15;
 
 /// How far the wakes of bodies are followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,8 +150,7 @@ impl Body {
     /// What is left of the circulation of ring number `index` (–).
     fn share(&self, index: usize) -> f64 {
         let way = (centre(self.ring(index)) - self.position).x;
-        let share = ((1.0 - way / self.wakes.length) / FADING).clamp(0.0, 1.0);
-        share * share * (3.0 - 2.0 * share)
+        left_at(way / self.wakes.length)
     }
 
     /// Moves every node on by `interval` (s): `velocities` (m/s) hold that of each now. Second order after

@@ -5,7 +5,8 @@ use super::strain::Life;
 use basis::Vector3;
 
 /// Core of a blade's bound vortex over the width of its elements (–): a bent blade is no straight line, and
-/// its bound vortex is to have no effect on its own elements.
+/// its bound vortex is to have little effect on its own elements. What is left is that of the bend, some
+/// 0.02 m/s on a blade of 117 m that bends by 4 m.
 const BOUND_CORE: f64 = 0.5;
 
 /// Squares of cores at birth (m²) on the bound vortex `line`.

@@ -1,15 +1,12 @@
 //! The wake of one blade: a strip of rings as fine as its elements, which becomes coarser further down.
 
+use super::ending::left_at;
 use super::filaments::{Births, Filaments};
 use super::segment::{Cores, Segment};
 use super::strain::Life;
 use super::strip::Strip;
 use basis::Vector3;
 
-/// Share of the wake's length over which its end fades (–).
-const FADING: f64 = 0.15;
-/// Share of the wake's length that would induce as much if none of it faded, about (–): half of what fades.
-pub const LASTING: f64 = 1.0 - 0.5 * FADING;
 /// Least area of a ring over that of those which it stands for (–).
 const LEAST_AREA: f64 = 0.7;
 /// How the wakes of blades are resolved, and where they end.
@@ -221,9 +218,7 @@ impl Sheet {
 
     /// What of the circulation of rings between two places along x (m) is left where the wake fades (–).
     fn share(&self, places: [f64; 2], line: f64) -> f64 {
-        let left = 1.0 - (0.5 * (places[0] + places[1]) - line) / self.resolution.length;
-        let share = (left / FADING).clamp(0.0, 1.0);
-        share * share * (3.0 - 2.0 * share)
+        left_at((0.5 * (places[0] + places[1]) - line) / self.resolution.length)
     }
 
     /// Adds the segments of all rings to `segments`, neighbours joined.

@@ -16,7 +16,7 @@ use basis::Vector3;
 use std::io::{Error, ErrorKind, Read, Result, Write};
 
 const MAGIC: [u8; 8] = *b"wmvortex";
-const VERSION: u64 = 2;
+const VERSION: u64 = 3;
 /// More of anything than this is a sign of a damaged file.
 const MOST: u64 = 1 << 24;
 
