@@ -16,8 +16,8 @@ use turbine::{Induction, N_ELEMENTS};
 /// Accepted distance from blade elements in axisymmetric flow, and from blade-element momentum (–).
 const TOGETHER: f64 = 0.02;
 const MOMENTUM: f64 = 0.04;
-/// The duct of the axisymmetric flow (radii): a disc in it has the blockage of 1/1600, where it would have 1 %
-/// more power behind walls at 12 radii.
+/// The duct of the axisymmetric flow (radii): a disc in it has the blockage of 1/1600, where it would have 1
+/// % more power behind walls at 12 radii.
 const DUCT: [f64; 3] = [10.0, 12.0, 40.0];
 /// Turbines and winds (m/s) in which they keep their best tip-speed ratio. In another wind only the growth of
 /// cores makes another flow of it, which one turbine shows.

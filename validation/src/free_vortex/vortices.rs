@@ -1,6 +1,7 @@
 //! Vortices with closed forms, and the sum over boxes of them.
 
 use crate::Row;
+use crate::folds::larger;
 use crate::random::Random;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
@@ -50,7 +51,7 @@ fn segment() -> Row {
     let mut place = |scale: f64| {
         Vector3::from_array(std::array::from_fn(|_| scale * (2.0 * random.uniform() - 1.0)))
     };
-    let (mut n, mut worst) = (0, 0.0_f64);
+    let (mut n, mut worst) = (0, 0.0);
     while n < N {
         let (from, to, position) = (place(3.0), place(3.0), place(5.0));
         let along = (to - from).normalize();
@@ -65,7 +66,7 @@ fn segment() -> Row {
             along.cross(near) / distance * ((cosines[0] - cosines[1]) / (4.0 * PI * distance));
         let found = Segment { from, to, circulation: 1.0, core_squared: 0.0 }.velocity(position);
         // What a straight vortex of the same distance has: beyond the ends the cosines cancel.
-        worst = worst.max((found - expected).length() * 4.0 * PI * distance);
+        worst = larger(worst, (found - expected).length() * 4.0 * PI * distance);
     }
     Row {
         what: format!("straight segments, {N} places: largest error of the velocity over Γ/4πh"),

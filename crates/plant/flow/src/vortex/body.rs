@@ -222,8 +222,8 @@ pub(super) fn middles_of(nodes: &[Vector3]) -> impl Iterator<Item = Vector3> + '
     (0..nodes.len()).map(|k| 0.5 * (nodes[k] + nodes[(k + 1) % nodes.len()]))
 }
 
-/// On return `velocities`, which held those in the middles of the sides of rings with `n` sides, hold those of
-/// their nodes: the mean of both sides', for the reason that
+/// On return `velocities`, which held those in the middles of the sides of rings with `n` sides, hold those
+/// of their nodes: the mean of both sides', for the reason that
 /// [`Strip::to_nodes`](super::strip::Strip::to_nodes) gives.
 pub(super) fn sides_to_nodes(n: usize, velocities: &mut [Vector3]) {
     for ring in velocities.chunks_exact_mut(n) {

@@ -88,8 +88,8 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// After another `interval` (s): Runge and Kutta's step of the fourth order. Each moves by itself and with
-    /// what the other one induces.
+    /// After another `interval` (s): Runge and Kutta's step of the fourth order. Each moves by itself and
+    /// with what the other one induces.
     pub fn after(&self, interval: f64) -> Self {
         let with = |rates: &[[f64; 2]; 2], share: f64| Self {
             places: std::array::from_fn(|i| {

@@ -27,11 +27,11 @@ impl Segment {
     /// Velocity (m/s) that it induces at `position` (m, farm frame).
     ///
     /// The law of Biot and Savart, weighted as in a vortex after Vatistas with n = 2: h²/√(r⁴ + h⁴), with h
-    /// the distance from the segment and r the core's radius. Beyond its ends way along
-    /// the line counts too: a bent filament so feels its own bend from a core's radius on, as a bent vortex
-    /// does (short pieces of a thin [ring](super::rings) move it at Saffman's speed), and not from √(2 r R)
-    /// on, with R the radius of the bend. The price: a straight chain of pieces shorter than r is a tighter
-    /// vortex than Vatistas', fastest at 0.75 r; one of pieces of 4 r is his within a tenth.
+    /// the distance from the segment and r the core's radius. Beyond its ends way along the line counts too:
+    /// a bent filament so feels its own bend from a core's radius on, as a bent vortex does (short pieces of
+    /// a thin [ring](super::rings) move it at Saffman's speed), and not from √(2 r R) on, with R the radius
+    /// of the bend. The price: a straight chain of pieces shorter than r is a tighter vortex than Vatistas',
+    /// fastest at 0.75 r; one of pieces of 4 r is his within a tenth.
     /// Sources: Vatistas, Kozel, Mih (1991), eq. 4; van Garrel, ECN-C--03-079, for the form without angles.
     pub fn velocity(&self, position: Vector3) -> Vector3 {
         self.per_circulation(position) * self.circulation
@@ -52,7 +52,8 @@ impl Segment {
         if p == 0.0 || around == 0.0 {
             return Vector3::ZERO;
         }
-        // (p − d)/c² is 1/(p + d): each where it does not cancel. With d < 0 the position is beside the segment.
+        // (p − d)/c² is 1/(p + d): each where it does not cancel. With d < 0 the position is beside the
+        // segment.
         let difference = if d > 0.0 { reach / (p + d) } else { p - d };
         let sum = (r1.length() + r2.length()) / p;
         c * (sum * difference / (4.0 * PI * around))

@@ -159,10 +159,11 @@ impl Strip {
     /// A node lies outside of the arc that its chords stand for: as at the corner of a prism with the angle
     /// π − θ whose sides are vortex sheets, it is carried with the share (π − θ)/2π of what the wind jumps by
     /// across them in place of a half, and feels nothing of its own filament's bend. In the middle of a chord
-    /// the share is right, and the bend is felt from a quarter of a chord on. θ is the turn from chord to chord.
+    /// the share is right, and the bend is felt from a quarter of a chord on. θ is the turn from chord to
+    /// chord.
     ///
-    /// Limits: a strain of the air acts on a wave of m chords with the share cos² π/m. The oldest row, and the
-    /// oldest nodes near the blade that are not kept further down, take what trails from them alone.
+    /// Limits: a strain of the air acts on a wave of m chords with the share cos² π/m. The oldest row, and
+    /// the oldest nodes near the blade that are not kept further down, take what trails from them alone.
     pub(super) fn to_nodes(&self, first: usize, values: &mut [Vector3]) {
         let n = self.n_nodes;
         for node in (n..(first + 1) * n).rev() {
