@@ -48,7 +48,7 @@ pub(super) fn flat(name: &str) -> TurbineModel {
 /// Turns `model` at its best tip-speed ratio and least pitch, its foot at the origin, in `air`.
 pub(super) fn turn(
     model: &TurbineModel,
-    air: &mut (impl FlowSolver + WindField),
+    air: &mut impl FlowSolver,
     induction: Induction,
     trial: &Trial,
 ) -> Steady {

@@ -191,7 +191,7 @@ impl FreeWake {
             }
         });
         self.induced = induced;
-        self.to_nodes();
+        self.move_to_nodes();
         for ((wind, induced), position) in self.winds.iter_mut().zip(&self.induced).zip(&self.nodes)
         {
             *wind += *induced;
@@ -205,7 +205,7 @@ impl FreeWake {
     }
 
     /// On return `induced` holds what vortices induce at nodes, in place of the middles of filaments.
-    fn to_nodes(&mut self) {
+    fn move_to_nodes(&mut self) {
         let mut rest = &mut self.induced[..];
         for sheet in &self.sheets {
             let n_nodes = sheet.far.positions.len() + sheet.near.positions.len();
