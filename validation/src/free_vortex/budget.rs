@@ -6,16 +6,15 @@
 //! wind's by ρ Ω r |w|, w the swirl, and the fluxes of momentum and of angular momentum through a plane are
 //! thrust and torque. The blades' profile drag is left out on both sides: it leaves no vortices.
 
-use super::held::{AIR_DENSITY, flat};
+use super::held::{AIR_DENSITY, at_held_speed, flat};
 use super::rotor::{Fineness, USUAL, wake};
 use crate::Row;
 use crate::row::Tolerance::Within;
-use basis::{Commands, PerBlade, PointForce, Vector3};
+use basis::{PointForce, Vector3};
 use flow::vortex::{FreeWake, Segment};
 use flow::{FlowSolver, WindField};
 use std::f64::consts::TAU;
-use std::sync::Arc;
-use turbine::{Induction, Turbine, TurbineSettings};
+use turbine::Induction;
 
 const CLOSE: f64 = 0.01;
 const WIND: f64 = 8.0;
@@ -104,25 +103,9 @@ fn budget() -> Budget {
     let radius = definition.rotor_radius();
     let interval = TAU / rotor_speed / WHOLE.steps_per_turn;
     let mut wake = wake(&model, WIND, interval, WHOLE);
-    let pitch = model.constants.fine_pitch;
-    let settings = TurbineSettings {
-        induction: Induction::ByBoundVortices { dynamic_stall: false, tower: None },
-        flexible: false,
-        air_density: AIR_DENSITY,
-        yaw: 0.0,
-        rotor_speed,
-        azimuth: 0.0,
-        pitch,
-    };
+    let induction = Induction::ByBoundVortices { dynamic_stall: false, tower: None };
     let foot = Vector3::Z * -definition.rotor.hub_height;
-    let rotor = Turbine::new(Arc::clone(definition), foot, settings);
-    let mut rotor =
-        rotor.expect("the library's own turbines stand").without_bodies().at_held_speed();
-    let commands = Commands {
-        pitch: PerBlade::splat(definition.n_blades, pitch),
-        generator_torque: 0.0,
-        yaw_rate: 0.0,
-    };
+    let (mut rotor, commands) = at_held_speed(&model, WIND, foot, induction);
     let hub = rotor.frame().hub;
     let turn = WHOLE.steps_per_turn as usize;
     let n_steps = (WHOLE.settling * 2.0 * radius / WIND / interval).ceil() as usize;

@@ -45,6 +45,34 @@ pub(super) fn flat(name: &str) -> TurbineModel {
     TurbineModel { definition: Arc::new(definition), constants: file.controller }
 }
 
+/// `model` on its `foot`, stiff and without bodies, at its best tip-speed ratio in `wind_speed` (m/s) and least
+/// pitch, and what it is told to keep both.
+pub(super) fn at_held_speed(
+    model: &TurbineModel,
+    wind_speed: f64,
+    foot: Vector3,
+    induction: Induction,
+) -> (Turbine, Commands) {
+    let pitch = model.constants.fine_pitch;
+    let settings = TurbineSettings {
+        induction,
+        flexible: false,
+        air_density: AIR_DENSITY,
+        yaw: 0.0,
+        rotor_speed: model.rotor_speed(wind_speed),
+        azimuth: 0.0,
+        pitch,
+    };
+    let rotor = Turbine::new(Arc::clone(&model.definition), foot, settings);
+    let commands = Commands {
+        pitch: PerBlade::splat(model.definition.n_blades, pitch),
+        generator_torque: 0.0,
+        yaw_rate: 0.0,
+    };
+    let rotor = rotor.expect("the library's own turbines stand");
+    (rotor.without_bodies().at_held_speed(), commands)
+}
+
 /// Turns `model` at its best tip-speed ratio and least pitch, its foot at the origin, in `air`.
 pub(super) fn turn(
     model: &TurbineModel,
@@ -55,24 +83,7 @@ pub(super) fn turn(
     let Trial { wind_speed, interval, settling, distances } = *trial;
     let definition = &model.definition;
     let rotor_speed = model.rotor_speed(wind_speed);
-    let pitch = model.constants.fine_pitch;
-    let settings = TurbineSettings {
-        induction,
-        flexible: false,
-        air_density: AIR_DENSITY,
-        yaw: 0.0,
-        rotor_speed,
-        azimuth: 0.0,
-        pitch,
-    };
-    let rotor = Turbine::new(Arc::clone(definition), Vector3::ZERO, settings);
-    let mut rotor =
-        rotor.expect("the library's own turbines stand").without_bodies().at_held_speed();
-    let commands = Commands {
-        pitch: PerBlade::splat(definition.n_blades, pitch),
-        generator_torque: 0.0,
-        yaw_rate: 0.0,
-    };
+    let (mut rotor, commands) = at_held_speed(model, wind_speed, Vector3::ZERO, induction);
     let n_settling = (settling / interval).ceil() as usize;
     let n_mean = (TAU / rotor_speed / interval).round() as usize;
     let mut winds = vec![Vector3::ZERO; rotor.stations().len()];
