@@ -45,8 +45,8 @@ pub(super) fn flat(name: &str) -> TurbineModel {
     TurbineModel { definition: Arc::new(definition), constants: file.controller }
 }
 
-/// `model` on its `foot`, stiff and without bodies, at its best tip-speed ratio in `wind_speed` (m/s) and least
-/// pitch, and what it is told to keep both.
+/// `model` on its `foot`, stiff and without bodies, at its best tip-speed ratio in `wind_speed` (m/s) and
+/// least pitch, and what it is told to keep both.
 pub(super) fn at_held_speed(
     model: &TurbineModel,
     wind_speed: f64,
