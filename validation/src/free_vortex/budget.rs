@@ -83,7 +83,7 @@ pub(super) fn rows() -> Vec<Row> {
             plane,
         ),
         row(
-            "flux of energy through a plane half a diameter behind over the blades' power",
+            "flux of angular momentum through a plane half a diameter behind over the blades' torque",
             angular_flux,
             torque,
             plane,

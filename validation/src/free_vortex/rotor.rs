@@ -16,8 +16,8 @@ use turbine::{Induction, N_ELEMENTS};
 /// Accepted distance from blade elements in axisymmetric flow, and from blade-element momentum (–).
 const TOGETHER: f64 = 0.02;
 const MOMENTUM: f64 = 0.04;
-/// The duct of the axisymmetric flow (radii): a disc in it has the blockage of 1/1600, where it would have 1
-/// % more power behind walls at 12 radii.
+/// The duct of the axisymmetric flow (radii): a disc in it has the blockage of 1/1600. Behind walls at 12
+/// radii it would have a hundredth more power.
 const DUCT: [f64; 3] = [10.0, 12.0, 40.0];
 /// Turbines and winds (m/s) in which they keep their best tip-speed ratio. In another wind only the growth of
 /// cores makes another flow of it, which one turbine shows.
@@ -95,7 +95,7 @@ pub(super) fn duct() -> Flow {
 }
 
 /// What blade-element momentum says of `model` at its best tip-speed ratio and least pitch.
-pub(super) fn momentum(model: &TurbineModel, wind_speed: f64) -> Coefficients {
+fn momentum(model: &TurbineModel, wind_speed: f64) -> Coefficients {
     let ratio = model.rotor_speed(wind_speed) * model.definition.rotor_radius() / wind_speed;
     let rotor = SteadyRotor::new(&model.definition, Theory::default());
     rotor.along_shaft().coefficients(ratio, model.constants.fine_pitch)
