@@ -100,6 +100,15 @@ pub const VALIDATIONS: &[Validation] = &[
         recorded: include_str!("../recorded/free-vortex-helix.toml"),
     },
     Validation {
+        name: "free-vortex-open-loop",
+        about: "power and blade loads of two turbines with free wakes and a helix in even, sheared and turbulent wind, beside a published study",
+        cost: Cost::Minutes(60),
+        run: free_vortex::free_vortex_open_loop,
+        pictures: None,
+        page: "free-vortex",
+        recorded: include_str!("../recorded/free-vortex-open-loop.toml"),
+    },
+    Validation {
         name: "flow",
         about: "the lattice against closed forms: Taylor-Green, free stream, mass, outlet, a disc in momentum theory",
         cost: Cost::Minutes(1),

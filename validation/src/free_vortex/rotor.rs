@@ -139,6 +139,7 @@ pub(super) fn wake(
             far_stride: fineness.far_stride,
             far_filaments: fineness.far_filaments,
             length: fineness.length * diameter,
+            end: f64::INFINITY,
             far_rows: rows(fineness.length, 0.4) / fineness.far_stride,
         },
         cores: Cores {

@@ -86,6 +86,7 @@ fn wake() -> FreeWake {
             far_stride: 2,
             far_filaments: 4,
             length: 150.0,
+            end: f64::INFINITY,
             far_rows: 60,
         },
         cores: Cores {

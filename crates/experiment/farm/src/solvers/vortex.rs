@@ -8,7 +8,7 @@ use crate::plan::{self, Layout, Plan, PlanError, Turning};
 use crate::self_check::Tunnel;
 use crate::wind;
 use basis::Vector3;
-use basis::keys::LeftOut::Value;
+use basis::keys::LeftOut::{Otherwise, Value};
 use basis::keys::{Holds, Key, Values, above, from, key};
 use flow::inflow::{MeanProfile, PrescribedWind};
 use flow::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
@@ -43,7 +43,7 @@ const LIMITS: &str = "Free vortices know no eddies smaller than themselves: the 
                       turbines in it, from flow.solver = “lattice”.";
 
 /// Keys of `[flow]` for a free wake.
-static KEYS: [Key; 13] = [
+static KEYS: [Key; 14] = [
     key(
         "steps_per_turn",
         from(8.0, 720.0),
@@ -57,6 +57,13 @@ static KEYS: [Key; 13] = [
         "D",
         Value("6"),
         "Length of the wake behind each rotor; its last 15 % fade. Time grows a little faster than it.",
+    ),
+    key(
+        "wake_beyond_last_diameters",
+        above(0.0, 40.0),
+        "D",
+        Otherwise("wakes are as long as `wake_length_diameters` says"),
+        "All wakes end so far behind the last rotor, where nobody stands in them, if they are not shorter. One that ends behind its rotor by 2 D induces some 2 % less there than an endless one, by 3 D some 1 %.",
     ),
     key(
         "near_wake_diameters",
@@ -187,6 +194,7 @@ fn settings(case: &Case, plan: &Plan, n_blades: usize) -> WakeSettings {
     let resolved = Resolved {
         diameter: plan.diameter,
         interval: plan.interval,
+        last: plan.positions.iter().map(|position| position.x).reduce(f64::max),
         n_blades,
         n_nacelles: case.turbines.len(),
     };
@@ -204,6 +212,8 @@ struct Resolved {
     diameter: f64,
     /// Step (s).
     interval: f64,
+    /// Where the last of the turbines stands along x (m), beyond which wakes may end early.
+    last: Option<f64>,
     n_blades: usize,
     /// Nacelles that leave a wake.
     n_nacelles: usize,
@@ -218,6 +228,8 @@ impl Resolved {
         let rows = |length: f64, share: f64| length / (share * wind.speed * self.interval);
         let near = values.number("near_wake_diameters") * self.diameter;
         let (length, stride) = (length(&values, self.diameter), count("far_wake_steps"));
+        let beyond = values.optional_number("wake_beyond_last_diameters");
+        let beyond = beyond.map(|diameters| diameters * self.diameter);
         let far_rows = rows((length - near).max(0.0), SLOWEST) / stride as f64;
         WakeSettings {
             interval: self.interval,
@@ -226,6 +238,7 @@ impl Resolved {
                 far_stride: stride,
                 far_filaments: count("far_wake_filaments"),
                 length,
+                end: self.last.zip(beyond).map_or(f64::INFINITY, |(last, way)| last + way),
                 far_rows: far_rows.ceil() as usize + 2,
             },
             cores: Cores {
@@ -272,7 +285,7 @@ fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
     let profile = MeanProfile::Uniform { speed: wind.speed };
     let air = PrescribedWind::everywhere(Arc::new(profile));
     let resolved =
-        Resolved { diameter, interval: tunnel.interval, n_blades: N_BLADES, n_nacelles: 0 };
+        Resolved { diameter, interval: tunnel.interval, last: None, n_blades: N_BLADES, n_nacelles: 0 };
     let mut settings = WakeSettings { ground: false, ..resolved.settings(flow, wind) };
     let length = &mut settings.resolution.length;
     *length = length.min(tunnel.downstream * diameter);

@@ -20,8 +20,17 @@ pub struct Resolution {
     pub far_filaments: usize,
     /// Length of the wake along x behind its blade (m); its last part fades.
     pub length: f64,
+    /// Where wakes end, along x (m, farm frame), that would be longer; infinite where nothing ends them.
+    pub end: f64,
     /// Most rows further down (–); the oldest ones end beyond.
     pub far_rows: usize,
+}
+
+impl Resolution {
+    /// Length of the wake of a blade that stands at `line` along x (m).
+    pub(super) fn length_behind(&self, line: f64) -> f64 {
+        self.length.min(self.end - line)
+    }
 }
 
 /// The wake of one blade, its youngest row the blade's bound vortex itself.
@@ -199,7 +208,7 @@ impl Sheet {
     /// Drops rows that lie beyond the wake's length.
     fn shorten(&mut self) {
         let line = self.near.place(self.near.n_rows() - 1);
-        let end = line + self.resolution.length;
+        let end = line + self.resolution.length_behind(line);
         let beyond = |strip: &Strip, rows: usize| {
             (0..rows).take_while(|&row| strip.place(row) > end).count()
         };
@@ -218,7 +227,7 @@ impl Sheet {
 
     /// What of the circulation of rings between two places along x (m) is left where the wake fades (–).
     fn share(&self, places: [f64; 2], line: f64) -> f64 {
-        left_at((0.5 * (places[0] + places[1]) - line) / self.resolution.length)
+        left_at((0.5 * (places[0] + places[1]) - line) / self.resolution.length_behind(line))
     }
 
     /// Adds the segments of all rings to `segments`, neighbours joined.
@@ -358,6 +367,7 @@ mod tests {
             far_stride: 1,
             far_filaments: 17,
             length: 1e6,
+            end: f64::INFINITY,
             far_rows: 100,
         };
         let whole = impulse(fine);

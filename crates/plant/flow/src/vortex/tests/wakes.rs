@@ -23,6 +23,7 @@ pub(super) fn settings() -> WakeSettings {
             far_stride: 2,
             far_filaments: 4,
             length: 150.0,
+            end: f64::INFINITY,
             far_rows: 60,
         },
         cores: Cores {
