@@ -74,7 +74,7 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "free-vortex-budget",
-        about: "impulse, momentum, energy and circulation of a rotor and its free wake",
+        about: "impulse, momentum, angular momentum and circulation of a rotor and its free wake",
         cost: Cost::UnderAMinute,
         run: free_vortex::free_vortex_budget,
         pictures: None,
