@@ -6,6 +6,11 @@
 //! that its section has in the wind of the latest circulations of all, until none changes (Gauss-Seidel). The
 //! wind answers to an element's own circulation more than to others', and that part is taken into account at
 //! once with the slope of a thin aerofoil.
+//!
+//! A section whose lift falls with the angle of attack may have no circulation that its own answer bears out:
+//! sweeps then do not end but grow, the wind of one circulation making the next. So sweeps that do not come
+//! closer take smaller steps, and no answer is stronger than the wind that it answers to: what one step leaves
+//! behind does not blow harder than what made it. Of attached flow neither changes a bit.
 
 use crate::actuator_line::{ActuatorLine, Load, Onset, Sections};
 use crate::motion::ElementMotion;
@@ -16,6 +21,11 @@ use std::f64::consts::PI;
 const MOST_SWEEPS: usize = 60;
 /// Change of circulation over the greatest one at which the sweeps end (–).
 const TOLERANCE: f64 = 1e-6;
+/// Sweeps after which one that changes more than the one before halves the steps (–); until then the changes
+/// of attached flow may rise too.
+const PATIENCE: usize = 12;
+/// Greatest answer over the wind that it answers to (–).
+const STRONGEST: f64 = 1.0;
 
 /// How the wind answers, seen along the axes of the elements, and how far it has.
 #[derive(Clone, Debug)]
@@ -77,22 +87,29 @@ impl Answering {
     ) {
         corrections.fill([0.0; 2]);
         if self.answers {
-            for _ in 0..MOST_SWEEPS {
-                if self.sweep(line, onsets, pitch, sections) <= TOLERANCE {
+            let (mut share, mut last) = (1.0, f64::INFINITY);
+            for n_sweeps in 0..MOST_SWEEPS {
+                let change = self.sweep(share, line, onsets, pitch, sections);
+                if change <= TOLERANCE {
                     break;
                 }
+                if n_sweeps >= PATIENCE && change > last {
+                    share *= 0.5;
+                }
+                last = change;
             }
-            for (index, correction) in corrections.iter_mut().enumerate() {
-                *correction = self.correction(index);
+            for (index, (correction, onset)) in corrections.iter_mut().zip(onsets).enumerate() {
+                *correction = self.correction(index, *onset);
             }
         }
         line.loads_under(onsets, pitch, sections, corrections, loads);
     }
 
-    /// Brings the circulation of each element in turn closer to its section's; gives the greatest change over
-    /// the greatest circulation (–).
+    /// Brings the circulation of each element in turn closer to its section's, by `share` (–) of the way; gives
+    /// the greatest change over the greatest circulation (–).
     fn sweep(
         &mut self,
+        share: f64,
         line: &ActuatorLine,
         onsets: &[Onset],
         pitch: &[f64],
@@ -102,13 +119,13 @@ impl Answering {
         let elements = line.elements();
         let (mut change, mut greatest) = (0.0_f64, f64::MIN_POSITIVE);
         for (index, onset) in onsets.iter().enumerate() {
-            let felt = onset.with(self.correction(index));
+            let felt = onset.with(self.correction(index, *onset));
             let found = line.load(index, felt, pitch[index], sections).circulation;
             let missing = found - (self.sampled[index] + self.changes[index]);
             // Γ reacts to an upwash with π c.
             let chord = elements[index % elements.len()].chord;
             let own = (PI * chord * self.normal[index * n + index]).min(0.0);
-            let step = missing / (1.0 - own);
+            let step = share * missing / (1.0 - own);
             self.changes[index] += step;
             change = change.max(step.abs());
             greatest = greatest.max(found.abs());
@@ -116,13 +133,16 @@ impl Answering {
         change / greatest
     }
 
-    /// What the wind at element number `index` answers, axial and tangential (m/s).
-    fn correction(&self, index: usize) -> [f64; 2] {
+    /// What the wind at element number `index` answers where it is `onset`, axial and tangential (m/s).
+    fn correction(&self, index: usize, onset: Onset) -> [f64; 2] {
         let n = self.changes.len();
         let columns = index * n..(index + 1) * n;
-        [&self.normal, &self.tangential].map(|influence| {
+        let answer = [&self.normal, &self.tangential].map(|influence| {
             let products = influence[columns.clone()].iter().zip(&self.changes);
-            products.map(|(influence, change)| influence * change).sum()
-        })
+            products.map(|(influence, change)| influence * change).sum::<f64>()
+        });
+        let strength = answer[0].hypot(answer[1]);
+        let most = STRONGEST * onset.normal.hypot(onset.tangential);
+        if strength > most { answer.map(|part| part * (most / strength)) } else { answer }
     }
 }

@@ -3,6 +3,7 @@
 use super::aerodynamics::Aerodynamics;
 use super::tests::{DENSITY, built, by_flow, commands};
 use super::*;
+use crate::actuator_line::{Load, Onset, QuasiSteady};
 use crate::aero::blade_element::Theory;
 use crate::aero::induction::TwoConstant;
 use crate::aero::rotor;
@@ -196,4 +197,43 @@ fn the_drag_of_a_nacelle_is_that_of_the_wind_without_its_own_wake() {
     let area = std::f64::consts::PI * radius * radius;
     let drag = 0.5 * DENSITY * 0.85 * area * 81.0;
     assert!((nacelle.force.x + drag).abs() < 1e-9 * drag, "{}", nacelle.force);
+}
+
+/// Blades in air that answers strongly, at angles of attack all round the circle: a circulation that no wind
+/// bears out must not blow itself up.
+#[test]
+fn answers_of_the_air_to_stalled_blades_stay_as_strong_as_the_wind_that_they_answer_to() {
+    let turbine = built(false, by_flow(false));
+    let line = &turbine.line;
+    let n = line.elements().len() * turbine.definition().n_blades;
+    let motions = &turbine.workspace.motions;
+    // An element feels its own trailing vortices most, as half a metre behind it, its neighbours less.
+    let influence: Vec<Vector3> = (0..n * n)
+        .map(|place| {
+            let (row, column) = (place / n, place % n);
+            let apart = row.abs_diff(column) as f64;
+            let axes = motions[row].axes;
+            (axes.tangent - axes.normal) * (0.5 / (1.0 + 4.0 * apart * apart))
+        })
+        .collect();
+    let circulations: Vec<f64> = (0..n).map(|index| 20.0 * (index as f64 * 0.7).sin()).collect();
+    let mut answering = answering::Answering::new(n);
+    for step in 0..36 {
+        let angle = f64::from(step).to_radians() * 10.0;
+        let onset = Onset { normal: 9.0 * angle.sin(), tangential: 9.0 * angle.cos() };
+        let (onsets, pitch) = (vec![onset; n], vec![0.0; n]);
+        let (mut corrections, mut loads) = (vec![[0.0; 2]; n], vec![Load::default(); n]);
+        let answer = basis::Answer {
+            circulations: &circulations,
+            influence: &influence,
+            at_nacelle: Vector3::ZERO,
+        };
+        answering.begin(Some(answer), motions);
+        let sections = &mut QuasiSteady(line);
+        answering.loads(line, &onsets, &pitch, sections, &mut corrections, &mut loads);
+        for (load, [axial, tangential]) in loads.iter().zip(&corrections) {
+            assert!(axial.hypot(*tangential) <= 9.0 * (1.0 + 1e-12), "{angle}");
+            assert!(load.circulation.abs() < 200.0 && load.normal.is_finite(), "{angle} {load:?}");
+        }
+    }
 }
