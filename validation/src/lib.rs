@@ -26,6 +26,7 @@ mod folds;
 pub mod free_vortex;
 pub mod gate;
 pub mod helix;
+pub mod identification;
 pub mod inflow;
 mod least_squares;
 mod list;
@@ -41,6 +42,7 @@ pub mod resume;
 pub mod row;
 pub mod structure;
 mod studies;
+pub mod synthesis;
 
 pub use list::{ELSEWHERE, VALIDATIONS};
 use record::{Record, RecordError};

@@ -351,6 +351,24 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "inflow",
         recorded: include_str!("../recorded/inflow.toml"),
     },
+    Validation {
+        name: "identification",
+        about: "subspace identification of simulated systems: poles, order, variance accounted for, delay",
+        cost: Cost::UnderAMinute,
+        run: crate::identification::identification,
+        pictures: None,
+        page: "control-design",
+        recorded: include_str!("../recorded/identification.toml"),
+    },
+    Validation {
+        name: "synthesis",
+        about: "H-infinity controllers of ten plants beside SLICOT's, and beside what no controller can do better",
+        cost: Cost::UnderAMinute,
+        run: crate::synthesis::synthesis,
+        pictures: None,
+        page: "control-design",
+        recorded: include_str!("../recorded/synthesis.toml"),
+    },
 ];
 
 /// Comparisons that `cargo test`, a script or a study repeats; their records are kept by hand.

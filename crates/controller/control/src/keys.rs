@@ -1,8 +1,15 @@
 //! Keys that several kinds of controllers have.
 
 use basis::keys::LeftOut::{Otherwise, Required, Value};
-use basis::keys::{Holds, Key, Objection, Values, above, from, key};
+use basis::keys::{Holds, Key, Objection, Range, Values, above, from, key};
 
+pub(crate) const SENSE: Key = key(
+    "sense",
+    Holds::Choice(&["cw", "ccw"]),
+    "",
+    Required,
+    "`ccw`: blades pitch at rotor plus excitation frequency. `cw`: at rotor minus excitation frequency.",
+);
 pub(crate) const AMPLITUDE: Key = key(
     "amplitude_deg",
     from(0.0, 10.0),
@@ -30,6 +37,27 @@ pub(crate) const STOP: Key = key(
     "s",
     Otherwise("never"),
     "Time at which it fades out again, over one excitation period as it fades in; at least one period after `start`. After the end of the run it changes nothing.",
+);
+pub(crate) const LIDAR: Key = key(
+    "lidar",
+    Holds::Name,
+    "",
+    Value("\"lidar\""),
+    "The turbine's lidar that looks downwind at its own wake.",
+);
+pub(crate) const VORTEX_FILTER: Key = key(
+    "vortex_filter",
+    Holds::Choice(&["robust", "published"]),
+    "",
+    Value("\"robust\""),
+    "How the hub vortex is found: weighted, with the filter's delay made good in the phase, or as in the paper (fast region, delay left in).",
+);
+pub(crate) const VORTEX_CENTRE: Key = key(
+    "vortex_centre",
+    Holds::Pair(Range { low: -500.0, open: false, high: 500.0 }),
+    "m",
+    Otherwise("the running mean over one period of the helix"),
+    "Centre that the hub vortex is taken to turn about, to the left and up from the rotor's centre: a loop that shall mend a bias needs it, a running mean takes the bias off.",
 );
 /// A shared library under an excitation.
 pub(crate) const BASE: [Key; 5] = [

@@ -2,9 +2,10 @@
 //! says of it.
 
 use crate::baseline::{CoefficientTable, Constants};
+use crate::error::ControlError;
 use crate::excitation::excitation_rate;
-use crate::library::{Hosted, Libraries, LibraryError};
-use crate::meandering::MeanderingError;
+use crate::library::{Hosted, Libraries};
+use crate::linear_law::LinearLaw;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use crate::phase_sync::PhaseSyncSettings;
 use crate::{Baseline, Controller};
@@ -12,10 +13,9 @@ use basis::keys::{LeftOut, Objection, Table, Value, Values};
 use basis::records::PitchResponse;
 use basis::registry::Named;
 use basis::{Channel, Sense};
-use estimation::{Definition, EstimationError};
+use estimation::Definition;
 use std::fmt;
 use std::sync::Arc;
-use thiserror::Error;
 
 /// A kind of controller.
 ///
@@ -38,6 +38,11 @@ pub trait ControllerKind: Named + Sync {
 
     /// The shared library that it runs, or goes on top of.
     fn hosted(&self, _control: &Control) -> Option<Hosted> {
+        None
+    }
+
+    /// Path of the linear control law that it runs, as the case has it.
+    fn linear_law(&self, _control: &Control) -> Option<String> {
         None
     }
 
@@ -218,65 +223,6 @@ pub enum Identification {
     OwnPitch(PhaseSyncSettings),
 }
 
-/// Why a turbine cannot be controlled as the case has it.
-#[derive(Debug, Error)]
-pub enum ControlError {
-    /// The phase of a helix cannot be estimated so.
-    #[error("the phase of the helix cannot be estimated")]
-    Estimation(#[from] EstimationError),
-    /// Meandering cannot be followed so.
-    #[error("the meandering cannot be followed")]
-    Meandering(#[from] MeanderingError),
-    /// How pitch acts on the loads is not known.
-    #[error("how pitch acts on the loads was neither given nor identified before the run")]
-    NotDecoupled,
-    /// The azimuth offset of a turbine that joins a helix is not known.
-    #[error(
-        "the azimuth offset with which it pitches was neither given nor identified before the run"
-    )]
-    NoAzimuthOffset,
-    /// An excitation that fades out before it has faded in.
-    #[error(
-        "stop = {stop} s comes before the excitation has its full amplitude: it starts at {start} s and fades in over one period of {period:.1} s; stop at {earliest} s or later, or leave `stop` out"
-    )]
-    StopsTooEarly {
-        /// Given stop (s).
-        stop: f64,
-        /// Start (s).
-        start: f64,
-        /// Excitation period (s).
-        period: f64,
-        /// Earliest stop, in whole seconds (s).
-        earliest: f64,
-    },
-    /// A shared library that cannot serve.
-    #[error(transparent)]
-    Library(LibraryError),
-    /// Nothing runs on a turbine that is not there.
-    #[error("the turbine is not there in this run")]
-    NotThere,
-    /// A key that the kind does not have, or a value that the key cannot hold.
-    #[error("`{key}` = {value:?} cannot be in {heading}; {about}")]
-    Key {
-        /// The kind's table.
-        heading: &'static str,
-        /// The key.
-        key: String,
-        /// Its value; none when it is missing.
-        value: Option<Value>,
-        /// What the key means, or which keys there are.
-        about: String,
-    },
-    /// What a kind that was added has to say.
-    #[error("{kind}: {source}")]
-    Added {
-        /// Name of the kind.
-        kind: &'static str,
-        /// What it says.
-        source: Box<dyn std::error::Error + Send + Sync>,
-    },
-}
-
 /// What runs on a turbine: a kind of controller with its values.
 #[derive(Clone)]
 pub struct Control {
@@ -286,13 +232,15 @@ pub struct Control {
     pub response: Option<PitchResponse>,
     /// Who opens the shared library that it runs; a study sets it where there is one.
     pub libraries: Option<Arc<dyn Libraries>>,
+    /// The linear control law that it runs; a study reads it where there is one.
+    pub linear_law: Option<Arc<LinearLaw>>,
 }
 
 impl Control {
     /// `kind` with `values` as they were read and checked.
     pub fn checked(kind: &'static dyn ControllerKind, values: Values) -> Self {
         let values = values.in_order_of(kind.table());
-        Self { kind, values, response: None, libraries: None }
+        Self { kind, values, response: None, libraries: None, linear_law: None }
     }
 
     /// `kind` with the values `given`, in the units of the case file; the others have their defaults.

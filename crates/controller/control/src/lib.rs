@@ -12,14 +12,18 @@ pub mod baseline;
 mod controller;
 pub mod derate;
 pub mod discon;
+mod error;
 mod excitation;
 pub mod helix;
 mod keys;
 mod kind;
 pub mod library;
+pub mod lidar_loop;
+mod linear_law;
 pub mod meandering;
 mod outcome;
 pub mod phase_sync;
+pub mod probing;
 pub mod pulse;
 pub mod steering;
 mod stop;
@@ -30,14 +34,16 @@ pub use basis::Sense;
 pub use controller::{Controller, ForeignState, from_bytes, to_bytes};
 pub use derate::Derate;
 pub use discon::Discon;
+pub use error::ControlError;
 pub use excitation::{Excitation, OnTop, excitation_rate};
 pub use helix::Helix;
-pub use kind::{
-    Control, ControlError, ControllerKind, Identification, Motion, Pitching, Place, Site,
-};
+pub use kind::{Control, ControllerKind, Identification, Motion, Pitching, Place, Site};
+pub use lidar_loop::LidarLoop;
+pub use linear_law::LinearLaw;
 pub use meandering::Meandering;
 pub use outcome::{MissingChannel, Outcome, TurbineRecord};
 pub use phase_sync::PhaseSync;
+pub use probing::Probing;
 pub use pulse::Pulse;
 pub use steering::Steering;
 
@@ -51,6 +57,8 @@ pub static CONTROLLERS: Registry<dyn ControllerKind> = Registry::new(&[
     &pulse::PULSE,
     &phase_sync::PHASE_SYNC,
     &meandering::MEANDERING,
+    &probing::PROBING,
+    &lidar_loop::LIDAR_LOOP,
     &steering::STEERING,
     &derate::DERATE,
     &discon::DISCON,

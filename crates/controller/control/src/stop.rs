@@ -1,6 +1,6 @@
 //! When an excitation may end.
 
-use crate::kind::ControlError;
+use crate::error::ControlError;
 
 /// The `stop` (s) of an excitation of `rate` (rad/s) that begins at `start` (s), which is to be whole before
 /// it ends.

@@ -4,6 +4,7 @@
 //! [`Estimator::update`]. Parameters are made once from the case; the state is plain data, so that a run that
 //! was killed continues with the same bits.
 
+pub mod hub_vortex;
 pub mod phase_locked;
 
 mod error;

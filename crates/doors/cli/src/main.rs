@@ -50,6 +50,19 @@ enum Command {
     /// Analyse the records of runs: the phase of a helix, gains in several winds, what a loop would lock to
     #[command(subcommand)]
     Analyse(commands::analyse::AnalyseCommand),
+    /// Identify a linear model from a record of inputs and outputs, by subspaces (PBSID-opt)
+    #[cfg(feature = "design")]
+    Identify(commands::identify::IdentifyArguments),
+    /// Synthesise a controller for a model: H-infinity, H2 or LQG, with a Smith predictor for its delay
+    #[cfg(feature = "design")]
+    Synthesize(commands::synthesize::SynthesizeArguments),
+    /// Not in this build
+    #[cfg(not(feature = "design"))]
+    #[command(hide = true, aliases = ["synthesize"])]
+    Identify {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        words: Vec<String>,
+    },
     /// Repeat recorded validations and print measured against expected
     #[cfg(feature = "validate")]
     Validate(commands::validate::ValidateArguments),
@@ -109,14 +122,16 @@ fn run(command: Command) -> ExitCode {
         Command::Inflow(command) => return commands::inflow::run(command),
         Command::Fatigue(arguments) => commands::fatigue::run(&arguments),
         Command::Analyse(command) => commands::analyse::run(&command),
+        #[cfg(feature = "design")]
+        Command::Identify(arguments) => commands::identify::run(&arguments),
+        #[cfg(feature = "design")]
+        Command::Synthesize(arguments) => commands::synthesize::run(&arguments),
+        #[cfg(not(feature = "design"))]
+        Command::Identify { .. } => Err(left_out("control design")),
         #[cfg(feature = "validate")]
         Command::Validate(arguments) => return commands::validate::run(&arguments),
         #[cfg(not(feature = "validate"))]
-        Command::Validate { words } => Err(miette::miette!(
-            help = "build it with its default features, without --no-default-features",
-            "this program was built without validations: `wakemix validate {}` is not in it",
-            words.join(" ")
-        )),
+        Command::Validate { .. } => Err(left_out("validations")),
         Command::Schema { precursor } => {
             let case = if precursor { case::precursor_schema() } else { case::schema() };
             output::print(&(case + "\n"))
@@ -130,6 +145,15 @@ fn run(command: Command) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(report) => output::refuse(&report),
     }
+}
+
+/// Why `what` cannot be had here.
+#[cfg(not(all(feature = "design", feature = "validate")))]
+fn left_out(what: &str) -> miette::Report {
+    miette::miette!(
+        help = "build it with its default features, without --no-default-features",
+        "this program was built without {what}"
+    )
 }
 
 #[cfg(test)]

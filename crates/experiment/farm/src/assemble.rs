@@ -8,6 +8,7 @@ use crate::plan::{Footprint, Plan};
 use crate::solvers::{Smearing, Solver};
 use crate::{Farm, Machine};
 use basis::Vector3;
+use basis::keys::Objection;
 use control::baseline::Constants;
 use control::{ControlError, Controller, Site};
 use flow::{FlowSolver, lattice};
@@ -19,6 +20,22 @@ use turbine::aero::tower_influence::{Effects, Potential};
 use turbine::aero::{self, TowerInfluence, rotor};
 use turbine::structure::StructureError;
 use turbine::{Definition, Induction, Turbine};
+
+/// What about a further sensor of a turbine cannot be on its machine, or at its control interval.
+#[derive(Debug, thiserror::Error)]
+#[error("sensors.{sensor} of {turbine}: `{key}` {message}; {fix}")]
+pub struct SensorObjection {
+    /// Name of the turbine.
+    pub turbine: String,
+    /// Name of the sensor.
+    pub sensor: String,
+    /// Key that it is about, `kind` for the whole table.
+    pub key: &'static str,
+    /// What is wrong.
+    pub message: String,
+    /// How to fix it.
+    pub fix: String,
+}
 
 /// Why no farm could be put together.
 #[derive(Debug, thiserror::Error)]
@@ -37,6 +54,9 @@ pub enum AssemblyError {
     /// A turbine's instruments cannot be.
     #[error(transparent)]
     Instruments(#[from] InstrumentError),
+    /// A further sensor of a turbine cannot be on this machine, or at this control interval.
+    #[error(transparent)]
+    Sensor(Box<SensorObjection>),
     /// The system has no more threads to give.
     #[error("no threads for the turbines")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -236,6 +256,13 @@ pub fn sensing(
     let mut sensing = Sensing::new(placement.instruments, seed)?;
     for mounted in &placement.sensors {
         let mount = Mount { definition: &model.definition, foot, interval: plan.interval, seed };
+        let objections = mounted.kind.check_at(&mounted.values, &mount);
+        if let Some(Objection { key, message, fix, .. }) = objections.into_iter().next() {
+            let (turbine, sensor) = (placement.name.clone(), mounted.name.clone());
+            let key = key.unwrap_or("kind");
+            let objection = SensorObjection { turbine, sensor, key, message, fix };
+            return Err(AssemblyError::Sensor(Box::new(objection)));
+        }
         sensing = sensing.with_sensor(&mounted.name, mounted.kind.build(&mounted.values, &mount));
     }
     Ok(sensing)

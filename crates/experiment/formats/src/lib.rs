@@ -9,6 +9,7 @@ pub mod checkpoint;
 mod clock;
 pub mod leftovers;
 pub mod library;
+pub mod linear_model;
 pub mod lock;
 pub mod machine;
 pub mod netcdf;

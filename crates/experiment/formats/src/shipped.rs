@@ -42,7 +42,13 @@ pub const CASES: &[ShippedCase] = &[
     ShippedCase {
         name: "lidar-open-loop",
         file: include_str!("../../../../cases/lidar-open-loop.toml"),
-        minutes: 120.0,
+        minutes: 160.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "lidar-identification",
+        file: include_str!("../../../../cases/lidar-identification.toml"),
+        minutes: 6.0,
         after: None,
     },
     ShippedCase {

@@ -118,10 +118,9 @@ impl Row {
         let place = self.turbines[index].signals.clone();
         let mut next = place.end;
         machine.controller.write_signals(&mut self.values[place]);
-        for reading in machine.sensing.readings() {
-            let n_values = reading.values.len();
-            self.values[next..next + n_values].copy_from_slice(&reading.values);
-            next += n_values;
+        for shown in machine.sensing.recorded() {
+            self.values[next..next + shown.len()].copy_from_slice(shown);
+            next += shown.len();
         }
     }
 

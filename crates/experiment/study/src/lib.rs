@@ -27,6 +27,7 @@ mod gains;
 mod hosting;
 mod in_memory;
 mod jobs;
+mod linear_laws;
 mod loads;
 mod models;
 mod observer;

@@ -4,10 +4,11 @@
 use crate::StudyError;
 use crate::file_of_wind;
 use crate::hosting;
+use crate::linear_laws;
 use crate::models::{self, Machines};
 use crate::threads;
 use crate::warnings::{self, SetupWarning};
-use farm::assemble::{TurbineModel, controller, sensing};
+use farm::assemble::{AssemblyError, TurbineModel, controller, sensing};
 use farm::case::{Case, Run};
 use farm::operation::check_operation;
 use farm::wind::{self, Recorded, Site};
@@ -69,6 +70,7 @@ impl Prepared {
     fn new(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
         let mut case = file.case.clone();
         hosting::attach(&mut case, file.folder());
+        linear_laws::attach(&mut case, file.folder())?;
         let plan = plan(&case, &machines.footprints(case.wind.speed))?;
         let models = machines.equipped(&case);
         threads::check(file)?;
@@ -99,7 +101,11 @@ impl Prepared {
         Ok(Self {
             case_text: formats::case::write(&case),
             turbine_texts: machines.texts,
-            libraries: hosting::digests(&case, file.folder()),
+            libraries: {
+                let mut digests = hosting::digests(&case, file.folder());
+                digests.extend(linear_laws::digests(&case, file.folder()));
+                digests
+            },
             folder: file.folder().to_owned(),
             n_told,
             case,
@@ -133,6 +139,10 @@ fn pointed_at(file: &CaseFile, error: StudyError) -> StudyError {
     match error {
         StudyError::Plan(error) => {
             StudyError::Case(objection(file, &error.key(), error.to_string()))
+        }
+        StudyError::Assembly(AssemblyError::Sensor(ref found)) => {
+            let path = ["turbine", &found.turbine, "sensors", &found.sensor, found.key];
+            StudyError::Case(objection(file, &path, error.to_string()))
         }
         StudyError::Control { run, turbine, source } => {
             let mut message = format!("the controller of {turbine} cannot be built: {source}");
@@ -192,6 +202,5 @@ fn check_control_of(
         let (run, turbine) = (run.name.clone(), placement.name.clone());
         StudyError::Control { run, turbine, source: Box::new(source) }
     })?;
-    let n_shown = sensing(case, plan, &model, index).map_or(0, |sensing| sensing.channels().len());
-    Ok(n_signals + n_shown)
+    Ok(n_signals + sensing(case, plan, &model, index)?.channels().len())
 }

@@ -2,8 +2,8 @@
 
 use basis::Channel;
 use basis::channels::{
-    BLADE_LOADS, LINES, OPERATION, OPERATION_OF_BLADES, TIME, TURBINE_LOADS, WIND, of_meandering,
-    of_phase_sync, span_moment,
+    BLADE_LOADS, LINES, OPERATION, OPERATION_OF_BLADES, TIME, TURBINE_LOADS, WIND, of_lidar_loop,
+    of_meandering, of_phase_sync, span_moment,
 };
 
 #[test]
@@ -18,6 +18,7 @@ fn the_page_names_every_channel_with_its_unit() {
         .chain(['x', 'y'].map(|axis| span_moment(1, axis, 1)))
         .chain(of_phase_sync())
         .chain(of_meandering())
+        .chain(of_lidar_loop())
         .chain(LINES)
         .collect();
     for Channel { name, unit } in declared {

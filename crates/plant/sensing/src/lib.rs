@@ -8,6 +8,7 @@
 mod anemometer;
 mod channel;
 mod instrument;
+mod lidar;
 mod noise;
 mod quantity;
 mod sensor;
@@ -23,7 +24,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// The kinds of sensors; programs built on this one add their own.
-pub static SENSORS: Registry<dyn SensorKind> = Registry::new(&[&anemometer::ANEMOMETER]);
+pub static SENSORS: Registry<dyn SensorKind> =
+    Registry::new(&[&anemometer::ANEMOMETER, &lidar::LIDAR]);
 
 /// The seed of the noise of turbine number `turbine` of a layout in a wind of `seed`: another wind and
 /// another turbine have other noise.
@@ -62,6 +64,8 @@ pub struct Sensing {
     gauges: Vec<Gauge>,
     sensors: Vec<Box<dyn Sensor>>,
     readings: Vec<Reading>,
+    /// Values of each reading that have a channel.
+    n_recorded: Vec<usize>,
     n_readings: u64,
 }
 
@@ -87,8 +91,7 @@ impl Sensing {
                 gauges.push(Gauge { quantity, instrument, channels: Default::default() });
             }
         }
-        let (sensors, readings) = (Vec::new(), Vec::new());
-        Ok(Self { instruments, seed, gauges, sensors, readings, n_readings: 0 })
+        Ok(Self { instruments, seed, gauges, ..Self::perfect() })
     }
 
     /// Instruments that show the truth.
@@ -99,13 +102,15 @@ impl Sensing {
             gauges: Vec::new(),
             sensors: Vec::new(),
             readings: Vec::new(),
+            n_recorded: Vec::new(),
             n_readings: 0,
         }
     }
 
     /// The same with `sensor`, whose readings go by `name`.
     pub fn with_sensor(mut self, name: &str, sensor: Box<dyn Sensor>) -> Self {
-        let values = vec![0.0; sensor.channels().len()];
+        let values = vec![0.0; sensor.n_values()];
+        self.n_recorded.push(sensor.channels().len());
         self.readings.push(Reading { sensor: name.to_owned(), values });
         self.sensors.push(sensor);
         self
@@ -119,6 +124,12 @@ impl Sensing {
     /// What the further sensors showed last, by their names.
     pub fn readings(&self) -> &[Reading] {
         &self.readings
+    }
+
+    /// What of the readings has a channel, in the order of [`Self::channels`]: one slice for each sensor.
+    pub fn recorded(&self) -> impl Iterator<Item = &[f64]> {
+        let named = self.readings.iter().zip(&self.n_recorded);
+        named.map(|(reading, n_recorded)| &reading.values[..*n_recorded])
     }
 
     /// Channels of the further sensors, `SENSOR.CHANNEL`, in the order of [`Self::readings`].

@@ -25,8 +25,13 @@ pub trait Sensor: Send {
     /// Names of its values and their units in files, such as `LineOfSight1` in m/s.
     fn channels(&self) -> Vec<Channel>;
 
-    /// On return `values`, one for each channel, hold what it shows of `scene`, in SI units. Must not
-    /// allocate.
+    /// Its values (–): one for each channel, and behind them those that controllers see and no series keeps.
+    fn n_values(&self) -> usize {
+        self.channels().len()
+    }
+
+    /// On return `values`, as many as [`n_values`](Self::n_values) says, hold what it shows of `scene`, in SI
+    /// units. Must not allocate.
     fn read(&mut self, scene: &Scene, values: &mut [f64]);
 
     /// Everything that time changes, for a checkpoint.
@@ -67,6 +72,11 @@ pub trait SensorKind: Named + Sync {
 
     /// What about `values` cannot be, beyond what the keys say.
     fn check(&self, _values: &Values) -> Vec<Objection> {
+        Vec::new()
+    }
+
+    /// What about `values` cannot be at `mount`: on this machine, at this control interval.
+    fn check_at(&self, _values: &Values, _mount: &Mount) -> Vec<Objection> {
         Vec::new()
     }
 

@@ -194,11 +194,32 @@ pub struct FollowedMoment {
     pub pitch: Channel,
 }
 
+/// Tilt and yaw that are pitched, in the frame that turns with the helix.
+pub const HELIX_FRAME: [Channel; 2] = [angle("HelixTilt"), angle("HelixYaw")];
+
+/// Where a lidar sees the hub vortex: to the left and up from the rotor's centre, then its tilt and yaw in
+/// the frame that turns with the helix, and how far that can be trusted.
+pub const HUB_VORTEX: [Channel; 5] = [
+    length("HubVortexLeft"),
+    length("HubVortexUp"),
+    length("HubVortexTilt"),
+    length("HubVortexYaw"),
+    HUB_VORTEX_TRUST,
+];
+/// The last of these.
+pub const HUB_VORTEX_TRUST: Channel = share("HubVortexTrust");
+/// Share of a lidar loop's command that is given.
+pub const LOOP_SHARE: Channel = share("LoopShare");
+
 /// Average, tilt and yaw of the wind along radial lines at the place of an absent turbine.
 pub const LINES: [Channel; 3] = [speed("LinesAvg"), speed("LinesTilt"), speed("LinesYaw")];
 
 const fn speed(name: &'static str) -> Channel {
     Channel::new(name, Unit::MetrePerSecond)
+}
+
+const fn length(name: &'static str) -> Channel {
+    Channel::new(name, Unit::Metre)
 }
 
 const fn angle(name: &'static str) -> Channel {
@@ -255,6 +276,17 @@ pub fn of_meandering() -> Vec<Channel> {
     ]
 }
 
+/// The signals of a controller that pitches in the frame that turns with the helix and watches the hub
+/// vortex.
+pub fn of_helix_frame() -> Vec<Channel> {
+    HELIX_FRAME.into_iter().chain(HUB_VORTEX).collect()
+}
+
+/// The signals of a lidar loop.
+pub fn of_lidar_loop() -> Vec<Channel> {
+    of_helix_frame().into_iter().chain([LOOP_SHARE]).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -278,8 +310,12 @@ mod tests {
         let blades =
             OPERATION_OF_BLADES.iter().flat_map(|channel| [1, 2].map(|b| channel.of_blade(b)));
         let lists = OPERATION.into_iter().chain(blades).chain(loads_of(2));
-        let names: Vec<Channel> =
-            lists.chain(of_phase_sync()).chain(of_meandering()).chain(LINES).collect();
+        let names: Vec<Channel> = lists
+            .chain(of_phase_sync())
+            .chain(of_meandering())
+            .chain(of_lidar_loop())
+            .chain(LINES)
+            .collect();
         let unique: BTreeSet<&str> = names.iter().map(|channel| &*channel.name).collect();
         assert_eq!(unique.len(), names.len());
         let is_word = |c: char| c.is_ascii_alphanumeric();

@@ -1,6 +1,7 @@
 //! What crosses the wall between plant and controller, and the truth behind it.
 
 use crate::PerBlade;
+use crate::scan::Scan;
 use serde::{Deserialize, Serialize};
 
 /// True state of a turbine at one control instant, which records keep. Controllers never see it.
@@ -122,7 +123,8 @@ pub struct Measurements<'a> {
 pub struct Reading {
     /// Name of the sensor in the case file.
     pub sensor: String,
-    /// Its values, in the order of its channels, in SI units.
+    /// Its values, in the order of its channels, in SI units; a lidar's go on behind them, as
+    /// [`Scan`] has it.
     pub values: Vec<f64>,
 }
 
@@ -136,6 +138,12 @@ impl Measurements<'_> {
     pub fn reading(&self, sensor: &str) -> Option<&[f64]> {
         let reading = self.readings.iter().find(|reading| reading.sensor == sensor)?;
         Some(&reading.values)
+    }
+
+    /// The latest scan of the lidar called `sensor`; none where the turbine has no such sensor, or it is no
+    /// lidar.
+    pub fn scan(&self, sensor: &str) -> Option<Scan<'_>> {
+        Scan::of(self.reading(sensor)?)
     }
 }
 

@@ -7,16 +7,21 @@
 //! | a low-pass of first order | [`LowPass`] | exact for an input held over the interval |
 //! | low-pass, high-pass, notch, second order | [`SecondOrder`] | bilinear, exact at its own frequency |
 //! | poles | [`roots`] | |
+//! | several inputs and outputs | [`Recursion`] | as given |
 //!
 //! The interval is given with every sample, so that a filter works at any. Filters are plain data that
 //! serialise whole.
 
 pub mod lag;
 mod low_pass;
+#[cfg(feature = "matrices")]
+pub mod matrices;
+mod recursion;
 mod roots;
 mod second_order;
 
 pub use low_pass::{LowPass, Smoother};
 pub use num_complex::Complex64;
+pub use recursion::Recursion;
 pub use roots::roots;
 pub use second_order::SecondOrder;

@@ -1,7 +1,8 @@
 //! `kind = "baseline"`: greedy control, nothing on top.
 
 use crate::Controller;
-use crate::kind::{Control, ControlError, ControllerKind, Site};
+use crate::error::ControlError;
+use crate::kind::{Control, ControllerKind, Site};
 use basis::keys::Table;
 use basis::registry::Named;
 

@@ -2,7 +2,8 @@
 
 use super::Derate;
 use crate::Controller;
-use crate::kind::{Control, ControlError, ControllerKind, Site};
+use crate::error::ControlError;
+use crate::kind::{Control, ControllerKind, Site};
 use basis::keys::LeftOut::Required;
 use basis::keys::{Table, from, key};
 use basis::registry::Named;

@@ -2,8 +2,9 @@
 
 use super::Discon;
 use crate::Controller;
+use crate::error::ControlError;
 use crate::keys::BASE;
-use crate::kind::{Control, ControlError, ControllerKind, Site};
+use crate::kind::{Control, ControllerKind, Site};
 use crate::library::{Hosted, LibraryError};
 use basis::keys::LeftOut::Required;
 use basis::keys::{Holds, Table, key};

@@ -15,7 +15,8 @@ pub(crate) use kind::base;
 pub use swap::{N_RECORDS, TEXTS};
 
 use crate::controller::{Controller, ForeignState, from_bytes, to_bytes};
-use crate::kind::{ControlError, Site};
+use crate::error::ControlError;
+use crate::kind::Site;
 use crate::library::{Hosted, Libraries, Library, LibraryError, Request};
 use basis::{Commands, Measurements, PerBlade};
 use journal::Journal;

@@ -4,14 +4,17 @@ use super::Helix;
 use super::chirp::{self, Chirp};
 use crate::Controller;
 use crate::discon::base;
+use crate::error::ControlError;
 use crate::excitation::Excitation;
-use crate::keys::{AMPLITUDE, BASE, PHASE_RANGE, START, STOP, STROUHAL, sense, starts_too_late};
-use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site};
+use crate::keys::{
+    AMPLITUDE, BASE, PHASE_RANGE, SENSE, START, STOP, STROUHAL, sense, starts_too_late,
+};
+use crate::kind::{Control, ControllerKind, Motion, Pitching, Place, Site};
 use crate::library::Hosted;
 use crate::stop::stop_of;
 use basis::Sense;
-use basis::keys::LeftOut::{Otherwise, Required, Value};
-use basis::keys::{Holds, Key, Objection, Table, Values, above, key};
+use basis::keys::LeftOut::{Otherwise, Value};
+use basis::keys::{Key, Objection, Table, Values, above, key};
 use basis::registry::Named;
 
 /// The helix.
@@ -24,13 +27,7 @@ static TABLE: Table = Table {
     heading: "control.T1 = { kind = \"helix\", … }",
     about: "Individual pitch that moves the thrust centre on a circle, on top of baseline.",
     keys: &[
-        key(
-            "sense",
-            Holds::Choice(&["cw", "ccw"]),
-            "",
-            Required,
-            "`ccw`: blades pitch at rotor plus excitation frequency. `cw`: at rotor minus excitation frequency.",
-        ),
+        SENSE,
         AMPLITUDE,
         STROUHAL,
         key(

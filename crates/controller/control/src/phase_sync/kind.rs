@@ -4,11 +4,10 @@ use super::settings::{PhaseEstimator, PhaseSyncSettings, TABLE, response_of};
 use super::{PhaseSync, SyncSettings, choices};
 use crate::Controller;
 use crate::discon::base;
+use crate::error::ControlError;
 use crate::excitation::Excitation;
 use crate::keys::{sense, starts_too_late};
-use crate::kind::{
-    Control, ControlError, ControllerKind, Identification, Motion, Pitching, Place, Site,
-};
+use crate::kind::{Control, ControllerKind, Identification, Motion, Pitching, Place, Site};
 use crate::library::Hosted;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::angle::wrap_to_turn;

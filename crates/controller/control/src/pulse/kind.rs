@@ -3,9 +3,10 @@
 use super::Pulse;
 use crate::Controller;
 use crate::discon::base;
+use crate::error::ControlError;
 use crate::excitation::Excitation;
 use crate::keys::{AMPLITUDE, BASE, PHASE_RANGE, START, STOP, STROUHAL, starts_too_late};
-use crate::kind::{Control, ControlError, ControllerKind, Motion, Pitching, Place, Site};
+use crate::kind::{Control, ControllerKind, Motion, Pitching, Place, Site};
 use crate::library::Hosted;
 use crate::stop::stop_of;
 use basis::keys::LeftOut::Value;

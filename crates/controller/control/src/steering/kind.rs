@@ -2,9 +2,10 @@
 
 use super::Steering;
 use crate::Controller;
+use crate::error::ControlError;
 use crate::excitation::Excitation;
 use crate::keys::starts_too_late;
-use crate::kind::{Control, ControlError, ControllerKind, Place, Site};
+use crate::kind::{Control, ControllerKind, Place, Site};
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::Channel;
 use basis::channels::NAC_YAW;

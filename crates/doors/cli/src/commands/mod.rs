@@ -5,6 +5,8 @@ mod arguments;
 pub(crate) mod cases;
 pub(crate) mod definition;
 pub(crate) mod fatigue;
+#[cfg(feature = "design")]
+pub(crate) mod identify;
 pub(crate) mod inflow;
 mod inflow_info;
 mod inflow_precursor;
@@ -16,6 +18,8 @@ pub(crate) mod report;
 pub(crate) mod run;
 mod stop;
 mod sweep_table;
+#[cfg(feature = "design")]
+pub(crate) mod synthesize;
 pub(crate) mod table;
 pub(crate) mod turbine;
 #[cfg(feature = "validate")]

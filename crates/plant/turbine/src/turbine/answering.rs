@@ -9,8 +9,8 @@
 //!
 //! A section whose lift falls with the angle of attack may have no circulation that its own answer bears out:
 //! sweeps then do not end but grow, the wind of one circulation making the next. So sweeps that do not come
-//! closer take smaller steps, and no answer is stronger than the wind that it answers to: what one step leaves
-//! behind does not blow harder than what made it. Of attached flow neither changes a bit.
+//! closer take smaller steps, and no answer is stronger than the wind that it answers to: what one step
+//! leaves behind does not blow harder than what made it. Of attached flow neither changes a bit.
 
 use crate::actuator_line::{ActuatorLine, Load, Onset, Sections};
 use crate::motion::ElementMotion;
@@ -105,8 +105,8 @@ impl Answering {
         line.loads_under(onsets, pitch, sections, corrections, loads);
     }
 
-    /// Brings the circulation of each element in turn closer to its section's, by `share` (–) of the way; gives
-    /// the greatest change over the greatest circulation (–).
+    /// Brings the circulation of each element in turn closer to its section's, by `share` (–) of the way;
+    /// gives the greatest change over the greatest circulation (–).
     fn sweep(
         &mut self,
         share: f64,

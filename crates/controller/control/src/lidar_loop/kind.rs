@@ -1,0 +1,195 @@
+//! `kind = "lidar-loop"`: its keys, and how it is built.
+
+use super::{LidarLoop, Limits, Settings, Watch};
+use crate::Controller;
+use crate::discon::base;
+use crate::error::ControlError;
+use crate::excitation::Excitation;
+use crate::keys::{
+    AMPLITUDE, BASE, LIDAR, PHASE_RANGE, SENSE, START, STROUHAL, VORTEX_CENTRE, VORTEX_FILTER,
+    sense, starts_too_late,
+};
+use crate::kind::{Control, ControllerKind, Place, Site};
+use crate::library::Hosted;
+use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
+use basis::channels::{HUB_VORTEX_TRUST, LOOP_SHARE};
+use basis::keys::LeftOut::{Otherwise, Required, Value};
+use basis::keys::{Holds, Objection, Table, Values, above, from, key};
+use basis::registry::Named;
+use basis::{Channel, HelixFrame, Sense};
+
+/// The lidar loop.
+pub struct LidarLoopKind;
+
+/// The kind.
+pub static LIDAR_LOOP: LidarLoopKind = LidarLoopKind;
+
+/// Share of the loop (–) below which it counts as open.
+const CLOSED: f64 = 0.99;
+
+static TABLE: Table = Table {
+    heading: "control.T1 = { kind = \"lidar-loop\", … }",
+    about: "A helix whose hub vortex, seen by a lidar that looks downwind, is held where it is wanted in the helix frame (Chen et al. 2026), on top of baseline.",
+    keys: &[
+        SENSE,
+        AMPLITUDE,
+        STROUHAL,
+        key(
+            "controller",
+            Holds::Text,
+            "",
+            Required,
+            "File of the control law that `wakemix synthesize` wrote: from errors of the hub vortex (m) to tilt and yaw (deg), in the helix frame; a path relative to the case file.",
+        ),
+        key(
+            "reference_tilt",
+            from(-500.0, 500.0),
+            "m",
+            Required,
+            "Where the hub vortex is to be in the helix frame, up component: such as the mean of `HubVortexTilt` of a run with an open helix.",
+        ),
+        key(
+            "reference_yaw",
+            from(-500.0, 500.0),
+            "m",
+            Required,
+            "The same, component to the right: the mean of `HubVortexYaw`.",
+        ),
+        key(
+            "loop_start",
+            from(0.0, 1e6),
+            "s",
+            Otherwise("`start`"),
+            "Time from which the loop is closed; before that the helix is open.",
+        ),
+        LIDAR,
+        VORTEX_FILTER,
+        VORTEX_CENTRE,
+        key(
+            "least_trust",
+            from(0.0, 1.0),
+            "–",
+            Value("0.1"),
+            "Confidence in the hub vortex below which the lidar counts as blind.",
+        ),
+        key(
+            "blind_after",
+            above(0.0, 1e5),
+            "s",
+            Value("5"),
+            "Time without a hub vortex after which the loop fades out to the open helix, over one period of it.",
+        ),
+        key(
+            "correction_limit_deg",
+            above(0.0, 10.0),
+            "deg",
+            Value("3"),
+            "Most that the loop adds to the open helix.",
+        ),
+        key(
+            "correction_rate_deg_per_s",
+            above(0.0, 20.0),
+            "deg/s",
+            Value("0.5"),
+            "Greatest rate at which that changes, in the helix frame.",
+        ),
+        key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero."),
+        key(
+            "azimuth_offset_deg",
+            PHASE_RANGE,
+            "deg",
+            Value("0"),
+            "Azimuth offset of the inverse multi-blade transformation, which decouples tilt and yaw; that with which the model was identified.",
+        ),
+        START,
+        BASE[0],
+        BASE[1],
+        BASE[2],
+        BASE[3],
+        BASE[4],
+    ],
+};
+
+impl Named for LidarLoopKind {
+    fn name(&self) -> &'static str {
+        "lidar-loop"
+    }
+}
+
+impl ControllerKind for LidarLoopKind {
+    fn table(&self) -> &'static Table {
+        &TABLE
+    }
+
+    fn check(&self, values: &mut Values, place: &Place) -> Vec<Objection> {
+        Vec::from_iter(starts_too_late(values, place.duration))
+    }
+
+    fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
+        let values = control.values();
+        let strouhal = values.number("strouhal");
+        let frame = HelixFrame { sense: sense(values), rate: site.rate(strouhal) };
+        let amplitude = values.angle("amplitude_deg");
+        let start = values.number("start");
+        let settings = Settings {
+            frame,
+            amplitude,
+            strouhal,
+            helix: frame.open_helix(amplitude, values.angle("phase_deg")),
+            azimuth_offset: values.angle("azimuth_offset_deg"),
+            reference: ["reference_tilt", "reference_yaw"].map(|key| values.number(key)),
+            starts: [start, values.optional_number("loop_start").unwrap_or(start)],
+            blind_after: values.number("blind_after"),
+            least_trust: values.number("least_trust"),
+            limits: Limits {
+                size: values.angle("correction_limit_deg"),
+                rate: values.angle("correction_rate_deg_per_s"),
+            },
+        };
+        let Some(law) = &control.linear_law else {
+            return Err(ControlError::NoLinearLaw { file: values.word("controller").to_owned() });
+        };
+        if law.interval < site.interval * (1.0 - 1e-6) {
+            return Err(ControlError::FastLinearLaw {
+                file: law.file.clone(),
+                interval: law.interval,
+                control: site.interval,
+            });
+        }
+        let watch = Watch::of(values, site, frame, law.interval)?;
+        let law = (law.recursion.clone(), law.interval);
+        Ok(LidarLoop::new(settings, watch, law).on_top_of(base(control, site)?))
+    }
+
+    fn linear_law(&self, control: &Control) -> Option<String> {
+        Some(control.values().word("controller").to_owned())
+    }
+
+    fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
+        let values = control.values();
+        Some((sense(values), values.number("strouhal")))
+    }
+
+    fn hosted(&self, control: &Control) -> Option<Hosted> {
+        Hosted::of(control.values())
+    }
+
+    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<Channel> {
+        vec![LOOP_SHARE, HUB_VORTEX_TRUST]
+    }
+
+    fn outcome(&self, _: &Control, record: &dyn TurbineRecord) -> Result<Outcome, MissingChannel> {
+        let shares = record.column(&LOOP_SHARE)?;
+        let trust = record.column(&HUB_VORTEX_TRUST)?;
+        let n = shares.len().max(1) as f64;
+        let open = shares.iter().filter(|share| **share < CLOSED).count() as f64 / n;
+        let trust = trust.iter().sum::<f64>() / n;
+        let warning = (open > 0.0).then(|| {
+            format!(
+                " had its lidar loop open for {:.1} % of the analysed time: the lidar did not see the hub vortex (confidence {trust:.2} on the mean), or `loop_start` came later",
+                100.0 * open
+            )
+        });
+        Ok(Outcome { warnings: Vec::from_iter(warning), ..Outcome::default() })
+    }
+}

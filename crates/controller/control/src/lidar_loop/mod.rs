@@ -1,0 +1,189 @@
+//! The lidar loop: the hub vortex of the own wake, seen by a lidar, is held where it is wanted in the frame
+//! that turns with the helix.
+//!
+//! ```text
+//!  reference ──>(+)──error──> law (a file) ──> limits ──>(+)──> tilt, yaw in the helix frame ──> blades
+//!                ^-                                       ^
+//!  lidar ──> hub vortex in the helix frame                open helix
+//! ```
+//!
+//! Source: Chen, van Vondelen, van Wingerden (2026), "Lidar-enhanced closed-loop active helix approach",
+//! Wind Energ. Sci. 11, 1871, section 3.3. The law of `wakemix synthesize` holds the Smith predictor of its
+//! Fig. 7.
+//!
+//! What the paper leaves open: the command is limited in size and rate and the law learns of it by
+//! back-calculation; a lidar that has been blind for too long fades the loop out to the open helix, and in
+//! again when it sees.
+
+mod kind;
+mod watch;
+
+pub use kind::LIDAR_LOOP;
+pub(crate) use watch::{Watch, WatchState};
+
+use crate::controller::{ForeignState, from_bytes, to_bytes};
+use crate::excitation::{Excitation, share, words};
+use basis::mbc::to_blades;
+use basis::{Channel, FixedFrame, HelixFrame, Measurements, PerBlade, channels};
+use lti::Recursion;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Settings of the loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Settings {
+    frame: HelixFrame,
+    /// Amplitude of the open helix, for words (rad), and its Strouhal number (–).
+    amplitude: f64,
+    strouhal: f64,
+    /// The open helix in its frame (rad).
+    helix: [f64; 2],
+    azimuth_offset: f64,
+    /// Where the hub vortex is to be in the helix frame: tilt, yaw (m).
+    reference: [f64; 2],
+    /// Times at which the helix and the loop begin (s).
+    starts: [f64; 2],
+    /// Longest time without a vortex after which the loop fades out (s).
+    blind_after: f64,
+    /// Least confidence with which it is taken to be seen (–).
+    least_trust: f64,
+    limits: Limits,
+}
+
+/// Limits of what the loop adds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Limits {
+    /// Greatest length of tilt and yaw in the helix frame (rad).
+    size: f64,
+    /// Greatest rate of their change (rad/s).
+    rate: f64,
+}
+
+impl Limits {
+    /// `wanted` (rad) brought within, `interval` (s) after it was `before` (rad); directions are kept.
+    fn limited(&self, wanted: [f64; 2], before: [f64; 2], interval: f64) -> [f64; 2] {
+        let wanted = shortened(wanted, self.size);
+        let step = shortened([0, 1].map(|axis| wanted[axis] - before[axis]), self.rate * interval);
+        [0, 1].map(|axis| before[axis] + step[axis])
+    }
+}
+
+/// `components` no longer than `most`; nothing where they are no numbers.
+fn shortened(components: [f64; 2], most: f64) -> [f64; 2] {
+    let length = components[0].hypot(components[1]);
+    if length <= most {
+        components
+    } else if length.is_finite() {
+        components.map(|component| component * most / length)
+    } else {
+        [0.0; 2]
+    }
+}
+
+/// The loop as it runs on one turbine.
+#[derive(Clone, Debug)]
+pub struct LidarLoop {
+    settings: Settings,
+    watch: Watch,
+    /// The law, at rest, and the time between its samples (s).
+    law: (Recursion, f64),
+    state: LoopState,
+}
+
+/// What time changes of it beside the watch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct LoopState {
+    law: Recursion,
+    /// What the law adds (rad), in the helix frame.
+    correction: [f64; 2],
+    /// Share of it that is given (–).
+    share: f64,
+    /// Tilt and yaw that are pitched, in the helix frame (rad).
+    commands: [f64; 2],
+}
+
+impl LidarLoop {
+    fn new(settings: Settings, watch: Watch, (law, interval): (Recursion, f64)) -> Self {
+        let state =
+            LoopState { law: law.clone(), correction: [0.0; 2], share: 0.0, commands: [0.0; 2] };
+        Self { settings, watch, law: (law, interval), state }
+    }
+
+    /// Tilt and yaw (rad) in the helix frame at the instant of `measurements`.
+    fn advance(&mut self, measurements: &Measurements) -> [f64; 2] {
+        let Self { settings, watch, law: (at_rest, interval), state } = self;
+        let time = measurements.time;
+        let sampled = watch.update(measurements);
+        let seen = watch.vortex().filter(|vortex| {
+            vortex.settled
+                && vortex.confidence >= settings.least_trust
+                && watch.blind() <= settings.blind_after
+        });
+        let closed = seen.filter(|_| time >= settings.starts[1]);
+        if let (true, Some(vortex)) = (sampled, closed) {
+            let errors = [0, 1].map(|axis| settings.reference[axis] - vortex.helix[axis]);
+            let before = state.correction;
+            let mut output = [0.0; 2];
+            state.law.step_within(&errors, &mut output, |output| {
+                let wanted = [output[0], output[1]].map(f64::to_radians);
+                let limited = settings.limits.limited(wanted, before, *interval);
+                state.correction = limited;
+                output.copy_from_slice(&limited.map(f64::to_degrees));
+            });
+        }
+        let step = measurements.interval * settings.frame.rate / TAU;
+        let target = if closed.is_some() { 1.0 } else { 0.0 };
+        state.share += (target - state.share).clamp(-step, step);
+        if state.share == 0.0 && closed.is_none() {
+            // What was known of the wake is of no use any more.
+            state.law.clone_from(at_rest);
+            state.correction = [0.0; 2];
+        }
+        let open = share(time, settings.starts[0], None, settings.frame.rate);
+        [0, 1].map(|axis| open * settings.helix[axis] + state.share * state.correction[axis])
+    }
+}
+
+impl Excitation for LidarLoop {
+    fn add_to(&mut self, pitch: &mut PerBlade<f64>, measurements: &Measurements) {
+        let commands = self.advance(measurements);
+        self.state.commands = commands;
+        let [tilt, yaw] = self.settings.frame.to_fixed(measurements.time, commands);
+        let azimuth = measurements.azimuth + self.settings.azimuth_offset;
+        let added = to_blades(azimuth, FixedFrame { average: 0.0, tilt, yaw }, pitch.len());
+        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
+            *pitch += added;
+        }
+    }
+
+    fn describe(&self) -> String {
+        let Settings { frame, amplitude, strouhal, .. } = self.settings;
+        words(&format!("lidar loop {}", frame.sense), amplitude, strouhal)
+    }
+
+    fn signals(&self) -> Vec<Channel> {
+        channels::of_lidar_loop()
+    }
+
+    fn write_signals(&self, values: &mut [f64]) {
+        let (commands, rest) = values.split_at_mut(2);
+        commands.copy_from_slice(&self.state.commands);
+        let (watched, share) = rest.split_at_mut(rest.len() - 1);
+        self.watch.write_signals(watched);
+        share[0] = self.state.share;
+    }
+
+    fn save(&self) -> Vec<u8> {
+        to_bytes(&(&self.state, self.watch.save()))
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), ForeignState> {
+        let (state, watch): (LoopState, WatchState) = from_bytes(state)?;
+        self.state = state;
+        self.watch.restore(watch);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,156 @@
+//! The loop on a wake whose hub vortex follows late, through scans of a lidar.
+
+use super::*;
+use basis::scan::{Scan, ScanBlocks};
+use basis::{Reading, Sense};
+use std::collections::VecDeque;
+
+const INTERVAL: f64 = 0.1;
+const RATE: f64 = 0.15;
+/// Metres of hub vortex a degree of pitch, and the way to the lidar in samples.
+const GAIN: f64 = 4.0;
+const DELAY: usize = 100;
+
+/// A scan of a square grid with a jet of 20 m at `place` (m, left and up).
+fn scan(place: [f64; 2], n_instants: f64) -> Vec<f64> {
+    let grid: Vec<[f64; 2]> =
+        (0..121).map(|k| [f64::from(k % 11 - 5) * 11.0, f64::from(k / 11 - 5) * 11.0]).collect();
+    let mut values = vec![0.0; Scan::n_values(grid.len())];
+    let blocks = ScanBlocks::of(&mut values).expect("whole points");
+    blocks.head.copy_from_slice(&[n_instants, 1.0]);
+    for (point, [left, up]) in grid.iter().enumerate() {
+        let distance = (left - place[0]).hypot(up - place[1]);
+        blocks.speeds[point] = 5.0 + 4.0 * (-(distance / 20.0).powi(2)).exp();
+        blocks.places[0][point] = 126.0;
+        blocks.places[1][point] = *left;
+        blocks.places[2][point] = *up;
+        blocks.times[point] = 0.1 * n_instants;
+    }
+    values
+}
+
+/// An integrating law of `gain` (deg/m s) on each axis, with what it needs not to wind up.
+fn integrating(gain: f64) -> Recursion {
+    let diagonal = |value: f64| vec![vec![value, 0.0], vec![0.0, value]];
+    Recursion::new(&diagonal(1.0), &diagonal(gain * INTERVAL), &diagonal(1.0), &diagonal(0.0))
+        .with_back_calculation(&diagonal(1.0))
+}
+
+/// A wake whose hub vortex follows the command in the helix frame, late, and off by a bias in that frame.
+struct Wake {
+    control: LidarLoop,
+    way: VecDeque<[f64; 2]>,
+    step: u32,
+    bias: [f64; 2],
+    /// Whether the beams come back.
+    sees: bool,
+}
+
+impl Wake {
+    fn new(reference: [f64; 2], bias: [f64; 2], size: f64) -> Self {
+        let frame = HelixFrame { sense: Sense::CounterClockwise, rate: RATE };
+        let amplitude = 3.0_f64.to_radians();
+        let settings = Settings {
+            frame,
+            amplitude,
+            strouhal: 0.3,
+            helix: frame.open_helix(amplitude, 0.0),
+            azimuth_offset: 0.0,
+            reference,
+            starts: [0.0, 100.0],
+            blind_after: 5.0,
+            least_trust: 0.1,
+            limits: Limits { size, rate: 0.5_f64.to_radians() },
+        };
+        let law = (integrating(0.004), INTERVAL);
+        let control = LidarLoop::new(settings, Watch::for_tests(frame), law);
+        Self { control, way: VecDeque::from(vec![[0.0; 2]; DELAY]), step: 0, bias, sees: true }
+    }
+
+    /// One interval; gives the hub vortex in the helix frame as it is at the lidar.
+    fn step(&mut self) -> [f64; 2] {
+        let time = f64::from(self.step) * INTERVAL;
+        self.step += 1;
+        let commands = self.control.state.commands;
+        let answer = [0, 1].map(|axis| GAIN * commands[axis].to_degrees() + self.bias[axis]);
+        self.way.push_back(answer);
+        let vortex = self.way.pop_front().expect("as long as it was");
+        let [up, right] = self.control.settings.frame.to_fixed(time, vortex);
+        let values = scan([-right, up], f64::from(self.step));
+        let readings = [Reading { sensor: "lidar".to_owned(), values }];
+        let readings = if self.sees { &readings[..] } else { &[] };
+        let measured =
+            Measurements { time, interval: INTERVAL, readings, ..Measurements::at_rest(3) };
+        self.control.add_to(&mut PerBlade::splat(3, 0.0), &measured);
+        vortex
+    }
+
+    fn steps(&mut self, n: u32) -> [f64; 2] {
+        (0..n).fold([0.0; 2], |_, _| self.step())
+    }
+}
+
+#[test]
+fn the_hub_vortex_comes_to_its_reference_in_spite_of_a_bias() {
+    let reference = [1.0, 13.0];
+    let mut wake = Wake::new(reference, [-3.0, 4.0], 0.1);
+    let open = wake.steps(990);
+    assert!((open[0] + 3.0).abs() < 0.1 && (open[1] - 16.0).abs() < 0.1, "{open:?}");
+    assert_eq!(wake.control.state.correction, [0.0; 2]);
+    let closed = wake.steps(6000);
+    for axis in 0..2 {
+        // A grid of 11 m places a jet within some tenths of a metre.
+        assert!((closed[axis] - reference[axis]).abs() < 0.6, "{closed:?}");
+    }
+    assert_eq!(wake.control.state.share, 1.0);
+}
+
+#[test]
+fn what_it_adds_stays_within_its_limits_and_does_not_wind_up() {
+    let size = 0.5_f64.to_radians();
+    let mut wake = Wake::new([0.0, 30.0], [0.0; 2], size);
+    let mut before = [0.0; 2];
+    for _ in 0..5000 {
+        wake.step();
+        let now = wake.control.state.correction;
+        assert!(now[0].hypot(now[1]) <= size * (1.0 + 1e-12));
+        let change = (now[0] - before[0]).hypot(now[1] - before[1]);
+        assert!(change <= 0.5_f64.to_radians() * INTERVAL * (1.0 + 1e-9));
+        before = now;
+    }
+    assert!((before[1] - size).abs() < 0.02 * size, "{before:?}");
+    // The error turns: what was wanted beyond the limit for minutes is not worked off first.
+    wake.control.settings.reference = [0.0, 0.0];
+    wake.steps(300);
+    assert!(wake.control.state.correction[1] < 0.5 * size);
+}
+
+#[test]
+fn a_blind_lidar_opens_the_loop_within_a_period_and_sight_closes_it_again() {
+    let mut wake = Wake::new([1.0, 13.0], [-3.0, 4.0], 0.1);
+    wake.steps(4000);
+    assert_eq!(wake.control.state.share, 1.0);
+    wake.sees = false;
+    wake.steps(45);
+    assert_eq!(wake.control.state.share, 1.0, "a short gap is borne");
+    wake.steps(450);
+    assert_eq!(wake.control.state.share, 0.0);
+    assert_eq!(wake.control.state.commands, wake.control.settings.helix);
+    wake.sees = true;
+    wake.steps(1500);
+    assert_eq!(wake.control.state.share, 1.0);
+}
+
+#[test]
+fn it_goes_on_from_what_it_saved_to_the_same_bits() {
+    let mut whole = Wake::new([1.0, 13.0], [-3.0, 4.0], 0.1);
+    whole.steps(2000);
+    let mut resumed = Wake::new([1.0, 13.0], [-3.0, 4.0], 0.1);
+    resumed.control.restore(&whole.control.save()).expect("its own state");
+    (resumed.way, resumed.step) = (whole.way.clone(), whole.step);
+    for _ in 0..500 {
+        assert_eq!(whole.step(), resumed.step());
+        assert_eq!(whole.control.state.commands, resumed.control.state.commands);
+    }
+    assert_eq!(resumed.control.restore(&[1]), Err(ForeignState));
+}

@@ -1,0 +1,140 @@
+//! `kind = "probing"`: its keys, and how it is built.
+
+use super::Probing;
+use super::noise::BinaryNoise;
+use crate::Controller;
+use crate::discon::base;
+use crate::error::ControlError;
+use crate::excitation::Excitation;
+use crate::keys::{
+    AMPLITUDE, BASE, LIDAR, PHASE_RANGE, SENSE, START, STROUHAL, VORTEX_CENTRE, VORTEX_FILTER,
+    sense, starts_too_late,
+};
+use crate::kind::{Control, ControllerKind, Place, Site};
+use crate::library::Hosted;
+use crate::lidar_loop::Watch;
+use basis::keys::LeftOut::{Otherwise, Value};
+use basis::keys::{Holds, Objection, Table, Values, above, from, key};
+use basis::registry::Named;
+use basis::{HelixFrame, Sense};
+use std::f64::consts::TAU;
+
+/// Probing.
+pub struct ProbingKind;
+
+/// The kind.
+pub static PROBING: ProbingKind = ProbingKind;
+
+static TABLE: Table = Table {
+    heading: "control.T1 = { kind = \"probing\", … }",
+    about: "A helix with pseudo-random binary noise on its tilt and yaw in the helix frame, on top of baseline: what `wakemix identify` finds a model from.",
+    keys: &[
+        SENSE,
+        AMPLITUDE,
+        STROUHAL,
+        key(
+            "noise_amplitude_deg",
+            from(0.0, 5.0),
+            "deg",
+            Value("1"),
+            "Amplitude of the binary noise on tilt and on yaw, before it is filtered; 0 is a helix whose hub vortex is watched.",
+        ),
+        key(
+            "noise_from_hz",
+            from(0.0, 10.0),
+            "Hz",
+            Value("0"),
+            "Lower end of the noise's band; 0 keeps slow changes.",
+        ),
+        key("noise_to_hz", above(0.0, 10.0), "Hz", Value("0.03"), "Upper end of the noise's band."),
+        key(
+            "noise_start",
+            from(0.0, 1e6),
+            "s",
+            Otherwise("`start`"),
+            "Time at which the noise fades in, over one period of the helix.",
+        ),
+        key(
+            "noise_seed",
+            Holds::Whole { least: 0, most: 1 << 32 },
+            "",
+            Value("1"),
+            "Another noise for every seed.",
+        ),
+        LIDAR,
+        VORTEX_FILTER,
+        VORTEX_CENTRE,
+        key(
+            "vortex_interval",
+            from(0.01, 10.0),
+            "s",
+            Value("0.1"),
+            "Time between samples of the hub vortex; at least the control interval.",
+        ),
+        key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero."),
+        key(
+            "azimuth_offset_deg",
+            PHASE_RANGE,
+            "deg",
+            Value("0"),
+            "Azimuth offset of the inverse multi-blade transformation, which decouples tilt and yaw.",
+        ),
+        START,
+        BASE[0],
+        BASE[1],
+        BASE[2],
+        BASE[3],
+        BASE[4],
+    ],
+};
+
+impl Named for ProbingKind {
+    fn name(&self) -> &'static str {
+        "probing"
+    }
+}
+
+impl ControllerKind for ProbingKind {
+    fn table(&self) -> &'static Table {
+        &TABLE
+    }
+
+    fn check(&self, values: &mut Values, place: &Place) -> Vec<Objection> {
+        let [lower, upper] = ["noise_from_hz", "noise_to_hz"].map(|key| values.number(key));
+        let band = (lower >= upper).then(|| Objection {
+            key: Some("noise_from_hz"),
+            message: format!("= {lower} Hz is not below `noise_to_hz` = {upper} Hz"),
+            label: "no band is left",
+            fix: "lower `noise_from_hz`, or raise `noise_to_hz`".to_owned(),
+        });
+        starts_too_late(values, place.duration).into_iter().chain(band).collect()
+    }
+
+    fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
+        let values = control.values();
+        let frame = HelixFrame { sense: sense(values), rate: site.rate(values.number("strouhal")) };
+        let band = ["noise_from_hz", "noise_to_hz"].map(|key| TAU * values.number(key));
+        let start = values.number("start");
+        let probing = Probing {
+            frame,
+            helix: frame.open_helix(values.angle("amplitude_deg"), values.angle("phase_deg")),
+            noise: values.angle("noise_amplitude_deg"),
+            azimuth_offset: values.angle("azimuth_offset_deg"),
+            starts: [start, values.optional_number("noise_start").unwrap_or(start)],
+            sources: [0, 1]
+                .map(|channel| BinaryNoise::new(values.number("noise_seed") as u64, channel, band)),
+            commands: [0.0; 2],
+            watch: Watch::of(values, site, frame, values.number("vortex_interval"))?,
+        };
+        Ok(probing.on_top_of(base(control, site)?))
+    }
+
+    fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
+        let values = control.values();
+        Some((sense(values), values.number("strouhal")))
+    }
+
+    fn hosted(&self, control: &Control) -> Option<Hosted> {
+        Hosted::of(control.values())
+    }
+}

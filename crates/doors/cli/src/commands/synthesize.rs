@@ -1,0 +1,154 @@
+//! `wakemix synthesize`: a controller for a model.
+
+use super::output::{print, print_text, tell};
+use clap::Args;
+use design::{Method, SynthesizeQuestion, Synthesized, draw_synthesized, synthesize};
+use miette::{IntoDiagnostic, Result};
+use serde_json::json;
+use std::path::PathBuf;
+use wakemix::report::text_table::{Column, TextTable};
+
+/// Arguments of `wakemix synthesize`.
+#[derive(Args)]
+pub(crate) struct SynthesizeArguments {
+    /// Model that `wakemix identify` wrote (JSON)
+    model: PathBuf,
+    /// What the controller is to do (TOML)
+    #[arg(long, value_name = "FILE")]
+    weights: PathBuf,
+    /// File to write the controller into (JSON); it is not written when left out
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Folder to draw the figures into, as SVG and PNG in its folder `figures`
+    #[arg(long, value_name = "FOLDER")]
+    figures: Option<PathBuf>,
+    /// Print JSON on stdout instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+/// Synthesises, writes the controller, and prints what it does.
+///
+/// # Errors
+/// Models and weights that cannot be read or have no controller, files that cannot be written.
+pub(crate) fn run(arguments: &SynthesizeArguments) -> Result<()> {
+    let question =
+        SynthesizeQuestion { model: arguments.model.clone(), weights: arguments.weights.clone() };
+    let found = synthesize(&question)?;
+    if let Some(path) = &arguments.output {
+        found.controller.write(path)?;
+        tell(&format!("controller: {}", path.display()));
+    }
+    if let Some(folder) = &arguments.figures {
+        let names = draw_synthesized(&found, folder)?;
+        tell(&format!("drawn in {}: {}", folder.join("figures").display(), names.join(", ")));
+    }
+    if arguments.json {
+        print(&(serde_json::to_string_pretty(&json(&found)).into_diagnostic()? + "\n"))
+    } else {
+        print_text(&text(&found))
+    }
+}
+
+/// Name of a method.
+fn name(method: Method) -> &'static str {
+    match method {
+        Method::HInfinity => "H-infinity",
+        Method::H2 => "H2",
+        Method::Lqg => "LQG",
+        Method::Lqi => "LQG with integral action",
+    }
+}
+
+/// A number, or a dash where there is none.
+fn or_dash(value: Option<f64>, digits: usize) -> String {
+    value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
+}
+
+fn text(found: &Synthesized) -> String {
+    let [inner, whole] = found.orders;
+    let mut text = format!("{} controller of order {inner}", name(found.method));
+    if found.delay_samples > 0 {
+        text += &format!(
+            ", {whole} with the Smith predictor that bridges {} samples",
+            found.delay_samples
+        );
+    }
+    text += "\n";
+    if let Some(achieved) = found.achieved {
+        text += &format!("norm of the weighted loop {achieved:.5}");
+        if let Some(bound) = found.bound {
+            text += &format!(", made for a bound of {bound:.5}");
+        }
+        if let Some(before) = found.before_reduction {
+            text += &format!(", {before:.5} before the reduction");
+        }
+        text += "\n";
+    }
+    if let Some([x, y]) = found.riccati_residuals {
+        text += &format!("residuals of the Riccati equations {x:.1e}, {y:.1e}\n");
+    }
+    text += &format!(
+        "without the delay: peak of S {:.3}, of T {:.3}, bandwidth {} rad/s\n",
+        found.peaks[0],
+        found.peaks[1],
+        or_dash(found.bandwidth, 4)
+    );
+    text += &format!(
+        "disc margin of all outputs at once {:.3}: gains {:.2} to {:.2}, phase {:.1}°, at {:.4} rad/s\n",
+        found.disc.size,
+        found.disc.gain[0],
+        found.disc.gain[1],
+        found.disc.phase.to_degrees(),
+        found.disc.frequency
+    );
+    let headings = ["gain up", "gain down", "phase °", "delay s", "crossover rad/s"];
+    let mut table = TextTable::new([Column::words("output")], headings.map(Column::number));
+    for (port, margins) in found.controller.inputs.iter().zip(&found.margins) {
+        table.row([
+            port.name.clone(),
+            or_dash(margins.gain_increase, 2),
+            or_dash(margins.gain_decrease, 2),
+            or_dash(margins.phase.map(f64::to_degrees), 1),
+            or_dash(margins.delay, 2),
+            or_dash(margins.crossover, 4),
+        ]);
+    }
+    text += &table.fitted(super::output::columns());
+    text + "margins: one output opened at a time, the others closed; –: none\n"
+}
+
+fn json(found: &Synthesized) -> serde_json::Value {
+    let margins = found.controller.inputs.iter().zip(&found.margins).map(|(port, margins)| {
+        json!({
+            "output": port.name,
+            "gain_increase": margins.gain_increase,
+            "gain_decrease": margins.gain_decrease,
+            "phase_deg": margins.phase.map(f64::to_degrees),
+            "delay_s": margins.delay,
+            "crossover_rad_s": margins.crossover,
+        })
+    });
+    json!({
+        "controller": found.controller,
+        "method": name(found.method),
+        "bound": found.bound,
+        "achieved": found.achieved,
+        "before_reduction": found.before_reduction,
+        "riccati_residuals": found.riccati_residuals,
+        "order": found.orders[0],
+        "order_with_predictor": found.orders[1],
+        "delay_samples": found.delay_samples,
+        "peak_sensitivity": found.peaks[0],
+        "peak_complementary_sensitivity": found.peaks[1],
+        "bandwidth_rad_s": found.bandwidth,
+        "disc_margin": found.disc.size,
+        "disc_margin_gains": found.disc.gain,
+        "disc_margin_phase_deg": found.disc.phase.to_degrees(),
+        "margins": margins.collect::<Vec<_>>(),
+        "frequencies_rad_s": found.responses.frequencies,
+        "gains": found.responses.gains,
+        "bounds": found.responses.bounds,
+        "steps": found.steps,
+    })
+}

@@ -1,0 +1,67 @@
+//! Why a model or a controller cannot be made.
+
+use formats::FileError;
+use identification::IdentificationError;
+use lti::matrices::MatrixError;
+use miette::Diagnostic;
+use report::ReportError;
+use std::path::PathBuf;
+use synthesis::SynthesisError;
+use thiserror::Error;
+
+/// Why a model or a controller cannot be made.
+#[derive(Debug, Error, Diagnostic)]
+pub enum DesignError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] FileError),
+    /// A record says too little.
+    #[error("{} cannot be identified from: {source}", path.display())]
+    #[diagnostic(help(
+        "take more of the record (--from, --to), shorter windows (--past, --future), or make a run with a broader excitation (kind = \"probing\")"
+    ))]
+    Identification {
+        /// The record.
+        path: PathBuf,
+        /// Why.
+        source: IdentificationError,
+    },
+    /// Rows of a record that are not evenly spaced.
+    #[error("{} has rows {first} s and {other} s apart, at {time} s", path.display())]
+    #[diagnostic(help("give a record of even rows, such as the series of a run"))]
+    UnevenTimes {
+        /// The record.
+        path: PathBuf,
+        /// Distance of the first two rows (s).
+        first: f64,
+        /// Another distance (s).
+        other: f64,
+        /// Where (s).
+        time: f64,
+    },
+    /// No controller for a model and its weights.
+    #[error("no controller for {}: {source}", path.display())]
+    #[diagnostic(help("{}", fix_of(source)))]
+    Synthesis {
+        /// The model.
+        path: PathBuf,
+        /// Why.
+        source: SynthesisError,
+    },
+    /// A quantity of a model cannot be worked out.
+    #[error("{}: {source}", path.display())]
+    Matrix {
+        /// The model.
+        path: PathBuf,
+        /// Why.
+        source: MatrixError,
+    },
+    /// Figures cannot be drawn.
+    #[error("the figures cannot be drawn")]
+    Report(#[from] ReportError),
+}
+
+fn fix_of(_: &SynthesisError) -> &'static str {
+    "change the weight that is named (--weights), or identify a model of lower order"
+}

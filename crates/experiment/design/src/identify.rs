@@ -1,0 +1,210 @@
+//! From a record to a model: PBSID-opt, and what a control engineer asks of it first.
+
+use crate::data::Data;
+use crate::model::{linear_model, rows};
+use crate::{DesignError, Source};
+use faer::Mat;
+use formats::linear_model::LinearModel;
+use identification::decoupling::{azimuth_offset, relative_gains};
+use identification::delay::{by_correlation, by_zeros};
+use identification::fit::{predicted, simulated, variance_accounted_for};
+use identification::frequency::FrequencyResponse;
+use identification::pbsid::{InnovationModel, Regularisation, Settings, Subspace};
+use identification::{IdentificationError, Record, Trend};
+use lti::Complex64;
+use lti::matrices::StateSpace;
+
+/// Most states that are looked at for a gap (–).
+const MOST_STATES: usize = 20;
+/// Longest delay that is looked for (s).
+const LONGEST_DELAY: f64 = 60.0;
+
+/// What to identify, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IdentifyQuestion {
+    /// The record.
+    pub source: Source,
+    /// Every so many samples are kept, after a filter (–).
+    pub decimate: usize,
+    /// Trend that is taken off.
+    pub trend: Trend,
+    /// Windows of past and future (samples).
+    pub windows: [usize; 2],
+    /// Whether an input acts within the same sample.
+    pub feedthrough: bool,
+    /// Order of the model; that of the largest gap among the singular values when absent.
+    pub order: Option<usize>,
+    /// Delay of the outputs that is known (s): taken out of the record, and written beside the model.
+    pub delay: f64,
+    /// Share of the record that is kept aside for validation (–).
+    pub aside: f64,
+    /// Frequency at which the relative gains are wanted, beside zero (rad/s).
+    pub bandwidth: f64,
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Identified {
+    /// The model, as its file has it.
+    pub model: LinearModel,
+    /// Samples of the record, and how many of them were kept aside (–).
+    pub n_samples: [usize; 2],
+    /// Deviations of the states in the order of their weight (–), the first of them.
+    pub singular_values: Vec<f64>,
+    /// Variance of each output that simulation accounts for (%), on what was identified from and on what was
+    /// kept aside.
+    pub accounted_for: [Vec<f64>; 2],
+    /// Variance of each output that prediction one sample ahead accounts for (%), on what was kept aside.
+    pub predicted: Vec<f64>,
+    /// Poles in continuous time (rad/s).
+    pub poles: Vec<Complex64>,
+    /// Transmission zeros in the right half plane, in continuous time (rad/s).
+    pub unstable_zeros: Vec<Complex64>,
+    /// Delay that these zeros stand for (s).
+    pub delay_of_zeros: f64,
+    /// Delay of each output (row) behind each input (column) by prewhitened correlation (s); none where
+    /// nothing is significant.
+    pub delays: Vec<Vec<Option<f64>>>,
+    /// Gain at rest, outputs by inputs.
+    pub gain: Vec<Vec<f64>>,
+    /// Relative gains at rest and real parts at the bandwidth asked for; none of a system that is not square.
+    pub relative_gains: Option<[Vec<Vec<f64>>; 2]>,
+    /// Azimuth offset (rad), on top of that of the record, with which tilt and yaw are decoupled at rest;
+    /// none but of two inputs and two outputs.
+    pub azimuth_offset: Option<f64>,
+    /// Frequency response of record and model.
+    pub response: Responses,
+}
+
+/// Frequency responses at the same frequencies.
+#[derive(Clone, Debug)]
+pub struct Responses {
+    /// Frequencies (rad/s), equally spaced, the first being the spacing.
+    pub frequencies: Vec<f64>,
+    /// Without a model: outputs × inputs at each frequency.
+    pub measured: Vec<Vec<Vec<Complex64>>>,
+    /// Root mean square of its random error, likewise.
+    pub deviations: Vec<Vec<Vec<f64>>>,
+    /// Multiple coherence of each output (–).
+    pub coherences: Vec<Vec<f64>>,
+    /// Of the model.
+    pub modelled: Vec<Vec<Vec<Complex64>>>,
+}
+
+/// Identifies a model.
+///
+/// # Errors
+/// [`DesignError`] naming the record and what is wrong with it.
+pub fn identify(question: &IdentifyQuestion) -> Result<Identified, DesignError> {
+    let data = Data::read(&question.source)?;
+    found(question, &data).map_err(|source| data.failed(source))
+}
+
+fn found(question: &IdentifyQuestion, data: &Data) -> Result<Identified, IdentificationError> {
+    let means = [data.record.inputs(), data.record.outputs()]
+        .map(|channels| channels.iter().map(|channel| mean(&channel.samples)).collect());
+    let record = data.record.detrended(question.trend)?.decimated(question.decimate)?;
+    let interval = record.interval();
+    let shift = (question.delay / interval).round() as usize;
+    let record = record.outputs_advanced(shift)?;
+    let (identified, aside) = record.split(1.0 - question.aside)?;
+    let [past, future] = question.windows;
+    let settings = Settings {
+        past,
+        future,
+        feedthrough: question.feedthrough,
+        regularisation: Regularisation::CrossValidated,
+    };
+    let subspace = Subspace::new(&identified, settings)?;
+    let order = question.order.unwrap_or_else(|| subspace.largest_gap(MOST_STATES));
+    let found = subspace.model(order)?;
+    let system = &found.system;
+    let accounted_for = [&identified, &aside]
+        .map(|record| variance_accounted_for(record, &simulated(system, record)?));
+    let [on_identified, on_aside] = accounted_for;
+    let ahead = predicted(system, &found.gain, &aside)?;
+    let zeros = by_zeros(system).ok();
+    let gain = system.gain_at_rest()?;
+    Ok(Identified {
+        n_samples: [record.n_samples(), aside.n_samples()],
+        singular_values: subspace.singular_values().iter().take(MOST_STATES).copied().collect(),
+        accounted_for: [on_identified?, on_aside?],
+        predicted: variance_accounted_for(&aside, &ahead)?,
+        poles: in_continuous_time(&system.poles()?, interval),
+        delay_of_zeros: zeros.as_ref().map_or(f64::NAN, |zeros| zeros.delay),
+        unstable_zeros: zeros.map_or_else(Vec::new, |zeros| zeros.zeros),
+        delays: delays(&record, shift)?,
+        relative_gains: relative(system, question.bandwidth),
+        azimuth_offset: azimuth_offset(&gain).ok(),
+        gain: rows(&gain),
+        response: responses(&record, system)?,
+        model: in_a_file(question, data, &found, means),
+    })
+}
+
+fn mean(samples: &[f64]) -> f64 {
+    samples.iter().sum::<f64>() / samples.len() as f64
+}
+
+/// The model as its file has it.
+fn in_a_file(
+    question: &IdentifyQuestion,
+    data: &Data,
+    found: &InnovationModel,
+    [input_means, output_means]: [Vec<f64>; 2],
+) -> LinearModel {
+    let order = found.system.order();
+    let description = format!("order {order}, PBSID-opt, from {}", data.path.display());
+    let mut model = linear_model(description, data.ports.clone(), &found.system);
+    model.k = Some(rows(&found.gain));
+    model.output_delay_s = question.delay;
+    (model.input_means, model.output_means) = (input_means, output_means);
+    model
+}
+
+/// Poles `discrete` of samples `interval` (s) apart, in continuous time (rad/s).
+fn in_continuous_time(discrete: &[Complex64], interval: f64) -> Vec<Complex64> {
+    discrete.iter().map(|pole| pole.ln() / interval).collect()
+}
+
+/// Delays of all outputs behind all inputs (s), of a record whose outputs were moved by `shift` samples.
+fn delays(record: &Record, shift: usize) -> Result<Vec<Vec<Option<f64>>>, IdentificationError> {
+    let interval = record.interval();
+    let most = ((LONGEST_DELAY / interval) as usize).min(record.n_samples() / 12);
+    let of_pair = |input: usize, output: usize| {
+        let found = by_correlation(record, input, output, most)?;
+        Ok(found.samples.map(|samples| (samples + shift) as f64 * interval))
+    };
+    let of_output = |output| {
+        (0..record.inputs().len())
+            .map(|input| of_pair(input, output))
+            .collect::<Result<Vec<_>, _>>()
+    };
+    (0..record.outputs().len()).map(of_output).collect()
+}
+
+/// Relative gains at rest and at `bandwidth` (rad/s), real parts.
+fn relative(system: &StateSpace, bandwidth: f64) -> Option<[Vec<Vec<f64>>; 2]> {
+    let at = |frequency| {
+        let gains = relative_gains(system, frequency).ok()?;
+        Some(rows(&Mat::from_fn(gains.nrows(), gains.ncols(), |i, j| gains[(i, j)].re)))
+    };
+    Some([at(0.0)?, at(bandwidth)?])
+}
+
+/// Responses of `record`, in segments of an eighth of it, and of `system`.
+fn responses(record: &Record, system: &StateSpace) -> Result<Responses, IdentificationError> {
+    let measured = FrequencyResponse::new(record, record.n_samples() / 8)?;
+    let complex = |matrix: &Mat<faer::c64>| -> Vec<Vec<Complex64>> {
+        matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+    };
+    let modelled = measured.frequencies.iter().map(|frequency| system.response(*frequency));
+    let modelled = modelled.collect::<Result<Vec<_>, _>>()?;
+    Ok(Responses {
+        measured: measured.responses.iter().map(complex).collect(),
+        deviations: measured.deviations.iter().map(rows).collect(),
+        coherences: measured.coherences,
+        modelled: modelled.iter().map(complex).collect(),
+        frequencies: measured.frequencies,
+    })
+}

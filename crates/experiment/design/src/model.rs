@@ -1,0 +1,36 @@
+//! Between the model in a file and the system that is worked with.
+
+use faer::Mat;
+use formats::linear_model::{LinearModel, Port};
+use lti::matrices::StateSpace;
+
+/// The system of `model`, delay and means aside.
+pub(crate) fn system(model: &LinearModel) -> StateSpace {
+    let (order, inputs, outputs) = (model.a.len(), model.inputs.len(), model.outputs.len());
+    StateSpace::new(
+        matrix(&model.a, order, order),
+        matrix(&model.b, order, inputs),
+        matrix(&model.c, outputs, order),
+        matrix(&model.d, outputs, inputs),
+        model.interval_s,
+    )
+}
+
+/// A file's model of `system` with its `ports`, inputs and outputs.
+pub(crate) fn linear_model(
+    description: String,
+    ports: [Vec<Port>; 2],
+    system: &StateSpace,
+) -> LinearModel {
+    let StateSpace { a, b, c, d, interval } = system;
+    LinearModel::new(description, *interval, ports, [a, b, c, d].map(rows))
+}
+
+/// A matrix row by row.
+pub(crate) fn rows(matrix: &Mat<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+}
+
+fn matrix(rows: &[Vec<f64>], height: usize, width: usize) -> Mat<f64> {
+    Mat::from_fn(height, width, |row, column| rows[row][column])
+}
