@@ -122,6 +122,13 @@ impl<E: Excitation> Controller for OnTop<E> {
     }
 }
 
+/// On return each blade's `pitch` (rad) has what is `added` on top.
+pub(crate) fn add(pitch: &mut PerBlade<f64>, added: &PerBlade<f64>) {
+    for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
+        *pitch += added;
+    }
+}
+
 /// "KIND 4.0° St 0.25" of an excitation of `amplitude` (rad) at `strouhal` (–).
 pub(crate) fn words(kind: &str, amplitude: f64, strouhal: f64) -> String {
     format!("{kind} {:.1}° St {strouhal:.2}", amplitude.to_degrees())

@@ -6,7 +6,7 @@ mod kind;
 pub use chirp::Chirp;
 pub use kind::HELIX;
 
-use crate::excitation::{Excitation, excitation_rate, share, words};
+use crate::excitation::{Excitation, add, excitation_rate, share, words};
 use basis::mbc::to_blades;
 use basis::{FixedFrame, Measurements, PerBlade, Sense};
 use serde::{Deserialize, Serialize};
@@ -86,9 +86,7 @@ impl Excitation for Helix {
             return;
         }
         let added = Helix::pitch(self, measurements.time, measurements.azimuth, pitch.len());
-        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
-            *pitch += added;
-        }
+        add(pitch, &added);
     }
 
     fn describe(&self) -> String {

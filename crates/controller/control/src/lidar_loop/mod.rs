@@ -22,7 +22,7 @@ pub use kind::LIDAR_LOOP;
 pub(crate) use watch::{Watch, WatchState};
 
 use crate::controller::{ForeignState, from_bytes, to_bytes};
-use crate::excitation::{Excitation, share, words};
+use crate::excitation::{Excitation, add, share, words};
 use basis::mbc::to_blades;
 use basis::{Channel, FixedFrame, HelixFrame, Measurements, PerBlade, channels};
 use lti::Recursion;
@@ -151,9 +151,7 @@ impl Excitation for LidarLoop {
         let [tilt, yaw] = self.settings.frame.to_fixed(measurements.time, commands);
         let azimuth = measurements.azimuth + self.settings.azimuth_offset;
         let added = to_blades(azimuth, FixedFrame { average: 0.0, tilt, yaw }, pitch.len());
-        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
-            *pitch += added;
-        }
+        add(pitch, &added);
     }
 
     fn describe(&self) -> String {

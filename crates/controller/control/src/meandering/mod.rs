@@ -34,7 +34,7 @@ pub use reference::Reference;
 pub use settings::MeanderingSettings;
 
 use crate::controller::{ForeignState, from_bytes, to_bytes};
-use crate::excitation::Excitation;
+use crate::excitation::{Excitation, add};
 use axis::AxisLoop;
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use basis::mbc::{to_blades, to_fixed_frame};
@@ -131,9 +131,7 @@ impl Meandering {
         self.commands = self.target_pitch(&estimate);
         let azimuth = self.azimuth + self.settings.decoupling.azimuth_offset;
         let added = to_blades(azimuth, self.commands, pitch.len());
-        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
-            *pitch += added;
-        }
+        add(pitch, &added);
     }
 
     /// Angles (rad) that pitch on tilt and yaw is meant for, `further` (rad) than the estimate: a quarter

@@ -30,7 +30,7 @@ pub use settings::{
 };
 
 use crate::controller::{ForeignState, from_bytes, to_bytes};
-use crate::excitation::{Excitation, fade_in};
+use crate::excitation::{Excitation, add, fade_in};
 use basis::mbc::to_blades;
 use basis::{Channel, FixedFrame, Measurements, PerBlade, Sense};
 use estimation::helix::HelixEstimatorState as EstimatorState;
@@ -191,9 +191,7 @@ impl Excitation for PhaseSync {
         if self.settings.amplitude == 0.0 {
             return;
         }
-        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
-            *pitch += added;
-        }
+        add(pitch, &added);
     }
 
     fn describe(&self) -> String {

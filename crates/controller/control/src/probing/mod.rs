@@ -10,7 +10,7 @@ mod noise;
 pub use kind::PROBING;
 
 use crate::controller::{ForeignState, from_bytes, to_bytes};
-use crate::excitation::{Excitation, share};
+use crate::excitation::{Excitation, add, share};
 use crate::lidar_loop::{Watch, WatchState};
 use basis::channels::of_helix_frame;
 use basis::mbc::to_blades;
@@ -56,9 +56,7 @@ impl Excitation for Probing {
         let [tilt, yaw] = self.frame.to_fixed(measurements.time, self.commands);
         let azimuth = measurements.azimuth + self.azimuth_offset;
         let added = to_blades(azimuth, FixedFrame { average: 0.0, tilt, yaw }, pitch.len());
-        for (pitch, added) in pitch.iter_mut().zip(added.iter()) {
-            *pitch += added;
-        }
+        add(pitch, &added);
     }
 
     fn describe(&self) -> String {
