@@ -13,7 +13,8 @@ use synthesis::{
 
 const SLYCOT: &str = "slycot 0.7.1 (SLICOT SB10AD)";
 const CLOSED_LOOP: &str = "slycot 0.7.1 (SLICOT AB13DD) on SLICOT's own loop";
-const INTERPOLATION: &str = "|W_P(z)|, Skogestad and Postlethwaite 2005, Eq. 5.57";
+const INTERPOLATION: &str =
+    "|W_P(z)| |z + p|/|z − p|, Skogestad and Postlethwaite 2005, Eqs. 5.57 and 5.60";
 
 /// The plants of `validation/scripts/hinf_beside_slycot.py` with what slycot found.
 const PLANTS: &str = include_str!("../data/synthesis/hinf_plants.json");
@@ -93,7 +94,7 @@ pub fn synthesis() -> Vec<Row> {
         "–",
         CLOSED_LOOP,
     ));
-    rows.extend([0.05, 0.3, 2.0].map(right_half_plane_zero));
+    rows.extend(ZEROS.iter().map(right_half_plane_zero));
     rows
 }
 
@@ -119,16 +120,36 @@ fn beside(plant: &Plant, found: &HInfinity) -> Row {
     }
 }
 
-/// A plant with a zero at `zero` (rad/s) in the right half plane: no controller brings W_P S below |W_P(z)|,
-/// and one whose control costs nothing comes arbitrarily close.
-fn right_half_plane_zero(zero: f64) -> Row {
+/// A plant with a zero z and perhaps a pole p in the right half plane, and the weight of its sensitivity.
+struct NonMinimumPhase {
+    /// z (rad/s).
+    zero: f64,
+    /// p (rad/s).
+    pole: Option<f64>,
+    /// Bandwidth of the weight over z (–), its peak and its attenuation (–).
+    weight: [f64; 3],
+}
+
+const ZEROS: [NonMinimumPhase; 3] = [
+    NonMinimumPhase { zero: 0.05, pole: None, weight: [0.4, 2.0, 0.01] },
+    NonMinimumPhase { zero: 0.3, pole: None, weight: [1.5, 10.0, 0.625] },
+    NonMinimumPhase { zero: 2.0, pole: Some(0.5), weight: [0.2, 3.0, 0.1] },
+];
+
+/// No controller brings W_P S below |W_P(z)| |z + p|/|z − p|, and one whose control costs nothing comes
+/// arbitrarily close.
+fn right_half_plane_zero(case: &NonMinimumPhase) -> Row {
+    let NonMinimumPhase { zero, pole, weight: [bandwidth, peak, attenuation] } = *case;
+    let (slow, fast) = (pole.map_or(zero, |pole| -pole), zero);
     let plant = TransferFunction {
         numerator: vec![-1.0, zero],
-        denominator: vec![1.0, 2.0 * zero, zero * zero],
+        denominator: vec![1.0, slow + fast, slow * fast],
         interval: None,
     };
-    let weight = performance_weight(0.4 * zero, 2.0, 0.01).expect("sound numbers");
-    let least = ((zero / 2.0 + 0.4 * zero) / (zero + 0.01 * 0.4 * zero)).abs();
+    let corner = bandwidth * zero;
+    let weight = performance_weight(corner, peak, attenuation).expect("sound numbers");
+    let of_pole = pole.map_or(1.0, |pole| (zero + pole) / (zero - pole));
+    let least = of_pole * (zero / peak + corner) / (zero + attenuation * corner);
     let weights = SensitivityWeights {
         performance: Some(weight),
         complementary: None,
@@ -137,7 +158,12 @@ fn right_half_plane_zero(zero: f64) -> Row {
     let problem = mixed_sensitivity(&plant.state_space().expect("proper"), &weights);
     let found = h_infinity(&problem.expect("a problem"), &HInfinityOptions::default());
     Row {
-        what: format!("zero at {zero} rad/s in the right half plane: least weighted sensitivity"),
+        what: match pole {
+            None => format!("zero at {zero} rad/s, peak {peak}: least weighted sensitivity"),
+            Some(pole) => format!(
+                "zero at {zero} and pole at {pole} rad/s in the right half plane, peak {peak}: least weighted sensitivity"
+            ),
+        },
         measured: found.map_or(f64::NAN, |found| found.bound),
         expected: least,
         tolerance: Within(2e-3 * least),

@@ -57,8 +57,24 @@ pub(crate) const VORTEX_CENTRE: Key = key(
     Holds::Pair(Range { low: -500.0, open: false, high: 500.0 }),
     "m",
     Otherwise("the running mean over one period of the helix"),
-    "Centre that the hub vortex is taken to turn about, to the left and up from the rotor's centre: a loop that shall mend a bias needs it, a running mean takes the bias off.",
+    "Centre that the hub vortex is taken to turn about, to the left and up from the rotor's centre: a running mean takes a bias at rest off.",
 );
+pub(crate) const VORTEX_INTERVAL: Key = key(
+    "vortex_interval",
+    from(0.01, 10.0),
+    "s",
+    Value("0.1"),
+    "Time between samples of the hub vortex, whose low-pass filter is over 51 of them; at least the control interval.",
+);
+pub(crate) const AZIMUTH_OFFSET: Key = key(
+    "azimuth_offset_deg",
+    PHASE_RANGE,
+    "deg",
+    Value("0"),
+    "Azimuth offset of the inverse multi-blade transformation, which decouples tilt and yaw.",
+);
+pub(crate) const TILT_PHASE: Key =
+    key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero.");
 /// A shared library under an excitation.
 pub(crate) const BASE: [Key; 5] = [
     key(

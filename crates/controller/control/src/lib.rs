@@ -25,6 +25,7 @@ mod outcome;
 pub mod phase_sync;
 pub mod probing;
 pub mod pulse;
+mod samples;
 pub mod steering;
 mod stop;
 

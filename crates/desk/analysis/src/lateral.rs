@@ -125,11 +125,9 @@ mod tests {
         // No multiple of the step: the records would be shifts of each other.
         let mut state = seed.wrapping_mul(0xd134_2543_de82_ef95);
         let next = || {
+            let number = basis::mixed(state);
             state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+            (number >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
         };
         std::iter::repeat_with(next).take(n).collect()
     }

@@ -85,11 +85,15 @@ fn checked(
     options: &HInfinityOptions,
 ) -> Result<HInfinity, SynthesisError> {
     let mut found = String::new();
-    let (first, mut solutions) = (best.bound, Some(best));
-    let mut bound = first;
+    let first = best.bound;
+    let (mut bound, mut solutions) = (first, Some(best));
     for attempt in 0..MOST_CHECKS {
-        if let Some(solutions) = solutions {
-            match of_solutions(plant, normalised, &solutions, lower_bound) {
+        if attempt > 0 {
+            bound = first * (1.0 + BACK_OFF * f64::from(2_u32.pow(attempt - 1)));
+            solutions = Solutions::at(normalised, bound);
+        }
+        if let Some(solutions) = &solutions {
+            match of_solutions(plant, normalised, solutions, lower_bound) {
                 Ok(result) if stands(&result, options) => return Ok(result),
                 Ok(result) => {
                     let [one, other] = result.riccati_residuals;
@@ -101,8 +105,6 @@ fn checked(
                 Err(error) => found = error.to_string(),
             }
         }
-        bound = first * (1.0 + BACK_OFF * f64::from(2_u32.pow(attempt)));
-        solutions = Solutions::at(normalised, bound);
     }
     Err(SynthesisError::CheckFailed { bound, found })
 }

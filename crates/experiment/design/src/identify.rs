@@ -4,7 +4,7 @@ use crate::data::Data;
 use crate::model::{linear_model, rows};
 use crate::{DesignError, Source};
 use faer::Mat;
-use formats::linear_model::LinearModel;
+use formats::linear_model::{LinearModel, Role};
 use identification::decoupling::{azimuth_offset, relative_gains};
 use identification::delay::{by_correlation, by_zeros};
 use identification::fit::{predicted, simulated, variance_accounted_for};
@@ -34,7 +34,8 @@ pub struct IdentifyQuestion {
     pub feedthrough: bool,
     /// Order of the model; that of the largest gap among the singular values when absent.
     pub order: Option<usize>,
-    /// Delay of the outputs that is known (s): taken out of the record, and written beside the model.
+    /// Delay of the outputs that is known (s): taken out of the record in whole samples, and as such written
+    /// beside the model.
     pub delay: f64,
     /// Share of the record that is kept aside for validation (–).
     pub aside: f64,
@@ -138,7 +139,7 @@ fn found(question: &IdentifyQuestion, data: &Data) -> Result<Identified, Identif
         azimuth_offset: azimuth_offset(&gain).ok(),
         gain: rows(&gain),
         response: responses(&record, system)?,
-        model: in_a_file(question, data, &found, means),
+        model: in_a_file(data, &found, shift as f64 * interval, means),
     })
 }
 
@@ -146,18 +147,18 @@ fn mean(samples: &[f64]) -> f64 {
     samples.iter().sum::<f64>() / samples.len() as f64
 }
 
-/// The model as its file has it.
+/// The model as its file has it, its outputs being `delay` (s) late.
 fn in_a_file(
-    question: &IdentifyQuestion,
     data: &Data,
     found: &InnovationModel,
+    delay: f64,
     [input_means, output_means]: [Vec<f64>; 2],
 ) -> LinearModel {
     let order = found.system.order();
     let description = format!("order {order}, PBSID-opt, from {}", data.path.display());
-    let mut model = linear_model(description, data.ports.clone(), &found.system);
+    let mut model = linear_model(Role::Model, description, data.ports.clone(), &found.system);
     model.k = Some(rows(&found.gain));
-    model.output_delay_s = question.delay;
+    model.output_delay_s = delay;
     (model.input_means, model.output_means) = (input_means, output_means);
     model
 }

@@ -1,7 +1,7 @@
 //! Between the model in a file and the system that is worked with.
 
 use faer::Mat;
-use formats::linear_model::{LinearModel, Port};
+use formats::linear_model::{LinearModel, Port, Role};
 use lti::matrices::StateSpace;
 
 /// The system of `model`, delay and means aside.
@@ -16,14 +16,15 @@ pub(crate) fn system(model: &LinearModel) -> StateSpace {
     )
 }
 
-/// A file's model of `system` with its `ports`, inputs and outputs.
+/// What a file holds of `system`, a model or a controller, with its `ports`, inputs and outputs.
 pub(crate) fn linear_model(
+    role: Role,
     description: String,
     ports: [Vec<Port>; 2],
     system: &StateSpace,
 ) -> LinearModel {
     let StateSpace { a, b, c, d, interval } = system;
-    LinearModel::new(description, *interval, ports, [a, b, c, d].map(rows))
+    LinearModel::new(role, description, *interval, ports, [a, b, c, d].map(rows))
 }
 
 /// A matrix row by row.

@@ -4,7 +4,7 @@ use crate::DesignError;
 use crate::model::{linear_model, rows, system};
 use crate::weights::{Method, Quadratic, Weight, WeightsFile};
 use faer::Mat;
-use formats::linear_model::LinearModel;
+use formats::linear_model::{LinearModel, Role};
 use lti::matrices::{
     MatrixError, StateSpace, bilinear, discrete_riccati, inverse_bilinear, sample_delay, series,
 };
@@ -80,7 +80,7 @@ pub struct LoopResponses {
 /// # Errors
 /// [`DesignError`] naming the file and what is wrong with it.
 pub fn synthesize(question: &SynthesizeQuestion) -> Result<Synthesized, DesignError> {
-    let model = LinearModel::read(&question.model)?;
+    let model = LinearModel::read(&question.model, Role::Model)?;
     let weights = WeightsFile::read(&question.weights)?;
     found(&model, &weights)
         .map_err(|source| DesignError::Synthesis { path: question.model.clone(), source })
@@ -224,7 +224,7 @@ fn in_a_file(
         model.description
     );
     let ports = [model.outputs.clone(), model.inputs.clone()];
-    let mut file = linear_model(description, ports, controller);
+    let mut file = linear_model(Role::Controller, description, ports, controller);
     if controller.interval.is_none() {
         return Ok(file);
     }

@@ -49,7 +49,7 @@ pub(crate) struct WeightsFile {
 pub(crate) enum Weight {
     /// (s/M + ω)/(s + A ω).
     FirstOrder { bandwidth: f64, peak: f64, attenuation: f64 },
-    /// scale B² (s² + 2 ω s + ω²)/(s² + 2 B ω s + (B ω)²).
+    /// scale B² (s² + √2 ω s + ω²)/(s² + √2 B ω s + (B ω)²).
     SecondOrder { corner: f64, ratio: f64, scale: f64 },
     /// Coefficients, highest power first.
     Rational { numerator: Vec<f64>, denominator: Vec<f64> },

@@ -3,7 +3,7 @@
 use design::{
     DesignError, IdentifyQuestion, Source, SynthesizeQuestion, Trend, identify, synthesize,
 };
-use formats::linear_model::LinearModel;
+use formats::linear_model::{LinearModel, Role};
 use lti::Recursion;
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -111,7 +111,8 @@ fn the_controller_of_an_identified_model_holds_the_plant_that_was_recorded() {
     assert!(designed.achieved.expect("a norm") <= 1.0001 * designed.bound.expect("a bound"));
     let path = folder.path().join("controller.json");
     designed.controller.write(&path).expect("written");
-    let LinearModel { a, b, c, d, k, .. } = LinearModel::read(&path).expect("what was written");
+    let LinearModel { a, b, c, d, k, .. } =
+        LinearModel::read(&path, Role::Controller).expect("what was written");
     let mut law = Recursion::new(&a, &b, &c, &d).with_back_calculation(&k.expect("a gain"));
     let (mut plant, reference) = (Plant::new(), [1.0, -0.5]);
     let (mut measured, mut command) = ([0.0; 2], [0.0; 2]);

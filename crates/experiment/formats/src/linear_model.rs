@@ -6,17 +6,14 @@ use crate::atomic;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// What the file is, with the version of its form.
-const FORMAT: &str = "wakemix linear model 1";
-/// What the file holds, in words.
-const WHAT: &str = "a linear model";
-
 /// A linear time-invariant system: x(k+1) = A x(k) + B u(k) + K e(k), y(k) = C x(k) + D u(k) + e(k),
 /// deviations from [means](LinearModel::input_means); in continuous time likewise with dx/dt.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LinearModel {
-    format: String,
+    /// What the file is, with the version of its form.
+    #[serde(rename = "format")]
+    pub role: Role,
     /// What it is, in a line.
     pub description: String,
     /// Time between samples (s); none in continuous time.
@@ -51,6 +48,17 @@ pub struct LinearModel {
     pub output_means: Vec<f64>,
 }
 
+/// What a linear system is used as; in a file the value of `format`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Role {
+    /// A model of what answers.
+    #[serde(rename = "wakemix linear model 1")]
+    Model,
+    /// A controller, from errors to controls.
+    #[serde(rename = "wakemix linear controller 1")]
+    Controller,
+}
+
 /// An input or output.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,16 +70,27 @@ pub struct Port {
     pub unit: String,
 }
 
+impl Role {
+    /// It, in words.
+    fn what(self) -> &'static str {
+        match self {
+            Self::Model => "a linear model",
+            Self::Controller => "a control law",
+        }
+    }
+}
+
 impl LinearModel {
     /// A system of its matrices' rows, without noise, delay or means.
     pub fn new(
+        role: Role,
         description: String,
         interval_s: Option<f64>,
         [inputs, outputs]: [Vec<Port>; 2],
         [a, b, c, d]: [Vec<Vec<f64>>; 4],
     ) -> Self {
         Self {
-            format: FORMAT.to_owned(),
+            role,
             description,
             interval_s,
             inputs,
@@ -87,18 +106,26 @@ impl LinearModel {
         }
     }
 
-    /// Reads the file at `path`.
+    /// Reads the file at `path`, which is to hold a system of this `role`.
     ///
     /// # Errors
-    /// [`FileError::System`] where it cannot be read, [`FileError::Content`] with the place where it is none.
-    pub fn read(path: &Path) -> Result<Self, FileError> {
-        let text = atomic::read_text(path, WHAT)?;
-        let refused = |problem: String| {
-            let fix = "write it again with `wakemix identify` or `wakemix synthesize`, or as docs/control-design.md says";
-            FileError::content(WHAT, path, problem, fix)
+    /// [`FileError::System`] where it cannot be read, [`FileError::Content`] with the place where it is none,
+    /// or one of another role.
+    pub fn read(path: &Path, role: Role) -> Result<Self, FileError> {
+        let text = atomic::read_text(path, role.what())?;
+        let fix = match role {
+            Role::Model => "write it with `wakemix identify`, or as docs/control-design.md says",
+            Role::Controller => {
+                "write it with `wakemix synthesize`, or as docs/control-design.md says"
+            }
         };
+        let refused = |problem: String| FileError::content(role.what(), path, problem, fix);
         let model: Self =
             serde_json::from_str(&text).map_err(|error| refused(error.to_string()))?;
+        if model.role != role {
+            let [found, wanted] = [model.role, role].map(Role::what);
+            return Err(refused(format!("it holds {found}, not {wanted}, as its `format` says")));
+        }
         model.check().map_err(refused)?;
         Ok(model)
     }
@@ -109,7 +136,7 @@ impl LinearModel {
     /// [`FileError::System`] where it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), FileError> {
         let text = serde_json::to_string_pretty(self).expect("plain numbers and texts");
-        atomic::write(path, WHAT, (text + "\n").as_bytes())
+        atomic::write(path, self.role.what(), (text + "\n").as_bytes())
     }
 
     /// Samples by which the outputs come later than the matrices say (–); 0 in continuous time.
@@ -120,9 +147,6 @@ impl LinearModel {
     /// # Errors
     /// What of it does not fit, in words.
     fn check(&self) -> Result<(), String> {
-        if self.format != FORMAT {
-            return Err(format!("`format` is \"{}\" where \"{FORMAT}\" is expected", self.format));
-        }
         let (order, inputs, outputs) = (self.a.len(), self.inputs.len(), self.outputs.len());
         let matrices = [
             ("A", &self.a, [order, order]),
@@ -170,6 +194,7 @@ mod tests {
             k: Some(vec![vec![0.1]]),
             output_delay_s: 11.2,
             ..LinearModel::new(
+                Role::Model,
                 "a lag".to_owned(),
                 Some(0.1),
                 [vec![port("tilt", "deg")], vec![port("z", "m")]],
@@ -183,7 +208,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("model.json");
         sample().write(&path).unwrap();
-        assert_eq!(LinearModel::read(&path).unwrap(), sample());
+        assert_eq!(LinearModel::read(&path, Role::Model).unwrap(), sample());
         assert_eq!(sample().delay_samples(), 112);
     }
 
@@ -194,12 +219,17 @@ mod tests {
         let mut wrong = sample();
         wrong.b = vec![vec![0.1, 0.2]];
         wrong.write(&path).unwrap();
-        let said = LinearModel::read(&path).unwrap_err().to_string();
+        let said = LinearModel::read(&path, Role::Model).unwrap_err().to_string();
         assert!(said.contains("model.json") && said.contains("`B` is not 1 × 1"), "{said}");
+        sample().write(&path).unwrap();
+        let said = LinearModel::read(&path, Role::Controller).unwrap_err().to_string();
+        assert!(said.contains("it holds a linear model, not a control law"), "{said}");
         fs::write(&path, "{\n\"format\": 3}").unwrap();
-        let said = LinearModel::read(&path).unwrap_err().to_string();
+        let said = LinearModel::read(&path, Role::Model).unwrap_err().to_string();
         assert!(said.contains("line 2"), "{said}");
-        let missing = LinearModel::read(&folder.path().join("none.json")).unwrap_err().to_string();
+        let missing = LinearModel::read(&folder.path().join("none.json"), Role::Model)
+            .unwrap_err()
+            .to_string();
         assert!(missing.contains("none.json"), "{missing}");
     }
 }

@@ -3,7 +3,7 @@
 use control::LinearLaw;
 use farm::case::Case;
 use formats::FileError;
-use formats::linear_model::LinearModel;
+use formats::linear_model::{LinearModel, Port, Role};
 use formats::records;
 use lti::Recursion;
 use std::collections::BTreeMap;
@@ -13,13 +13,15 @@ use std::sync::Arc;
 /// What such a file holds, in words.
 const WHAT: &str = "a control law";
 /// How to have one.
-const FIX: &str = "name the controller that `wakemix synthesize` wrote, with an interval and as many inputs and outputs as the loop has";
+const FIX: &str = "name the controller that `wakemix synthesize` wrote from a model in samples, of tilt and yaw (deg) and the hub vortex (m)";
+/// How names of the two components end, in the order of the loop.
+const ENDINGS: [[&str; 2]; 2] = [["tilt", "up"], ["yaw", "right"]];
 
 /// On return every control of `case` that runs a linear law has it; paths are relative to `folder`.
 ///
 /// # Errors
-/// [`FileError`] for a file that cannot be read, or that holds no law in discrete time of two errors and two
-/// commands.
+/// [`FileError`] for a file that cannot be read, or that holds no law in discrete time of two errors (m) and
+/// two commands (deg).
 pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
     for control in case.runs.iter_mut().flat_map(|run| &mut run.control) {
         if let Some(file) = control.kind().linear_law(control) {
@@ -41,40 +43,96 @@ pub(crate) fn digests(case: &Case, folder: &Path) -> BTreeMap<String, String> {
 
 fn law(file: String, folder: &Path) -> Result<LinearLaw, FileError> {
     let path = folder.join(&file);
-    let model = LinearModel::read(&path)?;
+    let model = LinearModel::read(&path, Role::Controller)?;
     let refused = |problem: String| FileError::content(WHAT, &path, problem, FIX);
-    let sizes = [model.inputs.len(), model.outputs.len()];
-    if sizes != [2, 2] {
-        let [inputs, outputs] = sizes;
-        return Err(refused(format!("it has {inputs} inputs and {outputs} outputs, not 2 and 2")));
-    }
+    let errors =
+        places(&model.inputs, "m").map_err(|found| refused(format!("`inputs` {found}")))?;
+    let commands =
+        places(&model.outputs, "deg").map_err(|found| refused(format!("`outputs` {found}")))?;
     let Some(interval) = model.interval_s else {
         return Err(refused("it is in continuous time: `interval_s` is missing".to_owned()));
     };
     let LinearModel { a, b, c, d, k, .. } = model;
-    let recursion = Recursion::new(&a, &b, &c, &d);
+    let columns = |rows: Vec<Vec<f64>>, order: [usize; 2]| -> Vec<Vec<f64>> {
+        rows.iter().map(|row| order.map(|place| row[place]).to_vec()).collect()
+    };
+    let rows = |rows: Vec<Vec<f64>>| commands.map(|place| rows[place].clone()).to_vec();
+    let recursion = Recursion::new(&a, &columns(b, errors), &rows(c), &rows(columns(d, errors)));
     let recursion = match k {
-        Some(gain) => recursion.with_back_calculation(&gain),
+        Some(gain) => recursion.with_back_calculation(&columns(gain, commands)),
         None => recursion,
     };
     Ok(LinearLaw { file, recursion, interval })
+}
+
+/// Where tilt and yaw are among `ports`, which are in `unit`.
+///
+/// # Errors
+/// What is there instead, in words.
+fn places(ports: &[Port], unit: &str) -> Result<[usize; 2], String> {
+    let names: Vec<String> =
+        ports.iter().map(|Port { name, unit }| format!("{name} ({unit})")).collect();
+    let found = ENDINGS.map(|endings| {
+        let is_it = |port: &Port| {
+            let name = port.name.to_lowercase();
+            port.unit == unit && endings.iter().any(|ending| name.ends_with(ending))
+        };
+        ports.iter().position(is_it)
+    });
+    match (found, ports.len()) {
+        ([Some(tilt), Some(yaw)], 2) => Ok([tilt, yaw]),
+        _ => Err(format!(
+            "are {}, where one that ends in tilt or up and one that ends in yaw or right are expected, both in {unit}",
+            if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+        )),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn what_is_no_law_of_two_errors_is_told_with_its_file() {
+    /// A gain from errors to commands with these names and units.
+    fn gain(role: Role, inputs: [[&str; 2]; 2], outputs: [[&str; 2]; 2]) -> LinearModel {
+        let ports = [inputs, outputs].map(|ports| {
+            let port = |[name, unit]: [&str; 2]| Port { name: name.into(), unit: unit.into() };
+            ports.map(port).to_vec()
+        });
+        let d = vec![vec![1.0, 2.0], vec![3.0, 4.0]];
+        let of_order_none = [Vec::new(), Vec::new(), vec![Vec::new(); 2], d];
+        LinearModel::new(role, "a gain".to_owned(), Some(1.0), ports, of_order_none)
+    }
+
+    fn read(model: &LinearModel) -> Result<LinearLaw, String> {
         let folder = tempfile::tempdir().unwrap();
-        let model = LinearModel::new(
-            "one".to_owned(),
-            None,
-            [Vec::new(), Vec::new()],
-            [Vec::new(), Vec::new(), Vec::new(), Vec::new()],
-        );
         model.write(&folder.path().join("law.json")).unwrap();
-        let said = law("law.json".to_owned(), folder.path()).unwrap_err().to_string();
-        assert!(said.contains("law.json") && said.contains("not 2 and 2"), "{said}");
+        law("law.json".to_owned(), folder.path()).map_err(|error| error.to_string())
+    }
+
+    const UP_RIGHT: [[&str; 2]; 2] = [["T1.HubVortexTilt", "m"], ["T1.HubVortexYaw", "m"]];
+    const TILT_YAW: [[&str; 2]; 2] = [["T1.HelixTilt", "deg"], ["T1.HelixYaw", "deg"]];
+
+    #[test]
+    fn tilt_and_yaw_are_found_by_their_names() {
+        let [mut output, mut turned] = [[0.0; 2]; 2];
+        let mut law = read(&gain(Role::Controller, UP_RIGHT, TILT_YAW)).unwrap();
+        law.recursion.step(&[1.0, 10.0], &mut output);
+        assert_eq!(output, [21.0, 43.0]);
+        let [up, right] = UP_RIGHT;
+        let [tilt, yaw] = TILT_YAW;
+        let mut law = read(&gain(Role::Controller, [right, up], [yaw, tilt])).unwrap();
+        law.recursion.step(&[1.0, 10.0], &mut turned);
+        assert_eq!(turned, [34.0, 12.0]);
+    }
+
+    #[test]
+    fn what_is_no_law_of_two_errors_in_metres_is_told_with_its_file() {
+        let said = read(&gain(Role::Model, UP_RIGHT, TILT_YAW)).unwrap_err();
+        assert!(said.contains("law.json") && said.contains("a linear model"), "{said}");
+        let said = read(&gain(Role::Controller, TILT_YAW, TILT_YAW)).unwrap_err();
+        assert!(said.contains("`inputs` are T1.HelixTilt (deg), T1.HelixYaw (deg)"), "{said}");
+        let said =
+            read(&gain(Role::Controller, UP_RIGHT, [["a", "deg"], ["b", "deg"]])).unwrap_err();
+        assert!(said.contains("`outputs` are a (deg), b (deg)"), "{said}");
     }
 }

@@ -30,7 +30,7 @@ pub static SENSORS: Registry<dyn SensorKind> =
 /// The seed of the noise of turbine number `turbine` of a layout in a wind of `seed`: another wind and
 /// another turbine have other noise.
 pub fn seed_of_turbine(seed: u64, turbine: usize) -> u64 {
-    noise::mixed(noise::mixed(seed).wrapping_add(turbine as u64))
+    basis::mixed(basis::mixed(seed).wrapping_add(turbine as u64))
 }
 
 /// An instrument that cannot be.

@@ -1,5 +1,6 @@
 //! Random numbers that belong to a seed, a channel and a reading.
 
+use basis::mixed;
 use std::f64::consts::TAU;
 
 /// The random numbers of one reading.
@@ -27,15 +28,4 @@ impl Draw {
         let bits = mixed(key.wrapping_add(place.wrapping_mul(0x9E37_79B9_7F4A_7C15)));
         ((bits >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
-}
-
-/// A number with the bits of `number` well mixed.
-///
-/// Source: the output function of Steele, Lea, Flood, "Fast splittable pseudorandom number generators",
-/// OOPSLA 2014 (variant 13 of Stafford).
-pub(crate) fn mixed(number: u64) -> u64 {
-    let a = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let b = (a ^ (a >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let c = (b ^ (b >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    c ^ (c >> 31)
 }

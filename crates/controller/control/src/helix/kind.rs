@@ -7,7 +7,7 @@ use crate::discon::base;
 use crate::error::ControlError;
 use crate::excitation::Excitation;
 use crate::keys::{
-    AMPLITUDE, BASE, PHASE_RANGE, SENSE, START, STOP, STROUHAL, sense, starts_too_late,
+    AMPLITUDE, BASE, PHASE_RANGE, SENSE, START, STOP, STROUHAL, TILT_PHASE, sense, starts_too_late,
 };
 use crate::kind::{Control, ControllerKind, Motion, Pitching, Place, Site};
 use crate::library::Hosted;
@@ -47,7 +47,7 @@ static TABLE: Table = Table {
                 "Time that the change of frequency takes, from time zero.",
             )
         },
-        key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero."),
+        TILT_PHASE,
         key(
             "azimuth_offset_deg",
             PHASE_RANGE,

@@ -6,8 +6,8 @@ use crate::discon::base;
 use crate::error::ControlError;
 use crate::excitation::Excitation;
 use crate::keys::{
-    AMPLITUDE, BASE, LIDAR, PHASE_RANGE, SENSE, START, STROUHAL, VORTEX_CENTRE, VORTEX_FILTER,
-    sense, starts_too_late,
+    AMPLITUDE, AZIMUTH_OFFSET, BASE, LIDAR, SENSE, START, STROUHAL, TILT_PHASE, VORTEX_CENTRE,
+    VORTEX_FILTER, VORTEX_INTERVAL, sense, starts_too_late,
 };
 use crate::kind::{Control, ControllerKind, Place, Site};
 use crate::library::Hosted;
@@ -65,6 +65,7 @@ static TABLE: Table = Table {
         LIDAR,
         VORTEX_FILTER,
         VORTEX_CENTRE,
+        VORTEX_INTERVAL,
         key(
             "least_trust",
             from(0.0, 1.0),
@@ -77,7 +78,7 @@ static TABLE: Table = Table {
             above(0.0, 1e5),
             "s",
             Value("5"),
-            "Time without a hub vortex after which the loop fades out to the open helix, over one period of it.",
+            "Time without a hub vortex after which the loop fades out to the open helix, over one period of it, before it can close again.",
         ),
         key(
             "correction_limit_deg",
@@ -93,14 +94,8 @@ static TABLE: Table = Table {
             Value("0.5"),
             "Greatest rate at which that changes, in the helix frame.",
         ),
-        key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero."),
-        key(
-            "azimuth_offset_deg",
-            PHASE_RANGE,
-            "deg",
-            Value("0"),
-            "Azimuth offset of the inverse multi-blade transformation, which decouples tilt and yaw; that with which the model was identified.",
-        ),
+        TILT_PHASE,
+        AZIMUTH_OFFSET,
         START,
         BASE[0],
         BASE[1],
@@ -156,7 +151,7 @@ impl ControllerKind for LidarLoopKind {
                 control: site.interval,
             });
         }
-        let watch = Watch::of(values, site, frame, law.interval)?;
+        let watch = Watch::of(values, site, frame)?;
         let law = (law.recursion.clone(), law.interval);
         Ok(LidarLoop::new(settings, watch, law).on_top_of(base(control, site)?))
     }

@@ -12,8 +12,8 @@
 //! Fig. 7.
 //!
 //! What the paper leaves open: the command is limited in size and rate and the law learns of it by
-//! back-calculation; a lidar that has been blind for too long fades the loop out to the open helix, and in
-//! again when it sees.
+//! back-calculation; a lidar that has been blind for too long fades the loop out to the open helix. A loop
+//! that fades out does so wholly before it closes again: its law would go on from the wake of before.
 
 mod kind;
 mod watch;
@@ -23,6 +23,7 @@ pub(crate) use watch::{Watch, WatchState};
 
 use crate::controller::{ForeignState, from_bytes, to_bytes};
 use crate::excitation::{Excitation, add, share, words};
+use crate::samples::Samples;
 use basis::mbc::to_blades;
 use basis::{Channel, FixedFrame, HelixFrame, Measurements, PerBlade, channels};
 use lti::Recursion;
@@ -94,7 +95,10 @@ pub struct LidarLoop {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct LoopState {
     law: Recursion,
-    /// What the law adds (rad), in the helix frame.
+    samples: Samples,
+    /// Whether the law steps; it begins at rest.
+    closed: bool,
+    /// What the law asks for within the limits (rad), in the helix frame.
     correction: [f64; 2],
     /// Share of it that is given (–).
     share: f64,
@@ -104,8 +108,14 @@ struct LoopState {
 
 impl LidarLoop {
     fn new(settings: Settings, watch: Watch, (law, interval): (Recursion, f64)) -> Self {
-        let state =
-            LoopState { law: law.clone(), correction: [0.0; 2], share: 0.0, commands: [0.0; 2] };
+        let state = LoopState {
+            law: law.clone(),
+            samples: Samples::NONE,
+            closed: false,
+            correction: [0.0; 2],
+            share: 0.0,
+            commands: [0.0; 2],
+        };
         Self { settings, watch, law: (law, interval), state }
     }
 
@@ -113,14 +123,19 @@ impl LidarLoop {
     fn advance(&mut self, measurements: &Measurements) -> [f64; 2] {
         let Self { settings, watch, law: (at_rest, interval), state } = self;
         let time = measurements.time;
-        let sampled = watch.update(measurements);
+        watch.update(measurements);
+        let due = state.samples.due(time, *interval);
         let seen = watch.vortex().filter(|vortex| {
             vortex.settled
                 && vortex.confidence >= settings.least_trust
                 && watch.blind() <= settings.blind_after
+                && time >= settings.starts[1]
         });
-        let closed = seen.filter(|_| time >= settings.starts[1]);
-        if let (true, Some(vortex)) = (sampled, closed) {
+        state.closed = seen.is_some() && (state.closed || state.share == 0.0);
+        let step = measurements.interval * settings.frame.rate / TAU;
+        let change = if state.closed { step } else { -step };
+        state.share = (state.share + change).clamp(0.0, 1.0);
+        if let (true, true, Some(vortex)) = (due, state.closed, seen) {
             let errors = [0, 1].map(|axis| settings.reference[axis] - vortex.helix[axis]);
             let before = state.correction;
             let mut output = [0.0; 2];
@@ -128,13 +143,11 @@ impl LidarLoop {
                 let wanted = [output[0], output[1]].map(f64::to_radians);
                 let limited = settings.limits.limited(wanted, before, *interval);
                 state.correction = limited;
-                output.copy_from_slice(&limited.map(f64::to_degrees));
+                // The law learns of what is pitched.
+                output.copy_from_slice(&limited.map(|angle| state.share * angle.to_degrees()));
             });
         }
-        let step = measurements.interval * settings.frame.rate / TAU;
-        let target = if closed.is_some() { 1.0 } else { 0.0 };
-        state.share += (target - state.share).clamp(-step, step);
-        if state.share == 0.0 && closed.is_none() {
+        if state.share == 0.0 && !state.closed {
             // What was known of the wake is of no use any more.
             state.law.clone_from(at_rest);
             state.correction = [0.0; 2];

@@ -29,25 +29,40 @@ fn scan(place: [f64; 2], n_instants: f64) -> Vec<f64> {
     values
 }
 
-/// An integrating law of `gain` (deg/m s) on each axis, with what it needs not to wind up.
-fn integrating(gain: f64) -> Recursion {
+/// An integrating law of `gain` (deg/m s) on each axis every `interval` (s), with what it needs not to wind
+/// up.
+fn integrating(gain: f64, interval: f64) -> Recursion {
     let diagonal = |value: f64| vec![vec![value, 0.0], vec![0.0, value]];
-    Recursion::new(&diagonal(1.0), &diagonal(gain * INTERVAL), &diagonal(1.0), &diagonal(0.0))
+    Recursion::new(&diagonal(1.0), &diagonal(gain * interval), &diagonal(1.0), &diagonal(0.0))
         .with_back_calculation(&diagonal(1.0))
 }
 
-/// A wake whose hub vortex follows the command in the helix frame, late, and off by a bias in that frame.
+/// A wake whose hub vortex follows the command in the helix frame, late, and off by a bias.
 struct Wake {
     control: LidarLoop,
     way: VecDeque<[f64; 2]>,
     step: u32,
+    /// Constant in the helix frame (m).
     bias: [f64; 2],
+    /// At rest in the fixed frame, up and right (m).
+    offset: [f64; 2],
     /// Whether the beams come back.
     sees: bool,
 }
 
 impl Wake {
     fn new(reference: [f64; 2], bias: [f64; 2], size: f64) -> Self {
+        Self::with_law(reference, bias, size, INTERVAL, Some([0.0; 2]))
+    }
+
+    /// One whose law samples every `interval` (s) and takes the vortex to turn about `centre`.
+    fn with_law(
+        reference: [f64; 2],
+        bias: [f64; 2],
+        size: f64,
+        interval: f64,
+        centre: Option<[f64; 2]>,
+    ) -> Self {
         let frame = HelixFrame { sense: Sense::CounterClockwise, rate: RATE };
         let amplitude = 3.0_f64.to_radians();
         let settings = Settings {
@@ -62,9 +77,10 @@ impl Wake {
             least_trust: 0.1,
             limits: Limits { size, rate: 0.5_f64.to_radians() },
         };
-        let law = (integrating(0.004), INTERVAL);
-        let control = LidarLoop::new(settings, Watch::for_tests(frame), law);
-        Self { control, way: VecDeque::from(vec![[0.0; 2]; DELAY]), step: 0, bias, sees: true }
+        let law = (integrating(0.004, interval), interval);
+        let control = LidarLoop::new(settings, Watch::for_tests(frame, centre), law);
+        let way = VecDeque::from(vec![[0.0; 2]; DELAY]);
+        Self { control, way, step: 0, bias, offset: [0.0; 2], sees: true }
     }
 
     /// One interval; gives the hub vortex in the helix frame as it is at the lidar.
@@ -76,7 +92,8 @@ impl Wake {
         self.way.push_back(answer);
         let vortex = self.way.pop_front().expect("as long as it was");
         let [up, right] = self.control.settings.frame.to_fixed(time, vortex);
-        let values = scan([-right, up], f64::from(self.step));
+        let place = [-right - self.offset[1], up + self.offset[0]];
+        let values = scan(place, f64::from(self.step));
         let readings = [Reading { sensor: "lidar".to_owned(), values }];
         let readings = if self.sees { &readings[..] } else { &[] };
         let measured =
@@ -139,6 +156,79 @@ fn a_blind_lidar_opens_the_loop_within_a_period_and_sight_closes_it_again() {
     wake.sees = true;
     wake.steps(1500);
     assert_eq!(wake.control.state.share, 1.0);
+}
+
+/// Vortices in the helix frame over a period of the helix, and the corrections beside them.
+fn period(wake: &mut Wake) -> Vec<[[f64; 2]; 2]> {
+    let n = (TAU / RATE / INTERVAL).round() as u32;
+    (0..n).map(|_| [wake.step(), wake.control.state.correction]).collect()
+}
+
+/// What a law asks for every second, it asks for of a vortex that is as fresh as every law's.
+#[test]
+fn a_slow_law_is_given_the_vortex_as_soon_as_a_fast_one() {
+    let reference = [1.0, 13.0];
+    let mut wake = Wake::with_law(reference, [-3.0, 4.0], 0.1, 1.0, Some([0.0; 2]));
+    wake.steps(990);
+    let mut before = wake.control.state.correction;
+    let mut changes = 0;
+    for _ in 0..6000 {
+        wake.step();
+        let Some(vortex) = wake.control.watch.vortex() else { panic!("nothing is seen") };
+        // Half of 50 samples of 0.1 s, and the scan's own age.
+        assert!(vortex.delay < 2.8, "{}", vortex.delay);
+        changes += u32::from(wake.control.state.correction != before);
+        before = wake.control.state.correction;
+    }
+    assert!((590..=601).contains(&changes), "{changes}");
+    let closed = wake.steps(1);
+    for axis in 0..2 {
+        assert!((closed[axis] - reference[axis]).abs() < 0.6, "{closed:?}");
+    }
+}
+
+/// What is at rest in the fixed frame turns in the helix frame: a running mean takes it off; about a centre
+/// that is given it is a disturbance at the helix's rate, ten times faster than this loop, which it neither
+/// mends nor makes much worse.
+#[test]
+fn a_bias_at_rest_in_the_fixed_frame_does_not_move_the_mean() {
+    let reference = [1.0, 13.0];
+    for centre in [None, Some([0.0; 2])] {
+        let mut wake = Wake::with_law(reference, [0.0; 2], 0.1, INTERVAL, centre);
+        wake.offset = [6.0, 0.0];
+        wake.steps(7000);
+        let over = period(&mut wake);
+        let n = over.len() as f64;
+        for axis in 0..2 {
+            let mean = over.iter().map(|[vortex, _]| vortex[axis]).sum::<f64>() / n;
+            assert!((mean - reference[axis]).abs() < 0.6, "{centre:?}: {mean}");
+            let [low, high] = [f64::min, f64::max].map(|fold: fn(f64, f64) -> f64| {
+                over.iter().map(|[vortex, _]| vortex[axis]).reduce(fold).expect("steps")
+            });
+            // Its law's gain there: 0.004·4/0.15 of 6 m.
+            assert!(high - low < 2.0 * 1.2 * 0.107 * 6.0, "{centre:?}: {low} to {high}");
+        }
+    }
+}
+
+#[test]
+fn a_loop_that_fades_out_does_so_before_it_closes_again() {
+    let mut wake = Wake::new([1.0, 13.0], [-3.0, 4.0], 0.1);
+    wake.steps(4000);
+    wake.sees = false;
+    wake.steps(150);
+    let fading = wake.control.state.share;
+    assert!(fading > 0.5 && fading < 1.0, "{fading}");
+    wake.sees = true;
+    let shares: Vec<f64> = (0..900)
+        .map(|_| {
+            wake.step();
+            wake.control.state.share
+        })
+        .collect();
+    let open = shares.iter().position(|share| *share == 0.0).expect("it opens");
+    assert!(shares[..=open].is_sorted_by(|a, b| a >= b));
+    assert!(shares[open..].is_sorted() && shares[899] > 0.9);
 }
 
 #[test]

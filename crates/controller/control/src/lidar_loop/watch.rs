@@ -2,6 +2,7 @@
 
 use crate::error::ControlError;
 use crate::kind::Site;
+use crate::samples::Samples;
 use basis::keys::Values;
 use basis::scan::Scan;
 use basis::{HelixFrame, Measurements};
@@ -10,8 +11,6 @@ use serde::{Deserialize, Serialize};
 
 /// Most points that a scan may have (–).
 const MOST_POINTS: usize = 4096;
-/// Share of an interval by which rounding may be early (–).
-const EARLY: f64 = 1e-6;
 
 /// The hub vortex, followed sample by sample.
 #[derive(Clone, Debug)]
@@ -27,12 +26,14 @@ pub(crate) struct Watch {
 /// What was seen so far.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Seen {
-    /// Samples so far, with the time of the first (s).
-    n_samples: u64,
-    start: f64,
+    samples: Samples,
     last: Option<HubVortex>,
     /// Time since the vortex was last found (s).
     blind: f64,
+}
+
+impl Seen {
+    const NOTHING: Self = Self { samples: Samples::NONE, last: None, blind: f64::INFINITY };
 }
 
 /// Everything of a [`Watch`] that time changes.
@@ -43,7 +44,7 @@ pub(crate) struct WatchState {
 }
 
 impl Watch {
-    /// As `values` of a controller at `site` ask for it, every `interval` (s), in `frame`.
+    /// As `values` of a controller at `site` ask for it, in `frame`.
     ///
     /// # Errors
     /// [`ControlError::Estimation`] for settings that cannot be.
@@ -51,9 +52,8 @@ impl Watch {
         values: &Values,
         site: &Site,
         frame: HelixFrame,
-        interval: f64,
     ) -> Result<Self, ControlError> {
-        let radius = site.rotor.rotor_radius();
+        let (radius, interval) = (site.rotor.rotor_radius(), values.number("vortex_interval"));
         let settings = if values.word("vortex_filter") == "published" {
             HubVortexSettings::of_source(frame, radius, interval)
         } else {
@@ -67,22 +67,17 @@ impl Watch {
             sensor: values.word("lidar").to_owned(),
             filter: HubVortexFilter::new(HubVortexSettings { centre, ..settings }, MOST_POINTS)?,
             interval,
-            seen: Seen { n_samples: 0, start: 0.0, last: None, blind: f64::INFINITY },
+            seen: Seen::NOTHING,
         })
     }
 
-    /// Takes the latest scan where a sample is due; whether one was.
-    pub(crate) fn update(&mut self, measurements: &Measurements) -> bool {
+    /// Takes the latest scan where a sample is due.
+    pub(crate) fn update(&mut self, measurements: &Measurements) {
         let Self { sensor, filter, interval, seen } = self;
         let time = measurements.time;
-        if seen.n_samples == 0 {
-            seen.start = time;
+        if !seen.samples.due(time, *interval) {
+            return;
         }
-        let due = seen.start + seen.n_samples as f64 * *interval;
-        if time < due - EARLY * *interval {
-            return false;
-        }
-        seen.n_samples += 1;
         seen.blind += *interval;
         if let Some(scan) = measurements.reading(sensor).and_then(Scan::of) {
             let vortex = filter.update(time, &scan);
@@ -91,7 +86,6 @@ impl Watch {
             }
             seen.last = Some(vortex);
         }
-        true
     }
 
     /// The hub vortex at the last sample; none before it was seen.
@@ -125,16 +119,16 @@ impl Watch {
 
 #[cfg(test)]
 impl Watch {
-    /// One that looks through a sensor called `lidar` at the wake of a rotor of 63 m radius every 0.1 s, its
-    /// centre being the rotor's.
-    pub(crate) fn for_tests(frame: HelixFrame) -> Self {
+    /// One that looks through a sensor called `lidar` at the wake of a rotor of 63 m radius every 0.1 s, about
+    /// a `centre` that is known or found.
+    pub(crate) fn for_tests(frame: HelixFrame, centre: Option<[f64; 2]>) -> Self {
         let settings = HubVortexSettings::robust(frame, 63.0, 0.1);
-        let settings = HubVortexSettings { centre: Some([0.0; 2]), ..settings };
+        let settings = HubVortexSettings { centre, ..settings };
         Self {
             sensor: "lidar".to_owned(),
             filter: HubVortexFilter::new(settings, MOST_POINTS).expect("sound settings"),
             interval: 0.1,
-            seen: Seen { n_samples: 0, start: 0.0, last: None, blind: f64::INFINITY },
+            seen: Seen::NOTHING,
         }
     }
 }

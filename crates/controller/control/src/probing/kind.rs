@@ -7,8 +7,8 @@ use crate::discon::base;
 use crate::error::ControlError;
 use crate::excitation::Excitation;
 use crate::keys::{
-    AMPLITUDE, BASE, LIDAR, PHASE_RANGE, SENSE, START, STROUHAL, VORTEX_CENTRE, VORTEX_FILTER,
-    sense, starts_too_late,
+    AMPLITUDE, AZIMUTH_OFFSET, BASE, LIDAR, SENSE, START, STROUHAL, TILT_PHASE, VORTEX_CENTRE,
+    VORTEX_FILTER, VORTEX_INTERVAL, sense, starts_too_late,
 };
 use crate::kind::{Control, ControllerKind, Place, Site};
 use crate::library::Hosted;
@@ -64,21 +64,9 @@ static TABLE: Table = Table {
         LIDAR,
         VORTEX_FILTER,
         VORTEX_CENTRE,
-        key(
-            "vortex_interval",
-            from(0.01, 10.0),
-            "s",
-            Value("0.1"),
-            "Time between samples of the hub vortex; at least the control interval.",
-        ),
-        key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase of the tilt command at time zero."),
-        key(
-            "azimuth_offset_deg",
-            PHASE_RANGE,
-            "deg",
-            Value("0"),
-            "Azimuth offset of the inverse multi-blade transformation, which decouples tilt and yaw.",
-        ),
+        VORTEX_INTERVAL,
+        TILT_PHASE,
+        AZIMUTH_OFFSET,
         START,
         BASE[0],
         BASE[1],
@@ -124,7 +112,7 @@ impl ControllerKind for ProbingKind {
             sources: [0, 1]
                 .map(|channel| BinaryNoise::new(values.number("noise_seed") as u64, channel, band)),
             commands: [0.0; 2],
-            watch: Watch::of(values, site, frame, values.number("vortex_interval"))?,
+            watch: Watch::of(values, site, frame)?,
         };
         Ok(probing.on_top_of(base(control, site)?))
     }

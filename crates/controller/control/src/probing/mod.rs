@@ -102,7 +102,7 @@ mod tests {
             starts: [20.0, 100.0],
             sources: [0, 1].map(|channel| BinaryNoise::new(1, channel, [0.0, 0.19])),
             commands: [0.0; 2],
-            watch: Watch::for_tests(frame),
+            watch: Watch::for_tests(frame, Some([0.0; 2])),
         }
     }
 

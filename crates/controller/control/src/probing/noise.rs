@@ -1,5 +1,6 @@
 //! Pseudo-random binary noise within a band, sample by sample.
 
+use basis::mixed;
 use lti::SecondOrder;
 use serde::{Deserialize, Serialize};
 
@@ -58,15 +59,6 @@ const REGISTER: u32 = 0x7fff_ffff;
 
 /// Damping ratio of a Butterworth filter of second order (–).
 const BUTTERWORTH_2: f64 = std::f64::consts::FRAC_1_SQRT_2;
-
-/// `seed` with its bits mixed, so that neighbours have nothing in common. Source: Steele, Lea, Flood,
-/// "Fast splittable pseudorandom number generators", OOPSLA 2014.
-fn mixed(seed: u64) -> u64 {
-    let mut mixed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    mixed ^ mixed >> 31
-}
 
 #[cfg(test)]
 mod tests {

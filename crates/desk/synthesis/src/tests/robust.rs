@@ -149,7 +149,8 @@ fn weights_have_their_gains() {
     let control = control_weight(0.15, 10.0, 0.4).unwrap();
     assert!((gain(&control, 0.0) - 0.4).abs() < 1e-12);
     assert!((gain(&control, 1e6) - 40.0).abs() < 1e-6);
-    // At ω: 0.4 B² 2/|B² − 1 + 2 B i|.
-    assert!((gain(&control, 0.15) - 80.0 / (99.0_f64.powi(2) + 400.0).sqrt()).abs() < 1e-12);
+    // At ω: 0.4 B² √2/|B² − 1 + √2 B i|.
+    let at_corner = 40.0 * 2.0_f64.sqrt() / (99.0_f64.powi(2) + 200.0).sqrt();
+    assert!((gain(&control, 0.15) - at_corner).abs() < 1e-12);
     assert!(matches!(control_weight(-1.0, 10.0, 0.4), Err(SynthesisError::OutOfRange { .. })));
 }

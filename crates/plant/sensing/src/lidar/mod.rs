@@ -12,12 +12,12 @@ mod optics;
 mod pattern;
 mod probe;
 
-use crate::noise::{Draw, mixed};
+use crate::noise::Draw;
 use crate::sensor::{ForeignState, Mount, Scene, Sensor, SensorKind};
 use basis::keys::{Objection, Table, Values};
 use basis::registry::Named;
 use basis::scan::{Scan, ScanBlocks};
-use basis::{Channel, Unit, Vector3};
+use basis::{Channel, Unit, Vector3, mixed};
 use optics::{Optics, Pose, level};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
