@@ -1,34 +1,25 @@
 //! Figures of a model and of a controller.
 
-use crate::{DesignError, Identified, LoopResponses, Responses, Synthesized};
+use crate::{Identified, LoopResponses, Responses, Synthesized};
 use report::{
     Along, DensityFigure, DensityRow, Signals, SpectrumLine, TrackFigure, TrackLine, TrackRow,
 };
 use std::f64::consts::TAU;
-use std::path::Path;
 
-/// Draws what was `identified` into `folder`/figures; gives the figures' names.
-///
-/// # Errors
-/// [`DesignError::Report`] where they cannot be written.
-pub fn draw_identified(found: &Identified, folder: &Path) -> Result<Vec<String>, DesignError> {
-    let signals = Signals {
+/// The figures of what was identified.
+pub(crate) fn of_identified(found: &Identified) -> Signals {
+    Signals {
         densities: vec![frequency_response(found)],
         tracks: vec![singular_values(found)],
         ..Signals::default()
-    };
-    Ok(report::write_signals(&[signals], folder)?)
+    }
 }
 
-/// Draws what was `synthesised` into `folder`/figures; gives the figures' names.
-///
-/// # Errors
-/// [`DesignError::Report`] where they cannot be written.
-pub fn draw_synthesized(found: &Synthesized, folder: &Path) -> Result<Vec<String>, DesignError> {
+/// The figures of what was synthesised.
+pub(crate) fn of_synthesized(found: &Synthesized) -> Signals {
     let mut tracks = vec![sensitivities(&found.responses)];
     tracks.extend(step_responses(found));
-    let signals = Signals { tracks, ..Signals::default() };
-    Ok(report::write_signals(&[signals], folder)?)
+    Signals { tracks, ..Signals::default() }
 }
 
 /// Gain of every path over frequency, record and model.

@@ -12,13 +12,14 @@ mod error;
 mod figures;
 mod identify;
 mod model;
+mod pages;
 mod synthesize;
 mod weights;
 
 pub use data::Source;
 pub use error::DesignError;
-pub use figures::{draw_identified, draw_synthesized};
 pub use identification::Trend;
 pub use identify::{Identified, IdentifyQuestion, Responses, identify};
+pub use pages::{report_identified, report_synthesized};
 pub use synthesize::{LoopResponses, SynthesizeQuestion, Synthesized, synthesize};
 pub use weights::Method;

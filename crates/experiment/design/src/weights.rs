@@ -4,6 +4,7 @@ use crate::DesignError;
 use formats::{FileError, atomic};
 use lti::matrices::{StateSpace, TransferFunction};
 use serde::Deserialize;
+use std::fmt;
 use std::path::Path;
 use synthesis::{SynthesisError, control_weight, performance_weight};
 
@@ -77,6 +78,17 @@ impl Default for Quadratic {
             input_noise: 1.0,
             measurement_noise: 1.0,
         }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::HInfinity => "H-infinity",
+            Self::H2 => "H2",
+            Self::Lqg => "LQG",
+            Self::Lqi => "LQG with integral action",
+        })
     }
 }
 

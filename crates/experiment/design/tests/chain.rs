@@ -1,7 +1,8 @@
 //! From a record in a file to a controller in a file that holds the plant which made the record.
 
 use design::{
-    DesignError, IdentifyQuestion, Source, SynthesizeQuestion, Trend, identify, synthesize,
+    DesignError, IdentifyQuestion, Source, SynthesizeQuestion, Trend, identify, report_identified,
+    report_synthesized, synthesize,
 };
 use formats::linear_model::{LinearModel, Role};
 use lti::Recursion;
@@ -101,6 +102,11 @@ fn the_controller_of_an_identified_model_holds_the_plant_that_was_recorded() {
         }
     }
     assert!(found.delays.iter().flatten().all(|delay| *delay == Some((DELAY + 1) as f64)));
+    let page = report_identified(&found, "record.csv", folder.path()).expect("a page");
+    let page = fs::read_to_string(page).expect("a page");
+    assert!(page.contains("the model accounts for 99") && !page.contains("A warning"));
+    assert!(page.contains("Frequency response") && page.contains("&quot;A&quot;"));
+    assert!(folder.path().join("figures/singular-values.png").exists());
     let model = folder.path().join("model.json");
     found.model.write(&model).expect("written");
     let weights = folder.path().join("weights.toml");
@@ -109,6 +115,9 @@ fn the_controller_of_an_identified_model_holds_the_plant_that_was_recorded() {
     let designed = synthesize(&SynthesizeQuestion { model, weights }).expect("a controller");
     assert_eq!(designed.delay_samples, DELAY);
     assert!(designed.achieved.expect("a norm") <= 1.0001 * designed.bound.expect("a bound"));
+    let page = report_synthesized(&designed, "model.json", folder.path()).expect("a page");
+    let page = fs::read_to_string(page).expect("a page");
+    assert!(page.contains("Holds down disturbances") && page.contains("Step responses"));
     let path = folder.path().join("controller.json");
     designed.controller.write(&path).expect("written");
     let LinearModel { a, b, c, d, k, .. } =

@@ -130,13 +130,17 @@ impl LinearModel {
         Ok(model)
     }
 
+    /// What its file holds.
+    pub fn to_text(&self) -> String {
+        serde_json::to_string_pretty(self).expect("plain numbers and texts") + "\n"
+    }
+
     /// Writes the file at `path`, whole or not at all.
     ///
     /// # Errors
     /// [`FileError::System`] where it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), FileError> {
-        let text = serde_json::to_string_pretty(self).expect("plain numbers and texts");
-        atomic::write(path, self.role.what(), (text + "\n").as_bytes())
+        atomic::write(path, self.role.what(), self.to_text().as_bytes())
     }
 
     /// Samples by which the outputs come later than the matrices say (–); 0 in continuous time.

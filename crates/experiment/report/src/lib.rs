@@ -1,5 +1,6 @@
 //! The report of a study: one self-contained page and its figures, made from records alone.
 
+mod answer;
 mod draw;
 mod figures;
 mod layout;
@@ -11,6 +12,7 @@ pub mod text_table;
 mod trace;
 mod words;
 
+pub use answer::{AnswerRecords, AnswerTable};
 use basis::records::{Filaments, Plane, Series, Summary, SweepTable};
 pub use figures::synchronisation::{
     Along, CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel,
@@ -150,6 +152,21 @@ pub fn write_precursor(
 ) -> Result<PathBuf, ReportError> {
     let figures = figures::precursor::all(records);
     let page = page::precursor::render(records, &figures)?;
+    write_figures(figures.iter(), directory)?;
+    let path = directory.join("report.html");
+    write_whole(&path, page.as_bytes())?;
+    Ok(path)
+}
+
+/// Writes `report.html` and `figures/*.svg`, `figures/*.png` of the answer of `records` into `directory`; gives
+/// the page's path.
+///
+/// # Errors
+/// [`ReportError::Write`] when the disk says no.
+pub fn write_answer(records: &AnswerRecords, directory: &Path) -> Result<PathBuf, ReportError> {
+    let figures: Vec<draw::Figure> =
+        records.signals.iter().flat_map(figures::synchronisation::of_signals).collect();
+    let page = page::answer::render(records, &figures)?;
     write_figures(figures.iter(), directory)?;
     let path = directory.join("report.html");
     write_whole(&path, page.as_bytes())?;

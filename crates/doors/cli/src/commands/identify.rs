@@ -3,7 +3,7 @@
 use super::arguments::{finite, positive};
 use super::output::{print, print_text, tell};
 use clap::Args;
-use design::{Identified, IdentifyQuestion, Source, Trend, draw_identified, identify};
+use design::{Identified, IdentifyQuestion, Source, Trend, identify, report_identified};
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
 use std::path::PathBuf;
@@ -56,9 +56,9 @@ pub(crate) struct IdentifyArguments {
     /// File to write the model into (JSON); it is not written when left out
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Folder to draw the figures into, as SVG and PNG in its folder `figures`
+    /// Folder for a page, `report.html`, and its figures, which lie there as SVG and PNG too
     #[arg(long, value_name = "FOLDER")]
-    figures: Option<PathBuf>,
+    report: Option<PathBuf>,
     /// Print JSON on stdout instead of text
     #[arg(long)]
     json: bool,
@@ -101,9 +101,9 @@ pub(crate) fn run(arguments: &IdentifyArguments) -> Result<()> {
         found.model.write(path)?;
         tell(&format!("model: {}", path.display()));
     }
-    if let Some(folder) = &arguments.figures {
-        let names = draw_identified(&found, folder)?;
-        tell(&format!("drawn in {}: {}", folder.join("figures").display(), names.join(", ")));
+    if let Some(folder) = &arguments.report {
+        let page = report_identified(&found, &&arguments.file.display().to_string(), folder)?;
+        tell(&format!("report: {}", page.display()));
     }
     if arguments.json {
         print(&(serde_json::to_string_pretty(&json(&found)).into_diagnostic()? + "\n"))

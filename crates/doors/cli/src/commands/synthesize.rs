@@ -2,7 +2,7 @@
 
 use super::output::{print, print_text, tell};
 use clap::Args;
-use design::{Method, SynthesizeQuestion, Synthesized, draw_synthesized, synthesize};
+use design::{SynthesizeQuestion, Synthesized, report_synthesized, synthesize};
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
 use std::path::PathBuf;
@@ -19,9 +19,9 @@ pub(crate) struct SynthesizeArguments {
     /// File to write the controller into (JSON); it is not written when left out
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Folder to draw the figures into, as SVG and PNG in its folder `figures`
+    /// Folder for a page, `report.html`, and its figures, which lie there as SVG and PNG too
     #[arg(long, value_name = "FOLDER")]
-    figures: Option<PathBuf>,
+    report: Option<PathBuf>,
     /// Print JSON on stdout instead of text
     #[arg(long)]
     json: bool,
@@ -39,24 +39,14 @@ pub(crate) fn run(arguments: &SynthesizeArguments) -> Result<()> {
         found.controller.write(path)?;
         tell(&format!("controller: {}", path.display()));
     }
-    if let Some(folder) = &arguments.figures {
-        let names = draw_synthesized(&found, folder)?;
-        tell(&format!("drawn in {}: {}", folder.join("figures").display(), names.join(", ")));
+    if let Some(folder) = &arguments.report {
+        let page = report_synthesized(&found, &&arguments.model.display().to_string(), folder)?;
+        tell(&format!("report: {}", page.display()));
     }
     if arguments.json {
         print(&(serde_json::to_string_pretty(&json(&found)).into_diagnostic()? + "\n"))
     } else {
         print_text(&text(&found))
-    }
-}
-
-/// Name of a method.
-fn name(method: Method) -> &'static str {
-    match method {
-        Method::HInfinity => "H-infinity",
-        Method::H2 => "H2",
-        Method::Lqg => "LQG",
-        Method::Lqi => "LQG with integral action",
     }
 }
 
@@ -67,7 +57,7 @@ fn or_dash(value: Option<f64>, digits: usize) -> String {
 
 fn text(found: &Synthesized) -> String {
     let [inner, whole] = found.orders;
-    let mut text = format!("{} controller of order {inner}", name(found.method));
+    let mut text = format!("{} controller of order {inner}", found.method);
     if found.delay_samples > 0 {
         text += &format!(
             ", {whole} with the Smith predictor that bridges {} samples",
@@ -131,7 +121,7 @@ fn json(found: &Synthesized) -> serde_json::Value {
     });
     json!({
         "controller": found.controller,
-        "method": name(found.method),
+        "method": found.method.to_string(),
         "bound": found.bound,
         "achieved": found.achieved,
         "before_reduction": found.before_reduction,

@@ -1,5 +1,6 @@
 //! The page: one HTML file with style, script, figures and case file inside.
 
+pub(crate) mod answer;
 mod control;
 mod loads;
 pub(crate) mod precursor;

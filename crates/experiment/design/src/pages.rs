@@ -1,0 +1,211 @@
+//! Pages of a model and of a controller.
+
+use crate::figures::{of_identified, of_synthesized};
+use crate::{DesignError, Identified, Synthesized};
+use formats::linear_model::{LinearModel, Port};
+use lti::Complex64;
+use report::{AnswerRecords, AnswerTable};
+use std::path::{Path, PathBuf};
+
+/// Variance (%) below which a model says little of an output.
+const LITTLE: f64 = 50.0;
+
+/// Writes the page of what was `identified` under `name` into `folder`, with its figures; gives its path.
+///
+/// # Errors
+/// [`DesignError::Report`] where they cannot be written.
+pub fn report_identified(
+    found: &Identified,
+    name: &str,
+    folder: &Path,
+) -> Result<PathBuf, DesignError> {
+    let model = &found.model;
+    let aside = || model.outputs.iter().zip(&found.accounted_for[1]);
+    let shares: Vec<String> =
+        aside().map(|(port, share)| format!("{share:.1} % of {}", port.name)).collect();
+    let little = aside().filter(|(_, share)| **share < LITTLE).map(|(port, _)| {
+        format!(
+            "the model tells less than half of {} on what was kept aside; a controller made with it may do nothing but harm",
+            port.name
+        )
+    });
+    let mut tables = vec![of_outputs(found)];
+    if let Some([rest, there]) = &found.relative_gains {
+        tables.push(relative("Relative gains at rest.", rest, model));
+        tables.push(relative(
+            "Relative gains at the bandwidth asked for, real parts.",
+            there,
+            model,
+        ));
+    }
+    let records = AnswerRecords {
+        kind: "Identified model".to_owned(),
+        name: name.to_owned(),
+        headline: format!(
+            "Simulated on what was kept aside, the model accounts for {}.",
+            shares.join(" and ")
+        ),
+        warnings: little.collect(),
+        facts: facts_of_model(found),
+        tables,
+        signals: vec![of_identified(found)],
+        file: Some(["The model".to_owned(), model.to_text()]),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+    };
+    Ok(report::write_answer(&records, folder)?)
+}
+
+/// Writes the page of what was `synthesised` under `name` into `folder`, with its figures; gives its path.
+///
+/// # Errors
+/// [`DesignError::Report`] where they cannot be written.
+pub fn report_synthesized(
+    found: &Synthesized,
+    name: &str,
+    folder: &Path,
+) -> Result<PathBuf, DesignError> {
+    let records = AnswerRecords {
+        kind: "Controller".to_owned(),
+        name: name.to_owned(),
+        headline: match found.bandwidth {
+            Some(rate) => format!("Holds down disturbances that are slower than {rate:.4} rad/s."),
+            None => "Holds no disturbance down.".to_owned(),
+        },
+        warnings: Vec::new(),
+        facts: facts_of_controller(found),
+        tables: vec![margins(found)],
+        signals: vec![of_synthesized(found)],
+        file: Some(["The controller".to_owned(), found.controller.to_text()]),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+    };
+    Ok(report::write_answer(&records, folder)?)
+}
+
+/// What it is, value with unit, remark.
+fn fact(what: &str, value: impl ToString, remark: impl ToString) -> [String; 3] {
+    [what.to_owned(), value.to_string(), remark.to_string()]
+}
+
+fn facts_of_model(found: &Identified) -> Vec<[String; 3]> {
+    let model = &found.model;
+    let [n_samples, n_aside] = found.n_samples;
+    let interval = model.interval_s.unwrap_or(f64::NAN);
+    let kept = format!("every {interval} s, the last {n_aside} kept aside");
+    let (zeros, as_delay) = match found.unstable_zeros.as_slice() {
+        [] => ("none".to_owned(), String::new()),
+        zeros => (list(zeros), format!("rad/s, as a delay of {:.1} s", found.delay_of_zeros)),
+    };
+    let mut facts = vec![
+        fact("Samples", n_samples, kept),
+        fact("Order", model.a.len(), "states"),
+        fact("Delay", format!("{} s", model.output_delay_s), "as asked for, beside the matrices"),
+        fact("Poles", list(&found.poles), "rad/s"),
+        fact("Zeros in the right half plane", zeros, as_delay),
+    ];
+    if let Some(offset) = found.azimuth_offset {
+        let degrees = format!("{:.1}°", offset.to_degrees());
+        let remark = "that decouples at rest, on top of the record's";
+        facts.push(fact("Azimuth offset", degrees, remark));
+    }
+    facts
+}
+
+fn facts_of_controller(found: &Synthesized) -> Vec<[String; 3]> {
+    let [inner, whole] = found.orders;
+    let mut facts = vec![fact("Method", found.method, "")];
+    if let Some(achieved) = found.achieved {
+        let remark = found.bound.map_or(String::new(), |bound| format!("made for {bound:.5}"));
+        facts.push(fact("Norm of the weighted loop", format!("{achieved:.5}"), remark));
+    }
+    let predictor = format!("{whole} with a predictor of {} samples", found.delay_samples);
+    facts.push(fact("Order", inner, if found.delay_samples > 0 { &predictor } else { "" }));
+    let bandwidth = found.bandwidth.map_or("–".to_owned(), |rate| format!("{rate:.4} rad/s"));
+    facts.push(fact("Bandwidth", bandwidth, "the delay aside"));
+    let [s, t] = found.peaks;
+    facts.push(fact("Peaks", format!("{s:.3}, {t:.3}"), "of S and T"));
+    let disc = &found.disc;
+    let remark = format!(
+        "of all outputs at once: gains {:.2} to {:.2}, phase {:.1}°, at {:.4} rad/s",
+        disc.gain[0],
+        disc.gain[1],
+        disc.phase.to_degrees(),
+        disc.frequency
+    );
+    facts.push(fact("Disc margin", format!("{:.3}", disc.size), remark));
+    facts
+}
+
+/// A complex number as text.
+fn complex(value: &Complex64) -> String {
+    if value.im == 0.0 {
+        format!("{:.4}", value.re)
+    } else {
+        format!("{:.4}{:+.4}i", value.re, value.im)
+    }
+}
+
+/// Complex numbers, one after the other; of pairs the upper one.
+fn list(values: &[Complex64]) -> String {
+    let one_of_each = values.iter().filter(|value| value.im >= 0.0);
+    one_of_each.map(|value| complex(value).replacen('+', "±", 1)).collect::<Vec<_>>().join(", ")
+}
+
+/// What the model says of each output.
+fn of_outputs(found: &Identified) -> AnswerTable {
+    let model = &found.model;
+    let with_unit = |what: &str, port: &Port| format!("{what} {}", port.name);
+    let headings = ["Output", "VAF (%)", "kept aside (%)", "one sample ahead (%)"];
+    let gains = model.inputs.iter().map(|port| with_unit("gain at rest,", port));
+    let delays = model.inputs.iter().map(|port| with_unit("delay (s),", port));
+    let rows = model.outputs.iter().enumerate().map(|(index, port)| {
+        let mut row = vec![format!("{} ({})", port.name, port.unit)];
+        row.extend(found.accounted_for.iter().map(|shares| format!("{:.1}", shares[index])));
+        row.push(format!("{:.1}", found.predicted[index]));
+        row.extend(found.gain[index].iter().map(|gain| format!("{gain:.4}")));
+        let delays = found.delays[index].iter();
+        row.extend(delays.map(|delay| delay.map_or("–".to_owned(), |delay| format!("{delay:.1}"))));
+        row
+    });
+    AnswerTable {
+        caption: "Variance that simulation accounts for, on what was identified from and kept aside; gains; first significant lag of the prewhitened correlation.".to_owned(),
+        rows: rows.collect(),
+        headings: headings.into_iter().map(str::to_owned).chain(gains).chain(delays).collect(),
+    }
+}
+
+fn relative(caption: &str, gains: &[Vec<f64>], model: &LinearModel) -> AnswerTable {
+    let rows = gains.iter().zip(&model.outputs).map(|(gains, port)| {
+        let numbers = gains.iter().map(|gain| format!("{gain:.4}"));
+        std::iter::once(port.name.clone()).chain(numbers).collect()
+    });
+    let inputs = model.inputs.iter().map(|port| port.name.clone());
+    AnswerTable {
+        caption: caption.to_owned(),
+        headings: std::iter::once("Output".to_owned()).chain(inputs).collect(),
+        rows: rows.collect(),
+    }
+}
+
+fn margins(found: &Synthesized) -> AnswerTable {
+    let dash = |value: Option<f64>, digits: usize| {
+        value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
+    };
+    let rows = found.controller.inputs.iter().zip(&found.margins).map(|(port, margins)| {
+        vec![
+            port.name.clone(),
+            dash(margins.gain_increase, 2),
+            dash(margins.gain_decrease, 2),
+            dash(margins.phase.map(f64::to_degrees), 1),
+            dash(margins.delay, 2),
+            dash(margins.crossover, 4),
+        ]
+    });
+    let headings =
+        ["Output", "gain up", "gain down", "phase (°)", "delay (s)", "crossover (rad/s)"];
+    AnswerTable {
+        caption: "Margins of one output opened at a time, the others closed, the delay aside."
+            .to_owned(),
+        headings: headings.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    }
+}
