@@ -7,6 +7,7 @@ mod manifest;
 mod pitch_responses;
 mod planes;
 mod precursor;
+mod scans;
 mod series;
 mod series_file;
 mod study;
@@ -27,6 +28,7 @@ pub use planes::{
 pub use precursor::{
     Drift, PRECURSOR_VERSION, PrecursorFolder, PrecursorResult, ProfileRow, RecordedPlanes,
 };
+pub use scans::{ScanInstant, ScanSetting, ScanWriter, StoredScans, read_scans, scan_bytes};
 pub use series::SeriesWriter;
 pub use series_file::{SeriesFile, read_series};
 pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
@@ -46,6 +48,8 @@ use std::path::{Path, PathBuf};
 
 /// What the name of a recorded wind begins with.
 const INFLOW: &str = "inflow-";
+/// What the name of a lidar's scans begins with.
+const SCANS: &str = "scans-";
 /// What the name of a turbine's record in OpenFAST's format ends with.
 const OUTB: &str = ".outb";
 const SUMMARY: &str = "the summary of a run";
@@ -85,6 +89,7 @@ impl RunFolder {
             gone(fs::remove_file(&file), &file)?;
         }
         self.remove_named(INFLOW, "")?;
+        self.remove_named(SCANS, "")?;
         self.remove_named("", OUTB)?;
         for folder in [self.planes_path(), self.volumes_path()] {
             gone(fs::remove_dir_all(&folder), &folder)?;
@@ -200,6 +205,13 @@ impl RunFolder {
     /// `inflow-T2.bts`: the wind at the place of the turbine called `turbine`.
     pub fn inflow_path(&self, turbine: &str) -> PathBuf {
         self.path.join(format!("{INFLOW}{turbine}.bts"))
+    }
+
+    /// `scans-T1.lidar.nc`: the scans of the lidar `sensor` of `turbine`; until the run is complete they are in
+    /// `scans-T1.lidar.nc.part`.
+    pub fn scans_path(&self, turbine: &str, sensor: &str) -> PathBuf {
+        // No name has a point in it.
+        self.path.join(format!("{SCANS}{turbine}.{sensor}.nc"))
     }
 
     /// `checkpoint`.

@@ -1,6 +1,7 @@
 //! A study read back from its folder.
 
 use super::planes::{LAST, MEAN, PHASES};
+use super::scans;
 use super::{LAST_FILAMENTS, Manifest, RunFolder, SeriesFile, read_manifest, read_summary};
 use crate::{FileError, case, netcdf, vtk};
 use basis::records::{Filaments, Plane, Summary, Warning, WarningKind};
@@ -44,6 +45,8 @@ pub struct RunRecords {
     pub phase_planes: Vec<(f64, Plane)>,
     /// Files of planes at instants, by name.
     pub instant_paths: Vec<PathBuf>,
+    /// Files of lidars' scans, by name.
+    pub scan_paths: Vec<PathBuf>,
     /// Files of volumes, by time.
     pub volume_paths: Vec<PathBuf>,
     /// The vortices of its wakes at the last instant; none where the air has none to show.
@@ -217,6 +220,7 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
         last_planes: Vec::new(),
         phase_planes: Vec::new(),
         instant_paths: Vec::new(),
+        scan_paths: scans::paths(folder)?,
         volume_paths: Vec::new(),
         last_filaments: None,
     };
