@@ -43,7 +43,8 @@ impl Growing {
         header: &[u8],
     ) -> Result<Self, FileError> {
         let part = atomic::part_of(path);
-        let started = File::create(&part).and_then(|mut file| file.write_all(header).map(|()| file));
+        let started =
+            File::create(&part).and_then(|mut file| file.write_all(header).map(|()| file));
         let file = started.map_err(|e| FileError::system("write", what, &part, e))?;
         Ok(Self { file: BufWriter::new(file), part, path: path.to_owned(), what, n_records: 0 })
     }

@@ -10,8 +10,8 @@ mod instants;
 mod read;
 mod scans;
 mod setting;
-mod stored_scans;
 mod statistics;
+mod stored_scans;
 
 pub use instants::InstantWriter;
 pub use read::{read_phases, read_plane, read_planes};

@@ -147,7 +147,10 @@ impl ScanWriter {
 
 /// The most bytes of a file of scans of `n_points`: those before its first scan, and those of a scan.
 pub fn scan_bytes(n_points: u64) -> [u64; 2] {
-    [HEADER_BYTES + POINT_BYTES * n_points, 3 * 8 + (n_points * (8 + 7 * 4 + 1)).next_multiple_of(4)]
+    [
+        HEADER_BYTES + POINT_BYTES * n_points,
+        3 * 8 + (n_points * (8 + 7 * 4 + 1)).next_multiple_of(4),
+    ]
 }
 
 /// Phase of the frame of a `helix` at `time` (s): its angle wrapped to a turn (rad).
@@ -191,7 +194,10 @@ fn add_attributes(file: &mut NcFileBuilder, setting: &ScanSetting) -> Result<(),
         ("run", run),
         ("turbine", turbine),
         ("sensor", sensor),
-        ("comment", "downwind, left, up: from the centre of the undeflected rotor, level axes that turn with the nacelle, left looking downwind; x, y, z: farm frame, x downwind, y to the left, z upward from the ground; a point without a speed is not a number, quality says why"),
+        (
+            "comment",
+            "downwind, left, up: from the centre of the undeflected rotor, level axes that turn with the nacelle, left looking downwind; x, y, z: farm frame, x downwind, y to the left, z upward from the ground; a point without a speed is not a number, quality says why",
+        ),
     ];
     for (name, word) in words {
         file.add_attribute(name, text(word))?;
@@ -230,7 +236,12 @@ fn add_lines_of_sight(
     let component = |axis: usize| layout.directions.iter().map(move |d| d[axis]).collect();
     let described: [(&str, &str, &str, Vec<f64>); 4] = [
         ("range", "m", "distance from the lidar along the line of sight", layout.ranges.clone()),
-        ("beam_downwind", "1", "line of sight in the axes of what the lidar rides on: downwind", component(0)),
+        (
+            "beam_downwind",
+            "1",
+            "line of sight in the axes of what the lidar rides on: downwind",
+            component(0),
+        ),
         ("beam_left", "1", "the same, to the left looking downwind", component(1)),
         ("beam_up", "1", "the same, upward", component(2)),
     ];
@@ -249,7 +260,8 @@ fn add_instants(
     setting: &ScanSetting,
     time: DimensionId,
 ) -> Result<(), Error> {
-    let phase = "phase of the frame that turns with the helix: its rate times the time, wrapped to a turn";
+    let phase =
+        "phase of the frame that turns with the helix: its rate times the time, wrapped to a turn";
     let described = [
         ("time", "s", "time since the start of the run at which the controller saw the scan"),
         ("azimuth", "rad", "azimuth of blade 1, clockwise looking downwind, 0 is up"),
@@ -306,3 +318,6 @@ fn add_points(file: &mut NcFileBuilder, n: usize, over: [DimensionId; 2]) -> Res
     file.add_variable_attribute(quality, "flag_meanings", text("valid lost not_measured"))?;
     file.write_variable(quality, &vec![0_i8; n])
 }
+
+#[cfg(test)]
+mod tests;

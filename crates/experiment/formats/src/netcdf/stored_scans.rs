@@ -102,7 +102,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<StoredScans, String> {
         value.first().copied().filter(|value| value.is_finite() && *value > 0.0)
     };
     let needed = |name: &str| number(name).ok_or_else(|| format!("`{name}` is no number above 0"));
-    let [ranges, times, azimuths] = ["range", "time", "azimuth"].map(|name| variable(&file, name, most));
+    let [ranges, times, azimuths] =
+        ["range", "time", "azimuth"].map(|name| variable(&file, name, most));
     let (ranges, times, azimuths) = (ranges?, times?, azimuths?);
     let n_ranges = needed("n_ranges")? as usize;
     if ranges.is_empty() || n_ranges == 0 || !ranges.len().is_multiple_of(n_ranges) {

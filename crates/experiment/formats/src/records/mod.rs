@@ -28,10 +28,12 @@ pub use planes::{
 pub use precursor::{
     Drift, PRECURSOR_VERSION, PrecursorFolder, PrecursorResult, ProfileRow, RecordedPlanes,
 };
-pub use scans::{ScanInstant, ScanSetting, ScanWriter, StoredScans, read_scans, scan_bytes};
+pub use scans::{
+    ScanInstant, ScanSetting, ScanWriter, StoredScans, read_scans, scan_bytes, scans_name,
+};
 pub use series::SeriesWriter;
 pub use series_file::{SeriesFile, read_series};
-pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
+pub use study::{RunRecords, StudyRecords, read_study, read_summaries, scan_paths};
 pub use sweep::{read_sweep, remove_sweep, sweep_path, write_sweep, write_table};
 
 use crate::lock::Lock;
@@ -39,6 +41,7 @@ pub use crate::vtk::filament_bytes;
 use crate::{FileError, atomic, leftovers, vtk};
 use basis::records::{Filaments, SCHEMA_VERSION, Summary};
 use flow::lattice::Volume;
+use scans::SCANS;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
@@ -48,8 +51,6 @@ use std::path::{Path, PathBuf};
 
 /// What the name of a recorded wind begins with.
 const INFLOW: &str = "inflow-";
-/// What the name of a lidar's scans begins with.
-const SCANS: &str = "scans-";
 /// What the name of a turbine's record in OpenFAST's format ends with.
 const OUTB: &str = ".outb";
 const SUMMARY: &str = "the summary of a run";
@@ -210,8 +211,7 @@ impl RunFolder {
     /// `scans-T1.lidar.nc`: the scans of the lidar `sensor` of `turbine`; until the run is complete they are in
     /// `scans-T1.lidar.nc.part`.
     pub fn scans_path(&self, turbine: &str, sensor: &str) -> PathBuf {
-        // No name has a point in it.
-        self.path.join(format!("{SCANS}{turbine}.{sensor}.nc"))
+        self.path.join(scans_name(turbine, sensor))
     }
 
     /// `checkpoint`.

@@ -143,7 +143,9 @@ impl Output for Scans {
         for kept in &mut self.kept {
             let readings = scene.farm.machines()[kept.machine].sensing.readings();
             let reading = readings.iter().find(|reading| reading.sensor == kept.sensor);
-            let Some(scan) = reading.and_then(|reading| Scan::of(&reading.values)) else { continue };
+            let Some(scan) = reading.and_then(|reading| Scan::of(&reading.values)) else {
+                continue;
+            };
             if scan.n_instants() == kept.n_instants {
                 continue;
             }
