@@ -122,7 +122,7 @@ pub struct HubVortexAnswer {
 /// Follows the hub vortex through the scans that `question` names, as a controller would.
 ///
 /// # Errors
-/// [`PostprocessingError::Scans`] for a run without such scans, or that tells of no helix;
+/// [`PostprocessingError::Scans`] for a run without such scans, or without a helix;
 /// [`PostprocessingError`] for records that cannot be read.
 pub fn hub_vortex(question: &HubVortexQuestion) -> Result<HubVortexAnswer, PostprocessingError> {
     follow(&scans_of(question)?, question)
@@ -133,6 +133,11 @@ pub(crate) fn follow(
     sampled: &Sampled,
     question: &HubVortexQuestion,
 ) -> Result<HubVortexAnswer, PostprocessingError> {
+    if !sampled.is_downwind() {
+        let problem = "of a lidar that looks upwind, where no hub vortex is";
+        let fix = "name one that looks downwind with --turbine and --lidar";
+        return Err(sampled.refused(problem, fix));
+    }
     let frame = frame_of(sampled, question)?;
     let filters = match question.filters.as_slice() {
         [] => VortexFilter::ALL.as_slice(),

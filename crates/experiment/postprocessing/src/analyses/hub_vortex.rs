@@ -16,7 +16,7 @@ use std::path::Path;
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
     name: "hub-vortex",
-    about: "Where a lidar saw the hub vortex of its turbine's wake, in the fixed frame and in that of the helix, from the scans that a run kept: figures 5 and 6 of Chen et al. (2026)",
+    about: "Where a lidar saw the hub vortex of its turbine's wake, in the fixed frame and in that of the helix, from the scans that a run kept: figures 6, 10 and 12 of Chen et al. (2026)",
     of: Of::Run("Folder of a run, such as runs/lidar-identification/probing"),
     settings: &[
         setting(

@@ -126,6 +126,13 @@ impl Sampled {
         self.stored.ranges[self.points.clone()].iter().sum::<f64>() / self.points.len() as f64
     }
 
+    /// Whether the points that were measured lie downwind of the rotor.
+    pub(super) fn is_downwind(&self) -> bool {
+        let mut sum = 0.0;
+        self.each(|_, scan| sum += scan.downwind().iter().filter(|x| x.is_finite()).sum::<f64>());
+        sum > 0.0
+    }
+
     /// Gives `take` each sample's time (s) and scan, of the points that are looked at.
     pub(super) fn each(&self, mut take: impl FnMut(f64, Scan)) {
         let mut reading = Vec::new();
