@@ -208,8 +208,8 @@ impl RunFolder {
         self.path.join(format!("{INFLOW}{turbine}.bts"))
     }
 
-    /// `scans-T1.lidar.nc`: the scans of the lidar `sensor` of `turbine`; until the run is complete they are in
-    /// `scans-T1.lidar.nc.part`.
+    /// `scans-T1.lidar.nc`: the scans of the lidar `sensor` of `turbine`; until the run is complete they are
+    /// in `scans-T1.lidar.nc.part`.
     pub fn scans_path(&self, turbine: &str, sensor: &str) -> PathBuf {
         self.path.join(scans_name(turbine, sensor))
     }
