@@ -359,6 +359,8 @@ pub struct Output {
     pub volume_stride: usize,
     /// Time between snapshots of the vortices of wakes, VTK (s); those of the last instant alone when absent.
     pub filament_interval: Option<f64>,
+    /// Whether the scans of lidars are kept.
+    pub keeps_scans: bool,
     /// Checkpoint every so many seconds of wall time (s).
     pub checkpoint_interval: f64,
     /// Whether the checkpoint at the end of a run stays, from which it can go on for longer.

@@ -150,6 +150,17 @@ pub enum PostprocessingError {
         /// What to do.
         fix: &'static str,
     },
+    /// Scans of a lidar are not there, or tell nothing.
+    #[error("{} {problem}", path.display())]
+    #[diagnostic(help("{fix}"))]
+    Scans {
+        /// Folder of the run, or the file of the scans.
+        path: PathBuf,
+        /// What about them, such as `holds no scans of a lidar of T1`.
+        problem: String,
+        /// What to do.
+        fix: String,
+    },
     /// A series lacks a channel.
     #[error("{} has no channel `{channel}`", told(path))]
     #[diagnostic(help(

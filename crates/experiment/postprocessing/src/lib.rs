@@ -5,6 +5,7 @@
 
 pub mod analyses;
 mod error;
+mod hub_vortex;
 mod lock;
 mod over_offset;
 mod phase;
@@ -17,6 +18,9 @@ mod winds;
 
 pub use analyses::{ANALYSES, Analysis};
 pub use error::PostprocessingError;
+pub use hub_vortex::{
+    HubVortexAnswer, HubVortexNumbers, HubVortexQuestion, HubVortexTrack, VortexFilter, hub_vortex,
+};
 pub use lock::{LockAnswer, LockQuestion, lock};
 pub use over_offset::over_offset;
 pub use phase::{

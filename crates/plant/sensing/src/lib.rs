@@ -6,6 +6,7 @@
 //! of the reading, so that a run that was killed goes on with the same noise.
 
 mod anemometer;
+mod axes;
 mod channel;
 mod instrument;
 mod lidar;
@@ -13,6 +14,7 @@ mod noise;
 mod quantity;
 mod sensor;
 
+pub use axes::level_axes;
 pub use instrument::{Instrument, Instruments, Lag};
 pub use sensor::{ForeignState, Mount, Mounted, Scene, Sensor, SensorKind};
 
@@ -124,6 +126,12 @@ impl Sensing {
     /// What the further sensors showed last, by their names.
     pub fn readings(&self) -> &[Reading] {
         &self.readings
+    }
+
+    /// The further sensors by their names, in the order of [`Self::readings`].
+    pub fn sensors(&self) -> impl Iterator<Item = (&str, &dyn Sensor)> {
+        let named = self.readings.iter().zip(&self.sensors);
+        named.map(|(reading, sensor)| (reading.sensor.as_str(), sensor.as_ref()))
     }
 
     /// What of the readings has a channel, in the order of [`Self::channels`]: one slice for each sensor.

@@ -3,6 +3,7 @@
 
 use basis::keys::{Objection, Table, Values};
 use basis::registry::Named;
+use basis::scan::ScanLayout;
 use basis::{Channel, Truth, Vector3};
 use flow::WindField;
 use std::fmt;
@@ -28,6 +29,12 @@ pub trait Sensor: Send {
     /// Its values (–): one for each channel, and behind them those that controllers see and no series keeps.
     fn n_values(&self) -> usize {
         self.channels().len()
+    }
+
+    /// What of its scans does not change; none where its reading is no [`Scan`](basis::scan::Scan). Runs keep
+    /// the scans of a sensor that has some.
+    fn scan_layout(&self) -> Option<ScanLayout> {
+        None
     }
 
     /// On return `values`, as many as [`n_values`](Self::n_values) says, hold what it shows of `scene`, in SI

@@ -90,6 +90,20 @@ impl<'a> Scan<'a> {
     }
 }
 
+/// What of a scan does not change: where its points are looked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ScanLayout {
+    /// Lines of sight (–), one for each point: downwind, left, up, unit vectors in the axes of what the lidar
+    /// rides on.
+    pub directions: Vec<[f64; 3]>,
+    /// Distances along them (m), one for each point.
+    pub ranges: Vec<f64>,
+    /// Distances on each line (–); points go through all lines at the first, then at the next.
+    pub n_ranges: usize,
+    /// Measuring instants a second (Hz).
+    pub rate: f64,
+}
+
 /// The same reading, to be written.
 #[derive(Debug)]
 pub struct ScanBlocks<'a> {

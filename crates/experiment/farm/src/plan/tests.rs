@@ -66,6 +66,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             crosswind_diameters: Vec::new(),
             volume_interval: None,
             filament_interval: None,
+            keeps_scans: true,
             volume_stride: 2,
             checkpoint_interval: 60.0,
             keeps_checkpoint: true,

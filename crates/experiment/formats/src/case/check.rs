@@ -290,6 +290,7 @@ fn output_of(section: &Section, turbines: &[Placement], solver: Solver) -> Outpu
         crosswind_diameters: section.numbers("crosswind_diameters"),
         volume_interval,
         volume_stride: volume_stride.map_or(keys::USUAL_STRIDE, |stride| stride as usize),
+        keeps_scans: section.choice("scans") == "keep",
         checkpoint_interval: section.number("checkpoint_interval"),
         keeps_checkpoint: section.choice("last_checkpoint") == "keep",
         further: further_of(section, solver),

@@ -310,6 +310,13 @@ pub(super) static OUTPUT: Table = Table {
             "With `flow.solver = \"vortex\"`: the vortices of all wakes every so many seconds of the analysed time, VTK polydata with circulation, core radius, age, turbine and blade: `RUN/volumes/filaments-0000.vtp`. Those of the last instant are always kept, `filaments-last.vtp`; the report draws them.",
         ),
         key(
+            "scans",
+            Holds::Choice(&["keep", "none"]),
+            "",
+            Value("\"keep\""),
+            "Scans of lidars, every one, spin-up included: `RUN/scans-T1.lidar.nc` of each lidar, with speed, place and time of each point. A point takes about 37 bytes a scan: 3 kB with 80 points, 30 MB in 1000 s at 10 Hz; `--dry-run` tells it. `none` where nobody asks `wakemix analyse hub-vortex`.",
+        ),
+        key(
             "checkpoint_interval",
             from(1.0, 1e6),
             "s",

@@ -100,7 +100,10 @@ fn write_output(text: &mut String, output: &Output, turbines: &[Placement]) -> s
         writeln!(text, "filament_interval = {interval:?}")?;
     }
     writeln!(text, "checkpoint_interval = {:?}", output.checkpoint_interval)?;
-    // Only where it is used, so that the text of a case without it stays what it was.
+    // Only where they are used, so that the text of a case without them stays what it was.
+    if !output.keeps_scans {
+        writeln!(text, "scans = \"none\"")?;
+    }
     if !output.keeps_checkpoint {
         writeln!(text, "last_checkpoint = \"remove\"")?;
     }

@@ -4,8 +4,14 @@ use super::{Refusal, survives};
 use crate::case;
 use crate::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
 use crate::netcdf::{Column, TimeHeight, read_statistics, write_statistics};
-use crate::records::{self, AtPhase, Manifest, PlaneSetting, RunFolder, SeriesWriter, read_study};
+use crate::records::{
+    self, AtPhase, Manifest, PlaneSetting, RunFolder, ScanInstant, ScanSetting, ScanWriter,
+    SeriesWriter, read_scans, read_study,
+};
+use basis::keys::Values;
 use basis::records::{Plane, PlaneAxes, examples};
+use basis::scan::{Scan, ScanLayout};
+use basis::{HelixFrame, Matrix3, Sense, Vector3};
 use farm::case::{Case, Time, Wind};
 use std::fs;
 use std::path::Path;
@@ -62,6 +68,48 @@ fn studies() {
     survives(study(), |folder| {
         for run in read_study(folder)?.runs {
             run.series.read(|_| true)?;
+        }
+        Ok(())
+    });
+}
+
+/// Scans of a lidar of two points.
+fn scans() -> Vec<(&'static str, Vec<u8>)> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scans-T1.lidar.nc");
+    let setting = ScanSetting {
+        case: "small".into(),
+        run: "helix".into(),
+        turbine: "T1".into(),
+        sensor: "lidar".into(),
+        values: Values::none(),
+        layout: ScanLayout {
+            directions: vec![[1.0, 0.0, 0.0]; 2],
+            ranges: vec![126.0; 2],
+            n_ranges: 1,
+            rate: 10.0,
+        },
+        hub: [0.0, 0.0, 90.0],
+        rotor_diameter: 126.0,
+        helix: Some(HelixFrame { sense: Sense::Clockwise, rate: 0.15 }),
+        wind_speed: 10.0,
+    };
+    let mut writer = ScanWriter::create(&path, &setting).unwrap();
+    let reading = vec![7.0; Scan::n_values(2)];
+    let scan = Scan::of(&reading).unwrap();
+    let (origin, axes) = (Vector3::ZERO, Matrix3::IDENTITY);
+    writer.write(&ScanInstant { time: 0.1, azimuth: 0.0, origin, axes, scan }).unwrap();
+    writer.finish().unwrap();
+    vec![("scans-T1.lidar.nc", fs::read(path).unwrap())]
+}
+
+#[test]
+fn scans_of_lidars() {
+    survives(scans(), |folder| {
+        let stored = read_scans(&folder.join("scans-T1.lidar.nc"))?;
+        let mut reading = Vec::new();
+        for index in 0..stored.n_scans() {
+            stored.reading(index, 0..stored.n_points(), &mut reading);
         }
         Ok(())
     });

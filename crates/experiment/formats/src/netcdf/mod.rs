@@ -1,19 +1,24 @@
-//! Planes, and statistics over time and height, as NetCDF files that xarray, ParaView and MATLAB open as they
-//! are; planes come back, too.
+//! Planes, scans of lidars, and statistics over time and height, as NetCDF files that xarray, ParaView and
+//! MATLAB open as they are; they come back, too.
 //!
 //! The classic format (64-bit offsets where needed), which needs no HDF5 on either side. Velocity stands over
 //! `time` or `phase`, `z`, `y`, `x`, the axis across the plane having one point, so that a plane lies where
 //! it was taken. Beside it stand the turbines and the wind in which it was, [`PlaneSetting`].
 
+mod growing;
 mod instants;
 mod read;
+mod scans;
 mod setting;
 mod statistics;
+mod stored_scans;
 
 pub use instants::InstantWriter;
 pub use read::{read_phases, read_plane, read_planes};
+pub use scans::{ScanInstant, ScanSetting, ScanWriter, scan_bytes};
 pub use setting::{PlacedTurbine, PlaneSetting};
 pub use statistics::{Column, StoredStatistics, TimeHeight, read_statistics, write_statistics};
+pub use stored_scans::{StoredScans, read_scans};
 
 use crate::{FileError, atomic};
 use basis::records::{Plane, PlaneAxes};
@@ -77,7 +82,11 @@ fn commit(path: &Path, encoded: Result<Vec<u8>, Error>) -> Result<(), FileError>
 }
 
 fn unwritable(path: &Path, error: Error) -> FileError {
-    FileError::system("write", WHAT, path, io::Error::new(io::ErrorKind::InvalidInput, error))
+    unwritable_as(WHAT, path, error)
+}
+
+fn unwritable_as(what: &'static str, path: &Path, error: Error) -> FileError {
+    FileError::system("write", what, path, io::Error::new(io::ErrorKind::InvalidInput, error))
 }
 
 /// The first dimension of velocities.

@@ -7,6 +7,7 @@ mod manifest;
 mod pitch_responses;
 mod planes;
 mod precursor;
+mod scans;
 mod series;
 mod series_file;
 mod study;
@@ -27,9 +28,12 @@ pub use planes::{
 pub use precursor::{
     Drift, PRECURSOR_VERSION, PrecursorFolder, PrecursorResult, ProfileRow, RecordedPlanes,
 };
+pub use scans::{
+    ScanInstant, ScanSetting, ScanWriter, StoredScans, read_scans, scan_bytes, scans_name,
+};
 pub use series::SeriesWriter;
 pub use series_file::{SeriesFile, read_series};
-pub use study::{RunRecords, StudyRecords, read_study, read_summaries};
+pub use study::{RunRecords, StudyRecords, read_study, read_summaries, scan_paths};
 pub use sweep::{read_sweep, remove_sweep, sweep_path, write_sweep, write_table};
 
 use crate::lock::Lock;
@@ -37,6 +41,7 @@ pub use crate::vtk::filament_bytes;
 use crate::{FileError, atomic, leftovers, vtk};
 use basis::records::{Filaments, SCHEMA_VERSION, Summary};
 use flow::lattice::Volume;
+use scans::SCANS;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
@@ -85,6 +90,7 @@ impl RunFolder {
             gone(fs::remove_file(&file), &file)?;
         }
         self.remove_named(INFLOW, "")?;
+        self.remove_named(SCANS, "")?;
         self.remove_named("", OUTB)?;
         for folder in [self.planes_path(), self.volumes_path()] {
             gone(fs::remove_dir_all(&folder), &folder)?;
@@ -200,6 +206,12 @@ impl RunFolder {
     /// `inflow-T2.bts`: the wind at the place of the turbine called `turbine`.
     pub fn inflow_path(&self, turbine: &str) -> PathBuf {
         self.path.join(format!("{INFLOW}{turbine}.bts"))
+    }
+
+    /// `scans-T1.lidar.nc`: the scans of the lidar `sensor` of `turbine`; until the run is complete they are
+    /// in `scans-T1.lidar.nc.part`.
+    pub fn scans_path(&self, turbine: &str, sensor: &str) -> PathBuf {
+        self.path.join(scans_name(turbine, sensor))
     }
 
     /// `checkpoint`.

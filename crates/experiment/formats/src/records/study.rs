@@ -1,6 +1,7 @@
 //! A study read back from its folder.
 
 use super::planes::{LAST, MEAN, PHASES};
+use super::scans::SCANS;
 use super::{LAST_FILAMENTS, Manifest, RunFolder, SeriesFile, read_manifest, read_summary};
 use crate::{FileError, case, netcdf, vtk};
 use basis::records::{Filaments, Plane, Summary, Warning, WarningKind};
@@ -44,6 +45,8 @@ pub struct RunRecords {
     pub phase_planes: Vec<(f64, Plane)>,
     /// Files of planes at instants, by name.
     pub instant_paths: Vec<PathBuf>,
+    /// Files of lidars' scans, by name.
+    pub scan_paths: Vec<PathBuf>,
     /// Files of volumes, by time.
     pub volume_paths: Vec<PathBuf>,
     /// The vortices of its wakes at the last instant; none where the air has none to show.
@@ -217,6 +220,7 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
         last_planes: Vec::new(),
         phase_planes: Vec::new(),
         instant_paths: Vec::new(),
+        scan_paths: scan_paths(folder)?,
         volume_paths: Vec::new(),
         last_filaments: None,
     };
@@ -242,6 +246,19 @@ fn read_run(folder: &RunFolder, manifest: Manifest) -> Result<RunRecords, FileEr
     }
     records.volume_paths.retain(|path| path.extension().is_some_and(|ending| ending == "vti"));
     Ok(records)
+}
+
+/// Files of the scans of the complete run in `folder`, by name.
+///
+/// # Errors
+/// [`FileError::System`].
+pub fn scan_paths(folder: &RunFolder) -> Result<Vec<PathBuf>, FileError> {
+    let mut paths = entries(folder.path())?;
+    paths.retain(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with(SCANS) && name.ends_with(".nc")
+    });
+    Ok(paths)
 }
 
 /// Paths of what is in the folder `path`, by name.

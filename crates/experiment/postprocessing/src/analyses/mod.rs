@@ -4,6 +4,7 @@
 //! arguments and its help from the descriptor; a program calls [`Analysis::run`] with a [`Request`].
 
 mod gains;
+mod hub_vortex;
 mod lock;
 mod meandering;
 mod moments;
@@ -30,6 +31,7 @@ pub const ANALYSES: &[Analysis] = &[
     gains::ANALYSIS,
     lock::ANALYSIS,
     meandering::ANALYSIS,
+    hub_vortex::ANALYSIS,
 ];
 
 /// Where an analysis draws its figures.

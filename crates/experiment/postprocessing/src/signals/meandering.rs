@@ -71,6 +71,7 @@ impl Meandered {
                 .to_owned(),
             tracks: self.tracks.clone(),
             densities: self.densities.clone(),
+            ..Signals::default()
         }
     }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod blade_moments;
 pub(crate) mod meandering;
+mod scans;
 pub(crate) mod spectra;
 
 use crate::PostprocessingError;
@@ -35,6 +36,7 @@ pub(crate) fn of_study(
     for found in unless_coarse(meandering::of_study(&case, records))? {
         signals.push(found.signals());
     }
+    signals.extend(scans::of_study(&case, records)?);
     Ok(signals)
 }
 

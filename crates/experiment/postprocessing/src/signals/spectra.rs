@@ -67,8 +67,8 @@ impl SpectraAnswer {
             title: format!("Spectra at {}", self.turbine),
             lead: "Power spectral densities, whose area is the variance, by Welch's method."
                 .to_owned(),
-            tracks: Vec::new(),
             densities: self.winds.iter().chain(&self.moments).cloned().collect(),
+            ..Signals::default()
         }
     }
 }

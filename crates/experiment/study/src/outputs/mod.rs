@@ -16,6 +16,7 @@ pub(crate) mod mean_planes;
 pub(crate) mod outb;
 mod output;
 mod phase_planes;
+mod scans;
 mod schedule;
 mod section;
 pub(crate) mod series;
@@ -37,7 +38,7 @@ use farm::outputs::OUTPUTS;
 use std::sync::Once;
 
 /// The kinds of output that every study has; they finish in this order.
-pub static STANDARD: [&OutputKind; 10] = [
+pub static STANDARD: [&OutputKind; 11] = [
     &series::KIND,
     &mean_planes::KIND,
     &phase_planes::KIND,
@@ -47,6 +48,7 @@ pub static STANDARD: [&OutputKind; 10] = [
     &filaments::KIND,
     &cores::KIND,
     &wind_records::KIND,
+    &scans::KIND,
     // From the complete series.
     &outb::KIND,
 ];

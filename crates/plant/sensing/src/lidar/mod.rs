@@ -12,13 +12,14 @@ mod optics;
 mod pattern;
 mod probe;
 
+use crate::axes::level_axes;
 use crate::noise::Draw;
 use crate::sensor::{ForeignState, Mount, Scene, Sensor, SensorKind};
 use basis::keys::{Objection, Table, Values};
 use basis::registry::Named;
-use basis::scan::{Scan, ScanBlocks};
+use basis::scan::{Scan, ScanBlocks, ScanLayout};
 use basis::{Channel, Unit, Vector3, mixed};
-use optics::{Optics, Pose, level};
+use optics::{Optics, Pose};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -157,7 +158,7 @@ impl Lidar {
         let winds = &mut winds[..nodes.len()];
         scene.wind.sample(nodes, winds);
         let definition = scene.turbine.definition();
-        let (origin, axes) = (scene.turbine.frame().hub, level(scene.turbine.frame()));
+        let (origin, axes) = (scene.turbine.frame().hub, level_axes(scene.turbine.frame()));
         let n_beams = optics.beams.len();
         let reading = state.n_instants;
         let Some(scan) = ScanBlocks::of(&mut state.latest) else { return };
@@ -200,6 +201,19 @@ impl Sensor for Lidar {
 
     fn n_values(&self) -> usize {
         Scan::n_values(self.optics.n_points())
+    }
+
+    fn scan_layout(&self) -> Option<ScanLayout> {
+        let Optics { beams, distances, n_gates, .. } = &self.optics;
+        let gates = 0..*n_gates;
+        let directions = gates.clone().flat_map(|_| beams.iter().map(|beam| beam.to_array()));
+        let ranges = gates.flat_map(|gate| distances.iter().skip(gate).step_by(*n_gates));
+        Some(ScanLayout {
+            directions: directions.collect(),
+            ranges: ranges.copied().collect(),
+            n_ranges: *n_gates,
+            rate: self.rate,
+        })
     }
 
     fn read(&mut self, scene: &Scene, values: &mut [f64]) {

@@ -2,6 +2,7 @@
 
 use super::pattern::Pattern;
 use super::probe::Probe;
+use crate::axes::level_axes;
 use crate::sensor::Mount;
 use basis::angle::wrap_to_half_turn;
 use basis::keys::Values;
@@ -120,7 +121,7 @@ impl Optics {
     /// Where it is, at rest, on a machine whose rotor would stand as `unbent` and stands as `rotor`.
     fn pose_of(&self, unbent: &Frame, rotor: &Frame, azimuth: f64) -> Pose {
         let axes = match self.carrier {
-            Carrier::Nacelle => axes_of(rotor) * axes_of(unbent).transpose() * level(unbent),
+            Carrier::Nacelle => axes_of(rotor) * axes_of(unbent).transpose() * level_axes(unbent),
             Carrier::Hub => axes_of(rotor) * Matrix3::from_rotation_x(azimuth),
         };
         let place = rotor.hub + axes * self.arm;
@@ -158,12 +159,6 @@ impl Pose {
             radius * wrap_to_half_turn(azimuth - blade).abs() < half_chord
         })
     }
-}
-
-/// Level axes that turn with the nacelle: downwind, left, up.
-pub(super) fn level(rotor: &Frame) -> Matrix3 {
-    let left = -rotor.right;
-    Matrix3::from_cols(left.cross(Vector3::Z), left, Vector3::Z)
 }
 
 /// Axes of the shaft: downwind, left, up.

@@ -5,6 +5,7 @@
 
 mod deficits;
 mod densities;
+mod discs;
 mod marks;
 mod offsets;
 mod slices;
@@ -13,6 +14,7 @@ mod tracks;
 
 use crate::draw::Figure;
 use basis::records::{Plane, Statistic};
+pub use discs::{DiscFigure, DiscPanel, DiscPath, DiscPoint};
 
 /// What a study has to show of a turbine's phase synchronisation; what is empty is left out.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -259,6 +261,8 @@ pub struct Signals {
     pub title: String,
     /// What stands below it.
     pub lead: String,
+    /// What is seen over a rotor's disc.
+    pub discs: Vec<DiscFigure>,
     /// Signals over time.
     pub tracks: Vec<TrackFigure>,
     /// Their densities over frequency.
@@ -355,7 +359,8 @@ pub struct DeficitLine {
 /// Every figure of `signals`, in the order of a page.
 pub(crate) fn of_signals(signals: &Signals) -> Vec<Figure> {
     let densities = signals.densities.iter().filter_map(densities::densities);
-    signals.tracks.iter().filter_map(tracks::tracks).chain(densities).collect()
+    let discs = signals.discs.iter().filter_map(discs::discs);
+    discs.chain(signals.tracks.iter().filter_map(tracks::tracks)).chain(densities).collect()
 }
 
 /// Every figure that `records` allow, in the order of a page.

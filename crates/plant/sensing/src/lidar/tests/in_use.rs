@@ -93,6 +93,30 @@ fn stored_and_restored_it_goes_on_with_the_same_bits_and_series_keep_its_speeds(
 }
 
 #[test]
+fn its_lines_of_sight_and_ranges_lead_to_the_places_of_its_scan() {
+    let turbine = turbine(0.3, false);
+    let gates = ("ranges_diameters", vec![0.5, 1.0].into());
+    let rings =
+        [("scan", word("rings")), ("n_points", 12_u64.into()), ("above", 3.0.into()), gates];
+    for (changes, n_ranges) in [(&[][..], 1), (&rings[..], 2)] {
+        let mut one = sensing(&turbine, changes);
+        let reading = read(&mut one, &turbine, &EVEN, 0);
+        let scan = Scan::of(&reading).expect("a scan");
+        let layouts = one.sensors().map(|(name, sensor)| (name, sensor.scan_layout()));
+        let (name, layout) = layouts.last().expect("a sensor");
+        let layout = layout.expect("its readings are scans");
+        assert_eq!((name, layout.n_ranges, layout.rate), ("Eye", n_ranges, 10.0));
+        assert_eq!(layout.ranges.len(), scan.n_points());
+        let above = Vector3::Z * if n_ranges > 1 { 3.0 } else { 0.0 };
+        for (point, (line, range)) in layout.directions.iter().zip(&layout.ranges).enumerate() {
+            let place = Vector3::new(scan.downwind()[point], scan.left()[point], scan.up()[point]);
+            let expected = above + *range * Vector3::from_array(*line);
+            assert!((place - expected).length() < 1e-9, "point {point}: {place} {expected}");
+        }
+    }
+}
+
+#[test]
 fn what_cannot_be_is_refused_at_its_key_with_a_way_out() {
     let kind = SENSORS.find("lidar").expect("it is one of the kinds");
     let definition = definition();

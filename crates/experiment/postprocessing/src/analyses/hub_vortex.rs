@@ -1,0 +1,232 @@
+//! `hub-vortex`: where a lidar saw the hub vortex of its turbine's wake.
+
+use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
+use crate::hub_vortex::signals;
+use crate::{
+    HubVortexAnswer, HubVortexQuestion, HubVortexTrack, PostprocessingError, VortexFilter,
+    hub_vortex,
+};
+use basis::channels::{HUB_VORTEX, TIME};
+use basis::{Channel, Sense, Unit};
+use formats::records::SeriesWriter;
+use serde_json::json;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// The analysis.
+pub(super) const ANALYSIS: Analysis = Analysis {
+    name: "hub-vortex",
+    about: "Where a lidar saw the hub vortex of its turbine's wake, in the fixed frame and in that of the helix, from the scans that a run kept: figures 6, 10 and 12 of Chen et al. (2026)",
+    of: Of::Run("Folder of a run, such as runs/lidar-identification/probing"),
+    settings: &[
+        setting(
+            "turbine",
+            "NAME",
+            Takes::Text,
+            "Turbine whose lidar it is; the first that has one when left out",
+        ),
+        setting(
+            "lidar",
+            "NAME",
+            Takes::Text,
+            "Name of the lidar among its sensors; its first when left out",
+        ),
+        AnalysisSetting {
+            name: "filter",
+            value: "FILTER",
+            takes: Takes::Choice(&[
+                ("published", "As in the paper: fast region, delay left in"),
+                ("robust", "Weighted, with the filter's delay made good"),
+            ]),
+            about: "How the hub vortex is found; both ways when left out",
+        },
+        setting(
+            "frequency",
+            "HZ",
+            Takes::Number,
+            "Frequency of the helix (Hz); that which the turbine pitched when left out",
+        ),
+        AnalysisSetting {
+            name: "sense",
+            value: "SENSE",
+            takes: Takes::Choice(&[
+                ("ccw", "Blades pitch at rotor plus excitation frequency"),
+                ("cw", "Blades pitch at rotor minus excitation frequency"),
+            ]),
+            about: "Sense of the helix; that which the turbine pitched when left out",
+        },
+        setting(
+            "band",
+            "HZ",
+            Takes::Number,
+            "Upper end of the band: cut-off of the low-pass filter (Hz); 0.05 when left out",
+        ),
+        setting(
+            "interval",
+            "S",
+            Takes::Number,
+            "Time between samples (s); the controller's `vortex_interval`, or the time between scans, when left out",
+        ),
+        setting(
+            "range",
+            "D",
+            Takes::Number,
+            "Which of a pulsed lidar's ranges (rotor diameters), the nearest; that nearest to 1 when left out",
+        ),
+        setting(
+            "from",
+            "T",
+            Takes::Number,
+            "First time that counts (s); the end of the spin-up when left out",
+        ),
+        setting(
+            "csv",
+            "FILE",
+            Takes::Text,
+            "CSV file to write the place over time into, with the channels of a series, which `wakemix identify` reads",
+        ),
+        FIGURES,
+    ],
+    run,
+};
+
+const fn setting(
+    name: &'static str,
+    value: &'static str,
+    takes: Takes,
+    about: &'static str,
+) -> AnalysisSetting {
+    AnalysisSetting { name, value, takes, about }
+}
+
+fn run(request: &Request) -> Result<Answer, PostprocessingError> {
+    let filter = request.text("filter");
+    let named = |filter_of: &VortexFilter| filter.is_none_or(|name| name == filter_of.name());
+    let answer = hub_vortex(&HubVortexQuestion {
+        run: request.run().to_owned(),
+        turbine: request.text("turbine").map(str::to_owned),
+        lidar: request.text("lidar").map(str::to_owned),
+        filters: VortexFilter::ALL.into_iter().filter(named).collect(),
+        frequency: request.number("frequency"),
+        sense: request.text("sense").map(|word| match word {
+            "cw" => Sense::Clockwise,
+            _ => Sense::CounterClockwise,
+        }),
+        cut_off: request.number("band"),
+        interval: request.number("interval"),
+        range: request.number("range"),
+        from: request.number("from"),
+    })?;
+    let mut remarks = Vec::new();
+    if let Some(path) = request.text("csv") {
+        write_csv(&answer, Path::new(path))?;
+        remarks.push(format!("written: {path}"));
+    }
+    remarks.extend(drawn(request, &[signals(&answer)])?);
+    Ok(Answer { text: text(&answer), json: json(&answer), remarks })
+}
+
+/// Filter by filter, with the conventions below.
+fn text(answer: &HubVortexAnswer) -> String {
+    let HubVortexAnswer { frame, diameter, interval, .. } = answer;
+    let mut text = format!(
+        "{} on {} in {}: helix {} at {:.2} mHz, seen {:.2} D away, a sample every {interval:.3} s from {} s on; {:.1} % of the points without a speed\n",
+        answer.lidar,
+        answer.turbine,
+        answer.run,
+        frame.sense,
+        1e3 * frame.rate / TAU,
+        answer.range / diameter,
+        answer.from,
+        100.0 * answer.missing,
+    );
+    text += &format!(
+        "{:<10} {:>14} {:>9} {:>9} {:>14} {:>14} {:>11} {:>7}\n",
+        "filter", "radius m", "left m", "up m", "tilt m", "yaw m", "confidence", "blind %"
+    );
+    for HubVortexTrack { filter, numbers, .. } in &answer.tracks {
+        let pair = |mean: f64, deviation: f64| format!("{mean:.2} ± {deviation:.2}");
+        let [left, up] = numbers.centre;
+        let [tilt, yaw] =
+            [0, 1].map(|axis| pair(numbers.helix[axis], numbers.helix_deviation[axis]));
+        text += &format!(
+            "{:<10} {:>14} {left:>9.2} {up:>9.2} {tilt:>14} {yaw:>14} {:>11.2} {:>7.1}\n",
+            filter.name(),
+            pair(numbers.radius[0], numbers.radius[1]),
+            numbers.confidence,
+            100.0 * numbers.blind
+        );
+    }
+    text + "radius: mean distance of the filtered place from its mean, which is left and up of the rotor's centre looking downwind; tilt (up), yaw (to the right): in the frame that turns with the helix; ±: standard deviation over whole periods; blind: scans in which it was not found\n"
+}
+
+/// The numbers, and the place over time.
+fn json(answer: &HubVortexAnswer) -> serde_json::Value {
+    let tracks = answer.tracks.iter().map(|HubVortexTrack { filter, vortices, numbers }| {
+        let column = |of: &dyn Fn(&estimation::hub_vortex::HubVortex) -> f64| {
+            vortices.iter().map(of).collect::<Vec<f64>>()
+        };
+        json!({
+            "filter": filter.name(),
+            "n_samples": numbers.n_samples,
+            "radius_m": numbers.radius[0],
+            "radius_deviation_m": numbers.radius[1],
+            "centre_left_m": numbers.centre[0],
+            "centre_up_m": numbers.centre[1],
+            "tilt_m": numbers.helix[0],
+            "yaw_m": numbers.helix[1],
+            "tilt_deviation_m": numbers.helix_deviation[0],
+            "yaw_deviation_m": numbers.helix_deviation[1],
+            "confidence": numbers.confidence,
+            "blind": numbers.blind,
+            "found_left_m": column(&|vortex| vortex.place[0]),
+            "found_up_m": column(&|vortex| vortex.place[1]),
+            "filtered_left_m": column(&|vortex| vortex.filtered[0]),
+            "filtered_up_m": column(&|vortex| vortex.filtered[1]),
+            "tilts_m": column(&|vortex| vortex.helix[0]),
+            "yaws_m": column(&|vortex| vortex.helix[1]),
+            "confidences": column(&|vortex| vortex.confidence),
+            "is_found": vortices.iter().map(|vortex| !vortex.held).collect::<Vec<bool>>(),
+            "is_settled": vortices.iter().map(|vortex| vortex.settled).collect::<Vec<bool>>(),
+        })
+    });
+    json!({
+        "run": answer.run,
+        "turbine": answer.turbine,
+        "lidar": answer.lidar,
+        "sense": answer.frame.sense.to_string(),
+        "frequency_hz": answer.frame.rate / TAU,
+        "range_m": answer.range,
+        "rotor_diameter_m": answer.diameter,
+        "interval_s": answer.interval,
+        "given_centre_m": answer.given_centre,
+        "from_s": answer.from,
+        "missing": answer.missing,
+        "times_s": answer.times,
+        "filters": tracks.collect::<Vec<_>>(),
+    })
+}
+
+/// Writes the place over time, `published.HubVortexLeft_m` and so on, into a table at `path`.
+fn write_csv(answer: &HubVortexAnswer, path: &Path) -> Result<(), PostprocessingError> {
+    let found = [("FoundLeft", Unit::Metre), ("FoundUp", Unit::Metre), ("Found", Unit::One)];
+    let mut channels = vec![TIME];
+    for track in &answer.tracks {
+        let own = HUB_VORTEX.into_iter().chain(found.map(|(name, unit)| Channel::new(name, unit)));
+        channels.extend(own.map(|channel| channel.of(track.filter.name())));
+    }
+    let mut writer = SeriesWriter::create(path, &channels)?;
+    let mut row = Vec::with_capacity(channels.len());
+    for (index, time) in answer.times.iter().enumerate() {
+        row.clear();
+        row.push(*time);
+        for track in &answer.tracks {
+            let vortex = &track.vortices[index];
+            let [[left, up], [tilt, yaw]] = [vortex.filtered, vortex.helix];
+            row.extend([left, up, tilt, yaw, vortex.confidence]);
+            row.extend([vortex.place[0], vortex.place[1], f64::from(u8::from(!vortex.held))]);
+        }
+        writer.write(&row)?;
+    }
+    Ok(writer.finish()?)
+}
