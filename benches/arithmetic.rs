@@ -48,6 +48,37 @@ pub fn limit() -> Option<Limit> {
     None
 }
 
+/// Double-precision operations that `n_threads` threads work out in a second together (1/s), a sum of a
+/// product counting for two; none where this machine has neither AVX-512 nor AVX2.
+pub fn double_limit(n_threads: usize) -> Option<f64> {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let together = |work: fn(), lanes: usize| {
+            let rate = |_| {
+                let started = Instant::now();
+                std::thread::scope(|scope| {
+                    for _ in 0..n_threads {
+                        scope.spawn(work);
+                    }
+                });
+                let done = 2 * lanes * N_CHAINS * N_ROUNDS * n_threads;
+                done as f64 / started.elapsed().as_secs_f64()
+            };
+            (0..N_TRIALS).map(rate).fold(0.0, f64::max)
+        };
+        if is_x86_feature_detected!("avx512f") {
+            // SAFETY: the instructions were found.
+            return Some(together(|| unsafe { x86::doubles512(0) }, 8));
+        }
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            // SAFETY: as above.
+            return Some(together(|| unsafe { x86::doubles256(0) }, 4));
+        }
+    }
+    let _ = n_threads;
+    None
+}
+
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::{N_CHAINS, N_ROUNDS, black_box};
@@ -90,4 +121,6 @@ mod x86 {
 
     chains!(chains512, "avx512f", __m512, _mm512_set1_ps, _mm512_fmadd_ps, _mm512_add_ps);
     chains!(chains256, "avx2,fma", __m256, _mm256_set1_ps, _mm256_fmadd_ps, _mm256_add_ps);
+    chains!(doubles512, "avx512f", __m512d, _mm512_set1_pd, _mm512_fmadd_pd, _mm512_add_pd);
+    chains!(doubles256, "avx2,fma", __m256d, _mm256_set1_pd, _mm256_fmadd_pd, _mm256_add_pd);
 }

@@ -1,12 +1,9 @@
 //! Hyperparameters of maximum marginal likelihood: limited-memory BFGS from several starts, inside bounds.
 
+use crate::ascent::{End, Objective, climb, inside, place_of};
 use crate::likelihood::{Likelihood, Mean};
 use crate::sample::Normals;
 use crate::{Hyperparameters, Observations, Shape, SurrogateError};
-use argmin::core::{CostFunction, Error, Executor, Gradient};
-use argmin::solver::linesearch::MoreThuenteLineSearch;
-use argmin::solver::quasinewton::LBFGS;
-use std::cell::RefCell;
 
 /// Whether a noise variance is estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,8 +34,8 @@ impl Default for FitSettings {
     }
 }
 
-/// Iterations of one search at most; a handful of parameters settle within a few dozen.
-const MAXIMUM_ITERATIONS: u64 = 200;
+/// Steps of one search at most, since a handful of parameters settle within a few dozen.
+const END: End = End { n_steps: 200, slope: 1.5e-8 };
 
 /// The hyperparameters of maximum marginal likelihood for `observations`.
 ///
@@ -54,22 +51,20 @@ pub(crate) fn hyperparameters(
     let search = Search::new(shape, observations, settings);
     let mut normals = Normals::new(settings.seed);
     let n_parameters = search.bounds.len();
+    let mut best: Option<(f64, Vec<f64>)> = None;
     for start in 0..settings.n_starts.max(1) {
         let place = match start {
             0 => search.first_place(),
             _ => (0..n_parameters).map(|_| normals.next()).collect(),
         };
-        let line_search = MoreThuenteLineSearch::new();
-        let solver = LBFGS::new(line_search, 7);
-        // A search that stops early has still recorded its best place.
-        let _ = Executor::new(&search, solver)
-            .configure(|state| state.param(place).max_iters(MAXIMUM_ITERATIONS))
-            .timer(false)
-            .run();
+        let Some(found) = climb(&search, &search.bounds, &place, None, END) else { continue };
+        if best.as_ref().is_none_or(|(log, _)| found.0 > *log) {
+            best = Some(found);
+        }
     }
-    let best = search.best.borrow_mut().take();
     let n = observations.len();
-    best.map(|(_, parameters)| parameters).ok_or(SurrogateError::NotPositiveDefinite { n })
+    best.map(|(_, place)| search.parameters(&inside(&place, &search.bounds).0))
+        .ok_or(SurrogateError::NotPositiveDefinite { n })
 }
 
 struct Search<'a> {
@@ -80,7 +75,6 @@ struct Search<'a> {
     bounds: Vec<[f64; 2]>,
     /// Noise variance where none is estimated.
     fixed_noise: Option<f64>,
-    best: RefCell<Option<(f64, Hyperparameters)>>,
 }
 
 impl<'a> Search<'a> {
@@ -117,8 +111,7 @@ impl<'a> Search<'a> {
             Noise::Known => Some(1e-10 * spread),
         };
         let bounds = bounds.into_iter().map(|ends| ends.map(f64::ln)).collect();
-        let best = RefCell::new(None);
-        Self { shape, observations, mean: settings.mean, bounds, fixed_noise, best }
+        Self { shape, observations, mean: settings.mean, bounds, fixed_noise }
     }
 
     /// Signal as large as the spread, lengths of a third of the range (one for a periodic kernel), noise of a
@@ -133,54 +126,26 @@ impl<'a> Search<'a> {
                 (index, _) if index <= self.observations.n_dimensions => 0.38,
                 _ => 0.6,
             };
-            (wanted / (1.0 - wanted)).ln()
+            place_of(wanted)
         };
         self.bounds.iter().enumerate().map(|(index, ends)| shares(index, *ends)).collect()
     }
 
-    /// Parameters at `place`, and how fast the logarithm of each moves with it.
-    fn parameters(&self, place: &[f64]) -> (Hyperparameters, Vec<f64>) {
-        let (mut values, mut speeds) = (Vec::new(), Vec::new());
-        for (place, [low, high]) in place.iter().zip(&self.bounds) {
-            let share = 1.0 / (1.0 + (-place).exp());
-            values.push((low + share * (high - low)).exp());
-            speeds.push((high - low) * share * (1.0 - share));
-        }
+    /// Parameters of their `logarithms`.
+    fn parameters(&self, logarithms: &[f64]) -> Hyperparameters {
+        let mut values: Vec<f64> = logarithms.iter().map(|log| log.exp()).collect();
         let noise_variance = self.fixed_noise.or_else(|| values.pop()).unwrap_or(0.0);
         let lengths = values.split_off(1);
-        (Hyperparameters { signal_variance: values[0], lengths, noise_variance }, speeds)
-    }
-
-    fn likelihood(&self, parameters: &Hyperparameters) -> Option<Likelihood> {
-        let found = Likelihood::new(self.shape, parameters, self.observations, self.mean).ok()?;
-        found.log.is_finite().then_some(found)
+        Hyperparameters { signal_variance: values[0], lengths, noise_variance }
     }
 }
 
-impl CostFunction for &Search<'_> {
-    type Param = Vec<f64>;
-    type Output = f64;
-
-    fn cost(&self, place: &Vec<f64>) -> Result<f64, Error> {
-        let (parameters, _) = self.parameters(place);
-        // Where the covariance does not factorise the likelihood is zero; the line search turns back.
-        let Some(found) = self.likelihood(&parameters) else { return Ok(f64::MAX.sqrt()) };
-        let mut best = self.best.borrow_mut();
-        if best.as_ref().is_none_or(|(log, _)| found.log > *log) {
-            *best = Some((found.log, parameters));
-        }
-        Ok(-found.log)
-    }
-}
-
-impl Gradient for &Search<'_> {
-    type Param = Vec<f64>;
-    type Gradient = Vec<f64>;
-
-    fn gradient(&self, place: &Vec<f64>) -> Result<Vec<f64>, Error> {
-        let (parameters, speeds) = self.parameters(place);
-        let Some(found) = self.likelihood(&parameters) else { return Ok(vec![0.0; place.len()]) };
-        let slopes = found.slopes(self.shape, &parameters, self.observations);
-        Ok(slopes.iter().zip(&speeds).map(|(slope, speed)| -slope * speed).collect())
+impl Objective for Search<'_> {
+    fn value_and_slopes(&self, logarithms: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let parameters = self.parameters(logarithms);
+        let found = Likelihood::new(self.shape, &parameters, self.observations, self.mean).ok()?;
+        let mut slopes = found.slopes(self.shape, &parameters, self.observations);
+        slopes.truncate(logarithms.len());
+        found.log.is_finite().then_some((found.log, slopes))
     }
 }

@@ -20,6 +20,11 @@ pub enum Shape {
     Matern32,
     /// (1 + √5 r + 5 r²/3) exp(−√5 r): two derivatives.
     Matern52,
+    /// (1 + r²/(2 α))^(−α): very smooth, of many lengths at once.
+    RationalQuadratic {
+        /// Exponent α (–).
+        exponent: f64,
+    },
 }
 
 /// Hyperparameters, over which the marginal likelihood is maximised.
@@ -54,12 +59,13 @@ impl Hyperparameters {
 
 impl Shape {
     pub(crate) fn check(self) -> Result<(), SurrogateError> {
-        match self {
-            Self::Periodic { period: value } if !(value > 0.0 && value.is_finite()) => {
-                Err(SurrogateError::NotPositive { what: "the period", value })
-            }
-            _ => Ok(()),
-        }
+        let (what, value) = match self {
+            Self::Periodic { period } => ("the period", period),
+            Self::RationalQuadratic { exponent } => ("the exponent", exponent),
+            _ => return Ok(()),
+        };
+        let is_good = value > 0.0 && value.is_finite();
+        is_good.then_some(()).ok_or(SurrogateError::NotPositive { what, value })
     }
 
     /// Squared distance of two numbers along one dimension, in lengths.
@@ -101,20 +107,43 @@ impl Shape {
     fn of_square(self, square: f64) -> (f64, f64) {
         match self {
             Self::Periodic { .. } | Self::SquaredExponential => {
-                let value = (-0.5 * square).exp();
-                (value, -0.5 * value)
+                squared_exponential(square, f64::exp)
             }
-            Self::Matern32 => {
-                let distance = (3.0 * square).sqrt();
-                let decay = (-distance).exp();
-                ((1.0 + distance) * decay, -1.5 * decay)
-            }
-            Self::Matern52 => {
-                let distance = (5.0 * square).sqrt();
-                let decay = (-distance).exp();
-                let value = (1.0 + distance + distance * distance / 3.0) * decay;
-                (value, -5.0 / 6.0 * (1.0 + distance) * decay)
-            }
+            Self::Matern32 => matern32(square, f64::exp),
+            Self::Matern52 => matern52(square, f64::exp),
+            Self::RationalQuadratic { exponent } => rational_quadratic(square, exponent),
         }
     }
+}
+
+/// Value and derivative of exp(−s/2) at the squared distance s, by the exponential `exp`.
+#[inline(always)]
+pub(crate) fn squared_exponential(square: f64, exp: impl Fn(f64) -> f64) -> (f64, f64) {
+    let value = exp(-0.5 * square);
+    (value, -0.5 * value)
+}
+
+/// Of Matérn's kernel with one derivative.
+#[inline(always)]
+pub(crate) fn matern32(square: f64, exp: impl Fn(f64) -> f64) -> (f64, f64) {
+    let distance = (3.0 * square).sqrt();
+    let decay = exp(-distance);
+    ((1.0 + distance) * decay, -1.5 * decay)
+}
+
+/// Of Matérn's kernel with two derivatives.
+#[inline(always)]
+pub(crate) fn matern52(square: f64, exp: impl Fn(f64) -> f64) -> (f64, f64) {
+    let distance = (5.0 * square).sqrt();
+    let decay = exp(-distance);
+    let value = (1.0 + distance + distance * distance / 3.0) * decay;
+    (value, -5.0 / 6.0 * (1.0 + distance) * decay)
+}
+
+/// Of the rational quadratic kernel of `exponent` α.
+#[inline(always)]
+pub(crate) fn rational_quadratic(square: f64, exponent: f64) -> (f64, f64) {
+    let base = 1.0 + square / (2.0 * exponent);
+    let value = (-exponent * base.ln()).exp();
+    (value, -0.5 * value / base)
 }

@@ -18,6 +18,7 @@
 //! # Ok::<(), surrogate::SurrogateError>(())
 //! ```
 
+mod ascent;
 mod curve;
 mod factor;
 mod fit;
@@ -25,7 +26,9 @@ mod kernel;
 mod likelihood;
 mod observations;
 mod process;
+mod regression;
 mod sample;
+mod vector;
 
 pub use curve::{Curve, CurveSettings, Extreme};
 pub use fit::{FitSettings, Noise};
@@ -33,6 +36,10 @@ pub use kernel::{Hyperparameters, Shape};
 pub use likelihood::Mean;
 pub use observations::Observations;
 pub use process::{GaussianProcess, LeaveOneOut, Prediction};
+pub use regression::{
+    Collapsed, Kernel, NoiseGroups, Outside, Panels, Parameters, Part, Regression, RegressionSettings,
+    SearchSettings, Sparse, Term, Trend, Validation,
+};
 
 use thiserror::Error;
 
@@ -72,6 +79,28 @@ pub enum SurrogateError {
         what: &'static str,
         /// What was given, in its unit.
         value: f64,
+    },
+    /// An input that says nothing.
+    #[error("input {input}, counted from 0, is {value} in every observation; leave it out")]
+    Constant {
+        /// Which one, the first is 0.
+        input: usize,
+        /// What it is everywhere, in its unit.
+        value: f64,
+    },
+    /// A group of noise without observations.
+    #[error("no observation is of noise group {group}; number the groups from 0 on without gaps")]
+    EmptyGroup {
+        /// Which one, the first is 0.
+        group: usize,
+    },
+    /// Different values at one input, where nothing is noisy.
+    #[error("{n} observations at the input of number {place} of the different ones have different values; allow for noise")]
+    Replicates {
+        /// Which of the different inputs, the first is 0.
+        place: usize,
+        /// Observations there (–).
+        n: usize,
     },
     /// A covariance that is not positive definite, as of two noiseless observations at the same input.
     #[error(

@@ -1,0 +1,24 @@
+//! Gaussian-process regression of many observations over many inputs.
+
+mod covariance;
+mod cross;
+mod expression;
+mod inducing;
+mod marginal;
+mod panels;
+mod predictor;
+mod problem;
+mod process;
+mod search;
+mod threads;
+
+pub use cross::Validation;
+pub use expression::{Kernel, Parameters, Part, Term};
+pub use inducing::Sparse;
+pub use panels::Panels;
+pub use problem::{Collapsed, NoiseGroups, Trend};
+pub use process::{Outside, Regression, RegressionSettings};
+pub use search::SearchSettings;
+
+#[cfg(test)]
+mod tests;

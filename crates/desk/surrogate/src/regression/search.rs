@@ -1,0 +1,190 @@
+//! Hyperparameters of maximum marginal likelihood: several starts on few observations, the best of them on
+//! more, and a few steps on all.
+
+use super::expression::Kernel;
+use super::marginal::Marginal;
+use super::problem::Problem;
+use crate::Shape;
+use crate::ascent::{End, Objective, climb, inside, place_of};
+use crate::sample::Normals;
+use faer::{Mat, Side};
+
+/// Observations on which starts are compared, and on which the best is followed (–).
+const FEW: usize = 400;
+/// Steps of a start on few observations, and of the best on more (–).
+const STEPS: [u64; 2] = [60, 200];
+/// A step in the coordinates of the search along which curvature is measured (–).
+const STEP: f64 = 1e-3;
+
+/// How hyperparameters are searched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchSettings {
+    /// Starts (–); the first two are fixed, the others drawn.
+    pub n_starts: usize,
+    /// Seed of the starts and of the observations that are searched on first.
+    pub seed: u64,
+    /// Observations that are searched on before all are taken (–).
+    pub n_first: usize,
+    /// Steps on all observations, where they are more (–).
+    pub n_steps_on_all: u64,
+    /// Threads (–); 0 for as many as the machine has. The result does not depend on it.
+    pub n_threads: usize,
+}
+
+impl Default for SearchSettings {
+    fn default() -> Self {
+        Self { n_starts: 8, seed: 1, n_first: 1000, n_steps_on_all: 4, n_threads: 0 }
+    }
+}
+
+/// Likelihood of a problem over the logarithms of hyperparameters.
+struct OfProblem<'a> {
+    problem: &'a Problem,
+    kernel: &'a Kernel,
+    n_threads: usize,
+}
+
+impl OfProblem<'_> {
+    fn parameters(&self, logarithms: &[f64]) -> (Kernel, Vec<f64>) {
+        let (kernel, noise) = self.kernel.with(logarithms);
+        (kernel, noise.iter().map(|log| log.exp()).collect())
+    }
+}
+
+impl Objective for OfProblem<'_> {
+    fn value_and_slopes(&self, parameters: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let (kernel, noise) = self.parameters(parameters);
+        let found = Marginal::new(self.problem, &kernel, &noise, self.n_threads, false)?;
+        let slopes = found.slopes(self.problem, &kernel, &noise);
+        slopes.iter().all(|slope| slope.is_finite()).then_some((found.log, slopes))
+    }
+}
+
+/// Logarithms of the bounds of each hyperparameter, scaled, and the share of the way at which a first start
+/// begins: variances within 10⁻⁴ to 10⁴ of the values' own, lengths from a hundredth of an input's range to a
+/// hundred times it (0.05 to 50 for a periodic shape), exponents from 10⁻² to 10³, noise within 10⁻⁸ to 10²
+/// of the values' variance.
+fn bounds(problem: &Problem, kernel: &Kernel) -> (Vec<[f64; 2]>, Vec<f64>) {
+    let mut found = Vec::new();
+    let mut add = |[low, high]: [f64; 2], share: f64| found.push(([low.ln(), high.ln()], share));
+    let spread = {
+        let n = problem.len() as f64;
+        let center = match problem.trend {
+            super::Trend::Zero => 0.0,
+            _ => problem.values.iter().sum::<f64>() / n,
+        };
+        let squares = problem.values.iter().map(|value| (value - center).powi(2));
+        let spread = (squares.sum::<f64>() + problem.within.iter().sum::<f64>()) / problem.n_observations();
+        if spread > 0.0 { spread } else { 1e-12 }
+    };
+    let range = |input: usize| {
+        let ends = problem.inputs[input].iter();
+        let ends = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(*x), high.max(*x)]
+        });
+        if ends[1] > ends[0] { ends[1] - ends[0] } else { 1.0 }
+    };
+    // Of many inputs each has a long length.
+    let share = if problem.n_dimensions() > 3 { 0.5 } else { 0.38 };
+    for term in &kernel.terms {
+        add([1e-4 * spread, 1e4 * spread], 0.5);
+        for part in &term.parts {
+            for input in &part.inputs {
+                match part.shape {
+                    Shape::Periodic { .. } => add([0.05, 50.0], 0.434),
+                    _ => add([1e-2 * range(*input), 1e2 * range(*input)], share),
+                }
+            }
+            if let Shape::RationalQuadratic { .. } = part.shape {
+                add([1e-2, 1e3], 0.4);
+            }
+        }
+    }
+    (0..problem.n_groups).for_each(|_| add([1e-8 * spread, 1e2 * spread], 0.6));
+    found.into_iter().unzip()
+}
+
+/// Numbers of `n` observations out of `total`, drawn with `seed`, in order.
+pub(crate) fn drawn(total: usize, n: usize, seed: u64) -> Vec<usize> {
+    let mut chosen = shuffled(total, seed);
+    chosen.truncate(n);
+    chosen.sort_unstable();
+    chosen
+}
+
+/// The numbers below `total` in an order of `seed`.
+pub(crate) fn shuffled(total: usize, seed: u64) -> Vec<usize> {
+    let mut normals = Normals::new(seed);
+    let mut keyed: Vec<(f64, usize)> = (0..total).map(|index| (normals.next(), index)).collect();
+    keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    keyed.into_iter().map(|(_, index)| index).collect()
+}
+
+/// Kernel and noise of maximum marginal likelihood, scaled; none where no place has a likelihood.
+pub(crate) fn hyperparameters(
+    problem: &Problem,
+    kernel: &Kernel,
+    settings: &SearchSettings,
+) -> Option<(Kernel, Vec<f64>)> {
+    let (bounds, shares) = bounds(problem, kernel);
+    let n_threads = super::threads::number(settings.n_threads);
+    let n = problem.len();
+    let subset = |most: usize| problem.subset(&drawn(n, most, settings.seed));
+    let few = subset(FEW.min(settings.n_first));
+    let mut normals = Normals::new(settings.seed);
+    let whole = End { n_steps: STEPS[1], slope: 1e-5 };
+    let quick = if few.len() < n { End { n_steps: STEPS[0], slope: 0.1 } } else { whole };
+    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
+    for start in 0..settings.n_starts.max(1) {
+        let place: Vec<f64> = match start {
+            0 => shares.iter().map(|share| place_of(*share)).collect(),
+            // Long lengths, much noise: little but the trend.
+            1 => shares.iter().map(|share| place_of(share + 0.15)).collect(),
+            _ => shares.iter().map(|_| normals.next()).collect(),
+        };
+        ends.extend(climb(&OfProblem { problem: &few, kernel, n_threads }, &bounds, &place, None, quick));
+    }
+    ends.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut place = ends.into_iter().next()?.1;
+    if few.len() < n {
+        let more = subset(settings.n_first);
+        let end = End { n_steps: STEPS[1], slope: if more.len() < n { 0.05 } else { 1e-5 } };
+        place = climb(&OfProblem { problem: &more, kernel, n_threads }, &bounds, &place, None, end).map_or(place, |best| best.1);
+        if more.len() < n && settings.n_steps_on_all > 0 {
+            let turn = turn(&OfProblem { problem: &more, kernel, n_threads }, &bounds, &place, n as f64 / more.len() as f64);
+            let end = End { n_steps: settings.n_steps_on_all, slope: 0.1 };
+            let on_all = climb(&OfProblem { problem: problem, kernel, n_threads }, &bounds, &place, turn.as_ref(), end);
+            place = on_all.map_or(place, |best| best.1);
+        }
+    }
+    Some(OfProblem { problem, kernel, n_threads }.parameters(&inside(&place, &bounds).0))
+}
+
+/// Coordinates in which the likelihood of `ratio` times as many observations bends alike along all: with the
+/// negative second derivatives V Λ Vᵀ of fewer, V (ratio Λ)^(−1/2).
+fn turn(fewer: &OfProblem<'_>, bounds: &[[f64; 2]], place: &[f64], ratio: f64) -> Option<Mat<f64>> {
+    let n = place.len();
+    let slopes = |place: &[f64]| {
+        let (parameters, speeds) = inside(place, bounds);
+        let (_, slopes) = fewer.value_and_slopes(&parameters)?;
+        Some(slopes.iter().zip(speeds).map(|(a, b)| a * b).collect::<Vec<f64>>())
+    };
+    let mut bend = Mat::<f64>::zeros(n, n);
+    for column in 0..n {
+        let at = |sign: f64| {
+            let mut place = place.to_vec();
+            place[column] += sign * STEP;
+            slopes(&place)
+        };
+        let (ahead, behind) = (at(1.0)?, at(-1.0)?);
+        for row in 0..n {
+            bend[(row, column)] = -(ahead[row] - behind[row]) / (2.0 * STEP);
+        }
+    }
+    let bend = 0.5 * (&bend + bend.transpose());
+    let found = bend.self_adjoint_eigen(Side::Lower).ok()?;
+    let (values, vectors) = (found.S(), found.U());
+    let least = 1.0;
+    let scale = |column: usize| (ratio * values[column].abs().max(least)).sqrt().recip();
+    Some(Mat::from_fn(n, n, |row, column| vectors[(row, column)] * scale(column)))
+}
