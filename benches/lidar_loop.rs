@@ -132,7 +132,8 @@ fn controller(site: &Site) -> Box<dyn Controller> {
         Recursion::new(&matrix(ORDER, ORDER), &matrix(ORDER, 2), &matrix(2, ORDER), &matrix(2, 2))
             .with_back_calculation(&matrix(ORDER, 2));
     let mut control = Control::new(&LIDAR_LOOP, &numbers).expect("sound numbers");
-    let law = LinearLaw { file: "law.json".to_owned(), recursion, interval: INTERVAL };
+    let law =
+        LinearLaw { file: "law.json".to_owned(), recursion, interval: INTERVAL, reference: None };
     control.linear_law = Some(Arc::new(law));
     control.kind().build(&control, site).expect("the bench's own setting can be used")
 }

@@ -5,7 +5,7 @@ use crate::baseline::{CoefficientTable, Constants};
 use crate::error::ControlError;
 use crate::excitation::excitation_rate;
 use crate::library::{Hosted, Libraries};
-use crate::linear_law::LinearLaw;
+use crate::linear_law::{LawFiles, LinearLaw};
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use crate::phase_sync::PhaseSyncSettings;
 use crate::{Baseline, Controller};
@@ -41,8 +41,8 @@ pub trait ControllerKind: Named + Sync {
         None
     }
 
-    /// Path of the linear control law that it runs, as the case has it.
-    fn linear_law(&self, _control: &Control) -> Option<String> {
+    /// Files of the linear control law that it runs.
+    fn law_files(&self, _control: &Control) -> Option<LawFiles> {
         None
     }
 

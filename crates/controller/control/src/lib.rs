@@ -40,7 +40,7 @@ pub use excitation::{Excitation, OnTop, excitation_rate};
 pub use helix::Helix;
 pub use kind::{Control, ControllerKind, Identification, Motion, Pitching, Place, Site};
 pub use lidar_loop::LidarLoop;
-pub use linear_law::LinearLaw;
+pub use linear_law::{LawFiles, LinearLaw};
 pub use meandering::Meandering;
 pub use outcome::{MissingChannel, Outcome, TurbineRecord};
 pub use phase_sync::PhaseSync;

@@ -11,4 +11,16 @@ pub struct LinearLaw {
     pub recursion: Recursion,
     /// Time between its samples (s).
     pub interval: f64,
+    /// Where its plant was in the run that the case names as reference, in the order and units of its inputs;
+    /// none where the case names none.
+    pub reference: Option<[f64; 2]>,
+}
+
+/// Files that a study reads for a linear control law, as the case has them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LawFiles {
+    /// The law's file.
+    pub law: String,
+    /// Folder of the run whose means are the reference.
+    pub reference_run: Option<String>,
 }

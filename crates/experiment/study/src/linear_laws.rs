@@ -1,13 +1,14 @@
 //! Linear control laws that a case names by their files.
 
-use control::LinearLaw;
+use control::lidar_loop::MEAN_HUB_VORTEX;
+use control::{LawFiles, LinearLaw};
 use farm::case::Case;
 use formats::FileError;
 use formats::linear_model::{LinearModel, Port, Role};
-use formats::records;
+use formats::records::{self, RunFolder};
 use lti::Recursion;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What such a file holds, in words.
@@ -21,11 +22,15 @@ const ENDINGS: [[&str; 2]; 2] = [["tilt", "up"], ["yaw", "right"]];
 ///
 /// # Errors
 /// [`FileError`] for a file that cannot be read, or that holds no law in discrete time of two errors (m) and
-/// two commands (deg).
+/// two commands (deg), and for a run of reference that does not tell of the turbine's hub vortex.
 pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
-    for control in case.runs.iter_mut().flat_map(|run| &mut run.control) {
-        if let Some(file) = control.kind().linear_law(control) {
-            control.linear_law = Some(Arc::new(law(file, folder)?));
+    for run in &mut case.runs {
+        for (control, turbine) in run.control.iter_mut().zip(&case.turbines) {
+            let Some(files) = control.kind().law_files(control) else { continue };
+            let reference =
+                files.reference_run.map(|run| mean_hub_vortex(&run, folder, &turbine.name));
+            let law = LinearLaw { reference: reference.transpose()?, ..law(files.law, folder)? };
+            control.linear_law = Some(Arc::new(law));
         }
     }
     Ok(())
@@ -34,11 +39,39 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
 /// SHA-256 of each file that a run of `case` names, by its name; of those that can be read.
 pub(crate) fn digests(case: &Case, folder: &Path) -> BTreeMap<String, String> {
     let controls = case.runs.iter().flat_map(|run| &run.control);
-    let names = controls.filter_map(|control| control.kind().linear_law(control));
-    let digest = |name: String| {
-        Some((name.clone(), records::sha256_of_file(&folder.join(name), WHAT).ok()?))
-    };
-    names.filter_map(digest).collect()
+    let files = controls.filter_map(|control| control.kind().law_files(control));
+    let names = files.flat_map(|LawFiles { law, reference_run }| {
+        let summary = reference_run.map(|run| RunFolder::new(folder, &run).summary_path());
+        [
+            Some((law.clone(), folder.join(law))),
+            summary.map(|path| (path.display().to_string(), path)),
+        ]
+    });
+    let digest =
+        |(name, path): (String, PathBuf)| Some((name, records::sha256_of_file(&path, WHAT).ok()?));
+    names.flatten().filter_map(digest).collect()
+}
+
+/// Mean of the hub vortex of `turbine` in the helix frame (m), in the `run` that a case in `folder` names.
+fn mean_hub_vortex(run: &str, folder: &Path, turbine: &str) -> Result<[f64; 2], FileError> {
+    let there = RunFolder::new(folder, run);
+    let summary = records::read_summary(&there)?;
+    let of_turbine = summary.turbines.iter().find(|other| other.name == turbine);
+    let findings = of_turbine.map_or(&[][..], |other| &other.control.findings);
+    let means = MEAN_HUB_VORTEX.map(|name| {
+        findings.iter().find(|finding| finding.name == name).and_then(|finding| finding.value)
+    });
+    match means {
+        [Some(tilt), Some(yaw)] => Ok([tilt, yaw]),
+        _ => Err(FileError::content(
+            "a run of reference",
+            &there.summary_path(),
+            format!("it tells of no hub vortex of {turbine}"),
+            format!(
+                "name the folder of a run in which {turbine} has `kind = \"probing\"` or \"lidar-loop\""
+            ),
+        )),
+    }
 }
 
 fn law(file: String, folder: &Path) -> Result<LinearLaw, FileError> {
@@ -62,7 +95,7 @@ fn law(file: String, folder: &Path) -> Result<LinearLaw, FileError> {
         Some(gain) => recursion.with_back_calculation(&columns(gain, commands)),
         None => recursion,
     };
-    Ok(LinearLaw { file, recursion, interval })
+    Ok(LinearLaw { file, recursion, interval, reference: None })
 }
 
 /// Where tilt and yaw are among `ports`, which are in `unit`.
@@ -91,6 +124,7 @@ fn places(ports: &[Port], unit: &str) -> Result<[usize; 2], String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use basis::records::{Finding, examples};
 
     /// A gain from errors to commands with these names and units.
     fn gain(role: Role, inputs: [[&str; 2]; 2], outputs: [[&str; 2]; 2]) -> LinearModel {
@@ -123,6 +157,30 @@ mod tests {
         let mut law = read(&gain(Role::Controller, [right, up], [yaw, tilt])).unwrap();
         law.recursion.step(&[1.0, 10.0], &mut turned);
         assert_eq!(turned, [34.0, 12.0]);
+    }
+
+    #[test]
+    fn the_reference_is_the_mean_of_a_run_that_tells_of_the_hub_vortex() {
+        let folder = tempfile::tempdir().unwrap();
+        let run = RunFolder::new(folder.path(), "runs/open/helix");
+        run.create().unwrap();
+        let finding = |name: &str, value: f64| Finding {
+            name: name.to_owned(),
+            value: Some(value),
+            unit: "m".to_owned(),
+            about: String::new(),
+        };
+        let mut seen = examples::turbine("T1", 1e6);
+        seen.control.findings =
+            vec![finding("hub-vortex-tilt", 1.5), finding("hub-vortex-yaw", 13.0)];
+        let unseen = examples::turbine("T2", 1e6);
+        let summary = examples::summary("helix", vec![seen, unseen]);
+        records::write_summary(&run, &summary).unwrap();
+        let of = |turbine| mean_hub_vortex("runs/open/helix", folder.path(), turbine);
+        assert_eq!(of("T1").unwrap(), [1.5, 13.0]);
+        let said = of("T2").unwrap_err().to_string();
+        assert!(said.contains("summary.json") && said.contains("no hub vortex of T2"), "{said}");
+        assert!(mean_hub_vortex("runs/none", folder.path(), "T1").is_err());
     }
 
     #[test]

@@ -202,11 +202,15 @@ pub const HELIX_FRAME: [Channel; 2] = [angle("HelixTilt"), angle("HelixYaw")];
 pub const HUB_VORTEX: [Channel; 5] = [
     length("HubVortexLeft"),
     length("HubVortexUp"),
-    length("HubVortexTilt"),
-    length("HubVortexYaw"),
+    HUB_VORTEX_TILT,
+    HUB_VORTEX_YAW,
     HUB_VORTEX_TRUST,
 ];
-/// The last of these.
+/// Tilt of the hub vortex (up) in the helix frame.
+pub const HUB_VORTEX_TILT: Channel = length("HubVortexTilt");
+/// Its yaw (right, looking downwind) there.
+pub const HUB_VORTEX_YAW: Channel = length("HubVortexYaw");
+/// How sure it is.
 pub const HUB_VORTEX_TRUST: Channel = share("HubVortexTrust");
 /// Share of a lidar loop's command that is given.
 pub const LOOP_SHARE: Channel = share("LoopShare");

@@ -1,6 +1,6 @@
 //! `kind = "lidar-loop"`: its keys, and how it is built.
 
-use super::{LidarLoop, Limits, Settings, Watch};
+use super::{CHANNELS, LidarLoop, Limits, Settings, Watch, findings};
 use crate::Controller;
 use crate::discon::base;
 use crate::error::ControlError;
@@ -11,6 +11,7 @@ use crate::keys::{
 };
 use crate::kind::{Control, ControllerKind, Place, Site};
 use crate::library::Hosted;
+use crate::linear_law::LawFiles;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::channels::{HUB_VORTEX_TRUST, LOOP_SHARE};
 use basis::keys::LeftOut::{Otherwise, Required, Value};
@@ -45,15 +46,22 @@ static TABLE: Table = Table {
             "reference_tilt",
             from(-500.0, 500.0),
             "m",
-            Required,
-            "Where the hub vortex is to be in the helix frame, up component: such as the mean of `HubVortexTilt` of a run with an open helix.",
+            Otherwise("the mean of `reference_run`"),
+            "Where the hub vortex is to be in the helix frame, up component.",
         ),
         key(
             "reference_yaw",
             from(-500.0, 500.0),
             "m",
-            Required,
-            "The same, component to the right: the mean of `HubVortexYaw`.",
+            Otherwise("the mean of `reference_run`"),
+            "The same, component to the right.",
+        ),
+        key(
+            "reference_run",
+            Holds::Text,
+            "",
+            Otherwise("none: `reference_tilt` and `reference_yaw` say where"),
+            "Folder of a complete run whose mean hub vortex of this turbine is the reference, such as one with an open helix in even wind (`kind = \"probing\"` with `noise_amplitude_deg = 0`); a path relative to the case file.",
         ),
         key(
             "loop_start",
@@ -117,7 +125,20 @@ impl ControllerKind for LidarLoopKind {
     }
 
     fn check(&self, values: &mut Values, place: &Place) -> Vec<Objection> {
-        Vec::from_iter(starts_too_late(values, place.duration))
+        let given = ["reference_tilt", "reference_yaw"].map(|key| values.has(key));
+        let reference = match (given, values.has("reference_run")) {
+            ([true, true], false) | ([false, false], true) => None,
+            ([false, false], false) => Some("no reference is given"),
+            (_, true) => Some("the reference is given twice"),
+            (_, false) => Some("half of the reference is given"),
+        };
+        let reference = reference.map(|label| Objection {
+            key: None,
+            message: "needs to know where the hub vortex is to be".to_owned(),
+            label,
+            fix: "give `reference_tilt` and `reference_yaw`, or `reference_run`".to_owned(),
+        });
+        starts_too_late(values, place.duration).into_iter().chain(reference).collect()
     }
 
     fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
@@ -126,13 +147,20 @@ impl ControllerKind for LidarLoopKind {
         let frame = HelixFrame { sense: sense(values), rate: site.rate(strouhal) };
         let amplitude = values.angle("amplitude_deg");
         let start = values.number("start");
+        let Some(law) = &control.linear_law else {
+            return Err(ControlError::NoLinearLaw { file: values.word("controller").to_owned() });
+        };
+        let reference = law.reference.unwrap_or_else(|| {
+            ["reference_tilt", "reference_yaw"]
+                .map(|key| values.optional_number(key).unwrap_or(0.0))
+        });
         let settings = Settings {
             frame,
             amplitude,
             strouhal,
             helix: frame.open_helix(amplitude, values.angle("phase_deg")),
             azimuth_offset: values.angle("azimuth_offset_deg"),
-            reference: ["reference_tilt", "reference_yaw"].map(|key| values.number(key)),
+            reference,
             starts: [start, values.optional_number("loop_start").unwrap_or(start)],
             blind_after: values.number("blind_after"),
             least_trust: values.number("least_trust"),
@@ -140,9 +168,6 @@ impl ControllerKind for LidarLoopKind {
                 size: values.angle("correction_limit_deg"),
                 rate: values.angle("correction_rate_deg_per_s"),
             },
-        };
-        let Some(law) = &control.linear_law else {
-            return Err(ControlError::NoLinearLaw { file: values.word("controller").to_owned() });
         };
         if law.interval < site.interval * (1.0 - 1e-6) {
             return Err(ControlError::FastLinearLaw {
@@ -156,8 +181,14 @@ impl ControllerKind for LidarLoopKind {
         Ok(LidarLoop::new(settings, watch, law).on_top_of(base(control, site)?))
     }
 
-    fn linear_law(&self, control: &Control) -> Option<String> {
-        Some(control.values().word("controller").to_owned())
+    fn law_files(&self, control: &Control) -> Option<LawFiles> {
+        let values = control.values();
+        Some(LawFiles {
+            law: values.word("controller").to_owned(),
+            reference_run: values
+                .has("reference_run")
+                .then(|| values.word("reference_run").to_owned()),
+        })
     }
 
     fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
@@ -170,7 +201,7 @@ impl ControllerKind for LidarLoopKind {
     }
 
     fn outcome_channels(&self, _: &Control, _: usize) -> Vec<Channel> {
-        vec![LOOP_SHARE, HUB_VORTEX_TRUST]
+        CHANNELS.into_iter().chain([LOOP_SHARE, HUB_VORTEX_TRUST]).collect()
     }
 
     fn outcome(&self, _: &Control, record: &dyn TurbineRecord) -> Result<Outcome, MissingChannel> {
@@ -185,6 +216,7 @@ impl ControllerKind for LidarLoopKind {
                 100.0 * open
             )
         });
-        Ok(Outcome { warnings: Vec::from_iter(warning), ..Outcome::default() })
+        let findings = findings(record)?;
+        Ok(Outcome { findings, warnings: Vec::from_iter(warning), ..Outcome::default() })
     }
 }

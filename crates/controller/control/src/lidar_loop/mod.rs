@@ -15,9 +15,12 @@
 //! back-calculation; a lidar that has been blind for too long fades the loop out to the open helix. A loop
 //! that fades out does so wholly before it closes again: its law would go on from the wake of before.
 
+mod findings;
 mod kind;
 mod watch;
 
+pub use findings::MEAN_HUB_VORTEX;
+pub(crate) use findings::{CHANNELS, findings};
 pub use kind::LIDAR_LOOP;
 pub(crate) use watch::{Watch, WatchState};
 

@@ -12,11 +12,12 @@ use crate::keys::{
 };
 use crate::kind::{Control, ControllerKind, Place, Site};
 use crate::library::Hosted;
-use crate::lidar_loop::Watch;
+use crate::lidar_loop::{CHANNELS, Watch, findings};
+use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::keys::LeftOut::{Otherwise, Value};
 use basis::keys::{Holds, Objection, Table, Values, above, from, key};
 use basis::registry::Named;
-use basis::{HelixFrame, Sense};
+use basis::{Channel, HelixFrame, Sense};
 use std::f64::consts::TAU;
 
 /// Probing.
@@ -124,5 +125,13 @@ impl ControllerKind for ProbingKind {
 
     fn hosted(&self, control: &Control) -> Option<Hosted> {
         Hosted::of(control.values())
+    }
+
+    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<Channel> {
+        CHANNELS.to_vec()
+    }
+
+    fn outcome(&self, _: &Control, record: &dyn TurbineRecord) -> Result<Outcome, MissingChannel> {
+        Ok(Outcome { findings: findings(record)?, ..Outcome::default() })
     }
 }

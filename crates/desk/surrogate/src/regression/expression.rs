@@ -69,7 +69,11 @@ impl Kernel {
                 some("a part's list of inputs", part.inputs.len())?;
                 if part.lengths.len() != part.inputs.len() {
                     let (found, needed) = (part.lengths.len(), part.inputs.len());
-                    return Err(SurrogateError::Lengths { what: "a part's lengths", found, needed });
+                    return Err(SurrogateError::Lengths {
+                        what: "a part's lengths",
+                        found,
+                        needed,
+                    });
                 }
                 if let Some(input) = part.inputs.iter().find(|input| **input >= n_dimensions) {
                     let (what, found) = ("the inputs that the kernel asks for", n_dimensions);

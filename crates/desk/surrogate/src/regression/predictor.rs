@@ -48,28 +48,34 @@ impl Predictor {
     pub(crate) fn means(&self, inputs: &[f64], n_threads: usize) -> Vec<f64> {
         let n_dimensions = self.centres.len();
         let mut means = vec![0.0; inputs.len() / n_dimensions];
-        let tasks: Vec<_> = means.chunks_mut(BATCH).zip(inputs.chunks(BATCH * n_dimensions)).collect();
+        let tasks: Vec<_> =
+            means.chunks_mut(BATCH).zip(inputs.chunks(BATCH * n_dimensions)).collect();
         let n_points = self.weights.len();
-        share(n_threads, tasks, || [0.0; CHUNK], |room, (means, inputs)| {
-            let queries = Points::new(&self.kernel, &centred(inputs, &self.centres));
-            for start in (0..n_points).step_by(CHUNK) {
-                let range = start..(start + CHUNK).min(n_points);
-                let weights = &self.weights[range.clone()];
-                for (index, mean) in means.iter_mut().enumerate() {
-                    let room = &mut room[..range.len()];
-                    self.points.covariances(range.clone(), &queries, index, room);
-                    add_product(mean, room, weights);
+        share(
+            n_threads,
+            tasks,
+            || [0.0; CHUNK],
+            |room, (means, inputs)| {
+                let queries = Points::new(&self.kernel, &centred(inputs, &self.centres));
+                for start in (0..n_points).step_by(CHUNK) {
+                    let range = start..(start + CHUNK).min(n_points);
+                    let weights = &self.weights[range.clone()];
+                    for (index, mean) in means.iter_mut().enumerate() {
+                        let room = &mut room[..range.len()];
+                        self.points.covariances(range.clone(), &queries, index, room);
+                        add_product(mean, room, weights);
+                    }
                 }
-            }
-            for (mean, input) in means.iter_mut().zip(inputs.chunks(n_dimensions)) {
-                let mut functions = std::iter::once(&1.0).chain(input);
-                *mean += self
-                    .coefficients
-                    .iter()
-                    .map(|coefficient| coefficient * functions.next().unwrap_or(&0.0))
-                    .sum::<f64>();
-            }
-        });
+                for (mean, input) in means.iter_mut().zip(inputs.chunks(n_dimensions)) {
+                    let mut functions = std::iter::once(&1.0).chain(input);
+                    *mean += self
+                        .coefficients
+                        .iter()
+                        .map(|coefficient| coefficient * functions.next().unwrap_or(&0.0))
+                        .sum::<f64>();
+                }
+            },
+        );
         means
     }
 }

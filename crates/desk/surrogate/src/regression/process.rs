@@ -287,40 +287,47 @@ impl Regression {
         let n_dimensions = self.n_dimensions();
         let mut variances = vec![0.0; inputs.len() / n_dimensions];
         let batches = variances.chunks_mut(BATCH).zip(inputs.chunks(BATCH * n_dimensions));
-        share(self.n_threads, batches.collect(), || (), |(), (variances, inputs)| {
-            let columns = self.problem.scaling.columns(inputs);
-            let n = variances.len();
-            let queries = Points::new(&self.kernel, &columns);
-            let basis = self.problem.basis(&columns, n);
-            let (points, of_basis, covariance) = match &self.posterior {
-                Posterior::Exact(found) => (&found.points, &found.of_basis, &found.covariance),
-                Posterior::Inducing(found) => (&found.points, &found.of_basis, &found.covariance),
-            };
-            let n_points = of_basis.nrows();
-            let mut known = covariances_with(points, n_points, &queries, 0..n);
-            let missing = &basis - known.transpose() * of_basis;
-            let of_trend = &missing * covariance;
-            let explained = |factor: &Panels, known: &mut Mat<f64>| -> Vec<f64> {
-                factor.solve_lower(known.as_mut());
-                known.col_iter().map(|column| column.squared_norm_l2()).collect()
-            };
-            let (explained, returned) = match &self.posterior {
-                Posterior::Exact(found) => (explained(&found.factor, &mut known), vec![0.0; n]),
-                Posterior::Inducing(found) => {
-                    let [own, inner] = &found.factors;
-                    let first = explained(own, &mut known);
-                    (first, explained(inner, &mut known))
+        share(
+            self.n_threads,
+            batches.collect(),
+            || (),
+            |(), (variances, inputs)| {
+                let columns = self.problem.scaling.columns(inputs);
+                let n = variances.len();
+                let queries = Points::new(&self.kernel, &columns);
+                let basis = self.problem.basis(&columns, n);
+                let (points, of_basis, covariance) = match &self.posterior {
+                    Posterior::Exact(found) => (&found.points, &found.of_basis, &found.covariance),
+                    Posterior::Inducing(found) => {
+                        (&found.points, &found.of_basis, &found.covariance)
+                    }
+                };
+                let n_points = of_basis.nrows();
+                let mut known = covariances_with(points, n_points, &queries, 0..n);
+                let missing = &basis - known.transpose() * of_basis;
+                let of_trend = &missing * covariance;
+                let explained = |factor: &Panels, known: &mut Mat<f64>| -> Vec<f64> {
+                    factor.solve_lower(known.as_mut());
+                    known.col_iter().map(|column| column.squared_norm_l2()).collect()
+                };
+                let (explained, returned) = match &self.posterior {
+                    Posterior::Exact(found) => (explained(&found.factor, &mut known), vec![0.0; n]),
+                    Posterior::Inducing(found) => {
+                        let [own, inner] = &found.factors;
+                        let first = explained(own, &mut known);
+                        (first, explained(inner, &mut known))
+                    }
+                };
+                let prior = self.kernel.variance();
+                for (index, variance) in variances.iter_mut().enumerate() {
+                    let trend: f64 = (0..basis.ncols())
+                        .map(|column| of_trend[(index, column)] * missing[(index, column)])
+                        .sum();
+                    // Rounding may leave a variance below zero at an observation without noise.
+                    *variance = (prior - explained[index] + returned[index] + trend).max(0.0);
                 }
-            };
-            let prior = self.kernel.variance();
-            for (index, variance) in variances.iter_mut().enumerate() {
-                let trend: f64 = (0..basis.ncols())
-                    .map(|column| of_trend[(index, column)] * missing[(index, column)])
-                    .sum();
-                // Rounding may leave a variance below zero at an observation without noise.
-                *variance = (prior - explained[index] + returned[index] + trend).max(0.0);
-            }
-        });
+            },
+        );
         variances
     }
 
