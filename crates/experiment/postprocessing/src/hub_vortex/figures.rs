@@ -1,6 +1,6 @@
 //! Figures of scans and of the hub vortex in them.
 
-use super::{HubVortexAnswer, HubVortexQuestion, Sampled, VortexFilter, follow};
+use super::{HubVortexAnswer, HubVortexQuestion, HubVortexTrack, Sampled, VortexFilter, follow};
 use basis::scan::Scan;
 use estimation::hub_vortex::HubVortex;
 use report::{
@@ -18,17 +18,16 @@ const MOST_PLACES: usize = 1500;
 /// The figures of an `answer`: paths in the fixed frame, places over time in both frames.
 pub(crate) fn signals(answer: &HubVortexAnswer) -> Signals {
     let place = format!("{}-{}", answer.turbine, answer.lidar);
-    let last = last_periods(&answer.times, answer.frame.rate);
-    let panel = |(colour, track): (usize, &super::HubVortexTrack)| DiscPanel {
+    let panel = |(colour, track): (usize, &HubVortexTrack)| DiscPanel {
         title: track.filter.name().to_owned(),
         paths: vec![DiscPath {
             name: track.filter.name().to_owned(),
             colour: colour + 1,
-            points: thinned(track.vortices[last.clone()].iter().map(|vortex| vortex.filtered)),
+            points: path(answer, track),
         }],
         ..DiscPanel::default()
     };
-    let path = DiscFigure {
+    let paths = DiscFigure {
         name: format!("hub-vortex-path-{place}"),
         title: format!("Path of the hub vortex behind {}", answer.turbine),
         caption: format!(
@@ -41,7 +40,7 @@ pub(crate) fn signals(answer: &HubVortexAnswer) -> Signals {
     };
     Signals {
         title: format!("Hub vortex behind {}", answer.turbine),
-        discs: vec![path],
+        discs: vec![paths],
         tracks: vec![over_time(answer, &format!("hub-vortex-{place}"))],
         ..Signals::default()
     }
@@ -58,7 +57,7 @@ fn over_time(answer: &HubVortexAnswer, name: &str) -> TrackFigure {
         ("confidence (–)", |vortex| vortex.confidence),
     ];
     let row = |(label, part): (&str, Part)| {
-        let line = |(colour, track): (usize, &super::HubVortexTrack)| {
+        let line = |(colour, track): (usize, &HubVortexTrack)| {
             let settled = answer.times.iter().zip(&track.vortices).filter(|(_, v)| v.settled);
             let (times, values) = settled.map(|(time, vortex)| (*time, part(vortex))).unzip();
             let name = track.filter.name().to_owned();
@@ -96,12 +95,11 @@ pub(crate) fn seen(run: &str, sampled: &Sampled) -> Seen {
     let stored = &sampled.stored;
     let (turbine, lidar) = (&stored.turbine, &stored.sensor);
     let filters = vec![VortexFilter::Robust];
-    let question = HubVortexQuestion { filters, from: Some(0.0), ..HubVortexQuestion::default() };
-    let found = follow(sampled, &question).ok();
-    let path = found.as_ref().map_or(Vec::new(), |found| {
-        let last = last_periods(&found.times, found.frame.rate);
-        thinned(found.tracks[0].vortices[last].iter().map(|vortex| vortex.filtered))
-    });
+    let question = HubVortexQuestion { filters, ..HubVortexQuestion::default() };
+    // A record that is too short after its spin-up still has places to mark.
+    let early = HubVortexQuestion { from: Some(0.0), ..question.clone() };
+    let found = follow(sampled, &question).or_else(|_| follow(sampled, &early)).ok();
+    let path = found.as_ref().map_or(Vec::new(), |found| path(found, &found.tracks[0]));
     let pattern = DiscPanel {
         title: format!("Where {lidar} measures"),
         points: points(sampled, sampled.samples.len() - 1, false),
@@ -218,14 +216,14 @@ fn points(sampled: &Sampled, number: usize, speeds: bool) -> Vec<DiscPoint> {
         .collect()
 }
 
-/// Samples within the last periods of a helix of `rate` (rad/s).
-fn last_periods(times: &[f64], rate: f64) -> std::ops::Range<usize> {
-    let end = times.last().copied().unwrap_or(0.0);
-    times.partition_point(|time| *time < end - SHOWN_PERIODS * TAU / rate)..times.len()
-}
-
-/// Every so many of `places` that they are few enough.
-fn thinned(places: impl ExactSizeIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+/// The filtered places of `track` over the last periods of the helix, once they count and are settled, as
+/// many as a figure can show.
+fn path(answer: &HubVortexAnswer, track: &HubVortexTrack) -> Vec<[f64; 2]> {
+    let end = answer.times.last().copied().unwrap_or(0.0);
+    let start = answer.from.max(end - SHOWN_PERIODS * TAU / answer.frame.rate);
+    let shown = answer.times.iter().zip(&track.vortices);
+    let shown = shown.filter(|(time, vortex)| **time >= start && vortex.settled);
+    let places: Vec<[f64; 2]> = shown.map(|(_, vortex)| vortex.filtered).collect();
     let stride = places.len().div_ceil(MOST_PLACES).max(1);
-    places.step_by(stride).collect()
+    places.into_iter().step_by(stride).collect()
 }

@@ -64,7 +64,7 @@ const MOST: f64 = 400.0;
 /// Room between panels, for titles and axes.
 const GAP: f64 = 46.0;
 /// What is shown of a panel beyond the rotor's rim and all points (–).
-const MARGIN: f64 = 1.06;
+const MARGIN: f64 = 1.03;
 /// Pieces of a circle (–).
 const N_ARCS: usize = 96;
 /// Distance within which a point alone decides the colour, over that between points (–).
@@ -85,7 +85,7 @@ pub(super) fn discs(figure: &DiscFigure) -> Option<Figure> {
     let in_legend = names(lines.map(|path| (path.colour, path.name.as_str())));
     let mut top = 26.0;
     if !in_legend.is_empty() {
-        top += legend([LEFT, 22.0], WIDTH - 100.0, |_| Role::Plain, &in_legend, &mut shapes);
+        top += 12.0 + legend([LEFT, 22.0], WIDTH - 100.0, |_| Role::Plain, &in_legend, &mut shapes);
     }
     let n_rows = figure.panels.len().div_ceil(n_columns);
     for (index, panel) in figure.panels.iter().enumerate() {
@@ -122,14 +122,21 @@ pub(super) fn discs(figure: &DiscFigure) -> Option<Figure> {
 
 /// How far the panels reach from the hub (m); none where there is nothing to draw.
 fn reach(figure: &DiscFigure) -> Option<f64> {
-    let points = figure.panels.iter().flat_map(|panel| panel.points.iter().map(|p| p.place));
+    let discs = figure.panels.iter().map(|panel| filled(panel)[0]);
     let paths = figure.panels.iter().flat_map(|panel| &panel.paths);
-    let places = points.chain(paths.flat_map(|path| path.points.iter().copied()));
-    let mut furthest: Option<f64> = None;
-    for [left, up] in places.filter(|place| place.iter().all(|length| length.is_finite())) {
-        furthest = Some(furthest.unwrap_or(0.0).max(left.abs()).max(up.abs()));
-    }
+    let places = paths.flat_map(|path| &path.points).map(|[left, up]| left.abs().max(up.abs()));
+    let furthest = discs.chain(places).filter(|length| length.is_finite()).reduce(f64::max);
     furthest.map(|furthest| MARGIN * furthest.max(figure.radius))
+}
+
+/// Radius of the disc that the points of `panel` fill, half of their distance beyond the outermost, and that
+/// distance (m).
+fn filled(panel: &DiscPanel) -> [f64; 2] {
+    let places = panel.points.iter().map(|point| point.place).filter(|p| p[0].is_finite());
+    let (furthest, n) =
+        places.fold((0.0_f64, 0.0), |(most, n), [y, z]| (most.max(y.hypot(z)), n + 1.0));
+    let spacing = furthest * (PI / f64::max(n, 1.0)).sqrt();
+    [furthest + 0.5 * spacing, spacing]
 }
 
 /// Ends of the colours: halves of a metre per second around all speeds but the outermost hundredths.
@@ -169,8 +176,8 @@ fn drawn(figure: &DiscFigure, panel: &DiscPanel, range: Option<[f64; 2]>, frame:
     if panel.points.is_empty() {
         cross(frame.point([0.0; 2]), 5.0, Look::line(Ink::Axis, 1.2), &mut inner);
         let [x, y] = frame.point([0.0; 2]);
-        let setting = TextStyle::plain(Ink::Muted, SMALL);
-        inner.push(text([x + 6.0, y - 5.0], "hub", setting));
+        let setting = TextStyle::plain(Ink::Muted, SMALL).anchored(1.0);
+        inner.push(text([x - 6.0, y + 14.0], "hub", setting));
     }
     if let Some(place) = panel.mark {
         let center = frame.point(place);
@@ -198,10 +205,7 @@ fn coloured(
     range: [f64; 2],
     frame: &Frame,
 ) -> [Shape; 2] {
-    let places = panel.points.iter().map(|point| point.place).filter(|p| p[0].is_finite());
-    let (furthest, n) =
-        places.fold((0.0_f64, 0.0), |(most, n), [y, z]| (most.max(y.hypot(z)), n + 1.0));
-    let spacing = furthest * (PI / f64::max(n, 1.0)).sqrt();
+    let [radius, spacing] = filled(panel);
     let soft = (SOFT * spacing).powi(2).max(1e-9);
     let size = [frame.area[2].round() as usize, frame.area[3].round() as usize];
     let picture = Picture::new(size, Map::Sequential, range, |column, row| {
@@ -222,7 +226,7 @@ fn coloured(
         [[wide[0], 0.0], [wide[0], high], [wide[1], high], [wide[1], -high], [wide[0], -high]]
             .into();
     outline.push([wide[0], 0.0]);
-    outline.extend(circle(furthest + 0.5 * spacing, -1.0));
+    outline.extend(circle(radius, -1.0));
     let look = Look::fill(Ink::Paper);
     let paper = Shape::Path { points: frame.points(&outline), closed: true, look };
     [Shape::Field { area: frame.area, picture }, paper]
