@@ -46,8 +46,16 @@ pub fn host() -> String {
 pub fn is_shared(path: &Path) -> bool {
     /// NFS, SMB, SMB2, Lustre, GPFS, BeeGFS, Ceph, FUSE, 9P, AFS, by the numbers that Linux gives them.
     const SHARED: [u32; 10] = [
-        0x6969, 0x517b, 0xfe53_4d42, 0x0bd0_0bd0, 0x4750_4653, 0x1983_0326, 0x00c3_6400,
-        0x6573_5546, 0x0102_1997, 0x5346_414f,
+        0x6969,
+        0x517b,
+        0xfe53_4d42,
+        0x0bd0_0bd0,
+        0x4750_4653,
+        0x1983_0326,
+        0x00c3_6400,
+        0x6573_5546,
+        0x0102_1997,
+        0x5346_414f,
     ];
     rustix::fs::statfs(path).is_ok_and(|system| SHARED.contains(&(system.f_type as u32)))
 }

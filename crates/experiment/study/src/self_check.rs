@@ -98,7 +98,11 @@ impl Prepared {
     ///
     /// # Errors
     /// Those of [`timed`](Self::timed).
-    pub(crate) fn timed_in_place(&self, run: &Run, n_jobs: usize) -> Result<Option<f64>, StudyError> {
+    pub(crate) fn timed_in_place(
+        &self,
+        run: &Run,
+        n_jobs: usize,
+    ) -> Result<Option<f64>, StudyError> {
         let mut case = self.case.clone();
         // Runs without cells share the cores among them; a lattice is timed as if it had them all.
         let n_jobs = if self.plan.cells() > 0 { 1 } else { n_jobs };

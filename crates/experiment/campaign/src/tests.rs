@@ -1,0 +1,1 @@
+//! Campaigns: see the files of each test.
