@@ -83,7 +83,7 @@ def main():
         (folder / "case.toml").write_text(CASE)
         (folder / "loads.toml").write_text(CAMPAIGN)
         expected = campaign(program, folder, "run")
-        run(program, "campaign", "run", expected)
+        run(program, "campaign", "run", expected, "-q")
         table = collected(program, expected)
         failed = False
         for scheduler in wanted:
@@ -156,9 +156,9 @@ def by_hyperqueue(script, folder, program, at):
         cluster.start_worker(WorkerConfig(cores=2))
         client = cluster.client()
         job = Job()
-        for task in range(1, 11):
-            # The package numbers tasks from 0; an array of `hq` tells each its number.
-            job.program(command, env={**os.environ, "HQ_TASK_ID": str(task)})
+        # The package numbers tasks from 0, and the script from 1.
+        for words in [["true"], *[command] * 10]:
+            job.program(words, cwd=folder)
         client.wait_for_jobs([client.submit(job)])
     return f"HyperQueue {version('hyperqueue')} by its Python package, the script's command without `hq submit`"
 
@@ -168,11 +168,16 @@ def by_hq(script, folder, program, at):
     with contextlib.ExitStack() as stack:
         for words in (["server", "start"], ["worker", "start", "--cpus=2"]):
             process = subprocess.Popen(["hq", *words], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            stack.callback(process.terminate)
+            stack.callback(end, process)
             time.sleep(2)
         subprocess.run(["bash", script], check=True, env=env, cwd=folder, stdout=subprocess.DEVNULL)
         subprocess.run(["hq", "job", "wait", "all"], check=True, env=env, stdout=subprocess.DEVNULL)
     return run("hq", "--version").strip()
+
+
+def end(process):
+    process.terminate()
+    process.wait()
 
 
 def by_slurm(script, folder, program, at):
@@ -188,14 +193,14 @@ def by_slurm(script, folder, program, at):
         for daemon in ("slurmctld", "slurmd"):
             log = open(slurm / f"{daemon}.log", "w")
             process = subprocess.Popen([f"/usr/sbin/{daemon}", "-D"], env=env, stdout=log, stderr=log)
-            stack.callback(process.terminate)
+            stack.callback(end, process)
             time.sleep(3)
         subprocess.run(["sbatch", script], check=True, env=env, cwd=folder, stdout=subprocess.DEVNULL)
         until_done(program, at)
         if not any((at / "tasks").glob("*")) and json.loads(run(program, "campaign", "status", at, "--json"))["done"] == 0:
             print((slurm / "slurmctld.log").read_text()[-2000:], (slurm / "slurmd.log").read_text()[-2000:])
     array = re.search(r"--array=(\S+)", script.read_text())[1]
-    return f"{run('sbatch', '--version').strip()}, array {array}"
+    return f"{run('sbatch', '--version', env=env).strip()}, array {array}"
 
 
 if __name__ == "__main__":

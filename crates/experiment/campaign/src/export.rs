@@ -26,8 +26,8 @@ pub struct Script {
     pub chunk: i64,
 }
 
-/// A script for the scheduler of `script` that makes all tasks of the campaign in `folder`; what is done already
-/// is passed over when it comes up.
+/// A script for the scheduler of `script` that makes all tasks of the campaign in `folder`; what is done
+/// already is passed over when it comes up.
 ///
 /// # Errors
 /// [`CampaignError::NoCampaign`], [`CampaignError::Table`].

@@ -9,10 +9,11 @@
 //! | a script for a scheduler | [`export`] | `wakemix campaign export` |
 //!
 //! A task is a study of its own, made by [`study::run`] with overrides, as `wakemix run --set` makes it, and
-//! has the same bits. Where tasks stand is in an SQLite database in the folder. Tasks are made in this process, on threads: a
-//! study holds no state of the process, a panic ends its task alone, and turbine library and turbulence
-//! tables are loaded once. What a foreign controller crashes is the process: after three such ends a task is
-//! failed.
+//! has the same bits. Where tasks stand is in an SQLite database in the folder.
+//!
+//! Tasks are made in this process, on threads: a study holds no state of the process, a panic ends its task
+//! alone, and one Ctrl-C reaches all. What a foreign controller crashes is the process: after three such ends
+//! a task is failed.
 
 mod collect;
 mod error;

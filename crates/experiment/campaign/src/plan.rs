@@ -64,8 +64,8 @@ pub struct Plan {
     pub cost: Cost,
 }
 
-/// Plans the campaign of the file at `path` in `folder`, `campaigns/NAME` when absent: every task is read by the
-/// case reader, a sample of them is timed. The same plan in the same folder changes nothing that is done.
+/// Plans the campaign of the file at `path` in `folder`, `campaigns/NAME` when absent: every task is read by
+/// the case reader, a sample of them is timed. The same plan in the same folder changes nothing that is done.
 ///
 /// # Errors
 /// [`CampaignError`].

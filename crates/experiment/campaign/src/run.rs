@@ -62,13 +62,16 @@ pub struct Ended {
     pub n_done: i64,
     /// Tasks that failed (–).
     pub n_failed: i64,
+    /// Tasks that were asked for and that other processes are making (–).
+    pub n_elsewhere: i64,
     /// Whether it was stopped before all were made.
     pub is_interrupted: bool,
     /// Where all tasks of the campaign stand.
     pub counts: Counts,
 }
 
-/// Makes the tasks of the campaign in `folder` that are pending, until none is left or `stop` asks for an end.
+/// Makes the tasks of the campaign in `folder` that are pending, until none is left or `stop` asks for an
+/// end.
 ///
 /// # Errors
 /// [`CampaignError`]; a task that cannot be made is no error, but failed.
@@ -93,7 +96,7 @@ pub fn run(
     prune_all(folder, &meta.keep, |id| done.binary_search(&id).is_ok())?;
     let worker = Worker::enter(folder)?;
     let counts = table.counts()?;
-    let n_open = pending(&table, wanted)?.min(options.limit.unwrap_or(i64::MAX));
+    let n_open = count(&table, "pending", wanted)?.min(options.limit.unwrap_or(i64::MAX));
     let most = usize::try_from(n_open).unwrap_or(usize::MAX).max(1);
     let n_workers = options.jobs.unwrap_or_else(|| n_workers(meta.threads)).min(most).max(1);
     observer.beginning(&counts, n_workers);
@@ -124,7 +127,10 @@ pub fn run(
     let state = job.state.into_inner().unwrap_or_else(PoisonError::into_inner);
     match state.error {
         Some(error) => Err(error),
-        None => Ok(Ended { counts: table.counts()?, ..state.ended }),
+        None => {
+            let n_elsewhere = count(&table, "running", wanted)?;
+            Ok(Ended { n_elsewhere, counts: table.counts()?, ..state.ended })
+        }
     }
 }
 
@@ -144,12 +150,13 @@ fn done(table: &Table) -> Result<Vec<i64>, CampaignError> {
     table.read(|connection| connection.prepare(DONE)?.query_map([], |row| row.get(0))?.collect())
 }
 
-/// How many of the `wanted` tasks are pending (–).
-fn pending(table: &Table, wanted: Option<(i64, i64)>) -> Result<i64, CampaignError> {
-    const PENDING: &str =
-        "SELECT count(*) FROM tasks WHERE state = 'pending' AND id BETWEEN ?1 AND ?2";
+/// How many of the `wanted` tasks are in this `state` (–).
+fn count(table: &Table, state: &str, wanted: Option<(i64, i64)>) -> Result<i64, CampaignError> {
+    const COUNT: &str = "SELECT count(*) FROM tasks WHERE state = ?1 AND id BETWEEN ?2 AND ?3";
     let (first, last) = wanted.unwrap_or((1, i64::MAX));
-    table.read(|connection| connection.query_row(PENDING, [first, last], |row| row.get(0)))
+    table.read(|connection| {
+        connection.query_row(COUNT, rusqlite::params![state, first, last], |row| row.get(0))
+    })
 }
 
 /// What the threads of a process share.

@@ -1,5 +1,5 @@
-//! The job table: where each task stands, in SQLite. Every change is one transaction, so that several processes
-//! may work in one folder and a kill at any moment leaves it whole.
+//! The job table: where each task stands, in SQLite. Every change is one transaction, so that several
+//! processes may work in one folder and a kill at any moment leaves it whole.
 
 use crate::error::CampaignError;
 use crate::task::{Task, VERSION};

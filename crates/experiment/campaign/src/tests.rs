@@ -172,7 +172,7 @@ fn a_task_of_a_process_that_is_there_stays_with_it() {
     let mut table = Table::open(&out).unwrap();
     let id = table.claim(&worker.name, &worker.host, None).unwrap().unwrap().id;
     let ended = made(&out, &RunOptions::default());
-    assert_eq!((ended.n_done, ended.counts.running), (5, 1));
+    assert_eq!((ended.n_done, ended.n_elsewhere, ended.counts.running), (5, 1, 1));
     // Nor does anybody else finish it.
     assert!(!table.finish(id, "somebody else", &[], 1.0).unwrap());
     drop(worker);

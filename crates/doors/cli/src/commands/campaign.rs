@@ -2,7 +2,7 @@
 
 mod say;
 
-use super::output::{print, print_text, refuse, say, tell};
+use super::output::{print, print_text, refuse, say, tell, warn};
 use super::{BAD_INPUT, DIVERGED, INTERRUPTED, arguments, stop};
 use campaign::{CampaignError, Ended, Format, RunOptions, Script};
 use clap::{Args, Subcommand, ValueEnum};
@@ -169,6 +169,9 @@ fn tell_end(folder: &Path, ended: &Ended) -> ExitCode {
         counts.running,
         counts.failed
     ));
+    if ended.n_elsewhere > 0 {
+        warn(&format!("{} tasks are being made by other processes", ended.n_elsewhere));
+    }
     if ended.is_interrupted {
         say(&format!("interrupted; go on with: wakemix campaign run {folder}"));
         return ExitCode::from(INTERRUPTED);

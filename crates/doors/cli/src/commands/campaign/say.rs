@@ -162,7 +162,10 @@ impl Observer for Screen {
 
     fn ended(&mut self, progress: &Progress) {
         let Progress { task, settings, counts, .. } = progress;
-        let left = format!("about {} left", time(progress.time_left));
+        let left = match progress.n_left {
+            0 => "none left here".to_owned(),
+            n => format!("{n} left here, about {}", time(progress.time_left)),
+        };
         self.bar.set_position(u64::try_from(counts.done + counts.failed).unwrap_or(0));
         self.bar.set_message(left.clone());
         match &progress.failure {
