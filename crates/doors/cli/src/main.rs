@@ -33,6 +33,17 @@ enum Command {
     Init(commands::init::InitArguments),
     /// List the cases that come with the program, or write one of them out
     Cases(commands::cases::CasesArguments),
+    /// Thousands of short simulations of one case: plan, run, resume, collect
+    #[cfg(feature = "campaign")]
+    #[command(subcommand)]
+    Campaign(commands::campaign::CampaignCommand),
+    /// Not in this build
+    #[cfg(not(feature = "campaign"))]
+    #[command(hide = true)]
+    Campaign {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        words: Vec<String>,
+    },
     /// Rebuild report.html and its figures from the records of a study or a precursor
     Report {
         /// Folder that `wakemix run` wrote
@@ -117,6 +128,10 @@ fn run(command: Command) -> ExitCode {
         Command::Run(run) => return commands::run::run(&run),
         Command::Init(arguments) => commands::init::run(&arguments),
         Command::Cases(arguments) => commands::cases::run(&arguments),
+        #[cfg(feature = "campaign")]
+        Command::Campaign(command) => return commands::campaign::run(command),
+        #[cfg(not(feature = "campaign"))]
+        Command::Campaign { .. } => Err(left_out("campaigns")),
         Command::Report { directory } => commands::report::run(&directory),
         Command::Turbine(command) => commands::turbine::run(command),
         Command::Inflow(command) => return commands::inflow::run(command),
@@ -148,7 +163,7 @@ fn run(command: Command) -> ExitCode {
 }
 
 /// Why `what` cannot be had here.
-#[cfg(not(all(feature = "design", feature = "validate")))]
+#[cfg(not(all(feature = "campaign", feature = "design", feature = "validate")))]
 fn left_out(what: &str) -> miette::Report {
     miette::miette!(
         help = "build it with its default features, without --no-default-features",

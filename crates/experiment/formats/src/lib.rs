@@ -6,7 +6,7 @@ pub mod atomic;
 mod beside;
 pub mod case;
 pub mod checkpoint;
-mod clock;
+pub mod clock;
 pub mod leftovers;
 pub mod library;
 pub mod linear_model;

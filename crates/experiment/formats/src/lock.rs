@@ -2,7 +2,7 @@
 //! however that ends.
 
 use crate::clock::now;
-use crate::{FileError, atomic};
+use crate::{FileError, atomic, machine};
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -126,8 +126,7 @@ fn is_at(_file: &File, _path: &Path) -> bool {
 
 /// This process, for those whom it keeps out.
 fn holder() -> String {
-    let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
-    let host = host.trim();
+    let host = machine::host();
     let on = if host.is_empty() { String::new() } else { format!(" on {host}") };
     let command: Vec<String> =
         std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();

@@ -34,6 +34,38 @@ pub fn free_disk(_path: &Path) -> Option<u64> {
     None
 }
 
+/// Name of this machine; empty where the system does not tell.
+pub fn host() -> String {
+    let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    name.trim().to_owned()
+}
+
+/// Whether `path` is on a file system that several machines share, as far as the system tells: there a
+/// database cannot use shared memory.
+#[cfg(target_os = "linux")]
+pub fn is_shared(path: &Path) -> bool {
+    /// NFS, SMB, SMB2, Lustre, GPFS, BeeGFS, Ceph, FUSE, 9P, AFS, by the numbers that Linux gives them.
+    const SHARED: [u32; 10] = [
+        0x6969,
+        0x517b,
+        0xfe53_4d42,
+        0x0bd0_0bd0,
+        0x4750_4653,
+        0x1983_0326,
+        0x00c3_6400,
+        0x6573_5546,
+        0x0102_1997,
+        0x5346_414f,
+    ];
+    rustix::fs::statfs(path).is_ok_and(|system| SHARED.contains(&(system.f_type as u32)))
+}
+
+/// Whether `path` is on a file system that several machines share: this system does not tell.
+#[cfg(not(target_os = "linux"))]
+pub fn is_shared(_path: &Path) -> bool {
+    false
+}
+
 /// Bytes of all files in the folder `path` and those in it; 0 where there is none.
 pub fn size_of_folder(path: &Path) -> u64 {
     let entries = fs::read_dir(path).into_iter().flatten().flatten();

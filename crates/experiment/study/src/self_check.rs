@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Cells of a domain up to which a study is timed in it (–): it takes a moment to fill.
-const MOST_TIMED: usize = 2_000_000;
+pub(crate) const MOST_TIMED: usize = 2_000_000;
 
 /// What the self-check of a study's rotors found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -98,7 +98,11 @@ impl Prepared {
     ///
     /// # Errors
     /// Those of [`timed`](Self::timed).
-    fn timed_in_place(&self, run: &Run, n_jobs: usize) -> Result<Option<f64>, StudyError> {
+    pub(crate) fn timed_in_place(
+        &self,
+        run: &Run,
+        n_jobs: usize,
+    ) -> Result<Option<f64>, StudyError> {
         let mut case = self.case.clone();
         // Runs without cells share the cores among them; a lattice is timed as if it had them all.
         let n_jobs = if self.plan.cells() > 0 { 1 } else { n_jobs };

@@ -2,6 +2,8 @@
 
 pub(crate) mod analyse;
 mod arguments;
+#[cfg(feature = "campaign")]
+pub(crate) mod campaign;
 pub(crate) mod cases;
 pub(crate) mod definition;
 pub(crate) mod fatigue;

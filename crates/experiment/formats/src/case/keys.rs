@@ -1,10 +1,12 @@
 //! The one table of keys: what the reader accepts, what the reference prints, what the schema says.
 
+mod campaign;
 mod event;
 mod flow;
 mod instruments;
 mod precursor;
 
+pub(super) use campaign::CAMPAIGN;
 pub(super) use event::{EVENTS, STEP};
 pub(super) use flow::{COMMON as FLOW_COMMON, flow};
 pub(super) use instruments::{

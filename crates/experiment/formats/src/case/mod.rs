@@ -3,6 +3,7 @@
 //! Every key stands once, in the table of `keys`: the reader checks against it, [`reference()`] prints
 //! it and [`schema`] hands it to editors. Keys and overrides are documented in docs/case-file.md.
 
+mod campaign;
 mod check;
 mod difference;
 mod document;
@@ -26,6 +27,7 @@ mod values;
 mod wind;
 mod write;
 
+pub use campaign::{CampaignFile, Exclusion, Factor, Keep, Level, LevelSetting, read_campaign};
 pub use difference::{Difference, differences};
 pub use error::{CaseError, Problem, ProblemKind};
 pub use objection::objection;
@@ -227,16 +229,27 @@ pub fn seeds_override(file: &CaseFiles, n_seeds: usize) -> Result<String, CaseEr
 /// The case in `text` with its run `run` alone, without what changes no result: description, threads,
 /// checkpoints and comparison. None when that is no case.
 fn decisive(text: &str, run: &str) -> Option<Case> {
-    let mut case = parse("", text, &[]).ok()?;
-    case.description = None;
-    case.flow.threads = None;
-    case.output.checkpoint_interval = 300.0;
-    case.output.keeps_checkpoint = true;
+    let mut case = bare(parse("", text, &[]).ok()?);
     for other in &mut case.runs {
         other.compare_with = None;
     }
     case.runs.retain(|other| other.name == run);
     Some(case)
+}
+
+/// `case` without description, threads and checkpoints.
+fn bare(mut case: Case) -> Case {
+    case.description = None;
+    case.flow.threads = None;
+    case.output.checkpoint_interval = 300.0;
+    case.output.keeps_checkpoint = true;
+    case
+}
+
+/// What decides the results of all runs of `case`, as a file: the case without description, threads and
+/// checkpoints.
+pub fn decisive_text(case: &Case) -> String {
+    write(&bare(case.clone()))
 }
 
 /// What decides the bits of the run `run` of the case in `text`: SHA-256 of the case without what changes no

@@ -14,6 +14,7 @@ use basis::records::{SWEEP_SCHEMA_VERSION, Setting, Sweep, SweptKey, SweptStudy,
 use farm::case::{Case, Instruments, Placement};
 use farm::solvers::WindSource;
 use names::{labels, with_settings};
+pub(super) use runs::takes;
 use std::cell::RefCell;
 use std::ops::Range;
 
@@ -302,7 +303,7 @@ fn flat<'e>(entries: &'e [Entry], above: &[String]) -> Vec<(Vec<String>, &'e Ent
 }
 
 /// The value of an item of a list; none of what cannot be swept.
-fn value_of(node: &Node) -> Option<SweptValue> {
+pub(super) fn value_of(node: &Node) -> Option<SweptValue> {
     match &node.value {
         Value::Text(text) => Some(SweptValue::Text(text.clone())),
         Value::Whole(number) => i64::try_from((*number)?).ok().map(SweptValue::Whole),

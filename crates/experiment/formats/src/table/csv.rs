@@ -56,7 +56,8 @@ pub(super) fn open(path: &Path) -> Result<(Head, TextRows), FileError> {
     Ok((Head { description: String::new(), columns, time }, rows))
 }
 
-fn separator(line: &[u8]) -> Separator {
+/// What stands between the values of `line`.
+pub(crate) fn separator(line: &[u8]) -> Separator {
     let found = [b',', b';', b'\t'].into_iter().find(|separator| line.contains(separator));
     found.map_or(Separator::Blanks, Separator::Byte)
 }

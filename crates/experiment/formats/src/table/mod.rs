@@ -4,7 +4,7 @@
 //! A table of any length takes the memory of one row. The caller selects channels by name and reads rows of
 //! time and those channels; what was not selected is neither parsed nor checked.
 
-mod csv;
+pub(crate) mod csv;
 pub(crate) mod head;
 pub(crate) mod names;
 pub(crate) mod text;

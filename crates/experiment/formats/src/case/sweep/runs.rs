@@ -32,11 +32,10 @@ impl Sweeping<'_> {
         for item in items {
             let Value::Table(table) = &item.value else { return Ok(Vec::new()) };
             let base = name_of(table);
-            let takes = |axis: &&Axis| place_in(table, &base, axis);
-            let own: Vec<&Axis> =
-                axes.iter().copied().filter(|axis| takes(axis).is_some()).collect();
+            let takes = |axis: &&Axis| takes(table, &base, &axis.segments());
+            let own: Vec<&Axis> = axes.iter().copied().filter(takes).collect();
             for (axis, taken) in axes.iter().zip(&mut taken) {
-                *taken |= takes(axis).is_some();
+                *taken |= takes(axis);
             }
             for choice in self.combinations(&own, "runs of a study", &item.span)? {
                 made.push(self.run(item, table, &base, &own, &choice)?);
@@ -133,25 +132,23 @@ fn name_of(table: &[Entry]) -> String {
     }
 }
 
-/// Something where the run of `table`, called `base`, takes `axis`: its control of the turbine is of a kind
+/// Whether the run of `table`, called `base`, takes the key at `path`: its control of the turbine is of a kind
 /// that has the key.
-fn place_in(table: &[Entry], base: &str, axis: &Axis) -> Option<()> {
-    let path = axis.segments();
-    let path = match path[..] {
-        ["run", name, ref rest @ ..] if name == base => rest,
-        ["run", ..] => return None,
-        ref whole => whole,
+pub(in crate::case) fn takes(table: &[Entry], base: &str, path: &[&str]) -> bool {
+    let path = match path {
+        ["run", name, rest @ ..] if *name == base => rest,
+        ["run", ..] => return false,
+        whole => whole,
     };
-    let ["control", turbine, key, ..] = *path else { return None };
-    let Value::Table(control) = &locate(table, &["control", turbine])?.value else { return None };
+    let ["control", turbine, key, ..] = *path else { return false };
+    let control = locate(table, &["control", turbine]).map(|node| &node.value);
+    let Some(Value::Table(control)) = control else { return false };
     match find(control, "kind").map(|entry| &entry.node.value) {
-        Some(Value::Text(kind)) => {
-            let kind = CONTROLLERS.find(kind)?;
-            let knows = key == "kind" || kind.table().keys.iter().any(|own| own.name == key);
-            knows.then_some(())
-        }
+        Some(Value::Text(kind)) => CONTROLLERS.find(kind).is_some_and(|kind| {
+            key == "kind" || kind.table().keys.iter().any(|own| own.name == key)
+        }),
         // What is missing or wrong there is told once the case is read.
-        _ => Some(()),
+        _ => true,
     }
 }
 

@@ -1,0 +1,169 @@
+//! One task, from its case to its numbers.
+
+use crate::error::{CampaignError, in_words, is_of_machine};
+use crate::table::{Claimed, Meta};
+use crate::task;
+use basis::records::Summary;
+use formats::{FileError, records};
+use std::any::Any;
+use std::fs;
+use std::io::ErrorKind;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use study::{Inputs, Outcome, Silent, StudyError, StudyOptions};
+
+/// Files of a run that stay where its series is kept.
+const SERIES: [&str; 3] = ["series.csv", "manifest.json", "summary.json"];
+
+/// How a task ended.
+pub(crate) enum Made {
+    /// With its numbers.
+    Done(Vec<Summary>),
+    /// It cannot be made, for this reason.
+    Failed(String),
+    /// It was asked to stop.
+    Interrupted,
+}
+
+/// Folder of the task numbered `id` of the campaign in `folder`.
+pub(crate) fn folder_of(folder: &Path, id: i64) -> PathBuf {
+    folder.join("tasks").join(format!("{id:06}"))
+}
+
+/// Makes the task that was `claimed` of the campaign of `meta` in `folder`; goes on where an earlier process
+/// has left it.
+///
+/// # Errors
+/// [`CampaignError::Changed`]; [`CampaignError::Stopped`] for what every further task would meet.
+pub(crate) fn make(
+    folder: &Path,
+    meta: &Meta,
+    claimed: &Claimed,
+    inputs: &mut Inputs,
+    stop: &AtomicBool,
+) -> Result<Made, CampaignError> {
+    let stopped =
+        |source: StudyError| CampaignError::Stopped { task: claimed.id, source: Box::new(source) };
+    match task::hash(&meta.case, &claimed.task, &meta.runs, inputs) {
+        Ok(hash) if hash == claimed.hash => {}
+        Ok(_) => return Err(CampaignError::Changed { task: claimed.id }),
+        Err(error) => return Err(stopped(error)),
+    }
+    let output = folder_of(folder, claimed.id);
+    let mut overrides = claimed.task.overrides.clone();
+    overrides.extend(meta.threads.map(|threads| format!("flow.threads={threads}")));
+    let resume = records::is_begun(&output);
+    let options = StudyOptions {
+        case: meta.case.clone(),
+        output: Some(output),
+        runs: meta.runs.clone(),
+        overrides,
+        resume,
+        overwrite: !resume,
+        jobs: Some(1),
+        ..StudyOptions::default()
+    };
+    let made = catch_unwind(AssertUnwindSafe(|| study::run(&options, stop, &mut Silent)));
+    match made {
+        Ok(Ok(Outcome::Done { summaries, .. })) => Ok(Made::Done(summaries)),
+        Ok(Ok(_)) => Ok(Made::Interrupted),
+        Ok(Err(error)) if is_of_machine(&error) => Err(stopped(error)),
+        Ok(Err(error)) => Ok(Made::Failed(in_words(&error))),
+        Err(panic) => Ok(Made::Failed(format!("the program panicked: {}", said(&*panic)))),
+    }
+}
+
+/// What was said in a panic.
+fn said(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("without a word")
+}
+
+/// Takes from the folder of the task numbered `id`, which is done, what is not to stay.
+///
+/// # Errors
+/// [`FileError`].
+pub(crate) fn prune(folder: &Path, id: i64, keep: &str) -> Result<(), FileError> {
+    let folder = folder_of(folder, id);
+    match keep {
+        "all" => Ok(()),
+        "series" => prune_to_series(&folder),
+        _ => remove(&folder),
+    }
+}
+
+/// Takes the folder of the task numbered `id` away, so that it begins anew.
+///
+/// # Errors
+/// [`FileError`].
+pub(crate) fn discard(folder: &Path, id: i64) -> Result<(), FileError> {
+    remove(&folder_of(folder, id))
+}
+
+/// Takes away what processes that were killed left of tasks that are done.
+///
+/// # Errors
+/// [`FileError`].
+pub(crate) fn prune_all(
+    folder: &Path,
+    keep: &str,
+    is_done: impl Fn(i64) -> bool,
+) -> Result<(), FileError> {
+    if keep != "summary" {
+        return Ok(());
+    }
+    for path in entries(&folder.join("tasks"))? {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if let Ok(id) = name.parse()
+            && is_done(id)
+        {
+            prune(folder, id, keep)?;
+        }
+    }
+    Ok(())
+}
+
+fn prune_to_series(folder: &Path) -> Result<(), FileError> {
+    for path in entries(folder)? {
+        if !path.is_dir() {
+            remove(&path)?;
+            continue;
+        }
+        for file in entries(&path)? {
+            let is_kept =
+                SERIES.iter().any(|name| file.file_name().is_some_and(|own| own == *name));
+            if !is_kept {
+                remove(&file)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What lies in `folder`; nothing where it is not there.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let failed = |source| FileError::system("read", "the folder", folder, source);
+    match fs::read_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Vec::new()),
+        Err(error) => Err(failed(error)),
+        Ok(entries) => {
+            let paths: std::io::Result<Vec<PathBuf>> =
+                entries.map(|entry| Ok(entry?.path())).collect();
+            let mut paths = paths.map_err(failed)?;
+            paths.sort();
+            Ok(paths)
+        }
+    }
+}
+
+/// Takes a file or folder away, if it is there.
+fn remove(path: &Path) -> Result<(), FileError> {
+    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    match removed {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(FileError::system("remove", "what a task left", path, error))
+        }
+        _ => Ok(()),
+    }
+}

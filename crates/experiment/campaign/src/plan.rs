@@ -1,0 +1,230 @@
+//! From a campaign's file to its job table, and what it will cost.
+
+use crate::error::CampaignError;
+use crate::table::{Meta, Table, path_in};
+use crate::task::{self, Task, VERSION};
+use formats::atomic;
+use formats::case::{CampaignFile, Keep, read_campaign};
+use formats::{machine, records, shipped};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use study::Sample;
+
+/// Tasks that are timed (–).
+const SAMPLED: usize = 3;
+/// Disk that the numbers of a run of a task take in the table (bytes), about.
+const NUMBERS: u64 = 8 << 10;
+
+/// A factor as a plan tells it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedFactor {
+    /// Its key or name.
+    pub name: String,
+    /// Its levels, in words.
+    pub levels: Vec<String>,
+}
+
+/// What the tasks cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// CPU time of all tasks together (s).
+    pub cpu_time: f64,
+    /// Wall time on this machine (s).
+    pub wall_time: f64,
+    /// Tasks at a time behind that (–).
+    pub n_workers: usize,
+    /// Threads of a task (–).
+    pub threads: usize,
+    /// Tasks that were timed (–).
+    pub n_sampled: usize,
+    /// Memory of the tasks that are made at a time (bytes).
+    pub memory: u64,
+    /// Disk that stays (bytes).
+    pub disk: u64,
+    /// Disk of the tasks under way beside it (bytes).
+    pub passing: u64,
+}
+
+/// A plan that is in its folder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Name of the campaign.
+    pub name: String,
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What is varied.
+    pub factors: Vec<PlannedFactor>,
+    /// Tasks (–).
+    pub n_tasks: usize,
+    /// Combinations of levels that are excluded (–).
+    pub n_excluded: usize,
+    /// Whether the folder held this plan before.
+    pub was_there: bool,
+    /// What it costs.
+    pub cost: Cost,
+}
+
+/// Plans the campaign of the file at `path` in `folder`, `campaigns/NAME` when absent: every task is read by
+/// the case reader, a sample of them is timed. The same plan in the same folder changes nothing that is done.
+///
+/// # Errors
+/// [`CampaignError`].
+pub fn plan(path: &Path, folder: Option<&Path>) -> Result<Plan, CampaignError> {
+    study::outputs::announce();
+    let mut file = read_campaign(path)?;
+    if file.case.is_file() {
+        file.case = std::path::absolute(&file.case).unwrap_or(file.case);
+    }
+    let usual = Path::new("campaigns").join(&file.name);
+    let folder = folder.unwrap_or(&usual).to_owned();
+    let (tasks, n_excluded) = task::all(&file)?;
+    let hashes = task::hashes(&file, &tasks)?;
+    check_distinct(&tasks, &hashes)?;
+    let threads = threads(&file, &tasks[0])?;
+    let cost = cost(&file, &tasks, threads)?;
+    let meta = Meta {
+        name: file.name.clone(),
+        version: VERSION.to_owned(),
+        file: std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
+        case: file.case.clone(),
+        plan: records::sha256(hashes.join("\n").as_bytes()),
+        columns: tasks[0].columns.iter().map(|(name, _)| name.clone()).collect(),
+        runs: file.runs.clone(),
+        keep: word(file.keep).to_owned(),
+        collect: file.collect.clone(),
+        threads,
+        disk: cost.passing / cost.n_workers as u64,
+    };
+    let n_tasks = tasks.len();
+    let was_there = write(&folder, &meta, tasks.into_iter().zip(hashes).collect())?;
+    let words = |factor: &formats::case::Factor| PlannedFactor {
+        name: factor.name.clone(),
+        levels: factor.levels.iter().map(|level| level.name.words()).collect(),
+    };
+    let factors = file.factors.iter().map(words).collect();
+    Ok(Plan { name: file.name, folder, factors, n_tasks, n_excluded, was_there, cost })
+}
+
+/// The word of the campaign's file for `keep`.
+fn word(keep: Keep) -> &'static str {
+    match keep {
+        Keep::Summary => "summary",
+        Keep::Series => "series",
+        Keep::All => "all",
+    }
+}
+
+fn check_distinct(tasks: &[Task], hashes: &[String]) -> Result<(), CampaignError> {
+    let mut known: BTreeMap<&str, usize> = BTreeMap::new();
+    for (place, hash) in hashes.iter().enumerate() {
+        if let Some(before) = known.insert(hash, place) {
+            let (first, second) = (tasks[before].words(), tasks[place].words());
+            return Err(CampaignError::Duplicate { first, second });
+        }
+    }
+    Ok(())
+}
+
+/// Threads of a task: as the campaign or the case says, else one in prescribed wind and all cores where the
+/// air is resolved.
+fn threads(file: &CampaignFile, first: &Task) -> Result<Option<usize>, CampaignError> {
+    let case = shipped::read(&file.case, &first.overrides)?.case;
+    let usual = || if case.flow.solver.needs_self_check { None } else { Some(1) };
+    Ok(file.threads.or(case.flow.threads).or_else(usual))
+}
+
+/// Tasks at a time on this machine (–): as many as cores carry with so many threads each.
+pub(crate) fn n_workers(threads: Option<usize>) -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    threads.map_or(1, |threads| (cores / threads).max(1))
+}
+
+/// The cost of `tasks`, from some that are timed, spread over all.
+fn cost(
+    file: &CampaignFile,
+    tasks: &[Task],
+    threads: Option<usize>,
+) -> Result<Cost, CampaignError> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let n_sampled = tasks.len().min(SAMPLED);
+    let mut samples = Vec::with_capacity(n_sampled);
+    for index in 0..n_sampled {
+        let task = &tasks[index * (tasks.len() - 1) / (n_sampled - 1).max(1)];
+        let case = shipped::read(&file.case, &task.overrides)?;
+        let failed =
+            |source| CampaignError::Sample { settings: task.words(), source: Box::new(source) };
+        samples.push(Sample::of(&case, &file.runs, threads).map_err(failed)?);
+    }
+    let n_tasks = tasks.len() as f64;
+    let mean = samples.iter().map(|sample| sample.wall_time).sum::<f64>() / n_sampled as f64;
+    let most = |part: fn(&Sample) -> u64| samples.iter().map(part).max().unwrap_or(0);
+    let n_workers = n_workers(threads).min(tasks.len());
+    let kept = NUMBERS
+        + match file.keep {
+            Keep::Summary => 0,
+            Keep::Series => most(|sample| sample.series),
+            Keep::All => most(|sample| sample.disk),
+        };
+    Ok(Cost {
+        cpu_time: n_tasks * mean * threads.unwrap_or(cores) as f64,
+        wall_time: n_tasks * mean / n_workers as f64,
+        n_workers,
+        threads: threads.unwrap_or(cores),
+        n_sampled,
+        memory: n_workers as u64 * most(|sample| sample.memory),
+        disk: tasks.len() as u64 * kept,
+        passing: n_workers as u64 * most(|sample| sample.disk),
+    })
+}
+
+/// Puts the plan into `folder`, where it may be already: then what may change without another result is
+/// taken over.
+fn write(folder: &Path, meta: &Meta, tasks: Vec<(Task, String)>) -> Result<bool, CampaignError> {
+    if path_in(folder).is_file() {
+        let mut table = Table::open(folder)?;
+        if table.is_planned()? {
+            let there = table.meta()?;
+            if let Some(difference) = difference(&table, &there, meta)? {
+                let (folder, found) = (folder.to_owned(), there.name);
+                return Err(CampaignError::OtherPlan { folder, found, difference });
+            }
+            table.set_meta(meta)?;
+            return Ok(true);
+        }
+    }
+    atomic::create_folder(folder)?;
+    let free = machine::free_disk(folder);
+    let needed = tasks.len() as u64 * NUMBERS;
+    if let Some(free) = free.filter(|free| *free < needed) {
+        let source = study::StudyError::Disk {
+            needed: needed as f64 / 1e9,
+            available: free as f64 / 1e9,
+            directory: folder.to_owned(),
+        };
+        return Err(CampaignError::Sample {
+            settings: meta.name.clone(),
+            source: Box::new(source),
+        });
+    }
+    Table::create(folder, meta, &tasks)?;
+    Ok(false)
+}
+
+/// In what the plan of `meta` differs from that of `there` in `table`; none where they are the same.
+fn difference(table: &Table, there: &Meta, meta: &Meta) -> Result<Option<String>, CampaignError> {
+    if there.plan == meta.plan {
+        return Ok(None);
+    }
+    let n_tasks = table.counts()?.all();
+    Ok(Some(if there.name != meta.name {
+        format!("the campaign `{}`", meta.name)
+    } else if there.version != meta.version {
+        format!("wakemix {} planned it, this is {}", there.version, meta.version)
+    } else if there.columns != meta.columns {
+        format!("it varies {}, not {}", meta.columns.join(", "), there.columns.join(", "))
+    } else {
+        format!(
+            "its levels, its case or a file that this names are others than those of the {n_tasks} tasks there"
+        )
+    }))
+}

@@ -1,0 +1,143 @@
+//! Tasks: every combination of levels, as overrides of the case, with a hash of what decides its results.
+
+use crate::error::CampaignError;
+use basis::records::SweptValue;
+use formats::case::{CampaignFile, Exclusion, decisive_text};
+use formats::{records, shipped};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use study::{Inputs, StudyError};
+
+/// Version of the program: results of another one may have other bits.
+pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// One simulation of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Task {
+    /// Keys and linked factors with what they are in it.
+    pub(crate) columns: Vec<(String, SweptValue)>,
+    /// Overrides of the case.
+    pub(crate) overrides: Vec<String>,
+}
+
+impl Task {
+    /// Factors with their levels, in words: `wind.speed = 8, wind.seed = 1`.
+    pub(crate) fn words(&self) -> String {
+        let words = |(name, value): &(String, SweptValue)| format!("{name} = {}", value.words());
+        self.columns.iter().map(words).collect::<Vec<_>>().join(", ")
+    }
+
+    fn is_excluded_by(&self, exclusion: &Exclusion) -> bool {
+        exclusion.conditions.iter().all(|(key, values)| {
+            let own = self.columns.iter().find(|(name, _)| name == key);
+            own.is_some_and(|(_, own)| values.iter().any(|value| value.words() == own.words()))
+        })
+    }
+}
+
+/// All tasks of `file`, and how many combinations are excluded (–); the last factor changes fastest.
+///
+/// # Errors
+/// [`CampaignError::NoTask`].
+pub(crate) fn all(file: &CampaignFile) -> Result<(Vec<Task>, usize), CampaignError> {
+    let mut tasks = vec![Task { columns: Vec::new(), overrides: Vec::new() }];
+    for factor in &file.factors {
+        let mut longer = Vec::with_capacity(tasks.len() * factor.levels.len());
+        for task in &tasks {
+            for level in &factor.levels {
+                let mut task = task.clone();
+                if factor.is_linked {
+                    task.columns.push((factor.name.clone(), level.name.clone()));
+                }
+                for setting in &level.settings {
+                    task.columns.push((setting.key.clone(), setting.value.clone()));
+                    let places = setting.places.iter();
+                    task.overrides.extend(places.map(|place| format!("{place}={}", setting.text)));
+                }
+                longer.push(task);
+            }
+        }
+        tasks = longer;
+    }
+    let n_combinations = tasks.len();
+    tasks.retain(|task| !file.excluded.iter().any(|exclusion| task.is_excluded_by(exclusion)));
+    if tasks.is_empty() {
+        return Err(CampaignError::NoTask { path: file.path.clone() });
+    }
+    let n_excluded = n_combinations - tasks.len();
+    Ok((tasks, n_excluded))
+}
+
+/// SHA-256 of what decides the results of `task` of the case at `case`: the case with the task's levels, the
+/// files that it names, the `runs` that are made, the version of the program.
+///
+/// # Errors
+/// [`StudyError`] for a case that cannot be read, or a file that is not there.
+pub(crate) fn hash(
+    case: &Path,
+    task: &Task,
+    runs: &[String],
+    inputs: &mut Inputs,
+) -> Result<String, StudyError> {
+    let file = shipped::read(case, &task.overrides)?;
+    let mut text = format!("wakemix {VERSION}\nruns {runs:?}\n");
+    for (name, print) in inputs.of(&file)? {
+        text += &format!("{name} {print}\n");
+    }
+    text += &decisive_text(&file.case);
+    Ok(records::sha256(text.as_bytes()))
+}
+
+/// The hashes of all `tasks`, on all cores.
+///
+/// # Errors
+/// [`CampaignError::Level`] or [`CampaignError::Sample`] of the first task that cannot be read.
+pub(crate) fn hashes(file: &CampaignFile, tasks: &[Task]) -> Result<Vec<String>, CampaignError> {
+    let n_threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let found: Mutex<Vec<Option<Result<String, StudyError>>>> =
+        Mutex::new(tasks.iter().map(|_| None).collect());
+    let (next, broken) = (AtomicUsize::new(0), AtomicUsize::new(usize::MAX));
+    std::thread::scope(|scope| {
+        for _ in 0..n_threads {
+            scope.spawn(|| {
+                let mut inputs = Inputs::default();
+                loop {
+                    let place = next.fetch_add(1, Ordering::Relaxed);
+                    // Tasks before the first one that is wrong are all looked at, so that it is the first.
+                    let is_after = place > broken.load(Ordering::Relaxed);
+                    let Some(task) = tasks.get(place).filter(|_| !is_after) else { return };
+                    let hash = hash(&file.case, task, &file.runs, &mut inputs);
+                    if hash.is_err() {
+                        broken.fetch_min(place, Ordering::Relaxed);
+                    }
+                    if let Ok(mut found) = found.lock() {
+                        found[place] = Some(hash);
+                    }
+                }
+            });
+        }
+    });
+    let found = found.into_inner().unwrap_or_default();
+    let mut hashes = Vec::with_capacity(tasks.len());
+    for (task, hash) in tasks.iter().zip(found) {
+        match hash {
+            Some(Ok(hash)) => hashes.push(hash),
+            Some(Err(StudyError::Case(error))) => {
+                return Err(CampaignError::Level {
+                    settings: task.words(),
+                    source: Box::new(error),
+                });
+            }
+            Some(Err(error)) => {
+                return Err(CampaignError::Sample {
+                    settings: task.words(),
+                    source: Box::new(error),
+                });
+            }
+            None => {}
+        }
+    }
+    Ok(hashes)
+}
