@@ -39,7 +39,8 @@ fn scans_are_those_that_controllers_saw_after_a_break_too() {
     assert_eq!((eye.n_points(), eye.n_ranges), (24, 2));
     assert!(eye.times.iter().enumerate().all(|(k, time)| (time - k as f64).abs() < 1e-9));
     assert!(eye.helix.is_some() && scans(&whole, "baseline", "eye").helix.is_none());
-    assert!(eye.ranges[..12].iter().all(|range| (range - 63.0).abs() < 1e-9), "{:?}", eye.ranges);
+    let near = 0.5 * eye.rotor_diameter;
+    assert!(eye.ranges[..12].iter().all(|range| (range - near).abs() < 1e-9), "{:?}", eye.ranges);
 
     // The series holds the speeds that the same sensor showed at the same instants.
     let series = read_series(&whole.join("helix/series.csv"), |_| true).expect("a series");
