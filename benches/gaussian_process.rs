@@ -28,7 +28,8 @@ fn inputs(n: usize, offset: usize) -> Vec<f64> {
 fn observations(n: usize) -> Observations {
     let inputs = inputs(n, 0);
     let value = |(index, x): (usize, &[f64])| {
-        let level = (3.0 * x[0] + x[1]).sin() + x[2] * x[3] + (2.0 * x[4]).cos() * x[5] + 0.5 * x[6];
+        let level =
+            (3.0 * x[0] + x[1]).sin() + x[2] * x[3] + (2.0 * x[4]).cos() * x[5] + 0.5 * x[6];
         // A sum of twelve uniform numbers is nearly normal.
         let sum: f64 = (0..12).map(|k| uniform(7 * index + 91 * k + 13)).sum();
         level + 0.1 * (sum - 6.0)

@@ -37,8 +37,8 @@ pub use likelihood::Mean;
 pub use observations::Observations;
 pub use process::{GaussianProcess, LeaveOneOut, Prediction};
 pub use regression::{
-    Collapsed, Kernel, NoiseGroups, Outside, Panels, Parameters, Part, Regression, RegressionSettings,
-    SearchSettings, Sparse, Term, Trend, Validation,
+    Collapsed, Kernel, MeanCurve, NoiseGroups, Outside, Panels, Parameters, Part, Regression,
+    RegressionSettings, SearchSettings, Sparse, Term, Trend, Validation, shuffled,
 };
 
 use thiserror::Error;
@@ -95,7 +95,9 @@ pub enum SurrogateError {
         group: usize,
     },
     /// Different values at one input, where nothing is noisy.
-    #[error("{n} observations at the input of number {place} of the different ones have different values; allow for noise")]
+    #[error(
+        "{n} observations at the input of number {place} of the different ones have different values; allow for noise"
+    )]
     Replicates {
         /// Which of the different inputs, the first is 0.
         place: usize,

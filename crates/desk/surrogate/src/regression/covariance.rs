@@ -194,7 +194,9 @@ impl Points {
                 // Weights times all but this part.
                 weighted[..n].fill(0.0);
                 add_scaled(&mut weighted[..n], weights, term.variance);
-                for (_, values) in room.values[..n_parts].iter().enumerate().filter(|v| v.0 != number) {
+                for (_, values) in
+                    room.values[..n_parts].iter().enumerate().filter(|v| v.0 != number)
+                {
                     multiply(&mut weighted[..n], &values[..n]);
                 }
                 if number == 0 {

@@ -51,7 +51,11 @@ impl Kernel {
         self.terms.iter().map(|term| term.variance).sum()
     }
 
-    pub(crate) fn check(&self, n_dimensions: usize) -> Result<(), SurrogateError> {
+    /// Whether it can be worked out over `n_dimensions` inputs.
+    ///
+    /// # Errors
+    /// [`SurrogateError::NotPositive`] or [`SurrogateError::Lengths`] for what is wrong with it.
+    pub fn check(&self, n_dimensions: usize) -> Result<(), SurrogateError> {
         let positive = |what, value: f64| {
             let is_good = value > 0.0 && value.is_finite();
             is_good.then_some(()).ok_or(SurrogateError::NotPositive { what, value })
@@ -69,7 +73,11 @@ impl Kernel {
                 some("a part's list of inputs", part.inputs.len())?;
                 if part.lengths.len() != part.inputs.len() {
                     let (found, needed) = (part.lengths.len(), part.inputs.len());
-                    return Err(SurrogateError::Lengths { what: "a part's lengths", found, needed });
+                    return Err(SurrogateError::Lengths {
+                        what: "a part's lengths",
+                        found,
+                        needed,
+                    });
                 }
                 if let Some(input) = part.inputs.iter().find(|input| **input >= n_dimensions) {
                     let (what, found) = ("the inputs that the kernel asks for", n_dimensions);

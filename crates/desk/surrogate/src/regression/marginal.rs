@@ -129,7 +129,9 @@ impl Marginal {
                 }
                 let factors = &factors[..tile.nrows()];
                 self.points.add_slopes(rows.clone(), at, factors, room, &mut sums[..n_kernel]);
-                if row == first && let Some(noise) = noise.get(problem.groups[at]) {
+                if row == first
+                    && let Some(noise) = noise.get(problem.groups[at])
+                {
                     let own = factors[index] * noise / problem.counts[at];
                     sums[n_kernel + problem.groups[at]] += own;
                 }

@@ -17,7 +17,7 @@ use std::ops::Range;
 /// Width of a block column (–).
 pub(crate) const BLOCK: usize = CHUNK;
 /// Height of what a thread takes at once (–).
-const STRIP: usize = 128;
+const STRIP: usize = 256;
 /// Matrices up to this size are not worth a second thread (–).
 const SMALL: usize = 384;
 
@@ -76,13 +76,18 @@ impl Panels {
                 tasks.push((row, k * BLOCK, strip));
             }
         }
-        share(self.n_threads, tasks, || (), |(), (row, first, mut strip)| {
-            for column in 0..strip.ncols() {
-                let target = strip.as_mut().col_mut(column).try_as_col_major_mut();
-                let target = target.expect("columns are contiguous").as_slice_mut();
-                fill(row..row + target.len(), first + column, target);
-            }
-        });
+        share(
+            self.n_threads,
+            tasks,
+            || (),
+            |(), (row, first, mut strip)| {
+                for column in 0..strip.ncols() {
+                    let target = strip.as_mut().col_mut(column).try_as_col_major_mut();
+                    let target = target.expect("columns are contiguous").as_slice_mut();
+                    fill(row..row + target.len(), first + column, target);
+                }
+            },
+        );
     }
 
     /// Left to right: each block column less what stands to its left, its own block factorised, and what is
@@ -94,13 +99,18 @@ impl Panels {
             let width = panel.ncols();
             let first = k * BLOCK;
             let tasks = strips(panel.as_mut(), first);
-            share(self.n_threads, tasks, || (), |(), (row, mut strip)| {
-                for (j, left) in done.iter().enumerate() {
-                    let own = left.subrows(row - j * BLOCK, strip.nrows());
-                    let across = left.subrows(first - j * BLOCK, width);
-                    product(strip.as_mut(), own, across.transpose(), -1.0);
-                }
-            });
+            share(
+                self.n_threads,
+                tasks,
+                || (),
+                |(), (row, mut strip)| {
+                    for (j, left) in done.iter().enumerate() {
+                        let own = left.subrows(row - j * BLOCK, strip.nrows());
+                        let across = left.subrows(first - j * BLOCK, width);
+                        product(strip.as_mut(), own, across.transpose(), -1.0);
+                    }
+                },
+            );
             let (mut own, below) = panel.as_mut().split_at_row_mut(width);
             let Ok(factor) = own.as_ref().llt(Side::Lower) else { return false };
             let factor = factor.L();
@@ -114,18 +124,24 @@ impl Panels {
                 }
             }
             let own = own.as_ref();
-            share(self.n_threads, strips(below, first + width), || (), |(), (_, strip)| {
-                solve_lower_triangular_in_place(own, strip.transpose_mut(), Par::Seq);
-            });
+            share(
+                self.n_threads,
+                strips(below, first + width),
+                || (),
+                |(), (_, strip)| {
+                    solve_lower_triangular_in_place(own, strip.transpose_mut(), Par::Seq);
+                },
+            );
         }
         true
     }
 
     /// ln |K|.
     pub fn log_determinant(&self) -> f64 {
-        let diagonals = self.columns.iter().map(|panel| {
-            (0..panel.ncols()).map(|index| panel[(index, index)].ln()).sum::<f64>()
-        });
+        let diagonals = self
+            .columns
+            .iter()
+            .map(|panel| (0..panel.ncols()).map(|index| panel[(index, index)].ln()).sum::<f64>());
         2.0 * diagonals.sum::<f64>()
     }
 
@@ -163,21 +179,26 @@ impl Panels {
     pub(crate) fn inverse_factor(&self) -> Self {
         let mut inverse = Self::zeros(self.n, self.n_threads);
         let tasks: Vec<(usize, &mut Mat<f64>)> = inverse.columns.iter_mut().enumerate().collect();
-        share(self.n_threads, tasks, || (), |(), (j, panel)| {
-            let width = panel.ncols();
-            (0..width).for_each(|index| panel[(index, index)] = 1.0);
-            for (i, factor) in self.columns.iter().enumerate().skip(j) {
-                let (above, below) = panel.as_mut().split_at_row_mut((i - j) * BLOCK);
-                let (mut own, _) = below.split_at_row_mut(factor.ncols());
-                for (k, left) in self.columns[..i].iter().enumerate().skip(j) {
-                    let left = left.subrows((i - k) * BLOCK, factor.ncols());
-                    let done = above.as_ref().subrows((k - j) * BLOCK, left.ncols());
-                    product(own.as_mut(), left, done, -1.0);
+        share(
+            self.n_threads,
+            tasks,
+            || (),
+            |(), (j, panel)| {
+                let width = panel.ncols();
+                (0..width).for_each(|index| panel[(index, index)] = 1.0);
+                for (i, factor) in self.columns.iter().enumerate().skip(j) {
+                    let (above, below) = panel.as_mut().split_at_row_mut((i - j) * BLOCK);
+                    let (mut own, _) = below.split_at_row_mut(factor.ncols());
+                    for (k, left) in self.columns[..i].iter().enumerate().skip(j) {
+                        let left = left.subrows((i - k) * BLOCK, factor.ncols());
+                        let done = above.as_ref().subrows((k - j) * BLOCK, left.ncols());
+                        product(own.as_mut(), left, done, -1.0);
+                    }
+                    let triangle = factor.subrows(0, factor.ncols());
+                    solve_lower_triangular_in_place(triangle, own, Par::Seq);
                 }
-                let triangle = factor.subrows(0, factor.ncols());
-                solve_lower_triangular_in_place(triangle, own, Par::Seq);
-            }
-        });
+            },
+        );
         inverse
     }
 
@@ -213,7 +234,9 @@ impl Panels {
     /// Of an inverse factor the diagonal of K⁻¹.
     pub(crate) fn inverse_diagonal(&self) -> Vec<f64> {
         let panels = self.columns.iter();
-        panels.flat_map(|panel| (0..panel.ncols()).map(|j| panel.col(j).squared_norm_l2())).collect()
+        panels
+            .flat_map(|panel| (0..panel.ncols()).map(|j| panel.col(j).squared_norm_l2()))
+            .collect()
     }
 }
 

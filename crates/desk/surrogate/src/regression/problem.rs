@@ -209,9 +209,8 @@ impl Problem {
     /// # Errors
     /// [`SurrogateError::Replicates`] where replicates without any noise differ.
     pub(crate) fn check_replicates(&self, is_noiseless: bool) -> Result<(), SurrogateError> {
-        let differs = |index: &usize| {
-            is_noiseless && self.known[*index] == 0.0 && self.within[*index] > 0.0
-        };
+        let differs =
+            |index: &usize| is_noiseless && self.known[*index] == 0.0 && self.within[*index] > 0.0;
         match (0..self.len()).find(differs) {
             Some(place) => {
                 Err(SurrogateError::Replicates { place, n: self.counts[place] as usize })
@@ -324,7 +323,8 @@ impl Scaling {
         let mut found = scaled.to_vec();
         let Some((constant, slopes)) = found.split_first_mut() else { return found };
         *constant = self.centre + self.scale * *constant;
-        for (slope, (centre, scale)) in slopes.iter_mut().zip(self.centres.iter().zip(&self.scales)) {
+        for (slope, (centre, scale)) in slopes.iter_mut().zip(self.centres.iter().zip(&self.scales))
+        {
             *slope *= self.scale / scale;
             *constant -= *slope * centre;
         }

@@ -5,7 +5,7 @@ use super::expression::{Kernel, Parameters};
 use super::inducing::{Inducing, Sparse, covariances_with};
 use super::marginal::Marginal;
 use super::panels::Panels;
-use super::predictor::Predictor;
+use super::predictor::MeanCurve;
 use super::problem::{Collapsed, NoiseGroups, Problem, Trend};
 use super::search::{self, SearchSettings};
 use super::threads::{number, share};
@@ -73,7 +73,7 @@ pub struct Regression {
     pub(crate) problem: Problem,
     pub(crate) posterior: Posterior,
     pub(crate) n_threads: usize,
-    predictor: Predictor,
+    predictor: MeanCurve,
 }
 
 impl Regression {
@@ -97,7 +97,9 @@ impl Regression {
             return Err(SurrogateError::TooFew { n, needed });
         }
         problem.check_replicates(settings.noise == NoiseGroups::Known)?;
-        let found = search::hyperparameters(&problem, kernel, &settings.search);
+        // Periods are given in the user's units.
+        let scaled = kernel.in_units(&problem.scaling.scales, problem.scaling.scale);
+        let found = search::hyperparameters(&problem, &scaled, &settings.search);
         let (kernel, noise) = found.ok_or(SurrogateError::NotPositiveDefinite { n })?;
         Self::of_problem(problem, kernel, noise, settings)
     }
@@ -287,40 +289,47 @@ impl Regression {
         let n_dimensions = self.n_dimensions();
         let mut variances = vec![0.0; inputs.len() / n_dimensions];
         let batches = variances.chunks_mut(BATCH).zip(inputs.chunks(BATCH * n_dimensions));
-        share(self.n_threads, batches.collect(), || (), |(), (variances, inputs)| {
-            let columns = self.problem.scaling.columns(inputs);
-            let n = variances.len();
-            let queries = Points::new(&self.kernel, &columns);
-            let basis = self.problem.basis(&columns, n);
-            let (points, of_basis, covariance) = match &self.posterior {
-                Posterior::Exact(found) => (&found.points, &found.of_basis, &found.covariance),
-                Posterior::Inducing(found) => (&found.points, &found.of_basis, &found.covariance),
-            };
-            let n_points = of_basis.nrows();
-            let mut known = covariances_with(points, n_points, &queries, 0..n);
-            let missing = &basis - known.transpose() * of_basis;
-            let of_trend = &missing * covariance;
-            let explained = |factor: &Panels, known: &mut Mat<f64>| -> Vec<f64> {
-                factor.solve_lower(known.as_mut());
-                known.col_iter().map(|column| column.squared_norm_l2()).collect()
-            };
-            let (explained, returned) = match &self.posterior {
-                Posterior::Exact(found) => (explained(&found.factor, &mut known), vec![0.0; n]),
-                Posterior::Inducing(found) => {
-                    let [own, inner] = &found.factors;
-                    let first = explained(own, &mut known);
-                    (first, explained(inner, &mut known))
+        share(
+            self.n_threads,
+            batches.collect(),
+            || (),
+            |(), (variances, inputs)| {
+                let columns = self.problem.scaling.columns(inputs);
+                let n = variances.len();
+                let queries = Points::new(&self.kernel, &columns);
+                let basis = self.problem.basis(&columns, n);
+                let (points, of_basis, covariance) = match &self.posterior {
+                    Posterior::Exact(found) => (&found.points, &found.of_basis, &found.covariance),
+                    Posterior::Inducing(found) => {
+                        (&found.points, &found.of_basis, &found.covariance)
+                    }
+                };
+                let n_points = of_basis.nrows();
+                let mut known = covariances_with(points, n_points, &queries, 0..n);
+                let missing = &basis - known.transpose() * of_basis;
+                let of_trend = &missing * covariance;
+                let explained = |factor: &Panels, known: &mut Mat<f64>| -> Vec<f64> {
+                    factor.solve_lower(known.as_mut());
+                    known.col_iter().map(|column| column.squared_norm_l2()).collect()
+                };
+                let (explained, returned) = match &self.posterior {
+                    Posterior::Exact(found) => (explained(&found.factor, &mut known), vec![0.0; n]),
+                    Posterior::Inducing(found) => {
+                        let [own, inner] = &found.factors;
+                        let first = explained(own, &mut known);
+                        (first, explained(inner, &mut known))
+                    }
+                };
+                let prior = self.kernel.variance();
+                for (index, variance) in variances.iter_mut().enumerate() {
+                    let trend: f64 = (0..basis.ncols())
+                        .map(|column| of_trend[(index, column)] * missing[(index, column)])
+                        .sum();
+                    // Rounding may leave a variance below zero at an observation without noise.
+                    *variance = (prior - explained[index] + returned[index] + trend).max(0.0);
                 }
-            };
-            let prior = self.kernel.variance();
-            for (index, variance) in variances.iter_mut().enumerate() {
-                let trend: f64 = (0..basis.ncols())
-                    .map(|column| of_trend[(index, column)] * missing[(index, column)])
-                    .sum();
-                // Rounding may leave a variance below zero at an observation without noise.
-                *variance = (prior - explained[index] + returned[index] + trend).max(0.0);
-            }
-        });
+            },
+        );
         variances
     }
 
@@ -371,7 +380,7 @@ fn outside(input: usize, observed: &[f64], asked: &[f64]) -> Option<Outside> {
 }
 
 /// The mean curve in the user's units.
-fn predictor(problem: &Problem, kernel: &Kernel, posterior: &Posterior) -> Predictor {
+fn predictor(problem: &Problem, kernel: &Kernel, posterior: &Posterior) -> MeanCurve {
     let scaling = &problem.scaling;
     let (inputs, weights, coefficients) = match posterior {
         Posterior::Exact(found) => (&problem.inputs, &found.weights, &found.coefficients),
@@ -380,7 +389,7 @@ fn predictor(problem: &Problem, kernel: &Kernel, posterior: &Posterior) -> Predi
     let weights = weights.col(0).iter().map(|weight| weight / scaling.scale).collect();
     let scaled: Vec<f64> = coefficients.col(0).iter().copied().collect();
     let coefficients = scaling.coefficients(&scaled);
-    Predictor::new(
+    MeanCurve::new(
         kernel.clone(),
         problem.n_dimensions(),
         &scaling.rows(inputs),

@@ -33,7 +33,7 @@ pub struct SearchSettings {
 
 impl Default for SearchSettings {
     fn default() -> Self {
-        Self { n_starts: 8, seed: 1, n_first: 1000, n_steps_on_all: 4, n_threads: 0 }
+        Self { n_starts: 8, seed: 1, n_first: 1000, n_steps_on_all: 3, n_threads: 0 }
     }
 }
 
@@ -74,14 +74,14 @@ fn bounds(problem: &Problem, kernel: &Kernel) -> (Vec<[f64; 2]>, Vec<f64>) {
             _ => problem.values.iter().sum::<f64>() / n,
         };
         let squares = problem.values.iter().map(|value| (value - center).powi(2));
-        let spread = (squares.sum::<f64>() + problem.within.iter().sum::<f64>()) / problem.n_observations();
+        let spread =
+            (squares.sum::<f64>() + problem.within.iter().sum::<f64>()) / problem.n_observations();
         if spread > 0.0 { spread } else { 1e-12 }
     };
     let range = |input: usize| {
         let ends = problem.inputs[input].iter();
-        let ends = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(*x), high.max(*x)]
-        });
+        let ends = ends
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)]);
         if ends[1] > ends[0] { ends[1] - ends[0] } else { 1.0 }
     };
     // Of many inputs each has a long length.
@@ -113,7 +113,7 @@ pub(crate) fn drawn(total: usize, n: usize, seed: u64) -> Vec<usize> {
 }
 
 /// The numbers below `total` in an order of `seed`.
-pub(crate) fn shuffled(total: usize, seed: u64) -> Vec<usize> {
+pub fn shuffled(total: usize, seed: u64) -> Vec<usize> {
     let mut normals = Normals::new(seed);
     let mut keyed: Vec<(f64, usize)> = (0..total).map(|index| (normals.next(), index)).collect();
     keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -142,18 +142,36 @@ pub(crate) fn hyperparameters(
             1 => shares.iter().map(|share| place_of(share + 0.15)).collect(),
             _ => shares.iter().map(|_| normals.next()).collect(),
         };
-        ends.extend(climb(&OfProblem { problem: &few, kernel, n_threads }, &bounds, &place, None, quick));
+        ends.extend(climb(
+            &OfProblem { problem: &few, kernel, n_threads },
+            &bounds,
+            &place,
+            None,
+            quick,
+        ));
     }
     ends.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut place = ends.into_iter().next()?.1;
     if few.len() < n {
         let more = subset(settings.n_first);
         let end = End { n_steps: STEPS[1], slope: if more.len() < n { 0.05 } else { 1e-5 } };
-        place = climb(&OfProblem { problem: &more, kernel, n_threads }, &bounds, &place, None, end).map_or(place, |best| best.1);
+        place = climb(&OfProblem { problem: &more, kernel, n_threads }, &bounds, &place, None, end)
+            .map_or(place, |best| best.1);
         if more.len() < n && settings.n_steps_on_all > 0 {
-            let turn = turn(&OfProblem { problem: &more, kernel, n_threads }, &bounds, &place, n as f64 / more.len() as f64);
-            let end = End { n_steps: settings.n_steps_on_all, slope: 0.1 };
-            let on_all = climb(&OfProblem { problem: problem, kernel, n_threads }, &bounds, &place, turn.as_ref(), end);
+            let turn = turn(
+                &OfProblem { problem: &more, kernel, n_threads },
+                &bounds,
+                &place,
+                n as f64 / more.len() as f64,
+            );
+            let end = End { n_steps: settings.n_steps_on_all, slope: 0.3 };
+            let on_all = climb(
+                &OfProblem { problem: problem, kernel, n_threads },
+                &bounds,
+                &place,
+                turn.as_ref(),
+                end,
+            );
             place = on_all.map_or(place, |best| best.1);
         }
     }

@@ -12,7 +12,8 @@ fn data(n: usize) -> Observations {
     let mut normals = Normals::new(5);
     let (mut inputs, mut values) = (Vec::new(), Vec::new());
     for index in 0..n {
-        let mut input = vec![8.0 + normals.next(), 270.0 + 40.0 * normals.next(), 0.01 * normals.next()];
+        let mut input =
+            vec![8.0 + normals.next(), 270.0 + 40.0 * normals.next(), 0.01 * normals.next()];
         if index % 3 == 2 {
             input = inputs[inputs.len() - 3..].to_vec();
         }
@@ -50,7 +51,9 @@ fn covariance(kernel: &Kernel, a: &[f64], b: &[f64]) -> f64 {
         let along = part.inputs.iter().zip(&part.lengths);
         let square: f64 = match part.shape {
             Shape::Periodic { period } => along
-                .map(|(i, l)| (2.0 * (std::f64::consts::PI * (a[*i] - b[*i]) / period).sin() / l).powi(2))
+                .map(|(i, l)| {
+                    (2.0 * (std::f64::consts::PI * (a[*i] - b[*i]) / period).sin() / l).powi(2)
+                })
                 .sum(),
             _ => along.map(|(i, l)| ((a[*i] - b[*i]) / l).powi(2)).sum(),
         };
@@ -162,7 +165,10 @@ fn slopes_of_the_likelihood_are_its_differences() {
             of(&at).log_marginal_likelihood()
         };
         let difference = (moved(1e-4) - moved(-1e-4)) / 2e-4;
-        assert!((slopes[index] - difference).abs() < 1e-6 * largest, "{index} {difference} {slopes:?}");
+        assert!(
+            (slopes[index] - difference).abs() < 1e-6 * largest,
+            "{index} {difference} {slopes:?}"
+        );
     }
 }
 
@@ -187,7 +193,8 @@ fn leave_one_out_is_leaving_out() {
         let parts = [&mut others.values, &mut others.counts, &mut others.within, &mut others.known];
         parts.into_iter().for_each(|part| *part = keep(part));
         let of_others = Regression::restore(&parameters, &others, &settings).expect("good data");
-        let own = of_others.predict(&collapsed.inputs[3 * index..3 * index + 3], 0).expect("one")[0];
+        let own =
+            of_others.predict(&collapsed.inputs[3 * index..3 * index + 3], 0).expect("one")[0];
         let noise = 9e4 / collapsed.counts[index];
         let deviation = (own.standard_deviation.powi(2) + noise).sqrt();
         for left in [left, &in_folds[index]] {
@@ -235,7 +242,10 @@ fn inducing_points_at_all_observations_are_exact() {
         let (a, b) = (exact.predict(&query, 0), sparse.predict(&query, 0));
         for (a, b) in a.expect("two").iter().zip(&b.expect("two")) {
             assert!((a.mean - b.mean).abs() < 1e-5 * a.mean.abs(), "{a:?} {b:?}");
-            assert!((a.standard_deviation / b.standard_deviation - 1.0).abs() < 1e-4, "{a:?} {b:?}");
+            assert!(
+                (a.standard_deviation / b.standard_deviation - 1.0).abs() < 1e-4,
+                "{a:?} {b:?}"
+            );
         }
         let (a, b) = (exact.log_marginal_likelihood(), sparse.log_marginal_likelihood());
         assert!((a - b).abs() < 1e-3, "{a} {b}");

@@ -7,7 +7,11 @@ use faer::linalg::solvers::Solve;
 fn entry(row: usize, column: usize) -> f64 {
     let away = row.abs_diff(column) as f64;
     let level = (row + column) as f64;
-    if row == column { 3.0 + (0.01 * level).sin() } else { (0.1 * level).cos() / (1.0 + away * away) }
+    if row == column {
+        3.0 + (0.01 * level).sin()
+    } else {
+        (0.1 * level).cos() / (1.0 + away * away)
+    }
 }
 
 fn factor(n: usize, n_threads: usize) -> Panels {
@@ -31,9 +35,8 @@ fn a_factor_solves_inverts_and_has_the_determinant() {
         let inverse = panels.inverse_factor();
         let mut worst = 0.0_f64;
         let unit = own.solve(Mat::<f64>::identity(n, n));
-        let tiles = inverse.visit_inverse(|| (), |(), row, column, tile| {
-            (row, column, tile.to_owned())
-        });
+        let tiles =
+            inverse.visit_inverse(|| (), |(), row, column, tile| (row, column, tile.to_owned()));
         for (row, column, tile) in tiles {
             for j in 0..tile.ncols() {
                 for i in 0..tile.nrows() {
