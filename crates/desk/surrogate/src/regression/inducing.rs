@@ -98,35 +98,11 @@ impl Inducing {
             }
         })?;
         let n = problem.len();
-        let basis = problem.basis(&problem.inputs, n);
-        let q = basis.ncols();
-        let all = Points::new(kernel, &problem.inputs);
+        let q = problem.trend.n_coefficients(problem.n_dimensions());
         let variances: Vec<f64> =
             (0..n).map(|index| problem.variance(index, noise) / problem.counts[index]).collect();
-        // A is L⁻¹ K_uf Λ^(−1/2); right is Λ^(−1/2) [y, H].
-        let mut square = Mat::<f64>::identity(n_points, n_points);
-        let mut of_right = Mat::<f64>::zeros(n_points, 1 + q);
-        let mut right_square = Mat::<f64>::zeros(1 + q, 1 + q);
-        let mut unexplained = 0.0;
-        for first in (0..n).step_by(CHUNK) {
-            let width = CHUNK.min(n - first);
-            let mut a = covariances_with(&points, n_points, &all, first..first + width);
-            own.solve_lower(a.as_mut());
-            let right = Mat::from_fn(width, 1 + q, |row, column| {
-                let at = first + row;
-                let value = if column == 0 { problem.values[at] } else { basis[(at, column - 1)] };
-                value / variances[at].sqrt()
-            });
-            for (index, variance) in variances[first..first + width].iter().enumerate() {
-                let explained = a.col(index).squared_norm_l2();
-                unexplained += (kernel.variance() - explained) / variance;
-                let scale = variance.sqrt().recip();
-                a.col_mut(index).iter_mut().for_each(|value| *value *= scale);
-            }
-            square += &a * a.transpose();
-            of_right += &a * &right;
-            right_square += right.transpose() * &right;
-        }
+        let Sums { square, of_right, right_square, unexplained } =
+            Sums::new(problem, kernel, &points, &own, &variances);
         let inner = Panels::factor(n_points, n_threads, |rows, at, target| {
             target.iter_mut().zip(rows).for_each(|(value, row)| *value = square[(row, at)]);
         })?;
@@ -173,6 +149,58 @@ impl Inducing {
             bound,
             told,
         })
+    }
+}
+
+/// Sums over all observations, with A = L⁻¹ K_uf Λ^(−1/2) and R = Λ^(−1/2) [y, H].
+struct Sums {
+    /// I + A Aᵀ.
+    square: Mat<f64>,
+    /// A R.
+    of_right: Mat<f64>,
+    /// Rᵀ R.
+    right_square: Mat<f64>,
+    /// Variance that the points leave, over that of the noise.
+    unexplained: f64,
+}
+
+impl Sums {
+    /// Of inducing `points` with the factor `own`, and observations of these `variances`.
+    fn new(
+        problem: &Problem,
+        kernel: &Kernel,
+        points: &Points,
+        own: &Panels,
+        variances: &[f64],
+    ) -> Self {
+        let (n, n_points) = (problem.len(), own.n());
+        let basis = problem.basis(&problem.inputs, n);
+        let q = basis.ncols();
+        let all = Points::new(kernel, &problem.inputs);
+        let mut square = Mat::<f64>::identity(n_points, n_points);
+        let mut of_right = Mat::<f64>::zeros(n_points, 1 + q);
+        let mut right_square = Mat::<f64>::zeros(1 + q, 1 + q);
+        let mut unexplained = 0.0;
+        for first in (0..n).step_by(CHUNK) {
+            let width = CHUNK.min(n - first);
+            let mut a = covariances_with(points, n_points, &all, first..first + width);
+            own.solve_lower(a.as_mut());
+            let right = Mat::from_fn(width, 1 + q, |row, column| {
+                let at = first + row;
+                let value = if column == 0 { problem.values[at] } else { basis[(at, column - 1)] };
+                value / variances[at].sqrt()
+            });
+            for (index, variance) in variances[first..first + width].iter().enumerate() {
+                let explained = a.col(index).squared_norm_l2();
+                unexplained += (kernel.variance() - explained) / variance;
+                let scale = variance.sqrt().recip();
+                a.col_mut(index).iter_mut().for_each(|value| *value *= scale);
+            }
+            square += &a * a.transpose();
+            of_right += &a * &right;
+            right_square += right.transpose() * &right;
+        }
+        Self { square, of_right, right_square, unexplained }
     }
 }
 

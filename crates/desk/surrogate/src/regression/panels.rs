@@ -136,6 +136,11 @@ impl Panels {
         true
     }
 
+    /// Rows (–).
+    pub(crate) fn n(&self) -> usize {
+        self.n
+    }
+
     /// ln |K|.
     pub fn log_determinant(&self) -> f64 {
         let diagonals = self

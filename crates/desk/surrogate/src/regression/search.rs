@@ -3,7 +3,7 @@
 
 use super::expression::Kernel;
 use super::marginal::Marginal;
-use super::problem::Problem;
+use super::problem::{Problem, Trend};
 use crate::Shape;
 use crate::ascent::{End, Objective, climb, inside, place_of};
 use crate::sample::Normals;
@@ -37,7 +37,7 @@ pub struct SearchSettings {
 
 impl Default for SearchSettings {
     fn default() -> Self {
-        Self { n_starts: 8, seed: 1, n_first: 1000, n_steps_on_all: 3, n_threads: 0 }
+        Self { n_starts: 16, seed: 1, n_first: 1000, n_steps_on_all: 3, n_threads: 0 }
     }
 }
 
@@ -74,7 +74,7 @@ fn bounds(problem: &Problem, kernel: &Kernel) -> (Vec<[f64; 2]>, Vec<f64>) {
     let spread = {
         let n = problem.len() as f64;
         let center = match problem.trend {
-            super::Trend::Zero => 0.0,
+            Trend::Zero => 0.0,
             _ => problem.values.iter().sum::<f64>() / n,
         };
         let squares = problem.values.iter().map(|value| (value - center).powi(2));

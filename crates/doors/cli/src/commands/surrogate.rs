@@ -79,7 +79,7 @@ pub(crate) struct TrainArguments {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Starts of the search
-    #[arg(long, value_name = "N", default_value_t = 8)]
+    #[arg(long, value_name = "N", default_value_t = 16)]
     starts: usize,
     /// Take so many inducing points instead of all data; above 10000 inputs it is 1000 when left out
     #[arg(long, value_name = "N")]
