@@ -2,9 +2,10 @@
 //!
 //! A load surrogate's size: 7287 observations of ten inputs. The Cholesky factor alone is held against the
 //! double-precision operations that the same threads work out in registers (`benches::arithmetic`), measured
-//! before and after each repeat, since neighbours of a machine change both; and once more by processor time, of which
-//! neighbours take none, but which does not tell of threads that wait. Then the whole fit, means and
-//! deviations. Options after `--`: `quick` for a sixth of the observations, a number for the threads.
+//! before and after each repeat, since neighbours of a machine change both; and once more by processor
+//! time, of which neighbours take none, but which does not tell of threads that wait. Then the whole fit,
+//! means and deviations. Options after `--`: `quick` for a sixth of the observations, a number for the
+//! threads.
 
 use benches::arithmetic::{double_limit, processor_seconds};
 use std::time::Instant;

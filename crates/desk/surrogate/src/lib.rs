@@ -3,8 +3,9 @@
 //!
 //! [`GaussianProcess`] is exact Gaussian-process regression: a covariance kernel, noise that is known,
 //! estimated or both, and hyperparameters of maximum marginal likelihood. Power over a phase offset is
-//! periodic and known from a handful of runs; its kernel is [`Shape::Periodic`]. [`Regression`] is the same for many
-//! observations over many inputs: kernels as sums and products, replicates, blocks and threads, inducing points.
+//! periodic and known from a handful of runs; its kernel is [`Shape::Periodic`]. [`Regression`] is the same
+//! for many observations over many inputs: kernels as sums and products, replicates, blocks and threads,
+//! inducing points.
 //!
 //! ```
 //! use surrogate::{GaussianProcess, Observations, FitSettings, Shape};

@@ -1,5 +1,5 @@
-//! Design at the desk: from a record to a model, from a model to a controller that a turbine runs; from a table to a
-//! surrogate.
+//! Design at the desk: from a record to a model, from a model to a controller that a turbine runs; from a
+//! table to a surrogate.
 //!
 //! | wanted | use | on the command line |
 //! | --- | --- | --- |
@@ -7,7 +7,8 @@
 //! | a controller for a model | [`synthesize`] | `wakemix synthesize` |
 //! | a surrogate of what a table holds | [`regression::train`] | `wakemix surrogate` |
 //!
-//! Files in, numbers and a file out; the arithmetic is that of the rooms `identification`, `synthesis` and `surrogate`.
+//! Files in, numbers and a file out; the arithmetic is that of the rooms `identification`, `synthesis` and
+//! `surrogate`.
 
 mod data;
 mod error;

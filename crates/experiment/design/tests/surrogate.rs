@@ -14,7 +14,8 @@ fn table(path: &Path, n: usize) {
     let mut text = "wind [m/s],turbulence,still,load [MN-m]\n".to_owned();
     for row in 0..n {
         let place = (row / 2) as f64;
-        let (wind, turbulence) = (6.0 + (0.618 * place).fract() * 6.0, (0.755 * place).fract() * 0.1);
+        let (wind, turbulence) =
+            (6.0 + (0.618 * place).fract() * 6.0, (0.755 * place).fract() * 0.1);
         let scatter = 0.02 * (12.9 * row as f64).sin();
         let load = 3.0 + 0.3 * wind + 15.0 * turbulence * (0.5 * wind).sin() + scatter;
         writeln!(text, "{wind},{turbulence},1,{load}").expect("a string takes it");
@@ -67,7 +68,8 @@ fn a_table_becomes_a_surrogate_that_its_file_holds() {
     }
     bands.write(&at("out.csv")).expect("written");
     let text = fs::read_to_string(at("out.csv")).expect("read");
-    let head = "wind [m/s],turbulence,load [MN-m],load_deviation [MN-m],load_observation_deviation [MN-m]";
+    let head =
+        "wind [m/s],turbulence,load [MN-m],load_deviation [MN-m],load_observation_deviation [MN-m]";
     assert_eq!(text.lines().next(), Some(head));
 
     let held = validate(&at("model.json"), &at("loads.csv")).expect("validated");
@@ -98,8 +100,12 @@ fn what_is_wrong_is_named_with_file_column_and_fix() {
     let found = train(&question(at("loads.csv"))).expect("a surrogate");
     found.model.write(&at("model.json")).expect("written");
     fs::write(at("far.csv"), "turbulence,wind\n0.05,8\n0.05,30\n").expect("written");
-    let asked =
-        PredictQuestion { model: at("model.json"), file: at("far.csv"), means_only: true, group: 0 };
+    let asked = PredictQuestion {
+        model: at("model.json"),
+        file: at("far.csv"),
+        means_only: true,
+        group: 0,
+    };
     let warnings = predict(&asked).expect("predictions").warnings;
     assert!(warnings.iter().any(|text| text.contains("of wind") && text.contains("30 in line 3")));
     fs::write(at("model.json"), "{}").expect("written");

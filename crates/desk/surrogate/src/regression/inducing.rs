@@ -109,20 +109,7 @@ impl Inducing {
         // By Woodbury: Rᵀ (Q + Λ)⁻¹ R = RᵀΛ⁻¹R − (A R)ᵀ B⁻¹ (A R).
         let solved = inner.solve(&of_right);
         let inverse_square = &right_square - of_right.transpose() * &solved;
-        let of = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>| {
-            Mat::from_fn(rows.len(), columns.len(), |row, column| {
-                inverse_square[(rows.start + row, columns.start + column)]
-            })
-        };
-        let (coefficients, covariance) = match q {
-            0 => (Mat::zeros(0, 1), Mat::zeros(0, 0)),
-            _ => {
-                let factor = of(1..1 + q, 1..1 + q).llt(Side::Lower).ok()?;
-                let identity = Mat::<f64>::identity(q, q);
-                (factor.solve(of(1..1 + q, 0..1)), factor.solve(identity))
-            }
-        };
-        let fitted = dot(&coefficients, &of(1..1 + q, 0..1));
+        let (coefficients, covariance, fitted) = trend(&inverse_square)?;
         let mut weights = Mat::from_fn(n_points, 1 + q, |row, column| solved[(row, column)]);
         own.solve_upper(weights.as_mut());
         let of_basis = Mat::from_fn(n_points, q, |row, column| weights[(row, 1 + column)]);
@@ -150,6 +137,20 @@ impl Inducing {
             told,
         })
     }
+}
+
+/// Of [y, H]ᵀ (Q + Λ)⁻¹ [y, H] the trend's coefficients, (Hᵀ (Q + Λ)⁻¹ H)⁻¹, and what the trend fits.
+fn trend(square: &Mat<f64>) -> Option<(Mat<f64>, Mat<f64>, f64)> {
+    let q = square.nrows() - 1;
+    if q == 0 {
+        return Some((Mat::zeros(0, 1), Mat::zeros(0, 0), 0.0));
+    }
+    let of_basis = Mat::from_fn(q, q, |row, column| square[(1 + row, 1 + column)]);
+    let with_values = Mat::from_fn(q, 1, |row, _| square[(1 + row, 0)]);
+    let factor = of_basis.llt(Side::Lower).ok()?;
+    let coefficients = factor.solve(&with_values);
+    let fitted = dot(&coefficients, &with_values);
+    Some((coefficients, factor.solve(Mat::<f64>::identity(q, q)), fitted))
 }
 
 /// Sums over all observations, with A = L⁻¹ K_uf Λ^(−1/2) and R = Λ^(−1/2) [y, H].

@@ -29,7 +29,8 @@ pub(crate) fn centred(inputs: &[f64], centres: &[f64]) -> Vec<Vec<f64>> {
 }
 
 impl MeanCurve {
-    /// The trend of `coefficients`, a constant and slopes or nothing, plus Σ weight × covariance with the points
+    /// The trend of `coefficients`, a constant and slopes or nothing, plus Σ weight × covariance with the
+    /// points
     /// `inputs`, those of one together.
     pub fn new(
         kernel: Kernel,

@@ -208,8 +208,8 @@ impl Regression {
         self.problem.n_dimensions()
     }
 
-    /// Points behind the mean curve, those of one together, and the weight of each: the mean is the trend plus
-    /// Σ weight × covariance (unit of the inputs; 1 over that of the values).
+    /// Points behind the mean curve, those of one together, and the weight of each: the mean is the trend
+    /// plus Σ weight × covariance (unit of the inputs; 1 over that of the values).
     pub fn weighted_points(&self) -> (Vec<f64>, &[f64]) {
         let inputs = match &self.posterior {
             Posterior::Exact(_) => &self.problem.inputs,

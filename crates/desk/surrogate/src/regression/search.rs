@@ -13,7 +13,8 @@ use faer::{Mat, Side};
 const FEW: usize = 400;
 /// Steps of a start on few observations, and of the best on more (–).
 const STEPS: [u64; 2] = [60, 200];
-/// Least second derivative that is taken for one (–): along a flatter way a first step is as long as it allows.
+/// Least second derivative that is taken for one (–): along a flatter way a first step is as long as it
+/// allows.
 const LEAST_BEND: f64 = 1e-2;
 /// Searches at the end at most (–).
 const MOST_POLISHES: usize = 4;
@@ -176,8 +177,8 @@ pub(crate) fn hyperparameters(
     Some(of_all.parameters(&inside(&place, &bounds).0))
 }
 
-/// The end of searches from `place` in coordinates that bend alike: along a ridge steps in others come to rest
-/// too early.
+/// The end of searches from `place` in coordinates that bend alike: along a ridge steps in others come to
+/// rest too early.
 fn polished(of: &OfProblem<'_>, bounds: &[[f64; 2]], mut place: Vec<f64>) -> Vec<f64> {
     let end = End { n_steps: STEPS[0], slope: 1e-5 };
     let mut highest = f64::NEG_INFINITY;

@@ -72,7 +72,8 @@ fn cuts_of(
     model.ranges.iter().enumerate().map(one).collect()
 }
 
-/// Draws the surrogate `model`, which was read from `path`, into `folder`/figures: predicted over true values of
+/// Draws the surrogate `model`, which was read from `path`, into `folder`/figures: predicted over true
+/// values of
 /// `pairs`, cuts, and a map over `two` of its inputs; gives the figures' names.
 ///
 /// # Errors

@@ -2,7 +2,8 @@
 
 use surrogate::{Kernel, Part, Shape, Term};
 
-/// A kernel in words: summands between `+`, factors between `*`, each a shape with the inputs that it looks at.
+/// A kernel in words: summands between `+`, factors between `*`, each a shape with the inputs that it looks
+/// at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KernelText(String);
 

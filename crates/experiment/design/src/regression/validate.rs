@@ -33,8 +33,8 @@ pub(super) struct Pairs<'a> {
     pub(super) n_inputs: usize,
 }
 
-/// Means of the output at the different inputs of `table` beside what `found` says of them. The noise is that of
-/// the first group.
+/// Means of the output at the different inputs of `table` beside what `found` says of them. The noise is
+/// that of the first group.
 pub(super) fn pairs(found: &Regression, table: &Pairs) -> Result<Vec<LeaveOneOut>, SurrogateError> {
     let mut place_of: BTreeMap<Vec<u64>, usize> = BTreeMap::new();
     let (mut inputs, mut values) = (Vec::new(), Vec::<Vec<f64>>::new());

@@ -25,8 +25,8 @@ impl Samples {
     /// Reads the columns `wanted` of the CSV at `path`, names in its first line.
     ///
     /// # Errors
-    /// [`FileError`] with line and column: a name that the file has not, a row cut short, what is not a number,
-    /// not finite or beyond ±1e30, and no row at all.
+    /// [`FileError`] with line and column: a name that the file has not, a row cut short, what is not a
+    /// number, not finite or beyond ±1e30, and no row at all.
     pub fn read(path: &Path, wanted: &[&str]) -> Result<Self, FileError> {
         let refusal = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
         let (columns, mut rows) = csv::columns(path)?;

@@ -198,8 +198,8 @@ fn between(map: &SurrogateMap, share: [f64; 2]) -> f64 {
     along(j) + t * (along(j + 1) - along(j))
 }
 
-/// Straight pieces of the line on which the map has `level`: each cell of places is cut in two triangles, in each
-/// of which the value is linear.
+/// Straight pieces of the line on which the map has `level`: each cell of places is cut in two triangles,
+/// in each of which the value is linear.
 fn level_pieces(map: &SurrogateMap, level: f64) -> Vec<[[f64; 2]; 2]> {
     let [nx, ny] = map.n;
     let corner = |i: usize, j: usize| {
