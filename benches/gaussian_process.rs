@@ -2,10 +2,12 @@
 //!
 //! A load surrogate's size: 7287 observations of ten inputs. The Cholesky factor alone is held against the
 //! double-precision operations that the same threads work out in registers (`benches::arithmetic`), measured
-//! before and after each repeat, since neighbours of a machine change both. Then the whole fit, means and
-//! deviations. Options after `--`: `quick` for a sixth of the observations, a number for the threads.
+//! before and after each repeat, since neighbours of a machine change both; and once more by processor
+//! time, of which neighbours take none, but which does not tell of threads that wait. Then the whole fit,
+//! means and deviations. Options after `--`: `quick` for a sixth of the observations, a number for the
+//! threads.
 
-use benches::arithmetic::double_limit;
+use benches::arithmetic::{double_limit, processor_seconds};
 use std::time::Instant;
 use surrogate::{Kernel, Observations, Panels, Regression, RegressionSettings, Shape};
 
@@ -38,6 +40,7 @@ fn observations(n: usize) -> Observations {
     Observations { inputs, n_dimensions: N_INPUTS, values, variances: Vec::new() }
 }
 
+/// What `work` gives, and how long it took on the wall (s).
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let started = Instant::now();
     let done = work();
@@ -57,13 +60,22 @@ fn cholesky(n: usize, n_threads: usize) {
                 }
             })
         };
+        let processor = processor_seconds();
         let (found, seconds) = timed(factor);
         let rate = operations / seconds;
+        let rate_of_processor = operations / (processor_seconds() - processor);
         let log = found.expect("positive definite").log_determinant();
         print!("cholesky n {n}, {n_threads} threads: {seconds:.2} s, {:.1} GFLOP/s", rate * 1e-9);
         if let (Some(before), Some(after)) = (before, double_limit(n_threads)) {
-            let limit = 0.5 * (before + after);
-            print!(", {:.0} % of {:.1} GFLOP/s", 100.0 * rate / limit, limit * 1e-9);
+            let limit = 0.5 * (before.rate + after.rate);
+            let of_processor = 0.5 * (before.rate_of_processor + after.rate_of_processor);
+            print!(
+                ", {:.0} % of {:.1} GFLOP/s; of processor time {:.0} % of {:.1} GFLOP/s",
+                100.0 * rate / limit,
+                limit * 1e-9,
+                100.0 * rate_of_processor / of_processor,
+                of_processor * 1e-9
+            );
         }
         println!(" (ln |K| {log:.3})");
     }
@@ -81,17 +93,21 @@ fn main() {
         let mut settings = RegressionSettings::default();
         settings.search.n_threads = n_threads;
         let kernel = Kernel::of(shape, N_INPUTS);
+        let processor = processor_seconds();
         let (fit, seconds) = timed(|| Regression::fit(&kernel, &data, &settings).expect("a fit"));
         println!(
-            "{shape:?}: fit of {n} observations with hyperparameters {seconds:.1} s, ln p {:.3}, noise {:.4}",
+            "{shape:?}: fit of {n} observations with hyperparameters {seconds:.1} s, {:.1} s of processors, ln p {:.3}, noise {:.4}",
+            processor_seconds() - processor,
             fit.log_marginal_likelihood(),
             fit.parameters().noise[0].sqrt()
         );
         let slopes = fit.likelihood_slopes().expect("exact");
         println!("  slopes there {:.1?}", slopes);
         let queries = inputs(N_QUERIES, 12_345);
+        let processor = processor_seconds();
         let (means, seconds) = timed(|| fit.means(&queries).expect("means"));
-        println!("  {} means {seconds:.2} s", means.len());
+        let processor = processor_seconds() - processor;
+        println!("  {} means {seconds:.2} s, {processor:.2} s of processors", means.len());
         let some = &queries[..N_QUERIES / 50 * N_INPUTS];
         let (bands, seconds) = timed(|| fit.predict(some, 0).expect("bands"));
         println!("  {} means with deviations {seconds:.2} s", bands.len());

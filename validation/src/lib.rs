@@ -25,6 +25,7 @@ pub mod flow;
 mod folds;
 pub mod free_vortex;
 pub mod gate;
+pub mod gaussian_process;
 pub mod helix;
 pub mod identification;
 pub mod inflow;

@@ -369,6 +369,15 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "control-design",
         recorded: include_str!("../recorded/synthesis.toml"),
     },
+    Validation {
+        name: "gaussian-process",
+        about: "Gaussian-process regression beside scikit-learn on ten data sets: posterior, likelihood, the best hyperparameters",
+        cost: Cost::UnderAMinute,
+        run: crate::gaussian_process::gaussian_process,
+        pictures: None,
+        page: "gaussian-process",
+        recorded: include_str!("../recorded/gaussian-process.toml"),
+    },
 ];
 
 /// Comparisons that `cargo test`, a script or a study repeats; their records are kept by hand.

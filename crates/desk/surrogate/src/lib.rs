@@ -1,8 +1,11 @@
-//! Surrogate models: a curve with its uncertainty from a few expensive results.
+//! Surrogate models: a curve with its uncertainty from a few expensive results, loads over many inputs from
+//! thousands.
 //!
 //! [`GaussianProcess`] is exact Gaussian-process regression: a covariance kernel, noise that is known,
 //! estimated or both, and hyperparameters of maximum marginal likelihood. Power over a phase offset is
-//! periodic and known from a handful of runs; its kernel is [`Shape::Periodic`].
+//! periodic and known from a handful of runs; its kernel is [`Shape::Periodic`]. [`Regression`] is the same
+//! for many observations over many inputs: kernels as sums and products, replicates, blocks and threads,
+//! inducing points.
 //!
 //! ```
 //! use surrogate::{GaussianProcess, Observations, FitSettings, Shape};
@@ -37,8 +40,8 @@ pub use likelihood::Mean;
 pub use observations::Observations;
 pub use process::{GaussianProcess, LeaveOneOut, Prediction};
 pub use regression::{
-    Collapsed, Kernel, NoiseGroups, Outside, Panels, Parameters, Part, Regression,
-    RegressionSettings, SearchSettings, Sparse, Term, Trend, Validation,
+    Collapsed, Kernel, MeanCurve, NoiseGroups, Outside, Panels, Parameters, Part, Regression,
+    RegressionSettings, SearchSettings, Sparse, Term, Trend, Validation, shuffled,
 };
 
 use thiserror::Error;

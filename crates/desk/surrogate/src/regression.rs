@@ -16,9 +16,10 @@ pub use cross::Validation;
 pub use expression::{Kernel, Parameters, Part, Term};
 pub use inducing::Sparse;
 pub use panels::Panels;
+pub use predictor::MeanCurve;
 pub use problem::{Collapsed, NoiseGroups, Trend};
 pub use process::{Outside, Regression, RegressionSettings};
-pub use search::SearchSettings;
+pub use search::{SearchSettings, shuffled};
 
 #[cfg(test)]
 mod tests;

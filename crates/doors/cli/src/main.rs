@@ -67,9 +67,13 @@ enum Command {
     /// Synthesise a controller for a model: H-infinity, H2 or LQG, with a Smith predictor for its delay
     #[cfg(feature = "design")]
     Synthesize(commands::synthesize::SynthesizeArguments),
+    /// Gaussian processes from tables of samples: train, predict, validate, show
+    #[cfg(feature = "design")]
+    #[command(subcommand)]
+    Surrogate(commands::surrogate::SurrogateCommand),
     /// Not in this build
     #[cfg(not(feature = "design"))]
-    #[command(hide = true, aliases = ["synthesize"])]
+    #[command(hide = true, aliases = ["synthesize", "surrogate"])]
     Identify {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
@@ -141,8 +145,10 @@ fn run(command: Command) -> ExitCode {
         Command::Identify(arguments) => commands::identify::run(&arguments),
         #[cfg(feature = "design")]
         Command::Synthesize(arguments) => commands::synthesize::run(&arguments),
+        #[cfg(feature = "design")]
+        Command::Surrogate(command) => commands::surrogate::run(&command),
         #[cfg(not(feature = "design"))]
-        Command::Identify { .. } => Err(left_out("control design")),
+        Command::Identify { .. } => Err(left_out("control design and surrogates")),
         #[cfg(feature = "validate")]
         Command::Validate(arguments) => return commands::validate::run(&arguments),
         #[cfg(not(feature = "validate"))]

@@ -6,6 +6,7 @@ use lti::matrices::MatrixError;
 use miette::Diagnostic;
 use report::ReportError;
 use std::path::PathBuf;
+use surrogate::SurrogateError;
 use synthesis::SynthesisError;
 use thiserror::Error;
 
@@ -48,6 +49,17 @@ pub enum DesignError {
         path: PathBuf,
         /// Why.
         source: SynthesisError,
+    },
+    /// No surrogate of a table, or none that a file describes.
+    #[error("no surrogate from {}: {source}", path.display())]
+    #[diagnostic(help(
+        "correct the table, or choose other inputs, another kernel (--kernel) or noise (--noise)"
+    ))]
+    Surrogate {
+        /// The table or the surrogate.
+        path: PathBuf,
+        /// Why.
+        source: SurrogateError,
     },
     /// A quantity of a model cannot be worked out.
     #[error("{}: {source}", path.display())]

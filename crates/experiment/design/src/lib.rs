@@ -1,11 +1,14 @@
-//! Control design at the desk: from a record to a model, from a model to a controller that a turbine runs.
+//! Design at the desk: from a record to a model, from a model to a controller that a turbine runs; from a
+//! table to a surrogate.
 //!
 //! | wanted | use | on the command line |
 //! | --- | --- | --- |
 //! | a model of what answers an excitation | [`identify`] | `wakemix identify` |
 //! | a controller for a model | [`synthesize`] | `wakemix synthesize` |
+//! | a surrogate of what a table holds | [`regression::train`] | `wakemix surrogate` |
 //!
-//! Files in, numbers and a file out; the arithmetic is that of the rooms `identification` and `synthesis`.
+//! Files in, numbers and a file out; the arithmetic is that of the rooms `identification`, `synthesis` and
+//! `surrogate`.
 
 mod data;
 mod error;
@@ -13,13 +16,16 @@ mod figures;
 mod identify;
 mod model;
 mod pages;
+pub mod regression;
 mod synthesize;
 mod weights;
 
 pub use data::Source;
 pub use error::DesignError;
+pub use formats::surrogate_model::SurrogateModel;
 pub use identification::Trend;
 pub use identify::{Identified, IdentifyQuestion, Responses, identify};
 pub use pages::{report_identified, report_synthesized};
+pub use surrogate::{Trend as SurrogateTrend, Validation as SurrogateValidation};
 pub use synthesize::{LoopResponses, SynthesizeQuestion, Synthesized, synthesize};
 pub use weights::Method;

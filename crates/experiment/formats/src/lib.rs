@@ -18,6 +18,7 @@ pub mod openfast_output;
 pub mod records;
 pub mod rosco;
 pub mod shipped;
+pub mod surrogate_model;
 pub mod table;
 pub mod turbine_file;
 pub mod turbulence_box;

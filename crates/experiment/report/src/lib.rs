@@ -14,6 +14,7 @@ mod words;
 
 pub use answer::{AnswerRecords, AnswerTable};
 use basis::records::{Filaments, Plane, Series, Summary, SweepTable};
+pub use figures::surrogate::{SurrogateCut, SurrogateFigures, SurrogateMap};
 pub use figures::synchronisation::{
     Along, CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel,
     DensityFigure, DensityRow, DiscFigure, DiscPanel, DiscPath, DiscPoint, OffsetFigure,
@@ -224,6 +225,19 @@ pub fn write_signals(signals: &[Signals], directory: &Path) -> Result<Vec<String
         signals.iter().flat_map(figures::synchronisation::of_signals).collect();
     write_figures(figures.iter(), directory)?;
     Ok(figures.into_iter().map(|figure| figure.name).collect())
+}
+
+/// Writes the figures of a surrogate into `directory`/figures, as SVG and PNG; gives their names.
+///
+/// # Errors
+/// [`ReportError::Write`] when the disk says no.
+pub fn write_surrogate(
+    figures: &SurrogateFigures,
+    directory: &Path,
+) -> Result<Vec<String>, ReportError> {
+    let drawn = figures::surrogate::surrogate(figures);
+    write_figures(drawn.iter(), directory)?;
+    Ok(drawn.into_iter().map(|figure| figure.name).collect())
 }
 
 /// Draws every figure in both forms, then writes them into `directory`/figures.

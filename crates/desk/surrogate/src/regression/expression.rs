@@ -51,7 +51,11 @@ impl Kernel {
         self.terms.iter().map(|term| term.variance).sum()
     }
 
-    pub(crate) fn check(&self, n_dimensions: usize) -> Result<(), SurrogateError> {
+    /// Whether it can be worked out over `n_dimensions` inputs.
+    ///
+    /// # Errors
+    /// [`SurrogateError::NotPositive`] or [`SurrogateError::Lengths`] for what is wrong with it.
+    pub fn check(&self, n_dimensions: usize) -> Result<(), SurrogateError> {
         let positive = |what, value: f64| {
             let is_good = value > 0.0 && value.is_finite();
             is_good.then_some(()).ok_or(SurrogateError::NotPositive { what, value })

@@ -98,55 +98,18 @@ impl Inducing {
             }
         })?;
         let n = problem.len();
-        let basis = problem.basis(&problem.inputs, n);
-        let q = basis.ncols();
-        let all = Points::new(kernel, &problem.inputs);
+        let q = problem.trend.n_coefficients(problem.n_dimensions());
         let variances: Vec<f64> =
             (0..n).map(|index| problem.variance(index, noise) / problem.counts[index]).collect();
-        // A is L⁻¹ K_uf Λ^(−1/2); right is Λ^(−1/2) [y, H].
-        let mut square = Mat::<f64>::identity(n_points, n_points);
-        let mut of_right = Mat::<f64>::zeros(n_points, 1 + q);
-        let mut right_square = Mat::<f64>::zeros(1 + q, 1 + q);
-        let mut unexplained = 0.0;
-        for first in (0..n).step_by(CHUNK) {
-            let width = CHUNK.min(n - first);
-            let mut a = covariances_with(&points, n_points, &all, first..first + width);
-            own.solve_lower(a.as_mut());
-            let right = Mat::from_fn(width, 1 + q, |row, column| {
-                let at = first + row;
-                let value = if column == 0 { problem.values[at] } else { basis[(at, column - 1)] };
-                value / variances[at].sqrt()
-            });
-            for (index, variance) in variances[first..first + width].iter().enumerate() {
-                let explained = a.col(index).squared_norm_l2();
-                unexplained += (kernel.variance() - explained) / variance;
-                let scale = variance.sqrt().recip();
-                a.col_mut(index).iter_mut().for_each(|value| *value *= scale);
-            }
-            square += &a * a.transpose();
-            of_right += &a * &right;
-            right_square += right.transpose() * &right;
-        }
+        let Sums { square, of_right, right_square, unexplained } =
+            Sums::new(problem, kernel, &points, &own, &variances);
         let inner = Panels::factor(n_points, n_threads, |rows, at, target| {
             target.iter_mut().zip(rows).for_each(|(value, row)| *value = square[(row, at)]);
         })?;
         // By Woodbury: Rᵀ (Q + Λ)⁻¹ R = RᵀΛ⁻¹R − (A R)ᵀ B⁻¹ (A R).
         let solved = inner.solve(&of_right);
         let inverse_square = &right_square - of_right.transpose() * &solved;
-        let of = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>| {
-            Mat::from_fn(rows.len(), columns.len(), |row, column| {
-                inverse_square[(rows.start + row, columns.start + column)]
-            })
-        };
-        let (coefficients, covariance) = match q {
-            0 => (Mat::zeros(0, 1), Mat::zeros(0, 0)),
-            _ => {
-                let factor = of(1..1 + q, 1..1 + q).llt(Side::Lower).ok()?;
-                let identity = Mat::<f64>::identity(q, q);
-                (factor.solve(of(1..1 + q, 0..1)), factor.solve(identity))
-            }
-        };
-        let fitted = dot(&coefficients, &of(1..1 + q, 0..1));
+        let (coefficients, covariance, fitted) = trend(&inverse_square)?;
         let mut weights = Mat::from_fn(n_points, 1 + q, |row, column| solved[(row, column)]);
         own.solve_upper(weights.as_mut());
         let of_basis = Mat::from_fn(n_points, q, |row, column| weights[(row, 1 + column)]);
@@ -173,6 +136,72 @@ impl Inducing {
             bound,
             told,
         })
+    }
+}
+
+/// Of [y, H]ᵀ (Q + Λ)⁻¹ [y, H] the trend's coefficients, (Hᵀ (Q + Λ)⁻¹ H)⁻¹, and what the trend fits.
+fn trend(square: &Mat<f64>) -> Option<(Mat<f64>, Mat<f64>, f64)> {
+    let q = square.nrows() - 1;
+    if q == 0 {
+        return Some((Mat::zeros(0, 1), Mat::zeros(0, 0), 0.0));
+    }
+    let of_basis = Mat::from_fn(q, q, |row, column| square[(1 + row, 1 + column)]);
+    let with_values = Mat::from_fn(q, 1, |row, _| square[(1 + row, 0)]);
+    let factor = of_basis.llt(Side::Lower).ok()?;
+    let coefficients = factor.solve(&with_values);
+    let fitted = dot(&coefficients, &with_values);
+    Some((coefficients, factor.solve(Mat::<f64>::identity(q, q)), fitted))
+}
+
+/// Sums over all observations, with A = L⁻¹ K_uf Λ^(−1/2) and R = Λ^(−1/2) [y, H].
+struct Sums {
+    /// I + A Aᵀ.
+    square: Mat<f64>,
+    /// A R.
+    of_right: Mat<f64>,
+    /// Rᵀ R.
+    right_square: Mat<f64>,
+    /// Variance that the points leave, over that of the noise.
+    unexplained: f64,
+}
+
+impl Sums {
+    /// Of inducing `points` with the factor `own`, and observations of these `variances`.
+    fn new(
+        problem: &Problem,
+        kernel: &Kernel,
+        points: &Points,
+        own: &Panels,
+        variances: &[f64],
+    ) -> Self {
+        let (n, n_points) = (problem.len(), own.n());
+        let basis = problem.basis(&problem.inputs, n);
+        let q = basis.ncols();
+        let all = Points::new(kernel, &problem.inputs);
+        let mut square = Mat::<f64>::identity(n_points, n_points);
+        let mut of_right = Mat::<f64>::zeros(n_points, 1 + q);
+        let mut right_square = Mat::<f64>::zeros(1 + q, 1 + q);
+        let mut unexplained = 0.0;
+        for first in (0..n).step_by(CHUNK) {
+            let width = CHUNK.min(n - first);
+            let mut a = covariances_with(points, n_points, &all, first..first + width);
+            own.solve_lower(a.as_mut());
+            let right = Mat::from_fn(width, 1 + q, |row, column| {
+                let at = first + row;
+                let value = if column == 0 { problem.values[at] } else { basis[(at, column - 1)] };
+                value / variances[at].sqrt()
+            });
+            for (index, variance) in variances[first..first + width].iter().enumerate() {
+                let explained = a.col(index).squared_norm_l2();
+                unexplained += (kernel.variance() - explained) / variance;
+                let scale = variance.sqrt().recip();
+                a.col_mut(index).iter_mut().for_each(|value| *value *= scale);
+            }
+            square += &a * a.transpose();
+            of_right += &a * &right;
+            right_square += right.transpose() * &right;
+        }
+        Self { square, of_right, right_square, unexplained }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Marginal likelihood of a problem under hyperparameters, and its derivatives.
 //!
-//! Source: Rasmussen and Williams (2006), Eqs. 2.30, 5.8 and 5.9; trends, §2.7 with generalised least squares.
+//! Source: Rasmussen and Williams (2006), Eqs. 2.30, 5.8 and 5.9; trends, §2.7 with generalised least
+//! squares.
 
 use super::covariance::{CHUNK, Points, Room};
 use super::expression::Kernel;
@@ -105,7 +106,8 @@ impl Marginal {
         log.is_finite().then_some(found)
     }
 
-    /// Derivatives of the logarithm by the logarithms of the kernel's hyperparameters and the noise variances.
+    /// Derivatives of the logarithm by the logarithms of the kernel's hyperparameters and the noise
+    /// variances.
     ///
     /// A trend is at its own optimum for every set, so that its movement adds nothing.
     pub(crate) fn slopes(&self, problem: &Problem, kernel: &Kernel, noise: &[f64]) -> Vec<f64> {

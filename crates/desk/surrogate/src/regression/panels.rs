@@ -17,7 +17,7 @@ use std::ops::Range;
 /// Width of a block column (–).
 pub(crate) const BLOCK: usize = CHUNK;
 /// Height of what a thread takes at once (–).
-const STRIP: usize = 128;
+const STRIP: usize = 256;
 /// Matrices up to this size are not worth a second thread (–).
 const SMALL: usize = 384;
 
@@ -134,6 +134,11 @@ impl Panels {
             );
         }
         true
+    }
+
+    /// Rows (–).
+    pub(crate) fn n(&self) -> usize {
+        self.n
     }
 
     /// ln |K|.

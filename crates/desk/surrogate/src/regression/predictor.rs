@@ -2,7 +2,7 @@
 
 use super::covariance::{CHUNK, Points};
 use super::expression::Kernel;
-use super::threads::share;
+use super::threads::{number, share};
 use crate::vector::add_product;
 
 /// Points that a thread works out at once (–).
@@ -10,7 +10,7 @@ const BATCH: usize = 256;
 
 /// Mean curve in the user's units.
 #[derive(Clone, Debug)]
-pub(crate) struct Predictor {
+pub struct MeanCurve {
     /// Middle of the inputs, so that differences of large numbers keep their digits.
     pub(crate) centres: Vec<f64>,
     pub(crate) kernel: Kernel,
@@ -28,9 +28,11 @@ pub(crate) fn centred(inputs: &[f64], centres: &[f64]) -> Vec<Vec<f64>> {
     centres.iter().enumerate().map(column).collect()
 }
 
-impl Predictor {
-    /// Of points `inputs`, those of one together.
-    pub(crate) fn new(
+impl MeanCurve {
+    /// The trend of `coefficients`, a constant and slopes or nothing, plus Σ weight × covariance with the
+    /// points
+    /// `inputs`, those of one together.
+    pub fn new(
         kernel: Kernel,
         n_dimensions: usize,
         inputs: &[f64],
@@ -44,9 +46,9 @@ impl Predictor {
         Self { centres, kernel, points, weights, coefficients }
     }
 
-    /// Mean at each of `inputs`, those of one together.
-    pub(crate) fn means(&self, inputs: &[f64], n_threads: usize) -> Vec<f64> {
-        let n_dimensions = self.centres.len();
+    /// Mean at each of `inputs`, those of one together, on `n_threads`; 0 for as many as the machine has.
+    pub fn means(&self, inputs: &[f64], n_threads: usize) -> Vec<f64> {
+        let (n_dimensions, n_threads) = (self.centres.len(), number(n_threads));
         let mut means = vec![0.0; inputs.len() / n_dimensions];
         let tasks: Vec<_> =
             means.chunks_mut(BATCH).zip(inputs.chunks(BATCH * n_dimensions)).collect();

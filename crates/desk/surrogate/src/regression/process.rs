@@ -5,7 +5,7 @@ use super::expression::{Kernel, Parameters};
 use super::inducing::{Inducing, Sparse, covariances_with};
 use super::marginal::Marginal;
 use super::panels::Panels;
-use super::predictor::Predictor;
+use super::predictor::MeanCurve;
 use super::problem::{Collapsed, NoiseGroups, Problem, Trend};
 use super::search::{self, SearchSettings};
 use super::threads::{number, share};
@@ -73,7 +73,7 @@ pub struct Regression {
     pub(crate) problem: Problem,
     pub(crate) posterior: Posterior,
     pub(crate) n_threads: usize,
-    predictor: Predictor,
+    predictor: MeanCurve,
 }
 
 impl Regression {
@@ -97,7 +97,9 @@ impl Regression {
             return Err(SurrogateError::TooFew { n, needed });
         }
         problem.check_replicates(settings.noise == NoiseGroups::Known)?;
-        let found = search::hyperparameters(&problem, kernel, &settings.search);
+        // Periods are given in the user's units.
+        let scaled = kernel.in_units(&problem.scaling.scales, problem.scaling.scale);
+        let found = search::hyperparameters(&problem, &scaled, &settings.search);
         let (kernel, noise) = found.ok_or(SurrogateError::NotPositiveDefinite { n })?;
         Self::of_problem(problem, kernel, noise, settings)
     }
@@ -206,8 +208,8 @@ impl Regression {
         self.problem.n_dimensions()
     }
 
-    /// Points behind the mean curve, those of one together, and the weight of each: the mean is the trend plus
-    /// Σ weight × covariance (unit of the inputs; 1 over that of the values).
+    /// Points behind the mean curve, those of one together, and the weight of each: the mean is the trend
+    /// plus Σ weight × covariance (unit of the inputs; 1 over that of the values).
     pub fn weighted_points(&self) -> (Vec<f64>, &[f64]) {
         let inputs = match &self.posterior {
             Posterior::Exact(_) => &self.problem.inputs,
@@ -378,7 +380,7 @@ fn outside(input: usize, observed: &[f64], asked: &[f64]) -> Option<Outside> {
 }
 
 /// The mean curve in the user's units.
-fn predictor(problem: &Problem, kernel: &Kernel, posterior: &Posterior) -> Predictor {
+fn predictor(problem: &Problem, kernel: &Kernel, posterior: &Posterior) -> MeanCurve {
     let scaling = &problem.scaling;
     let (inputs, weights, coefficients) = match posterior {
         Posterior::Exact(found) => (&problem.inputs, &found.weights, &found.coefficients),
@@ -387,7 +389,7 @@ fn predictor(problem: &Problem, kernel: &Kernel, posterior: &Posterior) -> Predi
     let weights = weights.col(0).iter().map(|weight| weight / scaling.scale).collect();
     let scaled: Vec<f64> = coefficients.col(0).iter().copied().collect();
     let coefficients = scaling.coefficients(&scaled);
-    Predictor::new(
+    MeanCurve::new(
         kernel.clone(),
         problem.n_dimensions(),
         &scaling.rows(inputs),

@@ -3,7 +3,7 @@
 
 use super::expression::Kernel;
 use super::marginal::Marginal;
-use super::problem::Problem;
+use super::problem::{Problem, Trend};
 use crate::Shape;
 use crate::ascent::{End, Objective, climb, inside, place_of};
 use crate::sample::Normals;
@@ -13,6 +13,11 @@ use faer::{Mat, Side};
 const FEW: usize = 400;
 /// Steps of a start on few observations, and of the best on more (–).
 const STEPS: [u64; 2] = [60, 200];
+/// Least second derivative that is taken for one (–): along a flatter way a first step is as long as it
+/// allows.
+const LEAST_BEND: f64 = 1e-2;
+/// Searches at the end at most (–).
+const MOST_POLISHES: usize = 4;
 /// A step in the coordinates of the search along which curvature is measured (–).
 const STEP: f64 = 1e-3;
 
@@ -33,7 +38,7 @@ pub struct SearchSettings {
 
 impl Default for SearchSettings {
     fn default() -> Self {
-        Self { n_starts: 8, seed: 1, n_first: 1000, n_steps_on_all: 4, n_threads: 0 }
+        Self { n_starts: 16, seed: 1, n_first: 1000, n_steps_on_all: 3, n_threads: 0 }
     }
 }
 
@@ -70,7 +75,7 @@ fn bounds(problem: &Problem, kernel: &Kernel) -> (Vec<[f64; 2]>, Vec<f64>) {
     let spread = {
         let n = problem.len() as f64;
         let center = match problem.trend {
-            super::Trend::Zero => 0.0,
+            Trend::Zero => 0.0,
             _ => problem.values.iter().sum::<f64>() / n,
         };
         let squares = problem.values.iter().map(|value| (value - center).powi(2));
@@ -113,7 +118,7 @@ pub(crate) fn drawn(total: usize, n: usize, seed: u64) -> Vec<usize> {
 }
 
 /// The numbers below `total` in an order of `seed`.
-pub(crate) fn shuffled(total: usize, seed: u64) -> Vec<usize> {
+pub fn shuffled(total: usize, seed: u64) -> Vec<usize> {
     let mut normals = Normals::new(seed);
     let mut keyed: Vec<(f64, usize)> = (0..total).map(|index| (normals.next(), index)).collect();
     keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -154,28 +159,39 @@ pub(crate) fn hyperparameters(
     let mut place = ends.into_iter().next()?.1;
     if few.len() < n {
         let more = subset(settings.n_first);
+        let of_more = OfProblem { problem: &more, kernel, n_threads };
         let end = End { n_steps: STEPS[1], slope: if more.len() < n { 0.05 } else { 1e-5 } };
-        place = climb(&OfProblem { problem: &more, kernel, n_threads }, &bounds, &place, None, end)
-            .map_or(place, |best| best.1);
+        place = climb(&of_more, &bounds, &place, None, end).map_or(place, |best| best.1);
         if more.len() < n && settings.n_steps_on_all > 0 {
-            let turn = turn(
-                &OfProblem { problem: &more, kernel, n_threads },
-                &bounds,
-                &place,
-                n as f64 / more.len() as f64,
-            );
-            let end = End { n_steps: settings.n_steps_on_all, slope: 0.1 };
-            let on_all = climb(
-                &OfProblem { problem: problem, kernel, n_threads },
-                &bounds,
-                &place,
-                turn.as_ref(),
-                end,
-            );
+            let turn = turn(&of_more, &bounds, &place, n as f64 / more.len() as f64);
+            let end = End { n_steps: settings.n_steps_on_all, slope: 0.3 };
+            let of_all = OfProblem { problem, kernel, n_threads };
+            let on_all = climb(&of_all, &bounds, &place, turn.as_ref(), end);
             place = on_all.map_or(place, |best| best.1);
         }
     }
-    Some(OfProblem { problem, kernel, n_threads }.parameters(&inside(&place, &bounds).0))
+    let of_all = OfProblem { problem, kernel, n_threads };
+    if n <= settings.n_first {
+        place = polished(&of_all, &bounds, place);
+    }
+    Some(of_all.parameters(&inside(&place, &bounds).0))
+}
+
+/// The end of searches from `place` in coordinates that bend alike: along a ridge steps in others come to
+/// rest too early.
+fn polished(of: &OfProblem<'_>, bounds: &[[f64; 2]], mut place: Vec<f64>) -> Vec<f64> {
+    let end = End { n_steps: STEPS[0], slope: 1e-5 };
+    let mut highest = f64::NEG_INFINITY;
+    for _ in 0..MOST_POLISHES {
+        let Some(turn) = turn(of, bounds, &place, 1.0) else { break };
+        let Some((value, better)) = climb(of, bounds, &place, Some(&turn), end) else { break };
+        let gain = value - highest;
+        (highest, place) = (value, better);
+        if gain < 1e-6 {
+            break;
+        }
+    }
+    place
 }
 
 /// Coordinates in which the likelihood of `ratio` times as many observations bends alike along all: with the
@@ -202,7 +218,6 @@ fn turn(fewer: &OfProblem<'_>, bounds: &[[f64; 2]], place: &[f64], ratio: f64) -
     let bend = 0.5 * (&bend + bend.transpose());
     let found = bend.self_adjoint_eigen(Side::Lower).ok()?;
     let (values, vectors) = (found.S(), found.U());
-    let least = 1.0;
-    let scale = |column: usize| (ratio * values[column].abs().max(least)).sqrt().recip();
+    let scale = |column: usize| (ratio * values[column].abs().max(LEAST_BEND)).sqrt().recip();
     Some(Mat::from_fn(n, n, |row, column| vectors[(row, column)] * scale(column)))
 }

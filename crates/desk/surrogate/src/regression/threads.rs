@@ -1,4 +1,5 @@
-//! Work that is shared out to threads, one task after another: which thread does a task changes nothing in it.
+//! Work that is shared out to threads, one task after another: which thread does a task changes nothing in
+//! it.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -19,6 +19,8 @@ pub(crate) mod output;
 pub(crate) mod report;
 pub(crate) mod run;
 mod stop;
+#[cfg(feature = "design")]
+pub(crate) mod surrogate;
 mod sweep_table;
 #[cfg(feature = "design")]
 pub(crate) mod synthesize;

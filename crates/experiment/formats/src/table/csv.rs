@@ -13,6 +13,17 @@ use std::path::Path;
 /// # Errors
 /// [`FileError`].
 pub(super) fn open(path: &Path) -> Result<(Head, TextRows), FileError> {
+    let (columns, rows) = columns(path)?;
+    let refusal = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
+    let time = find_time(&columns).map_err(|(problem, fix)| refusal(problem, &fix))?;
+    Ok((Head { description: String::new(), columns, time }, rows))
+}
+
+/// Names and units of the CSV at `path`, and its rows.
+///
+/// # Errors
+/// [`FileError`].
+pub(super) fn columns(path: &Path) -> Result<(Vec<Column>, TextRows), FileError> {
     let refusal = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
     let mut rows = TextRows::open(path)?;
     let (names, separator) = loop {
@@ -52,8 +63,7 @@ pub(super) fn open(path: &Path) -> Result<(Head, TextRows), FileError> {
             rows.keep_line();
         }
     }
-    let time = find_time(&columns).map_err(|(problem, fix)| refusal(problem, &fix))?;
-    Ok((Head { description: String::new(), columns, time }, rows))
+    Ok((columns, rows))
 }
 
 /// What stands between the values of `line`.

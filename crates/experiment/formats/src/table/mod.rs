@@ -7,9 +7,11 @@
 pub(crate) mod csv;
 pub(crate) mod head;
 pub(crate) mod names;
+mod samples;
 pub(crate) mod text;
 
 pub use head::Column;
+pub use samples::Samples;
 
 use crate::{FileError, openfast_output};
 use head::{Head, WHAT};

@@ -9,6 +9,7 @@ mod profiles;
 mod rotors;
 mod sheet;
 mod slices;
+pub(crate) mod surrogate;
 pub(crate) mod sweep;
 pub(crate) mod synchronisation;
 

@@ -1,0 +1,14 @@
+//! Surrogates from tables: trained, asked, validated and shown.
+
+mod cuts;
+mod kernel_text;
+mod predict;
+mod stored;
+mod train;
+mod validate;
+
+pub use cuts::{Cut, cuts, draw_surrogate};
+pub use kernel_text::KernelText;
+pub use predict::{PredictQuestion, Predicted, predict};
+pub use train::{TrainQuestion, Trained, train};
+pub use validate::{Validated, validate};
