@@ -1,5 +1,6 @@
 //! Results of all tasks that are done, a row each: factors, seeds, numbers.
 
+use crate::column::{Column, Values};
 use crate::error::CampaignError;
 use crate::numbers::{is_like, numbers};
 use crate::table::{Meta, Table, parsed};
@@ -23,23 +24,6 @@ pub struct Collected {
     pub n_columns: usize,
     /// Tasks that are not done (–).
     pub n_missing: i64,
-}
-
-/// Values of a column, one a row.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Values {
-    Whole(Vec<Option<i64>>),
-    Number(Vec<Option<f64>>),
-    Text(Vec<Option<String>>),
-}
-
-/// A column of results.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Column {
-    pub(crate) name: String,
-    /// Unit of a number; empty of what has none.
-    pub(crate) unit: String,
-    pub(crate) values: Values,
 }
 
 /// Writes the results of the campaign in `folder` into `path`, which ends with `.csv` or `.parquet`.

@@ -16,6 +16,7 @@
 //! a task is failed.
 
 mod collect;
+mod column;
 mod error;
 mod export;
 mod make;

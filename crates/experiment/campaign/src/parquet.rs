@@ -1,6 +1,6 @@
 //! Results as Parquet: one row group, a column each, units as the file's metadata `units` (JSON).
 
-use crate::collect::{Column, Values};
+use crate::column::{Column, Values};
 use ::parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use ::parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use ::parquet::errors::Result;

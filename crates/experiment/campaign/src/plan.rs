@@ -4,7 +4,7 @@ use crate::error::CampaignError;
 use crate::table::{Meta, Table, path_in};
 use crate::task::{self, Task, VERSION};
 use formats::atomic;
-use formats::case::{CampaignFile, Keep, read_campaign};
+use formats::case::{CampaignFile, Keep};
 use formats::{machine, records, shipped};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -71,7 +71,7 @@ pub struct Plan {
 /// [`CampaignError`].
 pub fn plan(path: &Path, folder: Option<&Path>) -> Result<Plan, CampaignError> {
     study::outputs::announce();
-    let mut file = read_campaign(path)?;
+    let mut file = shipped::read_campaign(path)?;
     if file.case.is_file() {
         file.case = std::path::absolute(&file.case).unwrap_or(file.case);
     }

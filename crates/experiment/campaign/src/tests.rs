@@ -1,7 +1,7 @@
 //! Campaigns of short runs in prescribed wind: planned, killed, gone on with, collected.
 
 use super::*;
-use crate::collect::Values;
+use crate::column::Values;
 use crate::table::Table;
 use basis::records::{Cost as Spent, Summary};
 use std::fs;
@@ -296,7 +296,7 @@ fn a_task_that_cannot_be_made_is_failed_and_the_others_are_made() {
 fn parquet_holds_what_was_collected() {
     use ::parquet::file::reader::{FileReader, SerializedFileReader};
     use ::parquet::record::Field;
-    let column = |name: &str, unit: &str, values| collect::Column {
+    let column = |name: &str, unit: &str, values| column::Column {
         name: name.to_owned(),
         unit: unit.to_owned(),
         values,

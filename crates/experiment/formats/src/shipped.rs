@@ -1,7 +1,7 @@
 //! The cases that come with the program: each can be run by its name, anywhere.
 
 use crate::FileError;
-use crate::case::{self, CaseError, CaseFile, CaseFiles, PrecursorFile};
+use crate::case::{self, CampaignFile, CaseError, CaseFile, CaseFiles, PrecursorFile};
 use farm::case::Case;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -235,6 +235,14 @@ pub fn read_all(path: &Path, overrides: &[String]) -> Result<CaseFiles, CaseErro
         Some(shipped) => case::of_text(path, shipped.text(), overrides),
         None => case::read_all(path, overrides).map_err(with_advice),
     }
+}
+
+/// Reads the file of a campaign at `path`, whose case may be a shipped one.
+///
+/// # Errors
+/// Those of [`case::read_campaign`].
+pub fn read_campaign(path: &Path) -> Result<CampaignFile, CaseError> {
+    case::read_campaign(path, &|name| find(name).map(ShippedCase::text))
 }
 
 /// `error`, and what to do where it is of a file that is not there.

@@ -12,7 +12,6 @@ use super::keys::CAMPAIGN;
 use super::section::Section;
 use super::sources::Sources;
 use crate::atomic;
-use crate::shipped;
 use basis::records::SweptValue;
 use levels::Levels;
 use places::Places;
@@ -97,18 +96,21 @@ pub struct CampaignFile {
     pub path: PathBuf,
 }
 
-/// Reads the file of a campaign at `path`.
+/// Gives the text of the case of this name that comes with the program; none where none does.
+pub type Shipped<'a> = &'a dyn Fn(&str) -> Option<String>;
+
+/// Reads the file of a campaign at `path`, whose case may be one of those that `shipped` gives.
 ///
 /// # Errors
 /// [`CaseError::File`] when it, its case or its table cannot be read, [`CaseError::Invalid`] with everything
 /// that is wrong in it.
-pub fn read_campaign(path: &Path) -> Result<CampaignFile, CaseError> {
+pub fn read_campaign(path: &Path, shipped: Shipped) -> Result<CampaignFile, CaseError> {
     let text = atomic::read_text(path, "the file of a campaign")?;
     let name = path.display().to_string();
     let (sources, document) = document::parse(&name, &text, &[]);
     let invalid = |problems| CaseError::Invalid { name: name.clone(), problems };
     let entries = document.map_err(invalid)?;
-    let (file, problems) = read_entries(path, &text, &entries, &sources)?;
+    let (file, problems) = read_entries(path, &text, (&entries, shipped), &sources)?;
     if problems.is_empty() { Ok(file) } else { Err(invalid(problems)) }
 }
 
@@ -119,15 +121,15 @@ pub fn read_campaign(path: &Path) -> Result<CampaignFile, CaseError> {
 fn read_entries(
     path: &Path,
     text: &str,
-    entries: &[Entry],
+    (entries, shipped): (&[Entry], Shipped),
     sources: &Sources,
 ) -> Result<(CampaignFile, Vec<Problem>), CaseError> {
     let findings = Findings::new(entries, sources);
     let end = text.len().saturating_sub(1)..text.len();
     let root = Section::open(&CAMPAIGN, entries, end.clone(), String::new(), &findings);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let case = case_of(&root.text("case"), folder);
-    let places = if root.has("case") { Places::read(&case)? } else { Places::none() };
+    let case = case_of(&root.text("case"), folder, shipped);
+    let places = if root.has("case") { Places::read(&case, shipped)? } else { Places::none() };
     if places.sweeps {
         let message = "the case has a [sweep] of its own".to_owned();
         let fix = "leave it out of the case, and give its keys under [factors]";
@@ -166,9 +168,9 @@ fn read_entries(
 }
 
 /// The case that a campaign in `folder` calls `name`: a file beside it, or one that comes with the program.
-fn case_of(name: &str, folder: &Path) -> PathBuf {
+fn case_of(name: &str, folder: &Path, shipped: Shipped) -> PathBuf {
     let beside = folder.join(name);
-    if !beside.is_file() && shipped::find(name).is_some() { PathBuf::from(name) } else { beside }
+    if !beside.is_file() && shipped(name).is_some() { PathBuf::from(name) } else { beside }
 }
 
 /// Texts in the list of `key`.

@@ -27,7 +27,9 @@ mod values;
 mod wind;
 mod write;
 
-pub use campaign::{CampaignFile, Exclusion, Factor, Keep, Level, LevelSetting, read_campaign};
+pub use campaign::{
+    CampaignFile, Exclusion, Factor, Keep, Level, LevelSetting, Shipped, read_campaign,
+};
 pub use difference::{Difference, differences};
 pub use error::{CaseError, Problem, ProblemKind};
 pub use objection::objection;

@@ -1,10 +1,10 @@
 //! Keys of controls, which stand for those of every run that takes them.
 
+use super::Shipped;
 use crate::atomic;
 use crate::case::document::{self, Entry, Value, find};
 use crate::case::error::CaseError;
 use crate::case::sweep;
-use crate::shipped;
 use std::path::Path;
 
 /// What a campaign must know of its case to tell where a key goes.
@@ -24,9 +24,10 @@ impl Places {
     ///
     /// # Errors
     /// [`CaseError`] for a file that cannot be read, or is no TOML.
-    pub(super) fn read(path: &Path) -> Result<Self, CaseError> {
-        let text = match shipped::instead_of(path) {
-            Some(shipped) => shipped.text(),
+    pub(super) fn read(path: &Path, shipped: Shipped) -> Result<Self, CaseError> {
+        let named = path.to_str().filter(|_| !path.is_file()).and_then(shipped);
+        let text = match named {
+            Some(text) => text,
             None => atomic::read_text(path, "the case of a campaign")?,
         };
         let name = path.display().to_string();

@@ -22,7 +22,7 @@ fn written(text: &str) -> TempDir {
 }
 
 fn read(text: &str) -> Result<CampaignFile, CaseError> {
-    read_campaign(&written(text).path().join("loads.toml"))
+    read_campaign(&written(text).path().join("loads.toml"), &|_| None)
 }
 
 fn names(factor: &Factor) -> Vec<String> {
@@ -72,12 +72,13 @@ fn rows_of_a_table_are_levels() {
     let folder = written("table = \"points.csv\"");
     let path = folder.path().join("points.csv");
     fs::write(&path, "wind.speed, run.helix.control.T1.sense\n8,cw\n# later\n9.5,ccw\n").unwrap();
-    let file = read_campaign(&folder.path().join("loads.toml")).unwrap();
+    let file = read_campaign(&folder.path().join("loads.toml"), &|_| None).unwrap();
     let texts: Vec<&str> =
         file.factors[0].levels.iter().flat_map(|l| &l.settings).map(|s| s.text.as_str()).collect();
     assert_eq!(texts, ["8", "\"cw\"", "9.5", "\"ccw\""]);
     fs::write(&path, "wind.speed,wind.seed\n8,1\n9\n").unwrap();
-    let error = read_campaign(&folder.path().join("loads.toml")).unwrap_err().to_string();
+    let error =
+        read_campaign(&folder.path().join("loads.toml"), &|_| None).unwrap_err().to_string();
     assert!(error.contains("points.csv") && error.contains("line 3: 1 values"), "{error}");
 }
 

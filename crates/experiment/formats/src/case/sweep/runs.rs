@@ -132,8 +132,8 @@ fn name_of(table: &[Entry]) -> String {
     }
 }
 
-/// Whether the run of `table`, called `base`, takes the key at `path`: its control of the turbine is of a kind
-/// that has the key.
+/// Whether the run of `table`, called `base`, takes the key at `path`: its control of the turbine is of a
+/// kind that has the key.
 pub(in crate::case) fn takes(table: &[Entry], base: &str, path: &[&str]) -> bool {
     let path = match path {
         ["run", name, rest @ ..] if *name == base => rest,
