@@ -81,14 +81,19 @@ fn a_table_becomes_a_surrogate_that_its_file_holds() {
     assert_eq!(cuts(&held.model, &at("model.json")).expect("cuts").len(), 2);
 }
 
+/// `report` as it is drawn, without the breaks of its lines.
+fn drawn(report: miette::Report) -> String {
+    let text = format!("{report:?}").replace('│', " ");
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 #[test]
 fn what_is_wrong_is_named_with_file_column_and_fix() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     table(&at("loads.csv"), 60);
     let told = |question: &TrainQuestion| {
-        let report = miette::Report::new(train(question).expect_err("refused"));
-        format!("{report:?}")
+        drawn(miette::Report::new(train(question).expect_err("refused")))
     };
     let mut still = question(at("loads.csv"));
     still.inputs.push("still".to_owned());
@@ -109,6 +114,6 @@ fn what_is_wrong_is_named_with_file_column_and_fix() {
     let warnings = predict(&asked).expect("predictions").warnings;
     assert!(warnings.iter().any(|text| text.contains("of wind") && text.contains("30 in line 3")));
     fs::write(at("model.json"), "{}").expect("written");
-    let report = miette::Report::new(predict(&asked).expect_err("no model"));
-    assert!(format!("{report:?}").contains("wakemix surrogate train"));
+    let text = drawn(miette::Report::new(predict(&asked).expect_err("no model")));
+    assert!(text.contains("wakemix surrogate train"), "{text}");
 }
