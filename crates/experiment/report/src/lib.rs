@@ -159,8 +159,8 @@ pub fn write_precursor(
     Ok(path)
 }
 
-/// Writes `report.html` and `figures/*.svg`, `figures/*.png` of the answer of `records` into `directory`; gives
-/// the page's path.
+/// Writes `report.html` and `figures/*.svg`, `figures/*.png` of the answer of `records` into `directory`;
+/// gives the page's path.
 ///
 /// # Errors
 /// [`ReportError::Write`] when the disk says no.

@@ -119,8 +119,8 @@ impl Watch {
 
 #[cfg(test)]
 impl Watch {
-    /// One that looks through a sensor called `lidar` at the wake of a rotor of 63 m radius every 0.1 s, about
-    /// a `centre` that is known or found.
+    /// One that looks through a sensor called `lidar` at the wake of a rotor of 63 m radius every 0.1 s,
+    /// about a `centre` that is known or found.
     pub(crate) fn for_tests(frame: HelixFrame, centre: Option<[f64; 2]>) -> Self {
         let settings = HubVortexSettings::robust(frame, 63.0, 0.1);
         let settings = HubVortexSettings { centre, ..settings };

@@ -44,7 +44,7 @@ pub enum NoiseGroups {
 /// Observations at different inputs, in the user's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collapsed {
-    /// Inputs, those of one observation together.
+    /// Inputs, those of one observation together (units of the inputs).
     pub inputs: Vec<f64>,
     /// Mean of the replicates of each (unit of the values).
     pub values: Vec<f64>,
