@@ -60,6 +60,7 @@ fn an_analysis_of_ones_own_answers_beside_the_others() {
         "gains",
         "lock",
         "meandering",
+        "hub-vortex",
         "energy",
     ];
     assert_eq!(names, expected);

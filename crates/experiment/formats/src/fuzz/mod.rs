@@ -9,6 +9,7 @@
 mod cases;
 mod damage;
 mod decks;
+mod desk;
 pub(crate) mod memory;
 mod nesting;
 pub(crate) mod numbers;
