@@ -369,6 +369,15 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "control-design",
         recorded: include_str!("../recorded/synthesis.toml"),
     },
+    Validation {
+        name: "tuning",
+        about: "tuning of helix amplitude and frequency on a closed form: power lost, coverage of intervals, runs that a grid takes",
+        cost: Cost::Minutes(5),
+        run: crate::tuning::tuning_of_an_array,
+        pictures: None,
+        page: "tuning",
+        recorded: include_str!("../recorded/tuning.toml"),
+    },
 ];
 
 /// Comparisons that `cargo test`, a script or a study repeats; their records are kept by hand.

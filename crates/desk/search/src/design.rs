@@ -1,9 +1,11 @@
 //! The first points, before anything is known.
 
+use crate::SearchError;
 use crate::draws::Draws;
 use crate::space::{Space, distinct};
-use crate::{SearchError, maximise::FEWEST};
 
+/// Points of a first design at least (–): fewer tell no length.
+const FEWEST: usize = 2;
 /// Latin hypercubes among which the best is chosen (–).
 const N_TRIED: usize = 400;
 

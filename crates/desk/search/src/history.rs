@@ -67,10 +67,10 @@ impl History {
 
     /// The sum of the outputs, each times its of `weights`.
     ///
-    /// Where all evaluations have the same two or more blocks and `share_blocks`, block b of each met the same
-    /// wind, and their errors are taken apart: y = run + block + rest, a two-way layout. What the blocks share
-    /// moves all runs alike: it says nothing against one point or another, but the level is that uncertain.
-    /// Searle, Casella and McCulloch, "Variance components", 1992, §4.3.
+    /// Where all evaluations have the same two or more blocks and `share_blocks`, block b of each met the
+    /// same wind, and their errors are taken apart: y = run + block + rest, a two-way layout. What the
+    /// blocks share moves all runs alike: it says nothing against one point or another, but the level is
+    /// that uncertain. Searle, Casella and McCulloch, "Variance components", 1992, §4.3.
     pub(crate) fn observed(&self, weights: &[f64], share_blocks: bool) -> Observed {
         let rows: Vec<Vec<f64>> = self.evaluations.iter().map(|one| one.sum(weights)).collect();
         let mean = |row: &Vec<f64>| row.iter().sum::<f64>() / row.len() as f64;

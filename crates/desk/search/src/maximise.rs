@@ -3,9 +3,6 @@
 use crate::acquisition::{Chosen, choose};
 use crate::{Acquisition, Design, Evaluation, History, Optimum, SearchError, Shape, Space, Sum};
 
-/// Points of a first design at least (–): fewer tell no length.
-pub(crate) const FEWEST: usize = 2;
-
 /// How a search is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -100,8 +97,8 @@ struct Known {
     next: Option<(Vec<Vec<f64>>, f64)>,
 }
 
-/// Maximises the sum of what `evaluate` gives: points with what each gave, those of the proposal, or others in
-/// their place, such as those of an earlier search that goes on.
+/// Maximises the sum of what `evaluate` gives: points with what each gave, those of the proposal, or others
+/// in their place, such as those of an earlier search that goes on.
 ///
 /// The same settings and evaluations give the same proposals.
 ///

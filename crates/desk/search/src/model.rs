@@ -59,7 +59,8 @@ pub(crate) struct Process {
     pub(crate) noise: f64,
 }
 
-/// Logarithms of lengths, of the signal's variance and of the noise's, with mean and deviation of their prior.
+/// Logarithms of lengths, of the signal's variance and of the noise's, with mean and deviation of their
+/// prior.
 struct Prior {
     means: Vec<f64>,
     deviations: Vec<f64>,

@@ -16,8 +16,8 @@ pub(crate) fn probability(z: f64) -> f64 {
 }
 
 /// Mean of what a normal number of `mean` and `deviation` exceeds `least` by, zero where it does not (same
-/// unit). Jones et al., "Efficient global optimization of expensive black-box functions", J. Global Optim. 13,
-/// 1998, Eq. 15.
+/// unit). Jones et al., "Efficient global optimization of expensive black-box functions", J. Global Optim.
+/// 13, 1998, Eq. 15.
 pub(crate) fn excess(mean: f64, deviation: f64, least: f64) -> f64 {
     let above = mean - least;
     if deviation <= 0.0 {

@@ -18,8 +18,8 @@ pub struct Axis {
     pub to: f64,
     /// Values are whole multiples of it above `from` (its unit); any value where absent.
     pub step: Option<f64>,
-    /// Half width of what is left out around zero (its unit): of a variable that counts one way above zero and
-    /// the other way below it.
+    /// Half width of what is left out around zero (its unit): of a variable that counts one way above zero
+    /// and the other way below it.
     pub gap: f64,
 }
 

@@ -5,8 +5,8 @@ use crate::normal::{excess, probability, quantile};
 use crate::*;
 use proptest::prelude::*;
 
-/// Power of two turbines over Strouhal number and amplitude, shares of the array's: what the first loses grows
-/// with the square of the amplitude, what the second gains has its summit at 0.25 and saturates.
+/// Power of two turbines over Strouhal number and amplitude, shares of the array's: what the first loses
+/// grows with the square of the amplitude, what the second gains has its summit at 0.25 and saturates.
 fn array([strouhal, amplitude]: [f64; 2]) -> [f64; 2] {
     let loss = -0.0022 * amplitude * amplitude;
     let peak = (-0.5 * ((strouhal / 0.25).ln() / 0.55).powi(2)).exp();

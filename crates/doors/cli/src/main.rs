@@ -63,6 +63,16 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
+    /// Tune a controller of a case from few simulations: Gaussian processes choose the runs
+    #[cfg(feature = "tune")]
+    Tune(commands::tune::TuneArguments),
+    /// Not in this build
+    #[cfg(not(feature = "tune"))]
+    #[command(hide = true)]
+    Tune {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        words: Vec<String>,
+    },
     /// Repeat recorded validations and print measured against expected
     #[cfg(feature = "validate")]
     Validate(commands::validate::ValidateArguments),
@@ -128,6 +138,10 @@ fn run(command: Command) -> ExitCode {
         Command::Synthesize(arguments) => commands::synthesize::run(&arguments),
         #[cfg(not(feature = "design"))]
         Command::Identify { .. } => Err(left_out("control design")),
+        #[cfg(feature = "tune")]
+        Command::Tune(arguments) => return commands::tune::run(&arguments),
+        #[cfg(not(feature = "tune"))]
+        Command::Tune { .. } => Err(left_out("tuning")),
         #[cfg(feature = "validate")]
         Command::Validate(arguments) => return commands::validate::run(&arguments),
         #[cfg(not(feature = "validate"))]
@@ -148,7 +162,7 @@ fn run(command: Command) -> ExitCode {
 }
 
 /// Why `what` cannot be had here.
-#[cfg(not(all(feature = "design", feature = "validate")))]
+#[cfg(not(all(feature = "design", feature = "tune", feature = "validate")))]
 fn left_out(what: &str) -> miette::Report {
     miette::miette!(
         help = "build it with its default features, without --no-default-features",
