@@ -197,7 +197,8 @@ proptest! {
         from in 0.01_f64..1.0, length in 0.1_f64..3.0, share in 0.01_f64..0.9, value in -5.0_f64..5.0,
         is_mirrored: bool, has_step: bool,
     ) {
-        let plain = if is_mirrored { Axis::mirrored(from, from + length) } else { Axis::new(from, from + length) };
+        let to = from + length;
+        let plain = if is_mirrored { Axis::mirrored(from, to) } else { Axis::new(from, to) };
         let axis = Axis { step: has_step.then_some(share * length), ..plain };
         let snapped = axis.snap(value);
         prop_assert!(snapped.abs() >= axis.gap - 1e-9);

@@ -59,7 +59,10 @@ impl Tuned {
             })
         };
         let of_compromise = |one: &crate::Compromise| {
-            let setting = |(point, gain, load): &(Vec<f64>, Normal, Normal)| json!({ "point": named(point), "gain": normal(gain), "load_change": normal(load) });
+            let setting = |(point, gain, load): &(Vec<f64>, Normal, Normal)| {
+                let (gain, load) = (normal(gain), normal(load));
+                json!({ "point": named(point), "gain": gain, "load_change": load })
+            };
             json!({
                 "channel": one.channel,
                 "exponent": one.exponent,
