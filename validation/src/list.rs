@@ -1,5 +1,4 @@
-//! All validations, in the order in which they are listed; and comparisons that are recorded but made by
-//! other means.
+//! All validations, in the order in which they are listed.
 
 mod elsewhere;
 
@@ -380,6 +379,15 @@ pub const VALIDATIONS: &[Validation] = &[
         pictures: None,
         page: "gaussian-process",
         recorded: include_str!("../recorded/gaussian-process.toml"),
+    },
+    Validation {
+        name: "tuning",
+        about: "tuning of helix amplitude and frequency on a closed form: power lost, coverage of intervals, runs that a grid takes",
+        cost: Cost::Minutes(5),
+        run: crate::tuning::tuning_of_an_array,
+        pictures: None,
+        page: "tuning",
+        recorded: include_str!("../recorded/tuning.toml"),
     },
 ];
 

@@ -78,6 +78,16 @@ enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         words: Vec<String>,
     },
+    /// Tune a controller of a case from few simulations: Gaussian processes choose the runs
+    #[cfg(feature = "tune")]
+    Tune(commands::tune::TuneArguments),
+    /// Not in this build
+    #[cfg(not(feature = "tune"))]
+    #[command(hide = true)]
+    Tune {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        words: Vec<String>,
+    },
     /// Repeat recorded validations and print measured against expected
     #[cfg(feature = "validate")]
     Validate(commands::validate::ValidateArguments),
@@ -149,6 +159,10 @@ fn run(command: Command) -> ExitCode {
         Command::Surrogate(command) => commands::surrogate::run(&command),
         #[cfg(not(feature = "design"))]
         Command::Identify { .. } => Err(left_out("control design and surrogates")),
+        #[cfg(feature = "tune")]
+        Command::Tune(arguments) => return commands::tune::run(&arguments),
+        #[cfg(not(feature = "tune"))]
+        Command::Tune { .. } => Err(left_out("tuning")),
         #[cfg(feature = "validate")]
         Command::Validate(arguments) => return commands::validate::run(&arguments),
         #[cfg(not(feature = "validate"))]
@@ -169,7 +183,7 @@ fn run(command: Command) -> ExitCode {
 }
 
 /// Why `what` cannot be had here.
-#[cfg(not(all(feature = "campaign", feature = "design", feature = "validate")))]
+#[cfg(not(all(feature = "campaign", feature = "design", feature = "tune", feature = "validate")))]
 fn left_out(what: &str) -> miette::Report {
     miette::miette!(
         help = "build it with its default features, without --no-default-features",

@@ -16,10 +16,11 @@ pub use answer::{AnswerRecords, AnswerTable};
 use basis::records::{Filaments, Plane, Series, Summary, SweepTable};
 pub use figures::surrogate::{SurrogateCut, SurrogateFigures, SurrogateMap};
 pub use figures::synchronisation::{
-    Along, CentreLine, CurveEnd, CurvePoint, DeficitFigure, DeficitLine, DeficitPanel,
-    DensityFigure, DensityRow, DiscFigure, DiscPanel, DiscPath, DiscPoint, OffsetFigure,
-    OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow, Signals, SliceFigure, SlicePanel, SliceRotor,
-    SpectrumFigure, SpectrumLine, Synchronisation, TrackFigure, TrackLine, TrackRow,
+    Along, CentreLine, CurveAt, CurveEnd, CurveFigure, CurvePanel, CurvePoint, DeficitFigure,
+    DeficitLine, DeficitPanel, DensityFigure, DensityRow, DiscFigure, DiscPanel, DiscPath,
+    DiscPoint, MapFigure, MapPanel, OffsetFigure, OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow,
+    Signals, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, Synchronisation,
+    TrackFigure, TrackLine, TrackRow,
 };
 pub use precursor::{CoherenceLine, DriftRow, HubWind, LevelRow, PrecursorRecords, TimeHeightMap};
 use std::fs::{self, File};

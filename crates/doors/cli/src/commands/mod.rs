@@ -25,6 +25,8 @@ mod sweep_table;
 #[cfg(feature = "design")]
 pub(crate) mod synthesize;
 pub(crate) mod table;
+#[cfg(feature = "tune")]
+pub(crate) mod tune;
 pub(crate) mod turbine;
 #[cfg(feature = "validate")]
 pub(crate) mod validate;

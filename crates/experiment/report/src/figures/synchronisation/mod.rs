@@ -3,9 +3,11 @@
 //! All of them draw plain data: whoever reads the records fits curves, takes spectra and finds centre lines
 //! first.
 
+mod curves;
 mod deficits;
 mod densities;
 mod discs;
+mod maps;
 mod marks;
 mod offsets;
 mod slices;
@@ -14,7 +16,9 @@ mod tracks;
 
 use crate::draw::Figure;
 use basis::records::{Plane, Statistic};
+pub use curves::{CurveAt, CurveFigure, CurvePanel};
 pub use discs::{DiscFigure, DiscPanel, DiscPath, DiscPoint};
+pub use maps::{MapFigure, MapPanel};
 
 /// What a study has to show of a turbine's phase synchronisation; what is empty is left out.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -263,6 +267,10 @@ pub struct Signals {
     pub lead: String,
     /// What is seen over a rotor's disc.
     pub discs: Vec<DiscFigure>,
+    /// Quantities over two others.
+    pub maps: Vec<MapFigure>,
+    /// Quantities over one other.
+    pub curves: Vec<CurveFigure>,
     /// Signals over time.
     pub tracks: Vec<TrackFigure>,
     /// Their densities over frequency.
@@ -360,6 +368,9 @@ pub struct DeficitLine {
 pub(crate) fn of_signals(signals: &Signals) -> Vec<Figure> {
     let densities = signals.densities.iter().filter_map(densities::densities);
     let discs = signals.discs.iter().filter_map(discs::discs);
+    let maps = signals.maps.iter().filter_map(maps::maps);
+    let curves = signals.curves.iter().filter_map(curves::curves);
+    let discs = discs.chain(maps).chain(curves);
     discs.chain(signals.tracks.iter().filter_map(tracks::tracks)).chain(densities).collect()
 }
 
