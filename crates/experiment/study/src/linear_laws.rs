@@ -1,5 +1,6 @@
 //! Linear control laws that a case names by their files.
 
+use basis::records::ControlSetting;
 use control::lidar_loop::MEAN_HUB_VORTEX;
 use control::{LawFiles, LinearLaw};
 use farm::case::Case;
@@ -8,13 +9,24 @@ use formats::linear_model::{LinearModel, Port, Role};
 use formats::records::{self, RunFolder};
 use lti::Recursion;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// What such a file holds, in words.
 const WHAT: &str = "a control law";
 /// How to have one.
 const FIX: &str = "name the controller that `wakemix synthesize` wrote from a model in samples, of tilt and yaw (deg) and the hub vortex (m)";
+/// Keys that decide what the hub vortex' place in the helix frame is.
+const FRAME: [&str; 8] = [
+    "sense",
+    "strouhal",
+    "phase_deg",
+    "azimuth_offset_deg",
+    "vortex_filter",
+    "vortex_interval",
+    "vortex_centre",
+    "lidar",
+];
 /// How names of the two components end, in the order of the loop.
 const ENDINGS: [[&str; 2]; 2] = [["tilt", "up"], ["yaw", "right"]];
 
@@ -27,8 +39,9 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
     for run in &mut case.runs {
         for (control, turbine) in run.control.iter_mut().zip(&case.turbines) {
             let Some(files) = control.kind().law_files(control) else { continue };
-            let reference =
-                files.reference_run.map(|run| mean_hub_vortex(&run, folder, &turbine.name));
+            let own = ControlSetting::all(control.values());
+            let mean = |run: String| mean_hub_vortex(&run, folder, (&turbine.name, &own));
+            let reference = files.reference_run.map(mean);
             let law = LinearLaw { reference: reference.transpose()?, ..law(files.law, folder)? };
             control.linear_law = Some(Arc::new(law));
         }
@@ -36,41 +49,61 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// SHA-256 of each file that a run of `case` names, by its name; of those that can be read.
+/// What decides the laws of a `case` to which they are [attached](attach): SHA-256 of each law's file by its
+/// name, of those that can be read, and the reference (m) of each run that is one by its folder. The run's own
+/// files may change, such as by making it again with the same result.
 pub(crate) fn digests(case: &Case, folder: &Path) -> BTreeMap<String, String> {
-    let controls = case.runs.iter().flat_map(|run| &run.control);
-    let files = controls.filter_map(|control| control.kind().law_files(control));
-    let names = files.flat_map(|LawFiles { law, reference_run }| {
-        let summary = reference_run.map(|run| RunFolder::new(folder, &run).summary_path());
-        [
-            Some((law.clone(), folder.join(law))),
-            summary.map(|path| (path.display().to_string(), path)),
-        ]
-    });
-    let digest =
-        |(name, path): (String, PathBuf)| Some((name, records::sha256_of_file(&path, WHAT).ok()?));
-    names.flatten().filter_map(digest).collect()
+    let mut digests = BTreeMap::new();
+    for control in case.runs.iter().flat_map(|run| &run.control) {
+        let Some(LawFiles { law, reference_run }) = control.kind().law_files(control) else {
+            continue;
+        };
+        if let Ok(sha256) = records::sha256_of_file(&folder.join(&law), WHAT) {
+            digests.insert(law, sha256);
+        }
+        let reference = control.linear_law.as_ref().and_then(|law| law.reference);
+        if let (Some(run), Some([tilt, yaw])) = (reference_run, reference) {
+            digests.insert(run, format!("{tilt} m, {yaw} m"));
+        }
+    }
+    digests
 }
 
-/// Mean of the hub vortex of `turbine` in the helix frame (m), in the `run` that a case in `folder` names.
-fn mean_hub_vortex(run: &str, folder: &Path, turbine: &str) -> Result<[f64; 2], FileError> {
+/// Mean of the hub vortex of a turbine in the helix frame (m), in the `run` that a case in `folder` names, where
+/// it was followed as its `own` settings say.
+fn mean_hub_vortex(
+    run: &str,
+    folder: &Path,
+    (turbine, own): (&str, &[ControlSetting]),
+) -> Result<[f64; 2], FileError> {
     let there = RunFolder::new(folder, run);
     let summary = records::read_summary(&there)?;
     let of_turbine = summary.turbines.iter().find(|other| other.name == turbine);
+    let refused = |problem: String| {
+        let fix = format!(
+            "name the folder of a run in which {turbine} has `kind = \"probing\"` with the helix and the filter of this one"
+        );
+        FileError::content("a run of reference", &there.summary_path(), problem, fix)
+    };
+    let settings = of_turbine.and_then(|other| other.control.settings.as_deref());
+    for key in FRAME {
+        let of = |settings: &[ControlSetting]| {
+            settings.iter().find(|other| other.key == key).map(|other| other.value.clone())
+        };
+        let there = settings.and_then(of);
+        if let (Some(there), Some(own)) = (there, of(own))
+            && there != own
+        {
+            return Err(refused(format!("`{key}` of {turbine} was another there")));
+        }
+    }
     let findings = of_turbine.map_or(&[][..], |other| &other.control.findings);
     let means = MEAN_HUB_VORTEX.map(|name| {
         findings.iter().find(|finding| finding.name == name).and_then(|finding| finding.value)
     });
     match means {
         [Some(tilt), Some(yaw)] => Ok([tilt, yaw]),
-        _ => Err(FileError::content(
-            "a run of reference",
-            &there.summary_path(),
-            format!("it tells of no hub vortex of {turbine}"),
-            format!(
-                "name the folder of a run in which {turbine} has `kind = \"probing\"` or \"lidar-loop\""
-            ),
-        )),
+        _ => Err(refused(format!("it tells of no hub vortex of {turbine}"))),
     }
 }
 
@@ -124,7 +157,7 @@ fn places(ports: &[Port], unit: &str) -> Result<[usize; 2], String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use basis::records::{Finding, examples};
+    use basis::records::{Finding, SettingValue, examples};
 
     /// A gain from errors to commands with these names and units.
     fn gain(role: Role, inputs: [[&str; 2]; 2], outputs: [[&str; 2]; 2]) -> LinearModel {
@@ -176,11 +209,23 @@ mod tests {
         let unseen = examples::turbine("T2", 1e6);
         let summary = examples::summary("helix", vec![seen, unseen]);
         records::write_summary(&run, &summary).unwrap();
-        let of = |turbine| mean_hub_vortex("runs/open/helix", folder.path(), turbine);
+        let of = |turbine| mean_hub_vortex("runs/open/helix", folder.path(), (turbine, &[]));
         assert_eq!(of("T1").unwrap(), [1.5, 13.0]);
         let said = of("T2").unwrap_err().to_string();
         assert!(said.contains("summary.json") && said.contains("no hub vortex of T2"), "{said}");
-        assert!(mean_hub_vortex("runs/none", folder.path(), "T1").is_err());
+        assert!(mean_hub_vortex("runs/none", folder.path(), ("T1", &[])).is_err());
+        let mut summary = summary;
+        let setting = |strouhal: f64| ControlSetting {
+            key: "strouhal".to_owned(),
+            value: SettingValue::Number(strouhal),
+        };
+        summary.turbines[0].control.settings = Some(vec![setting(0.3)]);
+        records::write_summary(&run, &summary).unwrap();
+        let beside =
+            |own: f64| mean_hub_vortex("runs/open/helix", folder.path(), ("T1", &[setting(own)]));
+        assert_eq!(beside(0.3).unwrap(), [1.5, 13.0]);
+        let said = beside(0.25).unwrap_err().to_string();
+        assert!(said.contains("`strouhal` of T1 was another there"), "{said}");
     }
 
     #[test]

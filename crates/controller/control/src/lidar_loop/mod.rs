@@ -64,7 +64,8 @@ struct Limits {
 }
 
 impl Limits {
-    /// `wanted` (rad) brought within, `interval` (s) after it was `before` (rad); directions are kept.
+    /// `wanted` (rad) brought within what can be reached `interval` (s) after it was `before` (rad); directions
+    /// are kept.
     fn limited(&self, wanted: [f64; 2], before: [f64; 2], interval: f64) -> [f64; 2] {
         let wanted = shortened(wanted, self.size);
         let step = shortened([0, 1].map(|axis| wanted[axis] - before[axis]), self.rate * interval);
@@ -101,10 +102,12 @@ struct LoopState {
     samples: Samples,
     /// Whether the law steps; it begins at rest.
     closed: bool,
-    /// What the law asks for within the limits (rad), in the helix frame.
-    correction: [f64; 2],
-    /// Share of it that is given (–).
+    /// What the law asks for within what can be reached until it is asked again (rad), in the helix frame.
+    wanted: [f64; 2],
+    /// Share of it that is to be given (–).
     share: f64,
+    /// What is added (rad), in the helix frame.
+    correction: [f64; 2],
     /// Tilt and yaw that are pitched, in the helix frame (rad).
     commands: [f64; 2],
 }
@@ -115,8 +118,9 @@ impl LidarLoop {
             law: law.clone(),
             samples: Samples::NONE,
             closed: false,
-            correction: [0.0; 2],
+            wanted: [0.0; 2],
             share: 0.0,
+            correction: [0.0; 2],
             commands: [0.0; 2],
         };
         Self { settings, watch, law: (law, interval), state }
@@ -130,33 +134,34 @@ impl LidarLoop {
         let due = state.samples.due(time, *interval);
         let seen = watch.vortex().filter(|vortex| {
             vortex.settled
-                && vortex.confidence >= settings.least_trust
+                && vortex.trust >= settings.least_trust
                 && watch.blind() <= settings.blind_after
                 && time >= settings.starts[1]
         });
         state.closed = seen.is_some() && (state.closed || state.share == 0.0);
         let step = measurements.interval * settings.frame.rate / TAU;
-        let change = if state.closed { step } else { -step };
-        state.share = (state.share + change).clamp(0.0, 1.0);
+        // A law begins at rest: it need not fade in.
+        state.share = if state.closed { 1.0 } else { (state.share - step).max(0.0) };
         if let (true, true, Some(vortex)) = (due, state.closed, seen) {
             let errors = [0, 1].map(|axis| settings.reference[axis] - vortex.helix[axis]);
             let before = state.correction;
             let mut output = [0.0; 2];
             state.law.step_within(&errors, &mut output, |output| {
                 let wanted = [output[0], output[1]].map(f64::to_radians);
-                let limited = settings.limits.limited(wanted, before, *interval);
-                state.correction = limited;
-                // The law learns of what is pitched.
-                output.copy_from_slice(&limited.map(|angle| state.share * angle.to_degrees()));
+                state.wanted = settings.limits.limited(wanted, before, *interval);
+                output.copy_from_slice(&state.wanted.map(f64::to_degrees));
             });
         }
         if state.share == 0.0 && !state.closed {
             // What was known of the wake is of no use any more.
             state.law.clone_from(at_rest);
-            state.correction = [0.0; 2];
+            state.wanted = [0.0; 2];
         }
+        let target = state.wanted.map(|wanted| state.share * wanted);
+        let before = state.correction;
+        state.correction = settings.limits.limited(target, before, measurements.interval);
         let open = share(time, settings.starts[0], None, settings.frame.rate);
-        [0, 1].map(|axis| open * settings.helix[axis] + state.share * state.correction[axis])
+        [0, 1].map(|axis| open * settings.helix[axis] + state.correction[axis])
     }
 }
 

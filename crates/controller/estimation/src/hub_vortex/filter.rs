@@ -9,6 +9,9 @@ use basis::scan::Scan;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
+/// Sum of weights in the low-pass filter (–) below which it tells nothing.
+const LEAST_TOTAL: f64 = 1e-3;
+
 /// How a hub vortex is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HubVortexSettings {
@@ -102,6 +105,9 @@ pub struct HubVortex {
     /// How sure it is (–), from 0 to 1: points seen, excess over noise, and how many scans of those in the
     /// filter found it.
     pub confidence: f64,
+    /// How sure those of the scans in the filter are that found it (–): [`confidence`](Self::confidence) without
+    /// its gaps.
+    pub trust: f64,
     /// Whether it was not found in the latest scan.
     pub held: bool,
     /// Whether filter and mean are over scans alone, not their beginning.
@@ -117,6 +123,7 @@ impl HubVortex {
         helix: [0.0; 2],
         delay: 0.0,
         confidence: 0.0,
+        trust: 0.0,
         held: true,
         settled: false,
     };
@@ -241,7 +248,7 @@ impl HubVortexFilter {
     /// Filtered place, delay and confidence at `time` (s).
     fn filtered(&self, time: f64) -> HubVortex {
         let HubVortexState { samples, n_known, .. } = &self.state;
-        let (mut place, mut taken, mut total) = ([0.0; 2], 0.0, 0.0);
+        let (mut place, mut taken, mut total, mut found) = ([0.0; 2], 0.0, 0.0, 0.0);
         for (age, coefficient) in self.fir.coefficients().iter().enumerate().take(*n_known) {
             let sample = &samples[(n_known - 1 - age) % samples.len()];
             let weight = coefficient * sample.weight;
@@ -249,8 +256,10 @@ impl HubVortexFilter {
             place[1] += weight * sample.place[1];
             taken += weight * (time - sample.time);
             total += weight;
+            found += if sample.weight > 0.0 { *coefficient } else { 0.0 };
         }
-        if total <= 0.0 {
+        // Of a filter with coefficients below zero little may be left after a gap, to divide by.
+        if total < LEAST_TOTAL {
             let delay = self.state.last.delay + self.settings.interval;
             return HubVortex { delay, confidence: 0.0, ..self.state.last };
         }
@@ -258,6 +267,7 @@ impl HubVortexFilter {
             filtered: place.map(|sum| sum / total),
             delay: taken / total,
             confidence: total.min(1.0),
+            trust: (total / found).min(1.0),
             ..HubVortex::NONE
         }
     }

@@ -178,7 +178,8 @@ fn mean_range(stored: &StoredScans, index: usize) -> f64 {
     stored.ranges[points.clone()].iter().sum::<f64>() / points.len() as f64
 }
 
-/// Times `interval` (s) apart, from the first of `times` (s) on, each with the latest scan then.
+/// Samples `interval` (s) apart as a controller takes them: each at the first of `times` (s) that is not before
+/// it is due, with the scan of that time. Of scans that are further apart the latest is seen again when due.
 fn sampled(times: &[f64], interval: f64) -> Vec<(f64, usize)> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
     if interval.is_nan() || interval <= 0.0 {
@@ -188,10 +189,14 @@ fn sampled(times: &[f64], interval: f64) -> Vec<(f64, usize)> {
     let n = ((last - first) / interval + EARLY).floor() as usize;
     let sample = |number: usize| {
         let due = first + number as f64 * interval;
-        let latest = times.partition_point(|time| *time <= due + early).max(1) - 1;
-        // A scan that is seen when it is due is seen at its own time, to the last bit.
-        let time = if (times[latest] - due).abs() <= early { times[latest] } else { due };
-        (time, latest)
+        let next = times.partition_point(|time| *time < due - early);
+        // A control instant lies between two scans where they are no further apart than samples.
+        let at_next = |next: usize| times[next] - due < interval - early;
+        if next < times.len() && at_next(next) {
+            (times[next], next)
+        } else {
+            (due, next.max(1) - 1)
+        }
     };
     (0..=n).map(sample).collect()
 }
@@ -207,7 +212,13 @@ mod tests {
         assert!(own.iter().enumerate().all(|(k, (time, index))| *index == k && *time == times[k]));
         let indices = |interval| sampled(&times, interval).into_iter().map(|(_, index)| index);
         assert_eq!(indices(1.0).collect::<Vec<_>>(), [0, 10, 20, 30]);
-        // Between scans the one before is seen again.
+        // Due between control instants: the next one takes it.
+        let coarse: Vec<f64> = (0..20).map(|step| 0.2 * f64::from(step)).collect();
+        let taken: Vec<f64> = sampled(&coarse, 0.5).into_iter().map(|(time, _)| time).collect();
+        for (time, expected) in taken.iter().zip([0.0, 0.6, 1.0, 1.6, 2.0]) {
+            assert!((time - expected).abs() < 1e-12, "{taken:?}");
+        }
+        // Between scans that are further apart the one before is seen again.
         assert_eq!(indices(0.05).take(5).collect::<Vec<_>>(), [0, 0, 1, 1, 2]);
         assert!(sampled(&times, 0.0).is_empty() && sampled(&[], 0.1).is_empty());
     }
