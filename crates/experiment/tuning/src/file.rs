@@ -205,7 +205,7 @@ impl TuningFile {
         self.variables.iter().zip(point).flat_map(of).collect()
     }
 
-    /// `point` in words: "St = 0.25, amplitude = 4 °".
+    /// `point` in words: "St = 0.25, amplitude = 4°".
     pub fn words(&self, point: &[f64]) -> String {
         let one = |(variable, value): (&Variable, &f64)| {
             format!("{} = {}", variable.name, variable.value_with_unit(*value))
@@ -230,11 +230,15 @@ impl Variable {
         vec![format!("{key}={:?}", value.abs()), format!("{table}.sense=\"{sense}\"")]
     }
 
-    /// "4 °".
+    /// "4°", "600 s".
     pub(crate) fn value_with_unit(&self, value: f64) -> String {
         let digits = format!("{value:.4}");
         let short = digits.trim_end_matches('0').trim_end_matches('.');
-        if self.unit.is_empty() { short.to_owned() } else { format!("{short} {}", self.unit) }
+        match self.unit.as_str() {
+            "" => short.to_owned(),
+            "°" => format!("{short}°"),
+            unit => format!("{short} {unit}"),
+        }
     }
 
     /// Name with unit, as axes have it.

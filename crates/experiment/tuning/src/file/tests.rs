@@ -78,7 +78,7 @@ fn a_study_is_read_and_its_points_become_overrides() {
         file.overrides(&[-0.3, 1.5])[..2],
         ["run.helix.control.T1.strouhal=0.3", "run.helix.control.T1.sense=\"cw\""]
     );
-    assert_eq!(file.words(&[-0.3, 1.5]), "St = -0.3, amplitude = 1.5 °");
+    assert_eq!(file.words(&[-0.3, 1.5]), "St = -0.3, amplitude = 1.5°");
 }
 
 #[test]

@@ -111,13 +111,18 @@ fn drawn(
         panel.at([at(frame.x, share[0]), at(frame.y, share[1])])
     });
     let mut inner = vec![Shape::Field { area: frame.area, picture }];
+    let mut told: Vec<[f64; 2]> = Vec::new();
     for level in levels {
         for line in contours(panel, *level) {
             let middle = frame.point(line[line.len() / 2]);
             let is_long = line.len() > panel.places[0].len() / 3;
             let look = Look::line(Ink::OnField, 0.9).opacity(0.7);
             inner.push(polyline(frame.points(&line), look));
-            if is_long {
+            let is_clear = told.iter().all(|other| {
+                (other[0] - middle[0]).abs() > 36.0 || (other[1] - middle[1]).abs() > 16.0
+            });
+            if is_long && is_clear {
+                told.push(middle);
                 let setting = TextStyle::plain(Ink::OnField, SMALL).anchored(0.5).on_field();
                 inner.push(text([middle[0], middle[1] + 4.0], number(*level, decimals), setting));
             }
