@@ -19,8 +19,13 @@ use minijinja::{Environment, Value, context};
 use std::fmt::Write;
 
 const TEMPLATE: &str = include_str!("report.html");
-/// How every page begins.
-const HEAD: &str = include_str!("head.html");
+/// What several pages have: how they begin, warnings, facts, figures.
+const PARTS: [(&str, &str); 4] = [
+    ("head.html", include_str!("head.html")),
+    ("warnings.html", include_str!("warnings.html")),
+    ("facts.html", include_str!("facts.html")),
+    ("figures.html", include_str!("figures.html")),
+];
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 /// Zoom and pointer of D3, and its licences.
@@ -82,7 +87,9 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
 fn filled(name: &'static str, template: &'static str, own: Value) -> Result<String, ReportError> {
     let mut environment = Environment::new();
     // The name's ending turns escaping on.
-    environment.add_template("head.html", HEAD)?;
+    for (name, part) in PARTS {
+        environment.add_template(name, part)?;
+    }
     environment.add_template(name, template)?;
     let page = environment.get_template(name)?.render(context! {
         style => Value::from_safe_string(format!("{}{STYLE}", inks())),
