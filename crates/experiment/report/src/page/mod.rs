@@ -20,7 +20,7 @@ use std::fmt::Write;
 
 const TEMPLATE: &str = include_str!("report.html");
 /// What several pages have: how they begin, warnings, facts, figures.
-const PARTS: [(&str, &str); 4] = [
+const SHARED: [(&str, &str); 4] = [
     ("head.html", include_str!("head.html")),
     ("warnings.html", include_str!("warnings.html")),
     ("facts.html", include_str!("facts.html")),
@@ -87,7 +87,7 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
 fn filled(name: &'static str, template: &'static str, own: Value) -> Result<String, ReportError> {
     let mut environment = Environment::new();
     // The name's ending turns escaping on.
-    for (name, part) in PARTS {
+    for (name, part) in SHARED {
         environment.add_template(name, part)?;
     }
     environment.add_template(name, template)?;
