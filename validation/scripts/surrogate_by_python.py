@@ -50,11 +50,14 @@ def main():
                 subprocess.run([program, "-q", "surrogate", "predict", model, folder / "asked.csv", "-o", out, *more],
                                check=True)
                 stored = json.load(open(model))
+                values = stored["observations"]["values"]
+                middle = sum(values) / len(values)
+                spread = math.sqrt(sum((value - middle) ** 2 for value in values) / len(values))
                 rows = list(csv.reader(open(out)))[1:]
                 for row in rows:
                     numbers = [float(word) for word in row]
-                    worst = max(worst, abs(predict.mean(stored, numbers[:3]) - numbers[3]))
-            print(f"{kernel}, {trend}: largest difference so far {worst:.1e} MN-m")
+                    worst = max(worst, abs(predict.mean(stored, numbers[:3]) - numbers[3]) / spread)
+            print(f"{kernel}, {trend}: largest difference so far {worst:.1e} of the spread")
     return 1 if worst > 1e-10 else 0
 
 

@@ -9,6 +9,9 @@ pub enum SynthesisError {
     /// A system could not be put together or worked out.
     #[error(transparent)]
     Matrix(#[from] MatrixError),
+    /// A predictor for a model that is not stable.
+    #[error("a Smith predictor bridges the delay of stable models alone")]
+    UnstableModel(#[source] MatrixError),
     /// More signals are named than the system has.
     #[error("{what}: the system has {found}, {needed} are needed")]
     Signals {

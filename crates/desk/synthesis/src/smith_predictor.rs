@@ -18,7 +18,7 @@ pub fn smith_predictor(
 ) -> Result<StateSpace, SynthesisError> {
     let needed = lti::matrices::MatrixError::Time { needed: "discrete" };
     let interval = model.interval.ok_or(needed)?;
-    model.stable_or_error()?;
+    model.stable_or_error().map_err(SynthesisError::UnstableModel)?;
     let outputs = model.outputs();
     let direct = StateSpace::gain(Mat::identity(outputs, outputs), Some(interval));
     let delayed = sample_delay(outputs, delay, interval)?;

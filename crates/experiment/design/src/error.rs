@@ -74,6 +74,11 @@ pub enum DesignError {
     Report(#[from] ReportError),
 }
 
-fn fix_of(_: &SynthesisError) -> &'static str {
-    "change the weight that is named (--weights), or identify a model of lower order"
+fn fix_of(error: &SynthesisError) -> &'static str {
+    match error {
+        SynthesisError::UnstableModel(_) => {
+            "identify a model of another order, of samples further apart, or without its delay (`output_delay_s`)"
+        }
+        _ => "change the weight that is named (--weights), or identify a model of lower order",
+    }
 }
