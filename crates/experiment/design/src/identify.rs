@@ -64,7 +64,7 @@ pub struct Identified {
     /// Delay that these zeros stand for (s).
     pub delay_of_zeros: f64,
     /// Delay of each output (row) behind each input (column) by prewhitened correlation (s); none where
-    /// nothing is significant.
+    /// nothing is significant, or the record too short.
     pub delays: Vec<Vec<Option<f64>>>,
     /// Gain at rest, outputs by inputs.
     pub gain: Vec<Vec<f64>>,
@@ -173,8 +173,13 @@ fn delays(record: &Record, shift: usize) -> Result<Vec<Vec<Option<f64>>>, Identi
     let interval = record.interval();
     let most = ((LONGEST_DELAY / interval) as usize).min(record.n_samples() / 12);
     let of_pair = |input: usize, output: usize| {
-        let found = by_correlation(record, input, output, most)?;
-        Ok(found.samples.map(|samples| (samples + shift) as f64 * interval))
+        let found = match by_correlation(record, input, output, most) {
+            Ok(found) => found.samples,
+            // A record that is long enough for a model may be too short for this.
+            Err(IdentificationError::TooFewSamples { .. }) => None,
+            Err(error) => return Err(error),
+        };
+        Ok(found.map(|samples| (samples + shift) as f64 * interval))
     };
     let of_output = |output| {
         (0..record.inputs().len())

@@ -29,6 +29,9 @@ pub fn report_identified(
             port.name
         )
     });
+    let unstable = found.poles.iter().any(|pole| pole.re > 0.0).then(|| {
+        "the model is not stable: no predictor of its delay can be made; another order, or samples further apart, may give one that is".to_owned()
+    });
     let mut tables = vec![of_outputs(found)];
     if let Some([rest, there]) = &found.relative_gains {
         tables.push(relative("Relative gains at rest.", rest, model));
@@ -45,7 +48,7 @@ pub fn report_identified(
             "Simulated on what was kept aside, the model accounts for {}.",
             shares.join(" and ")
         ),
-        warnings: little.collect(),
+        warnings: little.chain(unstable).collect(),
         facts: facts_of_model(found),
         tables,
         signals: vec![of_identified(found)],
