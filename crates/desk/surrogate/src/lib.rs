@@ -41,7 +41,7 @@ pub use observations::Observations;
 pub use process::{GaussianProcess, LeaveOneOut, Prediction};
 pub use regression::{
     Collapsed, Kernel, MeanCurve, NoiseGroups, Outside, Panels, Parameters, Part, Regression,
-    RegressionSettings, SearchSettings, Sparse, Term, Trend, Validation, shuffled,
+    RegressionSettings, SearchSettings, Searched, Sparse, Term, Trend, Validation, shuffled,
 };
 
 use thiserror::Error;

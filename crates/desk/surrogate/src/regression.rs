@@ -5,6 +5,7 @@ mod cross;
 mod expression;
 mod inducing;
 mod marginal;
+mod outside;
 mod panels;
 mod predictor;
 mod problem;
@@ -15,11 +16,12 @@ mod threads;
 pub use cross::Validation;
 pub use expression::{Kernel, Parameters, Part, Term};
 pub use inducing::Sparse;
+pub use outside::Outside;
 pub use panels::Panels;
 pub use predictor::MeanCurve;
 pub use problem::{Collapsed, NoiseGroups, Trend};
-pub use process::{Outside, Regression, RegressionSettings};
-pub use search::{SearchSettings, shuffled};
+pub use process::{Regression, RegressionSettings};
+pub use search::{SearchSettings, Searched, shuffled};
 
 #[cfg(test)]
 mod tests;

@@ -8,6 +8,7 @@ use crate::Shape;
 use crate::ascent::{End, Objective, climb, inside, place_of};
 use crate::sample::Normals;
 use faer::{Mat, Side};
+use std::cell::Cell;
 
 /// Observations on which starts are compared, and on which the best is followed (–).
 const FEW: usize = 400;
@@ -30,7 +31,7 @@ pub struct SearchSettings {
     pub seed: u64,
     /// Observations that are searched on before all are taken (–).
     pub n_first: usize,
-    /// Steps on all observations, where they are more (–).
+    /// Steps on all observations, where they are more and the process is exact (–).
     pub n_steps_on_all: u64,
     /// Threads (–); 0 for as many as the machine has. The result does not depend on it.
     pub n_threads: usize,
@@ -42,11 +43,20 @@ impl Default for SearchSettings {
     }
 }
 
+/// How hyperparameters were found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Searched {
+    /// Observations of the largest set whose likelihood was worked out, replicates as one (–).
+    pub n_largest: usize,
+}
+
 /// Likelihood of a problem over the logarithms of hyperparameters.
 struct OfProblem<'a> {
     problem: &'a Problem,
     kernel: &'a Kernel,
     n_threads: usize,
+    /// Observations of the largest problem so far (–).
+    largest: &'a Cell<usize>,
 }
 
 impl OfProblem<'_> {
@@ -58,6 +68,7 @@ impl OfProblem<'_> {
 
 impl Objective for OfProblem<'_> {
     fn value_and_slopes(&self, parameters: &[f64]) -> Option<(f64, Vec<f64>)> {
+        self.largest.set(self.largest.get().max(self.problem.len()));
         let (kernel, noise) = self.parameters(parameters);
         let found = Marginal::new(self.problem, &kernel, &noise, self.n_threads, false)?;
         let slopes = found.slopes(self.problem, &kernel, &noise);
@@ -125,20 +136,52 @@ pub fn shuffled(total: usize, seed: u64) -> Vec<usize> {
     keyed.into_iter().map(|(_, index)| index).collect()
 }
 
-/// Kernel and noise of maximum marginal likelihood, scaled; none where no place has a likelihood.
+/// Kernel and noise of maximum marginal likelihood, scaled; none where no place has a likelihood. Where the
+/// process is not to be exact, `settings.n_first` observations say it all.
 pub(crate) fn hyperparameters(
     problem: &Problem,
     kernel: &Kernel,
     settings: &SearchSettings,
-) -> Option<(Kernel, Vec<f64>)> {
+    is_exact: bool,
+) -> Option<(Kernel, Vec<f64>, Searched)> {
     let (bounds, shares) = bounds(problem, kernel);
     let n_threads = super::threads::number(settings.n_threads);
     let n = problem.len();
+    let largest = Cell::new(0);
+    let of = |problem| OfProblem { problem, kernel, n_threads, largest: &largest };
     let subset = |most: usize| problem.subset(&drawn(n, most, settings.seed));
-    let few = subset(FEW.min(settings.n_first));
-    let mut normals = Normals::new(settings.seed);
+    let [few, more] = [FEW.min(settings.n_first), settings.n_first].map(subset);
     let whole = End { n_steps: STEPS[1], slope: 1e-5 };
     let quick = if few.len() < n { End { n_steps: STEPS[0], slope: 0.1 } } else { whole };
+    let mut place = best_start(&of(&few), &bounds, &shares, settings, quick)?;
+    if few.len() < n {
+        let of_more = of(&more);
+        let end = End { n_steps: STEPS[1], slope: if more.len() < n { 0.05 } else { 1e-5 } };
+        place = climb(&of_more, &bounds, &place, None, end).map_or(place, |best| best.1);
+        if more.len() < n && is_exact && settings.n_steps_on_all > 0 {
+            let turn = turn(&of_more, &bounds, &place, n as f64 / more.len() as f64);
+            let end = End { n_steps: settings.n_steps_on_all, slope: 0.3 };
+            let on_all = climb(&of(problem), &bounds, &place, turn.as_ref(), end);
+            place = on_all.map_or(place, |best| best.1);
+        }
+    }
+    let of_all = of(problem);
+    if n <= settings.n_first && is_exact {
+        place = polished(&of_all, &bounds, place);
+    }
+    let (kernel, noise) = of_all.parameters(&inside(&place, &bounds).0);
+    Some((kernel, noise, Searched { n_largest: largest.get() }))
+}
+
+/// The highest place that `settings.n_starts` searches find.
+fn best_start(
+    of: &OfProblem<'_>,
+    bounds: &[[f64; 2]],
+    shares: &[f64],
+    settings: &SearchSettings,
+    end: End,
+) -> Option<Vec<f64>> {
+    let mut normals = Normals::new(settings.seed);
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     for start in 0..settings.n_starts.max(1) {
         let place: Vec<f64> = match start {
@@ -147,34 +190,10 @@ pub(crate) fn hyperparameters(
             1 => shares.iter().map(|share| place_of(share + 0.15)).collect(),
             _ => shares.iter().map(|_| normals.next()).collect(),
         };
-        ends.extend(climb(
-            &OfProblem { problem: &few, kernel, n_threads },
-            &bounds,
-            &place,
-            None,
-            quick,
-        ));
+        ends.extend(climb(of, bounds, &place, None, end));
     }
     ends.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut place = ends.into_iter().next()?.1;
-    if few.len() < n {
-        let more = subset(settings.n_first);
-        let of_more = OfProblem { problem: &more, kernel, n_threads };
-        let end = End { n_steps: STEPS[1], slope: if more.len() < n { 0.05 } else { 1e-5 } };
-        place = climb(&of_more, &bounds, &place, None, end).map_or(place, |best| best.1);
-        if more.len() < n && settings.n_steps_on_all > 0 {
-            let turn = turn(&of_more, &bounds, &place, n as f64 / more.len() as f64);
-            let end = End { n_steps: settings.n_steps_on_all, slope: 0.3 };
-            let of_all = OfProblem { problem, kernel, n_threads };
-            let on_all = climb(&of_all, &bounds, &place, turn.as_ref(), end);
-            place = on_all.map_or(place, |best| best.1);
-        }
-    }
-    let of_all = OfProblem { problem, kernel, n_threads };
-    if n <= settings.n_first {
-        place = polished(&of_all, &bounds, place);
-    }
-    Some(of_all.parameters(&inside(&place, &bounds).0))
+    Some(ends.into_iter().next()?.1)
 }
 
 /// The end of searches from `place` in coordinates that bend alike: along a ridge steps in others come to
