@@ -10,6 +10,7 @@ mod panels;
 mod predictor;
 mod problem;
 mod process;
+mod replicates;
 mod search;
 mod threads;
 

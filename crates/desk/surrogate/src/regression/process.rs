@@ -80,8 +80,9 @@ impl Regression {
         let problem = Problem::new(observations, &settings.noise, kernel, settings.trend)?;
         let n = problem.len();
         let needed = 3.max(settings.trend.n_coefficients(problem.n_dimensions()) + 2);
-        if n < needed {
-            return Err(SurrogateError::TooFew { n, needed });
+        let n_inputs = problem.blocks().len();
+        if n_inputs < needed {
+            return Err(SurrogateError::TooFew { n: n_inputs, needed });
         }
         problem.check_replicates(settings.noise == NoiseGroups::Known)?;
         // Periods are given in the user's units.
@@ -202,6 +203,11 @@ impl Regression {
     /// Inputs (–).
     pub fn n_dimensions(&self) -> usize {
         self.problem.n_dimensions()
+    }
+
+    /// Different inputs that were observed (–).
+    pub fn n_inputs(&self) -> usize {
+        self.problem.blocks().len()
     }
 
     /// Points behind the mean curve, those of one together, and the weight of each: the mean is the trend

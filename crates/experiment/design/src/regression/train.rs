@@ -103,7 +103,7 @@ pub fn train(question: &TrainQuestion) -> Result<Trained, DesignError> {
         Ok(Validation::of(&pairs(&found, &table).map_err(of)?))
     };
     let [inputs, output] = [ports[..data.n_inputs].to_vec(), ports[data.n_inputs..].to_vec()];
-    let n_different = found.collapsed().values.len();
+    let n_different = found.n_inputs();
     let description = format!(
         "{} over {}, kernel {}, from {}",
         question.output,
@@ -123,7 +123,7 @@ pub fn train(question: &TrainQuestion) -> Result<Trained, DesignError> {
 
 fn warnings(found: &Regression, n_rows: usize) -> Vec<String> {
     let mut told = Vec::new();
-    let n_different = found.collapsed().values.len();
+    let n_different = found.n_inputs();
     if n_different < n_rows {
         told.push(format!(
             "{n_rows} rows have {n_different} different inputs: rows of the same inputs count as replicates, exactly"
