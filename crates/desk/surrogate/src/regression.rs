@@ -1,6 +1,7 @@
 //! Gaussian-process regression of many observations over many inputs.
 
 mod covariance;
+mod coverage;
 mod cross;
 mod expression;
 mod inducing;
@@ -14,6 +15,7 @@ mod replicates;
 mod search;
 mod threads;
 
+pub use coverage::Coverage;
 pub use cross::Validation;
 pub use expression::{Kernel, Parameters, Part, Term};
 pub use inducing::Sparse;

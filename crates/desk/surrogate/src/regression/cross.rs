@@ -1,14 +1,12 @@
 //! Predictions of what was left out.
 
+use super::coverage::{Coverage, NORMAL_97_5};
 use super::marginal::{Marginal, column};
 use super::process::{Posterior, Regression};
 use super::search::shuffled;
 use crate::{LeaveOneOut, SurrogateError};
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
-
-/// 97.5 % point of the normal distribution (–).
-const NORMAL_97_5: f64 = 1.959_963_984_540_054;
 
 /// Predictions beside what came true.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +19,8 @@ pub struct Validation {
     pub root_mean_square_percentage: f64,
     /// Share of the variance of the true values that is explained (–).
     pub explained: f64,
-    /// True values inside their 95 % band of observations (%).
-    pub covered_95: f64,
+    /// True values inside their 95 % band of observations; none where their noise is not known.
+    pub covered_95: Option<Coverage>,
 }
 
 impl Validation {
@@ -38,14 +36,15 @@ impl Validation {
         let spread = mean(&|pair| (pair.value - centre).powi(2));
         let percentage = mean(&|pair| ((pair.mean - pair.value) / pair.value).powi(2));
         let is_inside = |pair: &LeaveOneOut| {
-            f64::from((pair.value - pair.mean).abs() <= NORMAL_97_5 * pair.standard_deviation)
+            (pair.value - pair.mean).abs() <= NORMAL_97_5 * pair.standard_deviation
         };
+        let n_inside = pairs.iter().filter(|pair| is_inside(pair)).count();
         Some(Self {
             n: pairs.len(),
             root_mean_square: square.sqrt(),
             root_mean_square_percentage: 100.0 * percentage.sqrt(),
             explained: 1.0 - square / spread,
-            covered_95: 100.0 * mean(&is_inside),
+            covered_95: Some(Coverage::new(n_inside, pairs.len())),
         })
     }
 }

@@ -358,11 +358,14 @@ fn validations_text(rows: &[(&str, Option<SurrogateValidation>)], unit: &str) ->
             format!("{:.4e}", found.root_mean_square),
             format!("{:.2}", found.root_mean_square_percentage),
             format!("{:.1}", 100.0 * found.explained),
-            format!("{:.1}", found.covered_95),
+            found.covered_95.map_or("–".to_owned(), |found| {
+                let [low, high] = found.interval;
+                format!("{:.1} ({low:.1} to {high:.1})", found.share)
+            }),
         ]);
     }
     table.fitted(super::output::columns())
-        + "RMSPE: root mean square of the error over the true value; rows of the same inputs count as their mean\n"
+        + "RMSPE: root mean square of the error over the true value; rows of the same inputs count as their mean; in parentheses the 95 % interval of the share (Wilson)\n"
 }
 
 fn validation_json(found: Option<SurrogateValidation>) -> serde_json::Value {
@@ -372,7 +375,8 @@ fn validation_json(found: Option<SurrogateValidation>) -> serde_json::Value {
             "rmse": found.root_mean_square,
             "rmspe_pc": found.root_mean_square_percentage,
             "explained": found.explained,
-            "covered_95_pc": found.covered_95,
+            "covered_95_pc": found.covered_95.map(|found| found.share),
+            "covered_95_interval_pc": found.covered_95.map(|found| found.interval),
         })
     })
 }
