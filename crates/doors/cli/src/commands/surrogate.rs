@@ -4,8 +4,8 @@ use super::arguments::positive;
 use super::output::{print, print_text, tell, warn};
 use clap::{Args, Subcommand, ValueEnum};
 use design::regression::{
-    KernelText, PredictQuestion, TrainQuestion, Trained, Validated, cuts, draw_surrogate, predict,
-    train, validate,
+    KernelText, PredictQuestion, TrainQuestion, Trained, ValidateQuestion, Validated, cuts,
+    draw_surrogate, predict, train, validate,
 };
 use design::{SurrogateModel, SurrogateTrend, SurrogateValidation};
 use miette::{IntoDiagnostic, Result, miette};
@@ -117,6 +117,12 @@ pub(crate) struct ValidateArguments {
     model: PathBuf,
     /// CSV with its inputs and output
     file: PathBuf,
+    /// Column with a known standard deviation of each value, in its unit
+    #[arg(long, value_name = "NAME")]
+    deviation: Option<String>,
+    /// Column with the number of the noise group of each row: 0, 1, 2, …
+    #[arg(long, value_name = "NAME")]
+    group: Option<String>,
     /// Folder to draw predicted over true values into
     #[arg(long, value_name = "FOLDER")]
     figures: Option<PathBuf>,
@@ -214,7 +220,12 @@ fn run_predict(arguments: &PredictArguments) -> Result<()> {
 }
 
 fn run_validate(arguments: &ValidateArguments) -> Result<()> {
-    let found = validate(&arguments.model, &arguments.file)?;
+    let found = validate(&ValidateQuestion {
+        model: arguments.model.clone(),
+        file: arguments.file.clone(),
+        deviation: arguments.deviation.clone(),
+        group: arguments.group.clone(),
+    })?;
     found.warnings.iter().for_each(|text| warn(text));
     if let Some(folder) = &arguments.figures {
         let (model, pairs) = (&found.model, Some(&found.pairs[..]));

@@ -1,8 +1,8 @@
 //! From a table to a surrogate.
 
 use super::KernelText;
+use super::pairs::{Columns, Held, Pairs, held};
 use super::stored::{model, port};
-use super::validate::{Pairs, pairs};
 use crate::DesignError;
 use formats::FileError;
 use formats::surrogate_model::SurrogateModel;
@@ -64,9 +64,7 @@ pub struct Trained {
 struct Data {
     samples: Samples,
     n_inputs: usize,
-    groups: Vec<usize>,
-    /// Whether a known deviation stands behind the output.
-    has_deviation: bool,
+    noise: Columns,
 }
 
 /// Trains a surrogate.
@@ -90,18 +88,18 @@ pub fn train(question: &TrainQuestion) -> Result<Trained, DesignError> {
     settings.noise = match (&question.group, question.estimates_noise) {
         (_, false) => NoiseGroups::Known,
         (None, true) => NoiseGroups::One,
-        (Some(_), true) => {
-            NoiseGroups::Each(training.iter().map(|row| data.groups[*row]).collect())
-        }
+        (Some(_), true) => NoiseGroups::Each(data.noise.groups_of(&training)),
     };
     if let Some(n_inducing) = question.n_inducing {
         (settings.exact_up_to, settings.n_inducing) = (0, n_inducing);
     }
     let found = Regression::fit(&kernel, &data.observations(&training), &settings).map_err(of)?;
-    let validated = |rows: &[usize]| -> Result<Option<Validation>, DesignError> {
-        let table = Pairs { samples: &data.samples, rows, n_inputs: data.n_inputs };
-        Ok(Validation::of(&pairs(&found, &table).map_err(of)?))
+    let held = |rows: &[usize]| {
+        let noise = &data.noise;
+        let table = Pairs { samples: &data.samples, rows, n_inputs: data.n_inputs, noise };
+        held(&found, &table).map_err(of)
     };
+    let Held { validation: on_test, unknown, .. } = held(&test)?;
     let [inputs, output] = [ports[..data.n_inputs].to_vec(), ports[data.n_inputs..].to_vec()];
     let n_different = found.n_inputs();
     let description = format!(
@@ -112,10 +110,10 @@ pub fn train(question: &TrainQuestion) -> Result<Trained, DesignError> {
         question.file.display()
     );
     Ok(Trained {
-        warnings: warnings(&found, training.len()),
+        warnings: warnings(&found, training.len()).into_iter().chain(unknown).collect(),
         n: [data.samples.lines.len(), n_different, data.n_different(&test)],
-        on_training: validated(&training)?,
-        on_test: validated(&test)?,
+        on_training: held(&training)?.validation,
+        on_test,
         left_out: found.leave_one_out().as_deref().and_then(Validation::of),
         model: model(description, [inputs, output], &found),
     })
@@ -151,22 +149,8 @@ impl Data {
         let names: Vec<&str> = inputs.chain(further).map(|name| name.trim()).collect();
         let samples = Samples::read(&question.file, &names)?;
         let n_inputs = question.inputs.len();
-        let mut groups = Vec::new();
-        let column = n_inputs + 1 + usize::from(question.deviation.is_some());
-        for (row, line) in samples.lines.iter().enumerate() {
-            let value = if question.group.is_some() { samples.row(row)[column] } else { 0.0 };
-            if value < 0.0 || value.fract() != 0.0 || value > 1e6 {
-                let name = &samples.columns[column].name;
-                let problem = format!("line {line}: {name} is {value}, no number of a noise group");
-                let fix = "number the groups 0, 1, 2, … without gaps";
-                return Err(
-                    FileError::content("a table of samples", &samples.path, problem, fix).into()
-                );
-            }
-            groups.push(value as usize);
-        }
-        let has_deviation = question.deviation.is_some();
-        Ok(Self { samples, n_inputs, groups, has_deviation })
+        let noise = Columns::new(&samples, n_inputs, &question.deviation, &question.group)?;
+        Ok(Self { samples, n_inputs, noise })
     }
 
     /// An error of the surrogate in words of the table.
@@ -218,10 +202,9 @@ impl Data {
                 .collect(),
             n_dimensions: n_inputs,
             values: of(n_inputs).collect(),
-            variances: if self.has_deviation {
-                of(n_inputs + 1).map(|s| s * s).collect()
-            } else {
-                Vec::new()
+            variances: match self.noise.deviation {
+                Some(column) => of(column).map(|s| s * s).collect(),
+                None => Vec::new(),
             },
         }
     }
