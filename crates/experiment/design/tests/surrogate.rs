@@ -170,6 +170,25 @@ fn pairs_have_the_noise_of_their_rows() {
     assert!(validate(&asked).is_err());
 }
 
+/// A smooth function without any noise at few inputs: the likelihood grows as its estimate falls.
+#[test]
+fn bands_that_are_too_narrow_are_warned_of() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("few.csv");
+    let mut text = "wind,turbulence,load\n".to_owned();
+    for row in 0..15 {
+        let (wind, turbulence) =
+            ((0.618 * f64::from(row)).fract() * 6.0, (0.755 * f64::from(row)).fract());
+        writeln!(text, "{wind},{turbulence},{}", wind.sin() + turbulence).expect("it takes it");
+    }
+    fs::write(&file, text).expect("written");
+    let asked = TrainQuestion { split: 1.0, ..question(file) };
+    let warnings = train(&asked).expect("a surrogate").warnings;
+    for words in ["15 different inputs for 4 hyperparameters", "group 0 was found at its lower"] {
+        assert!(warnings.iter().any(|text| text.contains(words)), "{warnings:?}");
+    }
+}
+
 /// `report` as it is drawn, without the breaks of its lines.
 fn drawn(report: miette::Report) -> String {
     let text = format!("{report:?}").replace('│', " ");

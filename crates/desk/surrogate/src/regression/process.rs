@@ -65,7 +65,7 @@ pub struct Regression {
 
 impl Regression {
     /// The regression of `observations` with a kernel of the form of `kernel` and the hyperparameters of
-    /// maximum marginal likelihood.
+    /// maximum profile likelihood: that of the values, the trend's coefficients at their optimum.
     ///
     /// # Errors
     /// [`SurrogateError::TooFew`] with fewer than three observations at different inputs,
@@ -225,8 +225,9 @@ impl Regression {
         self.problem.collapsed()
     }
 
-    /// Natural logarithm of the marginal likelihood (–) of the values in their own unit; through inducing
-    /// points a lower bound on it.
+    /// Natural logarithm of the profile likelihood (–) of the values in their own unit, the trend's coefficients
+    /// at their generalised-least-squares optimum; without a trend it is the marginal likelihood. Through
+    /// inducing points a lower bound on it.
     pub fn log_marginal_likelihood(&self) -> f64 {
         match &self.posterior {
             Posterior::Exact(found) => found.log,

@@ -1,4 +1,4 @@
-//! Hyperparameters of maximum marginal likelihood: several starts on few observations, the best of them on
+//! Hyperparameters of maximum profile likelihood: several starts on few observations, the best of them on
 //! more, and a few steps on all.
 
 use super::expression::Kernel;
@@ -19,6 +19,8 @@ const STEPS: [u64; 2] = [60, 200];
 const LEAST_BEND: f64 = 1e-2;
 /// Searches at the end at most (–).
 const MOST_POLISHES: usize = 4;
+/// A noise variance this close to a bound counts as there (–): close to it searches come to rest.
+const NEAR: f64 = 10.0;
 /// A step in the coordinates of the search along which curvature is measured (–).
 const STEP: f64 = 1e-3;
 
@@ -48,6 +50,12 @@ impl Default for SearchSettings {
 pub struct Searched {
     /// Observations of the largest set whose likelihood was worked out, replicates as one (–).
     pub n_largest: usize,
+    /// Lengths, exponents and variances that were estimated, those of the noise among them (–).
+    pub n_hyperparameters: usize,
+    /// Noise groups whose variance was found at the lower bound of the search, within a factor of ten.
+    pub noise_at_lower: Vec<usize>,
+    /// The same at the upper bound.
+    pub noise_at_upper: Vec<usize>,
 }
 
 /// Likelihood of a problem over the logarithms of hyperparameters.
@@ -136,7 +144,7 @@ pub fn shuffled(total: usize, seed: u64) -> Vec<usize> {
     keyed.into_iter().map(|(_, index)| index).collect()
 }
 
-/// Kernel and noise of maximum marginal likelihood, scaled; none where no place has a likelihood. Where the
+/// Kernel and noise of maximum profile likelihood, scaled; none where no place has a likelihood. Where the
 /// process is not to be exact, `settings.n_first` observations say it all.
 pub(crate) fn hyperparameters(
     problem: &Problem,
@@ -169,8 +177,23 @@ pub(crate) fn hyperparameters(
     if n <= settings.n_first && is_exact {
         place = polished(&of_all, &bounds, place);
     }
-    let (kernel, noise) = of_all.parameters(&inside(&place, &bounds).0);
-    Some((kernel, noise, Searched { n_largest: largest.get() }))
+    let found = inside(&place, &bounds).0;
+    let (kernel, noise) = of_all.parameters(&found);
+    let n_kernel = found.len() - problem.n_groups;
+    let near = |end: usize| -> Vec<usize> {
+        let groups = (0..problem.n_groups).filter(|group| {
+            let place = n_kernel + group;
+            (found[place] - bounds[place][end]).abs() < NEAR.ln()
+        });
+        groups.collect()
+    };
+    let searched = Searched {
+        n_largest: largest.get(),
+        n_hyperparameters: found.len(),
+        noise_at_lower: near(0),
+        noise_at_upper: near(1),
+    };
+    Some((kernel, noise, searched))
 }
 
 /// The highest place that `settings.n_starts` searches find.

@@ -10,9 +10,12 @@ use formats::table::Samples;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use surrogate::{
-    NoiseGroups, Observations, Regression, RegressionSettings, SurrogateError, Trend, Validation,
-    shuffled,
+    NoiseGroups, Observations, Regression, RegressionSettings, Searched, SurrogateError, Trend,
+    Validation, shuffled,
 };
+
+/// Different inputs for each hyperparameter below which bands are warned of (–).
+const FEWEST: usize = 5;
 
 /// What to train, and on what.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,10 +136,35 @@ fn warnings(found: &Regression, n_rows: usize) -> Vec<String> {
             found.jitter()
         ));
     }
+    told.extend(found.searched().map(|searched| of_search(searched, found)).unwrap_or_default());
     if let Some(sparse) = found.sparse() {
         told.push(format!(
             "{} inducing points stand for {n_different} inputs: the bound on the log likelihood loses {:.1} by that",
             sparse.n_points, sparse.lost
+        ));
+    }
+    told
+}
+
+/// What of the search makes bands too narrow.
+fn of_search(searched: &Searched, found: &Regression) -> Vec<String> {
+    let mut told = Vec::new();
+    let (n, n_estimated) = (found.n_inputs(), searched.n_hyperparameters);
+    if n < FEWEST * n_estimated {
+        told.push(format!(
+            "{n} different inputs for {n_estimated} hyperparameters, fewer than {FEWEST} for each: they fit what is chance, and bands may be much too narrow; leave out inputs that say little, or hold it against other rows"
+        ));
+    }
+    for group in &searched.noise_at_lower {
+        told.push(format!(
+            "the noise of group {group} was found at its lower bound, a deviation of {:.1e} in the unit of the output: the curve goes through its values, and where these are noisy its bands are much too narrow",
+            found.parameters().noise[*group].sqrt()
+        ));
+    }
+    for group in &searched.noise_at_upper {
+        told.push(format!(
+            "the noise of group {group} was found at its upper bound, a deviation of {:.1e} in the unit of the output: nothing was learnt of its size, and its bands say little",
+            found.parameters().noise[*group].sqrt()
         ));
     }
     told
