@@ -92,14 +92,17 @@ fn bounds(problem: &Problem, kernel: &Kernel) -> (Vec<[f64; 2]>, Vec<f64>) {
     let mut found = Vec::new();
     let mut add = |[low, high]: [f64; 2], share: f64| found.push(([low.ln(), high.ln()], share));
     let spread = {
-        let n = problem.len() as f64;
-        let center = match problem.trend {
-            Trend::Zero => 0.0,
-            _ => problem.values.iter().sum::<f64>() / n,
+        let n = problem.n_observations();
+        let sum = |of: &dyn Fn(f64) -> f64| -> f64 {
+            let counted = problem.values.iter().zip(&problem.counts);
+            counted.map(|(value, count)| count * of(*value)).sum()
         };
-        let squares = problem.values.iter().map(|value| (value - center).powi(2));
-        let spread =
-            (squares.sum::<f64>() + problem.within.iter().sum::<f64>()) / problem.n_observations();
+        let centre = match problem.trend {
+            Trend::Zero => 0.0,
+            _ => sum(&|value| value) / n,
+        };
+        let within: f64 = problem.within.iter().sum();
+        let spread = (sum(&|value| (value - centre).powi(2)) + within) / n;
         if spread > 0.0 { spread } else { 1e-12 }
     };
     let range = |input: usize| {
@@ -263,3 +266,6 @@ fn turn(fewer: &OfProblem<'_>, bounds: &[[f64; 2]], place: &[f64], ratio: f64) -
     let scale = |column: usize| (ratio * values[column].abs().max(LEAST_BEND)).sqrt().recip();
     Some(Mat::from_fn(n, n, |row, column| vectors[(row, column)] * scale(column)))
 }
+
+#[cfg(test)]
+mod tests;
