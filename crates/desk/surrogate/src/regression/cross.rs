@@ -54,11 +54,11 @@ impl Regression {
     /// hyperparameters unchanged, in the order in which inputs were observed first. None through inducing
     /// points, or where the others do not determine the trend.
     ///
-    /// With P = K⁻¹ − K⁻¹H (HᵀK⁻¹H)⁻¹ HᵀK⁻¹ the errors of the observations I at one input are (P_II)⁻¹ (P y)_I,
-    /// and their covariance is (P_II)⁻¹.
+    /// With P = K⁻¹ − K⁻¹H (HᵀK⁻¹H)⁻¹ HᵀK⁻¹ the errors of the observations I at one input are
+    /// (P_II)⁻¹ (P y)_I, and their covariance is (P_II)⁻¹.
     ///
-    /// Source: Rasmussen and Williams (2006), Eqs. 5.10-5.12; with an estimated trend and for blocks, Dubrule,
-    /// "Cross validation of kriging in a unique neighborhood", Math. Geol. 15, 1983.
+    /// Source: Rasmussen and Williams (2006), Eqs. 5.10-5.12; with an estimated trend and for blocks,
+    /// Dubrule, "Cross validation of kriging in a unique neighborhood", Math. Geol. 15, 1983.
     pub fn leave_one_out(&self) -> Option<Vec<LeaveOneOut>> {
         let Posterior::Exact(found) = &self.posterior else { return None };
         let inverse = found.factor.inverse_factor();
@@ -95,8 +95,8 @@ impl Regression {
     }
 
     /// Predictions of each of `n_folds` parts of the different inputs from all others, hyperparameters
-    /// unchanged; the parts are drawn with `seed`, and the predictions stand in the order in which inputs were
-    /// observed first.
+    /// unchanged; the parts are drawn with `seed`, and the predictions stand in the order in which inputs
+    /// were observed first.
     ///
     /// # Errors
     /// [`SurrogateError::TooFew`] where parts would be empty, [`SurrogateError::NotPositiveDefinite`].

@@ -1,5 +1,5 @@
-//! Profile likelihood of a problem under hyperparameters, and its derivatives: the marginal likelihood over the
-//! curve, with the trend's coefficients not integrated over but at their optimum.
+//! Profile likelihood of a problem under hyperparameters, and its derivatives: the marginal likelihood over
+//! the curve, with the trend's coefficients not integrated over but at their optimum.
 //!
 //! Source: Rasmussen and Williams (2006), Eqs. 2.30, 5.8 and 5.9; trends, §2.7 with generalised least
 //! squares.

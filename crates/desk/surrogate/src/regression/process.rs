@@ -225,9 +225,9 @@ impl Regression {
         self.problem.collapsed()
     }
 
-    /// Natural logarithm of the profile likelihood (–) of the values in their own unit, the trend's coefficients
-    /// at their generalised-least-squares optimum; without a trend it is the marginal likelihood. Through
-    /// inducing points a lower bound on it.
+    /// Natural logarithm of the profile likelihood (–) of the values in their own unit, the trend's
+    /// coefficients at their generalised-least-squares optimum; without a trend it is the marginal
+    /// likelihood. Through inducing points a lower bound on it.
     pub fn log_marginal_likelihood(&self) -> f64 {
         match &self.posterior {
             Posterior::Exact(found) => found.log,
