@@ -84,7 +84,8 @@ impl Case {
     }
 }
 
-/// Posterior and likelihood at given hyperparameters, and the best likelihood found, on ten data sets.
+/// Posterior and likelihood, without a trend the marginal one, at given hyperparameters, and the best
+/// likelihood found, on ten data sets.
 ///
 /// # Panics
 /// When the stored data sets cannot be read or used.

@@ -40,8 +40,9 @@ pub use likelihood::Mean;
 pub use observations::Observations;
 pub use process::{GaussianProcess, LeaveOneOut, Prediction};
 pub use regression::{
-    Collapsed, Kernel, MeanCurve, NoiseGroups, Outside, Panels, Parameters, Part, Regression,
-    RegressionSettings, SearchSettings, Sparse, Term, Trend, Validation, shuffled,
+    Collapsed, Coverage, Kernel, MeanCurve, NoiseGroups, Outside, Panels, Parameters, Part,
+    Regression, RegressionSettings, SearchSettings, Searched, Sparse, Term, Trend, Validation,
+    shuffled,
 };
 
 use thiserror::Error;

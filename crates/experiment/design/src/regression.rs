@@ -2,6 +2,7 @@
 
 mod cuts;
 mod kernel_text;
+mod pairs;
 mod predict;
 mod stored;
 mod train;
@@ -11,4 +12,4 @@ pub use cuts::{Cut, cuts, draw_surrogate};
 pub use kernel_text::KernelText;
 pub use predict::{PredictQuestion, Predicted, predict};
 pub use train::{TrainQuestion, Trained, train};
-pub use validate::{Validated, validate};
+pub use validate::{ValidateQuestion, Validated, validate};

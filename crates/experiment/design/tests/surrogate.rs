@@ -2,7 +2,8 @@
 
 use design::SurrogateModel;
 use design::regression::{
-    KernelText, PredictQuestion, TrainQuestion, cuts, draw_surrogate, predict, train, validate,
+    KernelText, PredictQuestion, TrainQuestion, ValidateQuestion, cuts, draw_surrogate, predict,
+    train, validate,
 };
 use std::fmt::Write as _;
 use std::fs;
@@ -72,13 +73,120 @@ fn a_table_becomes_a_surrogate_that_its_file_holds() {
         "wind [m/s],turbulence,load [MN-m],load_deviation [MN-m],load_observation_deviation [MN-m]";
     assert_eq!(text.lines().next(), Some(head));
 
-    let held = validate(&at("model.json"), &at("loads.csv")).expect("validated");
+    let asked = ValidateQuestion {
+        model: at("model.json"),
+        file: at("loads.csv"),
+        deviation: None,
+        group: None,
+    };
+    let held = validate(&asked).expect("validated");
+    assert!(held.on_table.is_some_and(|found| found.covered_95.is_some()));
     assert_eq!((held.n_rows, held.pairs.len()), (120, 60));
     let pairs = Some(&held.pairs[..]);
     let names = draw_surrogate(&held.model, &at("model.json"), pairs, Some([0, 1]), folder.path());
     assert_eq!(names.expect("drawn"), ["surrogate-scatter", "surrogate-cuts", "surrogate-map"]);
     assert!(at("figures/surrogate-map.svg").exists());
     assert_eq!(cuts(&held.model, &at("model.json")).expect("cuts").len(), 2);
+}
+
+/// Rows of two noise groups, each with a known deviation of its own; the second row of an input is of another
+/// group than the first.
+fn noisy_table(path: &Path, n: usize) {
+    let mut text = "wind,turbulence,load,known,source\n".to_owned();
+    for row in 0..n {
+        let place = (row / 2) as f64;
+        let (wind, turbulence) =
+            (6.0 + (0.618 * place).fract() * 6.0, (0.755 * place).fract() * 0.1);
+        let known = 0.01 + 0.001 * (row % 13) as f64;
+        let scatter = (0.05 + 0.2 * (row % 2) as f64) * (12.9 * row as f64).sin();
+        let load = 3.0 + 0.3 * wind + 15.0 * turbulence * (0.5 * wind).sin() + scatter;
+        writeln!(text, "{wind},{turbulence},{load},{known},{}", row % 2)
+            .expect("a string takes it");
+    }
+    fs::write(path, text).expect("written");
+}
+
+/// The variance of a pair is that of the curve and Σ (σ² of its group + its known variance) / n²; rounding
+/// alone lies between.
+#[test]
+fn pairs_have_the_noise_of_their_rows() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    noisy_table(&at("loads.csv"), 80);
+    let mut asked = question(at("loads.csv"));
+    (asked.deviation, asked.group) = (Some("known".to_owned()), Some("source".to_owned()));
+    let found = train(&asked).expect("a surrogate");
+    assert_eq!(found.n, [80, 28, 12]);
+    assert!(found.warnings.iter().any(|text| text.contains("56 rows have 28 different inputs")));
+    assert_eq!(found.left_out.map(|left| left.n), Some(28));
+    found.model.write(&at("model.json")).expect("written");
+    let mut asked = ValidateQuestion {
+        model: at("model.json"),
+        file: at("loads.csv"),
+        deviation: Some("known".to_owned()),
+        group: Some("source".to_owned()),
+    };
+    let held = validate(&asked).expect("validated");
+    assert!(held.on_table.is_some_and(|found| found.covered_95.is_some()), "{:?}", held.warnings);
+    let curve = PredictQuestion {
+        model: at("model.json"),
+        file: at("loads.csv"),
+        means_only: false,
+        group: 1,
+    };
+    let curve = predict(&curve).expect("predictions");
+    let noise = &found.model.noise_variances;
+    assert!(noise.len() == 2 && noise[1] > noise[0], "{noise:?}");
+    for (place, pair) in held.pairs.iter().enumerate() {
+        let known = [2 * place, 2 * place + 1].map(|row| 0.01 + 0.001 * (row % 13) as f64);
+        let rows = noise[0] + noise[1] + known[0].powi(2) + known[1].powi(2);
+        let variance = curve.deviations[2 * place][0].powi(2) + rows / 4.0;
+        assert!(
+            (pair.standard_deviation.powi(2) / variance - 1.0).abs() < 1e-9,
+            "{place} {pair:?}"
+        );
+    }
+    curve.write(&at("out.csv")).expect("written");
+    let text = fs::read_to_string(at("out.csv")).expect("read");
+    let name = "load_observation_deviation_of_group_1_without_known_noise";
+    assert!(text.lines().next().is_some_and(|head| head.ends_with(name)), "{text}");
+
+    for (forgets_group, word) in [(true, "--group"), (false, "--deviation")] {
+        let mut less = asked.clone();
+        if forgets_group {
+            less.group = None
+        } else {
+            less.deviation = None
+        }
+        let held = validate(&less).expect("validated");
+        assert!(held.on_table.is_some_and(|found| found.covered_95.is_none()));
+        assert!(held.warnings.iter().any(|text| text.contains(word)), "{:?}", held.warnings);
+    }
+    let text = fs::read_to_string(at("loads.csv")).expect("read");
+    fs::write(at("loads.csv"), text + "7,0.05,5,0.01,2\n").expect("written");
+    let held = validate(&asked).expect("validated");
+    assert!(held.warnings.iter().any(|text| text.contains("line 82 is of noise group 2")));
+    asked.group = Some("load".to_owned());
+    assert!(validate(&asked).is_err());
+}
+
+/// A smooth function without any noise at few inputs: the likelihood grows as its estimate falls.
+#[test]
+fn bands_that_are_too_narrow_are_warned_of() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("few.csv");
+    let mut text = "wind,turbulence,load\n".to_owned();
+    for row in 0..15 {
+        let (wind, turbulence) =
+            ((0.618 * f64::from(row)).fract() * 6.0, (0.755 * f64::from(row)).fract());
+        writeln!(text, "{wind},{turbulence},{}", wind.sin() + turbulence).expect("it takes it");
+    }
+    fs::write(&file, text).expect("written");
+    let asked = TrainQuestion { split: 1.0, ..question(file) };
+    let warnings = train(&asked).expect("a surrogate").warnings;
+    for words in ["15 different inputs for 4 hyperparameters", "group 0 was found at its lower"] {
+        assert!(warnings.iter().any(|text| text.contains(words)), "{warnings:?}");
+    }
 }
 
 /// `report` as it is drawn, without the breaks of its lines.

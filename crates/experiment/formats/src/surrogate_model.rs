@@ -33,7 +33,8 @@ pub struct SurrogateModel {
     pub kernel: Vec<StoredTerm>,
     /// Estimated noise variance of each group (unit of the output, squared).
     pub noise_variances: Vec<f64>,
-    /// Natural logarithm of the marginal likelihood of the data that it was trained on (–).
+    /// Natural logarithm of the profile likelihood of the data that it was trained on, the trend's
+    /// coefficients at their optimum (–); without a trend it is the marginal likelihood.
     pub log_marginal_likelihood: f64,
     /// What was added to the diagonal of the covariance so that it could be factorised (unit of the output,
     /// squared).

@@ -1,12 +1,12 @@
 //! Predictions of what was left out.
 
-use super::marginal::Marginal;
+use super::coverage::{Coverage, NORMAL_97_5};
+use super::marginal::{Marginal, column};
 use super::process::{Posterior, Regression};
 use super::search::shuffled;
 use crate::{LeaveOneOut, SurrogateError};
-
-/// 97.5 % point of the normal distribution (–).
-const NORMAL_97_5: f64 = 1.959_963_984_540_054;
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
 
 /// Predictions beside what came true.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +19,8 @@ pub struct Validation {
     pub root_mean_square_percentage: f64,
     /// Share of the variance of the true values that is explained (–).
     pub explained: f64,
-    /// True values inside their 95 % band of observations (%).
-    pub covered_95: f64,
+    /// True values inside their 95 % band of observations; none where their noise is not known.
+    pub covered_95: Option<Coverage>,
 }
 
 impl Validation {
@@ -36,74 +36,95 @@ impl Validation {
         let spread = mean(&|pair| (pair.value - centre).powi(2));
         let percentage = mean(&|pair| ((pair.mean - pair.value) / pair.value).powi(2));
         let is_inside = |pair: &LeaveOneOut| {
-            f64::from((pair.value - pair.mean).abs() <= NORMAL_97_5 * pair.standard_deviation)
+            (pair.value - pair.mean).abs() <= NORMAL_97_5 * pair.standard_deviation
         };
+        let n_inside = pairs.iter().filter(|pair| is_inside(pair)).count();
         Some(Self {
             n: pairs.len(),
             root_mean_square: square.sqrt(),
             root_mean_square_percentage: 100.0 * percentage.sqrt(),
             explained: 1.0 - square / spread,
-            covered_95: 100.0 * mean(&is_inside),
+            covered_95: Some(Coverage::new(n_inside, pairs.len())),
         })
     }
 }
 
 impl Regression {
-    /// Leave-one-out predictions: the mean of the replicates at each input predicted from all other inputs,
-    /// hyperparameters unchanged. None through inducing points.
+    /// Leave-one-out predictions: the mean of all replicates at each input predicted from all other inputs,
+    /// hyperparameters unchanged, in the order in which inputs were observed first. None through inducing
+    /// points, or where the others do not determine the trend.
     ///
-    /// Source: Rasmussen and Williams (2006), Eqs. 5.10-5.12; with an estimated trend, Dubrule, "Cross
-    /// validation of kriging in a unique neighborhood", Math. Geol. 15, 1983.
+    /// With P = K⁻¹ − K⁻¹H (HᵀK⁻¹H)⁻¹ HᵀK⁻¹ the errors of the observations I at one input are
+    /// (P_II)⁻¹ (P y)_I, and their covariance is (P_II)⁻¹.
+    ///
+    /// Source: Rasmussen and Williams (2006), Eqs. 5.10-5.12; with an estimated trend and for blocks,
+    /// Dubrule, "Cross validation of kriging in a unique neighborhood", Math. Geol. 15, 1983.
     pub fn leave_one_out(&self) -> Option<Vec<LeaveOneOut>> {
         let Posterior::Exact(found) = &self.posterior else { return None };
-        let diagonal = found.factor.inverse_factor().inverse_diagonal();
+        let inverse = found.factor.inverse_factor();
         let of_trend = &found.of_basis * &found.covariance;
-        let scaling = &self.problem.scaling;
-        let one = |(index, diagonal): (usize, &f64)| {
-            let lost: f64 = (0..of_trend.ncols())
-                .map(|column| of_trend[(index, column)] * found.of_basis[(index, column)])
-                .sum();
-            let precision = diagonal - lost;
-            let value = self.problem.values[index];
-            let mean = value - found.weights[(index, 0)] / precision;
-            LeaveOneOut {
-                value: scaling.centre + scaling.scale * value,
-                mean: scaling.centre + scaling.scale * mean,
-                standard_deviation: scaling.scale * precision.sqrt().recip(),
-            }
+        let one = |block: &Vec<usize>| {
+            let own = Mat::from_fn(block.len(), block.len(), |i, j| {
+                let (i, j) = (block[i], block[j]);
+                let lost: f64 = (0..of_trend.ncols())
+                    .map(|at| of_trend[(i, at)] * found.of_basis[(j, at)])
+                    .sum();
+                inverse.inverse_entry(i, j) - lost
+            });
+            let shares = self.problem.shares(block);
+            let solved = own.llt(Side::Lower).ok()?.solve(&column(&shares));
+            let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
+                (0..block.len()).map(|place| of(place) * solved[(place, 0)]).sum()
+            };
+            let error = sum(&|place| found.weights[(block[place], 0)]);
+            let variance = sum(&|place| shares[place]);
+            let value = self.value_of(block);
+            let scale = self.problem.scaling.scale;
+            let standard_deviation = scale * variance.sqrt();
+            Some(LeaveOneOut { value, mean: value - scale * error, standard_deviation })
         };
-        Some(diagonal.iter().enumerate().map(one).collect())
+        self.problem.blocks().iter().map(one).collect()
     }
 
-    /// Predictions of each of `n_folds` parts of the inputs from all others, hyperparameters unchanged; the
-    /// parts are drawn with `seed`, and the predictions stand in the order of the observations.
+    /// Mean of all replicates of the observations `block`, which share an input (unit of the values).
+    fn value_of(&self, block: &[usize]) -> f64 {
+        let shares = self.problem.shares(block);
+        let values = block.iter().map(|index| self.problem.values[*index]);
+        let mean: f64 = shares.iter().zip(values).map(|(share, value)| share * value).sum();
+        self.problem.scaling.centre + self.problem.scaling.scale * mean
+    }
+
+    /// Predictions of each of `n_folds` parts of the different inputs from all others, hyperparameters
+    /// unchanged; the parts are drawn with `seed`, and the predictions stand in the order in which inputs
+    /// were observed first.
     ///
     /// # Errors
     /// [`SurrogateError::TooFew`] where parts would be empty, [`SurrogateError::NotPositiveDefinite`].
     pub fn folds(&self, n_folds: usize, seed: u64) -> Result<Vec<LeaveOneOut>, SurrogateError> {
-        let n = self.problem.len();
+        let blocks = self.problem.blocks();
+        let n = blocks.len();
         if n_folds < 2 || n < n_folds {
             return Err(SurrogateError::TooFew { n, needed: n_folds.max(2) });
         }
         let order = shuffled(n, seed);
+        let scale = self.problem.scaling.scale;
         let mut found: Vec<Option<LeaveOneOut>> = vec![None; n];
         for fold in 0..n_folds {
-            let is_left = |place: usize| place % n_folds == fold;
-            let pick = |left: bool| -> Vec<usize> {
-                let places = (0..n).filter(|place| is_left(*place) == left);
+            let pick = |is_left: bool| -> Vec<usize> {
+                let places = (0..n).filter(|place| (place % n_folds == fold) == is_left);
                 places.map(|place| order[place]).collect()
             };
-            let (kept, left) = (pick(false), pick(true));
-            let others = self.of_some(&kept)?;
-            let asked = self.problem.subset(&left);
-            let inputs = asked.scaling.rows(&asked.inputs);
-            let predictions = others.predict(&inputs, 0)?;
-            let scaling = &self.problem.scaling;
-            for (place, (index, prediction)) in left.iter().zip(predictions).enumerate() {
-                let own = asked.variance(place, &self.noise) / asked.counts[place];
-                let noise = scaling.scale * scaling.scale * own;
-                found[*index] = Some(LeaveOneOut {
-                    value: scaling.centre + scaling.scale * asked.values[place],
+            let kept: Vec<usize> =
+                pick(false).iter().flat_map(|block| &blocks[*block]).copied().collect();
+            let left = pick(true);
+            let firsts: Vec<usize> = left.iter().map(|block| blocks[*block][0]).collect();
+            let inputs = self.problem.scaling.rows(&self.problem.subset(&firsts).inputs);
+            let predictions = self.of_some(&kept)?.predict(&inputs, 0)?;
+            for (block, prediction) in left.iter().zip(predictions) {
+                let noise =
+                    scale * scale * self.problem.variance_of_mean(&blocks[*block], &self.noise);
+                found[*block] = Some(LeaveOneOut {
+                    value: self.value_of(&blocks[*block]),
                     mean: prediction.mean,
                     standard_deviation: (prediction.standard_deviation.powi(2) + noise).sqrt(),
                 });
@@ -121,3 +142,6 @@ impl Regression {
         Ok(self.with(problem, Posterior::Exact(Box::new(found))))
     }
 }
+
+#[cfg(test)]
+mod tests;

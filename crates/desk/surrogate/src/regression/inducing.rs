@@ -44,7 +44,7 @@ pub(crate) struct Inducing {
     pub(crate) covariance: Mat<f64>,
     /// Of the covariance of the points, and of I + A Aᵀ.
     pub(crate) factors: [Panels; 2],
-    /// Lower bound on the logarithm of the marginal likelihood (–).
+    /// Lower bound on the logarithm of the profile likelihood (–).
     pub(crate) bound: f64,
     pub(crate) told: Sparse,
 }

@@ -1,4 +1,5 @@
-//! Marginal likelihood of a problem under hyperparameters, and its derivatives.
+//! Profile likelihood of a problem under hyperparameters, and its derivatives: the marginal likelihood over
+//! the curve, with the trend's coefficients not integrated over but at their optimum.
 //!
 //! Source: Rasmussen and Williams (2006), Eqs. 2.30, 5.8 and 5.9; trends, §2.7 with generalised least
 //! squares.
@@ -27,7 +28,7 @@ pub(crate) struct Marginal {
     pub(crate) of_basis: Mat<f64>,
     /// (Hᵀ K⁻¹ H)⁻¹.
     pub(crate) covariance: Mat<f64>,
-    /// Natural logarithm of the marginal likelihood (–).
+    /// Natural logarithm of the profile likelihood (–).
     pub(crate) log: f64,
     /// What was added to the diagonal, over the kernel's variance (–).
     pub(crate) jitter: f64,

@@ -236,12 +236,12 @@ impl Panels {
         found.into_iter().filter_map(|(_, slot)| slot).collect()
     }
 
-    /// Of an inverse factor the diagonal of K⁻¹.
-    pub(crate) fn inverse_diagonal(&self) -> Vec<f64> {
-        let panels = self.columns.iter();
-        panels
-            .flat_map(|panel| (0..panel.ncols()).map(|j| panel.col(j).squared_norm_l2()))
-            .collect()
+    /// Of an inverse factor the entry of K⁻¹ at these places: the product of two columns of L⁻¹.
+    pub(crate) fn inverse_entry(&self, a: usize, b: usize) -> f64 {
+        let (low, high) = (a.min(b), a.max(b));
+        let skipped = (high / BLOCK - low / BLOCK) * BLOCK;
+        let [low, high] = [low, high].map(|at| self.columns[at / BLOCK].col(at % BLOCK));
+        low.iter().skip(skipped).zip(high.iter()).map(|(a, b)| a * b).sum()
     }
 }
 

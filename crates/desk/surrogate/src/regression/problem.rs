@@ -4,7 +4,6 @@ use super::expression::{Kernel, Parameters};
 use crate::{Observations, SurrogateError};
 use faer::Mat;
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
 /// Mean of the curve far from observations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,7 +40,7 @@ pub enum NoiseGroups {
     Known,
 }
 
-/// Observations at different inputs, in the user's units.
+/// Observations in the user's units, those of the same input, noise group and known variance as one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collapsed {
     /// Inputs, those of one observation together (units of the inputs).
@@ -67,7 +66,7 @@ pub(crate) struct Scaling {
     pub(crate) scale: f64,
 }
 
-/// Observations at different inputs, each the mean of its replicates.
+/// Observations of different input, noise group or known variance, each the mean of its replicates.
 #[derive(Clone, Debug)]
 pub(crate) struct Problem {
     pub(crate) scaling: Scaling,
@@ -206,20 +205,7 @@ impl Problem {
         }
     }
 
-    /// # Errors
-    /// [`SurrogateError::Replicates`] where replicates without any noise differ.
-    pub(crate) fn check_replicates(&self, is_noiseless: bool) -> Result<(), SurrogateError> {
-        let differs =
-            |index: &usize| is_noiseless && self.known[*index] == 0.0 && self.within[*index] > 0.0;
-        match (0..self.len()).find(differs) {
-            Some(place) => {
-                Err(SurrogateError::Replicates { place, n: self.counts[place] as usize })
-            }
-            None => Ok(()),
-        }
-    }
-
-    /// Different inputs (–).
+    /// Observations, those of the same input, group and known variance as one (–).
     pub(crate) fn len(&self) -> usize {
         self.values.len()
     }
@@ -252,40 +238,6 @@ impl Problem {
     /// Variance of one replicate of observation `index` where the groups have `noise`.
     pub(crate) fn variance(&self, index: usize, noise: &[f64]) -> f64 {
         self.known[index] + noise.get(self.groups[index]).copied().unwrap_or(0.0)
-    }
-
-    /// What replicates about their means add to the logarithm of the likelihood; all of it counted in the
-    /// values' own unit.
-    ///
-    /// Of r replicates with variance v: Π N(yᵢ; f, v) = N(ȳ; f, v/r) (2πv)^(−(r−1)/2) r^(−1/2) exp(−S/(2v)),
-    /// S being the sum of squares about ȳ.
-    pub(crate) fn log_of_replicates(&self, noise: &[f64]) -> f64 {
-        let of_one = |index: usize| {
-            let (count, variance) = (self.counts[index], self.variance(index, noise));
-            // Replicates that agree, where nothing is noisy, say no more than one of them.
-            if count == 1.0 || variance == 0.0 {
-                return 0.0;
-            }
-            let within = self.within[index] / variance;
-            (count - 1.0) * (TAU * variance).ln() + within + count.ln()
-        };
-        let sum: f64 = (0..self.len()).map(of_one).sum();
-        -0.5 * sum - self.n_observations() * self.scaling.scale.ln()
-    }
-
-    /// Derivatives of [`log_of_replicates`](Self::log_of_replicates) by the logarithms of the noise.
-    pub(crate) fn slopes_of_replicates(&self, noise: &[f64]) -> Vec<f64> {
-        let mut slopes = vec![0.0; self.n_groups];
-        for index in (0..self.len()).filter(|index| self.counts[*index] > 1.0) {
-            let Some(slope) = slopes.get_mut(self.groups[index]) else { continue };
-            if self.variance(index, noise) == 0.0 {
-                continue;
-            }
-            let share = noise[self.groups[index]] / self.variance(index, noise);
-            let within = self.within[index] / self.variance(index, noise);
-            *slope -= 0.5 * share * (self.counts[index] - 1.0 - within);
-        }
-        slopes
     }
 
     /// The trend's functions at scaled `inputs`: a row for each of `n` points.

@@ -7,7 +7,7 @@ use super::marginal::Marginal;
 use super::panels::Panels;
 use super::predictor::MeanCurve;
 use super::problem::{Collapsed, NoiseGroups, Problem, Trend};
-use super::search::{self, SearchSettings};
+use super::search::{self, SearchSettings, Searched};
 use super::threads::{number, share};
 use crate::{Observations, Prediction, SurrogateError};
 use faer::Mat;
@@ -24,7 +24,8 @@ pub struct RegressionSettings {
     pub noise: NoiseGroups,
     /// How hyperparameters are searched.
     pub search: SearchSettings,
-    /// Observations at different inputs up to which the process is exact (–).
+    /// Observations up to which the process is exact, those of the same input, noise group and known
+    /// variance as one (–). Beyond, the likelihood of all is never worked out in the search either.
     pub exact_up_to: usize,
     /// Inducing points beyond (–).
     pub n_inducing: usize,
@@ -40,21 +41,6 @@ impl Default for RegressionSettings {
             n_inducing: 1000,
         }
     }
-}
-
-/// Points asked for beyond what one input was observed at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outside {
-    /// Which input, the first is 0.
-    pub input: usize,
-    /// Points outside (–).
-    pub n_points: usize,
-    /// The first of them.
-    pub first: usize,
-    /// The value that lies furthest outside (unit of the input).
-    pub furthest: f64,
-    /// Least and greatest value that was observed (unit of the input).
-    pub range: [f64; 2],
 }
 
 #[derive(Clone, Debug)]
@@ -74,11 +60,12 @@ pub struct Regression {
     pub(crate) posterior: Posterior,
     pub(crate) n_threads: usize,
     predictor: MeanCurve,
+    searched: Option<Searched>,
 }
 
 impl Regression {
     /// The regression of `observations` with a kernel of the form of `kernel` and the hyperparameters of
-    /// maximum marginal likelihood.
+    /// maximum profile likelihood: that of the values, the trend's coefficients at their optimum.
     ///
     /// # Errors
     /// [`SurrogateError::TooFew`] with fewer than three observations at different inputs,
@@ -93,15 +80,18 @@ impl Regression {
         let problem = Problem::new(observations, &settings.noise, kernel, settings.trend)?;
         let n = problem.len();
         let needed = 3.max(settings.trend.n_coefficients(problem.n_dimensions()) + 2);
-        if n < needed {
-            return Err(SurrogateError::TooFew { n, needed });
+        let n_inputs = problem.blocks().len();
+        if n_inputs < needed {
+            return Err(SurrogateError::TooFew { n: n_inputs, needed });
         }
         problem.check_replicates(settings.noise == NoiseGroups::Known)?;
         // Periods are given in the user's units.
         let scaled = kernel.in_units(&problem.scaling.scales, problem.scaling.scale);
-        let found = search::hyperparameters(&problem, &scaled, &settings.search);
-        let (kernel, noise) = found.ok_or(SurrogateError::NotPositiveDefinite { n })?;
-        Self::of_problem(problem, kernel, noise, settings)
+        let is_exact = n <= settings.exact_up_to;
+        let found = search::hyperparameters(&problem, &scaled, &settings.search, is_exact);
+        let (kernel, noise, searched) = found.ok_or(SurrogateError::NotPositiveDefinite { n })?;
+        let found = Self::of_problem(problem, kernel, noise, settings)?;
+        Ok(Self { searched: Some(searched), ..found })
     }
 
     /// The regression with hyperparameters that are known.
@@ -176,7 +166,8 @@ impl Regression {
             noise: noise.iter().map(|noise| noise * square).collect(),
         };
         let predictor = predictor(&problem, &parameters.kernel, &posterior);
-        Ok(Self { parameters, kernel, noise, problem, posterior, n_threads, predictor })
+        let searched = None;
+        Ok(Self { parameters, kernel, noise, problem, posterior, n_threads, predictor, searched })
     }
 
     /// Another posterior under the same hyperparameters.
@@ -184,7 +175,8 @@ impl Regression {
         let predictor = predictor(&problem, &self.parameters.kernel, &posterior);
         let (parameters, kernel) = (self.parameters.clone(), self.kernel.clone());
         let (noise, n_threads) = (self.noise.clone(), self.n_threads);
-        Self { parameters, kernel, noise, problem, posterior, n_threads, predictor }
+        let searched = self.searched.clone();
+        Self { parameters, kernel, noise, problem, posterior, n_threads, predictor, searched }
     }
 
     /// The hyperparameters, in the user's units.
@@ -198,6 +190,11 @@ impl Regression {
         &self.predictor.coefficients
     }
 
+    /// How the hyperparameters were found; none where they were given.
+    pub fn searched(&self) -> Option<&Searched> {
+        self.searched.as_ref()
+    }
+
     /// Trend of the curve far from observations.
     pub fn trend(&self) -> Trend {
         self.problem.trend
@@ -206,6 +203,11 @@ impl Regression {
     /// Inputs (–).
     pub fn n_dimensions(&self) -> usize {
         self.problem.n_dimensions()
+    }
+
+    /// Different inputs that were observed (–).
+    pub fn n_inputs(&self) -> usize {
+        self.problem.blocks().len()
     }
 
     /// Points behind the mean curve, those of one together, and the weight of each: the mean is the trend
@@ -223,8 +225,9 @@ impl Regression {
         self.problem.collapsed()
     }
 
-    /// Natural logarithm of the marginal likelihood (–) of the values in their own unit; through inducing
-    /// points a lower bound on it.
+    /// Natural logarithm of the profile likelihood (–) of the values in their own unit, the trend's
+    /// coefficients at their generalised-least-squares optimum; without a trend it is the marginal
+    /// likelihood. Through inducing points a lower bound on it.
     pub fn log_marginal_likelihood(&self) -> f64 {
         match &self.posterior {
             Posterior::Exact(found) => found.log,
@@ -333,20 +336,6 @@ impl Regression {
         variances
     }
 
-    /// Which of `inputs` lie outside what was observed, input by input.
-    pub fn outside(&self, inputs: &[f64]) -> Vec<Outside> {
-        let collapsed = self.problem.scaling.rows(&self.problem.inputs);
-        let n_dimensions = self.n_dimensions();
-        (0..n_dimensions)
-            .filter_map(|input| {
-                let of = |all: &[f64]| -> Vec<f64> {
-                    all.iter().skip(input).step_by(n_dimensions).copied().collect()
-                };
-                outside(input, &of(&collapsed), &of(inputs))
-            })
-            .collect()
-    }
-
     fn check(&self, inputs: &[f64]) -> Result<(), SurrogateError> {
         let n_dimensions = self.n_dimensions();
         if inputs.len() % n_dimensions != 0 {
@@ -359,24 +348,6 @@ impl Regression {
             None => Ok(()),
         }
     }
-}
-
-/// What of `asked` lies outside `observed`, more than the rounding of numbers in files.
-fn outside(input: usize, observed: &[f64], asked: &[f64]) -> Option<Outside> {
-    let low = observed.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = observed.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let bearing = 1e-9 * (high - low);
-    let beyond = |x: f64| (low - x).max(x - high);
-    let out: Vec<usize> = (0..asked.len()).filter(|at| beyond(asked[*at]) > bearing).collect();
-    let furthest =
-        out.iter().copied().max_by(|a, b| beyond(asked[*a]).total_cmp(&beyond(asked[*b])))?;
-    Some(Outside {
-        input,
-        n_points: out.len(),
-        first: out[0],
-        furthest: asked[furthest],
-        range: [low, high],
-    })
 }
 
 /// The mean curve in the user's units.

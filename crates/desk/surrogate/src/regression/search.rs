@@ -1,4 +1,4 @@
-//! Hyperparameters of maximum marginal likelihood: several starts on few observations, the best of them on
+//! Hyperparameters of maximum profile likelihood: several starts on few observations, the best of them on
 //! more, and a few steps on all.
 
 use super::expression::Kernel;
@@ -8,6 +8,7 @@ use crate::Shape;
 use crate::ascent::{End, Objective, climb, inside, place_of};
 use crate::sample::Normals;
 use faer::{Mat, Side};
+use std::cell::Cell;
 
 /// Observations on which starts are compared, and on which the best is followed (–).
 const FEW: usize = 400;
@@ -18,6 +19,8 @@ const STEPS: [u64; 2] = [60, 200];
 const LEAST_BEND: f64 = 1e-2;
 /// Searches at the end at most (–).
 const MOST_POLISHES: usize = 4;
+/// A noise variance this close to a bound counts as there (–): close to it searches come to rest.
+const NEAR: f64 = 10.0;
 /// A step in the coordinates of the search along which curvature is measured (–).
 const STEP: f64 = 1e-3;
 
@@ -30,7 +33,7 @@ pub struct SearchSettings {
     pub seed: u64,
     /// Observations that are searched on before all are taken (–).
     pub n_first: usize,
-    /// Steps on all observations, where they are more (–).
+    /// Steps on all observations, where they are more and the process is exact (–).
     pub n_steps_on_all: u64,
     /// Threads (–); 0 for as many as the machine has. The result does not depend on it.
     pub n_threads: usize,
@@ -42,11 +45,26 @@ impl Default for SearchSettings {
     }
 }
 
+/// How hyperparameters were found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Searched {
+    /// Observations of the largest set whose likelihood was worked out, replicates as one (–).
+    pub n_largest: usize,
+    /// Lengths, exponents and variances that were estimated, those of the noise among them (–).
+    pub n_hyperparameters: usize,
+    /// Noise groups whose variance was found at the lower bound of the search, within a factor of ten.
+    pub noise_at_lower: Vec<usize>,
+    /// The same at the upper bound.
+    pub noise_at_upper: Vec<usize>,
+}
+
 /// Likelihood of a problem over the logarithms of hyperparameters.
 struct OfProblem<'a> {
     problem: &'a Problem,
     kernel: &'a Kernel,
     n_threads: usize,
+    /// Observations of the largest problem so far (–).
+    largest: &'a Cell<usize>,
 }
 
 impl OfProblem<'_> {
@@ -58,6 +76,7 @@ impl OfProblem<'_> {
 
 impl Objective for OfProblem<'_> {
     fn value_and_slopes(&self, parameters: &[f64]) -> Option<(f64, Vec<f64>)> {
+        self.largest.set(self.largest.get().max(self.problem.len()));
         let (kernel, noise) = self.parameters(parameters);
         let found = Marginal::new(self.problem, &kernel, &noise, self.n_threads, false)?;
         let slopes = found.slopes(self.problem, &kernel, &noise);
@@ -73,14 +92,17 @@ fn bounds(problem: &Problem, kernel: &Kernel) -> (Vec<[f64; 2]>, Vec<f64>) {
     let mut found = Vec::new();
     let mut add = |[low, high]: [f64; 2], share: f64| found.push(([low.ln(), high.ln()], share));
     let spread = {
-        let n = problem.len() as f64;
-        let center = match problem.trend {
-            Trend::Zero => 0.0,
-            _ => problem.values.iter().sum::<f64>() / n,
+        let n = problem.n_observations();
+        let sum = |of: &dyn Fn(f64) -> f64| -> f64 {
+            let counted = problem.values.iter().zip(&problem.counts);
+            counted.map(|(value, count)| count * of(*value)).sum()
         };
-        let squares = problem.values.iter().map(|value| (value - center).powi(2));
-        let spread =
-            (squares.sum::<f64>() + problem.within.iter().sum::<f64>()) / problem.n_observations();
+        let centre = match problem.trend {
+            Trend::Zero => 0.0,
+            _ => sum(&|value| value) / n,
+        };
+        let within: f64 = problem.within.iter().sum();
+        let spread = (sum(&|value| (value - centre).powi(2)) + within) / n;
         if spread > 0.0 { spread } else { 1e-12 }
     };
     let range = |input: usize| {
@@ -125,20 +147,67 @@ pub fn shuffled(total: usize, seed: u64) -> Vec<usize> {
     keyed.into_iter().map(|(_, index)| index).collect()
 }
 
-/// Kernel and noise of maximum marginal likelihood, scaled; none where no place has a likelihood.
+/// Kernel and noise of maximum profile likelihood, scaled; none where no place has a likelihood. Where the
+/// process is not to be exact, `settings.n_first` observations say it all.
 pub(crate) fn hyperparameters(
     problem: &Problem,
     kernel: &Kernel,
     settings: &SearchSettings,
-) -> Option<(Kernel, Vec<f64>)> {
+    is_exact: bool,
+) -> Option<(Kernel, Vec<f64>, Searched)> {
     let (bounds, shares) = bounds(problem, kernel);
     let n_threads = super::threads::number(settings.n_threads);
     let n = problem.len();
+    let largest = Cell::new(0);
+    let of = |problem| OfProblem { problem, kernel, n_threads, largest: &largest };
     let subset = |most: usize| problem.subset(&drawn(n, most, settings.seed));
-    let few = subset(FEW.min(settings.n_first));
-    let mut normals = Normals::new(settings.seed);
+    let [few, more] = [FEW.min(settings.n_first), settings.n_first].map(subset);
     let whole = End { n_steps: STEPS[1], slope: 1e-5 };
     let quick = if few.len() < n { End { n_steps: STEPS[0], slope: 0.1 } } else { whole };
+    let mut place = best_start(&of(&few), &bounds, &shares, settings, quick)?;
+    if few.len() < n {
+        let of_more = of(&more);
+        let end = End { n_steps: STEPS[1], slope: if more.len() < n { 0.05 } else { 1e-5 } };
+        place = climb(&of_more, &bounds, &place, None, end).map_or(place, |best| best.1);
+        if more.len() < n && is_exact && settings.n_steps_on_all > 0 {
+            let turn = turn(&of_more, &bounds, &place, n as f64 / more.len() as f64);
+            let end = End { n_steps: settings.n_steps_on_all, slope: 0.3 };
+            let on_all = climb(&of(problem), &bounds, &place, turn.as_ref(), end);
+            place = on_all.map_or(place, |best| best.1);
+        }
+    }
+    let of_all = of(problem);
+    if n <= settings.n_first && is_exact {
+        place = polished(&of_all, &bounds, place);
+    }
+    let found = inside(&place, &bounds).0;
+    let (kernel, noise) = of_all.parameters(&found);
+    let n_kernel = found.len() - problem.n_groups;
+    let near = |end: usize| -> Vec<usize> {
+        let groups = (0..problem.n_groups).filter(|group| {
+            let place = n_kernel + group;
+            (found[place] - bounds[place][end]).abs() < NEAR.ln()
+        });
+        groups.collect()
+    };
+    let searched = Searched {
+        n_largest: largest.get(),
+        n_hyperparameters: found.len(),
+        noise_at_lower: near(0),
+        noise_at_upper: near(1),
+    };
+    Some((kernel, noise, searched))
+}
+
+/// The highest place that `settings.n_starts` searches find.
+fn best_start(
+    of: &OfProblem<'_>,
+    bounds: &[[f64; 2]],
+    shares: &[f64],
+    settings: &SearchSettings,
+    end: End,
+) -> Option<Vec<f64>> {
+    let mut normals = Normals::new(settings.seed);
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     for start in 0..settings.n_starts.max(1) {
         let place: Vec<f64> = match start {
@@ -147,34 +216,10 @@ pub(crate) fn hyperparameters(
             1 => shares.iter().map(|share| place_of(share + 0.15)).collect(),
             _ => shares.iter().map(|_| normals.next()).collect(),
         };
-        ends.extend(climb(
-            &OfProblem { problem: &few, kernel, n_threads },
-            &bounds,
-            &place,
-            None,
-            quick,
-        ));
+        ends.extend(climb(of, bounds, &place, None, end));
     }
     ends.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut place = ends.into_iter().next()?.1;
-    if few.len() < n {
-        let more = subset(settings.n_first);
-        let of_more = OfProblem { problem: &more, kernel, n_threads };
-        let end = End { n_steps: STEPS[1], slope: if more.len() < n { 0.05 } else { 1e-5 } };
-        place = climb(&of_more, &bounds, &place, None, end).map_or(place, |best| best.1);
-        if more.len() < n && settings.n_steps_on_all > 0 {
-            let turn = turn(&of_more, &bounds, &place, n as f64 / more.len() as f64);
-            let end = End { n_steps: settings.n_steps_on_all, slope: 0.3 };
-            let of_all = OfProblem { problem, kernel, n_threads };
-            let on_all = climb(&of_all, &bounds, &place, turn.as_ref(), end);
-            place = on_all.map_or(place, |best| best.1);
-        }
-    }
-    let of_all = OfProblem { problem, kernel, n_threads };
-    if n <= settings.n_first {
-        place = polished(&of_all, &bounds, place);
-    }
-    Some(of_all.parameters(&inside(&place, &bounds).0))
+    Some(ends.into_iter().next()?.1)
 }
 
 /// The end of searches from `place` in coordinates that bend alike: along a ridge steps in others come to
@@ -221,3 +266,6 @@ fn turn(fewer: &OfProblem<'_>, bounds: &[[f64; 2]], place: &[f64], ratio: f64) -
     let scale = |column: usize| (ratio * values[column].abs().max(LEAST_BEND)).sqrt().recip();
     Some(Mat::from_fn(n, n, |row, column| vectors[(row, column)] * scale(column)))
 }
+
+#[cfg(test)]
+mod tests;

@@ -253,6 +253,24 @@ fn inducing_points_at_all_observations_are_exact() {
     }
 }
 
+/// Beyond `exact_up_to` no likelihood of all observations is worked out, at which the cube of their number
+/// would be paid; below, that of all is.
+#[test]
+fn inducing_points_never_ask_for_the_likelihood_of_all() {
+    let data = data(90);
+    let kernel = Kernel::of(Shape::SquaredExponential, 3);
+    let mut settings = settings(Trend::Constant, NoiseGroups::One);
+    (settings.search.n_starts, settings.search.n_first, settings.n_inducing) = (2, 20, 15);
+    let largest = |settings: &RegressionSettings| {
+        let found = Regression::fit(&kernel, &data, settings).expect("a fit");
+        (found.searched().expect("a search").n_largest, found.collapsed().values.len())
+    };
+    let (n_largest, n) = largest(&settings);
+    assert_eq!(n_largest, n);
+    settings.exact_up_to = 0;
+    assert_eq!(largest(&settings), (20, n));
+}
+
 /// The same data in other units has the same fit, told in these units; and threads change no bit.
 #[test]
 fn a_fit_is_told_in_the_users_units() {

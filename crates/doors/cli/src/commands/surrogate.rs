@@ -1,17 +1,19 @@
 //! `wakemix surrogate`: Gaussian processes from tables, trained, asked, validated and shown.
 
+mod print;
+
+use self::print::{parameters_json, parameters_text, train_json, validate_json, validations_text};
 use super::arguments::positive;
 use super::output::{print, print_text, tell, warn};
 use clap::{Args, Subcommand, ValueEnum};
 use design::regression::{
-    KernelText, PredictQuestion, TrainQuestion, Trained, Validated, cuts, draw_surrogate, predict,
+    KernelText, PredictQuestion, TrainQuestion, ValidateQuestion, cuts, draw_surrogate, predict,
     train, validate,
 };
-use design::{SurrogateModel, SurrogateTrend, SurrogateValidation};
+use design::{SurrogateModel, SurrogateTrend};
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 use std::path::PathBuf;
-use wakemix::report::text_table::{Column, TextTable};
 
 /// Subcommands of `wakemix surrogate`.
 #[derive(Subcommand)]
@@ -117,6 +119,12 @@ pub(crate) struct ValidateArguments {
     model: PathBuf,
     /// CSV with its inputs and output
     file: PathBuf,
+    /// Column with a known standard deviation of each value, in its unit
+    #[arg(long, value_name = "NAME")]
+    deviation: Option<String>,
+    /// Column with the number of the noise group of each row: 0, 1, 2, …
+    #[arg(long, value_name = "NAME")]
+    group: Option<String>,
     /// Folder to draw predicted over true values into
     #[arg(long, value_name = "FOLDER")]
     figures: Option<PathBuf>,
@@ -214,7 +222,12 @@ fn run_predict(arguments: &PredictArguments) -> Result<()> {
 }
 
 fn run_validate(arguments: &ValidateArguments) -> Result<()> {
-    let found = validate(&arguments.model, &arguments.file)?;
+    let found = validate(&ValidateQuestion {
+        model: arguments.model.clone(),
+        file: arguments.file.clone(),
+        deviation: arguments.deviation.clone(),
+        group: arguments.group.clone(),
+    })?;
     found.warnings.iter().for_each(|text| warn(text));
     if let Some(folder) = &arguments.figures {
         let (model, pairs) = (&found.model, Some(&found.pairs[..]));
@@ -274,127 +287,4 @@ fn two_of(names: &[String], model: &SurrogateModel) -> Result<Option<[usize; 2]>
 
 fn print_json(value: &serde_json::Value) -> Result<()> {
     print(&(serde_json::to_string_pretty(value).into_diagnostic()? + "\n"))
-}
-
-fn parameters_text(model: &SurrogateModel) -> String {
-    let unit = if model.output.unit.is_empty() { "–" } else { &model.output.unit };
-    let mut table = TextTable::new(
-        [Column::words("hyperparameter")],
-        [Column::number("value"), Column::words("unit")],
-    );
-    let mut row = |name: String, value: f64, unit: &str| {
-        table.row([name, format!("{value:.4e}"), unit.to_owned()]);
-    };
-    for (number, term) in model.kernel.iter().enumerate() {
-        let before =
-            if model.kernel.len() > 1 { format!("term {}, ", number + 1) } else { String::new() };
-        row(format!("{before}deviation of the curve"), term.variance.sqrt(), unit);
-        for part in &term.parts {
-            let is_periodic = part.period.is_some();
-            for (input, length) in part.inputs.iter().zip(&part.lengths) {
-                let port = &model.inputs[*input];
-                let unit = if is_periodic || port.unit.is_empty() { "–" } else { &port.unit };
-                row(format!("{before}{}: length along {}", part.shape, port.name), *length, unit);
-            }
-            if let Some(exponent) = part.exponent {
-                row(format!("{before}{}: exponent", part.shape), exponent, "–");
-            }
-        }
-    }
-    for (group, variance) in model.noise_variances.iter().enumerate() {
-        let of = if model.noise_variances.len() > 1 {
-            format!(" of group {group}")
-        } else {
-            String::new()
-        };
-        row(format!("deviation of the noise{of}"), variance.sqrt(), unit);
-    }
-    for (index, coefficient) in model.coefficients.iter().enumerate() {
-        match index.checked_sub(1).map(|input| &model.inputs[input]) {
-            None => row("constant of the trend".to_owned(), *coefficient, unit),
-            Some(port) => {
-                let over = if port.unit.is_empty() {
-                    unit.to_owned()
-                } else {
-                    format!("{unit}/{}", port.unit)
-                };
-                row(format!("slope of the trend along {}", port.name), *coefficient, &over);
-            }
-        }
-    }
-    row("log marginal likelihood".to_owned(), model.log_marginal_likelihood, "–");
-    table.fitted(super::output::columns())
-}
-
-fn parameters_json(model: &SurrogateModel) -> serde_json::Value {
-    json!({
-        "inputs": model.inputs,
-        "output": model.output,
-        "trend": model.trend,
-        "coefficients": model.coefficients,
-        "kernel": model.kernel,
-        "noise_variances": model.noise_variances,
-        "log_marginal_likelihood": model.log_marginal_likelihood,
-        "jitter": model.jitter,
-    })
-}
-
-fn validations_text(rows: &[(&str, Option<SurrogateValidation>)], unit: &str) -> String {
-    let unit = if unit.is_empty() { "–" } else { unit };
-    let mut table = TextTable::new(
-        [Column::words("on")],
-        [
-            Column::number("inputs"),
-            Column::number(format!("RMSE ({unit})")),
-            Column::number("RMSPE (%)"),
-            Column::number("explained (%)"),
-            Column::number("in 95 % band (%)"),
-        ],
-    );
-    for (name, found) in rows.iter().filter_map(|(name, found)| Some((name, (*found)?))) {
-        table.row([
-            (*name).to_owned(),
-            found.n.to_string(),
-            format!("{:.4e}", found.root_mean_square),
-            format!("{:.2}", found.root_mean_square_percentage),
-            format!("{:.1}", 100.0 * found.explained),
-            format!("{:.1}", found.covered_95),
-        ]);
-    }
-    table.fitted(super::output::columns())
-        + "RMSPE: root mean square of the error over the true value; rows of the same inputs count as their mean\n"
-}
-
-fn validation_json(found: Option<SurrogateValidation>) -> serde_json::Value {
-    found.map_or(serde_json::Value::Null, |found| {
-        json!({
-            "n": found.n,
-            "rmse": found.root_mean_square,
-            "rmspe_pc": found.root_mean_square_percentage,
-            "explained": found.explained,
-            "covered_95_pc": found.covered_95,
-        })
-    })
-}
-
-fn train_json(found: &Trained) -> serde_json::Value {
-    json!({
-        "n_rows": found.n[0],
-        "n_training": found.n[1],
-        "n_test": found.n[2],
-        "parameters": parameters_json(&found.model),
-        "on_training": validation_json(found.on_training),
-        "on_test": validation_json(found.on_test),
-        "left_out": validation_json(found.left_out),
-        "warnings": found.warnings,
-    })
-}
-
-fn validate_json(found: &Validated) -> serde_json::Value {
-    json!({
-        "n_rows": found.n_rows,
-        "on_table": validation_json(found.on_table),
-        "left_out": validation_json(found.left_out),
-        "warnings": found.warnings,
-    })
 }

@@ -29,7 +29,10 @@ pub struct Predicted {
     pub samples: Samples,
     /// Mean at each of them (unit of the output).
     pub means: Vec<f64>,
-    /// Standard deviations of the curve and of one more observation; empty where means were enough.
+    /// Noise group of the observation whose deviation is told, the first is 0.
+    pub group: usize,
+    /// Standard deviations of the curve and of one more observation with the estimated noise of its group,
+    /// without what was known of rows beyond; empty where means were enough.
     pub deviations: Vec<[f64; 2]>,
     /// What a user must know.
     pub warnings: Vec<String>,
@@ -55,7 +58,7 @@ pub fn predict(question: &PredictQuestion) -> Result<Predicted, DesignError> {
             deviations.push([prediction.standard_deviation, prediction.observation_deviation]);
         }
     }
-    Ok(Predicted { model, samples, means, deviations, warnings })
+    Ok(Predicted { model, samples, means, group: question.group, deviations, warnings })
 }
 
 /// A sentence for each input whose values leave what the surrogate was trained on.
@@ -87,6 +90,16 @@ pub(super) fn outside(model: &SurrogateModel, samples: &Samples) -> Vec<String> 
 }
 
 impl Predicted {
+    /// Which noise the deviation of an observation holds, as the end of its column's name.
+    fn held(&self) -> String {
+        let group = match self.model.noise_variances.len() {
+            0 | 1 => String::new(),
+            _ => format!("_of_group_{}", self.group),
+        };
+        let has_known = self.model.observations.known_variances.iter().any(|known| *known > 0.0);
+        group + if has_known { "_without_known_noise" } else { "" }
+    }
+
     /// Writes rows and predictions as CSV to `path`, whole or not at all.
     ///
     /// # Errors
@@ -103,7 +116,9 @@ impl Predicted {
         }
         text += &format!("{}{unit}", output.name);
         if !self.deviations.is_empty() {
-            text += &format!(",{0}_deviation{unit},{0}_observation_deviation{unit}", output.name);
+            let held = self.held();
+            text +=
+                &format!(",{0}_deviation{unit},{0}_observation_deviation{held}{unit}", output.name);
         }
         text.push('\n');
         for (row, mean) in self.means.iter().enumerate() {

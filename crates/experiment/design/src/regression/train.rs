@@ -1,8 +1,8 @@
 //! From a table to a surrogate.
 
 use super::KernelText;
+use super::pairs::{Columns, Held, Pairs, held};
 use super::stored::{model, port};
-use super::validate::{Pairs, pairs};
 use crate::DesignError;
 use formats::FileError;
 use formats::surrogate_model::SurrogateModel;
@@ -10,9 +10,12 @@ use formats::table::Samples;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use surrogate::{
-    NoiseGroups, Observations, Regression, RegressionSettings, SurrogateError, Trend, Validation,
-    shuffled,
+    NoiseGroups, Observations, Regression, RegressionSettings, Searched, SurrogateError, Trend,
+    Validation, shuffled,
 };
+
+/// Different inputs for each hyperparameter below which bands are warned of (–).
+const FEWEST: usize = 5;
 
 /// What to train, and on what.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,9 +67,7 @@ pub struct Trained {
 struct Data {
     samples: Samples,
     n_inputs: usize,
-    groups: Vec<usize>,
-    /// Whether a known deviation stands behind the output.
-    has_deviation: bool,
+    noise: Columns,
 }
 
 /// Trains a surrogate.
@@ -90,20 +91,20 @@ pub fn train(question: &TrainQuestion) -> Result<Trained, DesignError> {
     settings.noise = match (&question.group, question.estimates_noise) {
         (_, false) => NoiseGroups::Known,
         (None, true) => NoiseGroups::One,
-        (Some(_), true) => {
-            NoiseGroups::Each(training.iter().map(|row| data.groups[*row]).collect())
-        }
+        (Some(_), true) => NoiseGroups::Each(data.noise.groups_of(&training)),
     };
     if let Some(n_inducing) = question.n_inducing {
         (settings.exact_up_to, settings.n_inducing) = (0, n_inducing);
     }
     let found = Regression::fit(&kernel, &data.observations(&training), &settings).map_err(of)?;
-    let validated = |rows: &[usize]| -> Result<Option<Validation>, DesignError> {
-        let table = Pairs { samples: &data.samples, rows, n_inputs: data.n_inputs };
-        Ok(Validation::of(&pairs(&found, &table).map_err(of)?))
+    let held = |rows: &[usize]| {
+        let noise = &data.noise;
+        let table = Pairs { samples: &data.samples, rows, n_inputs: data.n_inputs, noise };
+        held(&found, &table).map_err(of)
     };
+    let Held { validation: on_test, unknown, .. } = held(&test)?;
     let [inputs, output] = [ports[..data.n_inputs].to_vec(), ports[data.n_inputs..].to_vec()];
-    let n_different = found.collapsed().values.len();
+    let n_different = found.n_inputs();
     let description = format!(
         "{} over {}, kernel {}, from {}",
         question.output,
@@ -112,10 +113,10 @@ pub fn train(question: &TrainQuestion) -> Result<Trained, DesignError> {
         question.file.display()
     );
     Ok(Trained {
-        warnings: warnings(&found, training.len()),
+        warnings: warnings(&found, training.len()).into_iter().chain(unknown).collect(),
         n: [data.samples.lines.len(), n_different, data.n_different(&test)],
-        on_training: validated(&training)?,
-        on_test: validated(&test)?,
+        on_training: held(&training)?.validation,
+        on_test,
         left_out: found.leave_one_out().as_deref().and_then(Validation::of),
         model: model(description, [inputs, output], &found),
     })
@@ -123,7 +124,7 @@ pub fn train(question: &TrainQuestion) -> Result<Trained, DesignError> {
 
 fn warnings(found: &Regression, n_rows: usize) -> Vec<String> {
     let mut told = Vec::new();
-    let n_different = found.collapsed().values.len();
+    let n_different = found.n_inputs();
     if n_different < n_rows {
         told.push(format!(
             "{n_rows} rows have {n_different} different inputs: rows of the same inputs count as replicates, exactly"
@@ -135,10 +136,35 @@ fn warnings(found: &Regression, n_rows: usize) -> Vec<String> {
             found.jitter()
         ));
     }
+    told.extend(found.searched().map(|searched| of_search(searched, found)).unwrap_or_default());
     if let Some(sparse) = found.sparse() {
         told.push(format!(
             "{} inducing points stand for {n_different} inputs: the bound on the log likelihood loses {:.1} by that",
             sparse.n_points, sparse.lost
+        ));
+    }
+    told
+}
+
+/// What of the search makes bands too narrow.
+fn of_search(searched: &Searched, found: &Regression) -> Vec<String> {
+    let mut told = Vec::new();
+    let (n, n_estimated) = (found.n_inputs(), searched.n_hyperparameters);
+    if n < FEWEST * n_estimated {
+        told.push(format!(
+            "{n} different inputs for {n_estimated} hyperparameters, fewer than {FEWEST} for each: they fit what is chance, and bands may be much too narrow; leave out inputs that say little, or hold it against other rows"
+        ));
+    }
+    for group in &searched.noise_at_lower {
+        told.push(format!(
+            "the noise of group {group} was found at its lower bound, a deviation of {:.1e} in the unit of the output: the curve goes through its values, and where these are noisy its bands are much too narrow",
+            found.parameters().noise[*group].sqrt()
+        ));
+    }
+    for group in &searched.noise_at_upper {
+        told.push(format!(
+            "the noise of group {group} was found at its upper bound, a deviation of {:.1e} in the unit of the output: nothing was learnt of its size, and its bands say little",
+            found.parameters().noise[*group].sqrt()
         ));
     }
     told
@@ -151,22 +177,8 @@ impl Data {
         let names: Vec<&str> = inputs.chain(further).map(|name| name.trim()).collect();
         let samples = Samples::read(&question.file, &names)?;
         let n_inputs = question.inputs.len();
-        let mut groups = Vec::new();
-        let column = n_inputs + 1 + usize::from(question.deviation.is_some());
-        for (row, line) in samples.lines.iter().enumerate() {
-            let value = if question.group.is_some() { samples.row(row)[column] } else { 0.0 };
-            if value < 0.0 || value.fract() != 0.0 || value > 1e6 {
-                let name = &samples.columns[column].name;
-                let problem = format!("line {line}: {name} is {value}, no number of a noise group");
-                let fix = "number the groups 0, 1, 2, … without gaps";
-                return Err(
-                    FileError::content("a table of samples", &samples.path, problem, fix).into()
-                );
-            }
-            groups.push(value as usize);
-        }
-        let has_deviation = question.deviation.is_some();
-        Ok(Self { samples, n_inputs, groups, has_deviation })
+        let noise = Columns::new(&samples, n_inputs, &question.deviation, &question.group)?;
+        Ok(Self { samples, n_inputs, noise })
     }
 
     /// An error of the surrogate in words of the table.
@@ -218,10 +230,9 @@ impl Data {
                 .collect(),
             n_dimensions: n_inputs,
             values: of(n_inputs).collect(),
-            variances: if self.has_deviation {
-                of(n_inputs + 1).map(|s| s * s).collect()
-            } else {
-                Vec::new()
+            variances: match self.noise.deviation {
+                Some(column) => of(column).map(|s| s * s).collect(),
+                None => Vec::new(),
             },
         }
     }

@@ -1,13 +1,13 @@
 //! A surrogate beside what came true.
 
+use super::pairs::{Columns, Held, Pairs, held};
 use super::predict::outside;
 use super::stored::regression;
 use crate::DesignError;
 use formats::surrogate_model::SurrogateModel;
 use formats::table::Samples;
-use std::collections::BTreeMap;
-use std::path::Path;
-use surrogate::{LeaveOneOut, Regression, SurrogateError, Validation};
+use std::path::PathBuf;
+use surrogate::{LeaveOneOut, Validation};
 
 /// A surrogate held against a table.
 #[derive(Clone, Debug)]
@@ -20,67 +20,50 @@ pub struct Validated {
     pub on_table: Option<Validation>,
     /// On what it was trained on, each input predicted from all others; none through inducing points.
     pub left_out: Option<Validation>,
-    /// True and predicted values of the table's different inputs.
+    /// True and predicted values of the table's different inputs; where the coverage is not told, their
+    /// deviations lack the noise that is not known.
     pub pairs: Vec<LeaveOneOut>,
     /// What a user must know.
     pub warnings: Vec<String>,
 }
 
-/// Rows of a table: inputs first, then the output.
-pub(super) struct Pairs<'a> {
-    pub(super) samples: &'a Samples,
-    pub(super) rows: &'a [usize],
-    pub(super) n_inputs: usize,
+/// What to hold against what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ValidateQuestion {
+    /// The surrogate.
+    pub model: PathBuf,
+    /// CSV with its inputs and its output.
+    pub file: PathBuf,
+    /// Column with a known standard deviation of each value, in its unit.
+    pub deviation: Option<String>,
+    /// Column with the number of the noise group of each row.
+    pub group: Option<String>,
 }
 
-/// Means of the output at the different inputs of `table` beside what `found` says of them. The noise is
-/// that of the first group.
-pub(super) fn pairs(found: &Regression, table: &Pairs) -> Result<Vec<LeaveOneOut>, SurrogateError> {
-    let mut place_of: BTreeMap<Vec<u64>, usize> = BTreeMap::new();
-    let (mut inputs, mut values) = (Vec::new(), Vec::<Vec<f64>>::new());
-    for row in table.rows {
-        let (input, rest) = table.samples.row(*row).split_at(table.n_inputs);
-        let key = input.iter().map(|x| (x + 0.0).to_bits()).collect();
-        let place = *place_of.entry(key).or_insert(values.len());
-        if place == values.len() {
-            inputs.extend_from_slice(input);
-            values.push(Vec::new());
-        }
-        values[place].push(rest[0]);
-    }
-    let noise = found.parameters().noise.first().copied().unwrap_or(0.0);
-    let predictions = found.predict(&inputs, 0)?;
-    let pair = |(values, prediction): (&Vec<f64>, surrogate::Prediction)| {
-        let n = values.len() as f64;
-        let variance = prediction.standard_deviation.powi(2) + noise / n;
-        LeaveOneOut {
-            value: values.iter().sum::<f64>() / n,
-            mean: prediction.mean,
-            standard_deviation: variance.sqrt(),
-        }
-    };
-    Ok(values.iter().zip(predictions).map(pair).collect())
-}
-
-/// Holds the surrogate in `model` against the table in `file`.
+/// Holds a surrogate against a table.
 ///
 /// # Errors
 /// [`DesignError`] naming the file and what is wrong with it.
-pub fn validate(model_file: &Path, file: &Path) -> Result<Validated, DesignError> {
-    let model = SurrogateModel::read(model_file)?;
-    let found = regression(&model, model_file)?;
+pub fn validate(question: &ValidateQuestion) -> Result<Validated, DesignError> {
+    let model = SurrogateModel::read(&question.model)?;
+    let found = regression(&model, &question.model)?;
     let ports = model.inputs.iter().chain([&model.output]);
-    let names: Vec<&str> = ports.map(|port| port.name.as_str()).collect();
-    let samples = Samples::read(file, &names)?;
+    let further = question.deviation.iter().chain(&question.group).map(|name| name.trim());
+    let names: Vec<&str> = ports.map(|port| port.name.as_str()).chain(further).collect();
+    let samples = Samples::read(&question.file, &names)?;
     let rows: Vec<usize> = (0..samples.lines.len()).collect();
-    let table = Pairs { samples: &samples, rows: &rows, n_inputs: model.inputs.len() };
-    let failed = |source| DesignError::Surrogate { path: model_file.to_owned(), source };
-    let pairs = pairs(&found, &table).map_err(failed)?;
+    let noise = Columns::new(&samples, model.inputs.len(), &question.deviation, &question.group)?;
+    let table =
+        Pairs { samples: &samples, rows: &rows, n_inputs: model.inputs.len(), noise: &noise };
+    let failed = |source| DesignError::Surrogate { path: question.model.clone(), source };
+    let Held { pairs, validation, unknown } = held(&found, &table).map_err(failed)?;
+    let mut warnings = outside(&model, &samples);
+    warnings.extend(unknown);
     Ok(Validated {
         n_rows: rows.len(),
-        on_table: Validation::of(&pairs),
+        on_table: validation,
         left_out: found.leave_one_out().as_deref().and_then(Validation::of),
-        warnings: outside(&model, &samples),
+        warnings,
         pairs,
         model,
     })
