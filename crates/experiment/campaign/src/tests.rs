@@ -10,6 +10,8 @@ use std::sync::atomic::AtomicBool;
 use study::{Outcome, StudyOptions};
 use tempfile::TempDir;
 
+mod claims;
+
 /// A stiff turbine in wind that is the same everywhere, for 20 s: a baseline and a helix.
 const CASE: &str = r#"
 name = "short"
@@ -133,50 +135,6 @@ fn tasks_are_made_once_and_collected_as_their_runs_are() {
     assert!(lines.next().unwrap().starts_with("1,8.0,1.0,"), "{text}");
     let other = collect(&out, &folder.path().join("results.xls")).unwrap_err();
     assert!(said(&other).contains("results.xls ends neither"), "{other}");
-}
-
-#[test]
-fn what_a_killed_process_had_comes_back_and_goes_on() {
-    let (_folder, out) = begun(CAMPAIGN);
-    let claim = |name: &str| {
-        let mut table = Table::open(&out).unwrap();
-        table.claim(name, &formats::machine::host(), None).unwrap().unwrap().id
-    };
-    assert_eq!(claim("ended"), 1);
-    let stands = status(&out).unwrap();
-    assert_eq!((stands.counts.running, stands.n_left_behind, stands.time_left), (1, 1, None));
-    let ended = made(&out, &RunOptions::default());
-    assert_eq!((ended.n_done, ended.counts.done), (6, 6));
-}
-
-#[test]
-fn a_task_that_ends_its_processes_is_failed_at_last() {
-    let (_folder, out) = begun(CAMPAIGN);
-    for _ in 0..3 {
-        let mut table = Table::open(&out).unwrap();
-        table.claim("ended", &formats::machine::host(), Some((2, 2))).unwrap().unwrap();
-        worker::bring_back(&out, &mut table).unwrap();
-    }
-    let stands = status(&out).unwrap();
-    assert_eq!((stands.counts.failed, stands.failures[0].task), (1, 2));
-    assert!(stands.failures[0].message.contains("3 processes ended"), "{:?}", stands.failures);
-    assert_eq!(made(&out, &RunOptions::default()).counts.failed, 1);
-    let retried = made(&out, &RunOptions { retry_failed: true, ..RunOptions::default() });
-    assert_eq!((retried.n_done, retried.counts.done), (1, 6));
-}
-
-#[test]
-fn a_task_of_a_process_that_is_there_stays_with_it() {
-    let (_folder, out) = begun(CAMPAIGN);
-    let worker = worker::Worker::enter(&out).unwrap();
-    let mut table = Table::open(&out).unwrap();
-    let id = table.claim(&worker.name, &worker.host, None).unwrap().unwrap().id;
-    let ended = made(&out, &RunOptions::default());
-    assert_eq!((ended.n_done, ended.n_elsewhere, ended.counts.running), (5, 1, 1));
-    // Nor does anybody else finish it.
-    assert!(!table.finish(id, "somebody else", &[], 1.0).unwrap());
-    drop(worker);
-    assert_eq!(made(&out, &RunOptions::default()).n_done, 1);
 }
 
 #[test]
