@@ -58,15 +58,15 @@ fn parquet(_columns: &[Column], _path: &Path) -> Result<Vec<u8>, CampaignError> 
 
 /// Numbers by their names, in the order in which they were met first, and the same of each row.
 #[derive(Default)]
-struct Gathered {
+pub(crate) struct Gathered {
     places: BTreeMap<String, usize>,
     columns: Vec<(String, String, Vec<Option<f64>>)>,
     /// Row and name of the first that was met twice in a row.
-    twice: Option<(usize, String)>,
+    pub(crate) twice: Option<(usize, String)>,
 }
 
 impl Gathered {
-    fn add(&mut self, row: usize, name: String, unit: String, value: Option<f64>) {
+    pub(crate) fn add(&mut self, row: usize, name: String, unit: String, value: Option<f64>) {
         let place = *self.places.entry(name.clone()).or_insert_with(|| {
             self.columns.push((name, unit, Vec::new()));
             self.columns.len() - 1

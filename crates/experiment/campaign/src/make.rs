@@ -48,10 +48,12 @@ pub(crate) fn make(
 ) -> Result<Made, CampaignError> {
     let stopped =
         |source: StudyError| CampaignError::Stopped { task: claimed.id, source: Box::new(source) };
-    match task::hash(&meta.case, &claimed.task, &meta.runs, inputs) {
-        Ok(hash) if hash == claimed.hash => {}
-        Ok(_) => return Err(CampaignError::Changed { task: claimed.id }),
-        Err(error) => return Err(stopped(error)),
+    let hash = || task::hash(&meta.case, &claimed.task, &meta.runs, inputs);
+    match catch_unwind(AssertUnwindSafe(hash)) {
+        Ok(Ok(hash)) if hash == claimed.hash => {}
+        Ok(Ok(_)) => return Err(CampaignError::Changed { task: claimed.id }),
+        Ok(Err(error)) => return Err(stopped(error)),
+        Err(panic) => return Ok(panicked(&*panic)),
     }
     let output = folder_of(folder, claimed.id);
     let mut overrides = claimed.task.overrides.clone();
@@ -87,7 +89,7 @@ pub(crate) fn make(
         Ok(Ok(_)) => Ok(Made::Interrupted),
         Ok(Err(error)) if is_of_machine(&error) => Err(stopped(error)),
         Ok(Err(error)) => Ok(Made::Failed(in_words(&error))),
-        Err(panic) => Ok(Made::Failed(format!("the program panicked: {}", said(&*panic)))),
+        Err(panic) => Ok(panicked(&*panic)),
     }
 }
 
@@ -114,10 +116,11 @@ pub(crate) fn mark(folder: &Path, id: i64) -> i64 {
     files.filter_map(written).max().unwrap_or(0)
 }
 
-/// What was said in a panic.
-fn said(panic: &(dyn Any + Send)) -> &str {
+/// A task in which the program has panicked.
+fn panicked(panic: &(dyn Any + Send)) -> Made {
     let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("without a word")
+    let said = text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("without a word");
+    Made::Failed(format!("the program panicked: {said}"))
 }
 
 /// Takes from the folder of the task numbered `id`, which is done, what is not to stay.
