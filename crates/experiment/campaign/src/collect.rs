@@ -58,18 +58,24 @@ fn parquet(_columns: &[Column], _path: &Path) -> Result<Vec<u8>, CampaignError> 
 
 /// Numbers by their names, in the order in which they were met first, and the same of each row.
 #[derive(Default)]
-struct Gathered {
+pub(crate) struct Gathered {
     places: BTreeMap<String, usize>,
     columns: Vec<(String, String, Vec<Option<f64>>)>,
+    /// Row and name of the first that was met twice in a row.
+    pub(crate) twice: Option<(usize, String)>,
 }
 
 impl Gathered {
-    fn add(&mut self, row: usize, name: String, unit: String, value: Option<f64>) {
+    pub(crate) fn add(&mut self, row: usize, name: String, unit: String, value: Option<f64>) {
         let place = *self.places.entry(name.clone()).or_insert_with(|| {
             self.columns.push((name, unit, Vec::new()));
             self.columns.len() - 1
         });
-        let values = &mut self.columns[place].2;
+        let (name, _, values) = &mut self.columns[place];
+        if values.len() > row {
+            self.twice.get_or_insert((row, name.clone()));
+            return;
+        }
         values.resize(row, None);
         values.push(value);
     }
@@ -110,7 +116,7 @@ fn plain(name: &str, unit: &str, values: Values) -> Column {
 fn gathered(table: &Table, ids: &[i64]) -> Result<Gathered, CampaignError> {
     const SUMMARIES: &str = "SELECT s.task, s.summary FROM summaries s JOIN tasks t ON t.id = s.task WHERE t.state = 'done' ORDER BY s.task, s.place";
     const MOST: &str = "SELECT coalesce(max(place), 0) FROM summaries";
-    table.read(|connection| {
+    let gathered = table.read(|connection| {
         let several = connection.query_row(MOST, [], |row| row.get::<_, i64>(0))? > 0;
         let mut gathered = Gathered::default();
         let mut query = connection.prepare(SUMMARIES)?;
@@ -125,7 +131,11 @@ fn gathered(table: &Table, ids: &[i64]) -> Result<Gathered, CampaignError> {
             }
         }
         Ok(gathered)
-    })
+    })?;
+    match gathered.twice {
+        Some((row, name)) => Err(CampaignError::TwiceNamed { task: ids[row], name }),
+        None => Ok(gathered),
+    }
 }
 
 /// Those of the numbers that the campaign asks for.

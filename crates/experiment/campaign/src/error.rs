@@ -3,7 +3,7 @@
 use formats::FileError;
 use formats::case::CaseError;
 use miette::Diagnostic;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use study::StudyError;
 use thiserror::Error;
 
@@ -97,6 +97,24 @@ pub enum CampaignError {
         /// This one.
         here: String,
     },
+    /// An earlier program planned it, whose job table is another one.
+    #[error("{} was planned by an earlier wakemix, whose job table has other columns", folder.display())]
+    #[diagnostic(help("go on with that one, or plan the campaign again in another folder"))]
+    OtherLayout {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Two numbers of a task have one name.
+    #[error("two numbers of task {task} are called `{name}`")]
+    #[diagnostic(help(
+        "give turbines, runs and channels of the case names that stay apart when joined by dots"
+    ))]
+    TwiceNamed {
+        /// The task.
+        task: i64,
+        /// The name.
+        name: String,
+    },
     /// There is no such task.
     #[error("there is no task {wanted}: the campaign has 1 to {n_tasks}")]
     #[diagnostic(help("give a number, or a range such as 11-20"))]
@@ -167,7 +185,7 @@ fn fix_of(error: &rusqlite::Error) -> String {
             "check the permissions of its folder"
         }
         Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => {
-            "other processes hold it for longer than a minute: repeat the command"
+            "other processes held it for some minutes: repeat the command"
         }
         Some(ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase) => {
             "it is damaged: plan the campaign again in another folder"
@@ -186,6 +204,29 @@ pub(crate) fn is_of_machine(error: &StudyError) -> bool {
             matches!(source.kind(), StorageFull | QuotaExceeded | ReadOnlyFilesystem)
         }
         StudyError::File(FileError::Held { .. }) => true,
+        _ => false,
+    }
+}
+
+/// Whether `error` is of what an earlier process left in the folder `left`, with which no process can go on:
+/// without it the task can be made.
+pub(crate) fn is_of_what_was_left(error: &StudyError, left: &Path) -> bool {
+    use std::io::ErrorKind::{InvalidData, NotFound, UnexpectedEof};
+    match error {
+        StudyError::File(FileError::Checkpoint { .. })
+        | StudyError::ForeignController(_)
+        | StudyError::ForeignSensor(_)
+        | StudyError::PlaneSize(_)
+        | StudyError::OtherCase { .. }
+        | StudyError::OtherFile { .. }
+        | StudyError::UntoldWind { .. }
+        | StudyError::NotLengthened { .. }
+        | StudyError::NoManifest { .. } => true,
+        StudyError::File(FileError::Content { path, .. }) => path.starts_with(left),
+        StudyError::File(FileError::System { path, source, .. }) => {
+            path.starts_with(left)
+                && matches!(source.kind(), InvalidData | NotFound | UnexpectedEof)
+        }
         _ => false,
     }
 }

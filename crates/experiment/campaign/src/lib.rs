@@ -12,9 +12,10 @@
 //! has the same bits. Where tasks stand is in an SQLite database in the folder.
 //!
 //! Tasks are made in this process, on threads: a study holds no state of the process, a panic ends its task
-//! alone, and one Ctrl-C reaches all. What a foreign controller crashes is the process: after three such ends
-//! a task is failed.
+//! alone, and one Ctrl-C reaches all. What a foreign controller crashes is the process: tasks that come
+//! back are made alone, and after three such ends one is failed.
 
+mod claim;
 mod collect;
 mod column;
 mod error;

@@ -1,16 +1,19 @@
 //! One task, from its case to its numbers.
 
-use crate::error::{CampaignError, in_words, is_of_machine};
-use crate::table::{Claimed, Meta};
+use crate::claim::Claimed;
+use crate::error::{CampaignError, in_words, is_of_machine, is_of_what_was_left};
+use crate::table::Meta;
 use crate::task;
 use basis::records::Summary;
-use formats::{FileError, records};
+use formats::FileError;
+use formats::records::{self, RunFolder};
 use std::any::Any;
 use std::fs;
 use std::io::ErrorKind;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+use std::time::UNIX_EPOCH;
 use study::{Inputs, Outcome, Silent, StudyError, StudyOptions};
 
 /// Files of a run that stay where its series is kept.
@@ -18,8 +21,8 @@ const SERIES: [&str; 3] = ["series.csv", "manifest.json", "summary.json"];
 
 /// How a task ended.
 pub(crate) enum Made {
-    /// With its numbers.
-    Done(Vec<Summary>),
+    /// With its numbers, and what they were computed on.
+    Done(Vec<Summary>, String),
     /// It cannot be made, for this reason.
     Failed(String),
     /// It was asked to stop.
@@ -45,39 +48,79 @@ pub(crate) fn make(
 ) -> Result<Made, CampaignError> {
     let stopped =
         |source: StudyError| CampaignError::Stopped { task: claimed.id, source: Box::new(source) };
-    match task::hash(&meta.case, &claimed.task, &meta.runs, inputs) {
-        Ok(hash) if hash == claimed.hash => {}
-        Ok(_) => return Err(CampaignError::Changed { task: claimed.id }),
-        Err(error) => return Err(stopped(error)),
+    let hash = || task::hash(&meta.case, &claimed.task, &meta.runs, inputs);
+    match catch_unwind(AssertUnwindSafe(hash)) {
+        Ok(Ok(hash)) if hash == claimed.hash => {}
+        Ok(Ok(_)) => return Err(CampaignError::Changed { task: claimed.id }),
+        Ok(Err(error)) => return Err(stopped(error)),
+        Err(panic) => return Ok(panicked(&*panic)),
     }
     let output = folder_of(folder, claimed.id);
     let mut overrides = claimed.task.overrides.clone();
     overrides.extend(meta.threads.map(|threads| format!("flow.threads={threads}")));
-    let resume = records::is_begun(&output);
-    let options = StudyOptions {
-        case: meta.case.clone(),
-        output: Some(output),
-        runs: meta.runs.clone(),
-        overrides,
-        resume,
-        overwrite: !resume,
-        jobs: Some(1),
-        ..StudyOptions::default()
+    let study = |resume: bool| {
+        let options = StudyOptions {
+            case: meta.case.clone(),
+            output: Some(output.clone()),
+            runs: meta.runs.clone(),
+            overrides: overrides.clone(),
+            resume,
+            overwrite: !resume,
+            jobs: Some(1),
+            ..StudyOptions::default()
+        };
+        catch_unwind(AssertUnwindSafe(|| study::run(&options, stop, &mut Silent)))
     };
-    let made = catch_unwind(AssertUnwindSafe(|| study::run(&options, stop, &mut Silent)));
+    let resume = records::is_begun(&output);
+    let mut made = study(resume);
+    if resume
+        && let Ok(Err(error)) = &made
+        && is_of_what_was_left(error, &output)
+    {
+        // Damaged, or of a machine with other instructions: it is of no use to anybody.
+        remove(&output)?;
+        made = study(false);
+    }
     match made {
-        Ok(Ok(Outcome::Done { summaries, .. })) => Ok(Made::Done(summaries)),
+        Ok(Ok(Outcome::Done { summaries, .. })) => {
+            let backend = backend(&output, &summaries);
+            Ok(Made::Done(summaries, backend))
+        }
         Ok(Ok(_)) => Ok(Made::Interrupted),
         Ok(Err(error)) if is_of_machine(&error) => Err(stopped(error)),
         Ok(Err(error)) => Ok(Made::Failed(in_words(&error))),
-        Err(panic) => Ok(Made::Failed(format!("the program panicked: {}", said(&*panic)))),
+        Err(panic) => Ok(panicked(&*panic)),
     }
 }
 
-/// What was said in a panic.
-fn said(panic: &(dyn Any + Send)) -> &str {
+/// What the runs of `summaries` in `folder` were computed on, as their manifests tell.
+fn backend(folder: &Path, summaries: &[Summary]) -> String {
+    let of = |summary: &Summary| {
+        records::read_manifest(&RunFolder::new(folder, &summary.run)).ok()?.backend
+    };
+    let mut found: Vec<String> = summaries.iter().filter_map(of).collect();
+    found.dedup();
+    found.join("; ")
+}
+
+/// When the folder of the task numbered `id` has shown progress last: when its newest checkpoint or summary was
+/// written, in nanoseconds since 1970; 0 where it has none.
+pub(crate) fn mark(folder: &Path, id: i64) -> i64 {
+    let runs = entries(&folder_of(folder, id)).unwrap_or_default();
+    let files =
+        runs.iter().flat_map(|run| ["checkpoint", "summary.json"].map(|name| run.join(name)));
+    let written = |path: PathBuf| {
+        let since = fs::metadata(path).ok()?.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+        i64::try_from(since.as_nanos()).ok()
+    };
+    files.filter_map(written).max().unwrap_or(0)
+}
+
+/// A task in which the program has panicked.
+fn panicked(panic: &(dyn Any + Send)) -> Made {
     let text = panic.downcast_ref::<String>().map(String::as_str);
-    text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("without a word")
+    let said = text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("without a word");
+    Made::Failed(format!("the program panicked: {said}"))
 }
 
 /// Takes from the folder of the task numbered `id`, which is done, what is not to stay.

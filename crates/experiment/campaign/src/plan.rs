@@ -27,10 +27,10 @@ pub struct PlannedFactor {
 /// What the tasks cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// CPU time of all tasks together (s).
-    pub cpu_time: f64,
-    /// Wall time on this machine (s).
-    pub wall_time: f64,
+    /// CPU time of all tasks together (s); absent where no sample tells its speed.
+    pub cpu_time: Option<f64>,
+    /// Wall time on this machine (s); absent where no sample tells its speed.
+    pub wall_time: Option<f64>,
     /// Tasks at a time behind that (–).
     pub n_workers: usize,
     /// Threads of a task (–).
@@ -81,7 +81,7 @@ pub fn plan(path: &Path, folder: Option<&Path>) -> Result<Plan, CampaignError> {
     let hashes = task::hashes(&file, &tasks)?;
     check_distinct(&tasks, &hashes)?;
     let threads = threads(&file, &tasks[0])?;
-    let cost = cost(&file, &tasks, threads)?;
+    let cost = cost(&file, &tasks, &hashes, threads)?;
     let meta = Meta {
         name: file.name.clone(),
         version: VERSION.to_owned(),
@@ -139,42 +139,56 @@ pub(crate) fn n_workers(threads: Option<usize>) -> usize {
     threads.map_or(1, |threads| (cores / threads).max(1))
 }
 
-/// The cost of `tasks`, from some that are timed, spread over all.
+/// The cost of `tasks`, from some that are timed, chosen by their hashes: so by chance, and the same each
+/// time. First, middle and last would be the corners of all factors.
 fn cost(
     file: &CampaignFile,
     tasks: &[Task],
+    hashes: &[String],
     threads: Option<usize>,
 ) -> Result<Cost, CampaignError> {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let n_sampled = tasks.len().min(SAMPLED);
-    let mut samples = Vec::with_capacity(n_sampled);
-    for index in 0..n_sampled {
-        let task = &tasks[index * (tasks.len() - 1) / (n_sampled - 1).max(1)];
+    let mut by_hash: Vec<(&String, &Task)> = hashes.iter().zip(tasks).collect();
+    by_hash.sort_by_key(|(hash, _)| *hash);
+    let mut samples = Vec::with_capacity(SAMPLED);
+    for (_, task) in by_hash.into_iter().take(SAMPLED) {
         let case = shipped::read(&file.case, &task.overrides)?;
         let failed =
             |source| CampaignError::Sample { settings: task.words(), source: Box::new(source) };
         samples.push(Sample::of(&case, &file.runs, threads).map_err(failed)?);
     }
-    let n_tasks = tasks.len() as f64;
-    let mean = samples.iter().map(|sample| sample.wall_time).sum::<f64>() / n_sampled as f64;
-    let most = |part: fn(&Sample) -> u64| samples.iter().map(part).max().unwrap_or(0);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let n_workers = n_workers(threads).min(tasks.len());
+    Ok(spread(&samples, tasks.len(), n_workers, threads.unwrap_or(cores), file.keep))
+}
+
+/// The cost of `n_tasks` that are like `samples`, `n_workers` at a time, on so many `threads` each.
+pub(crate) fn spread(
+    samples: &[Sample],
+    n_tasks: usize,
+    n_workers: usize,
+    threads: usize,
+    keep: Keep,
+) -> Cost {
+    let times: Vec<f64> = samples.iter().filter_map(|sample| sample.wall_time).collect();
+    let mean = (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64);
+    let most = |part: fn(&Sample) -> u64| samples.iter().map(part).max().unwrap_or(0);
     let kept = NUMBERS
-        + match file.keep {
+        + match keep {
             Keep::Summary => 0,
             Keep::Series => most(|sample| sample.series),
             Keep::All => most(|sample| sample.disk),
         };
-    Ok(Cost {
-        cpu_time: n_tasks * mean * threads.unwrap_or(cores) as f64,
-        wall_time: n_tasks * mean / n_workers as f64,
+    Cost {
+        cpu_time: mean.map(|mean| (n_tasks * threads) as f64 * mean),
+        // The last round is as long as the others, however few tasks are in it.
+        wall_time: mean.map(|mean| n_tasks.div_ceil(n_workers) as f64 * mean),
         n_workers,
-        threads: threads.unwrap_or(cores),
-        n_sampled,
+        threads,
+        n_sampled: samples.len(),
         memory: n_workers as u64 * most(|sample| sample.memory),
-        disk: tasks.len() as u64 * kept,
+        disk: n_tasks as u64 * kept,
         passing: n_workers as u64 * most(|sample| sample.disk),
-    })
+    }
 }
 
 /// Puts the plan into `folder`, where it may be already: then what may change without another result is

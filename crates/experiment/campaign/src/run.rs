@@ -1,15 +1,19 @@
 //! Making tasks, side by side, until none is left.
 
+use crate::claim::{Claimed, Next};
 use crate::error::CampaignError;
-use crate::make::{Made, discard, make, prune, prune_all};
+use crate::make::{Made, discard, make, mark, prune, prune_all};
 use crate::plan::n_workers;
-use crate::table::{Claimed, Counts, Meta, Table, check_version};
+use crate::table::{Counts, Meta, Table, check_version};
 use crate::worker::{Worker, bring_back};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 use study::Inputs;
+
+/// How long a thread waits for tasks beside which it may take none before it looks again.
+const MOMENT: Duration = Duration::from_secs(1);
 
 /// What is to be made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -88,9 +92,7 @@ pub fn run(
     let wanted = options.only.map(|only| clipped(&table, only)).transpose()?;
     bring_back(folder, &mut table)?;
     if options.retry_failed {
-        for id in table.retry(wanted.unwrap_or((1, i64::MAX)))? {
-            discard(folder, id)?;
-        }
+        table.retry(wanted.unwrap_or((1, i64::MAX)))?;
     }
     let done = done(&table)?;
     prune_all(folder, &meta.keep, |id| done.binary_search(&id).is_ok())?;
@@ -114,6 +116,7 @@ pub fn run(
             began: Instant::now(),
             error: None,
         }),
+        has_ended: Condvar::new(),
     };
     std::thread::scope(|scope| {
         for _ in 0..n_workers {
@@ -169,6 +172,8 @@ struct Job<'a> {
     /// Tasks that may still be taken (–).
     left: AtomicI64,
     state: Mutex<State<'a>>,
+    /// A task of this process has ended.
+    has_ended: Condvar,
 }
 
 struct State<'a> {
@@ -197,19 +202,35 @@ impl<'a> Job<'a> {
                 return Ok(());
             }
             let Worker { name, host, .. } = self.worker;
-            let mut claimed = table.claim(name, host, self.wanted)?;
-            if claimed.is_none() {
+            let claim = |table: &mut Table| {
+                table.claim(name, host, self.wanted, |id| mark(self.folder, id))
+            };
+            let mut next = claim(&mut table)?;
+            if matches!(next, Next::Nothing) {
                 // Another process may have ended with tasks in its hands.
                 bring_back(self.folder, &mut table)?;
-                claimed = table.claim(name, host, self.wanted)?;
+                next = claim(&mut table)?;
             }
-            let Some(claimed) = claimed else { return Ok(()) };
+            let claimed = match next {
+                Next::Task(claimed) => claimed,
+                Next::Nothing => return Ok(()),
+                Next::Wait => {
+                    self.left.fetch_add(1, Ordering::Relaxed);
+                    self.wait();
+                    continue;
+                }
+            };
             if let Err(error) = self.make(&mut table, &claimed, &mut inputs) {
                 // Where not even that can be written, it comes back with the end of this process.
-                let _ = table.give_back(claimed.id, name);
+                let _ = table.give_back(claimed.id, &self.worker.name);
                 return Err(error);
             }
         }
+    }
+
+    /// Waits until a task of this process has ended, or for a moment.
+    fn wait(&self) {
+        drop(self.has_ended.wait_timeout(self.state(), MOMENT));
     }
 
     fn make(
@@ -220,6 +241,11 @@ impl<'a> Job<'a> {
     ) -> Result<(), CampaignError> {
         let began = Instant::now();
         let (id, name) = (claimed.id, self.worker.name.as_str());
+        if claimed.is_fresh {
+            // It is this worker's now: nobody else is in its folder.
+            discard(self.folder, id)?;
+            table.begin_anew(id, name)?;
+        }
         let failure = match make(self.folder, &self.meta, claimed, inputs, self.stop)? {
             Made::Interrupted => {
                 self.state().ended.is_interrupted = true;
@@ -229,8 +255,9 @@ impl<'a> Job<'a> {
                 table.fail(id, name, &message)?;
                 Some(message)
             }
-            Made::Done(summaries) => {
-                if table.finish(id, name, &summaries, began.elapsed().as_secs_f64())? {
+            Made::Done(summaries, backend) => {
+                let wall_time = began.elapsed().as_secs_f64();
+                if table.finish(id, name, &summaries, wall_time, &backend)? {
                     prune(self.folder, id, &self.meta.keep)?;
                 }
                 None
@@ -253,6 +280,7 @@ impl<'a> Job<'a> {
         let (task, settings) = (claimed.id, claimed.task.words());
         let progress = Progress { task, settings, failure, counts, n_left, time_left };
         state.observer.ended(&progress);
+        self.has_ended.notify_all();
     }
 }
 

@@ -5,23 +5,28 @@ use crate::error::CampaignError;
 use crate::task::{Task, VERSION};
 use basis::records::Summary;
 use formats::machine;
-use rusqlite::{Connection, OptionalExtension, Row, Transaction, TransactionBehavior, params};
+use rusqlite::{Connection, ErrorCode, Row, Transaction, TransactionBehavior, params};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// How long a process waits for another one's transaction.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// Processes that may end while they make a task before it is failed (–).
-const MOST_ATTEMPTS: i64 = 3;
+/// How often a transaction is begun that finds the table held for longer than that (–).
+const MOST_TRIES: usize = 5;
+/// Layout of the tables below, in SQLite's `user_version`.
+const LAYOUT: i64 = 2;
 
+/// Of a task: `attempts` are processes that took it and have not ended it well, `mark` is when its folder
+/// showed progress last as it was taken, `fresh` tells that its folder is to go before it is made.
 const SCHEMA: &str = "
 CREATE TABLE meta(content TEXT NOT NULL);
 CREATE TABLE tasks(
     id INTEGER PRIMARY KEY, hash TEXT NOT NULL UNIQUE, task TEXT NOT NULL,
     state TEXT NOT NULL DEFAULT 'pending', worker TEXT, host TEXT, pid INTEGER, since TEXT,
-    attempts INTEGER NOT NULL DEFAULT 0, wall_time REAL, message TEXT);
-CREATE INDEX by_state ON tasks(state, id);
+    attempts INTEGER NOT NULL DEFAULT 0, mark INTEGER NOT NULL DEFAULT 0,
+    fresh INTEGER NOT NULL DEFAULT 0, wall_time REAL, backend TEXT, message TEXT);
+CREATE INDEX by_state ON tasks(state, attempts, id);
 CREATE TABLE summaries(
     task INTEGER NOT NULL, place INTEGER NOT NULL, summary TEXT NOT NULL, PRIMARY KEY(task, place));
 CREATE TABLE workers(name TEXT PRIMARY KEY, host TEXT NOT NULL, beat INTEGER NOT NULL);
@@ -73,14 +78,6 @@ impl Counts {
     }
 }
 
-/// A task that a worker has taken.
-#[derive(Clone, Debug)]
-pub(crate) struct Claimed {
-    pub(crate) id: i64,
-    pub(crate) hash: String,
-    pub(crate) task: Task,
-}
-
 /// A process that is said to make tasks.
 #[derive(Clone, Debug)]
 pub(crate) struct KnownWorker {
@@ -112,7 +109,14 @@ impl Table {
         if !path_in(folder).is_file() {
             return Err(CampaignError::NoCampaign { folder: folder.to_owned() });
         }
-        Self::connect(path_in(folder))
+        let table = Self::connect(path_in(folder))?;
+        let layout = table.read(|connection| {
+            connection.pragma_query_value(None, "user_version", |row| row.get::<_, i64>(0))
+        })?;
+        if layout != LAYOUT && table.is_planned()? {
+            return Err(CampaignError::OtherLayout { folder: folder.to_owned() });
+        }
+        Ok(table)
     }
 
     /// Makes the table of `tasks` in `folder`, which has none; it is there whole or not at all.
@@ -127,6 +131,7 @@ impl Table {
         let mut table = Self::connect(path_in(folder))?;
         table.change("make", |transaction| {
             transaction.execute_batch(SCHEMA)?;
+            transaction.pragma_update(None, "user_version", LAYOUT)?;
             transaction.execute("INSERT INTO meta VALUES(?1)", [json(meta)?])?;
             let mut insert =
                 transaction.prepare("INSERT INTO tasks(id, hash, task) VALUES(?1, ?2, ?3)")?;
@@ -147,21 +152,23 @@ impl Table {
             connection.pragma_update(None, "synchronous", "FULL")?;
             Ok(connection)
         };
-        match open() {
+        match patiently(open) {
             Ok(connection) => Ok(Self { connection, path }),
             Err(source) => Err(CampaignError::Table { doing: "open", path, source }),
         }
     }
 
-    /// Does what `change` says in one transaction, which others wait for.
+    /// Does what `change` says in one transaction, which others wait for; begins it again where they hold the
+    /// table for too long.
     pub(crate) fn change<T>(
         &mut self,
         doing: &'static str,
-        change: impl FnOnce(&Transaction) -> rusqlite::Result<T>,
+        change: impl Fn(&Transaction) -> rusqlite::Result<T>,
     ) -> Result<T, CampaignError> {
         let connection = &mut self.connection;
-        let done = connection.transaction_with_behavior(TransactionBehavior::Immediate);
-        let done = done.and_then(|transaction| {
+        let done = patiently(|| {
+            let transaction =
+                connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
             let found = change(&transaction)?;
             transaction.commit()?;
             Ok(found)
@@ -200,7 +207,7 @@ impl Table {
 
     /// How many tasks are in each state.
     pub(crate) fn counts(&self) -> Result<Counts, CampaignError> {
-        self.read(|connection| {
+        let count = |connection: &Connection| {
             let mut counts = Counts::default();
             let mut query =
                 connection.prepare("SELECT state, count(*) FROM tasks GROUP BY state")?;
@@ -215,42 +222,23 @@ impl Table {
                 }
             }
             Ok(counts)
-        })
+        };
+        self.read(|connection| patiently(|| count(connection)))
     }
 
-    /// Takes the next pending task, of those with numbers in `wanted` where it names any, for `worker`.
-    pub(crate) fn claim(
-        &mut self,
-        worker: &str,
-        host: &str,
-        wanted: Option<(i64, i64)>,
-    ) -> Result<Option<Claimed>, CampaignError> {
-        const CLAIM: &str = "UPDATE tasks SET state = 'running', worker = ?1, host = ?2, pid = ?3, since = ?4, attempts = attempts + 1, message = NULL \
-             WHERE id = (SELECT id FROM tasks WHERE state = 'pending' AND id BETWEEN ?5 AND ?6 ORDER BY id LIMIT 1) \
-             RETURNING id, hash, task";
-        let (first, last) = wanted.unwrap_or((1, i64::MAX));
-        let (pid, since) = (std::process::id(), formats::clock::now());
-        self.change("claim a task in", |transaction| {
-            let claimed = |row: &Row| {
-                Ok(Claimed { id: row.get(0)?, hash: row.get(1)?, task: parsed(row, 2)? })
-            };
-            let values = params![worker, host, pid, since, first, last];
-            transaction.query_row(CLAIM, values, claimed).optional()
-        })
-    }
-
-    /// Task `id` is complete with these `summaries`, after `wall_time` (s); false where another worker has
-    /// taken it meanwhile.
+    /// Task `id` is complete with these `summaries`, after `wall_time` (s), computed on `backend`; false where
+    /// another worker has taken it meanwhile.
     pub(crate) fn finish(
         &mut self,
         id: i64,
         worker: &str,
         summaries: &[Summary],
         wall_time: f64,
+        backend: &str,
     ) -> Result<bool, CampaignError> {
-        const DONE: &str = "UPDATE tasks SET state = 'done', wall_time = ?3, message = NULL WHERE id = ?1 AND worker = ?2 AND state = 'running'";
+        const DONE: &str = "UPDATE tasks SET state = 'done', wall_time = ?3, backend = ?4, message = NULL WHERE id = ?1 AND worker = ?2 AND state = 'running'";
         self.change("write", |transaction| {
-            if transaction.execute(DONE, params![id, worker, wall_time])? == 0 {
+            if transaction.execute(DONE, params![id, worker, wall_time, backend])? == 0 {
                 return Ok(false);
             }
             transaction.execute("DELETE FROM summaries WHERE task = ?1", [id])?;
@@ -272,36 +260,6 @@ impl Table {
         const FAILED: &str = "UPDATE tasks SET state = 'failed', message = ?3 WHERE id = ?1 AND worker = ?2 AND state = 'running'";
         self.change("write", |transaction| {
             transaction.execute(FAILED, params![id, worker, message]).map(drop)
-        })
-    }
-
-    /// Task `id` is to be made by somebody else, and this attempt does not count.
-    pub(crate) fn give_back(&mut self, id: i64, worker: &str) -> Result<(), CampaignError> {
-        const BACK: &str = "UPDATE tasks SET state = 'pending', attempts = attempts - 1, worker = NULL WHERE id = ?1 AND worker = ?2 AND state = 'running'";
-        self.change("write", |transaction| transaction.execute(BACK, params![id, worker]).map(drop))
-    }
-
-    /// Failed tasks between `first` and `last` are to be made again; gives their numbers.
-    pub(crate) fn retry(&mut self, (first, last): (i64, i64)) -> Result<Vec<i64>, CampaignError> {
-        const RETRY: &str = "UPDATE tasks SET state = 'pending', attempts = 0 WHERE state = 'failed' AND id BETWEEN ?1 AND ?2 RETURNING id";
-        self.change("write", |transaction| {
-            let mut query = transaction.prepare(RETRY)?;
-            query.query_map([first, last], |row| row.get(0))?.collect()
-        })
-    }
-
-    /// Tasks of the worker called `name`, which has ended, come back; those that have been begun too often
-    /// are failed.
-    pub(crate) fn bring_back(&mut self, name: &str) -> Result<(), CampaignError> {
-        const FAILED: &str = "UPDATE tasks SET state = 'failed', message = ?2 WHERE worker = ?1 AND state = 'running' AND attempts >= ?3";
-        const BACK: &str = "UPDATE tasks SET state = 'pending', worker = NULL WHERE worker = ?1 AND state = 'running'";
-        let message = format!(
-            "{MOST_ATTEMPTS} processes ended while they made it: killed, out of memory, or by the crash of a controller's library; make it alone with `wakemix campaign exec`"
-        );
-        self.change("write", |transaction| {
-            transaction.execute(FAILED, params![name, message, MOST_ATTEMPTS])?;
-            transaction.execute(BACK, [name])?;
-            transaction.execute("DELETE FROM workers WHERE name = ?1", [name]).map(drop)
         })
     }
 
@@ -330,6 +288,22 @@ impl Table {
             query.query_map([], worker)?.collect()
         })
     }
+}
+
+/// What `tried` gives, which is tried again, some times, where others hold the table for too long.
+pub(crate) fn patiently<T>(mut tried: impl FnMut() -> rusqlite::Result<T>) -> rusqlite::Result<T> {
+    for _ in 1..MOST_TRIES {
+        match tried() {
+            Err(error) if is_busy(&error) => {}
+            other => return other,
+        }
+    }
+    tried()
+}
+
+fn is_busy(error: &rusqlite::Error) -> bool {
+    let code = error.sqlite_error_code();
+    matches!(code, Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked))
 }
 
 /// Nothing where this version of the program planned the campaign of `meta` in `folder`.

@@ -1,6 +1,7 @@
 //! A process that makes tasks, and whether another one still does.
 
 use crate::error::CampaignError;
+use crate::make::mark;
 use crate::table::{KnownWorker, Table};
 use formats::FileError;
 use formats::lock::Lock;
@@ -42,16 +43,17 @@ impl Worker {
         );
         let lock = Lock::take(&lock_path(folder, &name), "the worker")?;
         let mut table = Table::open(folder)?;
-        table.beat(&name, &host, now())?;
+        let place = here();
+        table.beat(&name, &place, now())?;
         let (ended, wait) = channel();
-        let (own, at) = (name.clone(), host.clone());
+        let (own, at) = (name.clone(), place.clone());
         let beating = std::thread::spawn(move || {
             while wait.recv_timeout(BEAT) == Err(RecvTimeoutError::Timeout) {
                 // Others see by the lock, too, that it is there.
                 let _ = table.beat(&own, &at, now());
             }
         });
-        Ok(Self { name, host, _lock: lock, ended: Some(ended), beating: Some(beating) })
+        Ok(Self { name, host: place, _lock: lock, ended: Some(ended), beating: Some(beating) })
     }
 }
 
@@ -68,6 +70,12 @@ fn lock_path(folder: &Path, name: &str) -> PathBuf {
     folder.join("workers").join(format!("{name}.lock"))
 }
 
+/// This machine since it was started: two machines may have one name, and a lock is trusted on one alone.
+pub(crate) fn here() -> String {
+    let started = std::fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
+    format!("{} {}", machine::host(), started.trim())
+}
+
 /// This moment, in seconds since 1970.
 fn now() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
@@ -77,7 +85,7 @@ fn now() -> i64 {
 /// Whether the process of `worker` of the campaign in `folder` is still there.
 pub(crate) fn is_there(folder: &Path, worker: &KnownWorker) -> bool {
     let is_heard = worker.beat.is_some_and(|beat| now() - beat < SILENT);
-    if worker.host != machine::host() {
+    if worker.host != here() {
         // Locks of some file systems are those of one machine.
         return is_heard;
     }
@@ -95,7 +103,7 @@ pub(crate) fn is_there(folder: &Path, worker: &KnownWorker) -> bool {
 pub(crate) fn bring_back(folder: &Path, table: &mut Table) -> Result<(), CampaignError> {
     for worker in table.workers()? {
         if !is_there(folder, &worker) {
-            table.bring_back(&worker.name)?;
+            table.bring_back(&worker.name, |id| mark(folder, id))?;
         }
     }
     Ok(())

@@ -10,39 +10,50 @@ use formats::case::CaseFile;
 use formats::records;
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// What the files of wind hold, in words.
 const WIND: &str = "the file of wind";
-/// Bytes of a file of wind that are looked at: header and first values, which no two winds share.
-const HEAD: u64 = 1 << 16;
+/// Longest file of wind that is looked at whole (bytes).
+const WHOLE: u64 = 16 << 20;
+/// Bytes of a longer one that are looked at, at its begin and at its end.
+const END: u64 = 1 << 16;
 
-/// Fingerprints of turbine files, controllers' inputs, libraries and wind, each file read once.
+/// Length of a file (bytes) and when it was changed; none where it is not there.
+type Stamp = Option<(u64, Option<SystemTime>)>;
+
+/// Fingerprints of turbine files, controllers' inputs, libraries and wind. Turbine files and wind are read once
+/// as long as their length and the time of their last change stay.
 #[derive(Clone, Debug, Default)]
 pub struct Inputs {
-    machines: BTreeMap<Vec<String>, BTreeMap<String, String>>,
-    winds: BTreeMap<PathBuf, String>,
+    machines: BTreeMap<Vec<String>, (Vec<Stamp>, BTreeMap<String, String>)>,
+    winds: BTreeMap<PathBuf, (Stamp, String)>,
 }
 
 impl Inputs {
     /// Fingerprint of each file that the case of `file` names, by its name: SHA-256 of turbines, controllers'
-    /// inputs, libraries and laws; of a file of wind, which may be gigabytes, its size and the SHA-256 of its
-    /// first 64 KiB.
+    /// inputs, libraries and laws; of a file of wind of more than 16 MiB its size and the SHA-256 of its
+    /// first and last 64 KiB.
     ///
     /// # Errors
     /// [`StudyError`] for a file that cannot be read.
     pub fn of(&mut self, file: &CaseFile) -> Result<BTreeMap<String, String>, StudyError> {
         let (case, folder) = (&file.case, file.folder());
         let machines: Vec<String> = case.turbines.iter().map(Placement::machine).collect();
+        // What a controller's input names is known only once it is read.
+        let is_known = case.turbines.iter().all(|placement| placement.discon.is_none());
+        let stamp_of = |placement: &Placement| stamp(&folder.join(&placement.model));
+        let stamps: Vec<Stamp> = case.turbines.iter().map(stamp_of).collect();
         let mut found = match self.machines.get(&machines) {
-            Some(known) => known.clone(),
-            None => {
+            Some((then, known)) if is_known && *then == stamps => known.clone(),
+            _ => {
                 let texts = models::load(file)?.texts;
                 let digest =
                     |(name, text): (String, String)| (name, records::sha256(text.as_bytes()));
                 let digests: BTreeMap<String, String> = texts.into_iter().map(digest).collect();
-                self.machines.insert(machines, digests.clone());
+                self.machines.insert(machines, (stamps, digests.clone()));
                 digests
             }
         };
@@ -61,16 +72,59 @@ impl Inputs {
     }
 
     fn wind(&mut self, path: &Path) -> Result<String, FileError> {
-        if let Some(known) = self.winds.get(path) {
+        let now = stamp(path);
+        if let Some((then, known)) = self.winds.get(path)
+            && *then == now
+        {
             return Ok(known.clone());
         }
-        let failed = |source| FileError::system("read", WIND, path, source);
-        let file = File::open(path).map_err(failed)?;
-        let length = file.metadata().map_err(failed)?.len();
-        let mut head = Vec::new();
-        file.take(HEAD).read_to_end(&mut head).map_err(failed)?;
-        let print = format!("{length} bytes, {}", records::sha256(&head));
-        self.winds.insert(path.to_owned(), print.clone());
+        let print = wind_print(path)?;
+        self.winds.insert(path.to_owned(), (now, print.clone()));
         Ok(print)
+    }
+}
+
+fn stamp(path: &Path) -> Stamp {
+    let metadata = std::fs::metadata(path).ok()?;
+    Some((metadata.len(), metadata.modified().ok()))
+}
+
+/// What the file of wind at `path` is known by.
+fn wind_print(path: &Path) -> Result<String, FileError> {
+    let failed = |source| FileError::system("read", WIND, path, source);
+    let mut file = File::open(path).map_err(failed)?;
+    let length = file.metadata().map_err(failed)?.len();
+    if length <= WHOLE {
+        return records::sha256_of_file(path, WIND);
+    }
+    let mut ends = Vec::new();
+    (&file).take(END).read_to_end(&mut ends).map_err(failed)?;
+    file.seek(SeekFrom::End(-(END as i64))).map_err(failed)?;
+    file.take(END).read_to_end(&mut ends).map_err(failed)?;
+    Ok(format!("{length} bytes, {}", records::sha256(&ends)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_wind_that_is_changed_anywhere_in_a_small_file_or_at_an_end_of_a_large_one_is_another() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("wind");
+        for (length, places) in
+            [(1 << 20, [0, 1 << 19, (1 << 20) - 1]), (WHOLE + 1, [0, 99, WHOLE])]
+        {
+            let file = File::create(&path).unwrap();
+            file.set_len(length).unwrap();
+            let before = wind_print(&path).unwrap();
+            for place in places {
+                let mut bytes = vec![0; length as usize];
+                bytes[place as usize] = 1;
+                fs::write(&path, bytes).unwrap();
+                assert_ne!(wind_print(&path).unwrap(), before, "byte {place} of {length}");
+            }
+        }
     }
 }

@@ -14,8 +14,8 @@ use std::time::Instant;
 /// What a case costs that was looked at and timed for a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Wall time of its runs one after the other (s).
-    pub wall_time: f64,
+    /// Wall time of its runs one after the other (s); absent where its speed could not be told.
+    pub wall_time: Option<f64>,
     /// Memory of flow field and turbulence (bytes).
     pub memory: u64,
     /// Disk that its runs take at most at any time (bytes).
@@ -62,7 +62,7 @@ impl Sample {
         };
         let work = estimate.work + estimate.identification_work;
         Ok(Self {
-            wall_time: setup + speed.map_or(f64::NAN, |speed| work / speed),
+            wall_time: speed.map(|speed| setup + work / speed),
             memory: estimate.memory,
             disk: estimate.disk_in_all,
             series: estimate.n_rows * estimate.row * open.len() as u64,

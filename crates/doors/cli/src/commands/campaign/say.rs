@@ -55,11 +55,16 @@ pub(super) fn planned(plan: &Plan) -> String {
     )
 }
 
+/// A time (s) in words, where it is known.
+fn known(seconds: Option<f64>) -> String {
+    seconds.map_or("an unknown time".to_owned(), time)
+}
+
 fn cost(cost: &Cost) -> String {
     format!(
         "about {} of CPU time; {} on this machine, {} at a time on {} thread{} each, by {} that were timed for a moment\nmemory {}; disk {} in the end and up to {} for tasks under way\n",
-        time(cost.cpu_time),
-        time(cost.wall_time),
+        known(cost.cpu_time),
+        known(cost.wall_time),
         cost.n_workers,
         cost.threads,
         if cost.threads == 1 { "" } else { "s" },
