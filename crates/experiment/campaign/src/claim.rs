@@ -34,7 +34,7 @@ pub(crate) enum Next {
 }
 
 impl Table {
-    /// Takes the next pending task, of those with numbers in `wanted` where it names any, for `worker`; `mark`
+    /// Takes the next pending task, of those numbered in `wanted` where it names any, for `worker`; `mark`
     /// tells when the folder of a task has shown progress last.
     pub(crate) fn claim(
         &mut self,
@@ -92,7 +92,7 @@ impl Table {
         self.change("write", |transaction| transaction.execute(BACK, params![id, worker]).map(drop))
     }
 
-    /// Failed tasks between `first` and `last` are to be made again. Whoever takes one empties its folder: only
+    /// Failed tasks between `first` and `last` come back. Whoever takes one empties its folder: only
     /// then nobody else is in it.
     pub(crate) fn retry(&mut self, (first, last): (i64, i64)) -> Result<(), CampaignError> {
         const RETRY: &str = "UPDATE tasks SET state = 'pending', attempts = 0, fresh = 1 WHERE state = 'failed' AND id BETWEEN ?1 AND ?2";

@@ -103,7 +103,7 @@ fn backend(folder: &Path, summaries: &[Summary]) -> String {
     found.join("; ")
 }
 
-/// When the folder of the task numbered `id` has shown progress last: when its newest checkpoint or summary was
+/// When the folder of the task numbered `id` showed progress last: when its newest checkpoint or summary was
 /// written, in nanoseconds since 1970; 0 where it has none.
 pub(crate) fn mark(folder: &Path, id: i64) -> i64 {
     let runs = entries(&folder_of(folder, id)).unwrap_or_default();

@@ -226,7 +226,7 @@ impl Table {
         self.read(|connection| patiently(|| count(connection)))
     }
 
-    /// Task `id` is complete with these `summaries`, after `wall_time` (s), computed on `backend`; false where
+    /// Task `id` is complete with these `summaries`, after `wall_time` (s), computed on `backend`; false if
     /// another worker has taken it meanwhile.
     pub(crate) fn finish(
         &mut self,
