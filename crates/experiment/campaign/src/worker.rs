@@ -7,6 +7,7 @@ use formats::FileError;
 use formats::lock::Lock;
 use formats::machine;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -15,6 +16,9 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 const BEAT: Duration = Duration::from_secs(20);
 /// Time without a word after which a process of another machine is taken for ended (s).
 const SILENT: i64 = 300;
+
+/// Workers that this process was so far (–).
+static N_ENTERED: AtomicU64 = AtomicU64::new(0);
 
 /// This process as one that makes tasks; others see that it is there until it is dropped.
 pub(crate) struct Worker {
@@ -33,13 +37,12 @@ impl Worker {
     /// [`CampaignError::File`], [`CampaignError::Table`].
     pub(crate) fn enter(folder: &Path) -> Result<Self, CampaignError> {
         let host = machine::host();
-        // The hour tells processes of one number apart, the place in memory those of one millisecond.
-        let unique = Box::new(0_u8);
+        // The time tells processes of one number apart, the count those that enter within one process.
         let name = format!(
-            "{host}-{}-{}-{:x}",
+            "{host}-{}-{}-{}",
             std::process::id(),
             formats::clock::now().replace(':', "."),
-            std::ptr::from_ref(&*unique).addr() & 0xffff
+            N_ENTERED.fetch_add(1, Ordering::Relaxed)
         );
         let lock = Lock::take(&lock_path(folder, &name), "the worker")?;
         let mut table = Table::open(folder)?;
