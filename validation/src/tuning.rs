@@ -65,9 +65,12 @@ fn space() -> Space {
     Space::new(vec![Axis::new(0.05, 1.0), Axis::new(0.5, 6.0)]).expect("ranges that ascend")
 }
 
+/// Power lost (–), whether the interval holds the true gain, and whether those of the place hold the best.
+type Tuned = (f64, bool, [bool; 2]);
+
 /// Regret (–) of one tuning, and whether its intervals hold the gain at what it found, and both coordinates
 /// of the true optimum.
-fn tuning(seed: u64) -> (f64, bool, [bool; 2]) {
+fn tuning(seed: u64) -> Tuned {
     let mut wind = Wind::new(1000 + seed);
     let settings = Settings {
         weights: vec![1.0; 2],
@@ -115,9 +118,8 @@ pub fn tuning_of_an_array() -> Vec<Row> {
     let found: Vec<_> = (0..N_REPEATS as u64).map(tuning).collect();
     let n = N_REPEATS as f64;
     let mean = found.iter().map(|one| one.0).sum::<f64>() / n;
-    let share = |of: &dyn Fn(&(f64, bool, [bool; 2])) -> bool| {
-        100.0 * found.iter().filter(|one| of(one)).count() as f64 / n
-    };
+    let share =
+        |of: &dyn Fn(&Tuned) -> bool| 100.0 * found.iter().filter(|one| of(one)).count() as f64 / n;
     let sides = GRIDS.filter(|side| regret_of_grid(*side) <= mean);
     let grid = sides.min().unwrap_or(GRIDS.end() + 1);
     vec![

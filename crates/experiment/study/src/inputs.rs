@@ -24,11 +24,14 @@ const END: u64 = 1 << 16;
 /// Length of a file (bytes) and when it was changed; none where it is not there.
 type Stamp = Option<(u64, Option<SystemTime>)>;
 
+/// Digests of files by their names, with the stamps that the files had.
+type Stamped = (Vec<Stamp>, BTreeMap<String, String>);
+
 /// Fingerprints of turbine files, controllers' inputs, libraries and wind. Turbine files and wind are read
 /// once, as long as their length and the time of their last change stay.
 #[derive(Clone, Debug, Default)]
 pub struct Inputs {
-    machines: BTreeMap<Vec<String>, (Vec<Stamp>, BTreeMap<String, String>)>,
+    machines: BTreeMap<Vec<String>, Stamped>,
     winds: BTreeMap<PathBuf, (Stamp, String)>,
 }
 

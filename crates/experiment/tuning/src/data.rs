@@ -155,7 +155,7 @@ fn contributions(powers: &[[Vec<f64>; 2]]) -> Result<Vec<Vec<f64>>, AnalysisErro
     let array = |block: usize| powers.iter().map(|[_, before]| before[block]).sum::<f64>();
     let before: Vec<f64> = (0..n_blocks).map(array).collect();
     let reference = before.iter().sum::<f64>() / n_blocks as f64;
-    if !(reference.abs() > 0.0) {
+    if reference.is_nan() || reference == 0.0 {
         return Err(AnalysisError::ZeroMean);
     }
     let of_turbine = |[now, then]: &[Vec<f64>; 2]| {

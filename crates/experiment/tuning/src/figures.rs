@@ -110,7 +110,7 @@ fn curve(
 fn iterations(tuned: &Tuned) -> Result<CurveFigure, TuningError> {
     let steps = &tuned.found.steps;
     let stride = steps.len().div_ceil(MOST);
-    let is_drawn = |place: usize| place % stride == 0 || place + 1 == steps.len();
+    let is_drawn = |place: usize| place.is_multiple_of(stride) || place + 1 == steps.len();
     let mut panels = Vec::new();
     for (_, step) in steps.iter().enumerate().filter(|(place, _)| is_drawn(*place)) {
         let blocks = Part::Array.blocks(tuned, step.n_evaluations);

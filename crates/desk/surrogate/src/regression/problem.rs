@@ -126,12 +126,12 @@ impl Problem {
         let Scaling { centres, scales, centre, scale } = &self.scaling;
         let mut found: BTreeMap<(Vec<u64>, usize, u64), usize> = BTreeMap::new();
         let mut rows: Vec<Vec<f64>> = Vec::new();
-        for index in 0..observations.len() {
+        for (index, group) in group_of.iter().copied().enumerate() {
             let input = observations.input(index);
             let known = observations.variance(index);
             // Adding zero makes −0 and 0 the same.
             let bits = input.iter().map(|x| (x + 0.0).to_bits()).collect();
-            let key = (bits, group_of[index], (known + 0.0).to_bits());
+            let key = (bits, group, (known + 0.0).to_bits());
             let place = *found.entry(key).or_insert(rows.len());
             if place == rows.len() {
                 rows.push(Vec::new());
@@ -141,7 +141,7 @@ impl Problem {
                     column.push((x - centre) / scale);
                 }
                 self.known.push(known / (scale * scale));
-                self.groups.push(group_of[index]);
+                self.groups.push(group);
             }
             rows[place].push((observations.values[index] - centre) / scale);
         }
@@ -161,7 +161,7 @@ impl Problem {
         trend: Trend,
     ) -> Result<Self, SurrogateError> {
         let n = collapsed.values.len();
-        let n_dimensions = if n == 0 { 0 } else { collapsed.inputs.len() / n };
+        let n_dimensions = collapsed.inputs.len().checked_div(n).unwrap_or(0);
         let observations = Observations {
             inputs: collapsed.inputs.clone(),
             n_dimensions,

@@ -338,7 +338,7 @@ impl Regression {
 
     fn check(&self, inputs: &[f64]) -> Result<(), SurrogateError> {
         let n_dimensions = self.n_dimensions();
-        if inputs.len() % n_dimensions != 0 {
+        if !inputs.len().is_multiple_of(n_dimensions) {
             let (what, found) = ("the inputs", inputs.len());
             let needed = inputs.len().next_multiple_of(n_dimensions);
             return Err(SurrogateError::Lengths { what, found, needed });

@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &IdentifyArguments) -> Result<()> {
         tell(&format!("model: {}", path.display()));
     }
     if let Some(folder) = &arguments.report {
-        let page = report_identified(&found, &&arguments.file.display().to_string(), folder)?;
+        let page = report_identified(&found, &arguments.file.display().to_string(), folder)?;
         tell(&format!("report: {}", page.display()));
     }
     if arguments.json {

@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &SynthesizeArguments) -> Result<()> {
         tell(&format!("controller: {}", path.display()));
     }
     if let Some(folder) = &arguments.report {
-        let page = report_synthesized(&found, &&arguments.model.display().to_string(), folder)?;
+        let page = report_synthesized(&found, &arguments.model.display().to_string(), folder)?;
         tell(&format!("report: {}", page.display()));
     }
     if arguments.json {

@@ -2,7 +2,6 @@
 
 use super::stored::{mean_curve, regression};
 use crate::DesignError;
-use formats::FileError;
 use formats::surrogate_model::SurrogateModel;
 use formats::table::Samples;
 use std::path::{Path, PathBuf};
@@ -129,6 +128,6 @@ impl Predicted {
             }
             text.push('\n');
         }
-        Ok(formats::atomic::write(path, "predictions", text.as_bytes()).map_err(FileError::from)?)
+        Ok(formats::atomic::write(path, "predictions", text.as_bytes())?)
     }
 }

@@ -11,7 +11,7 @@ use super::findings::Findings;
 use super::keys::CAMPAIGN;
 use super::section::Section;
 use super::sources::Sources;
-use crate::atomic;
+use crate::{FileError, atomic};
 use basis::records::SweptValue;
 use levels::Levels;
 use places::Places;
@@ -114,6 +114,17 @@ pub fn read_campaign(path: &Path, shipped: Shipped) -> Result<CampaignFile, Case
     if problems.is_empty() { Ok(file) } else { Err(invalid(problems)) }
 }
 
+/// `error` of a file that the campaign at `path` names: where to mend its name.
+fn named_in(error: CaseError, path: &Path) -> CaseError {
+    match error {
+        CaseError::File(FileError::System { verb, what, path: named, fix, source }) => {
+            let fix = format!("{fix} in {}", path.display());
+            CaseError::File(FileError::System { verb, what, path: named, fix, source })
+        }
+        other => other,
+    }
+}
+
 /// What `entries` of the file of `text` at `path` say, and everything that is wrong in them.
 ///
 /// # Errors
@@ -129,7 +140,10 @@ fn read_entries(
     let root = Section::open(&CAMPAIGN, entries, end.clone(), String::new(), &findings);
     let folder = path.parent().unwrap_or(Path::new(""));
     let case = case_of(&root.text("case"), folder, shipped);
-    let places = if root.has("case") { Places::read(&case, shipped)? } else { Places::none() };
+    let places = match root.has("case") {
+        true => Places::read(&case, shipped).map_err(|error| named_in(error, path))?,
+        false => Places::none(),
+    };
     if places.sweeps {
         let message = "the case has a [sweep] of its own".to_owned();
         let fix = "leave it out of the case, and give its keys under [factors]";
@@ -139,7 +153,9 @@ fn read_entries(
     levels.read_factors(root.entry("factors"));
     levels.read_linked(root.entry("linked"));
     if let Some(name) = root.optional_text("table") {
-        levels.read_table(&folder.join(name), &root.span_of("table"))?;
+        levels
+            .read_table(&folder.join(name), &root.span_of("table"))
+            .map_err(|error| named_in(error, path))?;
     }
     let seed_key = root.optional_text("seed_key").unwrap_or_else(|| super::sweep::SEED.to_owned());
     levels.read_seeds(&seed_key, root.entry("seeds"));
