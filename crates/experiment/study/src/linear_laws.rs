@@ -49,8 +49,8 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// What decides the laws of a `case` to which they are [attached](attach): SHA-256 of each law's file by its
-/// name, of those that can be read, and the reference (m) of each run that is one by its folder. The run's own
+/// What decides the laws of a `case` to which they are [attached](attach): SHA-256 of each law's file by
+/// its name, of those that can be read, and the reference (m) of each run that is one by its folder. The run's own
 /// files may change, such as by making it again with the same result.
 pub(crate) fn digests(case: &Case, folder: &Path) -> BTreeMap<String, String> {
     let mut digests = BTreeMap::new();
@@ -69,8 +69,8 @@ pub(crate) fn digests(case: &Case, folder: &Path) -> BTreeMap<String, String> {
     digests
 }
 
-/// Mean of the hub vortex of a turbine in the helix frame (m), in the `run` that a case in `folder` names, where
-/// it was followed as its `own` settings say.
+/// Mean of the hub vortex of a turbine in the helix frame (m), in the `run` that a case in `folder` names,
+/// where it was followed as its `own` settings say.
 fn mean_hub_vortex(
     run: &str,
     folder: &Path,

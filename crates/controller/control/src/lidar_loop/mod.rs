@@ -64,8 +64,8 @@ struct Limits {
 }
 
 impl Limits {
-    /// `wanted` (rad) brought within what can be reached `interval` (s) after it was `before` (rad); directions
-    /// are kept.
+    /// `wanted` (rad) brought within what can be reached `interval` (s) after it was `before` (rad);
+    /// directions are kept.
     fn limited(&self, wanted: [f64; 2], before: [f64; 2], interval: f64) -> [f64; 2] {
         let wanted = shortened(wanted, self.size);
         let step = shortened([0, 1].map(|axis| wanted[axis] - before[axis]), self.rate * interval);

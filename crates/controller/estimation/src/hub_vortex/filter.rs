@@ -105,8 +105,8 @@ pub struct HubVortex {
     /// How sure it is (–), from 0 to 1: points seen, excess over noise, and how many scans of those in the
     /// filter found it.
     pub confidence: f64,
-    /// How sure those of the scans in the filter are that found it (–): [`confidence`](Self::confidence) without
-    /// its gaps.
+    /// How sure those of the scans in the filter are that found it (–): [`confidence`](Self::confidence)
+    /// without its gaps.
     pub trust: f64,
     /// Whether it was not found in the latest scan.
     pub held: bool,

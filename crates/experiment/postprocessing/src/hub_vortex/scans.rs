@@ -178,8 +178,9 @@ fn mean_range(stored: &StoredScans, index: usize) -> f64 {
     stored.ranges[points.clone()].iter().sum::<f64>() / points.len() as f64
 }
 
-/// Samples `interval` (s) apart as a controller takes them: each at the first of `times` (s) that is not before
-/// it is due, with the scan of that time. Of scans that are further apart the latest is seen again when due.
+/// Samples `interval` (s) apart as a controller takes them: each at the first of `times` (s) that is not
+/// before it is due, with the scan of that time. Of scans that are further apart the latest is seen again
+/// when due.
 fn sampled(times: &[f64], interval: f64) -> Vec<(f64, usize)> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
     if interval.is_nan() || interval <= 0.0 {
