@@ -79,8 +79,8 @@ pub struct HubVortexNumbers {
     /// centre (m).
     pub centre: [f64; 2],
     /// Mean distance from that centre, and its standard deviation (m), as the low-pass filter leaves it: it
-    /// takes 1 % at samples 0.1 s apart, 11 % at 0.4 s, of a helix of 42 s. Places in the helix frame have that
-    /// made good.
+    /// takes 1 % at samples 0.1 s apart, 11 % at 0.4 s, of a helix of 42 s. Places in the helix frame have
+    /// that made good.
     pub radius: [f64; 2],
     /// Mean tilt and yaw in the helix frame (m).
     pub helix: [f64; 2],

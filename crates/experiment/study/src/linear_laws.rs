@@ -50,8 +50,8 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
 }
 
 /// What decides the laws of a `case` to which they are [attached](attach): SHA-256 of each law's file by
-/// its name, of those that can be read, and the reference (m) of each run that is one by its folder. The run's own
-/// files may change, such as by making it again with the same result.
+/// its name, of those that can be read, and the reference (m) of each run that is one by its folder. The
+/// run's own files may change, such as by making it again with the same result.
 pub(crate) fn digests(case: &Case, folder: &Path) -> BTreeMap<String, String> {
     let mut digests = BTreeMap::new();
     for control in case.runs.iter().flat_map(|run| &run.control) {
