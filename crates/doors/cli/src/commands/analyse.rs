@@ -1,11 +1,11 @@
 //! `wakemix analyse`: what the records of runs tell. Arguments and help come from the list of analyses.
 
 use super::arguments::finite;
-use super::output::{columns, detail, print, print_text, tell};
+use super::output::{columns, detail, print_json, print_text, tell};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
-use miette::{IntoDiagnostic, Result};
+use miette::Result;
 use std::path::PathBuf;
 use wakemix::postprocessing::analyses::{ANALYSES, Analysis, AnalysisSetting, Of, Request, Takes};
 
@@ -110,11 +110,7 @@ pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
     for remark in &answer.remarks {
         tell(remark);
     }
-    if command.json {
-        print(&(serde_json::to_string_pretty(&answer.json).into_diagnostic()? + "\n"))
-    } else {
-        print_text(&answer.text)
-    }
+    if command.json { print_json(&answer.json) } else { print_text(&answer.text) }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 mod say;
 
-use super::output::{print, print_text, refuse, say, tell, warn};
+use super::output::{print, print_json, print_text, refuse, say, tell, warn};
 use super::{BAD_INPUT, DIVERGED, INTERRUPTED, arguments, stop};
 use campaign::{CampaignError, Ended, Format, RunOptions, Script};
 use clap::{Args, Subcommand, ValueEnum};
@@ -188,9 +188,7 @@ fn tell_end(folder: &Path, ended: &Ended) -> ExitCode {
 fn status(folder: &Path, as_json: bool) -> miette::Result<()> {
     let status = campaign::status(folder)?;
     if as_json {
-        return print(
-            &(serde_json::to_string_pretty(&say::json(&status)).into_diagnostic()? + "\n"),
-        );
+        return print_json(&say::json(&status));
     }
     print_text(&stands(&status))
 }

@@ -1,10 +1,10 @@
 //! `wakemix identify`: a linear model of what answers an excitation.
 
 use super::arguments::{finite, positive};
-use super::output::{print, print_text, tell};
+use super::output::{print_json, print_text, tell};
 use clap::Args;
 use design::{Identified, IdentifyQuestion, Source, Trend, identify, report_identified};
-use miette::{IntoDiagnostic, Result};
+use miette::Result;
 use serde_json::json;
 use std::path::PathBuf;
 use wakemix::report::text_table::{Column, TextTable};
@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &IdentifyArguments) -> Result<()> {
         tell(&format!("report: {}", page.display()));
     }
     if arguments.json {
-        print(&(serde_json::to_string_pretty(&json(&found)).into_diagnostic()? + "\n"))
+        print_json(&json(&found))
     } else {
         print_text(&text(&found, arguments.bandwidth))
     }

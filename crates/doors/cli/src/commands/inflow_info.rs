@@ -1,7 +1,6 @@
 //! `wakemix inflow info`: what a turbulence box holds.
 
-use super::output::{detail, print, print_text};
-use miette::IntoDiagnostic;
+use super::output::{detail, print_json, print_text};
 use std::path::Path;
 use wakemix::flow::inflow::statistics::{BoxStatistics, line_deviations, statistics};
 use wakemix::formats::turbulence_box::{self, StoredBox};
@@ -29,7 +28,7 @@ pub(crate) fn run(file: &Path, json: bool) -> miette::Result<()> {
             "hub_standard_deviations": hub_deviations(&stored),
             "statistics": numbers,
         });
-        print(&(serde_json::to_string_pretty(&value).into_diagnostic()? + "\n"))
+        print_json(&value)
     } else {
         print_text(&text(&stored, &numbers))
     }

@@ -46,6 +46,14 @@ pub(crate) fn print_text(text: &str) -> Result<()> {
     print(&wrapped(text, columns()))
 }
 
+/// Writes `value`, made for other programs, to standard output.
+///
+/// # Errors
+/// Those of [`print`].
+pub(crate) fn print_json(value: &serde_json::Value) -> Result<()> {
+    print(&format!("{value:#}\n"))
+}
+
 /// Writes the line `text`, a remark, to standard error, unless less is to be said.
 pub(crate) fn tell(text: &str) {
     if manner::says_remarks() {

@@ -4,14 +4,14 @@ mod print;
 
 use self::print::{parameters_json, parameters_text, train_json, validate_json, validations_text};
 use super::arguments::positive;
-use super::output::{print, print_text, tell, warn};
+use super::output::{print_json, print_text, tell, warn};
 use clap::{Args, Subcommand, ValueEnum};
 use design::regression::{
     KernelText, PredictQuestion, TrainQuestion, ValidateQuestion, cuts, draw_surrogate, predict,
     train, validate,
 };
 use design::{SurrogateModel, SurrogateTrend};
-use miette::{IntoDiagnostic, Result, miette};
+use miette::{Result, miette};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -283,8 +283,4 @@ fn two_of(names: &[String], model: &SurrogateModel) -> Result<Option<[usize; 2]>
             names.len()
         )),
     }
-}
-
-fn print_json(value: &serde_json::Value) -> Result<()> {
-    print(&(serde_json::to_string_pretty(value).into_diagnostic()? + "\n"))
 }

@@ -1,9 +1,9 @@
 //! `wakemix synthesize`: a controller for a model.
 
-use super::output::{print, print_text, tell};
+use super::output::{print_json, print_text, tell};
 use clap::Args;
 use design::{SynthesizeQuestion, Synthesized, report_synthesized, synthesize};
-use miette::{IntoDiagnostic, Result};
+use miette::Result;
 use serde_json::json;
 use std::path::PathBuf;
 use wakemix::report::text_table::{Column, TextTable};
@@ -43,11 +43,7 @@ pub(crate) fn run(arguments: &SynthesizeArguments) -> Result<()> {
         let page = report_synthesized(&found, &arguments.model.display().to_string(), folder)?;
         tell(&format!("report: {}", page.display()));
     }
-    if arguments.json {
-        print(&(serde_json::to_string_pretty(&json(&found)).into_diagnostic()? + "\n"))
-    } else {
-        print_text(&text(&found))
-    }
+    if arguments.json { print_json(&json(&found)) } else { print_text(&text(&found)) }
 }
 
 /// A number, or a dash where there is none.

@@ -1,11 +1,11 @@
 //! `wakemix tune`: settings of a controller from few simulations.
 
-use super::output::{columns, print, print_text, refuse, say, tell, warn};
+use super::output::{columns, print_json, print_text, refuse, say, tell, warn};
 use super::stop;
 use super::{BAD_INPUT, DIVERGED, INTERRUPTED};
 use clap::Args;
 use indicatif::{HumanBytes, HumanDuration, ProgressBar, ProgressStyle};
-use miette::{IntoDiagnostic, Result};
+use miette::Result;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -131,7 +131,7 @@ fn has_diverged(error: &TuningError) -> bool {
 fn done(tuned: &Tuned, as_json: bool) -> Result<()> {
     tell(&format!("report: {}", tuned.page.display()));
     if as_json {
-        return print(&(serde_json::to_string_pretty(&tuned.to_json()).into_diagnostic()? + "\n"));
+        return print_json(&tuned.to_json());
     }
     print_text(&text(tuned))
 }
