@@ -135,7 +135,7 @@ fn threads(file: &CampaignFile, first: &Task) -> Result<Option<usize>, CampaignE
 
 /// Tasks at a time on this machine (–): as many as cores carry with so many threads each.
 pub(crate) fn n_workers(threads: Option<usize>) -> usize {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cores = study::cores();
     threads.map_or(1, |threads| (cores / threads).max(1))
 }
 
@@ -156,7 +156,7 @@ fn cost(
             |source| CampaignError::Sample { settings: task.words(), source: Box::new(source) };
         samples.push(Sample::of(&case, &file.runs, threads).map_err(failed)?);
     }
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cores = study::cores();
     let n_workers = n_workers(threads).min(tasks.len());
     Ok(spread(&samples, tasks.len(), n_workers, threads.unwrap_or(cores), file.keep))
 }

@@ -95,7 +95,7 @@ pub(crate) fn hash(
 /// # Errors
 /// [`CampaignError::Level`] or [`CampaignError::Sample`] of the first task that cannot be read.
 pub(crate) fn hashes(file: &CampaignFile, tasks: &[Task]) -> Result<Vec<String>, CampaignError> {
-    let n_threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let n_threads = study::cores();
     let found: Mutex<Vec<Option<Result<String, StudyError>>>> =
         Mutex::new(tasks.iter().map(|_| None).collect());
     let (next, broken) = (AtomicUsize::new(0), AtomicUsize::new(usize::MAX));

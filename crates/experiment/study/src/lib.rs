@@ -61,4 +61,5 @@ pub use ready::Ready;
 pub use sample::Sample;
 pub use self_check::SelfChecked;
 pub use sweep::{run, run_with};
+pub use threads::cores;
 pub use warnings::SetupWarning;

@@ -9,7 +9,7 @@ use std::thread;
 const MOST_PER_CORE: usize = 16;
 
 /// Cores that this process may use (–).
-pub(crate) fn cores() -> usize {
+pub fn cores() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
