@@ -118,14 +118,14 @@ static KEYS: [Key; 13] = [
         "tree_degree",
         Holds::Whole { least: 2, most: 6 },
         "–",
-        Value("3"),
-        "Degree of the polynomials by which vortices are felt from afar.",
+        Value("4"),
+        "Degree of the harmonics by which vortices are felt from afar.",
     ),
     key(
         "tree_opening",
         from(0.0, 0.9),
         "–",
-        Value("0.6"),
+        Value("0.55"),
         "A box of vortices is far where its radius is less than this share of its distance; 0 sums them one by one.",
     ),
     key(

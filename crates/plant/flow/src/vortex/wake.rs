@@ -1,7 +1,8 @@
 //! The wakes of all blades in the wind, as a flow.
 
 use super::body::{Body, N_SIDES, sides_to_nodes};
-use super::field::{CHUNK, Field};
+use super::field::{CHUNK, Field, GROUP};
+use super::neighbours::Neighbours;
 use super::rotor::Rotor;
 use super::segment::Segment;
 use super::settings::{WakeError, WakeSettings};
@@ -41,6 +42,9 @@ pub struct FreeWake {
     nodes: Vec<Vector3>,
     /// Places at which vortices carry the nodes.
     middles: Vec<Vector3>,
+    neighbours: Neighbours,
+    /// What vortices induce at these, in their order.
+    sorted: Vec<Vector3>,
     winds: Vec<Vector3>,
     induced: Vec<Vector3>,
     pool: Mutex<Pool>,
@@ -69,6 +73,8 @@ impl FreeWake {
             field,
             nodes: Vec::with_capacity(most),
             middles: Vec::with_capacity(most),
+            neighbours: Neighbours::with_capacity(most),
+            sorted: Vec::with_capacity(most),
             winds: Vec::with_capacity(most),
             induced: Vec::with_capacity(most),
             pool: Mutex::new(Pool::new(n_threads)),
@@ -115,15 +121,25 @@ impl FreeWake {
         self.pool.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What all vortices induce at `position` (m/s), images included.
-    fn induced_at(&self, position: Vector3) -> Vector3 {
-        let direct = self.field.velocity(position);
+    /// On return `velocities` (m/s) hold what all vortices induce at `positions` (m), images included.
+    fn induce(&self, positions: &[Vector3], velocities: &mut [Vector3]) {
+        self.field.sample(positions, velocities);
         if !self.settings.ground {
-            return direct;
+            return;
         }
         // An image below the ground induces here what its vortex does below the ground, upside down.
         let upside_down = Vector3::new(1.0, 1.0, -1.0);
-        direct + upside_down * self.field.velocity(upside_down * position)
+        for (positions, velocities) in positions.chunks(GROUP).zip(velocities.chunks_mut(GROUP)) {
+            let (mut below, mut images) = ([Vector3::ZERO; GROUP], [Vector3::ZERO; GROUP]);
+            let n = positions.len();
+            for (below, position) in below.iter_mut().zip(positions) {
+                *below = upside_down * *position;
+            }
+            self.field.sample(&below[..n], &mut images[..n]);
+            for (velocity, image) in velocities.iter_mut().zip(images) {
+                *velocity += upside_down * image;
+            }
+        }
     }
 
     /// What bound vortices among `forces` say of their turbines, and what drag leaves behind; makes sheets of
@@ -184,13 +200,7 @@ impl FreeWake {
         self.winds.resize(self.nodes.len(), Vector3::ZERO);
         self.induced.resize(self.nodes.len(), Vector3::ZERO);
         self.wind.sample(&self.nodes, &mut self.winds);
-        let mut induced = std::mem::take(&mut self.induced);
-        self.pool().for_chunks(&mut induced, CHUNK, &|first, chunk| {
-            for (velocity, position) in chunk.iter_mut().zip(&self.middles[first..]) {
-                *velocity = self.induced_at(*position);
-            }
-        });
-        self.induced = induced;
+        self.feel_vortices();
         self.move_to_nodes();
         for ((wind, induced), position) in self.winds.iter_mut().zip(&self.induced).zip(&self.nodes)
         {
@@ -202,6 +212,19 @@ impl FreeWake {
             }
         }
         Ok(())
+    }
+
+    /// On return `induced` holds what vortices induce at the middles of filaments.
+    fn feel_vortices(&mut self) {
+        let Self { neighbours, middles, pool, .. } = self;
+        neighbours.sort(middles, pool.get_mut().unwrap_or_else(PoisonError::into_inner));
+        let mut sorted = std::mem::take(&mut self.sorted);
+        sorted.resize(self.middles.len(), Vector3::ZERO);
+        self.pool().for_chunks(&mut sorted, CHUNK, &|first, chunk| {
+            self.induce(&self.neighbours.sorted()[first..first + chunk.len()], chunk);
+        });
+        self.neighbours.to_own_order(&sorted, &mut self.induced);
+        self.sorted = sorted;
     }
 
     /// On return `induced` holds what vortices induce at nodes, in place of the middles of filaments.
@@ -262,8 +285,12 @@ impl FreeWake {
 impl WindField for FreeWake {
     fn sample(&self, positions: &[Vector3], velocities: &mut [Vector3]) {
         self.wind.sample(positions, velocities);
-        for (position, velocity) in positions.iter().zip(velocities) {
-            *velocity += self.induced_at(*position);
+        for (positions, velocities) in positions.chunks(GROUP).zip(velocities.chunks_mut(GROUP)) {
+            let mut induced = [Vector3::ZERO; GROUP];
+            self.induce(positions, &mut induced[..positions.len()]);
+            for (velocity, induced) in velocities.iter_mut().zip(induced) {
+                *velocity += induced;
+            }
         }
     }
 }
