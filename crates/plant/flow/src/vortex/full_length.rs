@@ -33,7 +33,8 @@ impl FreeWake {
                 let Some(newest) = sheet.near.n_rows().checked_sub(1) else { continue };
                 let line = sheet.near.row(newest).to_vec();
                 *sheet = Sheet::new(sheet.owner, circulations.len(), settings.resolution);
-                let n_rows = (settings.resolution.length / course.way).ceil() as usize + 1;
+                let length = settings.resolution.length_behind(course.hub.x);
+                let n_rows = (length / course.way).ceil() as usize + 1;
                 for step in (0..=n_rows).rev() {
                     let before: Vec<Vector3> =
                         line.iter().map(|node| course.back(*node, step)).collect();
