@@ -53,7 +53,9 @@ fn a_wake_of_full_length_is_there_at_once_and_goes_on() {
     let grown = wake.filaments();
     let far = grown.nodes.iter().map(|node| node[0]).fold(0.0, f32::max);
     assert!((150.0..160.0).contains(&far), "{far}");
-    assert!(wake.segments().len() > 10 * young && wake.segments().len() < 2500);
+    let of_nacelle = wake.bodies[0].n_rings() * N_SIDES;
+    let of_blades = wake.segments().len() - of_nacelle;
+    assert!(of_blades > 10 * young && of_blades < 2500);
     // A helix that is carried along with 0.65 of some 8 m/s, turns by 0.15 a step and keeps its radius.
     let tip =
         |piece: &&basis::records::Piece| piece.kind == PieceKind::Trailing && piece.span == 1.0;
@@ -68,6 +70,11 @@ fn a_wake_of_full_length_is_there_at_once_and_goes_on() {
             assert!((radius - 40.0).abs() < 0.5, "{radius}");
         }
     }
+    // So are the rings behind the nacelle: half of its radius apart, and what a step's way is more.
+    let rings = &wake.bodies[0];
+    let places: Vec<f64> = rings.positions.iter().step_by(N_SIDES).map(|node| node.x).collect();
+    assert!(places.windows(2).all(|pair| (1.0..=2.1).contains(&(pair[0] - pair[1]))), "{places:?}");
+    assert!((97.9..=100.0).contains(&places[0]), "{}", places[0]);
     // What it costs stays: as much is added as comes to its end.
     let before = wake.segments().len() as f64;
     advanced(&mut wake, 1..7);
