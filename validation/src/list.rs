@@ -1,10 +1,11 @@
 //! All validations, in the order in which they are listed.
 
 mod elsewhere;
+mod vortices;
 
 use crate::{
-    Cost, Validation, actuator_line, aeroelastic, atmosphere, blade_element, flow, free_vortex,
-    helix, inflow, meandering, memory, phase_estimator, refined_rotor, resume, structure,
+    Cost, Validation, actuator_line, aeroelastic, atmosphere, blade_element, flow, helix, inflow,
+    meandering, memory, phase_estimator, refined_rotor, resume, structure,
 };
 
 pub use elsewhere::ELSEWHERE;
@@ -56,51 +57,12 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "actuator-line",
         recorded: include_str!("../recorded/actuator-line-flat.toml"),
     },
-    Validation {
-        name: "free-vortex",
-        about: "free vortices against closed forms: rings, helices, an elliptic wing; boxes of them against their sum",
-        cost: Cost::UnderAMinute,
-        run: free_vortex::free_vortex,
-        pictures: None,
-        page: "free-vortex",
-        recorded: include_str!("../recorded/free-vortex.toml"),
-    },
-    Validation {
-        name: "free-vortex-rotor",
-        about: "power and thrust of three rotors with free wakes against blade elements in axisymmetric flow, and blade-element momentum",
-        cost: Cost::Minutes(10),
-        run: free_vortex::free_vortex_rotor,
-        pictures: None,
-        page: "free-vortex",
-        recorded: include_str!("../recorded/free-vortex-rotor.toml"),
-    },
-    Validation {
-        name: "free-vortex-budget",
-        about: "impulse, momentum, angular momentum and circulation of a rotor and its free wake",
-        cost: Cost::UnderAMinute,
-        run: free_vortex::free_vortex_budget,
-        pictures: None,
-        page: "free-vortex",
-        recorded: include_str!("../recorded/free-vortex-budget.toml"),
-    },
-    Validation {
-        name: "free-vortex-wake",
-        about: "wake and blade loading of a rotor with a free wake beside the lattice on 32 cells a diameter; its outer vortices beside axisymmetric flow",
-        cost: Cost::Minutes(8),
-        run: free_vortex::free_vortex_wake,
-        pictures: Some(free_vortex::free_vortex_wake_pictures),
-        page: "free-vortex",
-        recorded: include_str!("../recorded/free-vortex-wake.toml"),
-    },
-    Validation {
-        name: "free-vortex-helix",
-        about: "where the hub vortex of a rotor with a helix and a free wake is at 1 D, against amplitude and Strouhal number of twelve helices, beside a published study",
-        cost: Cost::Minutes(6),
-        run: free_vortex::free_vortex_helix,
-        pictures: None,
-        page: "free-vortex",
-        recorded: include_str!("../recorded/free-vortex-helix.toml"),
-    },
+    vortices::VORTICES,
+    vortices::ROTOR,
+    vortices::BUDGET,
+    vortices::WAKE,
+    vortices::HELIX,
+    vortices::OPEN_LOOP,
     Validation {
         name: "flow",
         about: "the lattice against closed forms: Taylor-Green, free stream, mass, outlet, a disc in momentum theory",

@@ -168,6 +168,11 @@ fn tables(page: &str, entries: &[Entry]) -> String {
 /// Shortfalls first, each of them; then what is met.
 fn table(entry: &Entry, text: &mut String) {
     let Entry { name, repeat, record, .. } = entry;
+    if record.rows.is_empty() {
+        let verdict = verdict(record);
+        let _ = writeln!(text, "**{name}: {verdict}.** Repeat with `{repeat}`.");
+        return;
+    }
     let _ = writeln!(
         text,
         "**{name}: {}.** Recorded {}, {}; repeat with `{repeat}`.\n",
@@ -199,6 +204,7 @@ fn table(entry: &Entry, text: &mut String) {
 fn verdict(record: &Record) -> String {
     let (met, all) = (record.n_met(), record.rows.len());
     match all - met {
+        _ if all == 0 => "not recorded yet".to_owned(),
         0 if all == 1 => "the one claim is met".to_owned(),
         0 if all == 2 => "both claims are met".to_owned(),
         0 => format!("all {all} claims are met"),
@@ -295,6 +301,14 @@ mod tests {
         );
         assert_eq!(renewed("wings", &page, &[entry(&rows)]).unwrap(), page);
         assert!(renewed("wings", "# Wings\n", &[entry(&rows)]).is_err());
+    }
+
+    #[test]
+    fn what_is_not_recorded_is_not_said_to_be_met() {
+        let mut text = String::new();
+        table(&entry("row = []\n"), &mut text);
+        assert_eq!(text, "**wing: not recorded yet.** Repeat with `wakemix validate wing`.\n");
+        assert!(list(&[entry("row = []\n")]).contains("| not recorded yet |"));
     }
 
     #[test]

@@ -5,6 +5,13 @@
 //! flow is steady for who turns with it; where there are no vortices its total pressure is then short of the
 //! wind's by ρ Ω r |w|, w the swirl, and the fluxes of momentum and of angular momentum through a plane are
 //! thrust and torque. The blades' profile drag is left out on both sides: it leaves no vortices.
+//!
+//! Energy: with that pressure p + ½ ρ |u|² is ρ Ω r w short of the wind's, point by point (w against the
+//! rotor's sense), so that the mechanical energy that a plane behind the rotor lacks is Ω times the flux of
+//! angular momentum, as the power is Ω times the torque. In this frame the budget of energy is that of
+//! angular momentum and no second one; ahead of the rotor there is no mean swirl, and nothing is lacking.
+//! The kinetic energy of the vortices makes none either: it falls as their cores grow and where they are
+//! joined.
 
 use super::held::{AIR_DENSITY, at_held_speed, flat};
 use super::rotor::{Fineness, USUAL, wake};
@@ -22,10 +29,13 @@ const NAME: &str = "nrel-5mw";
 /// Places of the planes behind the rotor and radius of the circle whose circulation is taken (rotor radii).
 const PLANE: f64 = 1.0;
 const CIRCLE: [f64; 2] = [0.1, 0.6];
-/// The plane reaches so far out (rotor radii), in rings of so many points.
-const WIDTH: f64 = 4.0;
-const N_RINGS: usize = 240;
-const N_AROUND: usize = 12;
+/// Parts of the plane: how far out they reach (rotor radii), and how many rings of points they have. Within
+/// the first are the vortices, and rings are no further apart than their cores.
+const PARTS: [(f64, usize); 2] = [(1.5, 300), (4.0, 100)];
+/// Points of a ring. With 36 steps a turn they stand at 1332 angles of the frame that turns with the rotor,
+/// a quarter of a degree apart, and so at all distances from the corners of the wake, which stand at
+/// multiples of a step.
+const N_AROUND: usize = 37;
 
 /// The wake keeps all of its vortices: its end never comes.
 const WHOLE: Fineness = Fineness { length: 10.0, settling: 6.0, ..USUAL };
@@ -197,7 +207,7 @@ fn bound(forces: &[PointForce], radius: f64, hub: Vector3) -> f64 {
 
 /// Wind along the axis, outwards and around it at `radius` from the axis and `behind` the rotor (m), at
 /// angle number `k` of the points around.
-fn at(wake: &FreeWake, hub: Vector3, behind: f64, radius: f64, k: usize) -> [f64; 3] {
+fn at(wake: &impl WindField, hub: Vector3, behind: f64, radius: f64, k: usize) -> [f64; 3] {
     let (sine, cosine) = (TAU * k as f64 / N_AROUND as f64).sin_cos();
     let outwards = Vector3::new(0.0, cosine, sine);
     let mut wind = [Vector3::ZERO];
@@ -206,19 +216,28 @@ fn at(wake: &FreeWake, hub: Vector3, behind: f64, radius: f64, k: usize) -> [f64
 }
 
 /// Circulation around the wake on the circle (m²/s), against the rotor's sense.
-fn swirl(wake: &FreeWake, hub: Vector3, radius: f64) -> f64 {
+fn swirl(wake: &impl WindField, hub: Vector3, radius: f64) -> f64 {
     let [behind, r] = CIRCLE.map(|share| share * radius);
     let around = |k: usize| at(wake, hub, behind, r, k)[2];
     -TAU * r * (0..N_AROUND).map(around).sum::<f64>() / N_AROUND as f64
 }
 
+/// Radii of the rings of points on a plane, and their widths (rotor radii).
+fn rings() -> impl Iterator<Item = [f64; 2]> {
+    let mut inner = 0.0;
+    PARTS.into_iter().flat_map(move |(outer, n)| {
+        let (first, width) = (inner, (outer - inner) / n as f64);
+        inner = outer;
+        (0..n).map(move |ring| [first + (ring as f64 + 0.5) * width, width])
+    })
+}
+
 /// Thrust (N) and torque (N m) by what passes the plane: ∫ ρ u (U − u) + p₀ − p and −∫ ρ u w r, with
 /// p₀ − p = ½ ρ (|u|² − U²) − ρ Ω r w for the swirl w.
-fn fluxes(wake: &FreeWake, hub: Vector3, radius: f64, rotor_speed: f64) -> [f64; 2] {
-    let width = WIDTH * radius / N_RINGS as f64;
+fn fluxes(wake: &impl WindField, hub: Vector3, radius: f64, rotor_speed: f64) -> [f64; 2] {
     let mut sum = [0.0; 2];
-    for ring in 0..N_RINGS {
-        let r = (ring as f64 + 0.5) * width;
+    for [r, width] in rings() {
+        let (r, width) = (r * radius, width * radius);
         let weight = AIR_DENSITY * TAU * r * width / N_AROUND as f64;
         for k in 0..N_AROUND {
             let [u, v, w] = at(wake, hub, PLANE * radius, r, k);
@@ -228,4 +247,59 @@ fn fluxes(wake: &FreeWake, hub: Vector3, radius: f64, rotor_speed: f64) -> [f64;
         }
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RADIUS: f64 = 10.0;
+    const DEFICIT: f64 = 2.0;
+    const SWIRL: f64 = 0.5;
+    /// Steps of a turn, and corners of the wake around (–).
+    const N_STEPS: u32 = 36;
+    const N_CORNERS: f64 = 18.0;
+
+    /// A wake of one radius that turns as a solid body and wavers from corner to corner, all of which turns
+    /// with the rotor: at this angle now (rad).
+    struct Wavering(f64);
+
+    impl WindField for Wavering {
+        fn sample(&self, positions: &[Vector3], velocities: &mut [Vector3]) {
+            for (position, velocity) in positions.iter().zip(velocities) {
+                let (r, angle) = (position.y.hypot(position.z), position.z.atan2(position.y));
+                let wave = 1.0 + (N_CORNERS * (angle - self.0)).cos();
+                let inside = if r < RADIUS { wave } else { 0.0 };
+                let around = Vector3::new(0.0, -position.z, position.y) / RADIUS;
+                *velocity = Vector3::X * (WIND - DEFICIT * inside) - SWIRL * inside * around;
+            }
+        }
+    }
+
+    #[test]
+    fn fluxes_are_those_of_a_wake_that_wavers_from_corner_to_corner() {
+        let rotor_speed = 1.2;
+        let mut found = [0.0; 2];
+        for step in 0..N_STEPS {
+            let angle = TAU * f64::from(step) / f64::from(N_STEPS);
+            let of_step = fluxes(&Wavering(angle), Vector3::ZERO, RADIUS, rotor_speed);
+            (0..2).for_each(|k| found[k] += of_step[k] / f64::from(N_STEPS));
+        }
+        // By hand, with ⟨q⟩ = 1 and ⟨q²⟩ = 3/2 of q = 1 + cos 18 θ, and w = −S q r/R:
+        let (area, ratio) = (0.5 * TAU * RADIUS * RADIUS, 1.5);
+        // ∫ u (U − u) + ½ (u² + w² − U²) − Ω r w, and ∫ u S q r²/R.
+        let along = -0.5 * DEFICIT * DEFICIT * ratio;
+        let around = 0.25 * SWIRL * SWIRL * ratio + 0.5 * rotor_speed * SWIRL * RADIUS;
+        let thrust = AIR_DENSITY * area * (along + around);
+        let torque = AIR_DENSITY * area * 0.5 * SWIRL * RADIUS * (WIND - DEFICIT * ratio);
+        assert!((found[0] / thrust - 1.0).abs() < 1e-3, "{} {thrust}", found[0]);
+        assert!((found[1] / torque - 1.0).abs() < 1e-3, "{} {torque}", found[1]);
+    }
+
+    #[test]
+    fn rings_cover_the_plane() {
+        let area: f64 = rings().map(|[r, width]| TAU * r * width).sum();
+        assert!((area / (0.5 * TAU * 16.0) - 1.0).abs() < 1e-12, "{area}");
+        assert_eq!(rings().count(), 400);
+    }
 }

@@ -1,4 +1,4 @@
-//! The hub vortex of a rotor with a helix, a diameter downstream: what its circle follows.
+//! The hub vortex of a rotor with a helix, a diameter downstream as a lidar sees it: what its circle follows.
 
 use crate::Row;
 use crate::random::Random;
@@ -7,9 +7,9 @@ use crate::studies::{Carried, failure, summaries};
 use analysis::AnalysisError;
 use analysis::line::strongest_rotation;
 use analysis::statistics::mean;
-use basis::records::Plane;
-use formats::netcdf::read_planes;
-use formats::records::RunFolder;
+use basis::scan::Scan;
+use estimation::hub_vortex::{HubVortexSettings, follow};
+use formats::records::{RunFolder, StoredScans, read_scans};
 
 /// Where the expected values come from, and how close to its correlations ours are to come (–): 0.9987 of
 /// radius and amplitude, 0.9995 of frequency and Strouhal number there.
@@ -22,26 +22,23 @@ const N_DRAWS: usize = 12;
 const AMPLITUDES: [f64; 2] = [1.0, 6.0];
 const STROUHALS: [f64; 2] = [0.1, 0.4];
 const SEED: u64 = 3;
-/// Wind (m/s) and rotor diameter (m) of the case, and the height of the hub (m).
+/// Wind (m/s) and rotor diameter (m) of the case.
 const WIND: f64 = 10.0;
 const DIAMETER: f64 = 126.0;
-const HUB_HEIGHT: f64 = 90.0;
 /// Time (s) in which the wake comes and the helix goes by, once it has faded in over a period.
 const PASSING: f64 = 60.0;
-/// Periods that are looked at, and planes in each of them (–).
+/// Periods that are looked at (–).
 const N_PERIODS: f64 = 2.0;
-const PER_PERIOD: f64 = 24.0;
-/// How far from the rotor's axis the hub vortex is looked for (diameters): within the wake, wherever that is.
-const REACH: f64 = 0.3;
-/// Share of the points there that are the fast region (–): as many as a disc of 0.095 diameters' radius has.
-const FAST: f64 = 0.1;
+/// Filters by which the hub vortex is found, the source's and the one that bears shear and noise: what they
+/// look for, and how a row names it.
+const FILTERS: [(&str, &str); 2] = [("fast region", ""), ("fitted jet", " by a fitted jet")];
 
-/// A helix, and the circle of the hub vortex behind it.
+/// A helix, and the circle of the hub vortex behind it by each of the [`FILTERS`].
 struct Draw {
     /// Amplitude (deg) and Strouhal number (–).
     amplitude: f64,
     strouhal: f64,
-    circle: Circle,
+    circles: [Circle; 2],
 }
 
 /// Mean place (m, from the rotor's axis: to the left looking downwind, and up), radius (m) and frequency
@@ -52,7 +49,14 @@ struct Circle {
     frequency: f64,
 }
 
-/// Correlations over all draws, and the table of them on standard error.
+impl Circle {
+    /// Strouhal number of its frequency (–).
+    fn strouhal(&self) -> f64 {
+        self.frequency.abs() * DIAMETER / WIND
+    }
+}
+
+/// Correlations over all draws by each filter, and the table of draws on standard error.
 pub(super) fn rows() -> Vec<Row> {
     let mut random = Random(SEED);
     let mut draws = Vec::new();
@@ -62,40 +66,65 @@ pub(super) fn rows() -> Vec<Row> {
             Err(problem) => return failure(problem),
         }
     }
-    let strouhal = |draw: &Draw| draw.circle.frequency.abs() * DIAMETER / WIND;
+    (0..FILTERS.len()).flat_map(|filter| of_filter(filter, &draws)).collect()
+}
+
+/// The two correlations by filter number `filter`. Radii fall with the Strouhal number as well as they grow
+/// with the amplitude, and both are drawn: that with the amplitude at one Strouhal number is printed beside
+/// them.
+fn of_filter(filter: usize, draws: &[Draw]) -> [Row; 2] {
+    let (name, by) = FILTERS[filter];
+    print_draws(filter, draws);
+    let of = |value: &dyn Fn(&Draw, &Circle) -> f64| -> Vec<f64> {
+        draws.iter().map(|draw| value(draw, &draw.circles[filter])).collect()
+    };
+    let (amplitudes, strouhals) = (of(&|draw, _| draw.amplitude), of(&|draw, _| draw.strouhal));
+    let (radii, rates) = (of(&|_, circle| circle.radius), of(&|_, circle| circle.strouhal()));
+    tell!(
+        "{name}: correlation of the radius with the amplitude at one Strouhal number {:.4}, with the Strouhal number at one amplitude {:.4}",
+        partial_correlation(&radii, &amplitudes, &strouhals),
+        partial_correlation(&radii, &strouhals, &amplitudes)
+    );
+    let row = |what: &str, measured: f64, expected: f64| Row {
+        what: format!(
+            "hub vortex at 1 D{by}, {N_DRAWS} helices of 1 to 6° and St 0.1 to 0.4, nrel-5mw, {WIND} m/s even: correlation of {what}"
+        ),
+        measured,
+        expected,
+        tolerance: AtLeast,
+        unit: "–",
+        source: SOURCE,
+    };
+    [
+        row("its radius with the amplitude", correlation(&radii, &amplitudes), OF_RADIUS),
+        row(
+            "its frequency with the Strouhal number",
+            correlation(&rates, &strouhals),
+            OF_FREQUENCY,
+        ),
+    ]
+}
+
+fn print_draws(filter: usize, draws: &[Draw]) {
+    tell!("by its {}:", FILTERS[filter].0);
     tell!(
         "| draw | amplitude | St | radius | St of the circle | turns | mean place, left and up |"
     );
     for (number, draw) in draws.iter().enumerate() {
-        let Circle { centre: [left, up], radius, frequency } = draw.circle;
-        let sense = if frequency > 0.0 { "cw" } else { "ccw" };
+        let circle = &draw.circles[filter];
+        let Circle { centre: [left, up], radius, frequency } = circle;
+        let sense = if *frequency > 0.0 { "cw" } else { "ccw" };
         tell!(
             "| {} | {:.2}° | {:.4} | {:.4} D | {:.4} | {sense} | {:+.4} D, {:+.4} D |",
             number + 1,
             draw.amplitude,
             draw.strouhal,
             radius / DIAMETER,
-            strouhal(draw),
+            circle.strouhal(),
             left / DIAMETER,
             up / DIAMETER
         );
     }
-    let row = |what: &str, pairs: Vec<[f64; 2]>, expected: f64| Row {
-        what: format!(
-            "hub vortex at 1 D, {N_DRAWS} helices of 1 to 6° and St 0.1 to 0.4, nrel-5mw, {WIND} m/s even: correlation of {what}"
-        ),
-        measured: correlation(&pairs),
-        expected,
-        tolerance: AtLeast,
-        unit: "–",
-        source: SOURCE,
-    };
-    let radii = draws.iter().map(|draw| [draw.amplitude, draw.circle.radius]);
-    let rates = draws.iter().map(|draw| [draw.strouhal, strouhal(draw)]);
-    vec![
-        row("its radius with the amplitude", radii.collect(), OF_RADIUS),
-        row("its frequency with the Strouhal number", rates.collect(), OF_FREQUENCY),
-    ]
 }
 
 /// Draws a helix, runs it as study `number`, or takes up what is there, and follows the hub vortex.
@@ -111,41 +140,59 @@ fn drawn(number: usize, random: &mut Random) -> Result<Draw, String> {
         format!("run.helix.control.T1.strouhal={strouhal}"),
         format!("time.spin_up={spin_up:.1}"),
         format!("time.duration={:.1}", spin_up + N_PERIODS * period),
-        format!("output.plane_interval={:.1}", period / PER_PERIOD),
     ];
     let case = Carried::Own(include_str!("../../cases/hub-vortex.toml"));
     let name = format!("free-vortex-helix-{number:02}");
     let (_, folder) = summaries(case, &name, overrides)?;
-    let path = RunFolder::new(&folder, "helix").instants_path("1D");
-    let planes = read_planes(&path).map_err(|error| error.to_string())?;
-    let (Some(first), Some(last)) = (planes.first(), planes.last()) else {
-        return Err(format!("{} holds no plane", path.display()));
-    };
-    let interval = (last.time - first.time) / (planes.len() - 1) as f64;
-    let places: Vec<[f64; 2]> = planes.iter().map(fast_place).collect();
-    let circle = circle(&places, interval).map_err(|error| error.to_string())?;
-    Ok(Draw { amplitude, strouhal, circle })
+    let path = RunFolder::new(&folder, "helix").scans_path("T1", "lidar");
+    let scans = read_scans(&path).map_err(|error| error.to_string())?;
+    let circles =
+        circles(&scans, spin_up).map_err(|problem| format!("{}: {problem}", path.display()))?;
+    Ok(Draw { amplitude, strouhal, circles })
 }
 
-/// Where the wind about the axis of the rotor is fast (m, left and up from that axis).
+/// The circles that the hub vortex runs on in `scans` after `spin_up` (s), by each of the [`FILTERS`].
+fn circles(scans: &StoredScans, spin_up: f64) -> Result<[Circle; 2], String> {
+    let frame = scans.helix.ok_or("its turbine pitched no helix")?;
+    let [first, .., last] = scans.times[..] else {
+        return Err("there are no two scans".to_owned());
+    };
+    let interval = (last - first) / (scans.n_scans() - 1) as f64;
+    let readings = (0..scans.n_scans()).map(|index| {
+        let mut reading = Vec::new();
+        scans.reading(index, 0..scans.n_points(), &mut reading);
+        (scans.times[index], reading)
+    });
+    let readings: Vec<(f64, Vec<f64>)> = readings.collect();
+    let radius = 0.5 * scans.rotor_diameter;
+    let of = |settings| {
+        let places = places(settings, &readings, spin_up)?;
+        circle(&places, interval).map_err(|error| error.to_string())
+    };
+    Ok([
+        of(HubVortexSettings::of_source(frame, radius, interval))?,
+        of(HubVortexSettings::robust(frame, radius, interval))?,
+    ])
+}
+
+/// Where the hub vortex is (m, left and up) in each of the `readings` of a lidar, each with its time (s),
+/// after `spin_up` (s).
 ///
-/// As the source's filter of the hub vortex, which isolates the region of high speed and averages its points'
-/// places: here the fastest points of those that are as near to the axis as the hub vortex comes.
-fn fast_place(plane: &Plane) -> [f64; 2] {
-    let n = plane.n_points[0];
-    let mut near = Vec::new();
-    for (index, speed) in plane.velocity[0].iter().enumerate() {
-        let left = plane.origin[1] + (index % n) as f64 * plane.spacing[0];
-        let up = plane.origin[2] + (index / n) as f64 * plane.spacing[1] - HUB_HEIGHT;
-        if left.hypot(up) <= REACH * DIAMETER {
-            near.push((*speed, [left, up]));
-        }
+/// Before the low-pass filter: that would damp the radius the more the faster the helix is, and of noise
+/// the fit of a circle takes care.
+fn places(
+    settings: HubVortexSettings,
+    readings: &[(f64, Vec<f64>)],
+    spin_up: f64,
+) -> Result<Vec<[f64; 2]>, String> {
+    let scans = readings.iter().filter_map(|(time, reading)| Some((*time, Scan::of(reading)?)));
+    let followed = follow(settings, scans).map_err(|error| error.to_string())?;
+    let analysed = || readings.iter().zip(&followed).filter(|((time, _), _)| *time > spin_up);
+    let (n_held, n) = (analysed().filter(|(_, now)| now.held).count(), analysed().count());
+    if n_held > 0 {
+        tell!("the hub vortex was not found in {n_held} of {n} scans, and taken to have stayed");
     }
-    near.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let n_fast = (FAST * near.len() as f64).round().max(1.0) as usize;
-    let fast = near.iter().take(n_fast);
-    let sum = fast.fold([0.0; 2], |sum, (_, place)| [sum[0] + place[0], sum[1] + place[1]]);
-    sum.map(|sum| sum / n_fast as f64)
+    Ok(analysed().map(|(_, now)| now.place).collect())
 }
 
 /// The circle that `places` (left, up), `interval` (s) apart, run on: the strongest rotation in them.
@@ -160,53 +207,71 @@ fn circle(places: &[[f64; 2]], interval: f64) -> Result<Circle, AnalysisError> {
     })
 }
 
-/// Pearson's coefficient of `pairs` (–).
-fn correlation(pairs: &[[f64; 2]]) -> f64 {
-    let n = pairs.len() as f64;
-    let mean = [0, 1].map(|k| pairs.iter().map(|pair| pair[k]).sum::<f64>() / n);
-    let moment = |a: usize, b: usize| {
-        pairs.iter().map(|pair| (pair[a] - mean[a]) * (pair[b] - mean[b])).sum::<f64>()
+/// Pearson's coefficient of `a` and `b` (–).
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let (mean_a, mean_b) = (mean(a), mean(b));
+    let sum = |x: &[f64], from: f64, y: &[f64], of: f64| {
+        x.iter().zip(y).map(|(x, y)| (x - from) * (y - of)).sum::<f64>()
     };
-    moment(0, 1) / (moment(0, 0) * moment(1, 1)).sqrt()
+    let scales = sum(a, mean_a, a, mean_a) * sum(b, mean_b, b, mean_b);
+    sum(a, mean_a, b, mean_b) / scales.sqrt()
+}
+
+/// Pearson's coefficient of what a linear regression on `fixed` leaves of `a` and of `b` (–).
+fn partial_correlation(a: &[f64], b: &[f64], fixed: &[f64]) -> f64 {
+    let [together, of_a, of_b] = [correlation(a, b), correlation(a, fixed), correlation(b, fixed)];
+    (together - of_a * of_b) / ((1.0 - of_a * of_a) * (1.0 - of_b * of_b)).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use basis::records::PlaneAxes;
+    use basis::scan::ScanBlocks;
+    use basis::{HelixFrame, Sense};
     use std::f64::consts::TAU;
 
-    /// A wake of 6 m/s with a jet of 9 m/s at `place` (m), in wind of 10 m/s that begins at 0.45 D.
-    fn with_jet(place: [f64; 2]) -> Plane {
-        let (n, spacing) = (64, 3.0);
-        let origin = [DIAMETER, -0.5 * spacing * 63.0, HUB_HEIGHT - 0.5 * spacing * 63.0];
-        let speed = |index: usize| {
-            let y = origin[1] + (index % n) as f64 * spacing;
-            let z = origin[2] + (index / n) as f64 * spacing - HUB_HEIGHT;
-            let away = (y - place[0]).hypot(z - place[1]) / 9.0;
-            let inside = 6.0 + 3.0 * (-away * away).exp();
-            if y.hypot(z) > 0.45 * DIAMETER { 10.0 } else { inside as f32 }
-        };
-        let streamwise: Vec<f32> = (0..n * n).map(speed).collect();
-        Plane {
-            name: "1D".to_owned(),
-            axes: PlaneAxes::Crosswind,
-            origin,
-            spacing: [spacing; 2],
-            n_points: [n, n],
-            time: 0.0,
-            averaged: 0.0,
-            velocity: [streamwise, vec![0.0; n * n], vec![0.0; n * n]],
+    /// A scan of 80 points over the rotor's disc, 12.6 m apart, 1 D downwind at `time` (s): a wake with a
+    /// jet of 2 m/s and 12 m at `place` (m).
+    fn reading(time: f64, place: [f64; 2]) -> Vec<f64> {
+        let grid = (-5..5).flat_map(|y| (-5..5).map(move |z| [y, z]));
+        let grid = grid.map(|p: [i32; 2]| p.map(|index| 12.6 * (f64::from(index) + 0.5)));
+        let points: Vec<[f64; 2]> = grid.filter(|[y, z]| y.hypot(*z) <= 63.0).collect();
+        assert_eq!(points.len(), 80);
+        let mut reading = vec![0.0; Scan::n_values(points.len())];
+        let blocks = ScanBlocks::of(&mut reading).expect("whole points");
+        blocks.head.copy_from_slice(&[1.0, 1.0]);
+        let [downwind, left, up] = blocks.places;
+        for (index, [y, z]) in points.into_iter().enumerate() {
+            let away = (y - place[0]).hypot(z - place[1]) / 12.0;
+            let speed = 5.0 + (y.hypot(z) / 63.0).powi(2) + 2.0 * (-0.5 * away * away).exp();
+            (downwind[index], left[index], up[index]) = (DIAMETER, y, z);
+            // A beam sees the cosine of an axial wind.
+            blocks.speeds[index] = speed * DIAMETER / (DIAMETER * DIAMETER + y * y + z * z).sqrt();
+            blocks.times[index] = time;
         }
+        reading
     }
 
     #[test]
-    fn the_hub_vortex_is_found_and_not_the_wind_around_the_wake() {
-        for place in [[0.0, 0.0], [7.3, -4.1], [-11.0, 16.0]] {
-            let found = fast_place(&with_jet(place));
-            // A quarter of the points' distance: those at the edge come and go.
-            let missed = (found[0] - place[0]).hypot(found[1] - place[1]);
-            assert!(missed < 0.75, "{place:?}: {found:?}");
+    fn both_filters_find_the_circle_of_a_jet() {
+        let (frequency, interval) = (-0.025, 0.5);
+        let at = |step: u32| {
+            let time = interval * f64::from(step);
+            let angle = TAU * frequency * time + 1.0;
+            (time, reading(time, [1.0 + 13.0 * angle.cos(), -2.0 + 13.0 * angle.sin()]))
+        };
+        let readings: Vec<(f64, Vec<f64>)> = (0..240).map(at).collect();
+        let frame = HelixFrame { sense: Sense::CounterClockwise, rate: TAU * 0.025 };
+        let found = [
+            (HubVortexSettings::of_source(frame, 63.0, interval), 0.2),
+            (HubVortexSettings::robust(frame, 63.0, interval), 0.05),
+        ];
+        for (settings, tolerance) in found {
+            let places = places(settings, &readings, 39.9).unwrap();
+            assert_eq!(places.len(), 160);
+            let circle = circle(&places, interval).unwrap();
+            assert!((circle.radius / 13.0 - 1.0).abs() < tolerance, "{}", circle.radius);
+            assert!((circle.frequency / frequency - 1.0).abs() < 0.02, "{}", circle.frequency);
         }
     }
 
@@ -229,9 +294,24 @@ mod tests {
 
     #[test]
     fn correlation_is_one_along_a_line_and_less_beside_it() {
-        let line = [1.0, 2.0, 4.0, 7.0].map(|x| [x, 3.0 - 2.0 * x]);
-        assert!((correlation(&line) + 1.0).abs() < 1e-12);
+        let along = [1.0, 2.0, 4.0, 7.0];
+        assert!((correlation(&along, &along.map(|x| 3.0 - 2.0 * x)) + 1.0).abs() < 1e-12);
         // By hand: means 1 and 1/3, moments 2, 2/3 and 0.
-        assert!(correlation(&[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]).abs() < 1e-12);
+        assert!(correlation(&[0.0, 1.0, 2.0], &[0.0, 1.0, 0.0]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_a_second_cause_does_is_taken_off() {
+        let amplitudes = [1.0, 2.0, 3.0, 5.0, 6.0];
+        let strouhals = [0.3, 0.1, 0.35, 0.2, 0.4];
+        let radii: Vec<f64> =
+            amplitudes.iter().zip(&strouhals).map(|(a, st)| 2.0 * a - 20.0 * st + 9.0).collect();
+        let whole = correlation(&radii, &amplitudes);
+        assert!(whole < 0.95, "{whole}");
+        assert!((partial_correlation(&radii, &amplitudes, &strouhals) - 1.0).abs() < 1e-9);
+        assert!((partial_correlation(&radii, &strouhals, &amplitudes) + 1.0).abs() < 1e-9);
+        // Nothing to take off: the second is not along the third, the first neither.
+        let (a, b, c) = ([1.0, -1.0, 1.0, -1.0], [1.0, -1.0, 0.0, 0.0], [1.0, 1.0, -1.0, -1.0]);
+        assert!((partial_correlation(&a, &b, &c) - correlation(&a, &b)).abs() < 1e-12);
     }
 }

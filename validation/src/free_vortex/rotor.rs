@@ -132,6 +132,7 @@ pub(super) fn wake(
     let rows = |diameters: f64, share: f64| {
         (diameters * diameter / (share * wind_speed * interval)).ceil() as usize
     };
+    let far_rows = rows(fineness.length, 0.4) / fineness.far_stride;
     let settings = WakeSettings {
         interval,
         resolution: Resolution {
@@ -139,7 +140,8 @@ pub(super) fn wake(
             far_stride: fineness.far_stride,
             far_filaments: fineness.far_filaments,
             length: fineness.length * diameter,
-            far_rows: rows(fineness.length, 0.4) / fineness.far_stride,
+            end: f64::INFINITY,
+            far_rows,
         },
         cores: Cores {
             initial_widths: fineness.core_widths,
@@ -153,6 +155,7 @@ pub(super) fn wake(
         ground: false,
         shown: Points::NONE,
         n_blades: definition.n_blades,
+        far_rows_in_all: definition.n_blades * far_rows,
         n_elements: N_ELEMENTS,
         threads: None,
     };

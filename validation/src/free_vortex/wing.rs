@@ -131,6 +131,7 @@ fn settings(n: usize, interval: f64) -> WakeSettings {
             far_stride: 2,
             far_filaments: n + 1,
             length: 100.0 * SPAN,
+            end: f64::INFINITY,
             far_rows: 60,
         },
         cores: Cores {
@@ -145,6 +146,7 @@ fn settings(n: usize, interval: f64) -> WakeSettings {
         ground: false,
         shown: Points::NONE,
         n_blades: 1,
+        far_rows_in_all: 60,
         n_elements: n,
         threads: None,
     }

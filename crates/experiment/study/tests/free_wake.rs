@@ -211,3 +211,40 @@ fn steps_that_turn_a_rotor_too_far_are_refused_and_long_ones_warned_of() {
     };
     assert!(warned("step = 0.4") && !warned("step = 0.2"));
 }
+
+#[test]
+fn wakes_that_end_behind_the_last_rotor_cost_less_and_are_told_of() {
+    let lay_out = |flow: &str| {
+        let text = CASE.replace("near_wake_diameters", &format!("{flow}\nnear_wake_diameters"));
+        let folder = written(&text);
+        Prepared::read(&folder.path().join("case.toml"), &[]).expect("it can be")
+    };
+    let told = |prepared: &Prepared| -> Vec<String> {
+        let early = |message: &&String| message.contains("ends early");
+        prepared.warnings.iter().map(|w| &w.message).filter(early).cloned().collect()
+    };
+    let (whole, ended) = (lay_out(""), lay_out("wake_beyond_last_diameters = 0.6"));
+    assert!(told(&whole).is_empty());
+    // Wakes of 1.6 and 0.6 D in place of two of 2 D.
+    let kind = whole.case.flow.solver;
+    let memory = |prepared: &Prepared| (kind.memory)(&prepared.case, &prepared.plan) as f64;
+    let of_blades = kind.most_filaments.expect("it has some");
+    let pieces = |prepared: &Prepared| of_blades(&prepared.case, &prepared.plan) as f64;
+    assert!(memory(&ended) < 0.9 * memory(&whole) && pieces(&ended) < 0.9 * pieces(&whole));
+    let growing = |prepared: &Prepared| prepared.plan.n_growing_steps as f64;
+    assert!((growing(&ended) / growing(&whole) - 0.8).abs() < 0.01);
+    let behind = |prepared: &Prepared| {
+        let plan = &prepared.plan;
+        plan.origin.x + plan.n_points[0] as f64 * plan.spacing - plan.positions[1].x
+    };
+    for (prepared, length) in [(&whole, 2.0), (&ended, 0.6)] {
+        let found = behind(prepared) / prepared.plan.diameter;
+        assert!((found - length).abs() < 0.15, "{found} {length}");
+    }
+    let told = told(&ended);
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told[1].starts_with("the wake of T2 ends early") && told[1].contains("more power"));
+    // One that is longer than wakes are ends none.
+    let longer = lay_out("wake_beyond_last_diameters = 3.0");
+    assert_eq!((growing(&longer), behind(&longer)), (growing(&whole), behind(&whole)));
+}

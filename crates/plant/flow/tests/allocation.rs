@@ -86,6 +86,7 @@ fn wake() -> FreeWake {
             far_stride: 2,
             far_filaments: 4,
             length: 150.0,
+            end: f64::INFINITY,
             far_rows: 60,
         },
         cores: Cores {
@@ -100,6 +101,7 @@ fn wake() -> FreeWake {
         ground: true,
         shown: Points::NONE,
         n_blades: 2,
+        far_rows_in_all: 120,
         n_elements: N_ELEMENTS,
         threads: Some(1),
     };

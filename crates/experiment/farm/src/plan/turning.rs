@@ -21,10 +21,23 @@ pub struct Turning {
     pub steps_per_turn: f64,
     /// Points of planes and volumes to a diameter of the first turbine (–).
     pub points_per_diameter: f64,
-    /// Length of wakes, which planes and volumes show (diameters of the first turbine).
+    /// Length of wakes (diameters of the first turbine).
     pub length: f64,
+    /// How far they reach behind the last turbine, no further than that: planes and volumes show it.
+    pub beyond_last: f64,
     /// Usual speed of a wake (m/s).
     pub wake_speed: f64,
+}
+
+impl Turning {
+    /// Length of the longest wake (diameters), that of the first of turbines at `positions` (m), where
+    /// lengths are given in a `diameter` (m).
+    pub fn longest(&self, positions: &[Vector3], diameter: f64) -> f64 {
+        let places = || positions.iter().map(|position| position.x);
+        let first = places().reduce(f64::min).unwrap_or_default();
+        let last = places().reduce(f64::max).unwrap_or_default();
+        self.length.min((last - first) / diameter + self.beyond_last)
+    }
 }
 
 /// The plan of turbines in air without cells whose step follows the fastest rotor; a minute is a whole number
@@ -56,8 +69,8 @@ pub fn by_turns(case: &Case, layout: &Layout, turning: &Turning) -> Result<Plan,
     stepped.flow.step = Some(step);
     let plan = shown(without_cells(&stepped, layout)?, layout, turning);
     check_planes(&case.output.crosswind_diameters, &plan)?;
-    let n_growing_steps =
-        (turning.length * plan.diameter / (turning.wake_speed * step)).ceil() as u64;
+    let longest = turning.longest(&plan.positions, plan.diameter) * plan.diameter;
+    let n_growing_steps = (longest / (turning.wake_speed * step)).ceil() as u64;
     Ok(Plan { turn, n_growing_steps, ..plan })
 }
 
@@ -68,7 +81,7 @@ fn shown(plan: Plan, layout: &Layout, turning: &Turning) -> Plan {
     let high = plan.positions.iter().copied().reduce(Vector3::max).unwrap_or_default();
     let hub = layout.machines.iter().map(|(_, footprint)| footprint.hub_height).fold(0.0, f64::max);
     let extent = [
-        high.x - low.x + (UPSTREAM + turning.length) * diameter,
+        high.x - low.x + (UPSTREAM + turning.beyond_last) * diameter,
         high.y - low.y + 2.0 * BESIDE * diameter,
         hub + ABOVE * diameter,
     ];

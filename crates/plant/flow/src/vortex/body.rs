@@ -139,6 +139,28 @@ impl Body {
         self.lives.push(Life::new(around(self.ring(self.ages.len() - 1)), 0.0));
     }
 
+    /// On return its wake is as long as it becomes, where it has begun one: rings one behind the other that
+    /// are carried along x by `way` (m) in each `interval` (s), with what has left it on the mean.
+    pub(super) fn reach_full_length(&mut self, way: f64, interval: f64) {
+        let Some(age) = self.ages.first().filter(|age| **age > 0.0) else { return };
+        let shed = self.circulations.iter().sum::<f64>() * interval / age;
+        self.drop_oldest(self.n_rings());
+        self.begin_ring();
+        let first = self.ring(0).to_vec();
+        self.drop_oldest(1);
+        // A ring leaves once the one before is far enough away, at the end of a step.
+        let n_steps = (SPACING * self.radius / way).ceil().max(1.0);
+        let n_rings = (self.wakes.length / (n_steps * way)).floor() as usize + 1;
+        for ring in (0..n_rings.min(self.wakes.most_rings)).rev() {
+            let age = ring as f64 * n_steps;
+            self.positions.extend(first.iter().map(|node| *node + Vector3::X * (age * way)));
+            self.velocities.extend([Vector3::X * (way / interval); N_SIDES]);
+            self.ages.push(age * interval);
+            self.circulations.push(n_steps * shed);
+            self.lives.push(Life::new(around(&first), 0.0));
+        }
+    }
+
     fn drop_oldest(&mut self, n: usize) {
         self.positions.drain(..n * N_SIDES);
         self.velocities.drain(..n * N_SIDES);

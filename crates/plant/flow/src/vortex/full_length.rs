@@ -1,5 +1,5 @@
-//! Wakes placed at once as long as they become: what a step costs then is timed without making the steps
-//! before.
+//! Wakes placed at once as long as they become, those of blades and of bodies: what a step costs then is
+//! timed without making the steps before.
 
 use super::sheet::Sheet;
 use super::wake::FreeWake;
@@ -20,10 +20,12 @@ struct Course {
 }
 
 impl FreeWake {
-    /// On return the wakes of all blades that have begun one are as long as they become: helices that nothing
-    /// bends. They cost what grown ones do, and say nothing of the wind.
+    /// On return the wakes of all blades and bodies that have begun one are as long as they become: helices
+    /// and rows of rings that nothing bends. They cost about what grown ones do, and say nothing of the
+    /// wind.
     ///
-    /// Limits: for rotors whose axes lie along x, more or less.
+    /// Limits: for rotors whose axes lie along x, more or less. Grown wakes are slower, wider and tangled,
+    /// and cost more.
     pub fn reach_full_length(&mut self) {
         for index in 0..self.rotors.len() {
             let Some(course) = self.course(index) else { continue };
@@ -33,13 +35,18 @@ impl FreeWake {
                 let Some(newest) = sheet.near.n_rows().checked_sub(1) else { continue };
                 let line = sheet.near.row(newest).to_vec();
                 *sheet = Sheet::new(sheet.owner, circulations.len(), settings.resolution);
-                let n_rows = (settings.resolution.length / course.way).ceil() as usize + 1;
+                let length = settings.resolution.length_behind(course.hub.x);
+                let n_rows = (length / course.way).ceil() as usize + 1;
                 for step in (0..=n_rows).rev() {
                     let before: Vec<Vector3> =
                         line.iter().map(|node| course.back(*node, step)).collect();
                     sheet.place_line(&before, circulations);
                 }
                 sheet.count_ages(settings.interval);
+            }
+            let turbine = self.rotors[index].turbine();
+            for body in self.bodies.iter_mut().filter(|body| body.turbine == turbine) {
+                body.reach_full_length(course.way, self.settings.interval);
             }
         }
         self.gather(true);

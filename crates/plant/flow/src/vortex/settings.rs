@@ -28,6 +28,9 @@ pub struct WakeSettings {
     pub shown: Points,
     /// Blades in all (–), for whose wakes memory is made.
     pub n_blades: usize,
+    /// Rows further down of the wakes of all blades together (–), likewise: as many as the
+    /// [resolution](Resolution::far_rows) has for each, or fewer where wakes [end](Resolution::end) early.
+    pub far_rows_in_all: usize,
     /// Elements of a blade (–).
     pub n_elements: usize,
     /// Threads; all cores when absent. The result does not depend on it.
@@ -68,8 +71,9 @@ pub enum WakeError {
 impl WakeSettings {
     /// Most segments that the wakes can have (–).
     pub fn most_segments(&self) -> usize {
-        let of_blade = Sheet::most_segments(self.n_elements, &self.resolution);
-        self.n_blades * of_blade + self.bodies.most_segments()
+        let Self { n_blades, n_elements, resolution, far_rows_in_all, .. } = self;
+        Sheet::most_segments(*n_blades, *n_elements, resolution, *far_rows_in_all)
+            + self.bodies.most_segments()
     }
 
     /// # Errors
@@ -100,6 +104,13 @@ impl WakeSettings {
             if !(value.is_finite() && value >= 0.0) {
                 return refuse(name, value, "zero or a positive number");
             }
+        }
+        if resolution.end.is_nan() {
+            return refuse(
+                "end along x (m)",
+                resolution.end,
+                "a number, infinity where there is none",
+            );
         }
         if accuracy.opening >= 1.0 {
             return refuse("opening of the tree", accuracy.opening, "less than 1");

@@ -20,8 +20,17 @@ pub struct Resolution {
     pub far_filaments: usize,
     /// Length of the wake along x behind its blade (m); its last part fades.
     pub length: f64,
+    /// Where wakes that would be longer end, along x (m, farm frame); infinite where nothing ends them.
+    pub end: f64,
     /// Most rows further down (–); the oldest ones end beyond.
     pub far_rows: usize,
+}
+
+impl Resolution {
+    /// Length of the wake of a blade that stands at `place` along x (m).
+    pub fn length_behind(&self, place: f64) -> f64 {
+        self.length.min(self.end - place)
+    }
 }
 
 /// The wake of one blade, its youngest row the blade's bound vortex itself.
@@ -68,11 +77,18 @@ impl Sheet {
         self.near.n_nodes() - 1
     }
 
-    /// Most segments that a blade's wake of `n_elements` can have at `resolution` (–).
-    pub(super) fn most_segments(n_elements: usize, resolution: &Resolution) -> usize {
-        let rows = |n_rows: usize, n_nodes: usize| n_rows * (2 * n_nodes - 1);
-        rows(resolution.near_rows + resolution.far_stride + 1, n_elements + 1)
-            + rows(resolution.far_rows + 1, resolution.far_filaments.min(n_elements + 1))
+    /// Most segments (–) that the wakes of `n_blades` blades of `n_elements` can have at `resolution`, with
+    /// `far_rows` rows further down in all.
+    pub(super) fn most_segments(
+        n_blades: usize,
+        n_elements: usize,
+        resolution: &Resolution,
+        far_rows: usize,
+    ) -> usize {
+        let of_row = |n_nodes: usize| 2 * n_nodes - 1;
+        let near_rows = n_blades * (resolution.near_rows + resolution.far_stride + 1);
+        near_rows * of_row(n_elements + 1)
+            + (far_rows + n_blades) * of_row(resolution.far_filaments.min(n_elements + 1))
     }
 
     /// The bound vortex now has the nodes of `line`, and rings of `circulations` (m²/s) leave it. The rings
@@ -199,7 +215,7 @@ impl Sheet {
     /// Drops rows that lie beyond the wake's length.
     fn shorten(&mut self) {
         let line = self.near.place(self.near.n_rows() - 1);
-        let end = line + self.resolution.length;
+        let end = line + self.resolution.length_behind(line);
         let beyond = |strip: &Strip, rows: usize| {
             (0..rows).take_while(|&row| strip.place(row) > end).count()
         };
@@ -218,7 +234,8 @@ impl Sheet {
 
     /// What of the circulation of rings between two places along x (m) is left where the wake fades (–).
     fn share(&self, places: [f64; 2], line: f64) -> f64 {
-        left_at((0.5 * (places[0] + places[1]) - line) / self.resolution.length)
+        let way = 0.5 * (places[0] + places[1]) - line;
+        left_at(way / self.resolution.length_behind(line))
     }
 
     /// Adds the segments of all rings to `segments`, neighbours joined.
@@ -358,6 +375,7 @@ mod tests {
             far_stride: 1,
             far_filaments: 17,
             length: 1e6,
+            end: f64::INFINITY,
             far_rows: 100,
         };
         let whole = impulse(fine);

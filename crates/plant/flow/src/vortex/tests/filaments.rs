@@ -3,6 +3,7 @@
 use super::wakes::{INTERVAL, advanced, forces, settings, wake};
 use crate::FlowSolver;
 use crate::vortex::body::N_SIDES;
+use crate::vortex::ending::left_at;
 use crate::vortex::{Resolution, WakeSettings};
 use basis::records::PieceKind;
 use basis::{PointForce, Vector3};
@@ -52,7 +53,9 @@ fn a_wake_of_full_length_is_there_at_once_and_goes_on() {
     let grown = wake.filaments();
     let far = grown.nodes.iter().map(|node| node[0]).fold(0.0, f32::max);
     assert!((150.0..160.0).contains(&far), "{far}");
-    assert!(wake.segments().len() > 10 * young && wake.segments().len() < 2500);
+    let of_nacelle = wake.bodies[0].n_rings() * N_SIDES;
+    let of_blades = wake.segments().len() - of_nacelle;
+    assert!(of_blades > 10 * young && of_blades < 2500);
     // A helix that is carried along with 0.65 of some 8 m/s, turns by 0.15 a step and keeps its radius.
     let tip =
         |piece: &&basis::records::Piece| piece.kind == PieceKind::Trailing && piece.span == 1.0;
@@ -67,11 +70,52 @@ fn a_wake_of_full_length_is_there_at_once_and_goes_on() {
             assert!((radius - 40.0).abs() < 0.5, "{radius}");
         }
     }
+    // So are the rings behind the nacelle: half of its radius apart, and what a step's way is more.
+    let rings = &wake.bodies[0];
+    let places: Vec<f64> = rings.positions.iter().step_by(N_SIDES).map(|node| node.x).collect();
+    assert!(places.windows(2).all(|pair| (1.0..=2.1).contains(&(pair[0] - pair[1]))), "{places:?}");
+    assert!((97.9..=100.0).contains(&places[0]), "{}", places[0]);
     // What it costs stays: as much is added as comes to its end.
     let before = wake.segments().len() as f64;
     advanced(&mut wake, 1..7);
     let change = wake.segments().len() as f64 / before - 1.0;
     assert!(change.abs() < 0.1, "{change}");
+}
+
+#[test]
+fn wakes_end_where_they_are_told_to() {
+    let far = |wake: &crate::vortex::FreeWake| {
+        wake.filaments().nodes.iter().map(|node| node[0]).fold(0.0, f32::max)
+    };
+    let resolution = Resolution { end: 100.0, far_rows: 100, ..settings().resolution };
+    assert_eq!([-20.0, 30.0].map(|place| resolution.length_behind(place)), [120.0, 70.0]);
+    assert_eq!(resolution.length_behind(-80.0), resolution.length);
+    let settings = WakeSettings { resolution, ..settings() };
+    let (mut grown, mut at_once) = (wake(settings), wake(settings));
+    advanced(&mut grown, 0..120);
+    advanced(&mut at_once, 0..1);
+    at_once.reach_full_length();
+    for wake in [&grown, &at_once] {
+        // Rows stay until the next one is beyond, by their mean place: tips may be further.
+        assert!((100.0..115.0).contains(&far(wake)), "{}", far(wake));
+        let sum: Vector3 = wake.segments().iter().map(|s| s.circulation * (s.to - s.from)).sum();
+        assert!(sum.length() < 1e-9, "{sum}");
+    }
+    // All rings further down leave with the same circulation, and fade before the end.
+    let shown = at_once.filaments();
+    let middle = |piece: &basis::records::Piece| {
+        piece.ends.map(|end| f64::from(shown.nodes[end as usize][0])).iter().sum::<f64>() / 2.0
+    };
+    let tips = shown.pieces.iter().filter(|p| p.kind == PieceKind::Trailing && p.span == 1.0);
+    let tips: Vec<(f64, f64)> = tips
+        .map(|piece| (middle(piece), f64::from(piece.circulation.abs())))
+        .filter(|(place, _)| *place > 40.0)
+        .collect();
+    let whole = tips.iter().map(|(_, circulation)| *circulation).fold(0.0, f64::max);
+    for (place, circulation) in tips {
+        let expected = left_at(place / 100.0);
+        assert!((circulation / whole - expected).abs() < 0.01, "{place} {expected}");
+    }
 }
 
 #[test]
@@ -83,7 +127,7 @@ fn a_wake_that_has_not_begun_has_no_length_to_reach() {
 
 #[test]
 fn elements_in_the_cores_of_others_are_counted() {
-    let mut wake = wake(WakeSettings { n_blades: 4, ..settings() });
+    let mut wake = wake(WakeSettings { n_blades: 4, far_rows_in_all: 240, ..settings() });
     // The second rotor stands 60 m behind the first.
     let both = |step: usize| {
         let behind = forces(step, 20.0).into_iter().map(|mut force| {

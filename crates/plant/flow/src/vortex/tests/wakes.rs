@@ -23,6 +23,7 @@ pub(super) fn settings() -> WakeSettings {
             far_stride: 2,
             far_filaments: 4,
             length: 150.0,
+            end: f64::INFINITY,
             far_rows: 60,
         },
         cores: Cores {
@@ -37,6 +38,7 @@ pub(super) fn settings() -> WakeSettings {
         ground: true,
         shown: Points { first: Vector3::new(-45.0, -55.0, 5.0), spacing: 10.0, n: [24, 12, 15] },
         n_blades: 2,
+        far_rows_in_all: 120,
         n_elements: N_ELEMENTS,
         threads: Some(1),
     }
@@ -271,6 +273,8 @@ fn settings_that_cannot_be_are_named() {
     assert!(refused(WakeSettings { accuracy, ..sound }).contains("less than 1"));
     let resolution = Resolution { far_filaments: 1, ..sound.resolution };
     assert!(refused(WakeSettings { resolution, ..sound }).contains("two at least"));
+    let resolution = Resolution { end: f64::NAN, ..sound.resolution };
+    assert!(refused(WakeSettings { resolution, ..sound }).contains("end along x (m) = NaN"));
     let cores = Cores { initial_widths: f64::NAN, ..sound.cores };
     assert!(refused(WakeSettings { cores, ..sound }).contains("core at birth over widths = NaN"));
 }
