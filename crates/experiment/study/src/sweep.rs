@@ -2,6 +2,7 @@
 //! runs one after the other or side by side.
 
 mod parts;
+mod references;
 mod wanted;
 
 use crate::air;
@@ -19,12 +20,16 @@ use formats::FileError;
 use formats::lock::Lock;
 use formats::records::{self, PitchResponseRecord, read_pitch_responses};
 use formats::shipped;
-use parts::{Part, Parts};
+use parts::{Part, Parts, Task};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
+
+/// Time between looks at whether a run of reference is complete.
+const WAIT: Duration = Duration::from_millis(50);
 
 /// Runs the studies that `options` name; `stop` asks them to leave checkpoints and return.
 ///
@@ -134,6 +139,7 @@ impl<'a> All<'a> {
             let study = Study::open(options, outputs, &prepared, (place, runs))?;
             studies.push(Opened { folder, study, prepared, checked: SelfChecked::default() });
         }
+        references::check(&studies)?;
         if options.resume && !options.dry_run && !records::is_begun(&directory) {
             return Err(StudyError::NothingToResume { directory });
         }
@@ -295,15 +301,29 @@ impl<'a> All<'a> {
         let shared = Shared::new(observer, stop, (tasks.len(), work), n_jobs);
         let (next, failed, broken) =
             (AtomicUsize::new(0), Mutex::new(None), AtomicBool::new(false));
+        let made: Vec<AtomicBool> = tasks.iter().map(|_| AtomicBool::new(false)).collect();
+        // Runs of reference come before those that take theirs from them: whoever makes one is at it.
+        let is_ready = |task: &Task| {
+            while !task.after.iter().all(|&place| made[place].load(Ordering::Acquire)) {
+                if broken.load(Ordering::Relaxed) || held(&failed).is_some() {
+                    return false;
+                }
+                std::thread::sleep(WAIT);
+            }
+            true
+        };
         let worker = || {
             loop {
                 let place = next.fetch_add(1, Ordering::Relaxed);
                 let Some(task) = tasks.get(place).filter(|_| held(&failed).is_none()) else {
                     return;
                 };
-                let place = (place, tasks.len());
-                match parts.make(task, place, options.overwrite, stop, &shared) {
-                    Ok(ControlFlow::Continue(())) => {}
+                if !is_ready(task) {
+                    return;
+                }
+                let number = (place, tasks.len());
+                match parts.make(task, number, options.overwrite, stop, &shared) {
+                    Ok(ControlFlow::Continue(())) => made[place].store(true, Ordering::Release),
                     Ok(ControlFlow::Break(())) => return broken.store(true, Ordering::Relaxed),
                     Err(error) => {
                         held(&failed).get_or_insert(error);

@@ -218,7 +218,7 @@ fn points(sampled: &Sampled, number: usize, speeds: bool) -> Vec<DiscPoint> {
 
 /// The filtered places of `track` over the last periods of the helix, once they count and are settled, as
 /// many as a figure can show.
-fn path(answer: &HubVortexAnswer, track: &HubVortexTrack) -> Vec<[f64; 2]> {
+pub(super) fn path(answer: &HubVortexAnswer, track: &HubVortexTrack) -> Vec<[f64; 2]> {
     let end = answer.times.last().copied().unwrap_or(0.0);
     let start = answer.from.max(end - SHOWN_PERIODS * TAU / answer.frame.rate);
     let shown = answer.times.iter().zip(&track.vortices);
