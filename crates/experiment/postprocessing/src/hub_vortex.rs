@@ -4,7 +4,7 @@ mod beside;
 mod figures;
 mod scans;
 
-pub(crate) use beside::{Shown, beside, is_pitch, pitch};
+pub(crate) use beside::{Shown, beside, is_pitch, names, pitch};
 pub(crate) use figures::{of_runs, seen, signals};
 pub(crate) use scans::{Sampled, scans_of};
 

@@ -20,16 +20,13 @@ use formats::FileError;
 use formats::lock::Lock;
 use formats::records::{self, PitchResponseRecord, read_pitch_responses};
 use formats::shipped;
-use parts::{Part, Parts, Task};
+use parts::{Part, Parts};
+use references::{MadeSoFar, ToldOfPanic};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Duration;
-
-/// Time between looks at whether a run of reference is complete.
-const WAIT: Duration = Duration::from_millis(50);
 
 /// Runs the studies that `options` name; `stop` asks them to leave checkpoints and return.
 ///
@@ -301,29 +298,21 @@ impl<'a> All<'a> {
         let shared = Shared::new(observer, stop, (tasks.len(), work), n_jobs);
         let (next, failed, broken) =
             (AtomicUsize::new(0), Mutex::new(None), AtomicBool::new(false));
-        let made: Vec<AtomicBool> = tasks.iter().map(|_| AtomicBool::new(false)).collect();
-        // Runs of reference come before those that take theirs from them: whoever makes one is at it.
-        let is_ready = |task: &Task| {
-            while !task.after.iter().all(|&place| made[place].load(Ordering::Acquire)) {
-                if broken.load(Ordering::Relaxed) || held(&failed).is_some() {
-                    return false;
-                }
-                std::thread::sleep(WAIT);
-            }
-            true
-        };
+        let made = MadeSoFar::of(tasks.len());
+        let is_over = || broken.load(Ordering::Relaxed) || held(&failed).is_some();
         let worker = || {
+            let _told = ToldOfPanic(&broken);
             loop {
                 let place = next.fetch_add(1, Ordering::Relaxed);
                 let Some(task) = tasks.get(place).filter(|_| held(&failed).is_none()) else {
                     return;
                 };
-                if !is_ready(task) {
+                if !made.wait(&task.after, is_over) {
                     return;
                 }
                 let number = (place, tasks.len());
                 match parts.make(task, number, options.overwrite, stop, &shared) {
-                    Ok(ControlFlow::Continue(())) => made[place].store(true, Ordering::Release),
+                    Ok(ControlFlow::Continue(())) => made.add(place),
                     Ok(ControlFlow::Break(())) => return broken.store(true, Ordering::Relaxed),
                     Err(error) => {
                         held(&failed).get_or_insert(error);

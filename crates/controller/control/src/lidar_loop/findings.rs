@@ -1,5 +1,5 @@
-//! What is found of a helix in its own frame: what was pitched, where the hub vortex was, and how a lidar loop
-//! fared.
+//! What is found of a helix in its own frame: what was pitched, where the hub vortex was, and how a lidar
+//! loop fared.
 
 use crate::outcome::{MissingChannel, TurbineRecord};
 use basis::Channel;

@@ -50,7 +50,7 @@ static TABLE: Table = Table {
             Holds::Text,
             "",
             Required,
-            "File of the control law that `wakemix synthesize` wrote: from errors of the hub vortex (m) to tilt and yaw (deg), in the helix frame; a path relative to the case file.",
+            "File of the control law that `wakemix synthesize` wrote: from errors of the hub vortex (m) to tilt and yaw (deg), in the helix frame; a path relative to the case file. Where there is no `lidar-loop-controller.json`, that name is the one that comes with the program.",
         ),
         key(
             "reference_tilt",

@@ -53,7 +53,7 @@ fn words(quantity: &Quantity) -> String {
         Quantity::Power => "power".to_owned(),
         Quantity::Load { channel, .. } => {
             let usual = USUAL.iter().find(|(known, _)| known == channel);
-            usual.map_or(channel.clone(), |(_, words)| format!("{words} load"))
+            usual.map_or(channel.clone(), |(_, words)| (*words).to_owned())
         }
     }
 }
@@ -104,7 +104,7 @@ fn convention(answer: &ChangesAnswer) -> String {
     loads.dedup();
     if !loads.is_empty() {
         text += &format!(
-            "loads: damage-equivalent, for {}; all: power of all turbines together, and the sum of their loads; each over the compared run in the same wind\n",
+            "flapwise, edgewise and other channels: damage-equivalent loads, for {}; all: power of all turbines together, and the sum of their loads; each over the compared run in the same wind\n",
             loads.join(", ")
         );
     }
@@ -216,7 +216,7 @@ mod tests {
         assert_eq!(cells(lines[1]), ["run", "over", "change of", "shear 0.2", "TI 6 %"]);
         let expected = ["closed-loop", "open-loop", "power", "T1", "-1.40", "0.30 ± 0.20"];
         assert_eq!(cells(lines[2]), expected);
-        assert_eq!(cells(lines[3])[2..], ["flapwise load", "all", "–", "1.0 ± 4.0"]);
+        assert_eq!(cells(lines[3])[2..], ["flapwise", "all", "–", "1.0 ± 4.0"]);
         assert!(text.contains("independent: TI 6 % (seeds 1, 2, 3, 4, 5)"), "{text}");
         assert!(text.contains("for 1 Hz and slope 10"), "{text}");
     }

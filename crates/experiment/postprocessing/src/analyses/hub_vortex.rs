@@ -1,7 +1,7 @@
 //! `hub-vortex`: where a lidar saw the hub vortex of its turbine's wake.
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
-use crate::hub_vortex::{beside, signals};
+use crate::hub_vortex::{beside, names, signals};
 use crate::{
     HubVortexAnswer, HubVortexQuestion, HubVortexTrack, PostprocessingError, VortexFilter,
     hub_vortex,
@@ -134,8 +134,17 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
         };
         remarks.extend(drawn(request, &[figures])?);
     }
-    let text = answers.iter().map(text).collect::<String>() + CONVENTIONS;
-    let mut all = answers.iter().map(json);
+    let names = match &answers[..] {
+        [answer] => vec![answer.run.clone()],
+        _ => names(&request.folders)?,
+    };
+    let all = answers.iter().zip(&names);
+    let text = all.map(|(answer, name)| text(answer, name)).collect::<String>() + CONVENTIONS;
+    let mut all = answers.iter().zip(&names).map(|(answer, name)| {
+        let mut found = json(answer);
+        found["name"] = json!(name);
+        found
+    });
     let mut first = all.next().unwrap_or_default();
     let others: Vec<serde_json::Value> = all.collect();
     if !others.is_empty() {
@@ -147,14 +156,14 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
 /// What stands below the tables.
 const CONVENTIONS: &str = "radius: mean distance of the filtered place from its mean, which is left and up of the rotor's centre looking downwind; tilt (up), yaw (to the right): in the frame that turns with the helix; ±: standard deviation over whole periods; blind: scans in which it was not found\n";
 
-/// Filter by filter.
-fn text(answer: &HubVortexAnswer) -> String {
+/// Filter by filter, of the run called `name`.
+fn text(answer: &HubVortexAnswer, name: &str) -> String {
     let HubVortexAnswer { frame, diameter, interval, .. } = answer;
     let mut text = format!(
         "{} on {} in {}: helix {} at {:.2} mHz, seen {:.2} D away, a sample every {interval:.3} s from {} s on; {:.1} % of the points without a speed\n",
         answer.lidar,
         answer.turbine,
-        answer.run,
+        name,
         frame.sense,
         1e3 * frame.rate / TAU,
         answer.range / diameter,

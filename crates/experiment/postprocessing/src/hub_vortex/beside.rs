@@ -66,6 +66,18 @@ pub(crate) fn is_pitch(turbine: &str, channel: &str) -> bool {
     channel == TIME.name || HELIX_FRAME.iter().any(|own| own.of(turbine).name == channel)
 }
 
+/// Names that tell the runs in `folders` from each other.
+///
+/// # Errors
+/// [`PostprocessingError::File`] for a summary that cannot be read.
+pub(crate) fn names(folders: &[PathBuf]) -> Result<Vec<String>, PostprocessingError> {
+    let mut summaries: Vec<(&Path, Summary)> = Vec::with_capacity(folders.len());
+    for folder in folders {
+        summaries.push((folder, read_summary(&folder_of(folder))?));
+    }
+    Ok(names_of_runs(&summaries))
+}
+
 /// The figures of `answers`, which `folders` hold: the path of the first run with that of each other one, the
 /// vortex in the frame of the helix, and what was pitched there.
 ///
@@ -75,11 +87,7 @@ pub(crate) fn beside(
     answers: &[HubVortexAnswer],
     folders: &[PathBuf],
 ) -> Result<Signals, PostprocessingError> {
-    let mut summaries: Vec<(&Path, Summary)> = Vec::with_capacity(folders.len());
-    for folder in folders {
-        summaries.push((folder, read_summary(&folder_of(folder))?));
-    }
-    let names = names_of_runs(&summaries);
+    let names = names(folders)?;
     let first = &answers[0];
     let mut series = Vec::with_capacity(folders.len());
     for (folder, answer) in folders.iter().zip(answers) {
@@ -116,12 +124,13 @@ fn paths(answers: &[HubVortexAnswer], names: &[String]) -> DiscFigure {
         name: format!("hub-vortex-paths-{}-{}", first.turbine, first.lidar),
         title: format!("Paths of the hub vortex behind {}", first.turbine),
         caption: format!(
-            "Place by the {} filter over the last periods of the helix, looking downwind, {:.2} D along the lines of sight; in every panel that of {} beside it; dashed: the rotor's rim.",
+            "Place by the {} filter over the last periods of the helix, looking downwind, {:.2} D along the lines of sight; in every panel that of {} beside it; the cross is the hub.",
             filter(first),
             first.range / first.diameter,
             names[0]
         ),
         radius: 0.5 * first.diameter,
+        is_close: true,
         panels: (1..answers.len()).map(panel).collect(),
     }
 }

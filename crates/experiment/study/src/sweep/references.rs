@@ -6,6 +6,49 @@ use crate::linear_laws::{not_complete, reference_run};
 use crate::prepared::Prepared;
 use formats::records::RunFolder;
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Time between looks at whether a run of reference is complete.
+const WAIT: Duration = Duration::from_millis(50);
+
+/// Which of some runs are made, for those that wait for one. Runs of reference come before those that take
+/// theirs from them, so that whoever makes one is at it.
+pub(super) struct MadeSoFar(Vec<AtomicBool>);
+
+impl MadeSoFar {
+    /// None of `n_runs` (–).
+    pub(super) fn of(n_runs: usize) -> Self {
+        Self((0..n_runs).map(|_| AtomicBool::new(false)).collect())
+    }
+
+    /// The run at `place` is made.
+    pub(super) fn add(&self, place: usize) {
+        self.0[place].store(true, Ordering::Release);
+    }
+
+    /// Waits for those at the places `after`; whether all are made, and not all `is_over` before.
+    pub(super) fn wait(&self, after: &[usize], is_over: impl Fn() -> bool) -> bool {
+        while !after.iter().all(|&place| self.0[place].load(Ordering::Acquire)) {
+            if is_over() {
+                return false;
+            }
+            std::thread::sleep(WAIT);
+        }
+        true
+    }
+}
+
+/// Sets what it holds where its thread panics, so that others do not wait for it.
+pub(super) struct ToldOfPanic<'a>(pub(super) &'a AtomicBool);
+
+impl Drop for ToldOfPanic<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+}
 
 /// `path` as others that mean the same folder have it, whether it is there or not.
 pub(super) fn place(path: &Path) -> PathBuf {
@@ -79,6 +122,18 @@ mod tests {
         let (order, after) = in_order(&own, &needs);
         assert_eq!(order, [2, 0, 1, 3]);
         assert_eq!(after, [vec![], vec![], vec![0], vec![0]]);
+    }
+
+    #[test]
+    fn whoever_waits_goes_on_when_it_is_made_or_all_is_over() {
+        let made = MadeSoFar::of(2);
+        assert!(made.wait(&[], || true));
+        assert!(!made.wait(&[1], || true));
+        std::thread::scope(|scope| {
+            let waiting = scope.spawn(|| made.wait(&[1], || false));
+            made.add(1);
+            assert!(waiting.join().unwrap());
+        });
     }
 
     #[test]
