@@ -48,6 +48,14 @@ pub enum ControlError {
         /// Its file.
         file: String,
     },
+    /// A run of reference that nobody has read.
+    #[error(
+        "the run of reference {run} was not read; a study reads it once it is complete, a program sets `linear_law.reference`"
+    )]
+    NoReference {
+        /// Its folder.
+        run: String,
+    },
     /// A control law that samples faster than the turbine is controlled.
     #[error(
         "the control law in {file} samples every {interval} s, the turbine is controlled every {control} s: make the law with an interval of {control} s or longer"

@@ -12,7 +12,7 @@ pub struct LinearLaw {
     /// Time between its samples (s).
     pub interval: f64,
     /// Where its plant was in the run that the case names as reference, in the order and units of its inputs;
-    /// none where the case names none.
+    /// none where the case names none, and while that run is not complete.
     pub reference: Option<[f64; 2]>,
 }
 

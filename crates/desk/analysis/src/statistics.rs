@@ -5,7 +5,7 @@ mod student;
 
 use crate::AnalysisError;
 use basis::records::Statistic;
-pub use change::change;
+pub use change::{change, change_together};
 pub use student::student_97_5;
 
 /// Length of the blocks whose means are taken as independent (s): ten minutes, the field's averaging time.

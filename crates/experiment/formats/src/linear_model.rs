@@ -112,7 +112,14 @@ impl LinearModel {
     /// [`FileError::System`] where it cannot be read, [`FileError::Content`] with the place where it is none,
     /// or one of another role.
     pub fn read(path: &Path, role: Role) -> Result<Self, FileError> {
-        let text = atomic::read_text(path, role.what())?;
+        Self::parse(path, &atomic::read_text(path, role.what())?, role)
+    }
+
+    /// The system of this `role` in `text`, which stands at `path`.
+    ///
+    /// # Errors
+    /// [`FileError::Content`] as for [`read`](Self::read).
+    pub fn parse(path: &Path, text: &str, role: Role) -> Result<Self, FileError> {
         let fix = match role {
             Role::Model => "write it with `wakemix identify`, or as docs/control-design.md says",
             Role::Controller => {
@@ -120,8 +127,7 @@ impl LinearModel {
             }
         };
         let refused = |problem: String| FileError::content(role.what(), path, problem, fix);
-        let model: Self =
-            serde_json::from_str(&text).map_err(|error| refused(error.to_string()))?;
+        let model: Self = serde_json::from_str(text).map_err(|error| refused(error.to_string()))?;
         if model.role != role {
             let [found, wanted] = [model.role, role].map(Role::what);
             return Err(refused(format!("it holds {found}, not {wanted}, as its `format` says")));

@@ -2,6 +2,8 @@
 
 use crate::FileError;
 use crate::case::{self, CampaignFile, CaseError, CaseFile, CaseFiles, PrecursorFile};
+use crate::linear_model::{LinearModel, Role};
+use crate::records;
 use farm::case::Case;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -49,6 +51,12 @@ pub const CASES: &[ShippedCase] = &[
         name: "lidar-identification",
         file: include_str!("../../../../cases/lidar-identification.toml"),
         minutes: 6.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "lidar-closed-loop",
+        file: include_str!("../../../../cases/lidar-closed-loop.toml"),
+        minutes: 240.0,
         after: None,
     },
     ShippedCase {
@@ -118,6 +126,34 @@ pub const CASES: &[ShippedCase] = &[
         after: Some("precursor-seed-000"),
     },
 ];
+
+/// Control laws that come with the program: the names of their files, which cases give, and what they hold.
+pub const LAWS: &[(&str, &str)] =
+    &[("lidar-loop-controller.json", include_str!("../../../../cases/lidar-loop-controller.json"))];
+
+/// The shipped control law in the file called `name`.
+pub fn find_law(name: &str) -> Option<&'static str> {
+    LAWS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// The control law that a case in `folder` names as `file`, with its file's SHA-256: the shipped one of that
+/// name where no such file is there.
+///
+/// # Errors
+/// Those of [`LinearModel::read`].
+pub fn read_law(folder: &Path, file: &str) -> Result<(LinearModel, String), FileError> {
+    let path = folder.join(file);
+    match find_law(file).filter(|_| !path.is_file()) {
+        Some(text) => {
+            let law = LinearModel::parse(&path, text, Role::Controller)?;
+            Ok((law, records::sha256(text.as_bytes())))
+        }
+        None => {
+            let law = LinearModel::read(&path, Role::Controller)?;
+            Ok((law, records::sha256_of_file(&path, "a control law")?))
+        }
+    }
+}
 
 /// A precursor that comes with the program.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -274,11 +310,18 @@ mod tests {
     #[test]
     fn every_case_of_the_repository_is_shipped_under_its_name() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../cases");
-        let mut files: Vec<String> = std::fs::read_dir(folder)
+        let (cases, laws): (Vec<_>, Vec<_>) = std::fs::read_dir(folder)
             .unwrap()
-            .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
+            .map(|entry| entry.unwrap().path())
+            .partition(|path| path.extension().is_some_and(|ending| ending == "toml"));
+        let mut files: Vec<String> = cases
+            .iter()
+            .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
             .collect();
         files.sort();
+        let laws: Vec<&str> =
+            laws.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
+        assert_eq!(laws, LAWS.iter().map(|(name, _)| *name).collect::<Vec<_>>());
         let studies = CASES.iter().map(|case| case.name);
         let mut names: Vec<&str> =
             studies.chain(PRECURSORS.iter().map(|shipped| shipped.name)).collect();
@@ -303,6 +346,20 @@ mod tests {
             let text = shipped.text();
             assert!(!text.contains("../") && !text.contains("cases/"), "{text}");
         }
+    }
+
+    #[test]
+    fn a_law_stands_for_its_file_where_there_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in LAWS {
+            let (shipped, sha256) = read_law(folder.path(), name).unwrap();
+            assert_eq!(sha256, records::sha256(text.as_bytes()));
+            let own = LinearModel { interval_s: Some(77.0), ..shipped.clone() };
+            own.write(&folder.path().join(name)).unwrap();
+            let (found, other) = read_law(folder.path(), name).unwrap();
+            assert!(found == own && other != sha256);
+        }
+        assert!(read_law(folder.path(), "none.json").is_err());
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! The hub vortex in the scans that a run kept: where it was, in the fixed frame and in that of the helix.
 
+mod beside;
 mod figures;
 mod scans;
 
+pub(crate) use beside::{Shown, beside, is_pitch, names, pitch};
 pub(crate) use figures::{of_runs, seen, signals};
 pub(crate) use scans::{Sampled, scans_of};
 

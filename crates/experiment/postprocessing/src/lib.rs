@@ -4,6 +4,7 @@
 //! Records in, numbers out: nothing is simulated here. [`ANALYSES`] lists what `wakemix analyse` offers.
 
 pub mod analyses;
+mod changes;
 mod error;
 mod hub_vortex;
 mod lock;
@@ -17,6 +18,9 @@ mod synchronisation;
 mod winds;
 
 pub use analyses::{ANALYSES, Analysis};
+pub use changes::{
+    Change, ChangesAnswer, ChangesQuestion, ChangesRow, ChangesWind, Quantity, changes,
+};
 pub use error::PostprocessingError;
 pub use hub_vortex::{
     HubVortexAnswer, HubVortexNumbers, HubVortexQuestion, HubVortexTrack, VortexFilter, hub_vortex,

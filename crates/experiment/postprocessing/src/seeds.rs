@@ -62,18 +62,18 @@ pub struct PartGains {
 }
 
 /// A study as far as its gains need it.
-struct Study<'q> {
-    folder: &'q Path,
-    runs: Vec<(Manifest, Summary)>,
+pub(crate) struct Study<'q> {
+    pub(crate) folder: &'q Path,
+    pub(crate) runs: Vec<(Manifest, Summary)>,
 }
 
 impl Study<'_> {
-    fn find(&self, run: &str) -> Option<&(Manifest, Summary)> {
+    pub(crate) fn find(&self, run: &str) -> Option<&(Manifest, Summary)> {
         self.runs.iter().find(|(manifest, _)| manifest.run == run)
     }
 
     /// Runs that compare with one that is there.
-    fn compared(&self) -> Vec<String> {
+    pub(crate) fn compared(&self) -> Vec<String> {
         let is_compared = |summary: &Summary| {
             summary.compare_with.as_deref().is_some_and(|other| self.find(other).is_some())
         };
@@ -83,11 +83,11 @@ impl Study<'_> {
 }
 
 /// A run and the one that it compares with, in one wind.
-struct Pair<'s> {
+pub(crate) struct Pair<'s> {
     /// Folder of the study.
-    folder: &'s Path,
-    run: &'s (Manifest, Summary),
-    other: &'s (Manifest, Summary),
+    pub(crate) folder: &'s Path,
+    pub(crate) run: &'s (Manifest, Summary),
+    pub(crate) other: &'s (Manifest, Summary),
 }
 
 /// What the studies that `question` names tell together of the gains of their runs.
@@ -115,8 +115,8 @@ pub fn gains_over_seeds(question: &GainsQuestion) -> Result<GainsAnswer, Postpro
         undefined: Vec::new(),
     };
     for name in &names {
-        let pairs = pairs(&studies, name)?;
-        answer.seeds = seeds(&studies, &pairs)?;
+        let pairs = pairs(&studies.iter().collect::<Vec<_>>(), name)?;
+        answer.seeds = seeds(&pairs)?;
         let folder = RunFolder::new(pairs[0].folder, name);
         answer.downstream = downstream(&case_of(&folder, &pairs[0].run.0)?);
         let gains = run_gains(&pairs, &answer.downstream, &mut answer.undefined);
@@ -155,7 +155,10 @@ fn wanted(question: &GainsQuestion, studies: &[Study<'_>]) -> Result<Vec<String>
 }
 
 /// The run `name` of each of `studies` with the one that it compares with; all of one case but for the seed.
-fn pairs<'s>(studies: &'s [Study<'_>], name: &str) -> Result<Vec<Pair<'s>>, SeedsError> {
+pub(crate) fn pairs<'s>(
+    studies: &[&'s Study<'_>],
+    name: &str,
+) -> Result<Vec<Pair<'s>>, SeedsError> {
     let mut pairs: Vec<Pair<'s>> = Vec::with_capacity(studies.len());
     for study in studies {
         let found = study.find(name).and_then(|run| {
@@ -198,7 +201,7 @@ fn check_alike(
     }
 }
 
-fn turbine_names(summary: &Summary) -> Vec<String> {
+pub(crate) fn turbine_names(summary: &Summary) -> Vec<String> {
     summary.turbines.iter().map(|turbine| turbine.name.clone()).collect()
 }
 
@@ -214,12 +217,12 @@ fn unseeded(manifest: &Manifest) -> [u8; 32] {
     case::fingerprint(&text, &manifest.run)
 }
 
-/// The seed of each of `studies` (–); no two winds are the same.
-fn seeds(studies: &[Study<'_>], pairs: &[Pair<'_>]) -> Result<Vec<u64>, SeedsError> {
+/// The seed of the wind of each of `pairs` (–); no two winds are the same.
+pub(crate) fn seeds(pairs: &[Pair<'_>]) -> Result<Vec<u64>, SeedsError> {
     let seeds: Vec<u64> = pairs.iter().map(|pair| pair.run.1.conditions.seed).collect();
     for (later, seed) in seeds.iter().enumerate() {
         if let Some(earlier) = seeds[..later].iter().position(|other| other == seed) {
-            let folders = [earlier, later].map(|place| studies[place].folder.to_owned());
+            let folders = [earlier, later].map(|place| pairs[place].folder.to_owned());
             return Err(SeedsError::SameWind { seed: *seed, folders });
         }
     }
@@ -283,7 +286,7 @@ fn run_gains(
 
 /// Mean power of `turbines` together in `summary` over that in `other`, minus one (–); none where that is
 /// zero.
-fn gain(summary: &Summary, other: &Summary, turbines: &[String]) -> Option<f64> {
+pub(crate) fn gain(summary: &Summary, other: &Summary, turbines: &[String]) -> Option<f64> {
     let power = |summary: &Summary| -> f64 {
         let requested = summary.turbines.iter().filter(|turbine| turbines.contains(&turbine.name));
         requested.map(|turbine| turbine.power.mean).sum()

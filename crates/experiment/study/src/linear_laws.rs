@@ -2,11 +2,12 @@
 
 use basis::records::ControlSetting;
 use control::lidar_loop::MEAN_HUB_VORTEX;
-use control::{LawFiles, LinearLaw};
-use farm::case::Case;
+use control::{Control, LawFiles, LinearLaw};
+use farm::case::{Case, Placement, Run};
 use formats::FileError;
-use formats::linear_model::{LinearModel, Port, Role};
+use formats::linear_model::{LinearModel, Port};
 use formats::records::{self, RunFolder};
+use formats::shipped;
 use lti::Recursion;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -30,43 +31,104 @@ const FRAME: [&str; 8] = [
 /// How names of the two components end, in the order of the loop.
 const ENDINGS: [[&str; 2]; 2] = [["tilt", "up"], ["yaw", "right"]];
 
-/// On return every control of `case` that runs a linear law has it; paths are relative to `folder`.
+/// SHA-256 of the files of laws by their names.
+pub(crate) type LawDigests = BTreeMap<String, String>;
+
+/// On return every control of `case` that runs a linear law has it, with its reference where that is of a run
+/// which is complete; paths are relative to `folder`. Gives what the laws' files were.
 ///
 /// # Errors
 /// [`FileError`] for a file that cannot be read, or that holds no law in discrete time of two errors (m) and
 /// two commands (deg), and for a run of reference that does not tell of the turbine's hub vortex.
-pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
+pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<LawDigests, FileError> {
+    let mut digests = LawDigests::new();
     for run in &mut case.runs {
-        for (control, turbine) in run.control.iter_mut().zip(&case.turbines) {
+        for control in &mut run.control {
             let Some(files) = control.kind().law_files(control) else { continue };
-            let own = ControlSetting::all(control.values());
-            let mean = |run: String| mean_hub_vortex(&run, folder, (&turbine.name, &own));
-            let reference = files.reference_run.map(mean);
-            let law = LinearLaw { reference: reference.transpose()?, ..law(files.law, folder)? };
+            let (law, sha256) = law(files.law.clone(), folder)?;
+            digests.insert(files.law, sha256);
             control.linear_law = Some(Arc::new(law));
         }
+        *run = referred(run, &case.turbines, folder)?;
     }
-    Ok(())
+    Ok(digests)
 }
 
-/// What decides the laws of a `case` to which they are [attached](attach): SHA-256 of each law's file by
-/// its name, of those that can be read, and the reference (m) of each run that is one by its folder. The
-/// run's own files may change, such as by making it again with the same result.
-pub(crate) fn digests(case: &Case, folder: &Path) -> BTreeMap<String, String> {
-    let mut digests = BTreeMap::new();
-    for control in case.runs.iter().flat_map(|run| &run.control) {
+/// `run`, which controls `turbines` with its laws [attached](attach), with the references that complete runs of reference
+/// have left by now.
+///
+/// # Errors
+/// [`FileError`] for one that does not tell of the turbine's hub vortex.
+pub(crate) fn referred(run: &Run, turbines: &[Placement], folder: &Path) -> Result<Run, FileError> {
+    let mut run = run.clone();
+    for (control, turbine) in run.control.iter_mut().zip(turbines) {
+        let Some(reference_run) = complete_reference(control, folder) else { continue };
+        let own = ControlSetting::all(control.values());
+        let reference = mean_hub_vortex(&reference_run, folder, (&turbine.name, &own))?;
+        if let Some(law) = &mut control.linear_law {
+            Arc::make_mut(law).reference = Some(reference);
+        }
+    }
+    Ok(run)
+}
+
+/// The folder of the run that `control` takes its reference from, as the case has it.
+pub(crate) fn reference_run(control: &Control) -> Option<String> {
+    control.kind().law_files(control)?.reference_run
+}
+
+/// The same where that run is complete; the case is in `folder`.
+fn complete_reference(control: &Control, folder: &Path) -> Option<String> {
+    reference_run(control).filter(|run| RunFolder::new(folder, run).is_complete())
+}
+
+/// That a run needs the run of reference in `folder`, which is not complete, and which nobody is about to
+/// make.
+pub(crate) fn not_complete(folder: &Path, run: &str) -> FileError {
+    let problem = format!("{run} takes its reference from this run, which is not complete");
+    let fix = "make it first, with `wakemix run CASE --run STUDY/RUN` into this folder, or name the folder of another one with `reference_run`";
+    FileError::content("a run of reference", folder, problem, fix)
+}
+
+/// `control` as it can be built before its run of reference is made: with its law at rest about nothing.
+pub(crate) fn for_a_check(control: &mut Control) {
+    if reference_run(control).is_some()
+        && let Some(law) = &mut control.linear_law
+    {
+        Arc::make_mut(law).reference.get_or_insert([0.0; 2]);
+    }
+}
+
+/// What decides the laws of `run`, to which they are [attached](attach), by names: each law's file as it was
+/// in `digests`, and the reference (m) that is of a run, by its folder. That run's own files may change, such
+/// as by making it again with the same result.
+pub(crate) fn deciding(run: &Run, digests: &LawDigests) -> LawDigests {
+    let mut deciding = LawDigests::new();
+    for control in &run.control {
         let Some(LawFiles { law, reference_run }) = control.kind().law_files(control) else {
             continue;
         };
-        if let Ok(sha256) = records::sha256_of_file(&folder.join(&law), WHAT) {
-            digests.insert(law, sha256);
+        if let Some(sha256) = digests.get(&law) {
+            deciding.insert(law, sha256.clone());
         }
         let reference = control.linear_law.as_ref().and_then(|law| law.reference);
         if let (Some(run), Some([tilt, yaw])) = (reference_run, reference) {
-            digests.insert(run, format!("{tilt} m, {yaw} m"));
+            deciding.insert(run, format!("{tilt} m, {yaw} m"));
         }
     }
-    digests
+    deciding
+}
+
+/// SHA-256 of each law's file of a `case` by its name, of those that can be read.
+pub(crate) fn digests(case: &Case, folder: &Path) -> LawDigests {
+    let controls = case.runs.iter().flat_map(|run| &run.control);
+    let files = controls.filter_map(|control| control.kind().law_files(control));
+    files
+        .filter_map(|files| {
+            let (_, sha256) = shipped::read_law(folder, &files.law).ok()?;
+            Some((files.law, sha256))
+        })
+        .collect()
 }
 
 /// Mean of the hub vortex of a turbine in the helix frame (m), in the `run` that a case in `folder` names,
@@ -107,9 +169,10 @@ fn mean_hub_vortex(
     }
 }
 
-fn law(file: String, folder: &Path) -> Result<LinearLaw, FileError> {
+/// The law in `file`, without a reference, and the file's SHA-256.
+fn law(file: String, folder: &Path) -> Result<(LinearLaw, String), FileError> {
     let path = folder.join(&file);
-    let model = LinearModel::read(&path, Role::Controller)?;
+    let (model, sha256) = shipped::read_law(folder, &file)?;
     let refused = |problem: String| FileError::content(WHAT, &path, problem, FIX);
     let errors =
         places(&model.inputs, "m").map_err(|found| refused(format!("`inputs` {found}")))?;
@@ -128,7 +191,7 @@ fn law(file: String, folder: &Path) -> Result<LinearLaw, FileError> {
         Some(gain) => recursion.with_back_calculation(&columns(gain, commands)),
         None => recursion,
     };
-    Ok(LinearLaw { file, recursion, interval, reference: None })
+    Ok((LinearLaw { file, recursion, interval, reference: None }, sha256))
 }
 
 /// Where tilt and yaw are among `ports`, which are in `unit`.
@@ -158,6 +221,7 @@ fn places(ports: &[Port], unit: &str) -> Result<[usize; 2], String> {
 mod tests {
     use super::*;
     use basis::records::{Finding, SettingValue, examples};
+    use formats::linear_model::Role;
 
     /// A gain from errors to commands with these names and units.
     fn gain(role: Role, inputs: [[&str; 2]; 2], outputs: [[&str; 2]; 2]) -> LinearModel {
@@ -173,7 +237,8 @@ mod tests {
     fn read(model: &LinearModel) -> Result<LinearLaw, String> {
         let folder = tempfile::tempdir().unwrap();
         model.write(&folder.path().join("law.json")).unwrap();
-        law("law.json".to_owned(), folder.path()).map_err(|error| error.to_string())
+        let law = law("law.json".to_owned(), folder.path());
+        law.map(|(law, _)| law).map_err(|error| error.to_string())
     }
 
     const UP_RIGHT: [[&str; 2]; 2] = [["T1.HubVortexTilt", "m"], ["T1.HubVortexYaw", "m"]];

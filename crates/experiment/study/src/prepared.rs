@@ -4,7 +4,7 @@
 use crate::StudyError;
 use crate::file_of_wind;
 use crate::hosting;
-use crate::linear_laws;
+use crate::linear_laws::{self, LawDigests};
 use crate::models::{self, Machines};
 use crate::threads;
 use crate::warnings::{self, SetupWarning};
@@ -33,7 +33,8 @@ pub struct Prepared {
     /// Text of each turbine model's file, and of each controller's own input file with its table; none of
     /// models that were given as values.
     pub turbine_texts: BTreeMap<String, String>,
-    /// SHA-256 of each shared library that controls a turbine, and of its input file, by their names.
+    /// SHA-256 of each shared library that controls a turbine, and of its input file, by their names; those of
+    /// linear laws come with the runs that have one.
     pub libraries: BTreeMap<String, String>,
     /// Domain and steps.
     pub plan: Plan,
@@ -43,6 +44,8 @@ pub struct Prepared {
     pub recorded: Option<Recorded>,
     /// What a reader of the numbers must know.
     pub warnings: Vec<SetupWarning>,
+    /// What the files of linear laws were when they were read.
+    laws: LawDigests,
     /// Channels of each turbine's controller and further sensors (–), of every run by its name, in the case's
     /// order: counted where every controller is made as a check, which takes a while.
     n_told: BTreeMap<String, Vec<usize>>,
@@ -70,7 +73,7 @@ impl Prepared {
     fn new(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
         let mut case = file.case.clone();
         hosting::attach(&mut case, file.folder());
-        linear_laws::attach(&mut case, file.folder())?;
+        let laws = linear_laws::attach(&mut case, file.folder())?;
         let plan = plan(&case, &machines.footprints(case.wind.speed))?;
         let models = machines.equipped(&case);
         threads::check(file)?;
@@ -101,11 +104,8 @@ impl Prepared {
         Ok(Self {
             case_text: formats::case::write(&case),
             turbine_texts: machines.texts,
-            libraries: {
-                let mut digests = hosting::digests(&case, file.folder());
-                digests.extend(linear_laws::digests(&case, file.folder()));
-                digests
-            },
+            libraries: hosting::digests(&case, file.folder()),
+            laws,
             folder: file.folder().to_owned(),
             n_told,
             case,
@@ -120,6 +120,20 @@ impl Prepared {
     /// Folder that paths in the case are relative to.
     pub(crate) fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// `run`, one of the case's, with the references that runs of reference have left by now.
+    ///
+    /// # Errors
+    /// [`StudyError::File`].
+    pub(crate) fn referred(&self, run: &Run) -> Result<Run, StudyError> {
+        Ok(linear_laws::referred(run, &self.case.turbines, &self.folder)?)
+    }
+
+    /// SHA-256 of the shared libraries, and what decides the linear laws of `run`, by their names.
+    pub(crate) fn libraries_of(&self, run: &Run) -> BTreeMap<String, String> {
+        let laws = linear_laws::deciding(run, &self.laws);
+        self.libraries.clone().into_iter().chain(laws).collect()
     }
 
     /// Channels of the controller and the further sensors of turbine number `index` in `run`, one of the
@@ -195,6 +209,7 @@ fn check_control_of(
     let model = model.clone().without_individual_pitch();
     let mut control = control.clone();
     control.response = control.response.or(control.kind().any_response());
+    linear_laws::for_a_check(&mut control);
     let built = controller(&control, &model, case, plan).map(|built| built.signals().len());
     let begun =
         |n_signals| hosting::check(&control, placement, &model, (case, plan)).map(|()| n_signals);

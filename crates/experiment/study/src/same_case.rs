@@ -43,7 +43,7 @@ pub(crate) fn standing(
             return Err(StudyError::OtherCase { run: name, directory, differences });
         }
     };
-    let machines = prepared.machine_digests();
+    let machines = prepared.machine_digests(&prepared.referred(run)?);
     if let Some((file, sha256)) = another(&manifest.turbines_sha256, &machines) {
         return Err(StudyError::OtherFile { run: name, directory, file, sha256 });
     }
@@ -152,11 +152,12 @@ pub(crate) fn another(
 }
 
 impl Prepared {
-    /// SHA-256 of turbine files, of controllers' inputs and of shared libraries, by their names.
-    fn machine_digests(&self) -> BTreeMap<String, String> {
+    /// SHA-256 of turbine files, of controllers' inputs, of shared libraries and of what decides the linear
+    /// laws of `run`, by their names.
+    fn machine_digests(&self, run: &Run) -> BTreeMap<String, String> {
         let texts = self.turbine_texts.iter();
         let texts = texts.map(|(name, text)| (name.clone(), records::sha256(text.as_bytes())));
-        texts.chain(self.libraries.clone()).collect()
+        texts.chain(self.libraries_of(run)).collect()
     }
 
     /// SHA-256 of each file of wind that the case reads, as the files are now.

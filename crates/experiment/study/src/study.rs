@@ -11,6 +11,7 @@ use crate::simulate::{Ending, Job, simulate};
 use crate::summarise::{self, Left};
 use crate::{Observer, StudyError};
 use basis::records::{Cost, Summary};
+use farm::case::Run;
 use formats::leftovers;
 use formats::lock::Lock;
 use formats::records::{self, Manifest, PitchResponseRecord, RunFolder};
@@ -172,19 +173,20 @@ impl<'a> Study<'a> {
         stop: &AtomicBool,
         observer: &mut dyn Observer,
     ) -> Result<ControlFlow<()>, StudyError> {
-        let (run, folder) = (&ready.prepared.case.runs[index], &self.folders[index]);
+        let (prepared, folder) = (&ready.prepared, &self.folders[index]);
+        let run = &prepared.referred(&prepared.case.runs[index])?;
         if self.resume && folder.holds_results() && !folder.checkpoint_path().exists() {
             let name = &run.name;
             observer.warned(&format!("{name} left no checkpoint: it begins at time zero again"));
         }
         let wind = self.same_wind(&ready.prepared, &run.name)?;
-        let manifest = begin_run(&ready.prepared, wind, index, folder, self.resume)?;
+        let manifest = begin_run(&ready.prepared, wind, (index, run), folder, self.resume)?;
         let (outputs, resume) = (self.outputs, self.resume);
         let job = Job { ready, run, folder, outputs, resume, place };
         match simulate(&job, stop, observer)? {
             Ending::Interrupted => Ok(ControlFlow::Break(())),
             Ending::Complete { cost, left, warnings, backend } => {
-                let mut summary = self.summary(ready, index, &left, cost)?;
+                let mut summary = self.summary(ready, (index, run), &left, cost)?;
                 summary.warnings.extend(warnings);
                 let known = &ready.prepared.warnings;
                 let n_known = known.iter().filter(|warning| warning.concerns(&run.name)).count();
@@ -217,16 +219,15 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The numbers of run number `index`, with its gains where the run that it compares with is there.
+    /// The numbers of `run`, number `index`, with its gains where the run that it compares with is there.
     fn summary(
         &self,
         ready: &Ready,
-        index: usize,
+        (index, run): (usize, &Run),
         left: &[Left],
         cost: Cost,
     ) -> Result<Summary, StudyError> {
         let (prepared, folder) = (&ready.prepared, &self.folders[index]);
-        let run = &prepared.case.runs[index];
         let mut columns = Columns::open(folder, prepared)?;
         let mut summary = summarise::summarise(prepared, run, &mut columns, left, cost)?;
         if let Comparison::Made(other, mut there) =
@@ -241,12 +242,12 @@ impl<'a> Study<'a> {
     }
 }
 
-/// On return the run's folder is ready: empty but for the manifest, which tells of `wind`, or as an
-/// interrupted run left it when `resume`.
+/// On return the folder of `run`, number `index`, is ready: empty but for the manifest, which tells of
+/// `wind`, or as an interrupted run left it when `resume`.
 fn begin_run(
     prepared: &Prepared,
     wind: WindDigests,
-    index: usize,
+    (index, run): (usize, &Run),
     folder: &RunFolder,
     resume: bool,
 ) -> Result<Manifest, StudyError> {
@@ -266,7 +267,7 @@ fn begin_run(
     let texts = prepared.turbine_texts.iter().map(|(name, text)| (name.as_str(), text.as_str()));
     let version = env!("CARGO_PKG_VERSION");
     let manifest = Manifest::start(version, &prepared.case, &prepared.case_text, index, texts);
-    let manifest = manifest.in_wind(wind).with_libraries(&prepared.libraries);
+    let manifest = manifest.in_wind(wind).with_libraries(&prepared.libraries_of(run));
     records::write_manifest(folder, &manifest)?;
     Ok(manifest)
 }

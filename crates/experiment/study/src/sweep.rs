@@ -2,6 +2,7 @@
 //! runs one after the other or side by side.
 
 mod parts;
+mod references;
 mod wanted;
 
 use crate::air;
@@ -20,6 +21,7 @@ use formats::lock::Lock;
 use formats::records::{self, PitchResponseRecord, read_pitch_responses};
 use formats::shipped;
 use parts::{Part, Parts};
+use references::{MadeSoFar, ToldOfPanic};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -134,6 +136,7 @@ impl<'a> All<'a> {
             let study = Study::open(options, outputs, &prepared, (place, runs))?;
             studies.push(Opened { folder, study, prepared, checked: SelfChecked::default() });
         }
+        references::check(&studies)?;
         if options.resume && !options.dry_run && !records::is_begun(&directory) {
             return Err(StudyError::NothingToResume { directory });
         }
@@ -295,15 +298,21 @@ impl<'a> All<'a> {
         let shared = Shared::new(observer, stop, (tasks.len(), work), n_jobs);
         let (next, failed, broken) =
             (AtomicUsize::new(0), Mutex::new(None), AtomicBool::new(false));
+        let made = MadeSoFar::of(tasks.len());
+        let is_over = || broken.load(Ordering::Relaxed) || held(&failed).is_some();
         let worker = || {
+            let _told = ToldOfPanic(&broken);
             loop {
                 let place = next.fetch_add(1, Ordering::Relaxed);
                 let Some(task) = tasks.get(place).filter(|_| held(&failed).is_none()) else {
                     return;
                 };
-                let place = (place, tasks.len());
-                match parts.make(task, place, options.overwrite, stop, &shared) {
-                    Ok(ControlFlow::Continue(())) => {}
+                if !made.wait(&task.after, is_over) {
+                    return;
+                }
+                let number = (place, tasks.len());
+                match parts.make(task, number, options.overwrite, stop, &shared) {
+                    Ok(ControlFlow::Continue(())) => made.add(place),
                     Ok(ControlFlow::Break(())) => return broken.store(true, Ordering::Relaxed),
                     Err(error) => {
                         held(&failed).get_or_insert(error);

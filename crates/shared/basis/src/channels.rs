@@ -195,7 +195,11 @@ pub struct FollowedMoment {
 }
 
 /// Tilt and yaw that are pitched, in the frame that turns with the helix.
-pub const HELIX_FRAME: [Channel; 2] = [angle("HelixTilt"), angle("HelixYaw")];
+pub const HELIX_FRAME: [Channel; 2] = [HELIX_TILT, HELIX_YAW];
+/// Tilt that is pitched in the helix frame.
+pub const HELIX_TILT: Channel = angle("HelixTilt");
+/// Yaw that is pitched there.
+pub const HELIX_YAW: Channel = angle("HelixYaw");
 
 /// Where a lidar sees the hub vortex: to the left and up from the rotor's centre, then its tilt and yaw in
 /// the frame that turns with the helix, and how far that can be trusted.

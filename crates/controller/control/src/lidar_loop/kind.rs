@@ -1,5 +1,6 @@
 //! `kind = "lidar-loop"`: its keys, and how it is built.
 
+use super::findings::{of_loop, of_reference};
 use super::{CHANNELS, LidarLoop, Limits, Settings, Watch, findings};
 use crate::Controller;
 use crate::discon::base;
@@ -25,8 +26,17 @@ pub struct LidarLoopKind;
 /// The kind.
 pub static LIDAR_LOOP: LidarLoopKind = LidarLoopKind;
 
-/// Share of the loop (–) below which it counts as open.
-const CLOSED: f64 = 0.99;
+/// Where the hub vortex is to be (m); none of a run of reference that is not read.
+fn reference(control: &Control) -> Option<[f64; 2]> {
+    let values = control.values();
+    let given = ["reference_tilt", "reference_yaw"].map(|key| values.optional_number(key));
+    let place = match given {
+        [Some(tilt), Some(yaw)] => [tilt, yaw],
+        _ => control.linear_law.as_ref()?.reference?,
+    };
+    let shift = ["reference_shift_tilt", "reference_shift_yaw"].map(|key| values.number(key));
+    Some([0, 1].map(|axis| place[axis] + shift[axis]))
+}
 
 static TABLE: Table = Table {
     heading: "control.T1 = { kind = \"lidar-loop\", … }",
@@ -40,7 +50,7 @@ static TABLE: Table = Table {
             Holds::Text,
             "",
             Required,
-            "File of the control law that `wakemix synthesize` wrote: from errors of the hub vortex (m) to tilt and yaw (deg), in the helix frame; a path relative to the case file.",
+            "File of the control law that `wakemix synthesize` wrote: from errors of the hub vortex (m) to tilt and yaw (deg), in the helix frame; a path relative to the case file. Where there is no `lidar-loop-controller.json`, that name is the one that comes with the program.",
         ),
         key(
             "reference_tilt",
@@ -61,7 +71,21 @@ static TABLE: Table = Table {
             Holds::Text,
             "",
             Otherwise("none: `reference_tilt` and `reference_yaw` say where"),
-            "Folder of a complete run whose mean hub vortex of this turbine is the reference, such as one with an open helix in even wind (`kind = \"probing\"` with `noise_amplitude_deg = 0`); a path relative to the case file.",
+            "Folder of a complete run whose mean hub vortex of this turbine is the reference, such as one with an open helix in even wind (`kind = \"probing\"` with `noise_amplitude_deg = 0`); a path relative to the case file. A run that the same command makes is made first.",
+        ),
+        key(
+            "reference_shift_tilt",
+            from(-500.0, 500.0),
+            "m",
+            Value("0"),
+            "Added to the reference, up component: another place beside that of a run.",
+        ),
+        key(
+            "reference_shift_yaw",
+            from(-500.0, 500.0),
+            "m",
+            Value("0"),
+            "The same, component to the right.",
         ),
         key(
             "loop_start",
@@ -150,10 +174,9 @@ impl ControllerKind for LidarLoopKind {
         let Some(law) = &control.linear_law else {
             return Err(ControlError::NoLinearLaw { file: values.word("controller").to_owned() });
         };
-        let reference = law.reference.unwrap_or_else(|| {
-            ["reference_tilt", "reference_yaw"]
-                .map(|key| values.optional_number(key).unwrap_or(0.0))
-        });
+        let reference = reference(control).ok_or_else(|| ControlError::NoReference {
+            run: values.word("reference_run").to_owned(),
+        })?;
         let settings = Settings {
             frame,
             amplitude,
@@ -204,19 +227,19 @@ impl ControllerKind for LidarLoopKind {
         CHANNELS.into_iter().chain([LOOP_SHARE, HUB_VORTEX_TRUST]).collect()
     }
 
-    fn outcome(&self, _: &Control, record: &dyn TurbineRecord) -> Result<Outcome, MissingChannel> {
-        let shares = record.column(&LOOP_SHARE)?;
-        let trust = record.column(&HUB_VORTEX_TRUST)?;
-        let n = shares.len().max(1) as f64;
-        let open = shares.iter().filter(|share| **share < CLOSED).count() as f64 / n;
-        let trust = trust.iter().sum::<f64>() / n;
-        let warning = (open > 0.0).then(|| {
-            format!(
-                " had its lidar loop open for {:.1} % of the analysed time: the lidar did not see the hub vortex (confidence {trust:.2} on the mean), or `loop_start` came later",
-                100.0 * open
-            )
-        });
+    fn outcome(
+        &self,
+        control: &Control,
+        record: &dyn TurbineRecord,
+    ) -> Result<Outcome, MissingChannel> {
         let findings = findings(record)?;
-        Ok(Outcome { findings, warnings: Vec::from_iter(warning), ..Outcome::default() })
+        let reference = reference(control).map(|reference| of_reference(reference, &findings));
+        let (of_loop, warning) = of_loop(record, control.values().number("least_trust"))?;
+        let findings = findings.into_iter().chain(reference.into_iter().flatten()).chain(of_loop);
+        Ok(Outcome {
+            findings: findings.collect(),
+            warnings: Vec::from_iter(warning),
+            ..Outcome::default()
+        })
     }
 }

@@ -36,22 +36,54 @@ pub fn change(
     block_length: f64,
     of: impl Fn(&[f64]) -> Result<f64, AnalysisError>,
 ) -> Result<Statistic, AnalysisError> {
-    check_lengths(samples, compared)?;
-    let change = |samples: &[f64], compared: &[f64]| -> Result<f64, AnalysisError> {
-        let reference = of(compared)?;
-        if reference == 0.0 {
+    change_together(&[[samples, compared]], interval, block_length, of)
+}
+
+/// The same of the sum of the statistics of several records, such as the load of all turbines together:
+/// `pairs` of samples and what they are compared with, each record on its own.
+///
+/// # Errors
+/// Those of [`change`].
+///
+/// ```
+/// # use analysis::statistics::{change_together, standard_deviation};
+/// let wave = |size: f64| [size, -size].repeat(600);
+/// let (first, second) = ([wave(3.0), wave(2.0)], [wave(1.0), wave(2.0)]);
+/// let pairs = [[&first[0][..], &first[1]], [&second[0][..], &second[1]]];
+/// let deviation = |samples: &[f64]| Ok(standard_deviation(samples));
+/// // 3 + 1 over 2 + 2.
+/// assert!(change_together(&pairs, 1.0, 600.0, deviation)?.mean.abs() < 1e-12);
+/// # Ok::<(), analysis::AnalysisError>(())
+/// ```
+pub fn change_together(
+    pairs: &[[&[f64]; 2]],
+    interval: f64,
+    block_length: f64,
+    of: impl Fn(&[f64]) -> Result<f64, AnalysisError>,
+) -> Result<Statistic, AnalysisError> {
+    let change = |pairs: &mut dyn Iterator<Item = [&[f64]; 2]>| -> Result<f64, AnalysisError> {
+        let (mut now, mut before) = (0.0, 0.0);
+        for [samples, compared] in pairs {
+            now += of(samples)?;
+            before += of(compared)?;
+        }
+        if before == 0.0 {
             return Err(AnalysisError::NoReference);
         }
-        Ok(of(samples)? / reference - 1.0)
+        Ok(now / before - 1.0)
     };
-    let pairs =
-        blocks(samples, interval, block_length)?.zip(blocks(compared, interval, block_length)?);
-    let mut changes = Vec::new();
-    for (samples, compared) in pairs {
-        changes.push(change(samples, compared)?);
+    let mut in_blocks: Vec<Vec<[&[f64]; 2]>> = Vec::new();
+    for [samples, compared] in pairs {
+        check_lengths(samples, compared)?;
+        let pairs =
+            blocks(samples, interval, block_length)?.zip(blocks(compared, interval, block_length)?);
+        in_blocks.push(pairs.map(|(samples, compared)| [samples, compared]).collect());
     }
+    let n_blocks = in_blocks.iter().map(Vec::len).min().unwrap_or(0);
+    let changes = (0..n_blocks).map(|block| change(&mut in_blocks.iter().map(|own| own[block])));
+    let changes = changes.collect::<Result<Vec<f64>, _>>()?;
     Ok(Statistic {
-        mean: change(samples, compared)?,
+        mean: change(&mut pairs.iter().copied())?,
         standard_deviation: sample_deviation(&changes).unwrap_or(0.0),
         half_width_95: half_width_95(&changes),
         n_blocks: changes.len(),

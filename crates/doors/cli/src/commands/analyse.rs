@@ -49,6 +49,7 @@ fn offered(analysis: &Analysis) -> Command {
     let folders = Arg::new(FOLDERS).required(true).value_parser(value_parser!(PathBuf));
     let folders = match analysis.of {
         Of::Run(about) => folders.value_name("RUN").help(about),
+        Of::Runs(about) => folders.value_name("RUN").help(about).num_args(1..),
         Of::Studies(about) => folders.value_name("STUDY").help(about).num_args(1..),
     };
     let json = Arg::new("json")

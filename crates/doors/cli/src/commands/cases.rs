@@ -11,9 +11,9 @@ use wakemix::report::text_table::{Column, TextTable};
 /// Arguments of `wakemix cases`.
 #[derive(Args)]
 pub(crate) struct CasesArguments {
-    /// Case to write out, by its name; a list of all when left out
+    /// Case to write out, by its name, or control law, by that of its file; a list of all when left out
     name: Option<String>,
-    /// File to write; NAME.toml in the current folder when left out, - for standard output
+    /// File to write; NAME.toml, of a law NAME, in the current folder when left out, - for standard output
     #[arg(short, long, value_name = "FILE", requires = "name")]
     output: Option<PathBuf>,
     /// Put the new file in the place of an old one
@@ -28,23 +28,31 @@ pub(crate) struct CasesArguments {
 pub(crate) fn run(arguments: &CasesArguments) -> Result<()> {
     let Some(name) = &arguments.name else { return print(&list(columns())?) };
     let study = shipped::find(name).map(|case| case.text());
-    let text = study.or_else(|| shipped::find_precursor(name).map(|shipped| shipped.text()));
+    let law = shipped::find_law(name);
+    let precursor = || shipped::find_precursor(name).map(|shipped| shipped.text());
+    let text = study.or_else(precursor).or_else(|| law.map(str::to_owned));
     let Some(text) = text else {
         let studies = shipped::CASES.iter().map(|case| case.name);
-        let names: Vec<&str> =
-            studies.chain(shipped::PRECURSORS.iter().map(|shipped| shipped.name)).collect();
+        let precursors = shipped::PRECURSORS.iter().map(|shipped| shipped.name);
+        let laws = shipped::LAWS.iter().map(|(name, _)| *name);
+        let names: Vec<&str> = studies.chain(precursors).chain(laws).collect();
         return Err(miette!(
             help = format!("there are: {}", names.join(", ")),
             "no case called `{name}` comes with the program"
         ));
     };
-    let output = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
+    let usual = || PathBuf::from(if law.is_some() { name.clone() } else { format!("{name}.toml") });
+    let output = arguments.output.clone().unwrap_or_else(usual);
     if output.as_os_str() == "-" {
         return print(&text);
     }
     check_free(std::slice::from_ref(&output), arguments.overwrite)?;
-    atomic::write(&output, "the case file", text.as_bytes())?;
+    let what = if law.is_some() { "the control law" } else { "the case file" };
+    atomic::write(&output, what, text.as_bytes())?;
     tell(&format!("wrote {}", output.display()));
+    for (law, _) in shipped::LAWS.iter().filter(|(law, _)| text.contains(law)) {
+        tell(&format!("it reads {law}: that of the program, unless such a file stands beside it"));
+    }
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! `hub-vortex`: where a lidar saw the hub vortex of its turbine's wake.
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
-use crate::hub_vortex::signals;
+use crate::hub_vortex::{beside, names, signals};
 use crate::{
     HubVortexAnswer, HubVortexQuestion, HubVortexTrack, PostprocessingError, VortexFilter,
     hub_vortex,
@@ -11,13 +11,15 @@ use basis::{Channel, Sense, Unit};
 use formats::records::SeriesWriter;
 use serde_json::json;
 use std::f64::consts::TAU;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
     name: "hub-vortex",
-    about: "Where a lidar saw the hub vortex of its turbine's wake, in the fixed frame and in that of the helix, from the scans that a run kept: figures 6, 10 and 12 of Chen et al. (2026)",
-    of: Of::Run("Folder of a run, such as runs/lidar-identification/probing"),
+    about: "Where a lidar saw the hub vortex of its turbine's wake, in the fixed frame and in that of the helix, from the scans that a run kept: of one run, or of several beside the first: figures 6, 10 and 12 to 14 of Chen et al. (2026)",
+    of: Of::Runs(
+        "Folder of a run, such as runs/lidar-identification/probing; further ones stand beside the first",
+    ),
     settings: &[
         setting(
             "turbine",
@@ -83,7 +85,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
             "csv",
             "FILE",
             Takes::Text,
-            "CSV file to write the place over time into, with the channels of a series, which `wakemix identify` reads",
+            "CSV file to write the place over time in the first run into, with the channels of a series, which `wakemix identify` reads",
         ),
         FIGURES,
     ],
@@ -102,38 +104,66 @@ const fn setting(
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let filter = request.text("filter");
     let named = |filter_of: &VortexFilter| filter.is_none_or(|name| name == filter_of.name());
-    let answer = hub_vortex(&HubVortexQuestion {
-        run: request.run().to_owned(),
-        turbine: request.text("turbine").map(str::to_owned),
-        lidar: request.text("lidar").map(str::to_owned),
-        filters: VortexFilter::ALL.into_iter().filter(named).collect(),
-        frequency: request.number("frequency"),
-        sense: request.text("sense").map(|word| match word {
-            "cw" => Sense::Clockwise,
-            _ => Sense::CounterClockwise,
-        }),
-        cut_off: request.number("band"),
-        interval: request.number("interval"),
-        range: request.number("range"),
-        from: request.number("from"),
-    })?;
+    let ask = |run: &PathBuf| {
+        hub_vortex(&HubVortexQuestion {
+            run: run.clone(),
+            turbine: request.text("turbine").map(str::to_owned),
+            lidar: request.text("lidar").map(str::to_owned),
+            filters: VortexFilter::ALL.into_iter().filter(named).collect(),
+            frequency: request.number("frequency"),
+            sense: request.text("sense").map(|word| match word {
+                "cw" => Sense::Clockwise,
+                _ => Sense::CounterClockwise,
+            }),
+            cut_off: request.number("band"),
+            interval: request.number("interval"),
+            range: request.number("range"),
+            from: request.number("from"),
+        })
+    };
+    let answers = request.folders.iter().map(ask).collect::<Result<Vec<_>, _>>()?;
     let mut remarks = Vec::new();
     if let Some(path) = request.text("csv") {
-        write_csv(&answer, Path::new(path))?;
+        write_csv(&answers[0], Path::new(path))?;
         remarks.push(format!("written: {path}"));
     }
-    remarks.extend(drawn(request, &[signals(&answer)])?);
-    Ok(Answer { text: text(&answer), json: json(&answer), remarks })
+    if request.text(FIGURES.name).is_some() {
+        let figures = match &answers[..] {
+            [answer] => signals(answer),
+            answers => beside(answers, &request.folders)?,
+        };
+        remarks.extend(drawn(request, &[figures])?);
+    }
+    let names = match &answers[..] {
+        [answer] => vec![answer.run.clone()],
+        _ => names(&request.folders)?,
+    };
+    let all = answers.iter().zip(&names);
+    let text = all.map(|(answer, name)| text(answer, name)).collect::<String>() + CONVENTIONS;
+    let mut all = answers.iter().zip(&names).map(|(answer, name)| {
+        let mut found = json(answer);
+        found["name"] = json!(name);
+        found
+    });
+    let mut first = all.next().unwrap_or_default();
+    let others: Vec<serde_json::Value> = all.collect();
+    if !others.is_empty() {
+        first["beside"] = json!(others);
+    }
+    Ok(Answer { text, json: first, remarks })
 }
 
-/// Filter by filter, with the conventions below.
-fn text(answer: &HubVortexAnswer) -> String {
+/// What stands below the tables.
+const CONVENTIONS: &str = "radius: mean distance of the filtered place from its mean, which is left and up of the rotor's centre looking downwind; tilt (up), yaw (to the right): in the frame that turns with the helix; ±: standard deviation over whole periods; blind: scans in which it was not found\n";
+
+/// Filter by filter, of the run called `name`.
+fn text(answer: &HubVortexAnswer, name: &str) -> String {
     let HubVortexAnswer { frame, diameter, interval, .. } = answer;
     let mut text = format!(
         "{} on {} in {}: helix {} at {:.2} mHz, seen {:.2} D away, a sample every {interval:.3} s from {} s on; {:.1} % of the points without a speed\n",
         answer.lidar,
         answer.turbine,
-        answer.run,
+        name,
         frame.sense,
         1e3 * frame.rate / TAU,
         answer.range / diameter,
@@ -157,7 +187,7 @@ fn text(answer: &HubVortexAnswer) -> String {
             100.0 * numbers.blind
         );
     }
-    text + "radius: mean distance of the filtered place from its mean, which is left and up of the rotor's centre looking downwind; tilt (up), yaw (to the right): in the frame that turns with the helix; ±: standard deviation over whole periods; blind: scans in which it was not found\n"
+    text
 }
 
 /// The numbers, and the place over time.

@@ -3,6 +3,7 @@
 //! An analysis reads the records of runs and answers in text and in JSON. The command line makes its
 //! arguments and its help from the descriptor; a program calls [`Analysis::run`] with a [`Request`].
 
+mod changes;
 mod gains;
 mod hub_vortex;
 mod lock;
@@ -29,6 +30,7 @@ pub const ANALYSES: &[Analysis] = &[
     tune::ANALYSIS,
     offsets::ANALYSIS,
     gains::ANALYSIS,
+    changes::ANALYSIS,
     lock::ANALYSIS,
     meandering::ANALYSIS,
     hub_vortex::ANALYSIS,
@@ -73,6 +75,8 @@ pub struct Analysis {
 pub enum Of {
     /// One run.
     Run(&'static str),
+    /// One run or more, the first of which the others stand beside.
+    Runs(&'static str),
     /// Whole studies, one or more.
     Studies(&'static str),
 }

@@ -31,11 +31,12 @@ pub(crate) fn signals(answer: &HubVortexAnswer) -> Signals {
         name: format!("hub-vortex-path-{place}"),
         title: format!("Path of the hub vortex behind {}", answer.turbine),
         caption: format!(
-            "Place after the low-pass filter over the last periods of the helix, looking downwind, {:.2} D along the lines of sight from {}; dashed: the rotor's rim.",
+            "Place after the low-pass filter over the last periods of the helix, looking downwind, {:.2} D along the lines of sight from {}; the cross is the hub.",
             answer.range / answer.diameter,
             answer.lidar
         ),
         radius: 0.5 * answer.diameter,
+        is_close: true,
         panels: answer.tracks.iter().enumerate().map(panel).collect(),
     };
     Signals {
@@ -116,6 +117,7 @@ pub(crate) fn seen(run: &str, sampled: &Sampled) -> Seen {
             sampled.range() / stored.rotor_diameter
         ),
         radius,
+        is_close: false,
         panels: vec![pattern],
     };
     let cycle = DiscFigure {
@@ -123,6 +125,7 @@ pub(crate) fn seen(run: &str, sampled: &Sampled) -> Seen {
         title: format!("What {lidar} on {turbine} saw, {run}"),
         caption: cycle_caption(sampled, found.as_ref()),
         radius,
+        is_close: false,
         panels: cycle(sampled, found.as_ref()),
     };
     Seen { run: run.to_owned(), overview, path, cycle, turbine: turbine.clone() }
@@ -218,7 +221,7 @@ fn points(sampled: &Sampled, number: usize, speeds: bool) -> Vec<DiscPoint> {
 
 /// The filtered places of `track` over the last periods of the helix, once they count and are settled, as
 /// many as a figure can show.
-fn path(answer: &HubVortexAnswer, track: &HubVortexTrack) -> Vec<[f64; 2]> {
+pub(super) fn path(answer: &HubVortexAnswer, track: &HubVortexTrack) -> Vec<[f64; 2]> {
     let end = answer.times.last().copied().unwrap_or(0.0);
     let start = answer.from.max(end - SHOWN_PERIODS * TAU / answer.frame.rate);
     let shown = answer.times.iter().zip(&track.vortices);

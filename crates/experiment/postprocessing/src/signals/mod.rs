@@ -1,6 +1,7 @@
 //! Signals of studies and their spectra, made into the data of figures.
 
 pub(crate) mod blade_moments;
+mod helix_frame;
 pub(crate) mod meandering;
 mod scans;
 pub(crate) mod spectra;
@@ -36,6 +37,7 @@ pub(crate) fn of_study(
     for found in unless_coarse(meandering::of_study(&case, records))? {
         signals.push(found.signals());
     }
+    signals.extend(helix_frame::of_study(&case, records)?);
     signals.extend(scans::of_study(&case, records)?);
     Ok(signals)
 }
@@ -69,7 +71,7 @@ fn helix_in(case: &Case, run: &RunRecords, index: usize) -> Option<(Sense, f64)>
 
 /// First row of `series` from `from` (s) on, the times from there, and their distance (s); nothing where
 /// there are fewer than two.
-fn analysed(series: &Series, from: f64) -> Option<(usize, &[f64], f64)> {
+pub(crate) fn analysed(series: &Series, from: f64) -> Option<(usize, &[f64], f64)> {
     let times = series.column(&TIME.name)?;
     let first = times.iter().position(|time| *time >= from)?;
     let rest = &times[first..];

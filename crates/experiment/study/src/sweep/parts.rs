@@ -1,7 +1,7 @@
 //! Studies whose runs several threads make: each study is made ready once, by the first that needs it, and
 //! what is large of it goes with its last run.
 
-use super::Opened;
+use super::{Opened, references};
 use crate::StudyError;
 use crate::jobs::{Shared, held};
 use crate::observer::Observer;
@@ -27,6 +27,8 @@ pub(super) struct Task {
     pub(super) effort: Effort,
     /// Steps of the run (–).
     pub(super) n_steps: u64,
+    /// Places among the tasks of those whose runs it takes a reference from.
+    pub(super) after: Vec<usize>,
 }
 
 /// All studies.
@@ -142,16 +144,26 @@ impl<'a> Part<'a> {
 }
 
 impl Parts<'_> {
-    /// All runs that are to be made, in order.
+    /// All runs that are to be made, in order; those that others take a reference from come first.
     pub(super) fn tasks(&self) -> Vec<Task> {
         let mut tasks = Vec::new();
+        let mut needs = Vec::new();
         for (part, Part { study, stage, .. }) in self.list.iter().enumerate() {
             let Stage::Prepared(prepared) = &*held(stage) else { continue };
             let plan = &prepared.0.plan;
             let (effort, n_steps) = (plan.effort(), plan.n_steps);
-            tasks.extend(study.open.iter().map(|&index| Task { part, index, effort, n_steps }));
+            for &index in &study.open {
+                tasks.push(Task { part, index, effort, n_steps, after: Vec::new() });
+                needs.push(references::places(&prepared.0, index));
+            }
         }
-        tasks
+        let own = tasks
+            .iter()
+            .map(|task| references::place(self.list[task.part].study.folders[task.index].path()));
+        let (order, after) = references::in_order(&own.collect::<Vec<_>>(), &needs);
+        let mut tasks: Vec<Option<Task>> = tasks.into_iter().map(Some).collect();
+        let ordered = order.into_iter().zip(after);
+        ordered.filter_map(|(place, after)| Some(Task { after, ..tasks[place].take()? })).collect()
     }
 
     /// Makes the run of `task`, which is the `place`-th of all; where it is to `overwrite`, what was there of

@@ -107,3 +107,51 @@ fn what_is_wrong_is_told_with_its_line_and_key() {
     let unknown = read(&STUDY.replace("block = 5", "blok = 5")).expect_err("no such key");
     assert!(unknown.to_string().contains("blok"), "{unknown}");
 }
+
+/// Where a lidar loop holds the hub vortex, as two numbers beside the place that the case gives.
+const REFERENCE: &str = r#"case = "case.toml"
+run = "closed-loop"
+block = 200
+[budget]
+runs = 12
+[[variable]]
+key = "control.T1.reference_shift_tilt"
+unit = "m"
+from = -6
+to = 6
+[[variable]]
+key = "run.closed-loop.control.T1.reference_shift_yaw"
+unit = "m"
+from = -6
+to = 6
+[loads]
+channels = ["T1.RootMyb1", "T2.RootMyb1"]
+"#;
+
+#[test]
+fn the_reference_of_a_lidar_loop_can_be_searched() {
+    let folder = written(REFERENCE);
+    // The shipped case in one wind: without the sweep, which ends it.
+    let shipped = shipped::find("lidar-closed-loop").expect("it ships").text();
+    let (one_wind, _) = shipped.split_once("[sweep]").expect("a sweep");
+    fs::write(folder.path().join("case.toml"), one_wind).expect("a case");
+    let file = TuningFile::read(&folder.path().join("study.toml")).expect("a sound study");
+    assert_eq!(file.baseline, "open-loop");
+    assert!(file.is_of_run_alone(), "one open loop serves all points");
+    let overrides = file.overrides(&[-1.5, 2.0]);
+    assert_eq!(
+        overrides,
+        [
+            "run.closed-loop.control.T1.reference_shift_tilt=-1.5",
+            "run.closed-loop.control.T1.reference_shift_yaw=2.0"
+        ]
+    );
+    let case = shipped::read(&file.case, &overrides).expect("a sound case").case;
+    let values = case.runs[2].control[0].values();
+    let shifts = ["reference_shift_tilt", "reference_shift_yaw"].map(|key| values.number(key));
+    assert_eq!(shifts, [-1.5, 2.0]);
+    let far = REFERENCE.replacen("to = 6", "to = 600", 1);
+    fs::write(folder.path().join("study.toml"), far).expect("a study");
+    let error = TuningFile::read(&folder.path().join("study.toml")).expect_err("out of range");
+    assert!(error.to_string().contains("reference_shift_tilt"), "{error}");
+}

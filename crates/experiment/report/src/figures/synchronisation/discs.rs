@@ -20,6 +20,8 @@ pub struct DiscFigure {
     pub caption: String,
     /// Rotor radius (m).
     pub radius: f64,
+    /// Whether it shows no more of the disc than paths and the hub.
+    pub is_close: bool,
     /// The panels, on one scale.
     pub panels: Vec<DiscPanel>,
 }
@@ -65,6 +67,8 @@ const MOST: f64 = 400.0;
 const GAP: f64 = 46.0;
 /// What is shown of a panel beyond the rotor's rim and all points (–).
 const MARGIN: f64 = 1.03;
+/// Least that a close look shows on each side of the hub, over the rotor's radius (–).
+const CLOSEST: f64 = 0.15;
 /// Pieces of a circle (–).
 const N_ARCS: usize = 96;
 /// Distance within which a point alone decides the colour, over that between points (–).
@@ -126,7 +130,8 @@ fn reach(figure: &DiscFigure) -> Option<f64> {
     let paths = figure.panels.iter().flat_map(|panel| &panel.paths);
     let places = paths.flat_map(|path| &path.points).map(|[left, up]| left.abs().max(up.abs()));
     let furthest = discs.chain(places).filter(|length| length.is_finite()).reduce(f64::max);
-    furthest.map(|furthest| MARGIN * furthest.max(figure.radius))
+    let least = if figure.is_close { CLOSEST * figure.radius } else { figure.radius };
+    furthest.map(|furthest| MARGIN * furthest.max(least))
 }
 
 /// Radius of the disc that the points of `panel` fill, half of their distance beyond the outermost, and that
