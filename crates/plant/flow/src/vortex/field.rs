@@ -260,6 +260,7 @@ macro_rules! unrolled {
 /// # Safety
 /// [`n_coefficients`] can be read, on a machine with the instructions of `V`.
 #[inline(always)]
+#[expect(unused_assignments, reason = "the last of all unrolled steps prepares another one")]
 unsafe fn irregular<V: Simd, const DEGREE: usize>(coefficients: *const f32, at: [V; 3]) -> [V; 3] {
     let inverse = dot(&at, &at).inverse_sqrt();
     let squared = inverse * inverse;
@@ -272,6 +273,7 @@ unsafe fn irregular<V: Simd, const DEGREE: usize>(coefficients: *const f32, at: 
             let next = value * (z * V::splat((2 * N - 1) as f32));
             let back = squared * V::splat(((N - 1) * (N - 1)) as f32);
             (value, before) = (if N == 1 { next } else { back.sub_from(before, next) }, value);
+            // SAFETY: three coefficients for each part of each harmonic.
             unsafe { add(coefficients, N - 1, value, &mut sums[N % 2]) };
         }
     });
@@ -301,6 +303,7 @@ unsafe fn irregular<V: Simd, const DEGREE: usize>(coefficients: *const f32, at: 
                         };
                         (value, before) = (next, value);
                     }
+                    // SAFETY: as above.
                     unsafe {
                         add(coefficients, index, value[0], &mut sums[0]);
                         add(coefficients, index + 1, value[1], &mut sums[1]);
