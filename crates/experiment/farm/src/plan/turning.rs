@@ -23,7 +23,8 @@ pub struct Turning {
     pub points_per_diameter: f64,
     /// Length of wakes (diameters of the first turbine).
     pub length: f64,
-    /// How far they reach behind the last turbine, no further than that: planes and volumes show it.
+    /// How far they reach behind the last turbine, no further than that (diameters of the first turbine):
+    /// planes and volumes show it.
     pub beyond_last: f64,
     /// Usual speed of a wake (m/s).
     pub wake_speed: f64,
