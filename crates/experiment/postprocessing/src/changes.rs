@@ -93,7 +93,7 @@ pub struct Change {
     /// With one wind that of the whole record, with the interval of its blocks; with several their mean, with
     /// its 95 % interval by Student's t over them.
     pub together: Statistic,
-    /// The change in each wind of the same climate.
+    /// The change in each wind of the same climate (–).
     pub each: Vec<f64>,
 }
 

@@ -159,6 +159,20 @@ fn a_jet_of_known_place_is_found_again_drawn_and_told() {
         assert!(fs::metadata(path).is_ok_and(|found| found.len() > 1000), "{name}");
     }
 
+    // Beside each other: the first run, and further ones.
+    let mut both = Request::of(run.path())
+        .with("filter", "robust")
+        .with("figures", &folder.path().display().to_string());
+    both.folders.push(run.path().to_owned());
+    let told = (analysis.run)(&both).expect("an answer");
+    let beside = told.json["beside"].as_array().expect("the other run");
+    assert_eq!(beside[0]["filters"][0]["radius_m"], told.json["filters"][0]["radius_m"]);
+    assert_eq!(told.text.matches("\nrobust ").count(), 2, "{}", told.text);
+    for name in ["hub-vortex-paths-T1-lidar", "hub-vortices-T1-lidar"] {
+        let path = folder.path().join("figures").join(format!("{name}.png"));
+        assert!(fs::metadata(path).is_ok_and(|found| found.len() > 1000), "{name}");
+    }
+
     let page = fs::read_to_string(postprocessing::report(&output).expect("a report").page);
     assert!(page.expect("the page").contains("What the lidar of T1 saw"));
     for name in ["scan-pattern-T1-lidar", "scans-T1-lidar-helix", "scans-T1-lidar-baseline"] {
@@ -233,4 +247,11 @@ fn it_is_what_the_controller_saw() {
         }
     }
     assert!(furthest > 5.0, "{furthest}: it has seen something");
+    let page = postprocessing::report(folder.path().join("out").as_path()).expect("a report").page;
+    let page = fs::read_to_string(page).expect("the page");
+    assert!(page.contains("T1 in the frame of its helix") && page.contains("mean magnitude of"));
+    for name in ["helix-frame-pitch-T1", "helix-frame-vortex-T1"] {
+        let path = folder.path().join("out/figures").join(format!("{name}.svg"));
+        assert!(fs::metadata(path).is_ok_and(|found| found.len() > 1000), "{name}");
+    }
 }

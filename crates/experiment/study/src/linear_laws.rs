@@ -54,8 +54,8 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<LawDigests, FileE
     Ok(digests)
 }
 
-/// `run`, which controls `turbines` with its laws [attached](attach), with the references that complete runs of reference
-/// have left by now.
+/// `run`, which controls `turbines` with its laws [attached](attach), with the references that complete runs
+/// of reference have left by now.
 ///
 /// # Errors
 /// [`FileError`] for one that does not tell of the turbine's hub vortex.

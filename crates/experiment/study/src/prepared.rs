@@ -33,8 +33,8 @@ pub struct Prepared {
     /// Text of each turbine model's file, and of each controller's own input file with its table; none of
     /// models that were given as values.
     pub turbine_texts: BTreeMap<String, String>,
-    /// SHA-256 of each shared library that controls a turbine, and of its input file, by their names; those of
-    /// linear laws come with the runs that have one.
+    /// SHA-256 of each shared library that controls a turbine, and of its input file, by their names; those
+    /// of linear laws come with the runs that have one.
     pub libraries: BTreeMap<String, String>,
     /// Domain and steps.
     pub plan: Plan,

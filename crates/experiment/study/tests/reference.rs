@@ -19,8 +19,8 @@ fn case() -> String {
     let common = "sense = \"ccw\", amplitude_deg = 1.0, strouhal = 0.25, vortex_interval = 0.4";
     let runs = format!(
         "[[run]]\nname = \"baseline\"\n\
-         [[run]]\nname = \"closed\"\ncompare_with = \"open\"\ncontrol.T1 = {{ kind = \"lidar-loop\", {common}, controller = \"law.json\", reference_run = \"./out/speed-10/open\", reference_shift_yaw = 0.5 }}\n\
          [[run]]\nname = \"open\"\ncontrol.T1 = {{ kind = \"probing\", {common}, noise_amplitude_deg = 0.0 }}\n\
+         [[run]]\nname = \"closed\"\ncompare_with = \"open\"\ncontrol.T1 = {{ kind = \"lidar-loop\", {common}, controller = \"law.json\", reference_run = \"./out/speed-10/open\", reference_shift_yaw = 0.5 }}\n\
          [sweep]\n\"wind.speed\" = [9.0, 10.0]\n"
     );
     small::case("referred", disk, [60.0, 90.0], &[lidar], &runs)

@@ -203,6 +203,10 @@ fn is_precursor(path: &Path) -> bool {
 fn every_shipped_case_reads_and_reads_back() {
     for entry in fs::read_dir(root().join("cases")).unwrap() {
         let path = entry.unwrap().path();
+        // Beside them stand control laws.
+        if path.extension().is_none_or(|ending| ending != "toml") {
+            continue;
+        }
         if is_precursor(&path) {
             let file = read_precursor(&path, &[]).unwrap_or_else(|e| panic!("{}", e.to_lines()));
             let again = parse_precursor(&path, &file.text, &[]).unwrap();

@@ -14,8 +14,6 @@ name = "two"
 speed = 10.0
 turbulence_intensity = 0.06
 shear_exponent = 0.2
-[flow]
-solver = "uniform"
 [time]
 spin_up = 300.0
 duration = 1500.0

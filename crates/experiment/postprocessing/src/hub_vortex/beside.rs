@@ -1,5 +1,5 @@
-//! Runs beside each other: paths of their hub vortices, and what was pitched, as Figs. 10 and 12 to 14 of Chen,
-//! van Vondelen, van Wingerden (2026) have them.
+//! Runs beside each other: paths of their hub vortices, and what was pitched, as Figs. 10 and 12 to 14 of
+//! Chen, van Vondelen, van Wingerden (2026) have them.
 
 use super::HubVortexAnswer;
 use super::figures::path;

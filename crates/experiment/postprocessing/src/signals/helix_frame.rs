@@ -1,5 +1,5 @@
-//! What turbines pitched in the frame that turns with their helix, and where they saw the hub vortex there, as a
-//! part of a report.
+//! What turbines pitched in the frame that turns with their helix, and where they saw the hub vortex there,
+//! as a part of a report.
 
 use crate::PostprocessingError;
 use crate::hub_vortex::{Shown, is_pitch, pitch};
