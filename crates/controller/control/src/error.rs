@@ -42,11 +42,11 @@ pub enum ControlError {
     Library(LibraryError),
     /// A control law that nobody has read.
     #[error(
-        "the control law in {file} was not read; a study reads it, a program sets `linear_law`"
+        "the control law in {files} was not read; a study reads it, a program sets `linear_laws`"
     )]
-    NoLinearLaw {
-        /// Its file.
-        file: String,
+    NoLinearLaws {
+        /// Its file, or those of its family.
+        files: String,
     },
     /// A control law that samples faster than the turbine is controlled.
     #[error(

@@ -2,7 +2,7 @@
 
 use basis::records::ControlSetting;
 use control::lidar_loop::MEAN_HUB_VORTEX;
-use control::{LawFiles, LinearLaw};
+use control::{LawFiles, LinearLaw, LinearLaws};
 use farm::case::Case;
 use formats::FileError;
 use formats::linear_model::{LinearModel, Port, Role};
@@ -16,6 +16,8 @@ use std::sync::Arc;
 const WHAT: &str = "a control law";
 /// How to have one.
 const FIX: &str = "name the controller that `wakemix synthesize` wrote from a model in samples, of tilt and yaw (deg) and the hub vortex (m)";
+/// Share of an interval by which two may differ and count as one (–).
+const SAME_INTERVAL: f64 = 1e-6;
 /// Keys that decide what the hub vortex' place in the helix frame is.
 const FRAME: [&str; 8] = [
     "sense",
@@ -42,8 +44,9 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
             let own = ControlSetting::all(control.values());
             let mean = |run: String| mean_hub_vortex(&run, folder, (&turbine.name, &own));
             let reference = files.reference_run.map(mean);
-            let law = LinearLaw { reference: reference.transpose()?, ..law(files.law, folder)? };
-            control.linear_law = Some(Arc::new(law));
+            let (laws, interval) = family(&files.laws, folder)?;
+            let laws = LinearLaws { laws, interval, reference: reference.transpose()? };
+            control.linear_laws = Some(Arc::new(laws));
         }
     }
     Ok(())
@@ -55,13 +58,15 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<(), FileError> {
 pub(crate) fn digests(case: &Case, folder: &Path) -> BTreeMap<String, String> {
     let mut digests = BTreeMap::new();
     for control in case.runs.iter().flat_map(|run| &run.control) {
-        let Some(LawFiles { law, reference_run }) = control.kind().law_files(control) else {
+        let Some(LawFiles { laws, reference_run }) = control.kind().law_files(control) else {
             continue;
         };
-        if let Ok(sha256) = records::sha256_of_file(&folder.join(&law), WHAT) {
-            digests.insert(law, sha256);
+        for law in laws {
+            if let Ok(sha256) = records::sha256_of_file(&folder.join(&law), WHAT) {
+                digests.insert(law, sha256);
+            }
         }
-        let reference = control.linear_law.as_ref().and_then(|law| law.reference);
+        let reference = control.linear_laws.as_ref().and_then(|laws| laws.reference);
         if let (Some(run), Some([tilt, yaw])) = (reference_run, reference) {
             digests.insert(run, format!("{tilt} m, {yaw} m"));
         }
@@ -107,8 +112,36 @@ fn mean_hub_vortex(
     }
 }
 
-fn law(file: String, folder: &Path) -> Result<LinearLaw, FileError> {
-    let path = folder.join(&file);
+/// The laws in `files` and the time between their samples (s), which is that of them all.
+fn family(files: &[String], folder: &Path) -> Result<(Vec<LinearLaw>, f64), FileError> {
+    let mut laws: Vec<LinearLaw> = Vec::with_capacity(files.len());
+    let mut common: Option<f64> = None;
+    for file in files {
+        let (law, interval) = law(file, folder)?;
+        let refused = |problem: String, fix: &str| {
+            Err(FileError::content(WHAT, &folder.join(file), problem, fix))
+        };
+        let first = *common.get_or_insert(interval);
+        if (interval - first).abs() > SAME_INTERVAL * first {
+            let problem = format!(
+                "`interval_s` is {interval}, that of {} is {first}: laws that are blended sample at the same instants",
+                files[0]
+            );
+            return refused(problem, "make all laws of the family from models of one interval");
+        }
+        if files.len() > 1 && !law.recursion.learns_of_limits() {
+            let problem = "it has no `K`, by which a law of a family learns of the command that is applied in the place of its own".to_owned();
+            return refused(problem, "make it with `wakemix synthesize`, which writes one");
+        }
+        laws.push(law);
+    }
+    // A kind that has files has one or more.
+    Ok((laws, common.unwrap_or(f64::NAN)))
+}
+
+/// The law in `file` and the time between its samples (s).
+fn law(file: &str, folder: &Path) -> Result<(LinearLaw, f64), FileError> {
+    let path = folder.join(file);
     let model = LinearModel::read(&path, Role::Controller)?;
     let refused = |problem: String| FileError::content(WHAT, &path, problem, FIX);
     let errors =
@@ -128,7 +161,7 @@ fn law(file: String, folder: &Path) -> Result<LinearLaw, FileError> {
         Some(gain) => recursion.with_back_calculation(&columns(gain, commands)),
         None => recursion,
     };
-    Ok(LinearLaw { file, recursion, interval, reference: None })
+    Ok((LinearLaw { file: file.to_owned(), recursion }, interval))
 }
 
 /// Where tilt and yaw are among `ports`, which are in `unit`.
@@ -173,7 +206,43 @@ mod tests {
     fn read(model: &LinearModel) -> Result<LinearLaw, String> {
         let folder = tempfile::tempdir().unwrap();
         model.write(&folder.path().join("law.json")).unwrap();
-        law("law.json".to_owned(), folder.path()).map_err(|error| error.to_string())
+        law("law.json", folder.path()).map(|(law, _)| law).map_err(|error| error.to_string())
+    }
+
+    /// What is said of a family of laws with these intervals (s), which learn of limits or not.
+    fn read_family(members: &[(f64, bool)]) -> Result<(Vec<LinearLaw>, f64), String> {
+        let folder = tempfile::tempdir().unwrap();
+        let files: Vec<String> =
+            (0..members.len()).map(|index| format!("law-{index}.json")).collect();
+        for ((interval, learns), file) in members.iter().zip(&files) {
+            let ports = [UP_RIGHT, TILT_YAW].map(|ports| {
+                ports.map(|[name, unit]| Port { name: name.into(), unit: unit.into() }).to_vec()
+            });
+            let one = || vec![vec![0.5, 0.0], vec![0.0, 0.5]];
+            let matrices = [one(), one(), one(), one()];
+            let text = "a lag".to_owned();
+            let model = LinearModel::new(Role::Controller, text, Some(*interval), ports, matrices);
+            let model = LinearModel { k: learns.then(one), ..model };
+            model.write(&folder.path().join(file)).unwrap();
+        }
+        family(&files, folder.path()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_family_samples_at_one_interval_and_learns_what_is_applied() {
+        let (laws, interval) = read_family(&[(0.5, true), (0.5, true)]).unwrap();
+        assert_eq!((laws.len(), interval), (2, 0.5));
+        assert_eq!(laws[1].file, "law-1.json");
+        let said = read_family(&[(0.5, true), (1.0, true)]).unwrap_err();
+        assert!(
+            said.contains("law-1.json")
+                && said.contains("`interval_s` is 1, that of law-0.json is 0.5"),
+            "{said}"
+        );
+        let said = read_family(&[(0.5, true), (0.5, false)]).unwrap_err();
+        assert!(said.contains("law-1.json") && said.contains("it has no `K`"), "{said}");
+        // One alone may do without.
+        assert!(read_family(&[(0.5, false)]).is_ok());
     }
 
     const UP_RIGHT: [[&str; 2]; 2] = [["T1.HubVortexTilt", "m"], ["T1.HubVortexYaw", "m"]];
