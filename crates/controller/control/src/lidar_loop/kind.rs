@@ -343,10 +343,9 @@ fn objections(values: &Values, place: &Place) -> Vec<Objection> {
 /// What the filtered wind `measured` (m/s) tells of a family made at `speeds` (m/s), ascending.
 fn of_wind(speeds: &[f64], measured: &[f64]) -> (Finding, Option<String>) {
     let n = measured.len().max(1) as f64;
-    let [Some(slowest), Some(fastest)] = [speeds.first(), speeds.last()] else {
-        unreachable!("a family has laws")
-    };
-    let n_beyond = measured.iter().filter(|wind| !(slowest..=fastest).contains(wind)).count();
+    let [slowest, fastest] =
+        [speeds.first(), speeds.last()].map(|speed| speed.copied().unwrap_or(f64::NAN));
+    let n_beyond = measured.iter().filter(|wind| **wind < slowest || **wind > fastest).count();
     let beyond = n_beyond as f64 / n;
     let finding = Finding {
         name: "loop-wind".to_owned(),
