@@ -162,17 +162,17 @@ control.T1 = { kind = "phase-sync", sense = "ccw", strouhal = 0.3, offset_deg = 
 
 /// What runs on the turbine in run number `run` of [`LIDARS`].
 fn seeing(run: usize) -> Box<dyn Controller> {
-    let (mut case, plan, model) = laid_out(LIDARS, &[], "iea-15mw");
+    let (case, plan, model) = laid_out(LIDARS, &[], "iea-15mw");
     let diagonal = |value: f64| vec![vec![value, 0.0], vec![0.0, value]];
     let law = |gain: f64| LinearLaw {
         file: String::new(),
         recursion: Recursion::new(&diagonal(1.0), &diagonal(gain), &diagonal(1.0), &diagonal(0.0))
             .with_back_calculation(&diagonal(1.0)),
     };
-    let control = &mut case.runs[run].control[0];
+    let mut control = case.runs[run].control[0].clone();
     let laws = vec![law(1e-3), law(2e-3)];
     control.linear_laws = Some(Arc::new(LinearLaws { laws, interval: 0.2, reference: None }));
-    assemble::controller(control, &model, &case, &plan).expect("such a controller can be")
+    assemble::controller(&control, &model, &case, &plan).expect("such a controller can be")
 }
 
 /// On return `reading` is the scan of a jet that turns, a diameter downwind where `along` is 1, or two and a
