@@ -8,7 +8,7 @@
 use basis::keys::{Value, Values};
 use basis::{Measurements, Vector3};
 use control::lidar_loop::LIDAR_LOOP;
-use control::{Control, Controller, LinearLaw, Site};
+use control::{Control, Controller, LinearLaw, LinearLaws, Site};
 use flow::WindField;
 use lti::Recursion;
 use sensing::{Mount, SENSORS, Scene, Sensing};
@@ -132,8 +132,8 @@ fn controller(site: &Site) -> Box<dyn Controller> {
         Recursion::new(&matrix(ORDER, ORDER), &matrix(ORDER, 2), &matrix(2, ORDER), &matrix(2, 2))
             .with_back_calculation(&matrix(ORDER, 2));
     let mut control = Control::new(&LIDAR_LOOP, &numbers).expect("sound numbers");
-    let law =
-        LinearLaw { file: "law.json".to_owned(), recursion, interval: INTERVAL, reference: None };
-    control.linear_law = Some(Arc::new(law));
+    let laws = vec![LinearLaw { file: "law.json".to_owned(), recursion }];
+    let laws = LinearLaws { laws, interval: INTERVAL, reference: None };
+    control.linear_laws = Some(Arc::new(laws));
     control.kind().build(&control, site).expect("the bench's own setting can be used")
 }

@@ -42,15 +42,15 @@ pub enum ControlError {
     Library(LibraryError),
     /// A control law that nobody has read.
     #[error(
-        "the control law in {file} was not read; a study reads it, a program sets `linear_law`"
+        "the control law in {files} was not read; a study reads it, a program sets `linear_laws`"
     )]
-    NoLinearLaw {
-        /// Its file.
-        file: String,
+    NoLinearLaws {
+        /// Its file, or those of its family.
+        files: String,
     },
     /// A run of reference that nobody has read.
     #[error(
-        "the run of reference {run} was not read; a study reads it once it is complete, a program sets `linear_law.reference`"
+        "the run of reference {run} was not read; a study reads it once it is complete, a program sets `linear_laws.reference`"
     )]
     NoReference {
         /// Its folder.

@@ -5,7 +5,7 @@ use crate::baseline::{CoefficientTable, Constants};
 use crate::error::ControlError;
 use crate::excitation::excitation_rate;
 use crate::library::{Hosted, Libraries};
-use crate::linear_law::{LawFiles, LinearLaw};
+use crate::linear_law::{LawFiles, LinearLaws};
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use crate::phase_sync::PhaseSyncSettings;
 use crate::{Baseline, Controller};
@@ -41,7 +41,7 @@ pub trait ControllerKind: Named + Sync {
         None
     }
 
-    /// Files of the linear control law that it runs.
+    /// Files of the linear control laws that it runs.
     fn law_files(&self, _control: &Control) -> Option<LawFiles> {
         None
     }
@@ -126,6 +126,26 @@ pub struct Place<'a> {
     pub upstream: Option<(Sense, f64)>,
     /// Duration of the run (s).
     pub duration: f64,
+    /// The turbine's further sensors.
+    pub sensors: &'a [FurtherSensor<'a>],
+}
+
+impl Place<'_> {
+    /// The further sensor called `name`; none where the turbine has none of that name.
+    pub fn sensor(&self, name: &str) -> Option<&FurtherSensor<'_>> {
+        self.sensors.iter().find(|sensor| sensor.name == name)
+    }
+}
+
+/// A further sensor of a turbine, as the case has it.
+#[derive(Clone, Copy, Debug)]
+pub struct FurtherSensor<'a> {
+    /// Its name: readings go by it.
+    pub name: &'a str,
+    /// Name of its kind.
+    pub kind: &'a str,
+    /// What its keys hold.
+    pub values: &'a Values,
 }
 
 /// What a controller is built for.
@@ -232,15 +252,15 @@ pub struct Control {
     pub response: Option<PitchResponse>,
     /// Who opens the shared library that it runs; a study sets it where there is one.
     pub libraries: Option<Arc<dyn Libraries>>,
-    /// The linear control law that it runs; a study reads it where there is one.
-    pub linear_law: Option<Arc<LinearLaw>>,
+    /// The linear control laws that it runs; a study reads them where there are some.
+    pub linear_laws: Option<Arc<LinearLaws>>,
 }
 
 impl Control {
     /// `kind` with `values` as they were read and checked.
     pub fn checked(kind: &'static dyn ControllerKind, values: Values) -> Self {
         let values = values.in_order_of(kind.table());
-        Self { kind, values, response: None, libraries: None, linear_law: None }
+        Self { kind, values, response: None, libraries: None, linear_laws: None }
     }
 
     /// `kind` with the values `given`, in the units of the case file; the others have their defaults.

@@ -38,9 +38,11 @@ pub use discon::Discon;
 pub use error::ControlError;
 pub use excitation::{Excitation, OnTop, excitation_rate};
 pub use helix::Helix;
-pub use kind::{Control, ControllerKind, Identification, Motion, Pitching, Place, Site};
+pub use kind::{
+    Control, ControllerKind, FurtherSensor, Identification, Motion, Pitching, Place, Site,
+};
 pub use lidar_loop::LidarLoop;
-pub use linear_law::{LawFiles, LinearLaw};
+pub use linear_law::{LawFiles, LinearLaw, LinearLaws};
 pub use meandering::Meandering;
 pub use outcome::{MissingChannel, Outcome, TurbineRecord};
 pub use phase_sync::PhaseSync;

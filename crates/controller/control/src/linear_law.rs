@@ -9,18 +9,25 @@ pub struct LinearLaw {
     pub file: String,
     /// From errors to commands, in the units of the file's ports.
     pub recursion: Recursion,
-    /// Time between its samples (s).
+}
+
+/// The linear control laws of one turbine: one, or a family of them that are blended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearLaws {
+    /// The laws, in the order of the case.
+    pub laws: Vec<LinearLaw>,
+    /// Time between samples of each (s).
     pub interval: f64,
-    /// Where its plant was in the run that the case names as reference, in the order and units of its inputs;
-    /// none where the case names none, and while that run is not complete.
+    /// Where their plant was in the run that the case names as reference, in the order and units of their
+    /// inputs; none where the case names none, and while that run is not complete.
     pub reference: Option<[f64; 2]>,
 }
 
-/// Files that a study reads for a linear control law, as the case has them.
+/// Files that a study reads for linear control laws, as the case has them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LawFiles {
-    /// The law's file.
-    pub law: String,
+    /// Those of the laws: one, or those of a family.
+    pub laws: Vec<String>,
     /// Folder of the run whose means are the reference.
     pub reference_run: Option<String>,
 }

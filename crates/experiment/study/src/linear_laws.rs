@@ -2,7 +2,7 @@
 
 use basis::records::ControlSetting;
 use control::lidar_loop::MEAN_HUB_VORTEX;
-use control::{Control, LawFiles, LinearLaw};
+use control::{Control, LawFiles, LinearLaw, LinearLaws};
 use farm::case::{Case, Placement, Run};
 use formats::FileError;
 use formats::linear_model::{LinearModel, Port};
@@ -17,6 +17,8 @@ use std::sync::Arc;
 const WHAT: &str = "a control law";
 /// How to have one.
 const FIX: &str = "name the controller that `wakemix synthesize` wrote from a model in samples, of tilt and yaw (deg) and the hub vortex (m)";
+/// Share of an interval by which two may differ and count as one (–).
+const SAME_INTERVAL: f64 = 1e-6;
 /// Keys that decide what the hub vortex' place in the helix frame is.
 const FRAME: [&str; 8] = [
     "sense",
@@ -45,9 +47,9 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<LawDigests, FileE
     for run in &mut case.runs {
         for control in &mut run.control {
             let Some(files) = control.kind().law_files(control) else { continue };
-            let (law, sha256) = law(files.law.clone(), folder)?;
-            digests.insert(files.law, sha256);
-            control.linear_law = Some(Arc::new(law));
+            let (laws, interval) = family(&files.laws, folder, &mut digests)?;
+            let laws = LinearLaws { laws, interval, reference: None };
+            control.linear_laws = Some(Arc::new(laws));
         }
         *run = referred(run, &case.turbines, folder)?;
     }
@@ -65,8 +67,8 @@ pub(crate) fn referred(run: &Run, turbines: &[Placement], folder: &Path) -> Resu
         let Some(reference_run) = complete_reference(control, folder) else { continue };
         let own = ControlSetting::all(control.values());
         let reference = mean_hub_vortex(&reference_run, folder, (&turbine.name, &own))?;
-        if let Some(law) = &mut control.linear_law {
-            Arc::make_mut(law).reference = Some(reference);
+        if let Some(laws) = &mut control.linear_laws {
+            Arc::make_mut(laws).reference = Some(reference);
         }
     }
     Ok(run)
@@ -90,12 +92,12 @@ pub(crate) fn not_complete(folder: &Path, run: &str) -> FileError {
     FileError::content("a run of reference", folder, problem, fix)
 }
 
-/// `control` as it can be built before its run of reference is made: with its law at rest about nothing.
+/// `control` as it can be built before its run of reference is made: with its laws at rest about nothing.
 pub(crate) fn for_a_check(control: &mut Control) {
     if reference_run(control).is_some()
-        && let Some(law) = &mut control.linear_law
+        && let Some(laws) = &mut control.linear_laws
     {
-        Arc::make_mut(law).reference.get_or_insert([0.0; 2]);
+        Arc::make_mut(laws).reference.get_or_insert([0.0; 2]);
     }
 }
 
@@ -105,13 +107,15 @@ pub(crate) fn for_a_check(control: &mut Control) {
 pub(crate) fn deciding(run: &Run, digests: &LawDigests) -> LawDigests {
     let mut deciding = LawDigests::new();
     for control in &run.control {
-        let Some(LawFiles { law, reference_run }) = control.kind().law_files(control) else {
+        let Some(LawFiles { laws, reference_run }) = control.kind().law_files(control) else {
             continue;
         };
-        if let Some(sha256) = digests.get(&law) {
-            deciding.insert(law, sha256.clone());
+        for law in laws {
+            if let Some(sha256) = digests.get(&law) {
+                deciding.insert(law, sha256.clone());
+            }
         }
-        let reference = control.linear_law.as_ref().and_then(|law| law.reference);
+        let reference = control.linear_laws.as_ref().and_then(|laws| laws.reference);
         if let (Some(run), Some([tilt, yaw])) = (reference_run, reference) {
             deciding.insert(run, format!("{tilt} m, {yaw} m"));
         }
@@ -124,9 +128,10 @@ pub(crate) fn digests(case: &Case, folder: &Path) -> LawDigests {
     let controls = case.runs.iter().flat_map(|run| &run.control);
     let files = controls.filter_map(|control| control.kind().law_files(control));
     files
-        .filter_map(|files| {
-            let (_, sha256) = shipped::read_law(folder, &files.law).ok()?;
-            Some((files.law, sha256))
+        .flat_map(|files| files.laws)
+        .filter_map(|law| {
+            let (_, sha256) = shipped::read_law(folder, &law).ok()?;
+            Some((law, sha256))
         })
         .collect()
 }
@@ -169,10 +174,43 @@ fn mean_hub_vortex(
     }
 }
 
-/// The law in `file`, without a reference, and the file's SHA-256.
-fn law(file: String, folder: &Path) -> Result<(LinearLaw, String), FileError> {
-    let path = folder.join(&file);
-    let (model, sha256) = shipped::read_law(folder, &file)?;
+/// The laws in `files` and the time between their samples (s), which is that of them all; each file's SHA-256
+/// goes into `digests`.
+fn family(
+    files: &[String],
+    folder: &Path,
+    digests: &mut LawDigests,
+) -> Result<(Vec<LinearLaw>, f64), FileError> {
+    let mut laws: Vec<LinearLaw> = Vec::with_capacity(files.len());
+    let mut common: Option<f64> = None;
+    for file in files {
+        let (law, interval, sha256) = law(file, folder)?;
+        digests.insert(file.clone(), sha256);
+        let refused = |problem: String, fix: &str| {
+            Err(FileError::content(WHAT, &folder.join(file), problem, fix))
+        };
+        let first = *common.get_or_insert(interval);
+        if (interval - first).abs() > SAME_INTERVAL * first {
+            let problem = format!(
+                "`interval_s` is {interval}, that of {} is {first}: laws that are blended sample at the same instants",
+                files[0]
+            );
+            return refused(problem, "make all laws of the family from models of one interval");
+        }
+        if files.len() > 1 && !law.recursion.learns_of_limits() {
+            let problem = "it has no `K`, by which a law of a family learns of the command that is applied in the place of its own".to_owned();
+            return refused(problem, "make it with `wakemix synthesize`, which writes one");
+        }
+        laws.push(law);
+    }
+    // A kind that has files has one or more.
+    Ok((laws, common.unwrap_or(f64::NAN)))
+}
+
+/// The law in `file`, the time between its samples (s), and the file's SHA-256.
+fn law(file: &str, folder: &Path) -> Result<(LinearLaw, f64, String), FileError> {
+    let path = folder.join(file);
+    let (model, sha256) = shipped::read_law(folder, file)?;
     let refused = |problem: String| FileError::content(WHAT, &path, problem, FIX);
     let errors =
         places(&model.inputs, "m").map_err(|found| refused(format!("`inputs` {found}")))?;
@@ -191,7 +229,7 @@ fn law(file: String, folder: &Path) -> Result<(LinearLaw, String), FileError> {
         Some(gain) => recursion.with_back_calculation(&columns(gain, commands)),
         None => recursion,
     };
-    Ok((LinearLaw { file, recursion, interval, reference: None }, sha256))
+    Ok((LinearLaw { file: file.to_owned(), recursion }, interval, sha256))
 }
 
 /// Where tilt and yaw are among `ports`, which are in `unit`.
@@ -237,8 +275,43 @@ mod tests {
     fn read(model: &LinearModel) -> Result<LinearLaw, String> {
         let folder = tempfile::tempdir().unwrap();
         model.write(&folder.path().join("law.json")).unwrap();
-        let law = law("law.json".to_owned(), folder.path());
-        law.map(|(law, _)| law).map_err(|error| error.to_string())
+        law("law.json", folder.path()).map(|(law, ..)| law).map_err(|error| error.to_string())
+    }
+
+    /// What is said of a family of laws with these intervals (s), which learn of limits or not.
+    fn read_family(members: &[(f64, bool)]) -> Result<(Vec<LinearLaw>, f64), String> {
+        let folder = tempfile::tempdir().unwrap();
+        let files: Vec<String> =
+            (0..members.len()).map(|index| format!("law-{index}.json")).collect();
+        for ((interval, learns), file) in members.iter().zip(&files) {
+            let ports = [UP_RIGHT, TILT_YAW].map(|ports| {
+                ports.map(|[name, unit]| Port { name: name.into(), unit: unit.into() }).to_vec()
+            });
+            let one = || vec![vec![0.5, 0.0], vec![0.0, 0.5]];
+            let matrices = [one(), one(), one(), one()];
+            let text = "a lag".to_owned();
+            let model = LinearModel::new(Role::Controller, text, Some(*interval), ports, matrices);
+            let model = LinearModel { k: learns.then(one), ..model };
+            model.write(&folder.path().join(file)).unwrap();
+        }
+        family(&files, folder.path(), &mut LawDigests::new()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_family_samples_at_one_interval_and_learns_what_is_applied() {
+        let (laws, interval) = read_family(&[(0.5, true), (0.5, true)]).unwrap();
+        assert_eq!((laws.len(), interval), (2, 0.5));
+        assert_eq!(laws[1].file, "law-1.json");
+        let said = read_family(&[(0.5, true), (1.0, true)]).unwrap_err();
+        assert!(
+            said.contains("law-1.json")
+                && said.contains("`interval_s` is 1, that of law-0.json is 0.5"),
+            "{said}"
+        );
+        let said = read_family(&[(0.5, true), (0.5, false)]).unwrap_err();
+        assert!(said.contains("law-1.json") && said.contains("it has no `K`"), "{said}");
+        // One alone may do without.
+        assert!(read_family(&[(0.5, false)]).is_ok());
     }
 
     const UP_RIGHT: [[&str; 2]; 2] = [["T1.HubVortexTilt", "m"], ["T1.HubVortexYaw", "m"]];

@@ -4,12 +4,16 @@
 
 mod small;
 
-use basis::{Commands, Truth};
+use basis::scan::{Scan, ScanBlocks};
+use basis::{Commands, Measurements, Reading, Truth};
+use control::{Controller, LinearLaw, LinearLaws};
 use farm::assemble;
 use farm::{Air, Farm, Recorder};
+use lti::Recursion;
 use small::{laid_out, uniform_air};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::sync::Arc;
 
 const CASE: &str = r#"
 name = "allocation"
@@ -127,4 +131,116 @@ fn a_step_under_the_helix_allocates_nothing() {
     assert_eq!(n_allocations, 0);
     // Half a turn of the rotor in five seconds: the helix is at work.
     assert!(travel > 1f64.to_radians(), "{travel} rad");
+}
+
+/// Controllers that see through lidars.
+const LIDARS: &str = r#"
+name = "lidars"
+[wind]
+speed = 9.0
+turbulence_intensity = 0.0
+[flow]
+solver = "uniform"
+step = 0.1
+[time]
+spin_up = 1.0
+duration = 300.0
+[[turbine]]
+name = "T1"
+model = "iea-15mw"
+position_diameters = [0.0, 0.0]
+sensors.anemometer = { kind = "anemometer" }
+sensors.lidar = { kind = "lidar" }
+sensors.eye = { kind = "lidar", looks = "upwind", downwind = 5.0, above = 5.0, focal_distance_diameters = 2.5 }
+[[run]]
+name = "loop"
+control.T1 = { kind = "lidar-loop", sense = "ccw", amplitude_deg = 3.0, strouhal = 0.3, reference_tilt = 2.0, reference_yaw = 13.0, least_trust = 0.0, controller = [{ wind_speed = 8.0, file = "a.json" }, { wind_speed = 10.0, file = "b.json" }] }
+[[run]]
+name = "preview"
+control.T1 = { kind = "phase-sync", sense = "ccw", strouhal = 0.3, offset_deg = 0.0, amplitude_deg = 0.0, preview = "eye" }
+"#;
+
+/// What runs on the turbine in run number `run` of [`LIDARS`].
+fn seeing(run: usize) -> Box<dyn Controller> {
+    let (case, plan, model) = laid_out(LIDARS, &[], "iea-15mw");
+    let diagonal = |value: f64| vec![vec![value, 0.0], vec![0.0, value]];
+    let law = |gain: f64| LinearLaw {
+        file: String::new(),
+        recursion: Recursion::new(&diagonal(1.0), &diagonal(gain), &diagonal(1.0), &diagonal(0.0))
+            .with_back_calculation(&diagonal(1.0)),
+    };
+    let mut control = case.runs[run].control[0].clone();
+    let laws = vec![law(1e-3), law(2e-3)];
+    control.linear_laws = Some(Arc::new(LinearLaws { laws, interval: 0.2, reference: None }));
+    assemble::controller(&control, &model, &case, &plan).expect("such a controller can be")
+}
+
+/// On return `reading` is the scan of a jet that turns, a diameter downwind where `along` is 1, or two and a
+/// half upwind; some beams are lost.
+fn scan(step: usize, along: f64, reading: &mut [f64]) {
+    let mut blocks = ScanBlocks::of(reading).expect("81 points");
+    let time = 0.1 * step as f64;
+    let angle = std::f64::consts::TAU * 0.3 * 9.0 / 240.0 * time;
+    blocks.head[0] = step as f64;
+    for point in 0..81 {
+        let place = |index: usize| 26.0 * (index as f64 - 4.0);
+        let (left, up) = (place(point % 9), place(point / 9));
+        let from_jet = (left - 20.0 * angle.sin()).hypot(up - 20.0 * angle.cos());
+        let speed = 6.0 + 2.0 * (-0.5 * (from_jet / 30.0).powi(2)).exp();
+        let is_lost = (point + step).is_multiple_of(7);
+        blocks.speeds[point] = if is_lost { f64::NAN } else { along.signum() * speed };
+        for (block, place) in blocks.places.iter_mut().zip([240.0 * along, left, up]) {
+            block[point] = place;
+        }
+        blocks.times[point] = time;
+    }
+}
+
+/// Allocations of updates of `controller` (–), blind at first and then with sight, after which its `signal`
+/// is 1; some of the instants are its last ones.
+fn allocations_of(controller: &mut dyn Controller, signal: &str) -> usize {
+    let signals = controller.signals();
+    let index = signals.iter().position(|channel| channel.name == signal).expect("it tells it");
+    let mut shown = vec![0.0; signals.len()];
+    let mut n_allocations = 0;
+    let reading = |sensor: &str, values: Vec<f64>| Reading { sensor: sensor.to_owned(), values };
+    let blank = || vec![f64::NAN; Scan::n_values(81)];
+    let mut readings = vec![
+        reading("anemometer", vec![9.0, 0.0]),
+        reading("lidar", blank()),
+        reading("eye", blank()),
+    ];
+    for step in 0..2500 {
+        if step > 200 {
+            scan(step, 1.0, &mut readings[1].values);
+            scan(step, -2.5, &mut readings[2].values);
+        }
+        readings[0].values[0] = 8.0 + 1e-3 * step as f64;
+        let (time, interval) = (0.1 * step as f64, 0.1);
+        let measured = Measurements {
+            time,
+            interval,
+            rotor_speed: 0.7,
+            azimuth: (0.7 * time).rem_euclid(std::f64::consts::TAU),
+            readings: &readings,
+            ..Measurements::at_rest(3)
+        };
+        let before = COUNT.with(Cell::get);
+        controller.update(&measured);
+        controller.write_signals(&mut shown);
+        let taken = COUNT.with(Cell::get) - before;
+        n_allocations += if step > 100 { taken } else { 0 };
+    }
+    assert_eq!(shown[index], 1.0, "{signal}");
+    n_allocations
+}
+
+#[test]
+fn a_lidar_loop_with_a_family_of_laws_allocates_nothing_open_or_closed() {
+    assert_eq!(allocations_of(&mut *seeing(0), "LoopShare"), 0);
+}
+
+#[test]
+fn a_preview_allocates_nothing_blind_or_with_sight() {
+    assert_eq!(allocations_of(&mut *seeing(1), "PreviewShare"), 0);
 }

@@ -2,8 +2,9 @@
 
 use basis::Channel;
 use basis::channels::{
-    BLADE_LOADS, LINES, OPERATION, OPERATION_OF_BLADES, TIME, TURBINE_LOADS, WIND, of_lidar_loop,
-    of_meandering, of_phase_sync, span_moment,
+    BLADE_LOADS, LINES, LOOP_WIND, OPERATION, OPERATION_OF_BLADES, PREVIEW_LAG, PREVIEW_SHARE,
+    PREVIEW_TIME, TIME, TURBINE_LOADS, WIND, of_lidar_loop, of_meandering, of_phase_sync,
+    span_moment,
 };
 
 #[test]
@@ -19,6 +20,7 @@ fn the_page_names_every_channel_with_its_unit() {
         .chain(of_phase_sync())
         .chain(of_meandering())
         .chain(of_lidar_loop())
+        .chain([LOOP_WIND, PREVIEW_SHARE, PREVIEW_TIME, PREVIEW_LAG])
         .chain(LINES)
         .collect();
     for Channel { name, unit } in declared {

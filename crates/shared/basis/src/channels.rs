@@ -138,6 +138,13 @@ pub const EST_TRUST: Channel = share("EstTrust");
 /// Share of the amplitude that trust allows.
 pub const SYNC_SHARE: Channel = share("SyncShare");
 
+/// Share of the estimate that comes from a lidar which sees the helix ahead.
+pub const PREVIEW_SHARE: Channel = share("PreviewShare");
+/// How long the air that it sees takes to the rotor.
+pub const PREVIEW_TIME: Channel = Channel::new("PreviewTime", Unit::Second);
+/// How late the estimate is since that is less than half a period of the helix.
+pub const PREVIEW_LAG: Channel = Channel::new("PreviewLag", Unit::Second);
+
 /// What an estimator tells of the tilt or the yaw of a helix in the wind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EstimatedWave {
@@ -218,6 +225,8 @@ pub const HUB_VORTEX_YAW: Channel = length("HubVortexYaw");
 pub const HUB_VORTEX_TRUST: Channel = share("HubVortexTrust");
 /// Share of a lidar loop's command that is given.
 pub const LOOP_SHARE: Channel = share("LoopShare");
+/// Filtered wind speed by which the laws of a lidar loop are blended, where they are several.
+pub const LOOP_WIND: Channel = speed("LoopWind");
 
 /// Average, tilt and yaw of the wind along radial lines at the place of an absent turbine.
 pub const LINES: [Channel; 3] = [speed("LinesAvg"), speed("LinesTilt"), speed("LinesYaw")];
@@ -322,6 +331,7 @@ mod tests {
             .chain(of_phase_sync())
             .chain(of_meandering())
             .chain(of_lidar_loop())
+            .chain([LOOP_WIND, PREVIEW_SHARE, PREVIEW_TIME, PREVIEW_LAG])
             .chain(LINES)
             .collect();
         let unique: BTreeSet<&str> = names.iter().map(|channel| &*channel.name).collect();

@@ -76,6 +76,8 @@ pub enum Holds {
     Table(&'static Table),
     /// One table or more under the same heading.
     Tables(&'static Table),
+    /// A file, or a table for each of several files.
+    Files(&'static Table),
     /// A table whose key `kind` says which keys it has.
     Event,
     /// A table for each turbine that does more than baseline, by the turbine's name.
@@ -139,7 +141,10 @@ impl Holds {
             (Self::Number(range), Value::Whole(number)) => range.contains(*number as f64),
             (Self::Whole { least, most }, Value::Whole(number)) => (least..=most).contains(&number),
             (Self::Choice(words), Value::Text(word)) => words.contains(&word.as_str()),
-            (Self::Text | Self::Name | Self::Folder | Self::Model, Value::Text(_)) => true,
+            (
+                Self::Text | Self::Name | Self::Folder | Self::Model | Self::Files(_),
+                Value::Text(_),
+            ) => true,
             (Self::Numbers(range), Value::Numbers(numbers)) => {
                 numbers.iter().all(|number| range.contains(*number))
             }
@@ -154,7 +159,7 @@ impl Holds {
                     .iter()
                     .all(|(name, value)| knows(name).is_some_and(|k| k.holds.accepts(value)))
             }
-            (Self::Tables(table), Value::Tables(tables)) => tables
+            (Self::Tables(table) | Self::Files(table), Value::Tables(tables)) => tables
                 .iter()
                 .all(|values| Self::Table(table).accepts(&Value::Table(values.clone()))),
             _ => false,
@@ -174,6 +179,7 @@ impl Key {
             | Holds::Name
             | Holds::Folder
             | Holds::Model
+            | Holds::Files(_)
             | Holds::Ground(_) => Value::Text(text.trim_matches('"').to_owned()),
             Holds::Numbers(_) | Holds::Pair(_) => {
                 let numbers = items_of(text).map(str::parse).collect::<Result<_, _>>();

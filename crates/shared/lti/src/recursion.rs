@@ -63,6 +63,11 @@ impl Recursion {
         self
     }
 
+    /// Whether its state learns of limits; one without a state has nothing to learn.
+    pub fn learns_of_limits(&self) -> bool {
+        self.order == 0 || !self.back.is_empty()
+    }
+
     /// Length of the input.
     pub fn inputs(&self) -> usize {
         self.inputs
@@ -88,9 +93,7 @@ impl Recursion {
         output: &mut [f64],
         limit: impl FnOnce(&mut [f64]),
     ) {
-        let sizes = (self.inputs, self.outputs);
-        assert_eq!((input.len(), output.len()), sizes, "as many as the matrices have");
-        self.outputs_into(input, output);
+        self.look(input, output);
         limit(output);
         for i in 0..self.order {
             self.next[i] = row(&self.a, i, &self.state) + row(&self.b, i, input);
@@ -106,7 +109,13 @@ impl Recursion {
         std::mem::swap(&mut self.state, &mut self.next);
     }
 
-    fn outputs_into(&self, input: &[f64], output: &mut [f64]) {
+    /// On return `output` is that at this instant; the state stays where it is.
+    ///
+    /// # Panics
+    /// Where `input` or `output` has another length.
+    pub fn look(&self, input: &[f64], output: &mut [f64]) {
+        let sizes = (self.inputs, self.outputs);
+        assert_eq!((input.len(), output.len()), sizes, "as many as the matrices have");
         for (i, value) in output.iter_mut().enumerate() {
             *value = row(&self.c, i, &self.state) + row(&self.d, i, input);
         }

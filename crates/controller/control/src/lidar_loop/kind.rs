@@ -1,5 +1,6 @@
 //! `kind = "lidar-loop"`: its keys, and how it is built.
 
+use super::family::{Family, FamilyState, Schedule};
 use super::findings::{of_loop, of_reference};
 use super::{CHANNELS, LidarLoop, Limits, Settings, Watch, findings};
 use crate::Controller;
@@ -11,12 +12,13 @@ use crate::keys::{
     VORTEX_FILTER, VORTEX_INTERVAL, sense, starts_too_late,
 };
 use crate::kind::{Control, ControllerKind, Place, Site};
-use crate::library::Hosted;
+use crate::library::{ANEMOMETER, Hosted};
 use crate::linear_law::LawFiles;
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
-use basis::channels::{HUB_VORTEX_TRUST, LOOP_SHARE};
+use basis::channels::{HUB_VORTEX_TRUST, LOOP_SHARE, LOOP_WIND};
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Objection, Table, Values, above, from, key};
+use basis::records::Finding;
 use basis::registry::Named;
 use basis::{Channel, HelixFrame, Sense};
 
@@ -32,7 +34,7 @@ fn reference(control: &Control) -> Option<[f64; 2]> {
     let given = ["reference_tilt", "reference_yaw"].map(|key| values.optional_number(key));
     let place = match given {
         [Some(tilt), Some(yaw)] => [tilt, yaw],
-        _ => control.linear_law.as_ref()?.reference?,
+        _ => control.linear_laws.as_ref()?.reference?,
     };
     let shift = ["reference_shift_tilt", "reference_shift_yaw"].map(|key| values.number(key));
     Some([0, 1].map(|axis| place[axis] + shift[axis]))
@@ -47,10 +49,17 @@ static TABLE: Table = Table {
         STROUHAL,
         key(
             "controller",
-            Holds::Text,
+            Holds::Files(&MEMBER),
             "",
             Required,
-            "File of the control law that `wakemix synthesize` wrote: from errors of the hub vortex (m) to tilt and yaw (deg), in the helix frame; a path relative to the case file. Where there is no `lidar-loop-controller.json`, that name is the one that comes with the program.",
+            "File of the control law that `wakemix synthesize` wrote: from errors of the hub vortex (m) to tilt and yaw (deg), in the helix frame; a path relative to the case file. Where there is no `lidar-loop-controller.json`, that name is the one that comes with the program. Or a family of laws, each made at a wind speed: `[{ wind_speed = 8.0, file = \"law-8.json\" }, { wind_speed = 10.0, file = \"law-10.json\" }]`, in ascending order, all of one interval. All run on the same error, the two next to the measured wind speed are blended linearly, and beyond the first and the last the command is theirs.",
+        ),
+        key(
+            "wind_filter_time",
+            above(0.0, 1e5),
+            "s",
+            Otherwise("60 with a family of laws"),
+            "Time constant of the low-pass filter on the wind speed of `anemometer`, by which a family is blended; slower than the helix, so that the wake's own swing blends nothing.",
         ),
         key(
             "reference_tilt",
@@ -133,9 +142,39 @@ static TABLE: Table = Table {
         BASE[1],
         BASE[2],
         BASE[3],
-        BASE[4],
+        key(
+            "anemometer",
+            Holds::Name,
+            "",
+            Otherwise("the turbine's sensor called `anemometer`"),
+            "Sensor of the turbine whose first value is the wind speed by which a family of laws is blended, in the free stream's terms: give an anemometer the `factor` that its place asks for. It shows a library its wind too, as for `kind = \"discon\"`.",
+        ),
     ],
 };
+
+static MEMBER: Table = Table {
+    heading: "control.T1.controller = [{ … }, …]",
+    about: "A law of a family of the lidar loop, and the wind speed that it was made at.",
+    keys: &[
+        key(
+            "wind_speed",
+            above(0.0, 100.0),
+            "m/s",
+            Required,
+            "Wind speed of the record that the law's model was identified from; greater than that of the law before.",
+        ),
+        key(
+            "file",
+            Holds::Text,
+            "",
+            Required,
+            "File of the law that `wakemix synthesize` wrote; a path relative to the case file.",
+        ),
+    ],
+};
+
+/// Time constant of the filter on the wind speed (s), where none is given.
+const WIND_FILTER_TIME: f64 = 60.0;
 
 impl Named for LidarLoopKind {
     fn name(&self) -> &'static str {
@@ -162,7 +201,8 @@ impl ControllerKind for LidarLoopKind {
             label,
             fix: "give `reference_tilt` and `reference_yaw`, or `reference_run`".to_owned(),
         });
-        starts_too_late(values, place.duration).into_iter().chain(reference).collect()
+        let late = starts_too_late(values, place.duration);
+        late.into_iter().chain(reference).chain(objections(values, place)).collect()
     }
 
     fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
@@ -171,8 +211,8 @@ impl ControllerKind for LidarLoopKind {
         let frame = HelixFrame { sense: sense(values), rate: site.rate(strouhal) };
         let amplitude = values.angle("amplitude_deg");
         let start = values.number("start");
-        let Some(law) = &control.linear_law else {
-            return Err(ControlError::NoLinearLaw { file: values.word("controller").to_owned() });
+        let Some(laws) = &control.linear_laws else {
+            return Err(ControlError::NoLinearLaws { files: files(values).join(", ") });
         };
         let reference = reference(control).ok_or_else(|| ControlError::NoReference {
             run: values.word("reference_run").to_owned(),
@@ -192,22 +232,26 @@ impl ControllerKind for LidarLoopKind {
                 rate: values.angle("correction_rate_deg_per_s"),
             },
         };
-        if law.interval < site.interval * (1.0 - 1e-6) {
+        if let Some(law) = laws.laws.first()
+            && laws.interval < site.interval * (1.0 - 1e-6)
+        {
             return Err(ControlError::FastLinearLaw {
                 file: law.file.clone(),
-                interval: law.interval,
+                interval: laws.interval,
                 control: site.interval,
             });
         }
+        let family = Family { schedule: schedule(values), interval: laws.interval };
+        let laws = laws.laws.iter().map(|law| law.recursion.clone()).collect();
         let watch = Watch::of(values, site, frame)?;
-        let law = (law.recursion.clone(), law.interval);
-        Ok(LidarLoop::new(settings, watch, law).on_top_of(base(control, site)?))
+        let begun = LidarLoop::new(settings, watch, family, FamilyState::at_rest(laws));
+        Ok(begun.on_top_of(base(control, site)?))
     }
 
     fn law_files(&self, control: &Control) -> Option<LawFiles> {
         let values = control.values();
         Some(LawFiles {
-            law: values.word("controller").to_owned(),
+            laws: files(values),
             reference_run: values
                 .has("reference_run")
                 .then(|| values.word("reference_run").to_owned()),
@@ -223,8 +267,9 @@ impl ControllerKind for LidarLoopKind {
         Hosted::of(control.values())
     }
 
-    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<Channel> {
-        CHANNELS.into_iter().chain([LOOP_SHARE, HUB_VORTEX_TRUST]).collect()
+    fn outcome_channels(&self, control: &Control, _: usize) -> Vec<Channel> {
+        let wind = schedule(control.values()).map(|_| LOOP_WIND);
+        CHANNELS.into_iter().chain([LOOP_SHARE, HUB_VORTEX_TRUST]).chain(wind).collect()
     }
 
     fn outcome(
@@ -232,14 +277,102 @@ impl ControllerKind for LidarLoopKind {
         control: &Control,
         record: &dyn TurbineRecord,
     ) -> Result<Outcome, MissingChannel> {
-        let findings = findings(record)?;
+        let mut findings = findings(record)?;
         let reference = reference(control).map(|reference| of_reference(reference, &findings));
         let (of_loop, warning) = of_loop(record, control.values().number("least_trust"))?;
-        let findings = findings.into_iter().chain(reference.into_iter().flatten()).chain(of_loop);
-        Ok(Outcome {
-            findings: findings.collect(),
-            warnings: Vec::from_iter(warning),
-            ..Outcome::default()
-        })
+        findings.extend(reference.into_iter().flatten().chain(of_loop));
+        let mut warnings = Vec::from_iter(warning);
+        if let Some(schedule) = schedule(control.values()) {
+            let (found, warning) = of_wind(&schedule.speeds, record.column(&LOOP_WIND)?);
+            findings.push(found);
+            warnings.extend(warning);
+        }
+        Ok(Outcome { findings, warnings, ..Outcome::default() })
     }
+}
+
+/// Files of the laws that `values` name, in their order.
+fn files(values: &Values) -> Vec<String> {
+    match values.tables("controller") {
+        [] => vec![values.word("controller").to_owned()],
+        members => members.iter().map(|member| member.word("file").to_owned()).collect(),
+    }
+}
+
+/// How the laws that `values` name are blended; none of one alone.
+fn schedule(values: &Values) -> Option<Schedule> {
+    let members = values.tables("controller");
+    (members.len() > 1).then(|| Schedule {
+        speeds: members.iter().map(|member| member.number("wind_speed")).collect(),
+        anemometer: anemometer(values).to_owned(),
+        filter_time: values.optional_number("wind_filter_time").unwrap_or(WIND_FILTER_TIME),
+    })
+}
+
+/// The sensor that shows the wind.
+fn anemometer(values: &Values) -> &str {
+    if values.has("anemometer") { values.word("anemometer") } else { ANEMOMETER }
+}
+
+/// What about the laws in `values` cannot be at `place`.
+fn objections(values: &Values, place: &Place) -> Vec<Objection> {
+    let objection = |key, message, label, fix| Objection { key: Some(key), message, label, fix };
+    let mut objections = Vec::new();
+    let Some(Schedule { speeds, anemometer, .. }) = schedule(values) else {
+        if values.has("wind_filter_time") {
+            let message = "has no effect here: one law alone is blended with none".to_owned();
+            let fix = "leave it out, or give a family of laws".to_owned();
+            objections.push(objection("wind_filter_time", message, "no effect", fix));
+        }
+        return objections;
+    };
+    let members = files(values);
+    for (index, pair) in speeds.windows(2).enumerate() {
+        let [first, second] = [&members[index], &members[index + 1]];
+        let [slower, faster] = [pair[0], pair[1]];
+        if slower == faster {
+            let message = format!("has two laws for {slower} m/s, {first} and {second}");
+            let fix = "leave one of them out, or make it at another wind speed".to_owned();
+            objections.push(objection("controller", message, "one wind speed twice", fix));
+        } else if slower > faster {
+            let message = format!(
+                "is not in ascending order of wind speed: {first} of {slower} m/s stands before {second} of {faster} m/s"
+            );
+            let fix = "sort the laws by `wind_speed`".to_owned();
+            objections.push(objection("controller", message, "not ascending", fix));
+        }
+    }
+    if place.sensor(&anemometer).is_none() {
+        let turbine = place.turbine;
+        let message = format!(
+            "is a family that is blended by the measured wind, and {turbine} has no sensor `{anemometer}`"
+        );
+        let fix = format!(
+            "add sensors.{anemometer} = {{ kind = \"anemometer\" }} to its [[turbine]], or name its anemometer in `anemometer`"
+        );
+        objections.push(objection("controller", message, "no wind", fix));
+    }
+    objections
+}
+
+/// What the filtered wind `measured` (m/s) tells of a family made at `speeds` (m/s), ascending.
+fn of_wind(speeds: &[f64], measured: &[f64]) -> (Finding, Option<String>) {
+    let n = measured.len().max(1) as f64;
+    let [slowest, fastest] =
+        [speeds.first(), speeds.last()].map(|speed| speed.copied().unwrap_or(f64::NAN));
+    let n_beyond = measured.iter().filter(|wind| **wind < slowest || **wind > fastest).count();
+    let beyond = n_beyond as f64 / n;
+    let finding = Finding {
+        name: "loop-wind".to_owned(),
+        value: Some(measured.iter().sum::<f64>() / n),
+        unit: "m/s".to_owned(),
+        about: "mean of the filtered wind speed by which the loop's laws were blended".to_owned(),
+    };
+    let warning = (beyond > 0.0).then(|| {
+        format!(
+            " measured a wind outside the {slowest} to {fastest} m/s of its lidar loop's laws for {:.1} % of the analysed time: the first or the last law ran alone then",
+            100.0 * beyond
+        )
+    });
+    (finding, warning)
 }

@@ -9,12 +9,14 @@
 //!
 //! Source: Chen, van Vondelen, van Wingerden (2026), "Lidar-enhanced closed-loop active helix approach",
 //! Wind Energ. Sci. 11, 1871, section 3.3. The law of `wakemix synthesize` holds the Smith predictor of its
-//! Fig. 7.
+//! Fig. 7. Laws made at several wind speeds make a family, which is blended by the wind that is measured; the
+//! paper has one law, at one wind speed.
 //!
 //! What the paper leaves open: the command is limited in size and rate and the law learns of it by
 //! back-calculation; a lidar that has been blind for too long fades the loop out to the open helix. A loop
 //! that fades out does so wholly before it closes again: its law would go on from the wake of before.
 
+mod family;
 mod findings;
 mod kind;
 mod watch;
@@ -29,7 +31,7 @@ use crate::excitation::{Excitation, add, share, words};
 use crate::samples::Samples;
 use basis::mbc::to_blades;
 use basis::{Channel, FixedFrame, HelixFrame, Measurements, PerBlade, channels};
-use lti::Recursion;
+use family::{Family, FamilyState};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -90,15 +92,14 @@ fn shortened(components: [f64; 2], most: f64) -> [f64; 2] {
 pub struct LidarLoop {
     settings: Settings,
     watch: Watch,
-    /// The law, at rest, and the time between its samples (s).
-    law: (Recursion, f64),
+    family: Family,
     state: LoopState,
 }
 
 /// What time changes of it beside the watch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct LoopState {
-    law: Recursion,
+    laws: FamilyState,
     samples: Samples,
     /// Whether the law steps; it begins at rest.
     closed: bool,
@@ -113,9 +114,10 @@ struct LoopState {
 }
 
 impl LidarLoop {
-    fn new(settings: Settings, watch: Watch, (law, interval): (Recursion, f64)) -> Self {
+    /// The loop with the laws of a `family`, which are at rest in `laws`.
+    fn new(settings: Settings, watch: Watch, family: Family, laws: FamilyState) -> Self {
         let state = LoopState {
-            law: law.clone(),
+            laws,
             samples: Samples::NONE,
             closed: false,
             wanted: [0.0; 2],
@@ -123,20 +125,22 @@ impl LidarLoop {
             correction: [0.0; 2],
             commands: [0.0; 2],
         };
-        Self { settings, watch, law: (law, interval), state }
+        Self { settings, watch, family, state }
     }
 
     /// Tilt and yaw (rad) in the helix frame at the instant of `measurements`.
     fn advance(&mut self, measurements: &Measurements) -> [f64; 2] {
-        let Self { settings, watch, law: (at_rest, interval), state } = self;
+        let Self { settings, watch, family, state } = self;
         let time = measurements.time;
         watch.update(measurements);
-        let due = state.samples.due(time, *interval);
+        family.watch_wind(&mut state.laws, measurements);
+        let due = state.samples.due(time, family.interval);
         let seen = watch.vortex().filter(|vortex| {
             vortex.settled
                 && vortex.trust >= settings.least_trust
                 && watch.blind() <= settings.blind_after
                 && time >= settings.starts[1]
+                && family.is_known(&state.laws)
         });
         state.closed = seen.is_some() && (state.closed || state.share == 0.0);
         let step = measurements.interval * settings.frame.rate / TAU;
@@ -145,16 +149,15 @@ impl LidarLoop {
         if let (true, true, Some(vortex)) = (due, state.closed, seen) {
             let errors = [0, 1].map(|axis| settings.reference[axis] - vortex.helix[axis]);
             let before = state.correction;
-            let mut output = [0.0; 2];
-            state.law.step_within(&errors, &mut output, |output| {
-                let wanted = [output[0], output[1]].map(f64::to_radians);
-                state.wanted = settings.limits.limited(wanted, before, *interval);
-                output.copy_from_slice(&state.wanted.map(f64::to_degrees));
+            family.step_within(&mut state.laws, &errors, |wanted| {
+                let wanted = wanted.map(f64::to_radians);
+                state.wanted = settings.limits.limited(wanted, before, family.interval);
+                state.wanted.map(f64::to_degrees)
             });
         }
         if state.share == 0.0 && !state.closed {
             // What was known of the wake is of no use any more.
-            state.law.clone_from(at_rest);
+            state.laws.reset();
             state.wanted = [0.0; 2];
         }
         let target = state.wanted.map(|wanted| state.share * wanted);
@@ -181,15 +184,20 @@ impl Excitation for LidarLoop {
     }
 
     fn signals(&self) -> Vec<Channel> {
-        channels::of_lidar_loop()
+        let mut signals = channels::of_lidar_loop();
+        signals.extend(self.family.schedule.as_ref().map(|_| channels::LOOP_WIND));
+        signals
     }
 
     fn write_signals(&self, values: &mut [f64]) {
         let (commands, rest) = values.split_at_mut(2);
         commands.copy_from_slice(&self.state.commands);
-        let (watched, share) = rest.split_at_mut(rest.len() - 1);
+        let (watched, rest) = rest.split_at_mut(channels::HUB_VORTEX.len());
         self.watch.write_signals(watched);
-        share[0] = self.state.share;
+        rest[0] = self.state.share;
+        if let (Some(shown), Some(wind)) = (rest.get_mut(1), self.state.laws.wind()) {
+            *shown = wind;
+        }
     }
 
     fn save(&self) -> Vec<u8> {

@@ -3,6 +3,7 @@
 use super::*;
 use basis::scan::{Scan, ScanBlocks};
 use basis::{Reading, Sense};
+use lti::Recursion;
 use std::collections::VecDeque;
 
 const INTERVAL: f64 = 0.1;
@@ -48,6 +49,8 @@ struct Wake {
     offset: [f64; 2],
     /// Whether the beams come back.
     sees: bool,
+    /// Wind speed that an anemometer shows (m/s), over time (s).
+    wind: Option<fn(f64) -> f64>,
 }
 
 impl Wake {
@@ -77,10 +80,11 @@ impl Wake {
             least_trust: 0.1,
             limits: Limits { size, rate: 0.5_f64.to_radians() },
         };
-        let law = (integrating(0.004, interval), interval);
-        let control = LidarLoop::new(settings, Watch::for_tests(frame, centre), law);
+        let laws = FamilyState::at_rest(vec![integrating(0.004, interval)]);
+        let family = Family { schedule: None, interval };
+        let control = LidarLoop::new(settings, Watch::for_tests(frame, centre), family, laws);
         let way = VecDeque::from(vec![[0.0; 2]; DELAY]);
-        Self { control, way, step: 0, bias, offset: [0.0; 2], sees: true }
+        Self { control, way, step: 0, bias, offset: [0.0; 2], sees: true, wind: None }
     }
 
     /// One interval; gives the hub vortex in the helix frame as it is at the lidar.
@@ -99,7 +103,12 @@ impl Wake {
             let blocks = ScanBlocks::of(&mut values).expect("whole points");
             blocks.speeds.fill(f64::NAN);
         }
-        let readings = &[Reading { sensor: "lidar".to_owned(), values }][..];
+        let mut readings = vec![Reading { sensor: "lidar".to_owned(), values }];
+        readings.extend(self.wind.map(|wind| {
+            let (sensor, values) = ("anemometer".to_owned(), vec![wind(time), 0.0]);
+            Reading { sensor, values }
+        }));
+        let readings = readings.as_slice();
         let measured =
             Measurements { time, interval: INTERVAL, readings, ..Measurements::at_rest(3) };
         self.control.add_to(&mut PerBlade::splat(3, 0.0), &measured);
@@ -262,16 +271,67 @@ fn a_loop_that_fades_out_does_so_before_it_closes_again() {
     assert!(shares[open + 1..].iter().all(|share| *share == 1.0));
 }
 
+/// A wake whose loop has two laws, for 8 and 10 m/s, in a wind that rises from 7 to 11 m/s within 400 s.
+fn in_rising_wind() -> Wake {
+    let mut wake = Wake::new([1.0, 13.0], [-3.0, 4.0], 0.1);
+    let laws = [0.004, 0.002].map(|gain| integrating(gain, INTERVAL)).to_vec();
+    wake.control.state.laws = FamilyState::at_rest(laws);
+    wake.control.family.schedule = Some(family::Schedule {
+        speeds: vec![8.0, 10.0],
+        anemometer: "anemometer".to_owned(),
+        filter_time: 20.0,
+    });
+    wake.wind = Some(|time| 7.0 + (0.01 * time).min(4.0));
+    wake
+}
+
+#[test]
+fn a_family_brings_the_hub_vortex_to_its_reference_and_pitch_never_jumps() {
+    let mut wake = in_rising_wind();
+    wake.steps(990);
+    let (mut before, mut most) = (wake.control.state.commands, 0.0_f64);
+    for _ in 0..5000 {
+        wake.step();
+        let now = wake.control.state.commands;
+        most = most.max((now[0] - before[0]).hypot(now[1] - before[1]));
+        before = now;
+    }
+    // The faster law at its greatest error, 17 m, moves by its gain an interval.
+    assert!(most <= (0.004 * 17.0 * INTERVAL).to_radians(), "{most}");
+    let closed = wake.steps(1500);
+    for (found, wanted) in closed.iter().zip([1.0, 13.0]) {
+        assert!((found - wanted).abs() < 0.6, "{closed:?}");
+    }
+    assert!(wake.control.state.laws.wind().is_some_and(|wind| wind > 10.5));
+    let n_signals = wake.control.signals().len();
+    assert_eq!(n_signals, channels::of_lidar_loop().len() + 1);
+}
+
+#[test]
+fn a_family_stays_open_until_the_wind_is_known() {
+    let mut wake = in_rising_wind();
+    wake.wind = None;
+    wake.steps(2000);
+    assert_eq!(wake.control.state.share, 0.0);
+    assert_eq!(wake.control.state.correction, [0.0; 2]);
+    wake.wind = Some(|_| 9.0);
+    wake.steps(10);
+    assert_eq!(wake.control.state.share, 1.0);
+}
+
 #[test]
 fn it_goes_on_from_what_it_saved_to_the_same_bits() {
-    let mut whole = Wake::new([1.0, 13.0], [-3.0, 4.0], 0.1);
-    whole.steps(2000);
-    let mut resumed = Wake::new([1.0, 13.0], [-3.0, 4.0], 0.1);
-    resumed.control.restore(&whole.control.save()).expect("its own state");
-    (resumed.way, resumed.step) = (whole.way.clone(), whole.step);
-    for _ in 0..500 {
-        assert_eq!(whole.step(), resumed.step());
-        assert_eq!(whole.control.state.commands, resumed.control.state.commands);
+    let alone: fn() -> Wake = || Wake::new([1.0, 13.0], [-3.0, 4.0], 0.1);
+    for make in [alone, in_rising_wind] {
+        let mut whole = make();
+        whole.steps(2000);
+        let mut resumed = make();
+        resumed.control.restore(&whole.control.save()).expect("its own state");
+        (resumed.way, resumed.step) = (whole.way.clone(), whole.step);
+        for _ in 0..500 {
+            assert_eq!(whole.step(), resumed.step());
+            assert_eq!(whole.control.state.commands, resumed.control.state.commands);
+        }
+        assert_eq!(resumed.control.restore(&[1]), Err(ForeignState));
     }
-    assert_eq!(resumed.control.restore(&[1]), Err(ForeignState));
 }

@@ -1,7 +1,7 @@
 //! `kind = "phase-sync"`: its checks, and how it is built.
 
 use super::settings::{PhaseEstimator, PhaseSyncSettings, TABLE, response_of};
-use super::{PhaseSync, SyncSettings, choices};
+use super::{PhaseSync, Preview, SyncSettings, choices, preview};
 use crate::Controller;
 use crate::discon::base;
 use crate::error::ControlError;
@@ -71,6 +71,7 @@ impl ControllerKind for PhaseSyncKind {
             values.set("azimuth_offset_deg", 0.0);
         }
         objections.extend(choices::objections(values));
+        objections.extend(preview::objections(values, place));
         objections
     }
 
@@ -89,7 +90,10 @@ impl ControllerKind for PhaseSyncKind {
             start: given.start,
             trust: given.trust(),
         };
-        Ok(PhaseSync::new(settings, estimator).on_top_of(base(control, site)?))
+        let preview = Preview::of(control.values(), site)?;
+        Ok(PhaseSync::new(settings, estimator)
+            .with_preview(preview)
+            .on_top_of(base(control, site)?))
     }
 
     fn helix(&self, control: &Control) -> Option<(Sense, f64)> {
@@ -130,8 +134,10 @@ impl ControllerKind for PhaseSyncKind {
         Hosted::of(control.values())
     }
 
-    fn outcome_channels(&self, _: &Control, _: usize) -> Vec<Channel> {
-        vec![SYNC_SHARE]
+    fn outcome_channels(&self, control: &Control, _: usize) -> Vec<Channel> {
+        let looks_ahead = control.values().has("preview");
+        let seen = looks_ahead.then(Preview::signals).into_iter().flatten();
+        std::iter::once(SYNC_SHARE).chain(seen).collect()
     }
 
     fn outcome(
@@ -139,8 +145,13 @@ impl ControllerKind for PhaseSyncKind {
         control: &Control,
         record: &dyn TurbineRecord,
     ) -> Result<Outcome, MissingChannel> {
+        let mut outcome = if control.values().has("preview") {
+            preview::outcome(record)?
+        } else {
+            Outcome::default()
+        };
         if control.values().number("amplitude_deg") == 0.0 {
-            return Ok(Outcome::default());
+            return Ok(outcome);
         }
         let share = record.column(&SYNC_SHARE)?;
         let n_faded = share.iter().filter(|share| **share < 0.5).count();
@@ -158,8 +169,9 @@ impl ControllerKind for PhaseSyncKind {
                 100.0 * faded
             )
         };
-        let warnings = Vec::from_iter((faded > FADED_SHARE).then(warning));
-        Ok(Outcome { findings: vec![finding], warnings, ..Outcome::default() })
+        outcome.findings.push(finding);
+        outcome.warnings.extend((faded > FADED_SHARE).then(warning));
+        Ok(outcome)
     }
 
     fn warnings(&self, control: &Control) -> Vec<String> {

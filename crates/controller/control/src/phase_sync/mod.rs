@@ -16,15 +16,20 @@
 //! φ_off + ψ_o (ccw) or φ_off − ψ_o (cw) and no azimuth offset. What the axes' phases differ by is a wave of
 //! the other sense, which is turned the other way.
 //!
+//! With a lidar that looks upwind the wave that meets the rotor is known before it comes: what a [`Preview`]
+//! finds then takes the place of the wave in the loads, as far as the lidar sees. That goes beyond the paper.
+//!
 //! What the paper leaves open: the excitation is as strong as the estimate is trusted. Where the wind carries
 //! no helix, or the loads go missing, it fades to the baseline, and comes back when the helix does.
 
 mod choices;
 mod kind;
+mod preview;
 mod settings;
 
 pub use choices::{Adapts, EstimatorChoices};
 pub use kind::PHASE_SYNC;
+pub use preview::Preview;
 pub use settings::{
     PhaseEstimator, PhaseNoise, PhaseSyncSettings, azimuth_offset_of, calibration_of, response_of,
 };
@@ -33,7 +38,7 @@ use crate::controller::{ForeignState, from_bytes, to_bytes};
 use crate::excitation::{Excitation, add, fade_in};
 use basis::mbc::to_blades;
 use basis::{Channel, FixedFrame, Measurements, PerBlade, Sense};
-use estimation::helix::HelixEstimatorState as EstimatorState;
+use estimation::helix::{HelixEstimatorState as EstimatorState, PreviewState};
 use estimation::{Estimator, HelixEstimate, HelixEstimator};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -87,6 +92,7 @@ const STEADY: f64 = 1.0 / 16.0;
 pub struct PhaseSync {
     settings: SyncSettings,
     estimator: HelixEstimator,
+    preview: Option<Preview>,
     estimate: Option<HelixEstimate>,
     trusted: bool,
     share: f64,
@@ -97,6 +103,7 @@ pub struct PhaseSync {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct SyncState {
     estimator: EstimatorState,
+    preview: Option<PreviewState>,
     trusted: bool,
     share: f64,
     steady: [Phasor; 2],
@@ -127,11 +134,17 @@ impl PhaseSync {
         Self {
             settings,
             estimator,
+            preview: None,
             estimate: None,
             trusted: false,
             share: 0.0,
             steady: Default::default(),
         }
+    }
+
+    /// It, which sees the helix ahead through `preview` where there is one.
+    pub fn with_preview(self, preview: Option<Preview>) -> Self {
+        Self { preview, ..self }
     }
 
     /// Settings.
@@ -158,6 +171,10 @@ impl PhaseSync {
     /// What is added to each blade's pitch (rad), given `measurements`.
     pub fn pitch(&mut self, measurements: &Measurements) -> PerBlade<f64> {
         let estimate = self.estimator.update(measurements);
+        let estimate = match &mut self.preview {
+            Some(preview) => preview.update(measurements, estimate),
+            None => estimate,
+        };
         self.follow_trust(estimate.trust.overall(), measurements.interval);
         self.estimate = Some(estimate);
         // Passing blades make the found phases tremble three times a turn; pitch must not.
@@ -204,11 +221,21 @@ impl Excitation for PhaseSync {
     }
 
     fn signals(&self) -> Vec<Channel> {
-        basis::channels::of_phase_sync()
+        let mut signals = basis::channels::of_phase_sync();
+        signals.extend(self.preview.iter().flat_map(|_| Preview::signals()));
+        signals
     }
 
     fn write_signals(&self, values: &mut [f64]) {
         let Some(estimate) = &self.estimate else { return };
+        let values = match &self.preview {
+            Some(preview) => {
+                let (own, seen) = values.split_at_mut(values.len() - Preview::signals().len());
+                preview.write_signals(seen);
+                own
+            }
+            None => values,
+        };
         values.copy_from_slice(&[
             estimate.mean_wind,
             estimate.helix.tilt,
@@ -230,6 +257,7 @@ impl Excitation for PhaseSync {
     fn save(&self) -> Vec<u8> {
         to_bytes(&SyncState {
             estimator: self.estimator.state().clone(),
+            preview: self.preview.as_ref().map(|preview| preview.state().clone()),
             trusted: self.trusted,
             share: self.share,
             steady: self.steady,
@@ -238,6 +266,11 @@ impl Excitation for PhaseSync {
 
     fn restore(&mut self, state: &[u8]) -> Result<(), ForeignState> {
         let state: SyncState = from_bytes(state)?;
+        match (&mut self.preview, state.preview) {
+            (Some(preview), Some(state)) => preview.restore(state),
+            (None, None) => {}
+            _ => return Err(ForeignState),
+        }
         self.estimator.restore(state.estimator);
         (self.trusted, self.share, self.steady) = (state.trusted, state.share, state.steady);
         Ok(())

@@ -59,6 +59,20 @@ pub(super) static TABLE: Table = Table {
             "`robust`: extended Kalman filter with states for shear, eddies and other model errors. `published`: the four states of van Vondelen et al. (2025), on stiff blades without weight. `published-with-offset`: the same, whose model takes the pitch to act with the azimuth offset ψ, as the paper has it.",
         ),
         key(
+            "preview",
+            Holds::Name,
+            "",
+            Otherwise("none: the phase is found in the blade loads alone"),
+            "The turbine's lidar that looks upwind, by its name in `sensors`: the phase of the wind that it sees is known before it arrives, and found without lag. It must see the wind half a period of the helix ahead, D/(2 St) in the free wind, less in a wake as that is slower; the summary says by how much it falls short. Where the lidar is blind, the blade loads tell, faded.",
+        ),
+        key(
+            "preview_speed_factor",
+            from(0.3, 3.0),
+            "–",
+            Otherwise("1 with a `preview`"),
+            "Speed at which the helix travels, over that of the mean wind over the scan. A percent turns the phase by a percent of the time of travel.",
+        ),
+        key(
             "fallback",
             Holds::Choice(&["baseline", "none"]),
             "",

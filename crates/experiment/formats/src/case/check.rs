@@ -14,7 +14,7 @@ use super::sources::Sources;
 use super::spelling::{list, nearest};
 use super::wind::{check_together, wind_of};
 use basis::keys::Table;
-use control::{CONTROLLERS, ControllerKind, Place};
+use control::{CONTROLLERS, ControllerKind, FurtherSensor, Place};
 use farm::case::{
     Case, Control, Mounted, Output, Placement, Requested, Run, Solver, Time, helix_upstream, places,
 };
@@ -220,8 +220,10 @@ fn controls_of(
         match &entry.node.value {
             Value::Table(inner) => {
                 let upstream = helix_upstream(index, places, &controls);
-                let turbine = &turbines[index].name;
-                let place = Place { turbine, upstream, duration: time.duration };
+                let Placement { name: turbine, sensors, .. } = &turbines[index];
+                let sensors: Vec<FurtherSensor> = sensors.iter().map(further_sensor).collect();
+                let (duration, sensors) = (time.duration, sensors.as_slice());
+                let place = Place { turbine, upstream, duration, sensors };
                 controls[index] = control_of(run.findings(), inner, &entry.node, path, &place);
             }
             _ => {
@@ -235,6 +237,11 @@ fn controls_of(
         }
     }
     controls
+}
+
+/// What a controller may know of the sensor `mounted` on its turbine.
+fn further_sensor(mounted: &Mounted) -> FurtherSensor<'_> {
+    FurtherSensor { name: &mounted.name, kind: mounted.kind.name(), values: &mounted.values }
 }
 
 fn control_of(

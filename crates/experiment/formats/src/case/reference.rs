@@ -39,6 +39,11 @@ pub fn reference() -> String {
     for kind in CONTROLLERS.all() {
         let _ =
             write_table(&mut page, kind.table(), Some((kind.name(), "What runs on the turbine.")));
+        for key in kind.table().keys {
+            if let Holds::Files(table) = key.holds {
+                let _ = write_table(&mut page, table, None);
+            }
+        }
     }
     for kind in SENSORS.all() {
         let _ = write_table(
@@ -119,6 +124,7 @@ fn holds(key: &Key) -> String {
         Holds::Ground(_) => "`\"slip\"` or a table".into(),
         Holds::Table(_) | Holds::Flow => "table".into(),
         Holds::Tables(_) => "one table or more".into(),
+        Holds::Files(_) => "a path, or one table or more".into(),
         Holds::Event => "a table".into(),
         Holds::Control => "tables by turbine".into(),
         Holds::Sensors | Holds::Outputs => "tables by name".into(),
@@ -192,6 +198,11 @@ fn schema_of_key(key: &Key) -> Value {
         Holds::Flow => Value::Object(schema_of(flow(Solver::default()))),
         Holds::Tables(table) => {
             json!({ "type": "array", "minItems": 1, "items": Value::Object(schema_of(table)) })
+        }
+        Holds::Files(table) => {
+            let family =
+                json!({ "type": "array", "minItems": 1, "items": Value::Object(schema_of(table)) });
+            json!({ "anyOf": [{ "type": "string" }, family] })
         }
         Holds::Event => json!({ "oneOf": schemas_of_kinds(EVENTS) }),
         Holds::Control => {

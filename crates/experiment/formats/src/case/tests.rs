@@ -1,6 +1,7 @@
 //! What the case file's users write is read, written back and compared; `errors` has what is refused.
 
 mod errors;
+mod lidar;
 mod numbers;
 mod refinement;
 

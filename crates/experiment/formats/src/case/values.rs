@@ -38,11 +38,27 @@ fn value_of(section: &Section, key: &Key) -> Option<Value> {
         Holds::Turbines => section.entry(name).map(|_| Value::Names(section.turbines(name))),
         Holds::Ground(table) => ground_of(section, name, table),
         Holds::Table(table) => section.entry(name).map(|_| inner(section, name, table)),
-        Holds::Tables(table) => section.entry(name).map(|_| {
-            let sections = section.sections(name, table);
-            Value::Tables(sections.iter().map(|one| values_of(one, table.keys)).collect())
-        }),
+        Holds::Tables(table) => section.entry(name).map(|_| tables(section, name, table)),
+        Holds::Files(table) => files_of(section, name, table),
         holds => panic!("no kind can have a key like `{name}`, which holds {holds:?}"),
+    }
+}
+
+/// What the tables `name` in `section` hold.
+fn tables(section: &Section, name: &str, table: &'static Table) -> Value {
+    let sections = section.sections(name, table);
+    Value::Tables(sections.iter().map(|one| values_of(one, table.keys)).collect())
+}
+
+fn files_of(section: &Section, name: &str, table: &'static Table) -> Option<Value> {
+    let node = &section.entry(name)?.node;
+    match &node.value {
+        Written::Text(text) => Some(Value::Text(text.clone())),
+        Written::List(_) => Some(tables(section, name, table)),
+        _ => {
+            section.wrong_type(name, node, &format!("a file in quotes, or {}", table.heading));
+            None
+        }
     }
 }
 
