@@ -2,7 +2,7 @@
 
 use crate::Row;
 use crate::row::Tolerance::{AtLeast, AtMost};
-use crate::studies::{Carried, failure, summaries};
+use crate::studies::{Carried, failure, summaries_of};
 use analysis::AnalysisError;
 use analysis::fatigue::{REFERENCE_FREQUENCY, damage_equivalent_load};
 use analysis::statistics::{change, mean};
@@ -17,6 +17,7 @@ const SOURCE: &str = "Chen, van Vondelen, van Wingerden (2026), section 4.2";
 /// The source's name of a wind, its shear exponent and turbulence intensity (–); the even one first.
 const WINDS: [(&str, f64, f64); 4] =
     [("OL1", 0.0, 0.0), ("OL2", 0.2, 0.0), ("OL3", 0.0, 0.06), ("OL4", 0.2, 0.06)];
+const HELIX: &str = "helix";
 const N_TURBINES: usize = 2;
 /// Two turns of the helix (s): the blocks of which intervals are made.
 const BLOCK: f64 = 84.0;
@@ -58,21 +59,22 @@ struct Change {
     half_width: f64,
 }
 
-/// Makes the eight runs of `cases/lidar-open-loop.toml`, or takes up what is there of them; prints all
-/// changes with their intervals, and gives those of whose sign the source tells as rows.
+/// Makes the four runs with a helix of `cases/lidar-open-loop.toml`, or takes up what is there of them;
+/// prints all changes with their intervals, and gives those of whose sign the source tells as rows.
 pub(super) fn rows() -> Vec<Row> {
     made().unwrap_or_else(failure)
 }
 
 fn made() -> Result<Vec<Row>, String> {
     let case = Carried::Shipped("lidar-open-loop");
-    let (_, folder) = summaries(case, "free-vortex-open-loop", Vec::new())?;
+    let (_, folder) = summaries_of(case, "free-vortex-open-loop", Vec::new(), &[HELIX])?;
     let mut series = Vec::new();
     for wind in WINDS {
         let records = records(&folder, wind)?;
-        print_helix(wind.0, &records);
-        let run = records.iter().find(|records| records.summary.run == "helix");
-        series.push(analysed(run.ok_or_else(|| format!("{}: there is no helix", wind.0))?)?);
+        let run = records.iter().find(|records| records.summary.run == HELIX);
+        let run = run.ok_or_else(|| format!("{}: there is no helix", wind.0))?;
+        print_power(wind.0, run);
+        series.push(analysed(run)?);
     }
     let mut found = Vec::new();
     for (index, now) in series.iter().enumerate() {
@@ -199,17 +201,14 @@ fn print_changes(wind: &str, quantity: &str, changes: [Change; N_TURBINES + 1]) 
     tell!("{wind} over OL1, {quantity}: T1 {first}, T2 {second}, both {both}");
 }
 
-/// What the helix does to power in this `wind`.
-fn print_helix(wind: &str, runs: &[RunRecords]) {
-    for run in runs {
-        let powers = run.summary.turbines.iter().map(|turbine| {
-            let gain = turbine.power_gain.map_or(String::new(), |gain| {
-                format!(" ({:+.2} % over the baseline)", 100.0 * gain.mean)
-            });
-            format!("{} {:.1} kW{gain}", turbine.name, 1e-3 * turbine.power.mean)
-        });
-        tell!("{wind}, {}: {}", run.summary.run, powers.collect::<Vec<_>>().join(", "));
-    }
+/// Power in this `wind`.
+fn print_power(wind: &str, run: &RunRecords) {
+    let powers = run
+        .summary
+        .turbines
+        .iter()
+        .map(|turbine| format!("{} {:.1} kW", turbine.name, 1e-3 * turbine.power.mean));
+    tell!("{wind}: {}", powers.collect::<Vec<_>>().join(", "));
 }
 
 #[cfg(test)]
