@@ -112,6 +112,12 @@ impl Field {
         Self { opening: accuracy.opening, backend, tree, sum: sum_of(backend, degree) }
     }
 
+    /// Memory that boxes of `most` segments take (bytes).
+    pub(super) fn memory_of_boxes(accuracy: Accuracy, most: usize) -> u64 {
+        let degree = accuracy.degree.clamp(LOWEST_DEGREE, HIGHEST_DEGREE);
+        (Tree::most_boxes(most) * Tree::memory_of_box(degree)) as u64
+    }
+
     /// Instructions that it runs on.
     pub(super) fn backend(&self) -> Backend {
         self.backend

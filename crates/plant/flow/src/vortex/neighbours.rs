@@ -86,3 +86,41 @@ fn halves<'a>(places: &[Vector3], order: &'a mut [u32]) -> (&'a mut [u32], &'a m
     order.select_nth_unstable_by(middle, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
     order.split_at_mut(middle)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_hold_neighbours_and_every_place_once() {
+        // A cube of points, told in an order that runs through it back and forth.
+        const N: usize = 12;
+        let place = |index: usize| {
+            let shuffled = index * 577 % N.pow(3);
+            Vector3::new(
+                (shuffled / (N * N)) as f64,
+                (shuffled / N % N) as f64,
+                (shuffled % N) as f64,
+            )
+        };
+        for n in [0, 1, GROUP, GROUP + 1, 5 * GROUP - 3, N.pow(3)] {
+            let places: Vec<Vector3> = (0..n).map(place).collect();
+            let mut neighbours = Neighbours::default();
+            neighbours.sort(&places, &mut Pool::new(2));
+            let mut back = vec![Vector3::NAN; n];
+            neighbours.to_own_order(neighbours.sorted(), &mut back);
+            assert_eq!(back, places);
+            let widest = neighbours
+                .sorted()
+                .chunks(GROUP)
+                .map(|group| {
+                    let high = group.iter().copied().fold(Vector3::NEG_INFINITY, Vector3::max);
+                    let low = group.iter().copied().fold(Vector3::INFINITY, Vector3::min);
+                    (high - low).max_element()
+                })
+                .fold(0.0, f64::max);
+            // Sixteen of a cube's points lie in a box of 2 x 2 x 4 of them, some cuts aside.
+            assert!(n < N.pow(3) || widest <= 4.0, "{widest}");
+        }
+    }
+}

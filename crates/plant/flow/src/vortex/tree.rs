@@ -67,8 +67,7 @@ struct Part<'a> {
 impl Tree {
     /// Memory for `most` segments, boxes seen through harmonics up to `degree`.
     pub(super) fn with_capacity(degree: usize, most: usize) -> Self {
-        // Halves of halves: more than LEAF/2 segments in each box that is not divided.
-        let boxes = 4 * most / LEAF + 2 * N_KINDS;
+        let boxes = Self::most_boxes(most);
         Self {
             degree,
             clusters: Vec::with_capacity(boxes),
@@ -81,6 +80,19 @@ impl Tree {
             known: Vec::with_capacity(most),
             changed: Vec::with_capacity(boxes),
         }
+    }
+
+    /// Boxes that `most` segments have at the most (–): halves of halves, with more than half of [`LEAF`] in
+    /// each that is not divided.
+    pub(super) fn most_boxes(most: usize) -> usize {
+        4 * most / LEAF + 2 * N_KINDS
+    }
+
+    /// Memory of a box seen through harmonics up to `degree` (bytes).
+    pub(super) fn memory_of_box(degree: usize) -> usize {
+        size_of::<Cluster>()
+            + n_moments(degree) * size_of::<Moment>()
+            + n_coefficients(degree) * size_of::<f32>()
     }
 
     /// Makes the boxes of `segments` anew.

@@ -106,10 +106,11 @@ impl FreeWake {
 
     /// Memory that wakes take at `settings` (bytes).
     pub fn memory_of(settings: &WakeSettings) -> u64 {
-        // A segment in double precision, its lanes and its share of boxes; two of three have a node with
-        // position, velocities, wind and what is induced.
-        const OF_SEGMENT: u64 = 64 + 4 + 32 + 200 + 16 + 5 * 24;
-        settings.most_segments() as u64 * OF_SEGMENT
+        // A segment in double precision, as boxes knew it and in single precision, its number and its length
+        // so far; a node's position, velocities, wind, middle, and what is induced, in both orders.
+        const OF_SEGMENT: u64 = 64 + 64 + 36 + 8 + 16 + 8 * 24;
+        let boxes = Field::memory_of_boxes(settings.accuracy, settings.most_segments());
+        settings.most_segments() as u64 * OF_SEGMENT + boxes
     }
 
     /// The same for these.
