@@ -12,7 +12,7 @@ use estimation::hub_vortex::{HubVortexSettings, follow};
 use formats::records::{RunFolder, StoredScans, read_scans};
 
 /// Where the expected values come from, and how close to its correlations ours are to come (–): 0.9987 of
-/// radius and amplitude, 0.9995 of frequency and Strouhal number there.
+/// radius and amplitude, 0.9995 of frequency and Strouhal number there. The bounds are this program's.
 const SOURCE: &str = "Chen, van Vondelen, van Wingerden (2026), section 3.2.2";
 const OF_RADIUS: f64 = 0.99;
 const OF_FREQUENCY: f64 = 0.995;
@@ -27,8 +27,9 @@ const WIND: f64 = 10.0;
 const DIAMETER: f64 = 126.0;
 /// Time (s) in which the wake comes and the helix goes by, once it has faded in over a period.
 const PASSING: f64 = 60.0;
-/// Periods that are looked at (–).
-const N_PERIODS: f64 = 2.0;
+/// Time that is looked at (s), two periods of the slowest helix: the same for all, so that the lines of a
+/// record's own spectrum do not follow the frequency that was set.
+const RECORD: f64 = 252.0;
 /// Filters by which the hub vortex is found, the source's and the one that bears shear and noise: what they
 /// look for, and how a row names it.
 const FILTERS: [(&str, &str); 2] = [("fast region", ""), ("fitted jet", " by a fitted jet")];
@@ -50,9 +51,9 @@ struct Circle {
 }
 
 impl Circle {
-    /// Strouhal number of its frequency (–).
+    /// Strouhal number of its frequency (–), positive counter-clockwise, as the helix turns.
     fn strouhal(&self) -> f64 {
-        self.frequency.abs() * DIAMETER / WIND
+        -self.frequency * DIAMETER / WIND
     }
 }
 
@@ -139,7 +140,7 @@ fn drawn(number: usize, random: &mut Random) -> Result<Draw, String> {
         format!("run.helix.control.T1.amplitude_deg={amplitude}"),
         format!("run.helix.control.T1.strouhal={strouhal}"),
         format!("time.spin_up={spin_up:.1}"),
-        format!("time.duration={:.1}", spin_up + N_PERIODS * period),
+        format!("time.duration={:.1}", spin_up + RECORD),
     ];
     let case = Carried::Own(include_str!("../../cases/hub-vortex.toml"));
     let name = format!("free-vortex-helix-{number:02}");

@@ -5,7 +5,7 @@ use crate::row::Tolerance::{AtLeast, AtMost};
 use crate::studies::{Carried, failure, summaries_of};
 use analysis::AnalysisError;
 use analysis::fatigue::{REFERENCE_FREQUENCY, damage_equivalent_load};
-use analysis::statistics::{change, mean};
+use analysis::statistics::{change_together, mean};
 use basis::records::Series;
 use formats::records::{RunRecords, read_study, read_sweep};
 use std::path::Path;
@@ -150,49 +150,35 @@ fn changes(
     now: &Series,
     before: &Series,
 ) -> Result<[Change; N_TURBINES + 1], String> {
-    let mut changes = [Change::default(); N_TURBINES + 1];
-    let mut weights = [0.0; N_TURBINES];
-    for (turbine, name) in WHOSE[..N_TURBINES].iter().enumerate() {
-        let column = |series: &Series| -> Result<Vec<f64>, String> {
-            let name = format!("{name}.{channel}");
+    let Some([first, .., last]) = now.column("Time") else {
+        return Err("the series has no two times after the spin-up".to_owned());
+    };
+    let columns = |series: &Series| -> Result<Vec<Vec<f64>>, String> {
+        let of = |turbine: &&str| {
+            let name = format!("{turbine}.{channel}");
             let column = series.column(&name).ok_or_else(|| format!("there is no {name}"))?;
             Ok(column.to_vec())
         };
-        let Some([first, .., last]) = now.column("Time") else {
-            return Err("the series has no two times after the spin-up".to_owned());
-        };
-        let (now, before) = (column(now)?, column(before)?);
-        let interval = (last - first) / (now.len() - 1) as f64;
-        let figure = |samples: &[f64]| -> Result<f64, AnalysisError> {
-            if !is_load {
-                return Ok(mean(samples));
-            }
-            damage_equivalent_load(samples, interval, SLOPE, REFERENCE_FREQUENCY)
-        };
-        let found = change(&now, &before, interval, BLOCK, figure);
-        let found = found.map_err(|error| error.to_string())?;
-        changes[turbine] = Change {
+        WHOSE[..N_TURBINES].iter().map(of).collect()
+    };
+    let (now, before) = (columns(now)?, columns(before)?);
+    let pairs: Vec<[&[f64]; 2]> =
+        now.iter().zip(&before).map(|(now, before)| [&now[..], &before[..]]).collect();
+    let interval = (last - first) / (now[0].len() - 1) as f64;
+    let figure = |samples: &[f64]| -> Result<f64, AnalysisError> {
+        if !is_load {
+            return Ok(mean(samples));
+        }
+        damage_equivalent_load(samples, interval, SLOPE, REFERENCE_FREQUENCY)
+    };
+    let of = |pairs: &[[&[f64]; 2]]| {
+        let found = change_together(pairs, interval, BLOCK, figure);
+        found.map_err(|error| error.to_string()).map(|found| Change {
             mean: 100.0 * found.mean,
             half_width: 100.0 * found.half_width_95.unwrap_or(f64::NAN),
-        };
-        weights[turbine] = figure(&before).map_err(|error| error.to_string())?;
-    }
-    changes[N_TURBINES] = together(&changes[..N_TURBINES], &weights);
-    Ok(changes)
-}
-
-/// The change of the sum of what changed by `changes`, each in proportion to what it was; as if the turbines
-/// scattered independently.
-fn together(changes: &[Change], weights: &[f64]) -> Change {
-    let whole: f64 = weights.iter().sum();
-    let shares = || changes.iter().zip(weights).map(|(change, weight)| (change, weight / whole));
-    Change {
-        mean: shares().map(|(change, share)| share * change.mean).sum(),
-        half_width: shares()
-            .map(|(change, share)| (share * change.half_width).powi(2))
-            .sum::<f64>()
-            .sqrt(),
-    }
+        })
+    };
+    Ok([of(&pairs[..1])?, of(&pairs[1..])?, of(&pairs)?])
 }
 
 fn print_changes(wind: &str, quantity: &str, changes: [Change; N_TURBINES + 1]) {
@@ -238,13 +224,6 @@ mod tests {
             // The second is half as much as the first.
             assert!(both.mean.abs() < 1e-9 && both.half_width < 1e-9, "{both:?}");
         }
-    }
-
-    #[test]
-    fn scatter_adds_by_squares() {
-        let of = |half_width: f64| Change { mean: 1.0, half_width };
-        let both = together(&[of(3.0), of(4.0)], &[1.0, 1.0]);
-        assert!((both.mean - 1.0).abs() < 1e-12 && (both.half_width - 2.5).abs() < 1e-12);
     }
 
     #[test]

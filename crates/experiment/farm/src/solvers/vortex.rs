@@ -126,7 +126,7 @@ static KEYS: [Key; 14] = [
         "tree_opening",
         from(0.0, 0.9),
         "–",
-        Value("0.55"),
+        Value("0.5"),
         "A box of vortices is far where its radius is less than this share of its distance; 0 sums them one by one.",
     ),
     key(

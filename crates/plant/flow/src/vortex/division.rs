@@ -22,8 +22,6 @@ pub(super) struct Cluster {
     pub(super) radius: f64,
     /// One over it (1/m).
     pub(super) inverse_radius: f64,
-    /// The widest core of its segments, squared (m²).
-    pub(super) core_squared: f64,
     /// Its segments in the tree's order.
     pub(super) first: u32,
     pub(super) n: u32,
@@ -78,12 +76,10 @@ pub(super) fn make_box(
     cluster: &mut Cluster,
 ) -> usize {
     let (mut low, mut high) = (Vector3::INFINITY, Vector3::NEG_INFINITY);
-    let mut core_squared = 0.0_f64;
     for &index in order {
-        let Segment { from, to, core_squared: core, .. } = segments[index as usize];
+        let Segment { from, to, .. } = segments[index as usize];
         low = low.min(from).min(to);
         high = high.max(from).max(to);
-        core_squared = core_squared.max(core);
     }
     if share.n == 0 {
         (low, high) = (Vector3::ZERO, Vector3::ZERO);
@@ -99,7 +95,6 @@ pub(super) fn make_box(
         centre,
         radius,
         inverse_radius: 1.0 / radius,
-        core_squared,
         first: share.first as u32,
         n: share.n as u32,
         next: (share.cluster + share.n_clusters) as u32,

@@ -29,28 +29,27 @@ pub(super) unsafe fn near<V: Simd>(
             )
         };
         for segment in segments {
-            let along = segment.along.map(V::splat);
-            let squared = V::splat(segment.length_squared);
+            let (along, length) = (segment.along.map(V::splat), V::splat(segment.length));
             let r1: [V; 3] = std::array::from_fn(|a| at[a] - V::splat(segment.from[a]));
-            let r2: [V; 3] = std::array::from_fn(|a| r1[a] - along[a]);
-            // e = r₁·l, d = r₁·r₂, c = r₁ × r₂ = l × r₁.
+            let r2: [V; 3] = std::array::from_fn(|a| along[a].sub_from(length, r1[a]));
+            // The way e along the line, d = r₁·r₂, and c = t × r₁, t being along the segment.
             let (q1, q2, e) = (dot(&r1, &r1), dot(&r2, &r2), dot(&r1, &along));
-            let d = q1 - e;
+            let d = length.sub_from(e, q1);
             let c = cross(&along, &r1);
             let product = q1.mul_add(q2, tiny);
-            let p = product * product.rough_inverse_sqrt();
-            // (h l)², with l for the length, and what is added beyond the ends.
-            let beyond = (e * (e - squared)).maximum(zero);
+            let inverse = product.rough_inverse_sqrt();
+            let p = product * inverse;
+            // h², with what is added beyond the ends.
+            let beyond = (e * (e - length)).maximum(zero);
             let reach = beyond.mul_add(V::splat(BEYOND as f32), dot(&c, &c));
             // s = p + |d|; (p − d)/c² is 1/s ahead of both ends, and s/c² between them.
             let s = p + d.maximum(zero - d);
-            let difference = d.where_negative(s * s, reach);
-            // (r₁ + r₂)² = q₁ + q₂ + 2p; its root over p s √(…) is itself by one inverse root.
+            let difference = d.where_negative(s * s * V::splat(segment.inverse_squared), reach);
+            // (r₁ + r₂)² = q₁ + q₂ + 2p; its root over s √(h⁴ + r⁴) is itself by one inverse root.
             let ends = p.mul_add(two, q1 + q2);
             let around = reach.mul_add(reach, V::splat(segment.core));
-            let ps = p * s;
-            let root = (ends * around * ps).mul_add(ps, tiny).rough_inverse_sqrt();
-            let weight = V::splat(segment.strength) * difference * ends * root;
+            let root = (ends * around * s).mul_add(s, tiny).rough_inverse_sqrt();
+            let weight = V::splat(segment.strength) * inverse * difference * (ends * root);
             for (sum, c) in sum.iter_mut().zip(c) {
                 *sum = c.mul_add(weight, *sum);
             }

@@ -11,8 +11,8 @@ use crate::pool::Pool;
 use basis::Vector3;
 use std::f64::consts::PI;
 
-/// Lengths are divided by so much in single precision, so that fourth powers stay within its range (m); a
-/// power of two, which loses nothing.
+/// Lengths are divided by so much in single precision (m), so that their tenth powers stay within its range
+/// from some millimetres to some ten kilometres; a power of two, which loses nothing.
 pub(super) const UNIT: f64 = 16.0;
 
 /// Kinds of segments by their length, each with boxes of its own: in a tangled wake a few are so long that
@@ -26,12 +26,14 @@ const MOST_PARTS: usize = N_KINDS * MOST_SHARES;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Narrow {
     pub(super) from: [f32; 3],
-    /// The way from its beginning to its end.
+    /// Unit vector from its beginning to its end; zero where they are one.
     pub(super) along: [f32; 3],
-    pub(super) length_squared: f32,
-    /// Γ/4π (m²/s over the unit).
+    /// Its length l, and 1/l².
+    pub(super) length: f32,
+    pub(super) inverse_squared: f32,
+    /// Γ l/4π (m²/s).
     pub(super) strength: f32,
-    /// (r l)⁴ for a core r and a length l.
+    /// r⁴ for a core r.
     pub(super) core: f32,
 }
 
@@ -46,6 +48,8 @@ pub(super) struct Tree {
     pub(super) coefficients: Vec<f32>,
     /// Potential of vector strengths Γ l/4π about the centre of each box, [`n_moments`] for each.
     moments: Vec<Moment>,
+    /// The widest core in each box (m).
+    pub(super) cores: Vec<f64>,
     order: Vec<u32>,
     /// Boxes that threads make, each with all inside of it; in order.
     shares: Vec<Share>,
@@ -61,6 +65,7 @@ struct Part<'a> {
     share: Share,
     moments: &'a mut [Moment],
     coefficients: &'a mut [f32],
+    cores: &'a mut [f64],
     narrow: &'a mut [Narrow],
 }
 
@@ -74,6 +79,7 @@ impl Tree {
             narrow: Vec::with_capacity(most),
             coefficients: Vec::with_capacity(boxes * n_coefficients(degree)),
             moments: Vec::with_capacity(boxes * n_moments(degree)),
+            cores: Vec::with_capacity(boxes),
             order: Vec::with_capacity(most),
             shares: Vec::with_capacity(MOST_PARTS),
             tops: Vec::with_capacity(MOST_PARTS),
@@ -82,8 +88,8 @@ impl Tree {
         }
     }
 
-    /// Boxes that `most` segments have at the most (–): halves of halves, with more than half of [`LEAF`] in
-    /// each that is not divided.
+    /// Boxes that `most` segments have at the most (–): halves of halves, with half of [`LEAF`] or more in each
+    /// that is not divided.
     pub(super) fn most_boxes(most: usize) -> usize {
         4 * most / LEAF + 2 * N_KINDS
     }
@@ -93,6 +99,8 @@ impl Tree {
         size_of::<Cluster>()
             + n_moments(degree) * size_of::<Moment>()
             + n_coefficients(degree) * size_of::<f32>()
+            + size_of::<f64>()
+            + size_of::<bool>()
     }
 
     /// Makes the boxes of `segments` anew.
@@ -116,6 +124,7 @@ impl Tree {
         self.narrow.resize(n, Narrow::default());
         self.moments.resize(n_clusters * n_moments(self.degree), NO_MOMENT);
         self.coefficients.resize(n_clusters * n_coefficients(self.degree), 0.0);
+        self.cores.resize(n_clusters, 0.0);
         self.take_up(segments, true, pool);
     }
 
@@ -167,9 +176,9 @@ impl Tree {
     /// What `all` boxes amount to, or those in which `segments` are others than they were.
     fn take_up(&mut self, segments: &[Segment], all: bool, pool: &mut Pool) {
         self.find_changed(segments, all);
-        let Self { degree, clusters, order, moments, coefficients, narrow, .. } = self;
+        let Self { degree, clusters, order, moments, coefficients, cores, narrow, .. } = self;
         let (degree, clusters, changed) = (*degree, &clusters[..], &self.changed[..]);
-        let mut parts = parts_of(&self.shares, degree, moments, coefficients, narrow);
+        let mut parts = parts_of(&self.shares, degree, moments, coefficients, cores, narrow);
         pool.for_chunks(&mut parts, 1, &|_, part| {
             for part in part.iter_mut().flatten() {
                 part.take_up(degree, clusters, changed, order, segments);
@@ -178,6 +187,7 @@ impl Tree {
         let (n, n_values) = (n_moments(degree), n_coefficients(degree));
         for &index in self.tops.iter().rev().filter(|&&index| changed[index]) {
             gather(degree, clusters, index, &mut moments[index * n..]);
+            cores[index] = widest(clusters, index, &cores[index..]);
             let coefficients = &mut coefficients[index * n_values..][..n_values];
             let (mine, unit) = (&moments[index * n..][..n], clusters[index].radius);
             velocity_coefficients(degree, mine, unit, coefficients);
@@ -230,6 +240,7 @@ fn parts_of<'a>(
     degree: usize,
     mut moments: &'a mut [Moment],
     mut coefficients: &'a mut [f32],
+    mut cores: &'a mut [f64],
     mut narrow: &'a mut [Narrow],
 ) -> [Option<Part<'a>>; MOST_PARTS] {
     let (n, n_values) = (n_moments(degree), n_coefficients(degree));
@@ -243,9 +254,18 @@ fn parts_of<'a>(
         let values: &mut [f32];
         (_, coefficients) = coefficients.split_at_mut(before * n_values);
         (values, coefficients) = coefficients.split_at_mut(share.n_clusters * n_values);
+        let of_boxes: &mut [f64];
+        (_, cores) = cores.split_at_mut(before);
+        (of_boxes, cores) = cores.split_at_mut(share.n_clusters);
         let of_share: &mut [Narrow];
         (of_share, narrow) = narrow.split_at_mut(share.n);
-        *part = Some(Part { share, moments: mine, coefficients: values, narrow: of_share });
+        *part = Some(Part {
+            share,
+            moments: mine,
+            coefficients: values,
+            cores: of_boxes,
+            narrow: of_share,
+        });
         next = share.cluster + share.n_clusters;
     }
     parts
@@ -261,7 +281,7 @@ impl Part<'_> {
         order: &[u32],
         segments: &[Segment],
     ) {
-        let Self { share, moments, coefficients, narrow } = self;
+        let Self { share, moments, coefficients, cores, narrow } = self;
         let (n, n_values) = (n_moments(degree), n_coefficients(degree));
         // Boxes come before those inside of them.
         for local in (0..share.n_clusters).rev() {
@@ -275,13 +295,17 @@ impl Part<'_> {
                 moments.fill(NO_MOMENT);
                 let mine = cluster.segments(order);
                 let narrow = &mut narrow[cluster.first as usize - share.first..][..mine.len()];
+                let mut core_squared = 0.0_f64;
                 for (narrow, &segment) in narrow.iter_mut().zip(mine) {
                     let segment = &segments[segment as usize];
+                    core_squared = core_squared.max(segment.core_squared);
                     *narrow = Narrow::of(segment, cluster.centre);
                     add_segment(degree, cluster, segment, moments);
                 }
+                cores[local] = core_squared.sqrt();
             } else {
                 gather(degree, clusters, index, &mut moments[local * n..]);
+                cores[local] = widest(clusters, index, &cores[local..]);
             }
             let coefficients = &mut coefficients[local * n_values..][..n_values];
             velocity_coefficients(degree, &moments[local * n..][..n], cluster.radius, coefficients);
@@ -327,6 +351,11 @@ fn gauss(degree: usize) -> &'static [(f64, f64)] {
     }
 }
 
+/// The wider of the cores of the two boxes inside of number `index`, whose own stands first in `cores` (m).
+fn widest(clusters: &[Cluster], index: usize, cores: &[f64]) -> f64 {
+    cores[1].max(cores[clusters[index + 1].next as usize - index])
+}
+
 /// Adds what `segment` amounts to about the centre of `cluster` to its `moments`.
 fn add_segment(degree: usize, cluster: &Cluster, segment: &Segment, moments: &mut [Moment]) {
     let along = segment.to - segment.from;
@@ -340,16 +369,17 @@ fn add_segment(degree: usize, cluster: &Cluster, segment: &Segment, moments: &mu
 impl Narrow {
     fn of(segment: &Segment, centre: Vector3) -> Self {
         let Segment { from, to, circulation, core_squared } = *segment;
-        let narrow = |way: Vector3| (way / UNIT).to_array().map(|x| x as f32);
-        let along = to - from;
-        let core = (core_squared * along.length_squared() / UNIT.powi(4)).powi(2);
+        let narrow = |way: Vector3| way.to_array().map(|x| x as f32);
+        let (along, length) = ((to - from).normalize_or_zero(), (to - from).length() / UNIT);
+        let inverse_squared = if along == Vector3::ZERO { 0.0 } else { length.powi(-2) };
         Self {
-            from: narrow(from - centre),
+            from: narrow((from - centre) / UNIT),
             along: narrow(along),
-            length_squared: (along.length_squared() / UNIT.powi(2)) as f32,
-            strength: (circulation / (4.0 * PI * UNIT)) as f32,
-            // Never zero: a position on the line of a thin segment has no velocity.
-            core: (core as f32).max(f32::MIN_POSITIVE),
+            length: length as f32,
+            inverse_squared: inverse_squared as f32,
+            // Velocities have one length less than the strength: the unit, divided by here.
+            strength: (circulation * length / (4.0 * PI * UNIT)) as f32,
+            core: (core_squared / UNIT.powi(2)).powi(2) as f32,
         }
     }
 }
