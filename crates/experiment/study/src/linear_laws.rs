@@ -101,11 +101,11 @@ pub(crate) fn for_a_check(control: &mut Control) {
 }
 
 /// What decides the laws of `run`, to which they are [attached](attach), by names: each law's file as it was
-/// in `digests`, and the reference (m) that is of a run, by its folder. That run's own files may change, such
-/// as by making it again with the same result.
-pub(crate) fn deciding(run: &Run, digests: &LawDigests) -> LawDigests {
+/// in `digests`, and the reference (m) that each of the `turbines` has of a run, by that one's folder and the
+/// turbine. That run's own files may change, such as by making it again with the same result.
+pub(crate) fn deciding(run: &Run, turbines: &[Placement], digests: &LawDigests) -> LawDigests {
     let mut deciding = LawDigests::new();
-    for control in &run.control {
+    for (control, turbine) in run.control.iter().zip(turbines) {
         let Some(LawFiles { laws, reference_run }) = control.kind().law_files(control) else {
             continue;
         };
@@ -116,7 +116,7 @@ pub(crate) fn deciding(run: &Run, digests: &LawDigests) -> LawDigests {
         }
         let reference = control.linear_laws.as_ref().and_then(|laws| laws.reference);
         if let (Some(run), Some([tilt, yaw])) = (reference_run, reference) {
-            deciding.insert(run, format!("{tilt} m, {yaw} m"));
+            deciding.insert(format!("{run} for {}", turbine.name), format!("{tilt} m, {yaw} m"));
         }
     }
     deciding

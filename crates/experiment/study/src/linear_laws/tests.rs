@@ -166,6 +166,21 @@ fn a_reference_goes_with_its_run_and_comes_with_it() {
 }
 
 #[test]
+fn each_turbine_has_a_reference_of_its_own_in_one_run() {
+    let case = closed(2);
+    let mut run = with_reference(&case, Some([1.5, 13.0]));
+    let laws = LinearLaws { laws: Vec::new(), interval: 1.0, reference: Some([2.0, -4.0]) };
+    run.control[1].linear_laws = Some(Arc::new(laws));
+    let digests = LawDigests::from([("law.json".to_owned(), "a digest".to_owned())]);
+    let found = deciding(&run, &case.turbines, &digests);
+    let found: Vec<(&str, &str)> = found.iter().map(|(name, of)| (&**name, &**of)).collect();
+    let expected =
+        [("law.json", "a digest"), ("open for T1", "1.5 m, 13 m"), ("open for T2", "2 m, -4 m")];
+    assert_eq!(found, expected);
+    assert_eq!(deciding(&with_reference(&case, None), &case.turbines, &digests), digests);
+}
+
+#[test]
 fn what_is_no_law_of_two_errors_in_metres_is_told_with_its_file() {
     let said = read(&gain(Role::Model, UP_RIGHT, TILT_YAW)).unwrap_err();
     assert!(said.contains("law.json") && said.contains("a linear model"), "{said}");
