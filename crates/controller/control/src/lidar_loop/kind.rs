@@ -147,7 +147,7 @@ static TABLE: Table = Table {
             Holds::Name,
             "",
             Otherwise("the turbine's sensor called `anemometer`"),
-            "Sensor of the turbine whose first value is the wind speed by which a family of laws is blended, in the free stream's terms: give an anemometer the `factor` that its place asks for. It shows a library its wind too, as for `kind = \"discon\"`.",
+            "Sensor of the turbine whose first value is the wind speed by which a family of laws is blended, in the free stream's terms: give an anemometer the `factor` that its place asks for. It shows a library its wind too: speed (record 27), and yaw error where it has a second channel (record 24); `none` for a library that looks at no wind, with one law.",
         ),
     ],
 };
@@ -342,17 +342,36 @@ fn objections(values: &Values, place: &Place) -> Vec<Objection> {
             objections.push(objection("controller", message, "not ascending", fix));
         }
     }
-    if place.sensor(&anemometer).is_none() {
-        let turbine = place.turbine;
-        let message = format!(
-            "is a family that is blended by the measured wind, and {turbine} has no sensor `{anemometer}`"
-        );
-        let fix = format!(
-            "add sensors.{anemometer} = {{ kind = \"anemometer\" }} to its [[turbine]], or name its anemometer in `anemometer`"
-        );
-        objections.push(objection("controller", message, "no wind", fix));
-    }
+    objections.extend(no_wind(&anemometer, place));
     objections
+}
+
+/// Why the sensor called `anemometer` at `place` shows no wind to blend a family by, where it does not.
+fn no_wind(anemometer: &str, place: &Place) -> Option<Objection> {
+    let turbine = place.turbine;
+    let add = |name: &str| {
+        format!("add sensors.{name} = {{ kind = \"anemometer\" }} to the [[turbine]] {turbine}")
+    };
+    let message = "is a family that is blended by the measured wind";
+    let (message, fix) = match place.sensor(anemometer) {
+        // A sensor may be called so; for a library it is none.
+        _ if anemometer == "none" => (
+            format!("{message}, and `anemometer` is `none`"),
+            format!("leave out `anemometer` and {}", add(ANEMOMETER)),
+        ),
+        None => (
+            format!("{message}, and {turbine} has no sensor `{anemometer}`"),
+            format!("{}, or name its anemometer in `anemometer`", add(anemometer)),
+        ),
+        Some(sensor) if sensor.kind == "lidar" => (
+            format!(
+                "{message}, and `{anemometer}` of {turbine} is a lidar, whose first value is no wind speed"
+            ),
+            format!("{}, and name it in `anemometer`", add(ANEMOMETER)),
+        ),
+        Some(_) => return None,
+    };
+    Some(Objection { key: Some("controller"), message, label: "no wind", fix })
 }
 
 /// What the filtered wind `measured` (m/s) tells of a family made at `speeds` (m/s), ascending.

@@ -55,7 +55,15 @@ fn a_family_that_cannot_be_is_told_with_its_key_and_fix() {
         ),
         (
             format!("{FAMILY}, anemometer = \"mast\""),
-            "controller` is a family that is blended by the measured wind, and T1 has no sensor `mast`; add sensors.mast = { kind = \"anemometer\" }",
+            "controller` is a family that is blended by the measured wind, and T1 has no sensor `mast`; add sensors.mast = { kind = \"anemometer\" } to the [[turbine]] T1, or name",
+        ),
+        (
+            format!("{FAMILY}, anemometer = \"eye\""),
+            "measured wind, and `eye` of T1 is a lidar, whose first value is no wind speed; add sensors.anemometer = { kind = \"anemometer\" } to the [[turbine]] T1, and name it",
+        ),
+        (
+            format!("{FAMILY}, anemometer = \"none\""),
+            "measured wind, and `anemometer` is `none`; leave out `anemometer` and add",
         ),
         (
             "controller = \"law.json\", wind_filter_time = 30.0".to_owned(),
