@@ -118,7 +118,7 @@ pub(super) fn of_loop(
     ];
     let warning = (open > 0.0).then(|| {
         format!(
-            " had its lidar loop open for {:.1} % of the analysed time: the lidar did not see the hub vortex (confidence {trust:.2} on the mean), or `loop_start` came later",
+            " had its lidar loop open for {:.1} % of the analysed time: the lidar did not see the hub vortex (confidence {trust:.2} on the mean), `loop_start` came later, or `anemometer` showed a family of laws no wind yet",
             100.0 * open
         )
     });
