@@ -102,9 +102,9 @@ impl Preview {
     }
 }
 
-/// Share of the free wind (–) that is left in the slowest wake of momentum theory, at the induction of a
-/// third: no helix comes slower.
-const SLOWEST_WAKE: f64 = 1.0 / 3.0;
+/// Share of the free wind (–) that is left in a slow wake, by rule of thumb: that of momentum theory at the
+/// induction of a third, the best for power. A rotor that is loaded more leaves less, and wakes mix.
+const SLOW_WAKE: f64 = 1.0 / 3.0;
 
 /// What about the preview in `values` cannot be at `place`.
 pub(super) fn objections(values: &Values, place: &Place) -> Vec<Objection> {
@@ -142,10 +142,10 @@ pub(super) fn objections(values: &Values, place: &Place) -> Vec<Objection> {
     let furthest = ranges.iter().copied().reduce(f64::max).unwrap_or(focus);
     // Half a period of the wind is D/(2 St) long.
     let of_free_wind = 0.5 / values.number("strouhal");
-    let least = SLOWEST_WAKE * of_free_wind;
+    let least = SLOW_WAKE * of_free_wind;
     if furthest < least {
         let message = format!(
-            "= \"{name}\" sees the wind {furthest} D ahead: an estimate without lag needs half a period of the helix, which is {of_free_wind:.2} D of the free wind and {least:.2} D of the slowest wake"
+            "= \"{name}\" sees the wind {furthest} D ahead: an estimate without lag needs half a period of the helix, which is {of_free_wind:.2} D of the free wind and {least:.2} D of a slow wake, at a third of it"
         );
         let fix = format!(
             "look {of_free_wind:.2} D ahead, or as much of it as the wake's speed is of the free wind's, in sensors.{name} of {turbine}; never less than {least:.2} D"

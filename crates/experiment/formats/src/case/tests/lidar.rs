@@ -94,7 +94,7 @@ fn a_preview_needs_a_lidar_that_looks_upwind_far_enough() {
     let near = with(&sync("preview = \"eye\""))
         .replace("focal_distance_diameters = 2.0", "focal_distance_diameters = 0.6");
     let said = parse("small.toml", &near, &[]).expect_err("too near").to_lines();
-    let expected = "preview` = \"eye\" sees the wind 0.6 D ahead: an estimate without lag needs half a period of the helix, which is 2.00 D of the free wind and 0.67 D of the slowest wake; look 2.00 D ahead";
+    let expected = "preview` = \"eye\" sees the wind 0.6 D ahead: an estimate without lag needs half a period of the helix, which is 2.00 D of the free wind and 0.67 D of a slow wake, at a third of it; look 2.00 D ahead";
     assert!(said.contains(expected), "{said}");
     let cases = [
         ("preview = \"mast\"", "preview` = \"mast\" names no lidar of T1; add sensors.mast"),
