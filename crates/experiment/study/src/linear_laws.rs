@@ -147,7 +147,7 @@ fn mean_hub_vortex(
     let of_turbine = summary.turbines.iter().find(|other| other.name == turbine);
     let refused = |problem: String| {
         let fix = format!(
-            "name the folder of a run in which {turbine} has `kind = \"probing\"` with the helix and the filter of this one"
+            "name the folder of a run in which {turbine} has `kind = \"probing\"` or `\"lidar-loop\"` with the helix and the filter of this one"
         );
         FileError::content("a run of reference", &there.summary_path(), problem, fix)
     };

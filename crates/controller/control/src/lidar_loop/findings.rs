@@ -125,6 +125,28 @@ pub(super) fn of_loop(
     Ok((findings, warning))
 }
 
+/// What the filtered wind `measured` (m/s) tells of a family made at `speeds` (m/s), ascending.
+pub(super) fn of_wind(speeds: &[f64], measured: &[f64]) -> (Finding, Option<String>) {
+    let n = measured.len().max(1) as f64;
+    let [slowest, fastest] =
+        [speeds.first(), speeds.last()].map(|speed| speed.copied().unwrap_or(f64::NAN));
+    let n_beyond = measured.iter().filter(|wind| **wind < slowest || **wind > fastest).count();
+    let beyond = n_beyond as f64 / n;
+    let finding = found(
+        "loop-wind",
+        mean(measured.iter().copied()),
+        "m/s",
+        "mean of the filtered wind speed by which the loop's laws were blended",
+    );
+    let warning = (beyond > 0.0).then(|| {
+        format!(
+            " measured a wind outside the {slowest} to {fastest} m/s of its lidar loop's laws for {:.1} % of the analysed time: the first or the last law ran alone then",
+            100.0 * beyond
+        )
+    });
+    (finding, warning)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
