@@ -222,4 +222,18 @@ mod tests {
         let closed = columns(&[(&LOOP_SHARE, [1.0; 4]), (&HUB_VORTEX_TRUST, [0.9; 4])]);
         assert_eq!(of_loop(&closed, 0.1).expect("all channels").1, None);
     }
+
+    #[test]
+    fn wind_beyond_a_family_is_told_with_its_share_of_the_time() {
+        let speeds = [8.0, 10.0, 12.0];
+        // At the ends the first and the last law run as they were made.
+        let (found, warning) = of_wind(&speeds, &[8.0, 9.0, 12.0, 10.0]);
+        assert_eq!((found.name.as_str(), found.value), ("loop-wind", Some(9.75)));
+        assert_eq!((found.unit.as_str(), warning), ("m/s", None));
+        let (found, warning) = of_wind(&speeds, &[7.5, 9.0, 12.5, 12.5, 8.5]);
+        assert_eq!(found.value, Some(10.0));
+        let warning = warning.expect("it was beyond");
+        assert!(warning.contains("outside the 8 to 12 m/s"), "{warning}");
+        assert!(warning.contains("for 60.0 % of the analysed time"), "{warning}");
+    }
 }
