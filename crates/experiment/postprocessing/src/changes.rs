@@ -13,6 +13,7 @@ use analysis::statistics::{BLOCK_LENGTH, change_together, independent};
 use basis::channels::TIME;
 use basis::records::{LoadKind, Series, Statistic, Summary};
 use formats::records::{self, RunFolder, read_series};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 pub(crate) use winds::names_of_runs;
 use winds::{Group, groups};
@@ -101,7 +102,8 @@ pub struct Change {
 ///
 /// # Errors
 /// [`PostprocessingError::Seeds`] for studies that do not belong together, or without a run that compares
-/// with another; [`PostprocessingError`] for records that cannot be read.
+/// with another; [`PostprocessingError`] for records that cannot be read, and for series without a turbine's
+/// load beside others' where these have blocks.
 pub fn changes(question: &ChangesQuestion) -> Result<ChangesAnswer, PostprocessingError> {
     let mut folders = Vec::new();
     for folder in &question.studies {
@@ -124,7 +126,7 @@ pub fn changes(question: &ChangesQuestion) -> Result<ChangesAnswer, Postprocessi
         case,
         winds: groups.iter().map(|group| group.wind.clone()).collect(),
         rows: Vec::new(),
-        remarks: Vec::new(),
+        remarks: untold(question, &studies),
     };
     for run in wanted(question, &studies)? {
         let mut columns = Vec::with_capacity(groups.len());
@@ -134,6 +136,21 @@ pub fn changes(question: &ChangesQuestion) -> Result<ChangesAnswer, Postprocessi
         answer.rows.extend(rows(columns));
     }
     Ok(answer)
+}
+
+/// Which channels of `question` have a damage-equivalent load in none of the `studies`, in sentences.
+fn untold(question: &ChangesQuestion, studies: &[Study<'_>]) -> Vec<String> {
+    let summaries = studies.iter().flat_map(|study| study.runs.iter().map(|(_, summary)| summary));
+    let loads = summaries.flat_map(|summary| &summary.turbines).flat_map(|turbine| &turbine.loads);
+    let told = loads.filter(|load| matches!(load.kind, LoadKind::DamageEquivalent { .. }));
+    let told: BTreeSet<&str> = told.map(|load| load.channel.as_str()).collect();
+    let list = told.iter().copied().collect::<Vec<_>>().join(", ");
+    let remark = |channel: &String| {
+        let list = if list.is_empty() { "no channel" } else { &list };
+        format!("no run tells the damage-equivalent load of `{channel}`: they tell those of {list}")
+    };
+    let channels = question.channels.iter();
+    channels.filter(|channel| !told.contains(channel.as_str())).map(remark).collect()
 }
 
 /// The runs that `question` is about.
@@ -311,11 +328,17 @@ fn of_blocks(
     let from = pair.run.1.conditions.spin_up;
     let mut columns = Vec::with_capacity(channels.len());
     for name in &channels {
-        let part = |series: &'_ Series| -> Option<Vec<f64>> {
-            let (first, _, _) = analysed(series, from)?;
-            Some(series.column(name)?[first..].to_vec())
+        let part = |series: &Series, run: &str| -> Result<Vec<f64>, PostprocessingError> {
+            let missing = || PostprocessingError::MissingChannel {
+                path: Some(RunFolder::new(pair.folder, run).series_path()),
+                channel: name.clone(),
+            };
+            let samples = series.column(name).ok_or_else(missing)?;
+            let first = analysed(series, from).map_or(samples.len(), |(first, _, _)| first);
+            Ok(samples[first..].to_vec())
         };
-        columns.extend(part(&series[0]).zip(part(&series[1])));
+        let [now, before] = &series;
+        columns.push((part(now, &pair.run.0.run)?, part(before, &pair.other.0.run)?));
     }
     let interval = analysed(&series[0], from).map_or(0.0, |(_, _, interval)| interval);
     let pairs: Vec<[&[f64]; 2]> = columns.iter().map(|(now, before)| [&now[..], before]).collect();

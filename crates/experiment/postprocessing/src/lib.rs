@@ -28,7 +28,7 @@ pub use hub_vortex::{
 pub use lock::{LockAnswer, LockQuestion, lock};
 pub use over_offset::over_offset;
 pub use phase::{
-    PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, Replayed, phase, phases, tune,
+    PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, PreviewUse, Replayed, phase, phases, tune,
 };
 pub use precursor::report_of_precursor;
 pub use seeds::{GainsAnswer, GainsQuestion, PartGains, RunGains, SeedsError, gains_over_seeds};

@@ -5,6 +5,7 @@ mod estimates;
 pub(crate) mod query;
 mod replay;
 
+pub use estimates::PreviewUse;
 pub(crate) use estimates::recorded;
 pub use replay::{Replayed, tune};
 
@@ -17,7 +18,8 @@ use analysis::phase::{
 use basis::Channel;
 use basis::FixedFrame;
 use basis::channels::{
-    AZIMUTH, BLD_PITCH, LINES, ROOT_MYC, ROT_SPEED, SYNC_SHARE, TIME, of_phase_sync,
+    AZIMUTH, BLD_PITCH, LINES, PREVIEW_LAG, PREVIEW_SHARE, ROOT_MYC, ROT_SPEED, SYNC_SHARE, TIME,
+    of_phase_sync,
 };
 use basis::records::{Series, Statistic};
 use estimates::{Estimates, Wave, consistency};
@@ -107,6 +109,9 @@ pub struct PhaseAnswer {
     pub yaw: PhaseAxis,
     /// Mean trust (–).
     pub trust: f64,
+    /// How far the run's own estimate came through a lidar. Absent of a turbine without a preview, and of
+    /// estimators that are run over the records, which see the blade loads alone.
+    pub preview: Option<PreviewUse>,
     /// Tilt and yaw phase of the turbine's own blade moments through the filter of the truth, which knows the
     /// future: what its loads hold, beside what an estimator made of them in time. Absent where the turbine
     /// pitched a helix of its own.
@@ -222,6 +227,7 @@ fn zero_phase(
     };
     Ok(Estimates {
         trust: vec![1.0; filtered.average.len()],
+        preview: None,
         wind: filtered.average,
         wind_deviation: Vec::new(),
         tilt: wave(filtered.tilt),
@@ -309,6 +315,10 @@ pub(crate) fn compare(
         wind_deviation: pick_known(&estimates.wind_deviation),
         true_wind: pick_true(&truth.average),
         trust: mean(&pick(&estimates.trust)),
+        preview: estimates
+            .preview
+            .as_ref()
+            .map(|[share, lag]| PreviewUse::of(&pick(share), &pick(lag))),
         times: pick(times),
         zero_phase: None,
         published_band: None,
@@ -327,6 +337,7 @@ fn of_phase(own: &str) -> bool {
     let is = |channel: &Channel| channel.name == own;
     [AZIMUTH, ROT_SPEED].iter().any(is)
         || of_phase_sync().iter().filter(|channel| **channel != SYNC_SHARE).any(is)
+        || [PREVIEW_SHARE, PREVIEW_LAG].iter().any(is)
         || LINES.iter().any(is)
 }
 

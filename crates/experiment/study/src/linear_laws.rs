@@ -57,18 +57,22 @@ pub(crate) fn attach(case: &mut Case, folder: &Path) -> Result<LawDigests, FileE
 }
 
 /// `run`, which controls `turbines` with its laws [attached](attach), with the references that complete runs
-/// of reference have left by now.
+/// of reference have left by now, and none of a run that is not complete, whatever it told before.
 ///
 /// # Errors
 /// [`FileError`] for one that does not tell of the turbine's hub vortex.
 pub(crate) fn referred(run: &Run, turbines: &[Placement], folder: &Path) -> Result<Run, FileError> {
     let mut run = run.clone();
     for (control, turbine) in run.control.iter_mut().zip(turbines) {
-        let Some(reference_run) = complete_reference(control, folder) else { continue };
-        let own = ControlSetting::all(control.values());
-        let reference = mean_hub_vortex(&reference_run, folder, (&turbine.name, &own))?;
+        let Some(reference_run) = reference_run(control) else { continue };
+        let reference = if RunFolder::new(folder, &reference_run).is_complete() {
+            let own = ControlSetting::all(control.values());
+            Some(mean_hub_vortex(&reference_run, folder, (&turbine.name, &own))?)
+        } else {
+            None
+        };
         if let Some(laws) = &mut control.linear_laws {
-            Arc::make_mut(laws).reference = Some(reference);
+            Arc::make_mut(laws).reference = reference;
         }
     }
     Ok(run)
@@ -77,11 +81,6 @@ pub(crate) fn referred(run: &Run, turbines: &[Placement], folder: &Path) -> Resu
 /// The folder of the run that `control` takes its reference from, as the case has it.
 pub(crate) fn reference_run(control: &Control) -> Option<String> {
     control.kind().law_files(control)?.reference_run
-}
-
-/// The same where that run is complete; the case is in `folder`.
-fn complete_reference(control: &Control, folder: &Path) -> Option<String> {
-    reference_run(control).filter(|run| RunFolder::new(folder, run).is_complete())
 }
 
 /// That a run needs the run of reference in `folder`, which is not complete, and which nobody is about to
@@ -102,11 +101,11 @@ pub(crate) fn for_a_check(control: &mut Control) {
 }
 
 /// What decides the laws of `run`, to which they are [attached](attach), by names: each law's file as it was
-/// in `digests`, and the reference (m) that is of a run, by its folder. That run's own files may change, such
-/// as by making it again with the same result.
-pub(crate) fn deciding(run: &Run, digests: &LawDigests) -> LawDigests {
+/// in `digests`, and the reference (m) that each of the `turbines` has of a run, by that one's folder and the
+/// turbine. That run's own files may change, such as by making it again with the same result.
+pub(crate) fn deciding(run: &Run, turbines: &[Placement], digests: &LawDigests) -> LawDigests {
     let mut deciding = LawDigests::new();
-    for control in &run.control {
+    for (control, turbine) in run.control.iter().zip(turbines) {
         let Some(LawFiles { laws, reference_run }) = control.kind().law_files(control) else {
             continue;
         };
@@ -117,7 +116,7 @@ pub(crate) fn deciding(run: &Run, digests: &LawDigests) -> LawDigests {
         }
         let reference = control.linear_laws.as_ref().and_then(|laws| laws.reference);
         if let (Some(run), Some([tilt, yaw])) = (reference_run, reference) {
-            deciding.insert(run, format!("{tilt} m, {yaw} m"));
+            deciding.insert(format!("{run} for {}", turbine.name), format!("{tilt} m, {yaw} m"));
         }
     }
     deciding
@@ -148,7 +147,7 @@ fn mean_hub_vortex(
     let of_turbine = summary.turbines.iter().find(|other| other.name == turbine);
     let refused = |problem: String| {
         let fix = format!(
-            "name the folder of a run in which {turbine} has `kind = \"probing\"` with the helix and the filter of this one"
+            "name the folder of a run in which {turbine} has `kind = \"probing\"` or `\"lidar-loop\"` with the helix and the filter of this one"
         );
         FileError::content("a run of reference", &there.summary_path(), problem, fix)
     };
@@ -256,124 +255,4 @@ fn places(ports: &[Port], unit: &str) -> Result<[usize; 2], String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use basis::records::{Finding, SettingValue, examples};
-    use formats::linear_model::Role;
-
-    /// A gain from errors to commands with these names and units.
-    fn gain(role: Role, inputs: [[&str; 2]; 2], outputs: [[&str; 2]; 2]) -> LinearModel {
-        let ports = [inputs, outputs].map(|ports| {
-            let port = |[name, unit]: [&str; 2]| Port { name: name.into(), unit: unit.into() };
-            ports.map(port).to_vec()
-        });
-        let d = vec![vec![1.0, 2.0], vec![3.0, 4.0]];
-        let of_order_none = [Vec::new(), Vec::new(), vec![Vec::new(); 2], d];
-        LinearModel::new(role, "a gain".to_owned(), Some(1.0), ports, of_order_none)
-    }
-
-    fn read(model: &LinearModel) -> Result<LinearLaw, String> {
-        let folder = tempfile::tempdir().unwrap();
-        model.write(&folder.path().join("law.json")).unwrap();
-        law("law.json", folder.path()).map(|(law, ..)| law).map_err(|error| error.to_string())
-    }
-
-    /// What is said of a family of laws with these intervals (s), which learn of limits or not.
-    fn read_family(members: &[(f64, bool)]) -> Result<(Vec<LinearLaw>, f64), String> {
-        let folder = tempfile::tempdir().unwrap();
-        let files: Vec<String> =
-            (0..members.len()).map(|index| format!("law-{index}.json")).collect();
-        for ((interval, learns), file) in members.iter().zip(&files) {
-            let ports = [UP_RIGHT, TILT_YAW].map(|ports| {
-                ports.map(|[name, unit]| Port { name: name.into(), unit: unit.into() }).to_vec()
-            });
-            let one = || vec![vec![0.5, 0.0], vec![0.0, 0.5]];
-            let matrices = [one(), one(), one(), one()];
-            let text = "a lag".to_owned();
-            let model = LinearModel::new(Role::Controller, text, Some(*interval), ports, matrices);
-            let model = LinearModel { k: learns.then(one), ..model };
-            model.write(&folder.path().join(file)).unwrap();
-        }
-        family(&files, folder.path(), &mut LawDigests::new()).map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn a_family_samples_at_one_interval_and_learns_what_is_applied() {
-        let (laws, interval) = read_family(&[(0.5, true), (0.5, true)]).unwrap();
-        assert_eq!((laws.len(), interval), (2, 0.5));
-        assert_eq!(laws[1].file, "law-1.json");
-        let said = read_family(&[(0.5, true), (1.0, true)]).unwrap_err();
-        assert!(
-            said.contains("law-1.json")
-                && said.contains("`interval_s` is 1, that of law-0.json is 0.5"),
-            "{said}"
-        );
-        let said = read_family(&[(0.5, true), (0.5, false)]).unwrap_err();
-        assert!(said.contains("law-1.json") && said.contains("it has no `K`"), "{said}");
-        // One alone may do without.
-        assert!(read_family(&[(0.5, false)]).is_ok());
-    }
-
-    const UP_RIGHT: [[&str; 2]; 2] = [["T1.HubVortexTilt", "m"], ["T1.HubVortexYaw", "m"]];
-    const TILT_YAW: [[&str; 2]; 2] = [["T1.HelixTilt", "deg"], ["T1.HelixYaw", "deg"]];
-
-    #[test]
-    fn tilt_and_yaw_are_found_by_their_names() {
-        let [mut output, mut turned] = [[0.0; 2]; 2];
-        let mut law = read(&gain(Role::Controller, UP_RIGHT, TILT_YAW)).unwrap();
-        law.recursion.step(&[1.0, 10.0], &mut output);
-        assert_eq!(output, [21.0, 43.0]);
-        let [up, right] = UP_RIGHT;
-        let [tilt, yaw] = TILT_YAW;
-        let mut law = read(&gain(Role::Controller, [right, up], [yaw, tilt])).unwrap();
-        law.recursion.step(&[1.0, 10.0], &mut turned);
-        assert_eq!(turned, [34.0, 12.0]);
-    }
-
-    #[test]
-    fn the_reference_is_the_mean_of_a_run_that_tells_of_the_hub_vortex() {
-        let folder = tempfile::tempdir().unwrap();
-        let run = RunFolder::new(folder.path(), "runs/open/helix");
-        run.create().unwrap();
-        let finding = |name: &str, value: f64| Finding {
-            name: name.to_owned(),
-            value: Some(value),
-            unit: "m".to_owned(),
-            about: String::new(),
-        };
-        let mut seen = examples::turbine("T1", 1e6);
-        seen.control.findings =
-            vec![finding("hub-vortex-tilt", 1.5), finding("hub-vortex-yaw", 13.0)];
-        let unseen = examples::turbine("T2", 1e6);
-        let summary = examples::summary("helix", vec![seen, unseen]);
-        records::write_summary(&run, &summary).unwrap();
-        let of = |turbine| mean_hub_vortex("runs/open/helix", folder.path(), (turbine, &[]));
-        assert_eq!(of("T1").unwrap(), [1.5, 13.0]);
-        let said = of("T2").unwrap_err().to_string();
-        assert!(said.contains("summary.json") && said.contains("no hub vortex of T2"), "{said}");
-        assert!(mean_hub_vortex("runs/none", folder.path(), ("T1", &[])).is_err());
-        let mut summary = summary;
-        let setting = |strouhal: f64| ControlSetting {
-            key: "strouhal".to_owned(),
-            value: SettingValue::Number(strouhal),
-        };
-        summary.turbines[0].control.settings = Some(vec![setting(0.3)]);
-        records::write_summary(&run, &summary).unwrap();
-        let beside =
-            |own: f64| mean_hub_vortex("runs/open/helix", folder.path(), ("T1", &[setting(own)]));
-        assert_eq!(beside(0.3).unwrap(), [1.5, 13.0]);
-        let said = beside(0.25).unwrap_err().to_string();
-        assert!(said.contains("`strouhal` of T1 was another there"), "{said}");
-    }
-
-    #[test]
-    fn what_is_no_law_of_two_errors_in_metres_is_told_with_its_file() {
-        let said = read(&gain(Role::Model, UP_RIGHT, TILT_YAW)).unwrap_err();
-        assert!(said.contains("law.json") && said.contains("a linear model"), "{said}");
-        let said = read(&gain(Role::Controller, TILT_YAW, TILT_YAW)).unwrap_err();
-        assert!(said.contains("`inputs` are T1.HelixTilt (deg), T1.HelixYaw (deg)"), "{said}");
-        let said =
-            read(&gain(Role::Controller, UP_RIGHT, [["a", "deg"], ["b", "deg"]])).unwrap_err();
-        assert!(said.contains("`outputs` are a (deg), b (deg)"), "{said}");
-    }
-}
+mod tests;

@@ -132,7 +132,7 @@ impl Prepared {
 
     /// SHA-256 of the shared libraries, and what decides the linear laws of `run`, by their names.
     pub(crate) fn libraries_of(&self, run: &Run) -> BTreeMap<String, String> {
-        let laws = linear_laws::deciding(run, &self.laws);
+        let laws = linear_laws::deciding(run, &self.case.turbines, &self.laws);
         self.libraries.clone().into_iter().chain(laws).collect()
     }
 

@@ -93,3 +93,14 @@ fn a_run_of_reference_that_nobody_makes_is_told_at_once() {
     let dry = StudyOptions { runs: Vec::new(), dry_run: true, ..options };
     assert!(small::run(&dry).is_ok());
 }
+
+#[test]
+fn a_run_that_leads_back_to_itself_is_told_at_once() {
+    let there = "reference_run = \"./out/speed-10/";
+    let text = case().replace(&format!("{there}open"), &format!("{there}closed"));
+    let folder = written(&text);
+    law(folder.path(), 0.05);
+    let refused = small::run(&options(folder.path())).expect_err("a ring").to_string();
+    assert!(refused.contains("speed-10") && refused.contains("leads back to it"), "{refused}");
+    assert!(fs::metadata(folder.path().join("out/speed-9/baseline/series.csv")).is_err());
+}

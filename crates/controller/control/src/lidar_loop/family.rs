@@ -4,8 +4,9 @@
 //! All laws of a family see the same error at the same instants. What is applied is the blend of the two
 //! whose wind speeds lie next to the measured one, linear between them and constant beyond the first and the
 //! last, brought within the loop's limits. Every law learns of it by its back-calculation as if it had asked
-//! for something that was limited: its states are those of a law that gave this command, so that it takes
-//! over without a bump.
+//! for something that was limited: its own command follows that one as fast as its `K` lets it, and is the
+//! same at once only of a law that makes good all of the difference in a sample. The rest of it goes over with
+//! the wind, which is filtered, so that the blend is continuous in time; and the loop's limit of rate holds.
 
 use basis::Measurements;
 use lti::Recursion;
@@ -234,10 +235,10 @@ mod tests {
         assert!(wind > 12.0 && (applied[0] - 4.0).abs() < 1e-12, "{wind} {applied:?}");
     }
 
-    /// Laws that integrate follow what is applied, so that one that was not asked for minutes begins where
-    /// the others left off.
+    /// Laws that integrate, and whose `K` makes good all of the difference in a sample, follow what is
+    /// applied, so that one that was not asked for minutes begins where the others left off.
     #[test]
-    fn a_law_that_integrates_takes_over_without_a_bump() {
+    fn a_law_that_follows_at_once_begins_where_the_others_left_off() {
         let integrating = |gain: f64| {
             let diagonal = |value: f64| vec![vec![value, 0.0], vec![0.0, value]];
             Recursion::new(&diagonal(1.0), &diagonal(gain), &diagonal(1.0), &diagonal(0.0))

@@ -118,11 +118,33 @@ pub(super) fn of_loop(
     ];
     let warning = (open > 0.0).then(|| {
         format!(
-            " had its lidar loop open for {:.1} % of the analysed time: the lidar did not see the hub vortex (confidence {trust:.2} on the mean), or `loop_start` came later",
+            " had its lidar loop open for {:.1} % of the analysed time: the lidar did not see the hub vortex (confidence {trust:.2} on the mean), `loop_start` came later, or `anemometer` showed a family of laws no wind yet",
             100.0 * open
         )
     });
     Ok((findings, warning))
+}
+
+/// What the filtered wind `measured` (m/s) tells of a family made at `speeds` (m/s), ascending.
+pub(super) fn of_wind(speeds: &[f64], measured: &[f64]) -> (Finding, Option<String>) {
+    let n = measured.len().max(1) as f64;
+    let [slowest, fastest] =
+        [speeds.first(), speeds.last()].map(|speed| speed.copied().unwrap_or(f64::NAN));
+    let n_beyond = measured.iter().filter(|wind| **wind < slowest || **wind > fastest).count();
+    let beyond = n_beyond as f64 / n;
+    let finding = found(
+        "loop-wind",
+        mean(measured.iter().copied()),
+        "m/s",
+        "mean of the filtered wind speed by which the loop's laws were blended",
+    );
+    let warning = (beyond > 0.0).then(|| {
+        format!(
+            " measured a wind outside the {slowest} to {fastest} m/s of its lidar loop's laws for {:.1} % of the analysed time: the first or the last law ran alone then",
+            100.0 * beyond
+        )
+    });
+    (finding, warning)
 }
 
 #[cfg(test)]
@@ -199,5 +221,19 @@ mod tests {
         assert!(warning.is_some_and(|warning| warning.contains("50.0 %")));
         let closed = columns(&[(&LOOP_SHARE, [1.0; 4]), (&HUB_VORTEX_TRUST, [0.9; 4])]);
         assert_eq!(of_loop(&closed, 0.1).expect("all channels").1, None);
+    }
+
+    #[test]
+    fn wind_beyond_a_family_is_told_with_its_share_of_the_time() {
+        let speeds = [8.0, 10.0, 12.0];
+        // At the ends the first and the last law run as they were made.
+        let (found, warning) = of_wind(&speeds, &[8.0, 9.0, 12.0, 10.0]);
+        assert_eq!((found.name.as_str(), found.value), ("loop-wind", Some(9.75)));
+        assert_eq!((found.unit.as_str(), warning), ("m/s", None));
+        let (found, warning) = of_wind(&speeds, &[7.5, 9.0, 12.5, 12.5, 8.5]);
+        assert_eq!(found.value, Some(10.0));
+        let warning = warning.expect("it was beyond");
+        assert!(warning.contains("outside the 8 to 12 m/s"), "{warning}");
+        assert!(warning.contains("for 60.0 % of the analysed time"), "{warning}");
     }
 }

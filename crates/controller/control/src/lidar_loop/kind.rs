@@ -1,8 +1,8 @@
 //! `kind = "lidar-loop"`: its keys, and how it is built.
 
 use super::family::{Family, FamilyState, Schedule};
-use super::findings::{of_loop, of_reference};
-use super::{CHANNELS, LidarLoop, Limits, Settings, Watch, findings};
+use super::findings::{of_loop, of_reference, of_wind};
+use super::{CHANNELS, LidarLoop, Limits, Settings, Watch, checks, findings};
 use crate::Controller;
 use crate::discon::base;
 use crate::error::ControlError;
@@ -18,7 +18,6 @@ use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::channels::{HUB_VORTEX_TRUST, LOOP_SHARE, LOOP_WIND};
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Objection, Table, Values, above, from, key};
-use basis::records::Finding;
 use basis::registry::Named;
 use basis::{Channel, HelixFrame, Sense};
 
@@ -147,7 +146,7 @@ static TABLE: Table = Table {
             Holds::Name,
             "",
             Otherwise("the turbine's sensor called `anemometer`"),
-            "Sensor of the turbine whose first value is the wind speed by which a family of laws is blended, in the free stream's terms: give an anemometer the `factor` that its place asks for. It shows a library its wind too, as for `kind = \"discon\"`.",
+            "Sensor of the turbine whose first value is the wind speed by which a family of laws is blended, in the free stream's terms: give an anemometer the `factor` that its place asks for. It shows a library its wind too: speed (record 27), and yaw error where it has a second channel (record 24); `none` for a library that looks at no wind, with one law.",
         ),
     ],
 };
@@ -202,7 +201,12 @@ impl ControllerKind for LidarLoopKind {
             fix: "give `reference_tilt` and `reference_yaw`, or `reference_run`".to_owned(),
         });
         let late = starts_too_late(values, place.duration);
-        late.into_iter().chain(reference).chain(objections(values, place)).collect()
+        let lidar = checks::no_lidar(values, place);
+        let laws = match schedule(values) {
+            Some(schedule) => checks::of_family(&schedule, &files(values), place),
+            None => checks::of_one_law(values),
+        };
+        late.into_iter().chain(reference).chain(lidar).chain(laws).collect()
     }
 
     fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
@@ -312,67 +316,4 @@ fn schedule(values: &Values) -> Option<Schedule> {
 /// The sensor that shows the wind.
 fn anemometer(values: &Values) -> &str {
     if values.has("anemometer") { values.word("anemometer") } else { ANEMOMETER }
-}
-
-/// What about the laws in `values` cannot be at `place`.
-fn objections(values: &Values, place: &Place) -> Vec<Objection> {
-    let objection = |key, message, label, fix| Objection { key: Some(key), message, label, fix };
-    let mut objections = Vec::new();
-    let Some(Schedule { speeds, anemometer, .. }) = schedule(values) else {
-        if values.has("wind_filter_time") {
-            let message = "has no effect here: one law alone is blended with none".to_owned();
-            let fix = "leave it out, or give a family of laws".to_owned();
-            objections.push(objection("wind_filter_time", message, "no effect", fix));
-        }
-        return objections;
-    };
-    let members = files(values);
-    for (index, pair) in speeds.windows(2).enumerate() {
-        let [first, second] = [&members[index], &members[index + 1]];
-        let [slower, faster] = [pair[0], pair[1]];
-        if slower == faster {
-            let message = format!("has two laws for {slower} m/s, {first} and {second}");
-            let fix = "leave one of them out, or make it at another wind speed".to_owned();
-            objections.push(objection("controller", message, "one wind speed twice", fix));
-        } else if slower > faster {
-            let message = format!(
-                "is not in ascending order of wind speed: {first} of {slower} m/s stands before {second} of {faster} m/s"
-            );
-            let fix = "sort the laws by `wind_speed`".to_owned();
-            objections.push(objection("controller", message, "not ascending", fix));
-        }
-    }
-    if place.sensor(&anemometer).is_none() {
-        let turbine = place.turbine;
-        let message = format!(
-            "is a family that is blended by the measured wind, and {turbine} has no sensor `{anemometer}`"
-        );
-        let fix = format!(
-            "add sensors.{anemometer} = {{ kind = \"anemometer\" }} to its [[turbine]], or name its anemometer in `anemometer`"
-        );
-        objections.push(objection("controller", message, "no wind", fix));
-    }
-    objections
-}
-
-/// What the filtered wind `measured` (m/s) tells of a family made at `speeds` (m/s), ascending.
-fn of_wind(speeds: &[f64], measured: &[f64]) -> (Finding, Option<String>) {
-    let n = measured.len().max(1) as f64;
-    let [slowest, fastest] =
-        [speeds.first(), speeds.last()].map(|speed| speed.copied().unwrap_or(f64::NAN));
-    let n_beyond = measured.iter().filter(|wind| **wind < slowest || **wind > fastest).count();
-    let beyond = n_beyond as f64 / n;
-    let finding = Finding {
-        name: "loop-wind".to_owned(),
-        value: Some(measured.iter().sum::<f64>() / n),
-        unit: "m/s".to_owned(),
-        about: "mean of the filtered wind speed by which the loop's laws were blended".to_owned(),
-    };
-    let warning = (beyond > 0.0).then(|| {
-        format!(
-            " measured a wind outside the {slowest} to {fastest} m/s of its lidar loop's laws for {:.1} % of the analysed time: the first or the last law ran alone then",
-            100.0 * beyond
-        )
-    });
-    (finding, warning)
 }

@@ -16,6 +16,7 @@
 //! back-calculation; a lidar that has been blind for too long fades the loop out to the open helix. A loop
 //! that fades out does so wholly before it closes again: its law would go on from the wake of before.
 
+mod checks;
 mod family;
 mod findings;
 mod kind;

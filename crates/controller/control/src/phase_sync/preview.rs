@@ -102,9 +102,9 @@ impl Preview {
     }
 }
 
-/// Share of the free wind (–) that is left in the slowest wake of momentum theory, at the induction of a
-/// third: no helix comes slower.
-const SLOWEST_WAKE: f64 = 1.0 / 3.0;
+/// Share of the free wind (–) that is left in a slow wake, by rule of thumb: that of momentum theory at the
+/// induction of a third, the best for power. A rotor that is loaded more leaves less, and wakes mix.
+const SLOW_WAKE: f64 = 1.0 / 3.0;
 
 /// What about the preview in `values` cannot be at `place`.
 pub(super) fn objections(values: &Values, place: &Place) -> Vec<Objection> {
@@ -142,10 +142,10 @@ pub(super) fn objections(values: &Values, place: &Place) -> Vec<Objection> {
     let furthest = ranges.iter().copied().reduce(f64::max).unwrap_or(focus);
     // Half a period of the wind is D/(2 St) long.
     let of_free_wind = 0.5 / values.number("strouhal");
-    let least = SLOWEST_WAKE * of_free_wind;
+    let least = SLOW_WAKE * of_free_wind;
     if furthest < least {
         let message = format!(
-            "= \"{name}\" sees the wind {furthest} D ahead: an estimate without lag needs half a period of the helix, which is {of_free_wind:.2} D of the free wind and {least:.2} D of the slowest wake"
+            "= \"{name}\" sees the wind {furthest} D ahead: an estimate without lag needs half a period of the helix, which is {of_free_wind:.2} D of the free wind and {least:.2} D of a slow wake, at a third of it"
         );
         let fix = format!(
             "look {of_free_wind:.2} D ahead, or as much of it as the wake's speed is of the free wind's, in sensors.{name} of {turbine}; never less than {least:.2} D"
@@ -207,4 +207,68 @@ pub(super) fn outcome(record: &dyn TurbineRecord) -> Result<Outcome, MissingChan
         warnings: blind.into_iter().chain(late).collect(),
         ..Outcome::default()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Share, time and lag of a preview, one row each.
+    struct Rows(Vec<[f64; 4]>);
+
+    impl TurbineRecord for Rows {
+        fn column(&self, channel: &Channel) -> Result<&[f64], MissingChannel> {
+            let place = Preview::signals().iter().position(|own| own == channel);
+            let found = place.and_then(|place| self.0.get(place)).map(<[f64; 4]>::as_slice);
+            found.ok_or_else(|| MissingChannel(channel.name.to_string()))
+        }
+
+        fn interval(&self) -> f64 {
+            0.1
+        }
+
+        fn n_blades(&self) -> usize {
+            3
+        }
+    }
+
+    /// What is found of share (–) and time (s), and the warnings, for this share, time and lag.
+    fn told(share: [f64; 4], ahead: [f64; 4], lag: [f64; 4]) -> ([f64; 2], Vec<String>) {
+        let Outcome { findings, warnings, .. } =
+            outcome(&Rows(vec![share, ahead, lag])).expect("all channels");
+        let value = |name: &str| {
+            let finding = findings.iter().find(|finding| finding.name == name);
+            finding.and_then(|finding| finding.value).expect(name)
+        };
+        (["preview-share", "preview-time"].map(value), warnings)
+    }
+
+    #[test]
+    fn a_preview_that_sees_far_enough_all_the_time_warns_of_nothing() {
+        let (found, warnings) = told([1.0; 4], [50.0, 60.0, 70.0, 60.0], [0.0; 4]);
+        assert_eq!((found, warnings), ([1.0, 60.0], Vec::new()));
+    }
+
+    #[test]
+    fn a_blind_time_is_warned_of_and_counts_for_no_lag() {
+        let (found, warnings) =
+            told([1.0, 0.5, 0.0, 0.5], [60.0, 60.0, 0.0, 60.0], [0.0, 0.0, 50.0, 0.0]);
+        assert_eq!(found, [0.5, 60.0]);
+        let [blind] = warnings.as_slice() else { panic!("{warnings:?}") };
+        assert!(blind.contains("through its lidar 50 % of the time"), "{blind}");
+    }
+
+    #[test]
+    fn a_lag_is_warned_of_with_how_far_to_look() {
+        let (_, warnings) = told([1.0; 4], [40.0; 4], [0.0, 20.0, 20.0, 0.0]);
+        let [late] = warnings.as_slice() else { panic!("{warnings:?}") };
+        assert!(late.contains("40.0 s ahead on the mean") && late.contains("by 10.0 s"), "{late}");
+        assert!(late.contains("look 1.25 times as far"), "{late}");
+    }
+
+    #[test]
+    fn records_without_it_are_refused() {
+        let error = outcome(&Rows(vec![[1.0; 4]; 2])).expect_err("no lag");
+        assert_eq!(error.0, "PreviewLag");
+    }
 }

@@ -77,21 +77,28 @@ fn text(answer: &ChangesAnswer, width: usize) -> String {
     text
 }
 
+/// How the intervals in the winds of `answer` were found, and what its loads are.
 fn convention(answer: &ChangesAnswer) -> String {
-    let several = |wind: &&ChangesWind| wind.studies.len() > 1;
+    // Values behind each change of a wind: studies of it whose seeds change nothing count once.
+    let n_values = |wind: usize| -> Vec<usize> {
+        let changes = answer.rows.iter().filter_map(|row| row.changes[wind].as_ref());
+        changes.map(|change| change.each.len()).collect()
+    };
+    let n_values: Vec<Vec<usize>> = (0..answer.winds.len()).map(n_values).collect();
     let seeds = |wind: &ChangesWind| {
         let seeds = wind.studies.iter().map(|(_, seed)| seed.to_string());
         format!("{} (seeds {})", wind.name, seeds.collect::<Vec<_>>().join(", "))
     };
     let mut text = String::new();
-    let winds: Vec<String> = answer.winds.iter().filter(several).map(seeds).collect();
+    let several = answer.winds.iter().zip(&n_values).filter(|(_, n)| n.iter().any(|n| *n > 1));
+    let winds: Vec<String> = several.map(|(wind, _)| seeds(wind)).collect();
     if !winds.is_empty() {
         text += &format!(
             "± 95 % by Student's t over winds taken as independent: {}\n",
             winds.join("; ")
         );
     }
-    if winds.len() < answer.winds.len() {
+    if n_values.iter().flatten().any(|n| *n == 1) {
         text += "± 95 % in one wind: from blocks of ten minutes; none of fewer than two\n";
     }
     let loads = answer.rows.iter().filter_map(|row| match &row.quantity {
@@ -219,6 +226,26 @@ mod tests {
         assert_eq!(cells(lines[3])[2..], ["flapwise", "all", "–", "1.0 ± 4.0"]);
         assert!(text.contains("independent: TI 6 % (seeds 1, 2, 3, 4, 5)"), "{text}");
         assert!(text.contains("for 1 Hz and slope 10"), "{text}");
+    }
+
+    #[test]
+    fn winds_are_told_to_be_several_by_how_many_values_count() {
+        let mut answer = answer();
+        // An even wind in two studies, whose seeds change nothing.
+        answer.winds[0].studies.push(("s2".into(), 2));
+        let said = convention(&answer);
+        assert!(said.contains("independent: TI 6 % (seeds 1, 2, 3, 4, 5)\n"), "{said}");
+        assert!(said.contains("in one wind"), "{said}");
+        // Nothing is told of intervals that no change has.
+        for row in &mut answer.rows {
+            row.changes[0] = None;
+        }
+        assert!(!convention(&answer).contains("in one wind"));
+        for row in &mut answer.rows {
+            row.changes.remove(1);
+        }
+        answer.winds.remove(1);
+        assert!(!convention(&answer).contains("Student"));
     }
 
     #[test]

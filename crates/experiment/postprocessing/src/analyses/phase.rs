@@ -1,7 +1,9 @@
 //! `phase`: how well a turbine finds the phase of the helix that meets it.
 
 use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes};
-use crate::{PhaseAnswer, PhaseAxis, PhaseQuestion, PostprocessingError, Replayed, phases};
+use crate::{
+    PhaseAnswer, PhaseAxis, PhaseQuestion, PostprocessingError, PreviewUse, Replayed, phases,
+};
 use analysis::phase::{Agreement, Band};
 use control::phase_sync::PhaseEstimator;
 use report::text_table::{Column, TextTable};
@@ -130,6 +132,12 @@ fn text(answer: &PhaseAnswer, width: usize) -> String {
         "{} in {}, against the wind of {} at its place, {:.4} to {:.4} Hz; {span}\nmean wind {estimated:.2} m/s estimated, {truth:.2} m/s true; trust {:.2}\n",
         answer.turbine, answer.run, answer.truth, answer.band.low, answer.band.high, answer.trust
     );
+    if let Some(PreviewUse { share, lag }) = answer.preview {
+        text += &format!(
+            "{:.0} % of the estimate through the lidar that sees ahead, {lag:.1} s late on the mean; the rest from the blade loads\n",
+            100.0 * share
+        );
+    }
     let errors = ["amplitude m/s", "true m/s", "RMSE deg", "bias deg", "spread deg", "locking"];
     let at_helix = [
         Column::number("coherence").in_new_table(),
@@ -256,6 +264,10 @@ fn json(answer: &PhaseAnswer) -> serde_json::Value {
         "mean_wind_m_s": answer.mean_winds[0],
         "true_mean_wind_m_s": answer.mean_winds[1],
         "trust": answer.trust,
+        "preview": answer.preview.map(|PreviewUse { share, lag }| json!({
+            "share": share,
+            "lag_s": lag,
+        })),
         "tilt": axis(&answer.tilt),
         "yaw": axis(&answer.yaw),
         "zero_phase": answer.zero_phase.map(|axes| by_axis(axes.map(|found| json!({
@@ -336,9 +348,20 @@ mod tests {
             tilt: axis(Some(-12.34)),
             yaw: axis(None),
             trust: 0.5,
+            preview: None,
             zero_phase: None,
             published_band: Some([axis(None).agreement; 2]),
         };
+        let preview = Some(PreviewUse { share: 0.934, lag: 2.06 });
+        let ahead = PhaseAnswer { preview, ..answer.clone() };
+        let said = text(&ahead, 100);
+        assert!(said.lines().nth(2).is_some_and(|line| line.starts_with("93 % ")), "{said}");
+        assert!(
+            said.contains(", 2.1 s late on the mean; the rest from the blade loads\n"),
+            "{said}"
+        );
+        assert_eq!(json(&ahead)["preview"], json!({ "share": 0.934, "lag_s": 2.06 }));
+        assert!(json(&answer)["preview"].is_null());
         let text = text(&answer, 100);
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines[2].ends_with("bias deg  spread deg  locking"), "{text}");

@@ -93,11 +93,33 @@ fn study(seed: u64, intensity: f64, changes: [[f64; 2]; 2]) -> TempDir {
 }
 
 fn ask(studies: &[&TempDir]) -> Result<ChangesAnswer, PostprocessingError> {
+    ask_for("RootMyb1", studies)
+}
+
+fn ask_for(channel: &str, studies: &[&TempDir]) -> Result<ChangesAnswer, PostprocessingError> {
     changes(&ChangesQuestion {
         studies: studies.iter().map(|study| study.path().to_owned()).collect(),
         runs: Vec::new(),
-        channels: vec!["RootMyb1".to_owned()],
+        channels: vec![channel.to_owned()],
     })
+}
+
+/// Leaves the series of both runs in the folder `study`, with these channels besides the time, whose values
+/// are `row` of the run and the second (–).
+fn leave_series(study: &Path, names: &[&'static str], row: impl Fn(&str, u32) -> Vec<f64>) {
+    for run in ["open", "closed"] {
+        let mut channels = vec![TIME];
+        for name in names {
+            channels.push(basis::Channel::new(name, basis::Unit::KilonewtonMetre));
+        }
+        let path = RunFolder::new(study, run).series_path();
+        let mut writer = SeriesWriter::create(&path, &channels).expect("a file");
+        for step in 0..1500 {
+            let row = [vec![f64::from(step)], row(run, step)].concat();
+            writer.write(&row).expect("a row");
+        }
+        writer.finish().expect("a file");
+    }
 }
 
 fn row<'a>(answer: &'a ChangesAnswer, is_power: bool, part: &str) -> &'a ChangesRow {
@@ -134,19 +156,11 @@ fn loads_add_up_over_turbines_and_winds_of_unlike_seeds_count_together() {
 fn one_wind_has_what_its_summary_tells_and_the_blocks_of_its_series() {
     let even = study(1, 0.0, [[0.0, 0.2], [0.0, 0.4]]);
     // T1 swings by 1 and 1, and 1.1 and 1.3; T2 by 1 throughout.
-    for (run, sizes) in [("open", [1.0, 1.0]), ("closed", [1.1, 1.3])] {
-        let channels = ["T1.RootMyb1", "T2.RootMyb1"]
-            .map(|name| basis::Channel::new(name, basis::Unit::KilonewtonMetre));
-        let channels = [vec![TIME], channels.to_vec()].concat();
-        let path = RunFolder::new(even.path(), run).series_path();
-        let mut writer = SeriesWriter::create(&path, &channels).expect("a file");
-        for step in 0..1500 {
-            let block = usize::from(step >= 900);
-            let sign = if step % 2 == 0 { 1e3 } else { -1e3 };
-            writer.write(&[f64::from(step), sign * sizes[block], sign]).expect("a row");
-        }
-        writer.finish().expect("a file");
-    }
+    leave_series(even.path(), &["T1.RootMyb1", "T2.RootMyb1"], |run, step| {
+        let sizes = if run == "open" { [1.0, 1.0] } else { [1.1, 1.3] };
+        let sign = if step % 2 == 0 { 1e3 } else { -1e3 };
+        vec![sign * sizes[usize::from(step >= 900)], sign]
+    });
     let answer = ask(&[&even]).expect("a sound study");
     let of = |is_power, part: &str| {
         row(&answer, is_power, part).changes[0].as_ref().expect("a change").together
@@ -182,4 +196,26 @@ fn wind_without_turbulence_counts_once_whatever_its_seeds() {
     let again = [0, 1].map(|_| study(1, 0.06, [[0.0, 0.2], [0.0, 0.4]]));
     let error = ask(&again.each_ref()).expect_err("one wind twice");
     assert!(matches!(error, PostprocessingError::Seeds(SeedsError::SameWind { .. })));
+}
+
+#[test]
+fn a_sum_of_loads_is_of_all_turbines_or_of_none() {
+    let even = study(1, 0.0, [[0.0, 0.2], [0.0, 0.4]]);
+    leave_series(even.path(), &["T1.RootMyb1"], |_, step| vec![f64::from(step % 2)]);
+    let error = ask(&[&even]).expect_err("T2 is not there");
+    let PostprocessingError::MissingChannel { path, channel } = error else {
+        panic!("{error}");
+    };
+    assert_eq!(channel, "T2.RootMyb1");
+    assert!(path.is_some_and(|path| path.starts_with(even.path().join("closed"))));
+}
+
+#[test]
+fn a_channel_that_nobody_tells_of_is_remarked_with_those_that_are_told() {
+    let alike = [1, 2].map(|seed| study(seed, 0.06, [[0.0, 0.2], [0.0, 0.4]]));
+    let answer = ask_for("RootMyb9", &alike.each_ref()).expect("sound studies");
+    assert!(answer.rows.iter().all(|row| row.quantity == Quantity::Power));
+    let expected =
+        "no run tells the damage-equivalent load of `RootMyb9`: they tell those of RootMyb1";
+    assert_eq!(answer.remarks, [expected]);
 }

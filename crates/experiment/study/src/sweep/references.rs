@@ -4,7 +4,9 @@ use super::Opened;
 use crate::StudyError;
 use crate::linear_laws::{not_complete, reference_run};
 use crate::prepared::Prepared;
+use formats::FileError;
 use formats::records::RunFolder;
+use std::cmp::Reverse;
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -75,40 +77,101 @@ pub(super) fn places(prepared: &Prepared, index: usize) -> Vec<PathBuf> {
     runs.map(|run| place(&prepared.folder().join(run))).collect()
 }
 
+/// Which of the runs in folders `own` each takes a reference from, whose folders are its `needs`; folders of
+/// no such run are left out.
+fn among(own: &[PathBuf], needs: &[Vec<PathBuf>]) -> Vec<Vec<usize>> {
+    let of = |needed: &PathBuf| own.iter().position(|folder| folder == needed);
+    needs.iter().map(|needed| needed.iter().filter_map(of).collect()).collect()
+}
+
 /// An order of runs in folders `own`, and the places in it of those that each takes a reference from, whose
-/// folders are its `needs`: those come first, else nothing moves.
+/// folders are its `needs`: those come first, through however many others they are needed, else nothing
+/// moves. Rings, in which there is no such order, are [refused](check) before.
 pub(super) fn in_order(own: &[PathBuf], needs: &[Vec<PathBuf>]) -> (Vec<usize>, Vec<Vec<usize>>) {
+    let needs = among(own, needs);
+    // How many runs stand in a row behind each that cannot be made before it.
+    let mut behind = vec![0_usize; own.len()];
+    for _ in 0..own.len() {
+        let before = behind.clone();
+        for (run, needed) in needs.iter().enumerate() {
+            for &needed in needed {
+                behind[needed] = behind[needed].max(behind[run] + 1);
+            }
+        }
+        if behind == before {
+            break;
+        }
+    }
     let mut order: Vec<usize> = (0..own.len()).collect();
-    order.sort_by_key(|run| !needs.iter().flatten().any(|needed| *needed == own[*run]));
+    order.sort_by_key(|run| Reverse(behind[*run]));
     let after = |(place, run): (usize, &usize)| -> Vec<usize> {
-        let before = order[..place].iter().enumerate();
-        before.filter(|(_, other)| needs[*run].contains(&own[**other])).map(|(p, _)| p).collect()
+        (0..place).filter(|other| needs[*run].contains(&order[*other])).collect()
     };
     let after = order.iter().enumerate().map(after).collect();
     (order, after)
 }
 
-/// Nothing where every run of reference of an open run of `studies` is complete, or is made with them.
+/// Runs each of which takes its reference from the next one, and the last from the first; none where no such
+/// ring is among those that take references from their `needs`.
+fn ring(needs: &[Vec<usize>]) -> Option<Vec<usize>> {
+    let mut left: Vec<usize> = (0..needs.len()).collect();
+    loop {
+        let waits = |run: &usize| needs[*run].iter().any(|needed| left.contains(needed));
+        let waiting: Vec<usize> = left.iter().copied().filter(waits).collect();
+        if waiting.len() == left.len() {
+            break;
+        }
+        left = waiting;
+    }
+    let mut walk = vec![*left.first()?];
+    loop {
+        let next = *needs[*walk.last()?].iter().find(|needed| left.contains(needed))?;
+        if let Some(first) = walk.iter().position(|run| *run == next) {
+            return Some(walk.split_off(first));
+        }
+        walk.push(next);
+    }
+}
+
+/// Nothing where every run of reference of an open run of `studies` is complete, or is made with them before
+/// it.
 ///
 /// # Errors
 /// [`StudyError::File`].
 pub(super) fn check(studies: &[Opened]) -> Result<(), StudyError> {
-    let open = studies.iter().flat_map(|opened| {
-        opened.study.open.iter().map(|&index| place(opened.study.folders[index].path()))
-    });
-    let open: Vec<PathBuf> = open.collect();
+    let (mut open, mut needs) = (Vec::new(), Vec::new());
     for Opened { study, prepared, .. } in studies {
         for &index in &study.open {
-            for needed in places(prepared, index) {
-                let own = place(study.folders[index].path());
-                let is_made = open.contains(&needed) && needed != own;
-                if !is_made && !RunFolder::new(&needed, "").is_complete() {
-                    return Err(not_complete(&needed, &prepared.case.runs[index].name).into());
-                }
+            open.push(place(study.folders[index].path()));
+            needs.push((places(prepared, index), &prepared.case.runs[index].name));
+        }
+    }
+    for (places, run) in &needs {
+        for needed in places {
+            if !open.contains(needed) && !RunFolder::new(needed, "").is_complete() {
+                return Err(not_complete(needed, run).into());
             }
         }
     }
-    Ok(())
+    let needs: Vec<Vec<PathBuf>> = needs.into_iter().map(|(places, _)| places).collect();
+    match ring(&among(&open, &needs)) {
+        Some(ring) => {
+            Err(in_a_ring(&ring.iter().map(|&run| &*open[run]).collect::<Vec<_>>()).into())
+        }
+        None => Ok(()),
+    }
+}
+
+/// That the runs in folders `ring`, one or more, each wait for the next one, and the last for the first.
+fn in_a_ring(ring: &[&Path]) -> FileError {
+    let others: Vec<String> =
+        ring[1..].iter().chain(&ring[..1]).map(|run| run.display().to_string()).collect();
+    let problem = format!(
+        "its `reference_run` leads back to it, so that none of them can be made first: it takes its reference from {}",
+        others.join(", which takes its own from ")
+    );
+    let fix = "give one of them `reference_tilt` and `reference_yaw` in the place of `reference_run`, or name a run there that takes no reference from these";
+    FileError::content("a run of reference", ring[0], problem, fix)
 }
 
 #[cfg(test)]
@@ -122,6 +185,32 @@ mod tests {
         let (order, after) = in_order(&own, &needs);
         assert_eq!(order, [2, 0, 1, 3]);
         assert_eq!(after, [vec![], vec![], vec![0], vec![0]]);
+    }
+
+    #[test]
+    fn a_chain_of_references_is_made_from_its_end() {
+        // The first takes its reference from the second, that from the third, that from the last.
+        let own = ["a", "b", "c", "alone", "d"].map(PathBuf::from);
+        let from = |index: usize| vec![own[index].clone()];
+        let needs = [from(1), from(2), from(4), vec![PathBuf::from("elsewhere")], vec![]];
+        let (order, after) = in_order(&own, &needs);
+        assert_eq!(order, [4, 2, 1, 0, 3]);
+        assert_eq!(after, [vec![], vec![0], vec![1], vec![2], vec![]]);
+        assert_eq!(ring(&among(&own, &needs)), None);
+    }
+
+    #[test]
+    fn a_ring_of_references_is_found_and_told() {
+        // The first waits for the ring without being of it, the last for nobody.
+        let needs = [vec![1], vec![5, 3], vec![1], vec![4], vec![2], vec![]];
+        assert_eq!(ring(&needs), Some(vec![1, 3, 4, 2]));
+        assert_eq!(ring(&[vec![], vec![1]]), Some(vec![1]));
+        assert_eq!(ring(&[]), None);
+        let said = in_a_ring(&["out/a", "out/b"].map(Path::new)).to_string();
+        assert!(said.contains("`reference_run`") && said.contains("out/a"), "{said}");
+        assert!(said.contains("from out/b, which takes its own from out/a"), "{said}");
+        let said = in_a_ring(&[Path::new("out/a")]).to_string();
+        assert!(said.contains("takes its reference from out/a"), "{said}");
     }
 
     #[test]

@@ -34,6 +34,9 @@ const COVERAGE: [f64; 2] = [0.5, 0.9];
 const JUDGING: f64 = 4.0;
 /// Longest look ahead (excitation periods) that is of use: its slots would take the place of those of now.
 const LONGEST: f64 = 6.0;
+/// Least share (–) of the axial wind that a line of sight must show: 60° off the axis. Beyond that noise and
+/// the wind across the line, which is taken as none, would count more than the axial wind does.
+const LEAST_ALONG: f64 = 0.5;
 /// Slowest wind (m/s) that carries anything to the rotor.
 const SLOWEST: f64 = 0.5;
 
@@ -284,13 +287,14 @@ struct Point {
     wind: f64,
 }
 
-/// Point number `index` of `scan`; none where it has no speed or does not lie ahead of the rotor.
+/// Point number `index` of `scan`; none where it has no speed, does not lie ahead of the rotor, or shows less
+/// than [`LEAST_ALONG`] of the axial wind.
 fn point(scan: &Scan, index: usize) -> Option<Point> {
     let (downwind, left, up) = (scan.downwind()[index], scan.left()[index], scan.up()[index]);
     let (speed, time) = (scan.speeds()[index], scan.times()[index]);
     let along = downwind / (downwind * downwind + left * left + up * up).sqrt();
     let wind = speed / along;
-    let is_ahead = downwind < 0.0 && wind.is_finite() && time.is_finite();
+    let is_ahead = along <= -LEAST_ALONG && wind.is_finite() && time.is_finite();
     is_ahead.then_some(Point { time, upstream: -downwind, up, right: -left, wind })
 }
 

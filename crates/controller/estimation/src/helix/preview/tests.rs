@@ -234,6 +234,25 @@ fn eddies_alone_are_not_trusted() {
     assert!(trust / n < 0.1, "{}", trust / n);
 }
 
+/// A line of sight far off the axis tells of the axial wind only what is left of it there.
+#[test]
+fn points_that_look_across_the_wind_are_left_out() {
+    // 59.5° and 60.5° off the axis, behind the rotor, and at its centre.
+    let places = [(-100.0, 169.8), (-100.0, 176.7), (100.0, 0.0), (0.0, 0.0)];
+    let mut values = vec![0.0; Scan::n_values(places.len())];
+    let blocks = ScanBlocks::of(&mut values).expect("whole points");
+    for (point, (downwind, up)) in places.into_iter().enumerate() {
+        blocks.speeds[point] = -4.0;
+        blocks.places[0][point] = downwind;
+        blocks.places[2][point] = up;
+    }
+    let scan = Scan::of(&values).expect("whole points");
+    let seen: Vec<bool> = (0..places.len()).map(|index| point(&scan, index).is_some()).collect();
+    assert_eq!(seen, [true, false, false, false]);
+    let wind = point(&scan, 0).expect("seen").wind;
+    assert!((wind - 4.0 / 59.5_f64.to_radians().cos()).abs() < 0.01, "{wind}");
+}
+
 #[test]
 fn it_goes_on_from_its_state_to_the_same_bits() {
     let wave = Wave { sense: Sense::Clockwise, phases: STEADY, amplitude: 0.8 };

@@ -5,7 +5,7 @@ use crate::case::{Case, parse, write};
 
 /// The small case whose first turbine has an anemometer and two lidars, under `control`.
 fn with(control: &str) -> String {
-    let sensors = "[[turbine]]\nsensors.anemometer = { kind = \"anemometer\" }\nsensors.back = { kind = \"lidar\" }\nsensors.eye = { kind = \"lidar\", looks = \"upwind\", downwind = 5.0, focal_distance_diameters = 2.0 }\n";
+    let sensors = "[[turbine]]\nsensors.anemometer = { kind = \"anemometer\" }\nsensors.lidar = { kind = \"lidar\" }\nsensors.eye = { kind = \"lidar\", looks = \"upwind\", downwind = 5.0, focal_distance_diameters = 2.0 }\n";
     let helix = "{ kind = \"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25 }";
     assert!(SMALL.contains("[[turbine]]\n") && SMALL.contains(helix));
     SMALL.replacen("[[turbine]]\n", sensors, 1).replacen(helix, control, 1)
@@ -55,11 +55,35 @@ fn a_family_that_cannot_be_is_told_with_its_key_and_fix() {
         ),
         (
             format!("{FAMILY}, anemometer = \"mast\""),
-            "controller` is a family that is blended by the measured wind, and T1 has no sensor `mast`; add sensors.mast = { kind = \"anemometer\" }",
+            "controller` is a family that is blended by the measured wind, and T1 has no sensor `mast`; add sensors.mast = { kind = \"anemometer\" } to the [[turbine]] T1, or name",
+        ),
+        (
+            format!("{FAMILY}, anemometer = \"eye\""),
+            "measured wind, and `eye` of T1 is a lidar, whose first value is no wind speed; add sensors.anemometer = { kind = \"anemometer\" } to the [[turbine]] T1, and name it",
+        ),
+        (
+            format!("{FAMILY}, anemometer = \"none\""),
+            "measured wind, and `anemometer` is `none`; leave it out, or name an anemometer of T1",
         ),
         (
             "controller = \"law.json\", wind_filter_time = 30.0".to_owned(),
             "wind_filter_time` has no effect here",
+        ),
+        (
+            "controller = [{ wind_speed = 8.0, file = \"law-8.json\" }]".to_owned(),
+            "controller` is a family of one law, which is blended with none: its `wind_speed` has no effect; give controller = \"law-8.json\"",
+        ),
+        (
+            "controller = \"law.json\", lidar = \"mast\"".to_owned(),
+            "lidar` = \"mast\" names no lidar of T1; add sensors.mast = { kind = \"lidar\" }",
+        ),
+        (
+            "controller = \"law.json\", lidar = \"anemometer\"".to_owned(),
+            "lidar` = \"anemometer\" names no lidar of T1",
+        ),
+        (
+            "controller = \"law.json\", lidar = \"eye\"".to_owned(),
+            "lidar` = \"eye\" looks upwind, and the own wake is downwind; leave out `looks`",
         ),
         ("controller = 8".to_owned(), "controller` must be a file in quotes, or control.T1.contr"),
         ("controller = []".to_owned(), "controller` must be one control.T1.controller"),
@@ -86,12 +110,12 @@ fn a_preview_needs_a_lidar_that_looks_upwind_far_enough() {
     let near = with(&sync("preview = \"eye\""))
         .replace("focal_distance_diameters = 2.0", "focal_distance_diameters = 0.6");
     let said = parse("small.toml", &near, &[]).expect_err("too near").to_lines();
-    let expected = "preview` = \"eye\" sees the wind 0.6 D ahead: an estimate without lag needs half a period of the helix, which is 2.00 D of the free wind and 0.67 D of the slowest wake; look 2.00 D ahead";
+    let expected = "preview` = \"eye\" sees the wind 0.6 D ahead: an estimate without lag needs half a period of the helix, which is 2.00 D of the free wind and 0.67 D of a slow wake, at a third of it; look 2.00 D ahead";
     assert!(said.contains(expected), "{said}");
     let cases = [
         ("preview = \"mast\"", "preview` = \"mast\" names no lidar of T1; add sensors.mast"),
         ("preview = \"anemometer\"", "preview` = \"anemometer\" names no lidar of T1"),
-        ("preview = \"back\"", "preview` = \"back\" looks downwind"),
+        ("preview = \"lidar\"", "preview` = \"lidar\" looks downwind"),
         ("preview_speed_factor = 0.9", "preview_speed_factor` has no effect here"),
     ];
     for (more, expected) in cases {
