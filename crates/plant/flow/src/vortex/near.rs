@@ -36,7 +36,7 @@ pub(super) unsafe fn near<V: Simd>(
             let (q1, q2, e) = (dot(&r1, &r1), dot(&r2, &r2), dot(&r1, &along));
             let d = length.sub_from(e, q1);
             let c = cross(&along, &r1);
-            let product = q1.mul_add(q2, tiny);
+            let product = q1.mul_add(q2, V::splat(segment.floor));
             let inverse = product.rough_inverse_sqrt();
             let p = product * inverse;
             // h², with what is added beyond the ends.

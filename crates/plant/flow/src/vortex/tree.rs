@@ -35,6 +35,9 @@ pub(super) struct Narrow {
     pub(super) strength: f32,
     /// r⁴ for a core r.
     pub(super) core: f32,
+    /// Least square of the product of the distances from both ends: nearer to one, at 10⁻⁵ of the length,
+    /// what is left is rounding.
+    pub(super) floor: f32,
 }
 
 /// Boxes of segments, and what each amounts to from afar.
@@ -380,6 +383,7 @@ impl Narrow {
             // Velocities have one length less than the strength: the unit, divided by here.
             strength: (circulation * length / (4.0 * PI * UNIT)) as f32,
             core: (core_squared / UNIT.powi(2)).powi(2) as f32,
+            floor: (1e-10 * length.powi(4)).max(1e-37) as f32,
         }
     }
 }

@@ -108,7 +108,7 @@ impl FreeWake {
     pub fn memory_of(settings: &WakeSettings) -> u64 {
         // A segment in double precision, as boxes knew it and in single precision, its number and its length
         // so far; a node's position, velocities, wind, middle, and what is induced, in both orders.
-        const OF_SEGMENT: u64 = 64 + 64 + 36 + 8 + 16 + 8 * 24;
+        const OF_SEGMENT: u64 = 64 + 64 + 44 + 8 + 16 + 8 * 24;
         let boxes = Field::memory_of_boxes(settings.accuracy, settings.most_segments());
         settings.most_segments() as u64 * OF_SEGMENT + boxes
     }

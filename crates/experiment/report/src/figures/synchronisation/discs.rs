@@ -283,7 +283,7 @@ mod tests {
         };
         let panel = DiscPanel { points: (0..5).map(point).collect(), ..DiscPanel::default() };
         let (name, title, caption) = ("scan".into(), "Scan".into(), String::new());
-        DiscFigure { name, title, caption, radius: 63.0, panels: vec![panel] }
+        DiscFigure { name, title, caption, radius: 63.0, is_close: false, panels: vec![panel] }
     }
 
     /// The darkest and the lightest pixel of the field in `shapes`.

@@ -59,7 +59,7 @@ fn segments_of_a_decimetre_and_of_kilometres_keep_their_digits() {
         let to = Vector3::new(0.6, -0.64, 0.48) * length;
         let core_squared = core * core;
         let segment = Segment { from: Vector3::ZERO, to, circulation: 40.0, core_squared };
-        let across = to.any_orthonormal_vector();
+        let across = to.normalize().any_orthonormal_vector();
         for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
             let field = field(4, 0.0, backend, &[segment]);
             for (share, away) in [(0.5, 1.0), (0.02, 1.0), (-0.1, 0.5), (0.7, 20.0), (1.2, 3.0)] {
