@@ -58,6 +58,7 @@ fn an_analysis_of_ones_own_answers_beside_the_others() {
         "tune",
         "offsets",
         "gains",
+        "changes",
         "lock",
         "meandering",
         "hub-vortex",

@@ -122,7 +122,7 @@ fn errors(out: &Path, run: &str, from: f64) -> [[f64; 3]; 2] {
 }
 
 #[test]
-fn a_preview_takes_the_lag_off_the_phase() {
+fn a_preview_has_the_phase_of_the_wind_and_of_the_loads() {
     SOLVERS.add(&CARRIED).expect("no kind is called so yet");
     let machine = "model = \"nrel-5mw\"
 sensors.Eye = { kind = \"lidar\", looks = \"upwind\", downwind = 5.0, above = 4.0, focal_distance_diameters = 2.5, rate_hz = 5, n_points = 32, noise = 0.3, dropout = 0.1 }";
@@ -143,9 +143,10 @@ sensors.Eye = { kind = \"lidar\", looks = \"upwind\", downwind = 5.0, above = 4.
     let out = folder.path().join("out");
     let [loads, ahead] = ["loads", "ahead"].map(|run| errors(&out, run, times[0]));
     for axis in 0..2 {
-        let ([_, _, late], [rms, bias, lag]) = (loads[axis], ahead[axis]);
-        // The loads are judged by their past; a slot of the window is what the preview can be off by.
-        assert!(late > 5.0, "axis {axis}: {loads:?}");
+        let ([rms_of_loads, ..], [rms, bias, lag]) = (loads[axis], ahead[axis]);
+        // Both mean the same phase: another convention would be off by a quarter turn or more. A slot of the
+        // window is what the preview can be off by.
+        assert!(rms_of_loads < 10.0, "axis {axis}: {loads:?}");
         assert!(lag.abs() < PERIOD / 48.0, "axis {axis}: {ahead:?}");
         assert!(bias.abs() < 2.0 && rms < 5.0, "axis {axis}: {ahead:?}");
     }

@@ -133,6 +133,10 @@ fn loads_add_up_over_turbines_and_winds_of_unlike_seeds_count_together() {
     let turbulent = [(1, 0.04), (2, 0.1), (3, 0.07)]
         .map(|(seed, change)| study(seed, 0.06, [[-0.01, change], [0.05, 2.0 * change]]));
     let even = study(1, 0.0, [[0.0, 0.2], [0.0, 0.4]]);
+    // One wind alone is told by the blocks of its series.
+    leave_series(even.path(), &["T1.RootMyb1", "T2.RootMyb1"], |_, step| {
+        vec![f64::from(step % 2), f64::from(step % 3)]
+    });
     let answer = ask(&[&turbulent[0], &even, &turbulent[1], &turbulent[2]]).expect("sound studies");
     let names: Vec<&str> = answer.winds.iter().map(|wind| wind.name.as_str()).collect();
     assert_eq!(names, ["shear 0.2, TI 6 %", "shear 0.2"]);
