@@ -36,9 +36,12 @@ pub(super) unsafe fn near<V: Simd>(
             let (q1, q2, e) = (dot(&r1, &r1), dot(&r2, &r2), dot(&r1, &along));
             let d = length.sub_from(e, q1);
             let c = cross(&along, &r1);
-            let product = q1.mul_add(q2, V::splat(segment.floor));
+            let exact = q1 * q2;
+            let product = exact + V::splat(segment.floor);
             let inverse = product.rough_inverse_sqrt();
             let p = product * inverse;
+            // None of it where the place is an end but for rounding, as in `per_circulation`.
+            let share = exact * inverse * inverse;
             // h², with what is added beyond the ends.
             let beyond = (e * (e - length)).maximum(zero);
             let reach = beyond.mul_add(V::splat(BEYOND as f32), dot(&c, &c));
@@ -49,7 +52,7 @@ pub(super) unsafe fn near<V: Simd>(
             let ends = p.mul_add(two, q1 + q2);
             let around = reach.mul_add(reach, V::splat(segment.core));
             let root = (ends * around * s).mul_add(s, tiny).rough_inverse_sqrt();
-            let weight = V::splat(segment.strength) * inverse * difference * (ends * root);
+            let weight = V::splat(segment.strength) * share * inverse * difference * (ends * root);
             for (sum, c) in sum.iter_mut().zip(c) {
                 *sum = c.mul_add(weight, *sum);
             }

@@ -20,6 +20,8 @@ pub(super) const UNIT: f64 = 16.0;
 const N_KINDS: usize = 3;
 /// Of all segments the longest so-manieth part, and of these again (–).
 const LONG: usize = 8;
+/// Distance from an end of a segment at which a place is that end, over the core (–).
+const AT_END: f64 = 2e-3;
 const MOST_PARTS: usize = N_KINDS * MOST_SHARES;
 
 /// A segment in single precision, relative to the centre of the box that it is in and in [`UNIT`]s.
@@ -35,8 +37,8 @@ pub(super) struct Narrow {
     pub(super) strength: f32,
     /// r⁴ for a core r.
     pub(super) core: f32,
-    /// Least square of the product of the distances from both ends: nearer to one, at 10⁻⁵ of the length,
-    /// what is left is rounding.
+    /// Square of the product of the distances from both ends at which a place is an end itself: at some
+    /// thousandths of the core, as far as rounding may bring it.
     pub(super) floor: f32,
 }
 
@@ -383,7 +385,8 @@ impl Narrow {
             // Velocities have one length less than the strength: the unit, divided by here.
             strength: (circulation * length / (4.0 * PI * UNIT)) as f32,
             core: (core_squared / UNIT.powi(2)).powi(2) as f32,
-            floor: (1e-10 * length.powi(4)).max(1e-37) as f32,
+            floor: (AT_END.powi(2) * core_squared / UNIT.powi(2) * length.powi(2)).max(1e-37)
+                as f32,
         }
     }
 }
