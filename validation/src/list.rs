@@ -62,7 +62,6 @@ pub const VALIDATIONS: &[Validation] = &[
     vortices::BUDGET,
     vortices::WAKE,
     vortices::HELIX,
-    vortices::OPEN_LOOP,
     Validation {
         name: "flow",
         about: "the lattice against closed forms: Taylor-Green, free stream, mass, outlet, a disc in momentum theory",

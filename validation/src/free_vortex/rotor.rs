@@ -151,7 +151,7 @@ pub(super) fn wake(
         },
         bodies: BodyWakes::NONE,
         air_density: AIR_DENSITY,
-        accuracy: Accuracy::USUAL,
+        accuracy: Accuracy { degree: 3, opening: 0.6 },
         ground: false,
         shown: Points::NONE,
         n_blades: definition.n_blades,

@@ -51,13 +51,3 @@ pub(super) const HELIX: Validation = Validation {
     page: "free-vortex",
     recorded: include_str!("../../recorded/free-vortex-helix.toml"),
 };
-
-pub(super) const OPEN_LOOP: Validation = Validation {
-    name: "free-vortex-open-loop",
-    about: "power and blade loads of two turbines with free wakes and a helix in even, sheared and turbulent wind, beside a published study",
-    cost: Cost::Minutes(40),
-    run: free_vortex::free_vortex_open_loop,
-    pictures: None,
-    page: "free-vortex",
-    recorded: include_str!("../../recorded/free-vortex-open-loop.toml"),
-};

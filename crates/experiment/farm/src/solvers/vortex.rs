@@ -119,14 +119,14 @@ static KEYS: [Key; 14] = [
         "tree_degree",
         Holds::Whole { least: 2, most: 6 },
         "–",
-        Value("4"),
-        "Degree of the harmonics by which vortices are felt from afar.",
+        Value("3"),
+        "Degree of the polynomials by which vortices are felt from afar.",
     ),
     key(
         "tree_opening",
         from(0.0, 0.9),
         "–",
-        Value("0.5"),
+        Value("0.6"),
         "A box of vortices is far where its radius is less than this share of its distance; 0 sums them one by one.",
     ),
     key(
