@@ -56,7 +56,7 @@ pub const CASES: &[ShippedCase] = &[
     ShippedCase {
         name: "lidar-closed-loop",
         file: include_str!("../../../../cases/lidar-closed-loop.toml"),
-        minutes: 110.0,
+        minutes: 240.0,
         after: None,
     },
     ShippedCase {
