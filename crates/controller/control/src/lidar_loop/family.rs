@@ -5,8 +5,8 @@
 //! whose wind speeds lie next to the measured one, linear between them and constant beyond the first and the
 //! last, brought within the loop's limits. Every law learns of it by its back-calculation as if it had asked
 //! for something that was limited: its own command follows that one as fast as its `K` lets it, and is the
-//! same at once only of a law that makes good all of the difference in a sample. The rest of it goes over with
-//! the wind, which is filtered, so that the blend is continuous in time; and the loop's limit of rate holds.
+//! same at once only of a law that makes good all of the difference in a sample. The rest goes over with the
+//! wind, which is filtered, so that the blend is continuous in time; and the loop's limit of rate holds.
 
 use basis::Measurements;
 use lti::Recursion;

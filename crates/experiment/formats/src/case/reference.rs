@@ -223,7 +223,13 @@ fn schema_of_key(key: &Key) -> Value {
             tables_of_kinds(all.iter().map(|kind| (kind.name(), kind.table())))
         }
     };
-    if let Value::Object(schema) = &mut schema {
+    describe(key, &mut schema);
+    schema
+}
+
+/// Adds what `key` is about, and what holds where it is left out, to its `schema`.
+fn describe(key: &Key, schema: &mut Value) {
+    if let Value::Object(schema) = schema {
         let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
         schema.insert("description".into(), json!(format!("{}{unit}", key.about)));
         if let LeftOut::Value(text) = key.left_out
@@ -232,7 +238,6 @@ fn schema_of_key(key: &Key) -> Value {
             schema.insert("default".into(), value);
         }
     }
-    schema
 }
 
 /// Tables by name, each of one of `kinds`.
