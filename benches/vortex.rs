@@ -1,4 +1,4 @@
-//! Cost of the velocity that the segments of a wake induce at their own nodes: `cargo bench -p
+//! Cost of the velocity that the segments of a wake induce in their own middles: `cargo bench -p
 //! wakemix-benches --bench vortex`.
 //!
 //! Wakes of three blades of 60 m, eleven trailing vortices each; boxes made anew in every call. Beside it the
@@ -24,10 +24,10 @@ const MOST_SUMMED: usize = 40_000;
 
 /// Segments of the sum that is held against the machine's limit (–).
 const N_LIMIT: usize = 10_000;
-/// Vector instructions that a vector of segments takes in `flow::vortex::field::near`, counted in its source
-/// as it stands for AVX-512: 18 sums, differences and comparisons, 21 products, 23 sums of products, 4
-/// guesses and choices. Loads come with them.
-const OPERATIONS: f64 = 66.0;
+/// Vector instructions that a segment takes for a vector of places in `flow::vortex::field::near`, counted in
+/// its source as it stands for AVX-512: 10 sums, differences and comparisons, 17 products, 23 sums of products,
+/// 3 guesses and choices. Loads come with them.
+const OPERATIONS: f64 = 53.0;
 
 fn main() {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -38,13 +38,14 @@ fn main() {
     println!("{:>9} {:>7} {:>8} {:>10} {:>10}", "segments", "degree", "opening", "time", "error");
     for n in [1_000, 3_300, 10_000, 34_000, 100_000, 300_000] {
         let segments = wake(PER_BLADE, n / (3 * PER_BLADE) + 1);
-        let positions: Vec<Vector3> = segments.iter().map(|segment| segment.from).collect();
+        let positions: Vec<Vector3> =
+            segments.iter().map(|segment| 0.5 * (segment.from + segment.to)).collect();
         let step = (positions.len() / N_COMPARED).max(1);
         let compared: Vec<Vector3> = positions.iter().step_by(step).copied().collect();
         let mut exact = vec![Vector3::ZERO; compared.len()];
         direct(&segments, &compared, &mut exact);
         let mut velocities = vec![Vector3::ZERO; positions.len()];
-        for (degree, opening) in [(2, 0.6), (3, 0.6), (3, 0.7), (4, 0.7), (3, 0.0)] {
+        for (degree, opening) in [(3, 0.5), (4, 0.5), (4, 0.6), (4, 0.0)] {
             if opening == 0.0 && n > MOST_SUMMED {
                 continue;
             }
@@ -79,9 +80,10 @@ fn share_of_limit(n_threads: usize) {
         return;
     };
     let segments = wake(PER_BLADE, N_LIMIT / (3 * PER_BLADE) + 1);
-    let positions: Vec<Vector3> = segments.iter().map(|segment| segment.from).collect();
+    let positions: Vec<Vector3> =
+        segments.iter().map(|segment| 0.5 * (segment.from + segment.to)).collect();
     let mut velocities = vec![Vector3::ZERO; positions.len()];
-    let accuracy = Accuracy { degree: 3, opening: 0.0 };
+    let accuracy = Accuracy { degree: 4, opening: 0.0 };
     let once = || {
         let started = Instant::now();
         induced(&segments, accuracy, n_threads, &positions, &mut velocities);

@@ -4,7 +4,9 @@
 mod budget;
 mod held;
 mod hub_vortex;
+mod open_loop;
 mod rotor;
+mod shear;
 mod vortices;
 mod wake;
 mod wing;
@@ -46,4 +48,14 @@ pub fn free_vortex_wake_pictures(folder: &Path) -> Result<Vec<String>, ReportErr
 /// The hub vortex' circle at 1 D against amplitude and Strouhal number of helices drawn at random.
 pub fn free_vortex_helix() -> Vec<Row> {
     hub_vortex::rows()
+}
+
+/// Power and blade loads of two turbines with a helix in even, sheared and turbulent wind.
+pub fn free_vortex_open_loop() -> Vec<Row> {
+    open_loop::rows()
+}
+
+/// Height of a wake in sheared wind, beside the lattice's.
+pub fn free_vortex_shear() -> Vec<Row> {
+    shear::rows()
 }

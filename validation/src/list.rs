@@ -62,6 +62,8 @@ pub const VALIDATIONS: &[Validation] = &[
     vortices::BUDGET,
     vortices::WAKE,
     vortices::HELIX,
+    vortices::OPEN_LOOP,
+    vortices::SHEAR,
     Validation {
         name: "flow",
         about: "the lattice against closed forms: Taylor-Green, free stream, mass, outlet, a disc in momentum theory",

@@ -74,6 +74,16 @@ pub(crate) fn summaries(
     name: &str,
     overrides: Vec<String>,
 ) -> Result<(Vec<Summary>, PathBuf), String> {
+    summaries_of(case, name, overrides, &[])
+}
+
+/// The same of these `runs` alone; of all where none is named.
+pub(crate) fn summaries_of(
+    case: Carried,
+    name: &str,
+    overrides: Vec<String>,
+    runs: &[&str],
+) -> Result<(Vec<Summary>, PathBuf), String> {
     let (output, _lock) = folder_of(name)?;
     let path = match case {
         Carried::Shipped(name) => PathBuf::from(name),
@@ -87,6 +97,7 @@ pub(crate) fn summaries(
     let options = StudyOptions {
         case: path,
         output: Some(output.clone()),
+        runs: runs.iter().map(|&run| run.to_owned()).collect(),
         overrides,
         resume: formats::records::is_begun(&output),
         ..StudyOptions::default()

@@ -6,7 +6,9 @@ use crate::axisymmetric::{self, Flow, Swirl};
 use crate::row::Tolerance::Within;
 use farm::assemble::TurbineModel;
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
+use flow::vortex::{
+    Accuracy, BodyWakes, Cores, FreeWake, MeanShear, Points, Resolution, WakeSettings,
+};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use turbine::aero::blade_element::Theory;
@@ -151,7 +153,8 @@ pub(super) fn wake(
         },
         bodies: BodyWakes::NONE,
         air_density: AIR_DENSITY,
-        accuracy: Accuracy { degree: 3, opening: 0.6 },
+        accuracy: Accuracy::USUAL,
+        shear: MeanShear::Carries,
         ground: false,
         shown: Points::NONE,
         n_blades: definition.n_blades,

@@ -4,7 +4,9 @@ use crate::Row;
 use crate::row::Tolerance::Within;
 use basis::{BoundVortex, PointForce, Vector3};
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
+use flow::vortex::{
+    Accuracy, BodyWakes, Cores, FreeWake, MeanShear, Points, Resolution, WakeSettings,
+};
 use flow::{FlowSolver, WindField};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -143,6 +145,7 @@ fn settings(n: usize, interval: f64) -> WakeSettings {
         bodies: BodyWakes::NONE,
         air_density: 1.0,
         accuracy: Accuracy { degree: 3, opening: 0.0 },
+        shear: MeanShear::Carries,
         ground: false,
         shown: Points::NONE,
         n_blades: 1,

@@ -51,3 +51,23 @@ pub(super) const HELIX: Validation = Validation {
     page: "free-vortex",
     recorded: include_str!("../../recorded/free-vortex-helix.toml"),
 };
+
+pub(super) const OPEN_LOOP: Validation = Validation {
+    name: "free-vortex-open-loop",
+    about: "power and blade loads of two turbines with free wakes and a helix in even, sheared and turbulent wind, beside a published study",
+    cost: Cost::Minutes(40),
+    run: free_vortex::free_vortex_open_loop,
+    pictures: None,
+    page: "free-vortex",
+    recorded: include_str!("../../recorded/free-vortex-open-loop.toml"),
+};
+
+pub(super) const SHEAR: Validation = Validation {
+    name: "free-vortex-shear",
+    about: "height of a turbine's wake in sheared wind without turbulence, free vortices with and without the shear that carries them beside the lattice",
+    cost: Cost::Minutes(10),
+    run: free_vortex::free_vortex_shear,
+    pictures: None,
+    page: "free-vortex",
+    recorded: include_str!("../../recorded/free-vortex-shear.toml"),
+};

@@ -94,8 +94,8 @@ pub(crate) trait Simd:
     /// 1/√ of a positive number, to some units of the last place.
     fn inverse_sqrt(self) -> Self;
 
-    /// 1/ of a positive number, to some units of the last place.
-    fn inverse(self) -> Self;
+    /// 1/√ of a positive number, to four digits at the least.
+    fn rough_inverse_sqrt(self) -> Self;
 
     /// The greater of two numbers.
     fn maximum(self, other: Self) -> Self;
@@ -183,12 +183,12 @@ impl Simd for Portable {
 
     #[inline(always)]
     fn inverse_sqrt(self) -> Self {
-        self.sqrt().inverse()
+        Self::splat(1.0).divide(self.sqrt())
     }
 
     #[inline(always)]
-    fn inverse(self) -> Self {
-        Self::splat(1.0).divide(self)
+    fn rough_inverse_sqrt(self) -> Self {
+        self.inverse_sqrt()
     }
 
     #[inline(always)]

@@ -13,7 +13,9 @@ use basis::Vector3;
 use basis::keys::LeftOut::{Otherwise, Value};
 use basis::keys::{Holds, Key, Values, above, from, key};
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
+use flow::vortex::{
+    Accuracy, BodyWakes, Cores, FreeWake, MeanShear, Points, Resolution, WakeSettings,
+};
 use std::sync::Arc;
 
 /// Speed at which a wake is carried at least, over the wind's (–): rows are there for so slow a wake.
@@ -37,7 +39,7 @@ const LIMITS: &str = "Free vortices know no eddies smaller than themselves: the 
                       turbines in it, from flow.solver = “lattice”.";
 
 /// Keys of `[flow]` for a free wake.
-static KEYS: [Key; 14] = [
+static KEYS: [Key; 15] = [
     key(
         "steps_per_turn",
         from(8.0, 720.0),
@@ -116,17 +118,24 @@ static KEYS: [Key; 14] = [
         "`image`: the air does not pass the ground, every vortex has an image below it. `none`: there is no ground.",
     ),
     key(
+        "wake_shear",
+        Holds::Choice(&["carried", "left-out"]),
+        "",
+        Value("\"left-out\""),
+        "What the shear and veer of the mean wind do to wakes. `left-out`: wakes are carried by the wind less the difference of its mean at their height from that at their own hub's. `carried`: by the wind where they are, faster above than below; they then lean and rise by half a diameter in four, which wakes in air do not, where a rotor bends the vorticity of the shear. The mean is that of `wind.speed`, `wind.shear_exponent` or `wind.roughness_length`, and `wind.veer_deg_per_m`, also where the wind is read from a file.",
+    ),
+    key(
         "tree_degree",
         Holds::Whole { least: 2, most: 6 },
         "–",
-        Value("3"),
-        "Degree of the polynomials by which vortices are felt from afar.",
+        Value("4"),
+        "Degree of the harmonics by which vortices are felt from afar.",
     ),
     key(
         "tree_opening",
         from(0.0, 0.9),
         "–",
-        Value("0.6"),
+        Value("0.5"),
         "A box of vortices is far where its radius is less than this share of its distance; 0 sums them one by one.",
     ),
     key(
@@ -198,7 +207,15 @@ fn settings(case: &Case, plan: &Plan, n_blades: &[usize]) -> WakeSettings {
         n_blades: n_blades.to_vec(),
         n_nacelles: case.turbines.len(),
     };
-    WakeSettings { shown, ..resolved.settings(&case.flow, &case.wind) }
+    let shear = match case.flow.values.word("wake_shear") {
+        "left-out" => MeanShear::LeftOut {
+            profile: wind::profile(case, plan),
+            hub_height: plan.hub_height,
+            veer: case.wind.veer,
+        },
+        _ => MeanShear::Carries,
+    };
+    WakeSettings { shown, shear, ..resolved.settings(&case.flow, &case.wind) }
 }
 
 /// The same of all turbines of `case`, before they are known.
@@ -260,6 +277,8 @@ impl Resolved {
                 degree: count("tree_degree"),
                 opening: values.number("tree_opening"),
             },
+            // There is none in even wind, and `settings` knows that of a case.
+            shear: MeanShear::Carries,
             ground: values.word("ground_effect") == "image",
             shown: Points::NONE,
             n_blades: self.n_blades.iter().sum(),

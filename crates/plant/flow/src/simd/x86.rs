@@ -41,20 +41,6 @@ unsafe fn inverse_sqrt512(value: __m512) -> __m512 {
     }
 }
 
-/// 1/`value`, the same way.
-///
-/// # Safety
-/// On a machine with AVX-512F.
-#[inline(always)]
-unsafe fn inverse512(value: __m512) -> __m512 {
-    // SAFETY: the caller promises the instructions.
-    unsafe {
-        let guess = _mm512_rcp14_ps(value);
-        let missing = _mm512_fnmadd_ps(value, guess, _mm512_set1_ps(1.0));
-        _mm512_fmadd_ps(guess, missing, guess)
-    }
-}
-
 /// 1/√`value`: guesses of AVX differ from machine to machine, so it is worked out.
 ///
 /// # Safety
@@ -65,19 +51,11 @@ unsafe fn inverse_sqrt256(value: __m256) -> __m256 {
     unsafe { _mm256_div_ps(_mm256_set1_ps(1.0), _mm256_sqrt_ps(value)) }
 }
 
-/// # Safety
-/// On a machine with AVX.
-#[inline(always)]
-unsafe fn inverse256(value: __m256) -> __m256 {
-    // SAFETY: the caller promises the instructions.
-    unsafe { _mm256_div_ps(_mm256_set1_ps(1.0), value) }
-}
-
 macro_rules! vector {
     ($(#[$doc:meta])* $name:ident, $register:ty, $lanes:expr, $load:ident, $store:ident, $splat:ident,
      $add:ident,
      $sub:ident, $mul:ident, $fmadd:ident, $fnmadd:ident, $div:ident, $sqrt:ident, $max:ident,
-     $select:expr, $inverse_sqrt:expr, $inverse:expr) => {
+     $select:expr, $inverse_sqrt:expr, $rough:expr) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
         pub(crate) struct $name($register);
@@ -140,9 +118,9 @@ macro_rules! vector {
             }
 
             #[inline(always)]
-            fn inverse(self) -> Self {
+            fn rough_inverse_sqrt(self) -> Self {
                 // SAFETY: as above.
-                Self(unsafe { $inverse(self.0) })
+                Self(unsafe { $rough(self.0) })
             }
 
             #[inline(always)]
@@ -191,11 +169,11 @@ vector!(
     /// Sixteen lanes.
     Avx512, __m512, 16, _mm512_loadu_ps, _mm512_storeu_ps, _mm512_set1_ps, _mm512_add_ps, _mm512_sub_ps,
     _mm512_mul_ps, _mm512_fmadd_ps, _mm512_fnmadd_ps, _mm512_div_ps, _mm512_sqrt_ps, _mm512_max_ps,
-    select512, inverse_sqrt512, inverse512
+    select512, inverse_sqrt512, _mm512_rsqrt14_ps
 );
 vector!(
     /// Eight lanes.
     Avx2, __m256, 8, _mm256_loadu_ps, _mm256_storeu_ps, _mm256_set1_ps, _mm256_add_ps, _mm256_sub_ps,
     _mm256_mul_ps, _mm256_fmadd_ps, _mm256_fnmadd_ps, _mm256_div_ps, _mm256_sqrt_ps, _mm256_max_ps,
-    select256, inverse_sqrt256, inverse256
+    select256, inverse_sqrt256, inverse_sqrt256
 );

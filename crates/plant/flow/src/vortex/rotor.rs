@@ -70,6 +70,11 @@ impl Rotor {
         self.turbine
     }
 
+    /// Mean height of its elements (m): that of its hub, but for how blades bend.
+    pub(super) fn height(&self) -> f64 {
+        self.stations.iter().map(|station| station.z).sum::<f64>() / self.stations.len() as f64
+    }
+
     /// Elements of each blade (–).
     pub(super) fn blades(&self) -> impl Iterator<Item = usize> + '_ {
         self.n_elements.iter().copied()

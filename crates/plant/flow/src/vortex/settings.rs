@@ -4,6 +4,8 @@ use super::body::BodyWakes;
 use super::field::Accuracy;
 use super::segment::Cores;
 use super::sheet::{Resolution, Sheet};
+use crate::inflow::MeanProfile;
+use crate::inflow::profile::veered;
 use basis::Vector3;
 use thiserror::Error;
 
@@ -22,6 +24,8 @@ pub struct WakeSettings {
     pub air_density: f64,
     /// How exact induced velocities are.
     pub accuracy: Accuracy,
+    /// What the mean shear of the wind does to wakes.
+    pub shear: MeanShear,
     /// Whether there is a ground at z = 0, which the air does not pass: every vortex has an image below it.
     pub ground: bool,
     /// Points of planes and volumes.
@@ -35,6 +39,39 @@ pub struct WakeSettings {
     pub n_elements: usize,
     /// Threads; all cores when absent. The result does not depend on it.
     pub threads: Option<usize>,
+}
+
+/// What the shear and veer of the mean wind do to wakes.
+///
+/// Vortex rings that are carried faster above than below lean downwind, and what leans moves itself upwards.
+/// In air the vorticity of the shear itself holds against that, for the rotor bends and stretches it; here the
+/// wind's own vorticity is not bent, so that wakes in sheared wind rise. See the theory page, "Free vortices".
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MeanShear {
+    /// They carry wakes as all of the wind does.
+    Carries,
+    /// They do not: a wake is carried by the wind less what the mean wind at the wake's height has over that
+    /// at the height of its own hub.
+    LeftOut {
+        /// Mean speed over height.
+        profile: MeanProfile,
+        /// Height (m) at which the mean wind blows along x.
+        hub_height: f64,
+        /// Veer (rad/m), see [`DeterministicWind`](crate::inflow::DeterministicWind).
+        veer: f64,
+    },
+}
+
+impl MeanShear {
+    /// What does not carry a wake at `height` (m) whose hub is at `of_hub` (m): m/s, farm frame.
+    pub(super) fn left_out(&self, height: f64, of_hub: f64) -> Vector3 {
+        let Self::LeftOut { profile, hub_height, veer } = self else { return Vector3::ZERO };
+        let mean = |height: f64| {
+            let [x, y] = veered(profile.speed(height), *veer, height - hub_height);
+            Vector3::new(x, y, 0.0)
+        };
+        mean(height) - mean(of_hub)
+    }
 }
 
 /// Points of a box at which planes and volumes show the wind.

@@ -1,106 +1,135 @@
 //! Segments in boxes within boxes.
 
 use super::division::{
-    Cluster, LEAF, MOST_SHARES, SHARED_AFTER, Share, divide, make_box, part, shape,
+    Cluster, LEAF, MOST_SHARES, SHARED_AFTER, Share, divide, make_box, n_boxes, part,
 };
-use super::interpolation::Points;
+use super::harmonics::{
+    Moment, NO_MOMENT, add_element, n_coefficients, n_moments, raise, velocity_coefficients,
+};
 use super::segment::Segment;
 use crate::pool::Pool;
-use crate::simd::MAXIMUM_LANES;
 use basis::Vector3;
 use std::f64::consts::PI;
 
-/// Lengths are divided by so much in single precision, so that fourth powers stay within its range (m); a
-/// power of two, which loses nothing.
-pub(super) const UNIT: f64 = 64.0;
+/// Lengths are divided by so much in single precision (m), so that their tenth powers stay within its range
+/// from some millimetres to some ten kilometres; a power of two, which loses nothing.
+pub(super) const UNIT: f64 = 16.0;
 
-/// Segments in single precision, relative to the centre of the box that they are in and in [`UNIT`]s.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Lanes {
-    pub(super) from: [Vec<f32>; 3],
-    pub(super) to: [Vec<f32>; 3],
-    /// Γ/4π (m²/s over the unit).
-    pub(super) strength: Vec<f32>,
-    /// (r l)⁴ for a core r and a length l.
-    pub(super) core: Vec<f32>,
+/// Kinds of segments by their length, each with boxes of its own: in a tangled wake a few are so long that
+/// boxes around them and their neighbours would reach far.
+const N_KINDS: usize = 3;
+/// Of all segments the longest so-manieth part, and of these again (–).
+const LONG: usize = 8;
+/// Distance from an end of a segment at which a place is that end, over the core (–).
+const AT_END: f64 = 2e-3;
+const MOST_PARTS: usize = N_KINDS * MOST_SHARES;
+
+/// A segment in single precision, relative to the centre of the box that it is in and in [`UNIT`]s.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Narrow {
+    pub(super) from: [f32; 3],
+    /// Unit vector from its beginning to its end; zero where they are one.
+    pub(super) along: [f32; 3],
+    /// Its length l, and 1/l².
+    pub(super) length: f32,
+    pub(super) inverse_squared: f32,
+    /// Γ l/4π (m²/s).
+    pub(super) strength: f32,
+    /// r⁴ for a core r.
+    pub(super) core: f32,
+    /// Square of the product of the distances from both ends at which a place is an end itself: at some
+    /// thousandths of the core, as far as rounding may bring it.
+    pub(super) floor: f32,
 }
 
 /// Boxes of segments, and what each amounts to from afar.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    pub(super) points: Points,
+    degree: usize,
     pub(super) clusters: Vec<Cluster>,
-    pub(super) lanes: Lanes,
-    /// Vector strengths Γ l/4π in the points of each box, [`padded`](Self::n_padded), in single precision.
-    pub(super) moments: [Vec<f32>; 3],
-    exact: Vec<Vector3>,
-    pub(super) order: Vec<u32>,
+    /// Segments in the tree's order.
+    pub(super) narrow: Vec<Narrow>,
+    /// Those of the velocity outside of each box, [`n_coefficients`] for each, places being told in its radii.
+    pub(super) coefficients: Vec<f32>,
+    /// Potential of vector strengths Γ l/4π about the centre of each box, [`n_moments`] for each.
+    moments: Vec<Moment>,
+    /// The widest core in each box (m).
+    pub(super) cores: Vec<f64>,
+    order: Vec<u32>,
     /// Boxes that threads make, each with all inside of it; in order.
-    pub(super) shares: Vec<Share>,
+    shares: Vec<Share>,
     /// Boxes around these.
-    pub(super) tops: Vec<usize>,
+    tops: Vec<usize>,
     /// Segments as boxes know them, and the boxes in which there are others now.
     known: Vec<Segment>,
     changed: Vec<bool>,
 }
 
-/// What a thread makes: a share, its boxes, and its segments in the tree's order.
-type Part<'a> = (Share, &'a mut [Cluster], &'a mut [u32]);
+/// What a thread makes of a share's boxes.
+struct Part<'a> {
+    share: Share,
+    moments: &'a mut [Moment],
+    coefficients: &'a mut [f32],
+    cores: &'a mut [f64],
+    narrow: &'a mut [Narrow],
+}
 
 impl Tree {
-    /// Memory for `most` segments, boxes seen through polynomials of `degree`.
+    /// Memory for `most` segments, boxes seen through harmonics up to `degree`.
     pub(super) fn with_capacity(degree: usize, most: usize) -> Self {
-        let points = Points::new(degree);
-        let mut tree = Self {
-            points,
-            clusters: Vec::new(),
-            lanes: Lanes::default(),
-            moments: std::array::from_fn(|_| Vec::new()),
-            exact: Vec::new(),
-            order: Vec::new(),
-            shares: Vec::with_capacity(MOST_SHARES),
-            tops: Vec::with_capacity(MOST_SHARES),
-            known: Vec::new(),
-            changed: Vec::new(),
-        };
-        // Halves of halves: at least LEAF/2 segments in each box that is not divided.
-        let leaves = 2 * most / LEAF + 2;
-        tree.clusters.reserve(2 * leaves);
-        tree.changed.reserve(2 * leaves);
-        tree.order.reserve(most);
-        tree.known.reserve(most);
-        tree.exact.reserve(2 * leaves * tree.points.n_in_cube());
-        let padded = tree.n_padded();
-        tree.moments.iter_mut().for_each(|m| m.reserve(2 * leaves * padded));
-        let Lanes { from, to, strength, core } = &mut tree.lanes;
-        let all = from.iter_mut().chain(to).chain([strength, core]);
-        all.for_each(|lane| lane.reserve(leaves * (LEAF + MAXIMUM_LANES)));
-        tree
+        let boxes = Self::most_boxes(most);
+        Self {
+            degree,
+            clusters: Vec::with_capacity(boxes),
+            narrow: Vec::with_capacity(most),
+            coefficients: Vec::with_capacity(boxes * n_coefficients(degree)),
+            moments: Vec::with_capacity(boxes * n_moments(degree)),
+            cores: Vec::with_capacity(boxes),
+            order: Vec::with_capacity(most),
+            shares: Vec::with_capacity(MOST_PARTS),
+            tops: Vec::with_capacity(MOST_PARTS),
+            known: Vec::with_capacity(most),
+            changed: Vec::with_capacity(boxes),
+        }
     }
 
-    /// Points of a box, filled up to whole vectors (–).
-    pub(super) fn n_padded(&self) -> usize {
-        self.points.n_in_cube().next_multiple_of(MAXIMUM_LANES)
+    /// Boxes that `most` segments have at the most (–): halves of halves, with half of [`LEAF`] or more in each
+    /// that is not divided.
+    pub(super) fn most_boxes(most: usize) -> usize {
+        4 * most / LEAF + 2 * N_KINDS
+    }
+
+    /// Memory of a box seen through harmonics up to `degree` (bytes).
+    pub(super) fn memory_of_box(degree: usize) -> usize {
+        size_of::<Cluster>()
+            + n_moments(degree) * size_of::<Moment>()
+            + n_coefficients(degree) * size_of::<f32>()
+            + size_of::<f64>()
+            + size_of::<bool>()
     }
 
     /// Makes the boxes of `segments` anew.
     pub(super) fn rebuild(&mut self, segments: &[Segment], pool: &mut Pool) {
+        let n = segments.len();
         self.order.clear();
-        self.order.extend(0..segments.len() as u32);
-        let [n_clusters, n_lanes] = shape(segments.len());
-        self.clusters.clear();
-        self.clusters.resize(n_clusters, Cluster::default());
+        self.order.extend(0..n as u32);
+        let kinds = part_by_length(segments, &mut self.order);
         self.shares.clear();
         self.tops.clear();
-        let whole = Share { n_clusters, n: segments.len(), ..Share::default() };
-        self.divide_tops(segments, whole, 0);
+        let boxes = kinds.map(n_boxes);
+        let n_clusters = boxes.iter().sum();
+        self.clusters.clear();
+        self.clusters.resize(n_clusters, Cluster::default());
+        let (mut cluster, mut first) = (0, 0);
+        for (n, n_clusters) in kinds.into_iter().zip(boxes) {
+            self.divide_tops(segments, Share { cluster, n_clusters, first, n }, 0);
+            (cluster, first) = (cluster + n_clusters, first + n);
+        }
         self.divide_shares(segments, pool);
-        let Lanes { from, to, strength, core } = &mut self.lanes;
-        let all = from.iter_mut().chain(to).chain([strength, core]);
-        all.for_each(|lane| lane.resize(n_lanes, 0.0));
-        let (n, padded) = (self.points.n_in_cube(), self.n_padded());
-        self.exact.resize(n_clusters * n, Vector3::ZERO);
-        self.moments.iter_mut().for_each(|m| m.resize(n_clusters * padded, 0.0));
+        self.narrow.resize(n, Narrow::default());
+        self.moments.resize(n_clusters * n_moments(self.degree), NO_MOMENT);
+        self.coefficients.resize(n_clusters * n_coefficients(self.degree), 0.0);
+        self.cores.resize(n_clusters, 0.0);
         self.take_up(segments, true, pool);
     }
 
@@ -130,17 +159,17 @@ impl Tree {
     /// Makes the boxes of all shares.
     fn divide_shares(&mut self, segments: &[Segment], pool: &mut Pool) {
         let Self { shares, clusters, order, .. } = self;
-        let mut parts: [Option<Part<'_>>; MOST_SHARES] = std::array::from_fn(|_| None);
+        let mut parts: [Option<(Share, &mut [Cluster], &mut [u32])>; MOST_PARTS] =
+            std::array::from_fn(|_| None);
         let (mut clusters, mut order) = (&mut clusters[..], &mut order[..]);
-        let (mut next_cluster, mut next) = (0, 0);
+        let mut next_cluster = 0;
         for (place, share) in parts.iter_mut().zip(&*shares) {
             let (_, rest) = clusters.split_at_mut(share.cluster - next_cluster);
             let (mine, rest) = rest.split_at_mut(share.n_clusters);
-            let (_, others) = order.split_at_mut(share.first - next);
-            let (segments_of_mine, others) = others.split_at_mut(share.n);
+            let (segments_of_mine, others) = order.split_at_mut(share.n);
             *place = Some((*share, mine, segments_of_mine));
             (clusters, order) = (rest, others);
-            (next_cluster, next) = (share.cluster + share.n_clusters, share.first + share.n);
+            next_cluster = share.cluster + share.n_clusters;
         }
         pool.for_chunks(&mut parts, 1, &|_, part| {
             for (share, clusters, order) in part.iter_mut().flatten() {
@@ -149,47 +178,25 @@ impl Tree {
         });
     }
 
-    /// Moments and lanes of `all` boxes, or of those in which `segments` are others than they were.
+    /// What `all` boxes amount to, or those in which `segments` are others than they were.
     fn take_up(&mut self, segments: &[Segment], all: bool, pool: &mut Pool) {
         self.find_changed(segments, all);
-        let n = self.points.n_in_cube();
-        let Self { points, clusters, order, exact, shares, changed, .. } = self;
-        let mut parts: [Option<(Share, &mut [Vector3])>; MOST_SHARES] =
-            std::array::from_fn(|_| None);
-        let (mut rest, mut next) = (&mut exact[..], 0);
-        for (part, share) in parts.iter_mut().zip(&*shares) {
-            let (_, others) = rest.split_at_mut((share.cluster - next) * n);
-            let (mine, others) = others.split_at_mut(share.n_clusters * n);
-            *part = Some((*share, mine));
-            (rest, next) = (others, share.cluster + share.n_clusters);
-        }
-        let (clusters, changed) = (&clusters[..], &changed[..]);
+        let Self { degree, clusters, order, moments, coefficients, cores, narrow, .. } = self;
+        let (degree, clusters, changed) = (*degree, &clusters[..], &self.changed[..]);
+        let mut parts = parts_of(&self.shares, degree, moments, coefficients, cores, narrow);
         pool.for_chunks(&mut parts, 1, &|_, part| {
-            for (share, exact) in part.iter_mut().flatten() {
-                // Boxes come before those inside of them.
-                for index in (share.cluster..share.cluster + share.n_clusters).rev() {
-                    let from = (index - share.cluster) * n;
-                    if !changed[index] {
-                        continue;
-                    }
-                    let cluster = &clusters[index];
-                    if cluster.n_lanes == 0 {
-                        gather(points, clusters, index, &mut exact[from..]);
-                        continue;
-                    }
-                    let moments = &mut exact[from..from + n];
-                    moments.fill(Vector3::ZERO);
-                    for &segment in cluster.segments(order) {
-                        add_moments(points, cluster, &segments[segment as usize], moments);
-                    }
-                }
+            for part in part.iter_mut().flatten() {
+                part.take_up(degree, clusters, changed, order, segments);
             }
         });
+        let (n, n_values) = (n_moments(degree), n_coefficients(degree));
         for &index in self.tops.iter().rev().filter(|&&index| changed[index]) {
-            gather(points, clusters, index, &mut exact[index * n..]);
+            gather(degree, clusters, index, &mut moments[index * n..]);
+            cores[index] = widest(clusters, index, &cores[index..]);
+            let coefficients = &mut coefficients[index * n_values..][..n_values];
+            let (mine, unit) = (&moments[index * n..][..n], clusters[index].radius);
+            velocity_coefficients(degree, mine, unit, coefficients);
         }
-        self.fill_lanes(segments);
-        self.round();
     }
 
     /// On return boxes know which of them hold other segments than they knew of: `all`, where they are new.
@@ -199,116 +206,187 @@ impl Tree {
         changed.resize(clusters.len(), all);
         if !all {
             for (index, cluster) in clusters.iter().enumerate().rev() {
-                let mut mine = cluster.segments(order).iter().map(|&of| of as usize);
-                changed[index] = if cluster.n_lanes > 0 {
+                changed[index] = if cluster.is_leaf() {
+                    let mut mine = cluster.segments(order).iter().map(|&of| of as usize);
                     mine.any(|of| known[of] != segments[of])
                 } else {
-                    cluster.n > 0
-                        && (changed[index + 1] || changed[clusters[index + 1].next as usize])
+                    changed[index + 1] || changed[clusters[index + 1].next as usize]
                 };
             }
         }
         known.clear();
         known.extend_from_slice(segments);
     }
+}
 
-    /// Moments of changed boxes in single precision.
-    fn round(&mut self) {
-        let (n, padded) = (self.points.n_in_cube(), self.n_padded());
-        let all = self.exact.chunks_exact(n).zip(&self.changed).enumerate();
-        for (index, (exact, _)) in all.filter(|(_, (_, changed))| **changed) {
-            for (k, moment) in exact.iter().enumerate() {
-                for (axis, moments) in self.moments.iter_mut().enumerate() {
-                    moments[index * padded + k] = moment[axis] as f32;
-                }
-            }
+/// Puts the shorter of `segments` first in `order`, then longer ones, then the longest; gives how many each
+/// kind has.
+fn part_by_length(segments: &[Segment], order: &mut [u32]) -> [usize; N_KINDS] {
+    let key = |index: u32| {
+        let Segment { from, to, .. } = segments[index as usize];
+        (to - from).length_squared()
+    };
+    let mut kinds = [0; N_KINDS];
+    let mut rest = order;
+    for kind in &mut kinds[..N_KINDS - 1] {
+        *kind = rest.len() - rest.len() / LONG;
+        if *kind < rest.len() {
+            rest.select_nth_unstable_by(*kind, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
         }
+        rest = &mut rest[*kind..];
     }
+    kinds[N_KINDS - 1] = rest.len();
+    kinds
+}
 
-    /// Lanes of all changed boxes that are not divided.
-    fn fill_lanes(&mut self, segments: &[Segment]) {
-        let Self { clusters, order, lanes, changed, .. } = self;
-        for (cluster, _) in clusters.iter().zip(&*changed).filter(|(_, changed)| **changed) {
-            let mut mine = cluster.segments(order).iter();
-            for lane in cluster.lanes..cluster.lanes + cluster.n_lanes {
-                match mine.next() {
-                    Some(&of) => lanes.put(lane as usize, &segments[of as usize], cluster.centre),
-                    None => lanes.fill_up(lane as usize),
-                }
+/// What threads make of the boxes of `shares`.
+fn parts_of<'a>(
+    shares: &[Share],
+    degree: usize,
+    mut moments: &'a mut [Moment],
+    mut coefficients: &'a mut [f32],
+    mut cores: &'a mut [f64],
+    mut narrow: &'a mut [Narrow],
+) -> [Option<Part<'a>>; MOST_PARTS] {
+    let (n, n_values) = (n_moments(degree), n_coefficients(degree));
+    let mut parts: [Option<Part<'_>>; MOST_PARTS] = std::array::from_fn(|_| None);
+    let mut next = 0;
+    for (part, &share) in parts.iter_mut().zip(shares) {
+        let before = share.cluster - next;
+        let mine: &mut [Moment];
+        (_, moments) = moments.split_at_mut(before * n);
+        (mine, moments) = moments.split_at_mut(share.n_clusters * n);
+        let values: &mut [f32];
+        (_, coefficients) = coefficients.split_at_mut(before * n_values);
+        (values, coefficients) = coefficients.split_at_mut(share.n_clusters * n_values);
+        let of_boxes: &mut [f64];
+        (_, cores) = cores.split_at_mut(before);
+        (of_boxes, cores) = cores.split_at_mut(share.n_clusters);
+        let of_share: &mut [Narrow];
+        (of_share, narrow) = narrow.split_at_mut(share.n);
+        *part = Some(Part {
+            share,
+            moments: mine,
+            coefficients: values,
+            cores: of_boxes,
+            narrow: of_share,
+        });
+        next = share.cluster + share.n_clusters;
+    }
+    parts
+}
+
+impl Part<'_> {
+    /// What its boxes amount to, as far as they have `changed`.
+    fn take_up(
+        &mut self,
+        degree: usize,
+        clusters: &[Cluster],
+        changed: &[bool],
+        order: &[u32],
+        segments: &[Segment],
+    ) {
+        let Self { share, moments, coefficients, cores, narrow } = self;
+        let (n, n_values) = (n_moments(degree), n_coefficients(degree));
+        // Boxes come before those inside of them.
+        for local in (0..share.n_clusters).rev() {
+            let index = share.cluster + local;
+            if !changed[index] {
+                continue;
             }
+            let cluster = &clusters[index];
+            if cluster.is_leaf() {
+                let moments = &mut moments[local * n..][..n];
+                moments.fill(NO_MOMENT);
+                let mine = cluster.segments(order);
+                let narrow = &mut narrow[cluster.first as usize - share.first..][..mine.len()];
+                let mut core_squared = 0.0_f64;
+                for (narrow, &segment) in narrow.iter_mut().zip(mine) {
+                    let segment = &segments[segment as usize];
+                    core_squared = core_squared.max(segment.core_squared);
+                    *narrow = Narrow::of(segment, cluster.centre);
+                    add_segment(degree, cluster, segment, moments);
+                }
+                cores[local] = core_squared.sqrt();
+            } else {
+                gather(degree, clusters, index, &mut moments[local * n..]);
+                cores[local] = widest(clusters, index, &cores[local..]);
+            }
+            let coefficients = &mut coefficients[local * n_values..][..n_values];
+            velocity_coefficients(degree, &moments[local * n..][..n], cluster.radius, coefficients);
         }
     }
 }
 
 impl Cluster {
-    /// Its segments in `order`, if it is not divided; else none.
-    fn segments<'a>(&self, order: &'a [u32]) -> &'a [u32] {
-        let n = if self.n_lanes > 0 { self.n as usize } else { 0 };
-        &order[self.first as usize..][..n]
+    /// Its segments in `order`.
+    pub(super) fn segments<'a, T>(&self, order: &'a [T]) -> &'a [T] {
+        &order[self.first as usize..][..self.n as usize]
     }
 }
 
-/// Moments of box number `index` from those of the two inside of it, all of which follow it in `exact`.
-fn gather(points: &Points, clusters: &[Cluster], index: usize, exact: &mut [Vector3]) {
-    let cluster = &clusters[index];
-    let n = points.n_in_cube();
-    let (mine, inside) = exact.split_at_mut(n);
-    mine.fill(Vector3::ZERO);
-    if cluster.n == 0 {
-        return;
-    }
+/// Moments of box number `index` from those of the two inside of it, all of which follow it in `moments`.
+fn gather(degree: usize, clusters: &[Cluster], index: usize, moments: &mut [Moment]) {
+    let n = n_moments(degree);
+    let (mine, inside) = moments.split_at_mut(n);
+    mine.fill(NO_MOMENT);
     for child in [index + 1, clusters[index + 1].next as usize] {
-        let Cluster { centre, half, .. } = clusters[child];
-        let place = (centre - cluster.centre) / cluster.half;
-        let from = &inside[(child - index - 1) * n..(child - index) * n];
-        points.raise(from, place, half / cluster.half, mine);
+        let from = &inside[(child - index - 1) * n..][..n];
+        raise(degree, from, clusters[child].centre - clusters[index].centre, mine);
     }
 }
 
-/// Adds what `segment` amounts to in the points of `cluster` to its `moments`.
-fn add_moments(points: &Points, cluster: &Cluster, segment: &Segment, moments: &mut [Vector3]) {
-    let n = points.n();
+/// Gauss's points on [−1, 1] with their weights' halves, as few as a polynomial of `degree` needs.
+fn gauss(degree: usize) -> &'static [(f64, f64)] {
+    const TWO: f64 = 0.577_350_269_189_625_8;
+    const THREE: f64 = 0.774_596_669_241_483_4;
+    const FOUR: [(f64, f64); 2] = [
+        (0.861_136_311_594_052_6, 0.173_927_422_568_726_9),
+        (0.339_981_043_584_856_3, 0.326_072_577_431_273_1),
+    ];
+    match degree {
+        0..=3 => &[(-TWO, 0.5), (TWO, 0.5)],
+        4..=5 => &[(-THREE, 5.0 / 18.0), (0.0, 4.0 / 9.0), (THREE, 5.0 / 18.0)],
+        _ => &[
+            (-FOUR[0].0, FOUR[0].1),
+            (-FOUR[1].0, FOUR[1].1),
+            (FOUR[1].0, FOUR[1].1),
+            (FOUR[0].0, FOUR[0].1),
+        ],
+    }
+}
+
+/// The wider of the cores of the two boxes inside of number `index`, whose own stands first in `cores` (m).
+fn widest(clusters: &[Cluster], index: usize, cores: &[f64]) -> f64 {
+    cores[1].max(cores[clusters[index + 1].next as usize - index])
+}
+
+/// Adds what `segment` amounts to about the centre of `cluster` to its `moments`.
+fn add_segment(degree: usize, cluster: &Cluster, segment: &Segment, moments: &mut [Moment]) {
     let along = segment.to - segment.from;
-    let strength = along * (0.5 * segment.circulation / (4.0 * PI));
-    for at in [-1.0, 1.0] {
-        // Gauss's two points, at which the way to the ends' fourth powers is free of error.
-        let share = 0.5 + at * 0.5 / 3.0_f64.sqrt();
-        let place = (segment.from + along * share - cluster.centre) / cluster.half;
-        let shares = points.shares(place);
-        let mut point = 0;
-        for x in &shares[0][..n] {
-            for y in &shares[1][..n] {
-                let source = strength * (x * y);
-                for z in &shares[2][..n] {
-                    moments[point] += source * *z;
-                    point += 1;
-                }
-            }
-        }
+    let middle = 0.5 * (segment.from + segment.to) - cluster.centre;
+    let strength = along * (segment.circulation / (4.0 * PI));
+    for &(at, weight) in gauss(degree) {
+        add_element(degree, strength * weight, middle + along * (0.5 * at), moments);
     }
 }
 
-impl Lanes {
-    fn put(&mut self, lane: usize, segment: &Segment, centre: Vector3) {
+impl Narrow {
+    fn of(segment: &Segment, centre: Vector3) -> Self {
         let Segment { from, to, circulation, core_squared } = *segment;
-        let length_squared = (to - from).length_squared();
-        for axis in 0..3 {
-            self.from[axis][lane] = ((from - centre)[axis] / UNIT) as f32;
-            self.to[axis][lane] = ((to - centre)[axis] / UNIT) as f32;
+        let narrow = |way: Vector3| way.to_array().map(|x| x as f32);
+        let (along, length) = ((to - from).normalize_or_zero(), (to - from).length() / UNIT);
+        let inverse_squared = if along == Vector3::ZERO { 0.0 } else { length.powi(-2) };
+        Self {
+            from: narrow((from - centre) / UNIT),
+            along: narrow(along),
+            length: length as f32,
+            inverse_squared: inverse_squared as f32,
+            // Velocities have one length less than the strength: the unit, divided by here.
+            strength: (circulation * length / (4.0 * PI * UNIT)) as f32,
+            core: (core_squared / UNIT.powi(2)).powi(2) as f32,
+            floor: (AT_END.powi(2) * core_squared / UNIT.powi(2) * length.powi(2)).max(1e-37)
+                as f32,
         }
-        self.strength[lane] = (circulation / (4.0 * PI * UNIT)) as f32;
-        let core = (core_squared * length_squared / UNIT.powi(4)).powi(2);
-        // Never zero: a position on the line of a thin segment has no velocity.
-        self.core[lane] = (core as f32).max(f32::MIN_POSITIVE);
-    }
-
-    /// A segment without circulation, far from everything.
-    fn fill_up(&mut self, lane: usize) {
-        for axis in 0..3 {
-            self.from[axis][lane] = 1e3;
-            self.to[axis][lane] = 1e3;
-        }
-        self.strength[lane] = 0.0;
-        self.core[lane] = 1.0;
     }
 }

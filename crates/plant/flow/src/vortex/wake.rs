@@ -1,10 +1,11 @@
 //! The wakes of all blades in the wind, as a flow.
 
 use super::body::{Body, N_SIDES, sides_to_nodes};
-use super::field::{CHUNK, Field};
+use super::field::{CHUNK, Field, GROUP};
+use super::neighbours::Neighbours;
 use super::rotor::Rotor;
 use super::segment::Segment;
-use super::settings::{WakeError, WakeSettings};
+use super::settings::{MeanShear, WakeError, WakeSettings};
 use super::sheet::Sheet;
 use crate::inflow::PrescribedWind;
 use crate::pool::Pool;
@@ -41,6 +42,9 @@ pub struct FreeWake {
     nodes: Vec<Vector3>,
     /// Places at which vortices carry the nodes.
     middles: Vec<Vector3>,
+    neighbours: Neighbours,
+    /// What vortices induce at these, in their order.
+    sorted: Vec<Vector3>,
     winds: Vec<Vector3>,
     induced: Vec<Vector3>,
     pool: Mutex<Pool>,
@@ -69,6 +73,8 @@ impl FreeWake {
             field,
             nodes: Vec::with_capacity(most),
             middles: Vec::with_capacity(most),
+            neighbours: Neighbours::with_capacity(most),
+            sorted: Vec::with_capacity(most),
             winds: Vec::with_capacity(most),
             induced: Vec::with_capacity(most),
             pool: Mutex::new(Pool::new(n_threads)),
@@ -100,10 +106,11 @@ impl FreeWake {
 
     /// Memory that wakes take at `settings` (bytes).
     pub fn memory_of(settings: &WakeSettings) -> u64 {
-        // A segment in double precision, its lanes and its share of boxes; two of three have a node with
-        // position, velocities, wind and what is induced.
-        const OF_SEGMENT: u64 = 64 + 4 + 32 + 200 + 16 + 5 * 24;
-        settings.most_segments() as u64 * OF_SEGMENT
+        // A segment in double precision, as boxes knew it and in single precision, its number and its length
+        // so far; a node's position, velocities, wind, middle, and what is induced, in both orders.
+        const OF_SEGMENT: u64 = 64 + 64 + 44 + 8 + 16 + 8 * 24;
+        let boxes = Field::memory_of_boxes(settings.accuracy, settings.most_segments());
+        settings.most_segments() as u64 * OF_SEGMENT + boxes
     }
 
     /// The same for these.
@@ -115,15 +122,25 @@ impl FreeWake {
         self.pool.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What all vortices induce at `position` (m/s), images included.
-    fn induced_at(&self, position: Vector3) -> Vector3 {
-        let direct = self.field.velocity(position);
+    /// On return `velocities` (m/s) hold what all vortices induce at `positions` (m), images included.
+    fn induce(&self, positions: &[Vector3], velocities: &mut [Vector3]) {
+        self.field.sample(positions, velocities);
         if !self.settings.ground {
-            return direct;
+            return;
         }
         // An image below the ground induces here what its vortex does below the ground, upside down.
         let upside_down = Vector3::new(1.0, 1.0, -1.0);
-        direct + upside_down * self.field.velocity(upside_down * position)
+        for (positions, velocities) in positions.chunks(GROUP).zip(velocities.chunks_mut(GROUP)) {
+            let (mut below, mut images) = ([Vector3::ZERO; GROUP], [Vector3::ZERO; GROUP]);
+            let n = positions.len();
+            for (below, position) in below.iter_mut().zip(positions) {
+                *below = upside_down * *position;
+            }
+            self.field.sample(&below[..n], &mut images[..n]);
+            for (velocity, image) in velocities.iter_mut().zip(images) {
+                *velocity += upside_down * image;
+            }
+        }
     }
 
     /// What bound vortices among `forces` say of their turbines, and what drag leaves behind; makes sheets of
@@ -184,13 +201,8 @@ impl FreeWake {
         self.winds.resize(self.nodes.len(), Vector3::ZERO);
         self.induced.resize(self.nodes.len(), Vector3::ZERO);
         self.wind.sample(&self.nodes, &mut self.winds);
-        let mut induced = std::mem::take(&mut self.induced);
-        self.pool().for_chunks(&mut induced, CHUNK, &|first, chunk| {
-            for (velocity, position) in chunk.iter_mut().zip(&self.middles[first..]) {
-                *velocity = self.induced_at(*position);
-            }
-        });
-        self.induced = induced;
+        self.leave_shear_out();
+        self.feel_vortices();
         self.move_to_nodes();
         for ((wind, induced), position) in self.winds.iter_mut().zip(&self.induced).zip(&self.nodes)
         {
@@ -202,6 +214,39 @@ impl FreeWake {
             }
         }
         Ok(())
+    }
+
+    /// On return `winds` is without what does not carry wakes.
+    fn leave_shear_out(&mut self) {
+        let shear = self.settings.shear;
+        if shear == MeanShear::Carries {
+            return;
+        }
+        let Self { winds, nodes, sheets, rotors, bodies, .. } = self;
+        let of_sheets = sheets.iter().map(|sheet| {
+            let n_nodes = sheet.far.positions.len() + sheet.near.positions.len();
+            (n_nodes, rotors[sheet.owner[0]].height())
+        });
+        let of_bodies = bodies.iter().map(|body| (body.positions.len(), body.position.z));
+        let mut places = winds.iter_mut().zip(nodes.iter());
+        for (n_nodes, of_hub) in of_sheets.chain(of_bodies) {
+            for (wind, node) in places.by_ref().take(n_nodes) {
+                *wind -= shear.left_out(node.z, of_hub);
+            }
+        }
+    }
+
+    /// On return `induced` holds what vortices induce at the middles of filaments.
+    fn feel_vortices(&mut self) {
+        let Self { neighbours, middles, pool, .. } = self;
+        neighbours.sort(middles, pool.get_mut().unwrap_or_else(PoisonError::into_inner));
+        let mut sorted = std::mem::take(&mut self.sorted);
+        sorted.resize(self.middles.len(), Vector3::ZERO);
+        self.pool().for_chunks(&mut sorted, CHUNK, &|first, chunk| {
+            self.induce(&self.neighbours.sorted()[first..first + chunk.len()], chunk);
+        });
+        self.neighbours.to_own_order(&sorted, &mut self.induced);
+        self.sorted = sorted;
     }
 
     /// On return `induced` holds what vortices induce at nodes, in place of the middles of filaments.
@@ -262,8 +307,12 @@ impl FreeWake {
 impl WindField for FreeWake {
     fn sample(&self, positions: &[Vector3], velocities: &mut [Vector3]) {
         self.wind.sample(positions, velocities);
-        for (position, velocity) in positions.iter().zip(velocities) {
-            *velocity += self.induced_at(*position);
+        for (positions, velocities) in positions.chunks(GROUP).zip(velocities.chunks_mut(GROUP)) {
+            let mut induced = [Vector3::ZERO; GROUP];
+            self.induce(positions, &mut induced[..positions.len()]);
+            for (velocity, induced) in velocities.iter_mut().zip(induced) {
+                *velocity += induced;
+            }
         }
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::fields::FieldSource;
 use crate::inflow::{MeanProfile, PrescribedWind};
-use crate::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
+use crate::vortex::{
+    Accuracy, BodyWakes, Cores, FreeWake, MeanShear, Points, Resolution, WakeSettings,
+};
 use crate::{FlowError, FlowSolver, WindField};
 use basis::records::PlaneAxes;
 use basis::{BoundVortex, PointForce, Vector3};
@@ -35,6 +37,7 @@ pub(super) fn settings() -> WakeSettings {
         bodies: BodyWakes { length: 100.0, n_bodies: 1, most_rings: 200 },
         air_density: DENSITY,
         accuracy: Accuracy { degree: 3, opening: 0.5 },
+        shear: MeanShear::Carries,
         ground: true,
         shown: Points { first: Vector3::new(-45.0, -55.0, 5.0), spacing: 10.0, n: [24, 12, 15] },
         n_blades: 2,
@@ -91,6 +94,36 @@ fn samples(wake: &FreeWake) -> Vec<Vector3> {
     let mut velocities = vec![Vector3::ZERO; positions.len()];
     wake.sample(&positions, &mut velocities);
     velocities
+}
+
+/// Without circulation the wind alone carries a wake.
+#[test]
+fn shear_that_is_left_out_does_not_lean_a_wake() {
+    let lean = |shear: MeanShear| {
+        let mut wake = wake(WakeSettings { bodies: BodyWakes::NONE, shear, ..settings() });
+        for step in 0..50 {
+            wake.advance(INTERVAL, &forces(step, 0.0)).expect("nothing moves but the wind");
+        }
+        let spread = |xs: &[f64]| {
+            let [least, most] = [f64::min, f64::max].map(|of| xs.iter().copied().reduce(of));
+            most.zip(least).map_or(0.0, |(most, least)| most - least)
+        };
+        // The oldest row of each blade's wake, which was a straight line across the wind.
+        wake.sheets
+            .iter()
+            .map(|sheet| {
+                let row = &sheet.far.positions[..sheet.far.n_nodes()];
+                let xs: Vec<f64> = row.iter().map(|node| node.x).collect();
+                assert!((xs[0] / (WIND * INTERVAL * 50.0) - 1.0).abs() < 0.1, "{xs:?}");
+                spread(&xs)
+            })
+            .fold(0.0, f64::max)
+    };
+    let profile = MeanProfile::PowerLaw { hub_height: HUB.z, speed: WIND, exponent: 0.1 };
+    let left_out = MeanShear::LeftOut { profile, hub_height: HUB.z, veer: 0.0 };
+    // 8 m/s over ten seconds; at 120 m the wind is 4 % faster than at the hub.
+    assert!(lean(MeanShear::Carries) > 1.0);
+    assert!(lean(left_out) < 1e-9, "{}", lean(left_out));
 }
 
 #[test]
