@@ -2,7 +2,9 @@
 
 use basis::{BoundVortex, PointForce, Vector3};
 use flow::inflow::{MeanProfile, PrescribedWind};
-use flow::vortex::{Accuracy, BodyWakes, Cores, FreeWake, Points, Resolution, WakeSettings};
+use flow::vortex::{
+    Accuracy, BodyWakes, Cores, FreeWake, MeanShear, Points, Resolution, WakeSettings,
+};
 use flow::{FlowSolver, WindField};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -79,6 +81,7 @@ fn forces(step: usize) -> Vec<PointForce> {
 }
 
 fn wake() -> FreeWake {
+    let profile = MeanProfile::PowerLaw { hub_height: HUB.z, speed: 8.0, exponent: 0.1 };
     let settings = WakeSettings {
         interval: INTERVAL,
         resolution: Resolution {
@@ -98,6 +101,7 @@ fn wake() -> FreeWake {
         bodies: BodyWakes { length: 100.0, n_bodies: 1, most_rings: 200 },
         air_density: 1.2,
         accuracy: Accuracy { degree: 3, opening: 0.5 },
+        shear: MeanShear::LeftOut { profile, hub_height: HUB.z, veer: 0.0 },
         ground: true,
         shown: Points::NONE,
         n_blades: 2,
@@ -105,7 +109,6 @@ fn wake() -> FreeWake {
         n_elements: N_ELEMENTS,
         threads: Some(1),
     };
-    let profile = MeanProfile::PowerLaw { hub_height: HUB.z, speed: 8.0, exponent: 0.1 };
     FreeWake::new(settings, PrescribedWind::everywhere(Arc::new(profile))).expect("sound settings")
 }
 

@@ -36,7 +36,7 @@ const N_BLADES: usize = 3;
 /// What a free wake cannot show.
 const LIMITS: &str = "Free vortices know no eddies smaller than themselves: the wind carries a wake about, but it neither breaks down in ambient turbulence \
                       nor mixes with the air around it as a wake does beyond some 4 diameters, where its deficit lasts too long. Take the far wake, and the power of \
-                      turbines in it, from flow.solver = “lattice”.";
+                      turbines in it, from flow.solver = “lattice”. The shear of the mean wind is felt by blades, not by wakes, whose rotors do not bend it (flow.wake_shear).";
 
 /// Keys of `[flow]` for a free wake.
 static KEYS: [Key; 15] = [

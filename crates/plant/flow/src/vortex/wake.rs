@@ -28,7 +28,8 @@ const LOWEST: f64 = 0.01;
 /// others without a bound vortex, such as the blades' drag and the tower's, leave no trace.
 ///
 /// Limits: the air is incompressible and free of turbulence of its own making; vorticity of shear in the wind
-/// is carried by the wind as it is and not by nodes; bodies do not push the air aside.
+/// is not bent by the rotors, and what it would hold against is left out with it ([`MeanShear`]); bodies do not
+/// push the air aside.
 pub struct FreeWake {
     pub(super) settings: WakeSettings,
     pub(super) wind: PrescribedWind,

@@ -1,7 +1,7 @@
 //! What a reader of the numbers must know of free wakes as a case has them.
 
 use super::{in_faster_air, of_all, turning};
-use crate::case::Case;
+use crate::case::{Case, Shear};
 use crate::plan::Plan;
 
 /// Angle by which a rotor turns in a step beyond which a reader must know (rad).
@@ -50,6 +50,13 @@ pub(super) fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
             turbine.name,
             100.0 * excess
         ));
+    }
+    let shear = case.wind.shear;
+    let is_sheared = !matches!(shear, Shear::PowerLaw { exponent } if exponent == 0.0);
+    if case.flow.values.word("wake_shear") == "carried" && is_sheared {
+        warnings.push(
+            "sheared wind carries wakes faster above than below, so that they rise, by half a diameter in four at an exponent of 0.2: wakes in air rise by a fifth of that; take flow.wake_shear = \"left-out\"".to_owned(),
+        );
     }
     let length = turning(case).longest(&plan.positions, plan.diameter);
     if length > LENGTH_TO_WARN {

@@ -254,12 +254,19 @@ fn a_rotor_that_holds_the_wind_back_makes_a_wake() {
 
 #[test]
 fn planes_and_volumes_show_the_wind_at_their_points() {
-    let mut wake = wake(settings());
+    // Every vortex one by one: which boxes are far depends on the places that are asked for together.
+    let accuracy = Accuracy { opening: 0.0, ..settings().accuracy };
+    let mut wake = wake(WakeSettings { accuracy, ..settings() });
     advanced(&mut wake, 0..30);
     let wind = |position: Vector3| {
         let mut velocity = [Vector3::ZERO];
         wake.sample(&[position], &mut velocity);
-        velocity[0].as_vec3().to_array()
+        velocity[0]
+    };
+    // But for what rounding to single precision makes of a place in another group.
+    let is_at = |found: [f32; 3], place: Vector3| {
+        let found = Vector3::from_array(found.map(f64::from));
+        assert!((found - wind(place)).length() < 1e-5 * WIND, "{found} at {place}");
     };
     for (axes, position, index, place) in [
         (PlaneAxes::Horizontal, 80.0, 5 * 24 + 7, Vector3::new(25.0, -5.0, 80.0)),
@@ -268,13 +275,13 @@ fn planes_and_volumes_show_the_wind_at_their_points() {
     ] {
         let plane = wake.plane("here", axes, position);
         assert_eq!((plane.spacing, plane.time), ([10.0; 2], wake.time()));
-        assert_eq!([0, 1, 2].map(|c| plane.velocity[c][index]), wind(place), "{axes:?}");
+        is_at([0, 1, 2].map(|c| plane.velocity[c][index]), place);
     }
     let volume = wake.volume(2);
     assert_eq!(volume.n_points, [12, 6, 8]);
     let index = (3 * 6 + 2) * 12 + 4;
     let place = volume.origin + 20.0 * Vector3::new(4.0, 2.0, 3.0);
-    assert_eq!([0, 1, 2].map(|c| volume.velocity[c][index]), wind(place));
+    is_at([0, 1, 2].map(|c| volume.velocity[c][index]), place);
 }
 
 #[test]
