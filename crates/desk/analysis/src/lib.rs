@@ -5,6 +5,9 @@ pub mod fatigue;
 pub mod grids;
 pub mod lateral;
 pub mod line;
+#[cfg(feature = "modes")]
+pub mod modes;
+pub mod particles;
 pub mod phase;
 pub mod phases;
 pub mod pitch;
