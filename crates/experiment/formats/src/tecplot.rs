@@ -74,11 +74,6 @@ impl TecplotReader {
         &self.variables
     }
 
-    /// Number of the line in hand, from one.
-    pub(crate) fn line_number(&self) -> u64 {
-        self.line_number
-    }
-
     /// That the file is not what it should be, at the line in hand.
     pub(crate) fn refusal(&self, problem: &str) -> FileError {
         let problem = format!("line {}: {problem}", self.line_number);

@@ -7,7 +7,9 @@ mod source;
 
 pub(crate) use angles::Angles;
 pub(crate) use averages::{Averaged, bins as averages_bins};
-pub(crate) use source::{Fields, Instants};
+pub(crate) use source::Fields;
+#[cfg(feature = "modes")]
+pub(crate) use source::Instants;
 
 use crate::PostprocessingError;
 use basis::records::FieldSetting;
