@@ -4,6 +4,7 @@ use super::controller::{self, controller_of, from_rpm};
 use super::document::{self, Document};
 use super::error::{Place, Step, TurbineFileError};
 use super::operation::operation_of;
+use super::swashplate::swashplate_of;
 use super::{TurbineFile, document as file, ranges};
 use basis::Vector3;
 use basis::blades::MAXIMUM_BLADES;
@@ -55,6 +56,7 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         nacelle: nacelle_of(nacelle),
         drive_train: drive_train_of(drive_train),
         pitch_actuator: actuator_of(actuator, place)?,
+        swashplate: plate_of(actuator, document.n_blades, place)?,
         operation: document.operation.as_ref().map(|o| operation_of(o, place)).transpose()?,
         rated_power: 1e3 * controller_group.rated_power_kw,
         rated_rotor_speed: from_rpm(controller_group.rated_rotor_speed_rpm),
@@ -73,6 +75,9 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         ("controller", &controller_group.source),
         ("airfoils", &airfoils.source),
     ];
+    sources.extend(
+        actuator.swashplate.as_ref().map(|plate| ("pitch_actuator.swashplate", &plate.source)),
+    );
     sources.extend(document.operation.as_ref().map(|group| ("operation", &group.source)));
     Ok(TurbineFile {
         title: document.title.clone(),
@@ -350,4 +355,14 @@ fn actuator_of(actuator: &file::PitchActuator, place: &Place) -> Checked<PitchAc
         minimum_pitch: low.to_radians(),
         maximum_pitch: high.to_radians(),
     })
+}
+
+fn plate_of(
+    actuator: &file::PitchActuator,
+    n_blades: usize,
+    place: &Place,
+) -> Checked<Option<turbine::actuators::Swashplate>> {
+    let limits = [actuator.minimum_pitch_deg, actuator.maximum_pitch_deg];
+    let plate = actuator.swashplate.as_ref();
+    plate.map(|plate| swashplate_of(plate, n_blades, limits, place)).transpose()
 }

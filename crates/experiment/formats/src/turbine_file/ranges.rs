@@ -35,6 +35,7 @@ const SHAPE: Limits = from(-1e4, 1e4, "");
 const DAMPING_RATIO: Limits = from(0.0, 0.2, " damping ratio");
 const CORNER: Limits = above(0.0, 1e4, " rad/s");
 const ACTUATED: Limits = from(0.05, 5.0, "");
+const PLATE_LENGTH: Limits = above(0.0, 30.0, " m");
 const PITCH: Limits = from(-90.0, 180.0, "°");
 const TORQUE: Limits = from(0.0, 1e10, " N m");
 const GAIN: Limits = from(0.0, 1e12, "");
@@ -107,6 +108,16 @@ const RANGES: &[(&str, &[Limits])] = &[
     ("pitch_actuator.maximum_rate_deg_s", &[from(0.01, 100.0, "°/s")]),
     ("pitch_actuator.minimum_pitch_deg", &[from(-90.0, 90.0, "°")]),
     ("pitch_actuator.maximum_pitch_deg", &[PITCH]),
+    ("pitch_actuator.swashplate.travel_per_turn", &[above(0.0, 10.0, " m a turn")]),
+    ("pitch_actuator.swashplate.crank_length", &[PLATE_LENGTH]),
+    ("pitch_actuator.swashplate.rod_radius", &[PLATE_LENGTH]),
+    ("pitch_actuator.swashplate.link_radius", &[PLATE_LENGTH]),
+    ("pitch_actuator.swashplate.horn_length", &[PLATE_LENGTH]),
+    ("pitch_actuator.swashplate.rod_azimuth_deg", &[ANGLE]),
+    ("pitch_actuator.swashplate.bias_deg", &[from(-10.0, 10.0, "°")]),
+    ("pitch_actuator.swashplate.slack_deg", &[from(0.0, 45.0, "°")]),
+    ("pitch_actuator.swashplate.gain_with_rotor", &[above(0.0, 5.0, "")]),
+    ("pitch_actuator.swashplate.gain_against_rotor", &[above(0.0, 5.0, "")]),
     ("operation.cut_in_wind_speed", &[from(0.0, 100.0, " m/s")]),
     ("operation.cut_out_wind_speed", &[above(0.0, 100.0, " m/s")]),
     ("controller.rated_power_kw", &[from(1e-3, 1e5, " kW")]),
