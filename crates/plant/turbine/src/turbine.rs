@@ -23,7 +23,7 @@ use crate::structure::{
     AppliedLoads, DegreeOfFreedom, GRAVITY, Pitch, Projection, Structure, StructureError,
 };
 use aerodynamics::Aerodynamics;
-use basis::{Answer, Channel, Commands, PerBlade, PointForce, Truth, Vector3};
+use basis::{Answer, Channel, Commands, PointForce, Truth, Vector3};
 use nacelle::Facing;
 use set_up::{all_but_the_generator, frame_at, lengths, longest_step};
 use state::Readings;

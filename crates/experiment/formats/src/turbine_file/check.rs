@@ -21,6 +21,8 @@ type Checked<T> = Result<T, TurbineFileError>;
 
 /// Coefficients of a mode may miss one by this: printed to a few digits, they do not add up exactly (–).
 const SHAPE_TOLERANCE: f64 = 2e-3;
+/// Height of the hub may miss that of tower and shaft by this (m), on a model by a twentieth of its radius.
+const HUB_TOLERANCE: f64 = 0.5;
 /// First and last station may miss root and tip by this share of the blade (–).
 const END_TOLERANCE: f64 = 1e-4;
 
@@ -281,7 +283,7 @@ fn tower_of(tower: &file::Tower, rotor: &file::Rotor, place: &Place) -> Checked<
     // shows.
     let tilt = rotor.shaft_tilt_deg.to_radians();
     let hub_height = tower.top_height + tower.top_to_shaft + rotor.overhang * tilt.sin();
-    if (hub_height - rotor.hub_height).abs() > 0.5 {
+    if (hub_height - rotor.hub_height).abs() > HUB_TOLERANCE.min(0.05 * rotor.tip_radius) {
         let expected = format!("{hub_height:.2} m, from tower, shaft and overhang");
         let fix =
             "check hub_height, tower.top_height, tower.top_to_shaft, overhang and shaft_tilt_deg";

@@ -1,6 +1,7 @@
 //! Closed forms, balances and limits.
 
 use super::*;
+use basis::PerBlade;
 use crate::Polar;
 use crate::actuators::PitchActuator;
 use crate::definition::{

@@ -26,6 +26,8 @@ const SIGNED: &[(&str, &[usize])] = &[
     ("nacelle.center_of_mass", &[0, 1, 2]),
     ("pitch_actuator.minimum_pitch_deg", &[0]),
     ("pitch_actuator.maximum_pitch_deg", &[0]),
+    ("pitch_actuator.swashplate.rod_azimuth_deg", &[0]),
+    ("pitch_actuator.swashplate.bias_deg", &[0, 1]),
     ("controller.fine_pitch_deg", &[0]),
     ("controller.maximum_pitch_deg", &[0]),
     ("controller.minimum_pitch", &[1]),
