@@ -194,7 +194,7 @@ fn list() -> Result<()> {
         let TurbineFile { title, definition, .. } = library::load(name)?;
         table.row([
             name.to_owned(),
-            format!("{:.1}", 1e-6 * definition.rated_power),
+            megawatts(definition.rated_power),
             format!("{:.1}", definition.rotor_diameter()),
             format!("{:.1}", definition.rotor.hub_height),
             title,
@@ -260,12 +260,12 @@ fn rows(
         (
             "rated",
             format!(
-                "{:.3} MW at {:.3} rpm",
-                1e-6 * definition.rated_power,
+                "{} at {:.3} rpm",
+                power(definition.rated_power),
                 definition.rated_rotor_speed * 30.0 / std::f64::consts::PI
             ),
         ),
-        ("blade mass", format!("{:.2} t each", 1e-3 * definition.blade_mass())),
+        ("blade mass", blade_mass(definition.blade_mass())),
         (
             "inertia about the shaft",
             format!(
@@ -286,6 +286,7 @@ fn rows(
                 definition.pitch_actuator.maximum_pitch.to_degrees()
             ),
         ),
+        ("swashplate", swashplate(definition)),
         (
             "best tip-speed ratio",
             format!(
@@ -362,6 +363,40 @@ fn offset(name: &str, wind: Range, strouhal: f64, flexible: bool) -> Result<()> 
         ))?;
     }
     Ok(())
+}
+
+/// Least power that is told in megawatts (W), and least mass in tonnes (kg).
+const LARGE: f64 = 1e3;
+
+/// `power` (W) in what suits it.
+fn power(power: f64) -> String {
+    if power < LARGE { format!("{power:.2} W") } else { format!("{:.3} MW", 1e-6 * power) }
+}
+
+/// `power` (W) in megawatts, as a table shows it.
+fn megawatts(power: f64) -> String {
+    if power < LARGE { format!("{:.1e}", 1e-6 * power) } else { format!("{:.1}", 1e-6 * power) }
+}
+
+/// `mass` (kg) of a blade in what suits it.
+fn blade_mass(mass: f64) -> String {
+    if mass < LARGE { format!("{mass:.4} kg each") } else { format!("{:.2} t each", 1e-3 * mass) }
+}
+
+/// What pitches the blades of `definition`, and how far motors go for it.
+fn swashplate(definition: &Definition) -> String {
+    match &definition.swashplate {
+        None => "none: each blade has an actuator of its own".to_owned(),
+        Some(plate) => format!(
+            "{:.1}° of its motors pitch all blades by 1°; cyclic {:.3} of that with the rotor, {:.3} against it; bias {:.2}° tilt, {:.2}° yaw; slack {:.1}°",
+            plate.motor_ratio(),
+            plate.gains[0],
+            plate.gains[1],
+            plate.bias[0].to_degrees(),
+            plate.bias[1].to_degrees(),
+            plate.slack.to_degrees()
+        ),
+    }
 }
 
 #[cfg(test)]

@@ -50,7 +50,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             step: None,
             threads: None,
         },
-        time: Time { spin_up: 300.0, duration: 1500.0 },
+        time: Time { spin_up: 300.0, duration: 1500.0, block: 600.0 },
         turbines: positions.iter().enumerate().map(placement).collect(),
         runs: vec![Run {
             name: "baseline".to_owned(),
