@@ -12,8 +12,8 @@ import aerosandbox as asb
 import numpy as np
 
 # Fitted: by blade-element momentum theory at tip-speed ratio 5.
-FINE_PITCH = 0.0
-POWER_COEFFICIENT = 0.40
+FINE_PITCH = 0.5
+POWER_COEFFICIENT = 0.3871
 # Published (van der Hoek et al. 2024): electrical power coefficient at tip-speed ratio 5, diameter, wind.
 MEASURED, DIAMETER, WIND, RATIO = 0.27, 0.58, 5.0, 5.0
 RADIUS, DENSITY = 0.5 * DIAMETER, 1.225

@@ -44,6 +44,7 @@ pub mod row;
 pub mod structure;
 mod studies;
 pub mod synthesis;
+pub mod tunnel;
 pub mod tuning;
 
 pub use list::{ELSEWHERE, VALIDATIONS};
