@@ -1,6 +1,7 @@
 //! `wakemix turbine`: the library of turbines, and what blade-element momentum says of them.
 
 mod import;
+mod words;
 
 use super::arguments::{check_free, finite, positive};
 use super::output::{columns, detail, print, print_text};
@@ -18,6 +19,7 @@ use wakemix::study::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 use wakemix::turbine::Definition;
 use wakemix::turbine::aero::blade_element::Theory;
 use wakemix::turbine::steady::{Coefficients, SteadyRotor};
+use words::{blade_mass, power, swashplate};
 
 /// What to do with turbines.
 #[derive(Debug, Subcommand)]
@@ -194,7 +196,7 @@ fn list() -> Result<()> {
         let TurbineFile { title, definition, .. } = library::load(name)?;
         table.row([
             name.to_owned(),
-            megawatts(definition.rated_power),
+            format!("{:.1}", 1e-6 * definition.rated_power),
             format!("{:.1}", definition.rotor_diameter()),
             format!("{:.1}", definition.rotor.hub_height),
             title,
@@ -225,7 +227,7 @@ fn rows(
     definition: &Definition,
     controller: &Constants,
     best: &Coefficients,
-) -> [(&'static str, String); 13] {
+) -> [(&'static str, String); 14] {
     [
         ("blades", definition.n_blades.to_string()),
         (
@@ -363,40 +365,6 @@ fn offset(name: &str, wind: Range, strouhal: f64, flexible: bool) -> Result<()> 
         ))?;
     }
     Ok(())
-}
-
-/// Least power that is told in megawatts (W), and least mass in tonnes (kg).
-const LARGE: f64 = 1e3;
-
-/// `power` (W) in what suits it.
-fn power(power: f64) -> String {
-    if power < LARGE { format!("{power:.2} W") } else { format!("{:.3} MW", 1e-6 * power) }
-}
-
-/// `power` (W) in megawatts, as a table shows it.
-fn megawatts(power: f64) -> String {
-    if power < LARGE { format!("{:.1e}", 1e-6 * power) } else { format!("{:.1}", 1e-6 * power) }
-}
-
-/// `mass` (kg) of a blade in what suits it.
-fn blade_mass(mass: f64) -> String {
-    if mass < LARGE { format!("{mass:.4} kg each") } else { format!("{:.2} t each", 1e-3 * mass) }
-}
-
-/// What pitches the blades of `definition`, and how far motors go for it.
-fn swashplate(definition: &Definition) -> String {
-    match &definition.swashplate {
-        None => "none: each blade has an actuator of its own".to_owned(),
-        Some(plate) => format!(
-            "{:.1}° of its motors pitch all blades by 1°; cyclic {:.3} of that with the rotor, {:.3} against it; bias {:.2}° tilt, {:.2}° yaw; slack {:.1}°",
-            plate.motor_ratio(),
-            plate.gains[0],
-            plate.gains[1],
-            plate.bias[0].to_degrees(),
-            plate.bias[1].to_degrees(),
-            plate.slack.to_degrees()
-        ),
-    }
 }
 
 #[cfg(test)]
