@@ -44,8 +44,8 @@ pub mod row;
 pub mod structure;
 mod studies;
 pub mod synthesis;
-pub mod tunnel;
 pub mod tuning;
+pub mod tunnel;
 
 pub use list::{ELSEWHERE, VALIDATIONS};
 use record::{Record, RecordError};

@@ -21,8 +21,11 @@ const WIND_SPEED: f64 = 5.0;
 const AIR_DENSITY: f64 = 1.225;
 /// Run, Strouhal number (–), average amplitude of the blades (deg), gain of both turbines together (%), and
 /// power of the second over its baseline (–). van der Hoek et al. (2024), Table 1, §3.5.
-const RUNS: [(&str, f64, f64, f64, f64); 3] =
-    [("cw", 0.34, 2.5, 8.0, 2.0), ("ccw", 0.28, 2.0, 8.7, 2.0), ("ccw-optimum", 0.28, 2.4, 15.1, 3.0)];
+const RUNS: [(&str, f64, f64, f64, f64); 3] = [
+    ("cw", 0.34, 2.5, 8.0, 2.0),
+    ("ccw", 0.28, 2.0, 8.7, 2.0),
+    ("ccw-optimum", 0.28, 2.4, 15.1, 3.0),
+];
 /// Accepted distances: of amplitudes, given to a tenth (deg); of gains, given without intervals (points of a
 /// percent); of the second turbine's power, told in words (–).
 const AMPLITUDE_TOLERANCE: f64 = 0.1;

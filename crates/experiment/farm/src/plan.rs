@@ -259,7 +259,8 @@ pub(crate) fn without_air(
 ) -> Plan {
     let interval = case.flow.step.unwrap_or(step);
     let n_spin_up_steps = (case.time.spin_up / interval).round() as u64;
-    let row_stride = stride(case.output.interval.unwrap_or(PRESCRIBED_ROW / PRESCRIBED_STEP * step), interval);
+    let row_stride =
+        stride(case.output.interval.unwrap_or(PRESCRIBED_ROW / PRESCRIBED_STEP * step), interval);
     Plan {
         origin: Vector3::ZERO,
         spacing: 0.0,

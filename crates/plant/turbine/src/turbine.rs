@@ -99,8 +99,7 @@ impl Turbine {
             },
         )?;
         let plate = definition.swashplate.map(|plate| plate.at_rest(settings.pitch));
-        let state =
-            TurbineState::at_start(structure.state().clone(), aerodynamics.start(), plate);
+        let state = TurbineState::at_start(structure.state().clone(), aerodynamics.start(), plate);
         let n_points = definition.n_blades * N_ELEMENTS;
         let workspace = Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0));
         let held = if settings.flexible { Vec::new() } else { all_but_the_generator() };

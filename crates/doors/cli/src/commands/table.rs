@@ -108,12 +108,7 @@ fn conditions(summary: &Summary) -> String {
 }
 
 /// The cells of `turbine` in the run called `run`.
-fn row(
-    run: &str,
-    turbine: &TurbineSummary,
-    loads: &[LoadColumn],
-    units: &Units,
-) -> Vec<String> {
+fn row(run: &str, turbine: &TurbineSummary, loads: &[LoadColumn], units: &Units) -> Vec<String> {
     let Units { power: (_, power, power_digits), thrust: (_, thrust, thrust_digits), .. } = *units;
     let delivered = turbine.delivered_pitch.map_or(String::new(), |pitch| {
         format!("{:.2}° {:.4} Hz", pitch.delivered_amplitude_deg, pitch.frequency_hz)

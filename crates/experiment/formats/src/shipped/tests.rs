@@ -9,10 +9,8 @@ fn every_case_of_the_repository_is_shipped_under_its_name() {
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .partition(|path| path.extension().is_some_and(|ending| ending == "toml"));
-    let mut files: Vec<String> = cases
-        .iter()
-        .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
-        .collect();
+    let mut files: Vec<String> =
+        cases.iter().map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
     files.sort();
     let laws: Vec<&str> =
         laws.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();

@@ -56,7 +56,8 @@ pub(super) fn swashplate_of(
     }
     if n_blades < LEAST_BLADES {
         let expected = format!("{LEAST_BLADES} blades at least");
-        let fix = "leave [pitch_actuator.swashplate] out: each blade then has an actuator of its own";
+        let fix =
+            "leave [pitch_actuator.swashplate] out: each blade then has an actuator of its own";
         return Err(place.error(&path, expected, format!("n_blades = {n_blades}"), fix));
     }
     let drive = match (plate.travel_per_turn, plate.crank_length) {
@@ -135,15 +136,26 @@ mod tests {
     fn what_no_plate_can_be_is_refused_with_key_and_fix() {
         let cases = [
             ("travel_per_turn = 0.05\n", "", "found neither", "crank_length for an arm"),
-            ("rod_radius", "crank_length = 0.7\nrod_radius", "found both", "crank_length for an arm"),
-            ("travel_per_turn = 0.05", "crank_length = 0.5", "maximum_pitch_deg", "narrow the limits"),
+            (
+                "rod_radius",
+                "crank_length = 0.7\nrod_radius",
+                "found both",
+                "crank_length for an arm",
+            ),
+            (
+                "travel_per_turn = 0.05",
+                "crank_length = 0.5",
+                "maximum_pitch_deg",
+                "narrow the limits",
+            ),
             ("\"a sketch\"", "\" \"", "swashplate.source", "say what is estimated"),
             ("horn_length = 0.7", "horn_length = 0.0", "horn_length", "check figure and unit"),
             ("gain_with_rotor = 1.1", "gain_with_rotor = nan", "gain_with_rotor", "check figure"),
         ];
         for (from, to, expected, fix) in cases {
             let error = error_of(from, to);
-            let text = format!("{error} {:?}", miette::Diagnostic::help(&error).map(|h| h.to_string()));
+            let text =
+                format!("{error} {:?}", miette::Diagnostic::help(&error).map(|h| h.to_string()));
             assert!(text.contains("mine.toml") && text.contains(expected), "{text}");
             assert!(text.contains(fix), "{text}");
         }

@@ -1,7 +1,6 @@
 //! Closed forms, balances and limits.
 
 use super::*;
-use basis::PerBlade;
 use crate::Polar;
 use crate::actuators::PitchActuator;
 use crate::definition::{
@@ -9,6 +8,7 @@ use crate::definition::{
     TowerSection,
 };
 use crate::sample;
+use basis::PerBlade;
 use std::f64::consts::PI;
 
 pub(super) const DENSITY: f64 = 1.2;

@@ -75,7 +75,9 @@ fn blades_stand_as_they_are_asked_to_without_a_step_at_the_start() {
         Commands { pitch: PerBlade::splat(3, 0.02), generator_torque: 1e6, yaw_rate: 0.0 };
     for _ in 0..20 {
         turbine.advance(INTERVAL, &winds, &at_rest);
-        assert!(turbine.truth(0.0, INTERVAL).pitch.iter().all(|pitch| (pitch - 0.02).abs() < 1e-12));
+        assert!(
+            turbine.truth(0.0, INTERVAL).pitch.iter().all(|pitch| (pitch - 0.02).abs() < 1e-12)
+        );
     }
     assert_eq!(turbine.limited_instants(), (20, 0));
 }
