@@ -207,8 +207,8 @@ impl Swashplate {
         state.flank = (state.flank + share).clamp(-1.0, 1.0);
     }
 
-    /// What the plate in `state` makes of the rods' `plane`: turned back by the slack that is used up, with the
-    /// gain of its flank.
+    /// What the plate in `state` makes of the rods' `plane`: turned back by the slack that is used up, with
+    /// the gain of its flank.
     fn lean(&self, state: &SwashplateState, plane: FixedFrame) -> FixedFrame {
         let [with, against] = self.gains;
         let gain = 0.5 * (with + against) + 0.5 * (with - against) * state.flank;

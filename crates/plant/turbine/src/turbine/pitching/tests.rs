@@ -82,8 +82,8 @@ fn blades_stand_as_they_are_asked_to_without_a_step_at_the_start() {
     assert_eq!(turbine.limited_instants(), (20, 0));
 }
 
-/// A helix goes round slowly in the fixed frame: the plate follows it, and blades that are told for themselves
-/// what to do lag by what their actuators and the control interval take at rotor frequency.
+/// A helix goes round slowly in the fixed frame: the plate follows it, and blades that are told each for
+/// itself what to do lag by what their actuators and the control interval take at rotor frequency.
 #[test]
 fn a_plate_lags_by_the_excitation_alone() {
     let period = 40.0;
