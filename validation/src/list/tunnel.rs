@@ -15,7 +15,7 @@ pub(super) const TURBINE: Validation = Validation {
 pub(super) const HELIX: Validation = Validation {
     name: "tunnel-helix",
     about: "two tunnel turbines at 5 D: what a helix of either sense costs and gives, beside a published experiment",
-    cost: Cost::Minutes(60),
+    cost: Cost::Minutes(8),
     run: tunnel::tunnel_helix,
     pictures: None,
     page: "tunnel-helix",

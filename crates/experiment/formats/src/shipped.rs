@@ -74,7 +74,7 @@ pub const CASES: &[ShippedCase] = &[
     ShippedCase {
         name: "tunnel-helix",
         file: include_str!("../../../../cases/tunnel-helix.toml"),
-        minutes: 60.0,
+        minutes: 7.0,
         after: None,
     },
     ShippedCase {
