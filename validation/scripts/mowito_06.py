@@ -224,7 +224,7 @@ gain_against_rotor = {2.0 / 2.25:.6f}  # its direction going round so
 source = "Tip-speed ratio: {tunnel}, par. 2.1. K of K omega^2 by blade-element momentum theory. Fitted: fine pitch, that of the greatest power at tip-speed ratio 5; the paper's 10 deg count from a stop of the bearing. Estimated: gains for a speed loop of {corner:g} rad/s on the inertia above; what is above {RATED_WIND:g} m/s, where nobody measured"
 # Low-speed side; gains act on measured minus reference rotor speed (rad/s).
 rated_power_kw = {1e-3 * efficiency * rated_torque * rated_speed:.7f}  # electrical
-rated_rotor_speed_rpm = {rated_speed * 30 / np.pi:.4f}
+rated_rotor_speed_rpm = {rated_speed * 30 / np.pi:.3f}
 minimum_rotor_speed_rpm = 200.0
 optimal_tip_speed_ratio = {RATIO}
 torque_gain = {gain:.6e}  # torque over rotor speed squared below rated, N m s^2
