@@ -3,6 +3,8 @@
 pub mod fatigue;
 pub mod lateral;
 pub mod line;
+pub mod modes;
+pub mod particles;
 pub mod phase;
 pub mod phases;
 pub mod pitch;

@@ -2,6 +2,7 @@
 
 use crate::seeds::SeedsError;
 use analysis::AnalysisError;
+use analysis::modes::ModesError;
 use farm::assemble::AssemblyError;
 use farm::case::Case;
 use flow::inflow::InflowError;
@@ -161,6 +162,26 @@ pub enum PostprocessingError {
         /// What to do.
         fix: String,
     },
+    /// A run kept no plane at instants, or not the one asked for.
+    #[error("{} kept {}", folder.display(), unkept(plane))]
+    #[diagnostic(help("{}", how_to_keep(planes)))]
+    NoInstants {
+        /// Folder of the run.
+        folder: PathBuf,
+        /// Plane asked for.
+        plane: Option<String>,
+        /// Planes that it kept at instants.
+        planes: Vec<String>,
+    },
+    /// Instants have no modes.
+    #[error("{} has no modes: {source}", path.display())]
+    #[diagnostic(help("{}", crate::modes::fix_of(source)))]
+    Modes {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: ModesError,
+    },
     /// A series lacks a channel.
     #[error("{} has no channel `{channel}`", told(path))]
     #[diagnostic(help(
@@ -284,5 +305,22 @@ fn nobody(run: &str, requested: &Option<String>) -> String {
     match requested {
         Some(name) => format!("run {run} has no turbine called `{name}`"),
         None => format!("no turbine of run {run} estimates the phase of a helix"),
+    }
+}
+
+/// What a run did not keep: the `plane`, or any.
+fn unkept(plane: &Option<String>) -> String {
+    match plane {
+        Some(plane) => format!("no plane `{plane}` at instants"),
+        None => "no plane at instants".to_owned(),
+    }
+}
+
+/// What to do where `planes` are kept at instants, but not the one asked for.
+fn how_to_keep(planes: &[String]) -> String {
+    if planes.is_empty() {
+        "give the case output.plane_interval = 1.0, and make the run again with `wakemix run CASE --overwrite`".to_owned()
+    } else {
+        format!("it has {}: name one with --plane", planes.join(", "))
     }
 }

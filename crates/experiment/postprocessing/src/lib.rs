@@ -8,6 +8,7 @@ mod changes;
 mod error;
 mod hub_vortex;
 mod lock;
+mod modes;
 mod over_offset;
 mod phase;
 mod precursor;
@@ -26,6 +27,7 @@ pub use hub_vortex::{
     HubVortexAnswer, HubVortexNumbers, HubVortexQuestion, HubVortexTrack, VortexFilter, hub_vortex,
 };
 pub use lock::{LockAnswer, LockQuestion, lock};
+pub use modes::{ModesAnswer, ModesQuestion, modes};
 pub use over_offset::over_offset;
 pub use phase::{
     PhaseAnswer, PhaseAnswers, PhaseAxis, PhaseQuestion, PreviewUse, Replayed, phase, phases, tune,

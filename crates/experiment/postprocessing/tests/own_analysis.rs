@@ -62,6 +62,7 @@ fn an_analysis_of_ones_own_answers_beside_the_others() {
         "lock",
         "meandering",
         "hub-vortex",
+        "modes",
         "energy",
     ];
     assert_eq!(names, expected);

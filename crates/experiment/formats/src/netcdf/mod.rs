@@ -13,6 +13,7 @@ mod read;
 mod scans;
 mod setting;
 mod statistics;
+mod stored_instants;
 mod stored_scans;
 
 pub use instants::InstantWriter;
@@ -23,6 +24,7 @@ pub use read::{read_phases, read_plane, read_planes};
 pub use scans::{ScanInstant, ScanSetting, ScanWriter, scan_bytes};
 pub use setting::{PlacedTurbine, PlaneSetting};
 pub use statistics::{Column, StoredStatistics, TimeHeight, read_statistics, write_statistics};
+pub use stored_instants::{AboutInstants, StoredInstants};
 pub use stored_scans::{StoredScans, read_scans};
 
 use crate::{FileError, atomic};

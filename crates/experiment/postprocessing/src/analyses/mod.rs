@@ -8,6 +8,7 @@ mod gains;
 mod hub_vortex;
 mod lock;
 mod meandering;
+mod modes;
 mod moments;
 mod offsets;
 mod phase;
@@ -34,6 +35,7 @@ pub const ANALYSES: &[Analysis] = &[
     lock::ANALYSIS,
     meandering::ANALYSIS,
     hub_vortex::ANALYSIS,
+    modes::ANALYSIS,
 ];
 
 /// Where an analysis draws its figures.
