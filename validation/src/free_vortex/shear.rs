@@ -34,7 +34,8 @@ const VORTEX: [&str; 6] = [
 ];
 const FREE: [&str; 2] = ["carried", "left-out"];
 
-/// At each distance: height of the wake over the hub (diameters), and mean wind over the disc of a rotor there
+/// At each distance: height of the wake over the hub (diameters), and mean wind over the disc of a
+/// rotor there
 /// over the hub's wind.
 type Wake = [[f64; 2]; DISTANCES.len()];
 

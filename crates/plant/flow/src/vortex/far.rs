@@ -1,8 +1,8 @@
 //! What a far box amounts to at places next to each other.
 
 use super::division::Cluster;
-use super::field::{GROUP, Lanes};
 use super::near::dot;
+use super::neighbours::{GROUP, Lanes};
 use super::tree::UNIT;
 use crate::simd::Simd;
 use basis::Vector3;
@@ -57,7 +57,8 @@ macro_rules! unrolled {
 /// diagonal from order to order, and in each from degree to degree.
 ///
 /// # Safety
-/// [`n_coefficients`](super::harmonics::n_coefficients) can be read, on a machine with the instructions of `V`.
+/// [`n_coefficients`](super::harmonics::n_coefficients) can be read, on a machine with the instructions
+/// of `V`.
 #[inline(always)]
 #[expect(unused_assignments, reason = "the last of all unrolled steps prepares another one")]
 unsafe fn irregular<V: Simd, const DEGREE: usize>(coefficients: *const f32, at: [V; 3]) -> [V; 3] {
@@ -115,7 +116,8 @@ unsafe fn irregular<V: Simd, const DEGREE: usize>(coefficients: *const f32, at: 
     [sums[0][0] + sums[1][0], sums[0][1] + sums[1][1], sums[0][2] + sums[1][2]]
 }
 
-/// Adds the product of `part`, number `index` of all parts of harmonics, and its three `coefficients` to `sum`.
+/// Adds the product of `part`, number `index` of all parts of harmonics, and its three `coefficients` to
+/// `sum`.
 ///
 /// # Safety
 /// They can be read, on a machine with the instructions of `V`.

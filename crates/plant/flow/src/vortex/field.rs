@@ -6,10 +6,11 @@
 use super::far::far;
 use super::harmonics::{HIGHEST_DEGREE, LOWEST_DEGREE, n_coefficients};
 use super::near::near;
+use super::neighbours::{GROUP, Lanes};
 use super::segment::Segment;
 use super::tree::{Tree, UNIT};
 use crate::pool::Pool;
-use crate::simd::{Backend, MAXIMUM_LANES, Portable, Simd};
+use crate::simd::{Backend, Portable, Simd};
 use basis::Vector3;
 
 /// Distance from a box beyond which its cores are not felt, in the widest of them (–): 1 − h²/√(r⁴ + h⁴) is
@@ -17,8 +18,6 @@ use basis::Vector3;
 const CORES_AWAY: f64 = 6.0;
 /// Most segments that cost less one by one than their box (–).
 const FEW: u32 = 2;
-/// Places that go through the boxes together (–).
-pub(super) const GROUP: usize = MAXIMUM_LANES;
 /// Places that a thread takes at once (–).
 pub(super) const CHUNK: usize = 4 * GROUP;
 
@@ -71,8 +70,6 @@ pub(super) struct Field {
 
 /// Adds the velocities of all boxes at the places of a group to the sums there.
 type Sum = unsafe fn(&Field, &Group, &mut Lanes);
-/// Three components at each place of a group.
-pub(super) type Lanes = [[f32; GROUP]; 3];
 
 /// Places near each other.
 struct Group {
@@ -149,7 +146,8 @@ impl Field {
     }
 }
 
-/// The loop for `backend`, whose instructions the caller has found on this machine, and harmonics of `degree`.
+/// The loop for `backend`, whose instructions the caller has found on this machine, and harmonics of
+/// `degree`.
 fn sum_of(backend: Backend, degree: usize) -> Sum {
     match degree {
         2 => at_degree::<2>(backend),

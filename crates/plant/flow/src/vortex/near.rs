@@ -1,13 +1,14 @@
 //! What near segments induce at places next to each other, one by one.
 
-use super::field::{GROUP, Lanes};
+use super::neighbours::{GROUP, Lanes};
 use super::segment::BEYOND;
 use super::tree::{Narrow, UNIT};
 use crate::simd::Simd;
 use basis::Vector3;
 
 /// Adds what `segments` of a box induce at `places` about a centre that lies `way` (m) from its own, one by
-/// one: [`Segment::per_circulation`](super::Segment::per_circulation), with two inverse roots, each to four digits.
+/// one: [`Segment::per_circulation`](super::Segment::per_circulation), with two inverse roots, each to
+/// four digits.
 ///
 /// # Safety
 /// On a machine with the instructions of `V`.

@@ -1,8 +1,13 @@
 //! Places in an order in which those next to each other are near each other.
 
-use super::field::GROUP;
 use crate::pool::Pool;
+use crate::simd::MAXIMUM_LANES;
 use basis::Vector3;
+
+/// Places that go through the boxes together (–).
+pub(super) const GROUP: usize = MAXIMUM_LANES;
+/// Three components at each place of a group.
+pub(super) type Lanes = [[f32; GROUP]; 3];
 
 /// Divisions after which what is left is shared among threads (–), and how many shares that makes.
 const SHARED_AFTER: u32 = 4;

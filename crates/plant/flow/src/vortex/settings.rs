@@ -44,8 +44,10 @@ pub struct WakeSettings {
 /// What the shear and veer of the mean wind do to wakes.
 ///
 /// Vortex rings that are carried faster above than below lean downwind, and what leans moves itself upwards.
-/// In air the vorticity of the shear itself holds against that, for the rotor bends and stretches it; here the
-/// wind's own vorticity is not bent, so that wakes in sheared wind rise. See the theory page, "Free vortices".
+/// In air the vorticity of the shear itself holds against that, for the rotor bends and stretches it;
+/// here the
+/// wind's own vorticity is not bent, so that wakes in sheared wind rise. See the theory page, "Free
+/// vortices".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MeanShear {
     /// They carry wakes as all of the wind does.

@@ -49,7 +49,8 @@ pub(super) struct Tree {
     pub(super) clusters: Vec<Cluster>,
     /// Segments in the tree's order.
     pub(super) narrow: Vec<Narrow>,
-    /// Those of the velocity outside of each box, [`n_coefficients`] for each, places being told in its radii.
+    /// Those of the velocity outside of each box, [`n_coefficients`] for each, places being told in its
+    /// radii.
     pub(super) coefficients: Vec<f32>,
     /// Potential of vector strengths Γ l/4π about the centre of each box, [`n_moments`] for each.
     moments: Vec<Moment>,
@@ -93,7 +94,8 @@ impl Tree {
         }
     }
 
-    /// Boxes that `most` segments have at the most (–): halves of halves, with half of [`LEAF`] or more in each
+    /// Boxes that `most` segments have at the most (–): halves of halves, with half of [`LEAF`] or more
+    /// in each
     /// that is not divided.
     pub(super) fn most_boxes(most: usize) -> usize {
         4 * most / LEAF + 2 * N_KINDS

@@ -1,8 +1,8 @@
 //! The wakes of all blades in the wind, as a flow.
 
 use super::body::{Body, N_SIDES, sides_to_nodes};
-use super::field::{CHUNK, Field, GROUP};
-use super::neighbours::Neighbours;
+use super::field::{CHUNK, Field};
+use super::neighbours::{GROUP, Neighbours};
 use super::rotor::Rotor;
 use super::segment::Segment;
 use super::settings::{MeanShear, WakeError, WakeSettings};
@@ -28,7 +28,8 @@ const LOWEST: f64 = 0.01;
 /// others without a bound vortex, such as the blades' drag and the tower's, leave no trace.
 ///
 /// Limits: the air is incompressible and free of turbulence of its own making; vorticity of shear in the wind
-/// is not bent by the rotors, and what it would hold against is left out with it ([`MeanShear`]); bodies do not
+/// is not bent by the rotors, and what it would hold against is left out with it ([`MeanShear`]); bodies
+/// do not
 /// push the air aside.
 pub struct FreeWake {
     pub(super) settings: WakeSettings,
