@@ -203,7 +203,7 @@ mod tests {
             }
             let binomial = factorial(n) / (factorial(k) * factorial(n - k));
             let derived = factorial(power) / factorial(power - n - m);
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
             sign * binomial * derived * x.powi((power - n - m) as i32)
         };
         let sum: f64 = (0..=n).map(term).sum();

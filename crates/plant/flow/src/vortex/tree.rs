@@ -66,6 +66,9 @@ pub(super) struct Tree {
     changed: Vec<bool>,
 }
 
+/// What a thread divides: a share, its boxes, and its segments in the tree's order.
+type Boxes<'a> = (Share, &'a mut [Cluster], &'a mut [u32]);
+
 /// What a thread makes of a share's boxes.
 struct Part<'a> {
     share: Share,
@@ -161,8 +164,7 @@ impl Tree {
     /// Makes the boxes of all shares.
     fn divide_shares(&mut self, segments: &[Segment], pool: &mut Pool) {
         let Self { shares, clusters, order, .. } = self;
-        let mut parts: [Option<(Share, &mut [Cluster], &mut [u32])>; MOST_PARTS] =
-            std::array::from_fn(|_| None);
+        let mut parts: [Option<Boxes<'_>>; MOST_PARTS] = std::array::from_fn(|_| None);
         let (mut clusters, mut order) = (&mut clusters[..], &mut order[..]);
         let mut next_cluster = 0;
         for (place, share) in parts.iter_mut().zip(&*shares) {
