@@ -25,8 +25,8 @@ pub(super) fn add_products(rows: &[f64], n_points: usize, products: &mut [f64]) 
     }
 }
 
-/// Adds to `products`, n × n, the conjugate of each of the n rows of `n_points` in `rows` times each; to the lower
-/// triangle.
+/// Adds to `products`, n × n, the conjugate of each of the n rows of `n_points` in `rows` times each; to
+/// the lower triangle.
 pub(super) fn add_hermitian_products(
     rows: &[Complex64],
     n_points: usize,

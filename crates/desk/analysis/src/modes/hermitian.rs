@@ -1,8 +1,8 @@
 //! Eigenvalues and vectors of Hermitian matrices of moderate size.
 //!
-//! Householder's reflections to a tridiagonal matrix, then the implicit symmetric QR step with Wilkinson's shift.
-//! Source: Golub and Van Loan, "Matrix Computations", 4th ed., 2013, §8.3. Written here, as a library of dense
-//! algebra would come into every build of the program, and modes need this alone.
+//! Householder's reflections to a tridiagonal matrix, then the implicit symmetric QR step with Wilkinson's
+//! shift. Source: Golub and Van Loan, "Matrix Computations", 4th ed., 2013, §8.3. Written here, as a
+//! library of dense algebra would come into every build of the program, and modes need this alone.
 
 use realfft::num_complex::Complex64;
 
@@ -18,8 +18,8 @@ pub(super) struct Eigen {
     pub(super) vectors: Vec<Vec<Complex64>>,
 }
 
-/// Those of `matrix`, `n` × `n` in rows, of which the lower triangle is read; in single file by size of the matrix
-/// cubed.
+/// Those of `matrix`, `n` × `n` in rows, of which the lower triangle is read; in single file by size of the
+/// matrix cubed.
 pub(super) fn eigen(matrix: &[Complex64], n: usize) -> Eigen {
     let mut rows: Vec<Vec<Complex64>> = (0..n)
         .map(|i| {
@@ -87,12 +87,9 @@ fn reflect(rows: &mut [Vec<Complex64>], start: usize, v: &[Complex64]) {
     }
 }
 
-/// The columns of the product of all `reflections`, turned so that the entries `beside` the diagonal are their sizes.
-fn columns(
-    reflections: &[Vec<Complex64>],
-    beside: &[Complex64],
-    n: usize,
-) -> Vec<Vec<Complex64>> {
+/// The columns of the product of all `reflections`, turned so that the entries `beside` the diagonal are
+/// their sizes.
+fn columns(reflections: &[Vec<Complex64>], beside: &[Complex64], n: usize) -> Vec<Vec<Complex64>> {
     let mut columns = vec![vec![NOTHING; n]; n];
     let mut turn = ONE;
     for (i, column) in columns.iter_mut().enumerate() {
@@ -111,8 +108,8 @@ fn columns(
     columns
 }
 
-/// On return `diagonal` holds the eigenvalues of the tridiagonal matrix with `beside` next to it, and `vectors` are
-/// turned with it.
+/// On return `diagonal` holds the eigenvalues of the tridiagonal matrix with `beside` next to it, and
+/// `vectors` are turned with it.
 fn diagonalise(diagonal: &mut [f64], beside: &mut [f64], vectors: &mut [Vec<Complex64>]) {
     let is_small = |diagonal: &[f64], beside: &[f64], i: usize| {
         beside[i].abs() <= f64::EPSILON * (diagonal[i].abs() + diagonal[i + 1].abs())

@@ -3,9 +3,10 @@
 //! Instants come strip by strip of points, each strip with all of its time, so that what is held is a strip,
 //! and neither the plane's history nor its blocks. Energies are means over the area.
 //!
-//! Sources: Sirovich (1987), "Turbulence and the dynamics of coherent structures", Quart. Appl. Math. 45 (method of
-//! snapshots); Towne, Schmidt and Colonius (2018), "Spectral proper orthogonal decomposition and its relationship
-//! to dynamic mode decomposition and resolvent analysis", J. Fluid Mech. 847 (spectral estimation of §3.2).
+//! Sources: Sirovich (1987), "Turbulence and the dynamics of coherent structures", Quart. Appl. Math. 45
+//! (method of snapshots); Towne, Schmidt and Colonius (2018), "Spectral proper orthogonal decomposition and
+//! its relationship to dynamic mode decomposition and resolvent analysis", J. Fluid Mech. 847 (spectral
+//! estimation of §3.2).
 
 mod error;
 mod gram;

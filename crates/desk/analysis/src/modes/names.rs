@@ -20,8 +20,9 @@ pub struct FrequencyNames {
 }
 
 impl FrequencyNames {
-    /// Those of a helix of frequency `excitation` (Hz) behind a rotor that turns at `rotor` (Hz) with `n_blades` blades:
-    /// f_e and its multiples, f_r, the blades' passing, and f_r ± f_e, at which blades pitch.
+    /// Those of a helix of frequency `excitation` (Hz) behind a rotor that turns at `rotor` (Hz) with
+    /// `n_blades` blades: f_e and its multiples, f_r, the blades' passing, and f_r ± f_e, at which blades
+    /// pitch.
     pub fn new(excitation: Option<f64>, rotor: Option<f64>, n_blades: usize) -> Self {
         let mut all = Vec::new();
         let mut add = |name: String, frequency: f64| {

@@ -41,7 +41,8 @@ pub struct Pod {
     pub n_masked: usize,
 }
 
-/// Modes by energy of `snapshots`: eigenvectors of the correlation of instants, each point weighted by its area.
+/// Modes by energy of `snapshots`: eigenvectors of the correlation of instants, each point weighted by its
+/// area.
 ///
 /// It reads all twice, and holds a strip, the square of the number of instants, and the modes that are kept.
 ///
@@ -91,8 +92,8 @@ pub fn pod<S: Snapshots>(snapshots: &mut S, settings: &PodSettings) -> Result<Po
     Ok(Pod { energies, total, coefficients, modes, mean, n_masked })
 }
 
-/// Eigenvalues of `correlation`, `n` × `n`, times `scale`, greatest first, with their vectors, whose greatest entry
-/// is positive.
+/// Eigenvalues of `correlation`, `n` × `n`, times `scale`, greatest first, with their vectors, whose
+/// greatest entry is positive.
 fn decomposed(correlation: &[f64], n: usize, scale: f64) -> (Vec<f64>, Vec<Vec<f64>>) {
     let matrix: Vec<Complex64> = correlation.iter().map(|value| Complex64::from(*value)).collect();
     let found = eigen(&matrix, n);

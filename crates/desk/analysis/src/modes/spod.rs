@@ -61,8 +61,9 @@ pub struct SpodSettings {
 pub struct Spod {
     /// Distance of the frequencies, of which the first is zero (Hz).
     pub frequency_step: f64,
-    /// Energy density of each mode at each frequency, greatest first (m²/s²/Hz): mean over the area, one-sided, so
-    /// that the sum over modes and frequencies times the step is the mean of |u'|² over area and blocks.
+    /// Energy density of each mode at each frequency, greatest first (m²/s²/Hz): mean over the area,
+    /// one-sided, so that the sum over modes and frequencies times the step is the mean of |u'|² over area
+    /// and blocks.
     pub densities: Vec<Vec<f64>>,
     /// Blocks (–).
     pub n_blocks: usize,
@@ -87,9 +88,9 @@ pub struct SpectralModes {
     pub index: usize,
     /// The frequency (Hz).
     pub frequency: f64,
-    /// The modes, greatest energy first: real and imaginary part of u, v, w in the order of the grid (–), whose mean
-    /// square over the area is 1; not a number at holes. The real part of mode · exp (2π i f t) moves as the mode does; its phase is that at
-    /// which the mode's largest value is real.
+    /// The modes, greatest energy first: real and imaginary part of u, v, w in the order of the grid (–),
+    /// whose mean square over the area is 1; not a number at holes. The real part of mode · exp (2π i f t)
+    /// moves as the mode does; its phase is that at which the mode's largest value is real.
     pub modes: Vec<[Vec<[f32; 2]>; 3]>,
 }
 
@@ -113,8 +114,8 @@ impl Spod {
 
 /// Modes of `snapshots` at each frequency. The mean over all time is removed.
 ///
-/// It reads all twice, and holds a strip, for each frequency the square of the number of blocks, and the modes
-/// that are kept.
+/// It reads all twice, and holds a strip, for each frequency the square of the number of blocks, and the
+/// modes that are kept.
 ///
 /// # Errors
 /// [`ModesError`], and what reading gives.
@@ -199,8 +200,8 @@ fn modes_at<S: Snapshots>(
     Ok(SpectralModes { index, frequency: index as f64 * blocks.frequency_step, modes })
 }
 
-/// On return `out` holds the mode of `vector` times `size` at the points of `strip`, whose transforms are `spectrum`; `largest`
-/// the greatest value so far.
+/// On return `out` holds the mode of `vector` times `size` at the points of `strip`, whose transforms are
+/// `spectrum`; `largest` the greatest value so far.
 fn project(
     strip: &Strip,
     spectrum: &[Complex64],
@@ -212,7 +213,8 @@ fn project(
     let n_strip = strip.points.len();
     for (place, out) in out.iter_mut().enumerate().filter(|(place, _)| strip.roots[*place] > 0.0) {
         let parts = vector.iter().enumerate();
-        let sum: Complex64 = parts.map(|(block, part)| spectrum[block * n_strip + place] * part).sum();
+        let sum: Complex64 =
+            parts.map(|(block, part)| spectrum[block * n_strip + place] * part).sum();
         let value = sum * (size / strip.roots[place]);
         if value.norm_sqr() > largest.norm_sqr() {
             *largest = value;
@@ -293,8 +295,8 @@ impl Blocks {
         Ok(kept)
     }
 
-    /// Transforms of the blocks of `values`, instants of `n_points`, at the `frequencies`: for each of these block by block,
-    /// all points of a block together.
+    /// Transforms of the blocks of `values`, instants of `n_points`, at the `frequencies`: for each of
+    /// these block by block, all points of a block together.
     fn spectra(
         &self,
         values: &[f64],
@@ -308,7 +310,8 @@ impl Blocks {
         let mut scratch = self.transform.make_scratch_vec();
         for place in 0..n_points {
             for block in 0..self.n_blocks {
-                let samples = values[block * self.hop * n_points + place..].iter().step_by(n_points);
+                let samples =
+                    values[block * self.hop * n_points + place..].iter().step_by(n_points);
                 for ((input, sample), weight) in input.iter_mut().zip(samples).zip(&self.weights) {
                     *input = sample * weight;
                 }
@@ -325,7 +328,8 @@ impl Blocks {
 
     /// Ends of the 95 % interval of a density over the density: χ² of twice the number of independent blocks.
     ///
-    /// Blocks that overlap count as Welch (1967) has it; the quantiles of χ² are Wilson and Hilferty's (1931).
+    /// Blocks that overlap count as Welch (1967) has it; the quantiles of χ² are Wilson and Hilferty's
+    /// (1931).
     fn interval_95(&self) -> [f64; 2] {
         let square: f64 = self.weights.iter().map(|weight| weight * weight).sum();
         let mut shared = 0.0;

@@ -8,8 +8,8 @@ use std::ops::Range;
 /// transforms of blocks that overlap by half.
 pub const STRIP_BYTES: u64 = (3 * (size_of::<f32>() + size_of::<f64>()) + 2 * 16) as u64;
 
-/// Memory that modes of `n_instants` on `grid` take in strips of at most `memory` bytes (bytes): the strip, which has
-/// one row of points at least.
+/// Memory that modes of `n_instants` on `grid` take in strips of at most `memory` bytes (bytes): the strip,
+/// which has one row of points at least.
 pub fn strip_bytes(grid: &basis::records::Grid, n_instants: usize, memory: u64) -> u64 {
     let rows = steps_of(grid, n_instants, memory) as u64;
     rows * row_points(grid) as u64 * n_instants as u64 * STRIP_BYTES

@@ -57,7 +57,8 @@ fn noisy(n_points: [usize; 3], n_instants: usize, seed: u64) -> HeldSnapshots {
     held
 }
 
-/// A wave of 2 m/s in u, 8 periods of 1 s and two wavelengths; one of 1 m/s in w, 20 periods of 0.4 s and three.
+/// A wave of 2 m/s in u, 8 periods of 1 s and two wavelengths; one of 1 m/s in w, 20 periods of 0.4 s and
+/// three.
 fn two_waves() -> HeldSnapshots {
     held([25, 1, 5], 80, |place, time| {
         let x = place[0] as f64 / 24.0;
@@ -185,8 +186,7 @@ fn all_modes_together_are_the_fluctuations() {
         for (index, value) in values.iter().enumerate() {
             let (instant, point) = (index / n_points, index % n_points);
             let part = |mode: usize| {
-                found.coefficients[mode][instant]
-                    * f64::from(found.modes[mode][component][point])
+                found.coefficients[mode][instant] * f64::from(found.modes[mode][component][point])
             };
             let sum = f64::from(found.mean[component][point]) + (0..5).map(part).sum::<f64>();
             assert!((sum - f64::from(*value)).abs() < 1e-5, "{sum} {value}");
@@ -242,8 +242,8 @@ fn what_has_no_modes_is_refused_with_its_place() {
 
 #[test]
 fn the_interval_is_that_of_chi_squared() {
-    // Ten blocks that do not overlap have 20 degrees of freedom: χ² of 34.170 and 9.591 (tables). The quantiles
-    // are within half a percent.
+    // Ten blocks that do not overlap have 20 degrees of freedom: χ² of 34.170 and 9.591 (tables). The
+    // quantiles are within half a percent.
     let mut field = noisy([2, 2, 1], 160, 1);
     let [low, high] = spod(&mut field, &spod_settings(16, 0.0, Window::Even)).unwrap().interval_95;
     assert!((low / (20.0 / 34.170) - 1.0).abs() < 0.005, "{low}");

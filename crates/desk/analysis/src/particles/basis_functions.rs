@@ -15,8 +15,8 @@ pub(super) fn n_terms(order: Order, axes: [bool; 3]) -> usize {
     }
 }
 
-/// On return `terms` begins with those of `order` at `place`, in the coordinates `axes`: the constant, the linear ones, the
-/// quadratic ones.
+/// On return `terms` begins with those of `order` at `place`, in the coordinates `axes`: the constant, the
+/// linear ones, the quadratic ones.
 pub(super) fn terms_at(
     place: [f64; 3],
     order: Order,

@@ -12,12 +12,14 @@ pub struct Binned {
     pub size: [f64; 3],
     /// Order of the polynomial of each bin; none where it is empty.
     pub order: Vec<Option<Order>>,
-    /// Samples of each bin, mean velocity at its middle (m/s), and stresses of what the polynomial leaves (m²/s²).
+    /// Samples of each bin, mean velocity at its middle (m/s), and stresses of what the polynomial leaves
+    /// (m²/s²).
     pub moments: Moments,
-    /// Standard error of the means of u, v, w (m/s): samples are taken for independent, which those of one track are
-    /// not.
+    /// Standard error of the means of u, v, w (m/s): samples are taken for independent, which those of one
+    /// track are not.
     pub error: [Vec<f32>; 3],
-    /// Gradient of u, v, w along x, y, z (1/s): `gradient[component][axis]`; not a number where a bin has a mean alone.
+    /// Gradient of u, v, w along x, y, z (1/s): `gradient[component][axis]`; not a number where a bin has a
+    /// mean alone.
     pub gradient: [[Vec<f32>; 3]; 3],
     /// How the means converged, stage by stage; all samples last.
     pub convergence: Vec<Convergence>,
@@ -45,7 +47,8 @@ impl Binned {
 pub struct Convergence {
     /// Particles so far (–).
     pub n_taken: u64,
-    /// Root of the mean square of the difference of u, v, w to the last means (m/s), over bins that had a mean then.
+    /// Root of the mean square of the difference of u, v, w to the last means (m/s), over bins that had a
+    /// mean then.
     pub change: f64,
     /// Root of the mean square of the standard errors then (m/s).
     pub error: f64,

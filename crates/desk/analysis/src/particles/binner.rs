@@ -49,8 +49,8 @@ impl Binner {
         &self.settings
     }
 
-    /// Takes in `particle`; allocates nothing. One that is not whole is counted and left out, as is one outside
-    /// all bins.
+    /// Takes in `particle`; allocates nothing. One that is not whole is counted and left out, as is one
+    /// outside all bins.
     pub fn add(&mut self, particle: &Particle) {
         if !particle.is_whole() {
             self.tally.n_holes += 1;

@@ -4,8 +4,8 @@ use super::basis_functions::{MOST_TERMS, linear_term, n_terms};
 use super::{BinSettings, Order};
 use basis::records::STRESSES;
 
-/// Share of a term's own sum that must be left after the terms before it (–): less means that the samples do not tell the
-/// terms apart.
+/// Share of a term's own sum that must be left after the terms before it (–): less means that the samples
+/// do not tell the terms apart.
 const APART: f64 = 1e-6;
 
 /// The sums of one bin, as [`BinSettings::stride`] lays them out.
@@ -27,7 +27,8 @@ pub(super) struct Fitted {
     pub(super) order: Order,
     /// At the middle (m/s), from the reference.
     pub(super) mean: [f64; 3],
-    /// Slope of each component along each axis, in half sizes of the bin (m/s); not a number where it has none.
+    /// Slope of each component along each axis, in half sizes of the bin (m/s); not a number where it has
+    /// none.
     pub(super) slope: [[f64; 3]; 3],
     /// Stresses of what the polynomial leaves (m²/s²), as [`STRESSES`] orders them.
     pub(super) stress: [f64; 6],
@@ -42,8 +43,8 @@ impl<'a> Sums<'a> {
         Self { squares: bin[0], products, moments, velocities, n_terms }
     }
 
-    /// The polynomial of the highest order for which `n` samples are enough and apart; none where there are too
-    /// few for any.
+    /// The polynomial of the highest order for which `n` samples are enough and apart; none where there are
+    /// too few for any.
     pub(super) fn fitted(&self, n: u32, settings: &BinSettings) -> Option<Fitted> {
         let allowed = |order: &Order| *order <= settings.order && n >= settings.needed(*order);
         let orders = Order::DESCENDING.into_iter().filter(allowed);

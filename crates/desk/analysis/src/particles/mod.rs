@@ -1,12 +1,12 @@
 //! Velocity on a grid from particles: bins that overlap, Gaussian weights, and a local polynomial.
 //!
-//! Particles stream; what is held are sums for each bin. A bin gives mean, gradients and stresses where it has samples
-//! enough, and says how many and how sure.
+//! Particles stream; what is held are sums for each bin. A bin gives mean, gradients and stresses where it
+//! has samples enough, and says how many and how sure.
 //!
-//! Sources: van der Hoek et al. (2024), Wind Energy, §2.3 (bins of 40 mm, Gaussian weights, overlap 75 %); Agüera, Cafiero,
-//! Astarita and Discetti (2016), "Ensemble 3D PTV for high resolution turbulent statistics", Meas. Sci. Technol. 27
-//! (polynomials within bins); Westerweel and Scarano (2005), "Universal outlier detection for PIV data", Exp. Fluids
-//! 39.
+//! Sources: van der Hoek et al. (2024), Wind Energy, §2.3 (bins of 40 mm, Gaussian weights, overlap 75 %);
+//! Agüera, Cafiero, Astarita and Discetti (2016), "Ensemble 3D PTV for high resolution turbulent
+//! statistics", Meas. Sci. Technol. 27 (polynomials within bins); Westerweel and Scarano (2005), "Universal
+//! outlier detection for PIV data", Exp. Fluids 39.
 
 mod basis_functions;
 mod binned;

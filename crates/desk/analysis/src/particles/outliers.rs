@@ -9,8 +9,9 @@ pub const FEWEST_NEIGHBOURS: usize = 5;
 /// How outliers are told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenSettings {
-    /// Greatest distance from the median, over the median distance of the others and the noise (–). Of normal scatter 5
-    /// leaves out 7 in 10⁴ of each component, 2, the source's for vectors of one instant, a sixth.
+    /// Greatest distance from the median, over the median distance of the others and the noise (–). Of
+    /// normal scatter 5 leaves out 7 in 10⁴ of each component, 2, the source's for vectors of one instant,
+    /// a sixth.
     pub limit: f64,
     /// Noise of a velocity (m/s), so that still air has no outliers.
     pub noise: f64,
@@ -179,17 +180,12 @@ pub(super) fn mixed(number: u64) -> u64 {
     bits ^ (bits >> 31)
 }
 
-/// Points of `velocity` (m/s) on `grid` that lie more than `limit` times the median distance of their neighbours and
-/// the `noise` (m/s) from the neighbours' median, in any component; holes are none.
+/// Points of `velocity` (m/s) on `grid` that lie more than `limit` times the median distance of their
+/// neighbours and the `noise` (m/s) from the neighbours' median, in any component; holes are none.
 ///
-/// The neighbours are the 8 around a point of a plane, the 26 in a volume, as far as there are numbers. Source: Westerweel
-/// and Scarano (2005), Eq. 2, who take 2 for the limit and 0.1 pixels for the noise.
-pub fn outlying_points(
-    grid: &Grid,
-    velocity: [&[f32]; 3],
-    limit: f64,
-    noise: f64,
-) -> Vec<bool> {
+/// The neighbours are the 8 around a point of a plane, the 26 in a volume, as far as there are numbers.
+/// Source: Westerweel and Scarano (2005), Eq. 2, who take 2 for the limit and 0.1 pixels for the noise.
+pub fn outlying_points(grid: &Grid, velocity: [&[f32]; 3], limit: f64, noise: f64) -> Vec<bool> {
     let mut around = Vec::new();
     let is_out = |index: usize| {
         let place = grid.place(index);
@@ -209,9 +205,8 @@ pub fn outlying_points(
 /// On return `around` holds the numbers among `values` at the points around `place`.
 fn neighbours(grid: &Grid, place: [usize; 3], values: &[f32], around: &mut Vec<f64>) {
     around.clear();
-    let reach = |axis: usize| {
-        place[axis].saturating_sub(1)..(place[axis] + 2).min(grid.n_points[axis])
-    };
+    let reach =
+        |axis: usize| place[axis].saturating_sub(1)..(place[axis] + 2).min(grid.n_points[axis]);
     for z in reach(2) {
         for y in reach(1) {
             for x in reach(0) {

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 /// Names of the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// Standard deviation of the Gaussian weight over the size of a bin (–): a bin ends two of them from its middle.
+/// Standard deviation of the Gaussian weight over the size of a bin (–): a bin ends two of them from its
+/// middle.
 const GAUSSIAN: f64 = 0.25;
 /// Samples for each term of a polynomial, for it to be fitted (–).
 const SAMPLES_A_TERM: u32 = 2;
@@ -49,8 +50,9 @@ pub struct BinSettings {
 }
 
 impl BinSettings {
-    /// Bins `spacing` (m) apart that overlap by the share `overlap`, over the `region` (lower and upper end along x, y,
-    /// z, m), centred in it; along an axis in which the region is no longer than a bin there is one.
+    /// Bins `spacing` (m) apart that overlap by the share `overlap`, over the `region` (lower and upper end
+    /// along x, y, z, m), centred in it; along an axis in which the region is no longer than a bin there is
+    /// one.
     ///
     /// # Errors
     /// [`ParticlesError`] for numbers that make no bins, or more than `memory` (bytes) holds.
@@ -108,7 +110,8 @@ impl BinSettings {
         n_terms(self.order, self.axes)
     }
 
-    /// Sums of a bin (–): the squares of the weights, products of terms, terms times velocity, products of velocity.
+    /// Sums of a bin (–): the squares of the weights, products of terms, terms times velocity, products of
+    /// velocity.
     pub(super) fn stride(&self) -> usize {
         let n = self.n_terms();
         1 + n * (n + 1) / 2 + 3 * n + 6

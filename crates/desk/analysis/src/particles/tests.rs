@@ -118,38 +118,34 @@ fn a_curved_field_comes_back_exactly_by_the_quadratic_polynomial() {
     }
 }
 
-/// Root of the mean square of the error of u, of `sin (2π x)`, with bins `spacing` apart, in the inner bins.
+/// Error of u, of `sin (2π x)`, over u, at x = 0.24 m with bins `spacing` apart.
 fn error_of(spacing: f64, order: Order) -> f64 {
     let wave = |[x, _, _]: [f64; 3]| [(TAU * x).sin(), 0.0, 0.0];
     // As even as a lattice: no scatter hides the bias.
-    let mut all = Vec::new();
-    for index in 0..4000 {
+    let even = |index: i32| {
         let position = [(f64::from(index) + 0.5) / 4000.0, 0.0, 1.5];
-        all.push(Particle { position, velocity: wave(position) });
-    }
+        Particle { position, velocity: wave(position) }
+    };
     let line = [[0.0, 1.0], [0.0, 0.0], [1.5, 1.5]];
     let settings = BinSettings::over(line, [spacing; 3], 0.75, order, PLENTY).unwrap();
-    let found = binned(settings, &all);
-    let n = found.grid.n_points[0];
-    let inner = 3..n - 3;
-    let square = |place: usize| {
-        let expected = wave([found.grid.coordinate(0, place), 0.0, 0.0])[0];
-        (f64::from(found.moments.mean[0][place]) - expected).powi(2)
-    };
-    (inner.clone().map(square).sum::<f64>() / inner.len() as f64).sqrt()
+    let found = binned(settings, &(0..4000).map(even).collect::<Vec<_>>());
+    let place = (0.24 / spacing).round() as usize;
+    let expected = wave([found.grid.coordinate(0, place), 0.0, 0.0])[0];
+    assert!((found.grid.coordinate(0, place) - 0.24).abs() < 1e-12);
+    1.0 - f64::from(found.moments.mean[0][place]) / expected
 }
 
 #[test]
 fn bias_falls_with_the_square_of_the_size_and_with_its_fourth_power_when_curved() {
-    // Means and straight lines are off by the curvature: half of it times the variance of the weight, which is
-    // 0.774 of the Gaussian's where that is cut at two deviations (1 − 2·2φ(2)/(2Φ(2) − 1)).
+    // Means and straight lines are off by the curvature: half of it times the variance of the weight, which
+    // is 0.774 of the Gaussian's where that is cut at two deviations (1 − 2·2φ(2)/(2Φ(2) − 1)).
     for order in [Order::Constant, Order::Linear] {
         let [coarse, fine] = [0.04, 0.02].map(|spacing| error_of(spacing, order));
         assert!((coarse / fine - 4.0).abs() < 0.1, "{order:?}: {}", coarse / fine);
-        let expected = 0.5 * TAU * TAU * 0.774 * 0.02 * 0.02 / 2.0_f64.sqrt();
+        let expected = 0.5 * TAU * TAU * 0.774 * 0.02 * 0.02;
         assert!((fine / expected - 1.0).abs() < 0.05, "{order:?}: {}", fine / expected);
     }
-    let [coarse, fine] = [0.08, 0.04].map(|spacing| error_of(spacing, Order::Quadratic));
+    let [coarse, fine] = [0.04, 0.02].map(|spacing| error_of(spacing, Order::Quadratic));
     assert!((coarse / fine - 16.0).abs() < 1.5, "{}", coarse / fine);
 }
 
@@ -159,7 +155,7 @@ fn the_standard_error_is_what_the_mean_scatters_by() {
     // 1 / √400 = 5 %; three times that.
     let region = [[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]];
     for order in [Order::Constant, Order::Linear, Order::Quadratic] {
-        let settings = BinSettings::over(region, [0.25; 3], 0.75, order, PLENTY).unwrap();
+        let settings = BinSettings::over(region, [0.2; 3], 0.75, order, PLENTY).unwrap();
         let (mut sum, mut square, mut error, mut stress) = (0.0, 0.0, 0.0, 0.0);
         let n_sets = 200;
         for set in 0..n_sets {
@@ -216,14 +212,14 @@ fn more_samples_make_means_better_by_the_root_of_their_number() {
 #[test]
 fn bins_without_samples_enough_are_empty_and_counted() {
     let half = [[0.0, 0.3], [-0.5, 0.5], [1.0, 2.0]];
-    let mut all = particles(7, 3000, half, |_| [1.0, 2.0, 3.0]);
+    let mut all = particles(7, 400, half, |_| [1.0, 2.0, 3.0]);
     all.push(Particle { position: [0.9, 0.4, 1.9], velocity: [1.0, 2.0, 3.0] });
     all.push(Particle { position: [0.2, f64::NAN, 1.5], velocity: [0.0; 3] });
     all.push(Particle { position: [0.2, 0.0, 1.5], velocity: [0.0, f64::INFINITY, 0.0] });
     all.push(Particle { position: [7.0, 0.0, 1.5], velocity: [0.0; 3] });
     let found = binned(bins(0.1, Order::Quadratic), &all);
     let Tally { n_taken, n_holes, n_outside, n_empty, n_thin, .. } = found.tally;
-    assert_eq!((n_taken, n_holes, n_outside), (3001, 2, 1));
+    assert_eq!((n_taken, n_holes, n_outside), (401, 2, 1));
     let n_sound = found.order.iter().flatten().count() as u64;
     assert_eq!(n_sound + n_empty + n_thin, found.grid.len() as u64);
     assert!(n_thin > 0 && n_empty > 0);
@@ -257,11 +253,12 @@ fn outliers_are_told_from_scatter() {
         }
     }
     let settings = bins(0.1, Order::Linear);
-    let mut screen = Screen::new(&settings.grid, settings.size, ScreenSettings::usual(0.0)).unwrap();
+    let mut screen =
+        Screen::new(&settings.grid, settings.size, ScreenSettings::usual(0.0)).unwrap();
     all.iter().for_each(|particle| screen.look(particle));
     let screened = screen.screened();
-    let [judged, cells] = screened.n_cells();
-    assert_eq!(judged, cells);
+    // Bins of 0.4 m reach 0.2 m over each face of the cube: four cells along each axis, the last one outside.
+    assert_eq!(screened.n_cells(), [27, 64]);
     let (mut found, mut wrong) = (0, 0);
     for (index, particle) in all.iter().enumerate() {
         let is_out = screened.is_outlier(particle);
@@ -269,11 +266,12 @@ fn outliers_are_told_from_scatter() {
         wrong += usize::from(is_out && index % 50 != 0);
     }
     assert_eq!(found, 800);
-    // 5 median distances are 3.37 deviations: 7.5e-4 of each of three components. Medians of 128 samples scatter by a
-    // tenth, which the tail feels: at most three times that.
+    // 5 median distances are 3.37 deviations: 7.5e-4 of each of three components. Medians of 128 samples
+    // scatter by a tenth, which the tail feels: at most three times that.
     let expected = 39_200.0 * 3.0 * 7.5e-4;
     assert!((wrong as f64) < 3.0 * expected && wrong as f64 > expected / 3.0, "{wrong} {expected}");
-    assert!(Screen::new(&settings.grid, settings.size, ScreenSettings { limit: 0.0, ..ScreenSettings::usual(0.0) }).is_err());
+    let none = ScreenSettings { limit: 0.0, ..ScreenSettings::usual(0.0) };
+    assert!(Screen::new(&settings.grid, settings.size, none).is_err());
 }
 
 #[test]

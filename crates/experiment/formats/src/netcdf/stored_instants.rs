@@ -1,9 +1,9 @@
 //! Velocity at many instants in a file, read in strips of points, so that a file of any length takes little
 //! memory.
 
+use super::COMPONENTS;
 use super::grid::{grid_of, shape_of};
 use super::read::{lacks, variable};
-use super::COMPONENTS;
 use crate::{FileError, atomic};
 use basis::records::Grid;
 use netcdf_reader::{NcFile, NcSliceInfo, NcSliceInfoElem};
@@ -46,8 +46,8 @@ impl StoredInstants {
     /// Opens the file at `path`.
     ///
     /// # Errors
-    /// [`FileError::System`] when it cannot be read, [`FileError::Content`] when it is something else, or its time runs
-    /// back.
+    /// [`FileError::System`] when it cannot be read, [`FileError::Content`] when it is something else, or
+    /// its time runs back.
     pub fn open(path: &Path) -> Result<Self, FileError> {
         let unreadable = |error| FileError::system("read", WHAT, path, error);
         // Asked before the library opens it: what is no file is refused here.
@@ -109,7 +109,9 @@ fn decode(file: &NcFile, most: usize) -> Result<(Grid, Vec<f64>), String> {
     for (name, _) in COMPONENTS {
         let shape = shape_of(file, name)?;
         if shape != expected {
-            return Err(format!("`{name}` has the shape {shape:?}, not time, z, y, x: {expected:?}"));
+            return Err(format!(
+                "`{name}` has the shape {shape:?}, not time, z, y, x: {expected:?}"
+            ));
         }
         let kind = file.variable(name).map_err(|_| lacks(name))?.dtype().clone();
         if kind != netcdf_reader::NcType::Float {
@@ -122,7 +124,9 @@ fn decode(file: &NcFile, most: usize) -> Result<(Grid, Vec<f64>), String> {
         }
         if index > 0 && *time <= times[index - 1] {
             let before = times[index - 1];
-            return Err(format!("time runs back: instant {index} is at {time} s, after {before} s"));
+            return Err(format!(
+                "time runs back: instant {index} is at {time} s, after {before} s"
+            ));
         }
     }
     if times.is_empty() {

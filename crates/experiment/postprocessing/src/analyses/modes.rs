@@ -146,7 +146,9 @@ fn text(answer: &ModesAnswer, width: usize) -> String {
             format!("{:.2}", 100.0 * energy / spod.total()),
         ];
         let share = |mode: usize| spod.densities[index].get(mode).map(|part| 100.0 * part / all);
-        cells.extend((0..N_SHOWN).map(|m| share(m).map_or("–".into(), |share| format!("{share:.1}"))));
+        cells.extend(
+            (0..N_SHOWN).map(|m| share(m).map_or("–".into(), |share| format!("{share:.1}"))),
+        );
         cells.push(answer.name_of(index).unwrap_or_default());
         table.row(cells);
     }
@@ -163,9 +165,10 @@ fn by_energy(answer: &ModesAnswer, width: usize) -> String {
     let mut table = TextTable::new([Column::number("POD mode")], columns);
     for (mode, line) in answer.pod_lines.iter().enumerate() {
         let energy = answer.pod.energies[mode];
-        let [frequency, share] = line.map_or(["–".to_owned(), "–".to_owned()], |[frequency, share]| {
-            [format!("{frequency:.4}"), format!("{:.1}", 100.0 * share)]
-        });
+        let [frequency, share] = line
+            .map_or(["–".to_owned(), "–".to_owned()], |[frequency, share]| {
+                [format!("{frequency:.4}"), format!("{:.1}", 100.0 * share)]
+            });
         table.row([
             format!("{}", mode + 1),
             format!("{energy:.5}"),

@@ -76,12 +76,13 @@ fn spectral(answer: &ModesAnswer, component: usize) -> Option<MapFigure> {
 
 /// The strongest modes over all frequencies.
 fn by_energy(answer: &ModesAnswer, component: usize) -> Option<MapFigure> {
-    let panels = answer.pod.modes.iter().enumerate().take(MOST_PANELS).filter_map(|(index, mode)| {
-        let values = mode[component].iter().map(|value| f64::from(*value)).collect();
-        let share = 100.0 * answer.pod.energies[index] / answer.pod.total;
-        let name = answer.pod_name(index).map_or(String::new(), |name| format!(", {name}"));
-        panel(answer, format!("mode {}: {share:.1} %{name}", index + 1), values)
-    });
+    let panels =
+        answer.pod.modes.iter().enumerate().take(MOST_PANELS).filter_map(|(index, mode)| {
+            let values = mode[component].iter().map(|value| f64::from(*value)).collect();
+            let share = 100.0 * answer.pod.energies[index] / answer.pod.total;
+            let name = answer.pod_name(index).map_or(String::new(), |name| format!(", {name}"));
+            panel(answer, format!("mode {}: {share:.1} %{name}", index + 1), values)
+        });
     let title = format!("{} of the modes with most energy", NAMES[component]);
     figure(answer, "modes-pod", title, panels.collect())
 }

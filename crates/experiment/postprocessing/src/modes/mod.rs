@@ -19,8 +19,8 @@ use std::path::PathBuf;
 
 /// Periods of a helix that the shortest useful block has (–).
 const FEWEST_PERIODS: f64 = 1.0;
-/// Blocks, which overlap by half, that a record is cut into where no block is asked for (–): so many are left when a
-/// block has a third of it.
+/// Blocks, which overlap by half, that a record is cut into where no block is asked for (–): so many are
+/// left when a block has a third of it.
 const BLOCK_SHARE: f64 = 3.0;
 /// Blades of a rotor.
 const N_BLADES: usize = 3;
@@ -88,8 +88,8 @@ pub struct ModesAnswer {
     pub names: FrequencyNames,
     /// Modes by energy.
     pub pod: Pod,
-    /// Strongest frequency of each coefficient of these that are kept (Hz), with the share of the mode's energy that
-    /// its sine has (–); none where there are too few instants.
+    /// Strongest frequency of each coefficient of these that are kept (Hz), with the share of the mode's
+    /// energy that its sine has (–); none where there are too few instants.
     pub pod_lines: Vec<Option<[f64; 2]>>,
     /// Modes by energy at each frequency.
     pub spod: Spod,
@@ -191,8 +191,8 @@ fn answered(
     })
 }
 
-/// Instants of a block where none is asked for: so that the multiples of `excitation` (Hz) are frequencies of the
-/// blocks, in about a third of `n_instants` that are `interval` (s) apart.
+/// Instants of a block where none is asked for: so that the multiples of `excitation` (Hz) are frequencies
+/// of the blocks, in about a third of `n_instants` that are `interval` (s) apart.
 fn usual_block(n_instants: usize, interval: f64, excitation: Option<f64>) -> usize {
     let most = n_instants as f64 / BLOCK_SHARE;
     let periods = excitation.map_or(0.0, |frequency| (most * interval * frequency).floor());

@@ -87,8 +87,8 @@ impl Source {
         }
         if let Some(frequency) = frequencies.excitation {
             let strouhal = about.rotor_diameter.zip(about.wind_speed);
-            let strouhal =
-                strouhal.map(|(diameter, speed)| format!(" (St {:.2})", frequency * diameter / speed));
+            let strouhal = strouhal
+                .map(|(diameter, speed)| format!(" (St {:.2})", frequency * diameter / speed));
             parts.push(format!("f_e {frequency:.4} Hz{}", strouhal.unwrap_or_default()));
         }
         if let Some(frequency) = frequencies.rotor {
@@ -130,8 +130,8 @@ fn planes_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The frequencies of the run in `folder`: of the first turbine downwind that pitches a helix, and of the first
-/// rotor.
+/// The frequencies of the run in `folder`: of the first turbine downwind that pitches a helix, and of the
+/// first rotor.
 fn frequencies(folder: &RunFolder) -> Result<Frequencies, PostprocessingError> {
     let manifest = records::read_manifest(folder)?;
     let case = case_of(folder, &manifest)?;
@@ -139,9 +139,9 @@ fn frequencies(folder: &RunFolder) -> Result<Frequencies, PostprocessingError> {
     let control = &case.runs[manifest.run_index].control;
     let strouhal = control.iter().find_map(|control| control.helix()).map(|(_, strouhal)| strouhal);
     let diameter = summary.as_ref().map(|summary| summary.conditions.rotor_diameter);
-    let excitation = strouhal.zip(diameter).map(|(strouhal, diameter)| {
-        excitation_rate(strouhal, case.wind.speed, diameter) / TAU
-    });
+    let excitation = strouhal
+        .zip(diameter)
+        .map(|(strouhal, diameter)| excitation_rate(strouhal, case.wind.speed, diameter) / TAU);
     let first = summary.as_ref().and_then(|summary| summary.turbines.first());
     Ok(Frequencies { excitation, rotor: first.map(|turbine| turbine.rotor_speed.mean / TAU) })
 }

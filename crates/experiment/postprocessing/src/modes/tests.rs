@@ -69,7 +69,9 @@ fn a_file_of_planes_has_modes_that_are_named_after_the_helix() {
     assert_eq!(answer.pod_name(2).as_deref(), Some("2 f_e"));
     // f_e, 2 f_e, 3 f_e; the strongest one is f_e again.
     assert_eq!(answer.spod.modes.len(), 3);
-    assert!(answer.conditions.contains("waves, helix, crosswind-3D, 20 m/s, TI 6 %, f_e 0.0500 Hz"));
+    assert!(
+        answer.conditions.contains("waves, helix, crosswind-3D, 20 m/s, TI 6 %, f_e 0.0500 Hz")
+    );
     assert!(answer.conditions.contains("(St 0.25)"), "{}", answer.conditions);
     let figures = signals(&answer);
     assert_eq!((figures.densities.len(), figures.maps.len()), (1, 2));
