@@ -3,10 +3,10 @@
 use super::{Refusal, survives};
 use crate::case;
 use crate::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
-use crate::netcdf::{Column, TimeHeight, read_statistics, write_statistics};
+use crate::netcdf::{Column, StoredInstants, TimeHeight, read_statistics, write_statistics};
 use crate::records::{
-    self, AtPhase, Manifest, PlaneSetting, RunFolder, ScanInstant, ScanSetting, ScanWriter,
-    SeriesWriter, StoredPhaseAverages, read_scans, read_study, write_phase_averages,
+    self, AtPhase, InstantWriter, Manifest, PlaneSetting, RunFolder, ScanInstant, ScanSetting,
+    ScanWriter, SeriesWriter, StoredPhaseAverages, read_scans, read_study, write_phase_averages,
 };
 use basis::keys::Values;
 use basis::records::{
@@ -153,6 +153,28 @@ fn averages() -> Vec<(&'static str, Vec<u8>)> {
 fn averages_by_phase() {
     survives(averages(), |folder| {
         StoredPhaseAverages::open(&folder.join("averages-line.nc"))?.averages()?;
+        Ok(())
+    });
+}
+
+/// A plane at three instants.
+fn instants() -> Vec<(&'static str, Vec<u8>)> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hub-height.nc");
+    let mut writer = InstantWriter::create(&path, &PlaneSetting::example(), &plane()).unwrap();
+    for time in [1500.0, 1501.0, 1502.0] {
+        writer.write(&Plane { time, averaged: 0.0, ..plane() }).unwrap();
+    }
+    writer.finish().unwrap();
+    vec![("hub-height.nc", fs::read(path).unwrap())]
+}
+
+#[test]
+fn planes_at_instants() {
+    survives(instants(), |folder| {
+        let stored = StoredInstants::open(&folder.join("hub-height.nc"))?;
+        let slowest = (0..3).rev().find(|axis| stored.grid.n_points[*axis] > 1).unwrap_or(0);
+        stored.read(0..stored.grid.n_points[slowest])?;
         Ok(())
     });
 }

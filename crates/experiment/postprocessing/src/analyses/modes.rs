@@ -194,17 +194,21 @@ fn json(answer: &ModesAnswer) -> serde_json::Value {
             "coefficients_m_s": pod.coefficients[mode],
         })
     });
+    let pairs = ["u", "v", "w"].into_iter().zip(answer.components);
+    let components: Vec<&str> = pairs.filter(|(_, is)| *is).map(|(name, _)| name).collect();
+    let named = answer.names.all.iter();
+    let named = named.map(|one| json!({ "name": one.name, "frequency_hz": one.frequency }));
     json!({
         "file": answer.path.display().to_string(),
         "conditions": answer.conditions,
-        "components": ["u", "v", "w"].iter().zip(answer.components).filter(|(_, is)| *is).map(|(name, _)| *name).collect::<Vec<_>>(),
+        "components": components,
         "n_points": answer.grid.len(),
         "n_masked": spod.n_masked,
         "n_instants": answer.n_instants,
         "from_s": answer.span[0],
         "to_s": answer.span[1],
         "strip_bytes": answer.memory,
-        "named_frequencies": answer.names.all.iter().map(|one| json!({ "name": one.name, "frequency_hz": one.frequency })).collect::<Vec<_>>(),
+        "named_frequencies": named.collect::<Vec<_>>(),
         "spod": {
             "n_blocks": spod.n_blocks,
             "block": spod.n_block,
