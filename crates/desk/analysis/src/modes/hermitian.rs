@@ -57,8 +57,8 @@ fn reduced(rows: &mut [Vec<Complex64>]) -> Vec<Vec<Complex64>> {
             let length = norm(&v);
             v.iter_mut().for_each(|entry| *entry /= length);
             reflect(rows, k + 1, &v);
-            for i in k + 1..n {
-                rows[i][k] = if i == k + 1 { beside } else { NOTHING };
+            for (below, row) in rows[k + 1..].iter_mut().enumerate() {
+                row[k] = if below == 0 { beside } else { NOTHING };
             }
         } else {
             v.fill(NOTHING);

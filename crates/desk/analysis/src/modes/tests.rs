@@ -1,3 +1,5 @@
+//! Waves of known energy and frequency, Parseval's theorem, and what changes nothing.
+
 use super::*;
 use basis::records::Grid;
 use proptest::prelude::*;
@@ -128,8 +130,8 @@ fn a_travelling_wave_is_one_spectral_mode_that_travels() {
     for (one, [component, n_waves]) in found.modes.iter().zip([[0, 2], [2, 3]]) {
         let mode = &one.modes[0][component];
         let angle = |index: usize| f64::from(mode[index][1]).atan2(f64::from(mode[index][0]));
-        for index in 0..waves.grid.len() {
-            let size = f64::from(mode[index][0]).hypot(f64::from(mode[index][1]));
+        for (index, [real, imaginary]) in mode.iter().enumerate() {
+            let size = f64::from(*real).hypot(f64::from(*imaginary));
             assert!((size - 1.0).abs() < 1e-4, "{size}");
             let x = waves.grid.place(index)[0] as f64 / 24.0;
             let away = angle(index) - angle(0) + TAU * n_waves as f64 * x;

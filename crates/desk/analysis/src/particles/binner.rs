@@ -3,12 +3,10 @@
 use super::basis_functions::{MOST_TERMS, terms_at};
 use super::binned::{Binned, Convergence, Tally};
 use super::fit::{Fitted, Sums};
+use super::settings::N_STAGES;
 use super::{BinSettings, Particle};
 use basis::records::{Moments, STRESSES};
 use std::ops::Range;
-
-/// Stages of which the means are kept, for convergence (–).
-pub(super) const N_STAGES: usize = 4;
 
 /// Bins that take in particles.
 #[derive(Clone, Debug)]
@@ -152,10 +150,9 @@ impl Binner {
         let reference = self.reference.unwrap_or_default();
         let mut mean = [0, 1, 2].map(|_| vec![f32::NAN; n_bins]);
         let (mut sum, mut n) = (0.0, 0_usize);
-        for index in 0..n_bins {
-            let Some(fitted) = self.fitted(index) else { continue };
-            for component in 0..3 {
-                mean[component][index] = (reference[component] + fitted.mean[component]) as f32;
+        for (index, fitted) in (0..n_bins).filter_map(|i| Some((i, self.fitted(i)?))) {
+            for ((mean, own), from) in mean.iter_mut().zip(fitted.mean).zip(reference) {
+                mean[index] = (from + own) as f32;
             }
             sum += fitted.error.iter().map(|error| error * error).sum::<f64>();
             n += 1;
@@ -189,9 +186,8 @@ impl Binner {
                 continue;
             };
             found.order[index] = Some(fitted.order);
-            for component in 0..3 {
-                let value = reference[component] + fitted.mean[component];
-                found.moments.mean[component][index] = value as f32;
+            for (component, from) in reference.into_iter().enumerate() {
+                found.moments.mean[component][index] = (from + fitted.mean[component]) as f32;
                 found.error[component][index] = fitted.error[component] as f32;
                 for axis in 0..3 {
                     let slope = fitted.slope[component][axis] / (0.5 * settings.size[axis]);

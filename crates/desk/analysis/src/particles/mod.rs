@@ -13,14 +13,16 @@ mod binned;
 mod binner;
 mod error;
 mod fit;
+mod order;
 mod outliers;
 mod settings;
 
 pub use binned::{Binned, Convergence, Tally};
 pub use binner::Binner;
 pub use error::ParticlesError;
+pub use order::Order;
 pub use outliers::{FEWEST_NEIGHBOURS, Screen, ScreenSettings, Screened, outlying_points};
-pub use settings::{BinSettings, Order};
+pub use settings::BinSettings;
 
 /// A particle at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,38 +1,18 @@
 //! How particles are binned.
 
-use super::ParticlesError;
 use super::basis_functions::n_terms;
+use super::{Order, ParticlesError};
 use basis::records::Grid;
-use serde::{Deserialize, Serialize};
 
 /// Names of the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Standard deviation of the Gaussian weight over the size of a bin (–): a bin ends two of them from its
 /// middle.
 const GAUSSIAN: f64 = 0.25;
+/// Stages of which the means are kept, for convergence (–).
+pub(super) const N_STAGES: usize = 4;
 /// Samples for each term of a polynomial, for it to be fitted (–).
 const SAMPLES_A_TERM: u32 = 2;
-
-/// Order of the polynomial that is fitted to the velocity within a bin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Order {
-    /// A weighted mean.
-    Constant,
-    /// A mean and gradients.
-    Linear,
-    /// The same, curved: means without the bias of curvature.
-    Quadratic,
-}
-
-impl Order {
-    /// All orders, the highest first.
-    pub const DESCENDING: [Self; 3] = [Self::Quadratic, Self::Linear, Self::Constant];
-
-    /// Its degree (–).
-    pub fn degree(self) -> usize {
-        self as usize
-    }
-}
 
 /// How particles are binned.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +77,7 @@ impl BinSettings {
     /// Memory of a bin: its sums, and its means at stages of convergence (bytes).
     pub fn bin_bytes(&self) -> u64 {
         let sums = self.stride() * size_of::<f64>() + size_of::<u32>();
-        (sums + super::binner::N_STAGES * 3 * size_of::<f32>()) as u64
+        (sums + N_STAGES * 3 * size_of::<f32>()) as u64
     }
 
     /// Memory of all bins (bytes).

@@ -2,10 +2,11 @@
 
 mod error;
 mod figures;
+mod fix;
 mod source;
 
-pub(crate) use error::fix_of;
 pub(crate) use figures::signals;
+pub(crate) use fix::fix_of;
 
 use crate::PostprocessingError;
 use analysis::line::strongest;

@@ -1,3 +1,5 @@
+//! A file of planes in which two waves travel.
+
 use super::*;
 use basis::records::{Plane, PlaneAxes};
 use formats::records::{InstantWriter, PlacedTurbine, PlaneSetting};
