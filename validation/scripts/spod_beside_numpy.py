@@ -6,7 +6,7 @@ exponentials, modes by singular values of weighted data instead of eigenvalues o
 
 The field is made of multiplications and additions alone, from a linear congruential generator, so that the same numbers come
 out of any program: five first-order series times surfaces, and noise, on 7 x 6 points of a plane across the wind, 160 instants,
-three components, kept in single precision. `wakemix validate wake-modes` makes it anew and compares.
+three components, kept in single precision. `cargo test -p wakemix-analysis --test spod_of_numpy` makes it anew and compares.
 """
 
 import json

@@ -23,6 +23,8 @@ const FEWEST_PERIODS: f64 = 1.0;
 /// Blocks, which overlap by half, that a record is cut into where no block is asked for (–): so many are
 /// left when a block has a third of it.
 const BLOCK_SHARE: f64 = 3.0;
+/// Periods of a line that has a frequency (–).
+const FEWEST_OF_LINE: f64 = 3.0;
 /// Blades of a rotor.
 const N_BLADES: usize = 3;
 /// Frequencies without a name whose modes are kept: the strongest ones (–).
@@ -90,7 +92,7 @@ pub struct ModesAnswer {
     /// Modes by energy.
     pub pod: Pod,
     /// Strongest frequency of each coefficient of these that are kept (Hz), with the share of the mode's
-    /// energy that its sine has (–); none where there are too few instants.
+    /// energy that its sine has (–); none where there are too few instants, or periods.
     pub pod_lines: Vec<Option<[f64; 2]>>,
     /// Modes by energy at each frequency.
     pub spod: Spod,
@@ -173,7 +175,9 @@ fn answered(
     let pod = pod(&mut source, &PodSettings { components, n_modes, memory })?;
     let line = |(coefficients, energy): (&Vec<f64>, &f64)| {
         let line = strongest(coefficients, interval).ok()?;
-        Some([line.frequency, (0.5 * line.amplitude.powi(2) / energy).min(1.0)])
+        // Of fewer periods the fit of a sine tells little.
+        let is_told = line.frequency * (span[1] - span[0]) >= FEWEST_OF_LINE;
+        is_told.then_some([line.frequency, (0.5 * line.amplitude.powi(2) / energy).min(1.0)])
     };
     let pod_lines = pod.coefficients.iter().zip(&pod.energies).map(line).collect();
     Ok(ModesAnswer {
