@@ -45,6 +45,7 @@ pub mod structure;
 mod studies;
 pub mod synthesis;
 pub mod tuning;
+pub mod tunnel;
 
 pub use list::{ELSEWHERE, VALIDATIONS};
 use record::{Record, RecordError};

@@ -1,6 +1,7 @@
 //! All validations, in the order in which they are listed.
 
 mod elsewhere;
+mod tunnel;
 mod vortices;
 
 use crate::{
@@ -190,6 +191,8 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "helix",
         recorded: include_str!("../recorded/helix-in-atmosphere.toml"),
     },
+    tunnel::TURBINE,
+    tunnel::HELIX,
     Validation {
         name: "structure",
         about: "natural frequencies beside published ones, energy of free motion, loads of a spinning rotor in closed form",

@@ -4,6 +4,7 @@ pub mod fatigue;
 pub mod lateral;
 pub mod line;
 pub mod phase;
+pub mod phases;
 pub mod pitch;
 pub mod smooth;
 pub mod spectra;
