@@ -355,6 +355,15 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "tuning",
         recorded: include_str!("../recorded/tuning.toml"),
     },
+    Validation {
+        name: "wake-analysis",
+        about: "analyses of wakes on fields whose answers are known: vortices, leapfrogging pairs, phases, particles, fluxes, modes",
+        cost: Cost::UnderAMinute,
+        run: crate::wake_analysis::wake_analysis,
+        pictures: None,
+        page: "wake-analysis",
+        recorded: include_str!("../recorded/wake-analysis.toml"),
+    },
 ];
 
 #[cfg(test)]

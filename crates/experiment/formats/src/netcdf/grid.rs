@@ -48,7 +48,7 @@ pub(super) fn grid_of(file: &NcFile, names: [&str; 3], most: usize) -> Result<Gr
 }
 
 /// First and spacing of coordinates that must grow evenly; a spacing of 1 where there is one coordinate.
-pub(super) fn even(values: &[f64]) -> Result<(f64, f64), String> {
+pub(crate) fn even(values: &[f64]) -> Result<(f64, f64), String> {
     let [first, rest @ ..] = values else { return Err("has no value".to_owned()) };
     if let Some(place) = values.iter().position(|value| !value.is_finite()) {
         return Err(format!("is no number at its value {place}"));
@@ -68,6 +68,14 @@ pub(super) fn even(values: &[f64]) -> Result<(f64, f64), String> {
         }
         None => Ok((*first, spacing)),
     }
+}
+
+/// The values of the variable `name`, of whatever type, in a file of `most` bytes.
+pub(crate) fn numbers_of(file: &NcFile, name: &str, most: usize) -> Result<Vec<f64>, String> {
+    let n = shape_of(file, name)?.into_iter().try_fold(1_usize, usize::checked_mul);
+    n.filter(|n| *n <= most).ok_or_else(|| format!("`{name}` is longer than the file"))?;
+    let values = file.read_variable_as_f64(name).map_err(|error| error.to_string())?;
+    Ok(values.into_raw_vec_and_offset().0)
 }
 
 /// The shape of the variable `name`, of `dimensions` in all.

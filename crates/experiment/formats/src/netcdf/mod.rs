@@ -15,6 +15,7 @@ mod setting;
 mod statistics;
 mod stored_scans;
 
+pub(crate) use grid::{even, numbers_of};
 pub use instants::InstantWriter;
 pub use phase_averages::{
     StoredPhaseAverages, is_phase_averages, phase_averages_bytes, write_phase_averages,

@@ -1,0 +1,143 @@
+//! Velocity on regular grids at instants, whoever wrote it: NetCDF, VTK image data, Tecplot's text.
+//!
+//! An instant at a time is in memory. Lengths come in metres, velocities in metres a second, whatever the
+//! units of the file; what is missing in it is not a number.
+
+mod netcdf;
+mod tecplot_fields;
+mod units;
+mod vti;
+
+pub use units::Lengths;
+pub(crate) use units::{length_in, speed_in, time_in};
+
+use crate::FileError;
+use basis::records::{Field, Grid};
+use netcdf::NetCdfFields;
+use std::path::{Path, PathBuf};
+use tecplot_fields::TecplotFields;
+
+const WHAT: &str = "velocity on a grid";
+
+/// What a file tells of what its fields were taken of.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FoundSetting {
+    /// Case and run, or what else it calls itself.
+    pub name: Option<String>,
+    /// Free-stream speed (m/s).
+    pub wind_speed: Option<f64>,
+    /// Turbulence intensity (–).
+    pub turbulence_intensity: Option<f64>,
+    /// Rotor diameter (m).
+    pub diameter: Option<f64>,
+    /// Middle of the rotor (m).
+    pub hub: Option<[f64; 3]>,
+}
+
+/// Fields at instants.
+pub struct FieldFile {
+    path: PathBuf,
+    grid: Grid,
+    times: Vec<f64>,
+    found: FoundSetting,
+    kind: Kind,
+}
+
+enum Kind {
+    NetCdf(NetCdfFields),
+    /// A file for each instant.
+    Vti(Vec<PathBuf>),
+    Tecplot(TecplotFields),
+}
+
+impl FieldFile {
+    /// Opens the fields at `path`: a NetCDF file, a file of VTK image data or a folder of such, each an
+    /// instant, or Tecplot's text with a zone for each instant. Lengths without a unit are in `lengths`.
+    ///
+    /// # Errors
+    /// [`FileError::System`] when it cannot be read; [`FileError::Content`] names what is missing or wrong:
+    /// columns, units, an uneven grid, a time that runs back.
+    pub fn open(path: &Path, lengths: Lengths) -> Result<Self, FileError> {
+        let extension = |path: &Path| {
+            path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase()
+        };
+        let file = if path.is_dir() || extension(path) == "vti" {
+            let files = vti::files(path)?;
+            let (grid, times) = vti::heads(&files)?;
+            let (path, found) = (path.to_owned(), FoundSetting::default());
+            Self { path, grid, times, found, kind: Kind::Vti(files) }
+        } else if ["dat", "tec", "plt"].contains(&extension(path).as_str()) {
+            let fields = TecplotFields::open(path, lengths)?;
+            let (grid, times) = (fields.grid(), fields.times());
+            let (path, found) = (path.to_owned(), FoundSetting::default());
+            Self { path, grid, times, found, kind: Kind::Tecplot(fields) }
+        } else {
+            let (fields, grid, times, found) = NetCdfFields::open(path, lengths)?;
+            Self { path: path.to_owned(), grid, times, found, kind: Kind::NetCdf(fields) }
+        };
+        file.checked()
+    }
+
+    fn checked(self) -> Result<Self, FileError> {
+        let refusal =
+            |problem: String, fix: &str| Err(FileError::content(WHAT, &self.path, problem, fix));
+        if self.times.is_empty() {
+            return refusal("it holds no instant".to_owned(), "give a file with one at least");
+        }
+        if let Some(index) = self.times.iter().position(|time| !time.is_finite()) {
+            let problem = format!("the time of instant {index} is {}", self.times[index]);
+            return refusal(problem, "correct the times in the file");
+        }
+        if let Some(index) = self.times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            let (before, after) = (self.times[index], self.times[index + 1]);
+            let problem = format!(
+                "time runs back: instant {} is at {after} s, the one before at {before} s",
+                index + 1
+            );
+            return refusal(problem, "sort the instants by time, or give records one by one");
+        }
+        Ok(self)
+    }
+
+    /// The file or folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The points.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The instants (s), which grow.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// What the file tells of what its fields were taken of.
+    pub fn found(&self) -> &FoundSetting {
+        &self.found
+    }
+
+    /// An instant without numbers, to be read into.
+    pub fn empty(&self) -> Field {
+        Field { grid: self.grid, time: 0.0, velocity: Default::default() }
+    }
+
+    /// On return `field` is instant number `index`.
+    ///
+    /// # Errors
+    /// [`FileError`] when it cannot be read, or is of other points than the first.
+    pub fn read(&mut self, index: usize, field: &mut Field) -> Result<(), FileError> {
+        match &mut self.kind {
+            Kind::NetCdf(fields) => fields.read(&self.path, index, &mut field.velocity)?,
+            Kind::Vti(files) => vti::read(&files[index], &self.grid, &mut field.velocity)?,
+            Kind::Tecplot(fields) => fields.read(index, &mut field.velocity)?,
+        }
+        (field.grid, field.time) = (self.grid, self.times[index]);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,230 @@
+//! Fields in NetCDF: those of this program, and others with coordinates x, y, z and components u, v, w.
+
+use super::{FoundSetting, Lengths, WHAT, length_in, speed_in, time_in};
+use crate::{FileError, atomic, netcdf};
+use basis::records::Grid;
+use netcdf_reader::{NcFile, NcSliceInfo, NcSliceInfoElem, NcVariable};
+use std::path::Path;
+
+const FIX: &str = "give coordinates x, y, z and time, and velocities u, v, w over time, z, y, x; an axis with one point may be left out";
+/// Names of the components, one set of them.
+const COMPONENTS: [[&str; 3]; 4] = [
+    ["u", "v", "w"],
+    ["U", "V", "W"],
+    ["Vx", "Vy", "Vz"],
+    ["velocity_x", "velocity_y", "velocity_z"],
+];
+/// Axes in the order in which velocities stand over them.
+const AXES: [&str; 3] = ["z", "y", "x"];
+
+/// The components in a file.
+pub(super) struct NetCdfFields {
+    file: NcFile,
+    names: [String; 3],
+    /// Metres a second of one, of each component.
+    scales: [f64; 3],
+    has_time: bool,
+    n_points: usize,
+}
+
+impl NetCdfFields {
+    /// The fields at `path`, with their points, instants and what the file tells of them.
+    pub(super) fn open(
+        path: &Path,
+        lengths: Lengths,
+    ) -> Result<(Self, Grid, Vec<f64>, FoundSetting), FileError> {
+        let unreadable = |error| FileError::system("read", WHAT, path, error);
+        let length = atomic::open(path).and_then(|file| file.metadata()).map_err(unreadable)?.len();
+        let most = usize::try_from(length).unwrap_or(usize::MAX);
+        let opened = NcFile::open(path).map_err(|error| error.to_string());
+        let read = opened.and_then(|file| Self::decode(file, lengths, most));
+        read.map_err(|problem| FileError::content(WHAT, path, problem, FIX))
+    }
+
+    fn decode(
+        file: NcFile,
+        lengths: Lengths,
+        most: usize,
+    ) -> Result<(Self, Grid, Vec<f64>, FoundSetting), String> {
+        let names = components(&file)?;
+        let grid = grid(&file, lengths, most)?;
+        let n_points = grid.len();
+        let mut scales = [1.0; 3];
+        let mut has_time = false;
+        for (name, scale) in names.iter().zip(&mut scales) {
+            let variable = file.variable(name).map_err(|error| error.to_string())?;
+            has_time = is_over_time(variable, &grid)?;
+            *scale = match unit(variable) {
+                Some(unit) => speed_in(&unit).ok_or_else(|| {
+                    format!("`{name}` is in {unit}; speeds in m/s or mm/s are read")
+                })?,
+                None => 1.0,
+            };
+        }
+        let times = times(&file, has_time, most)?;
+        let n_values = times.len().checked_mul(n_points);
+        if n_values.is_none_or(|n| n > most) {
+            return Err("it holds fewer values than it says".to_owned());
+        }
+        let found = found(&file);
+        Ok((Self { file, names, scales, has_time, n_points }, grid, times, found))
+    }
+
+    /// On return `velocity` is that of instant number `index`.
+    pub(super) fn read(
+        &self,
+        path: &Path,
+        index: usize,
+        velocity: &mut [Vec<f32>; 3],
+    ) -> Result<(), FileError> {
+        for ((name, scale), values) in self.names.iter().zip(self.scales).zip(velocity) {
+            let read = self.values(name, index);
+            let all = read.map_err(|problem| FileError::content(WHAT, path, problem, FIX))?;
+            values.clear();
+            values.extend(all.into_iter().map(|value| (scale * value) as f32));
+        }
+        Ok(())
+    }
+
+    fn values(&self, name: &str, index: usize) -> Result<Vec<f64>, String> {
+        let variable = self.file.variable(name).map_err(|error| error.to_string())?;
+        let n_axes = variable.shape().len() - usize::from(self.has_time);
+        let whole = NcSliceInfoElem::Slice { start: 0, end: u64::MAX, step: 1 };
+        let mut selections = vec![whole; n_axes];
+        if self.has_time {
+            selections.insert(0, NcSliceInfoElem::Index(index as u64));
+        }
+        // Fill values and packed numbers as the conventions have them.
+        let read = self.file.read_variable_slice_unpacked_masked(name, &NcSliceInfo { selections });
+        let values = read.map_err(|error| error.to_string())?.into_raw_vec_and_offset().0;
+        if values.len() == self.n_points {
+            Ok(values)
+        } else {
+            Err(format!("`{name}` has {} values for {} points", values.len(), self.n_points))
+        }
+    }
+}
+
+/// Names of the three components in `file`.
+fn components(file: &NcFile) -> Result<[String; 3], String> {
+    let is_there = |name: &str| file.variable(name).is_ok();
+    let set = COMPONENTS.iter().find(|set| set.iter().any(|name| is_there(name)));
+    let set = set.ok_or("it lacks velocities: `u`, `v` and `w`")?;
+    match set.iter().find(|name| !is_there(name)) {
+        Some(name) => Err(format!("it lacks `{name}`")),
+        None => Ok(set.map(str::to_owned)),
+    }
+}
+
+/// The unit of `variable`, where it tells one.
+fn unit(variable: &NcVariable) -> Option<String> {
+    let unit = variable.attributes.iter().find(|attribute| attribute.name == "units")?;
+    unit.value.as_string()
+}
+
+/// The points of `file`, in metres.
+fn grid(file: &NcFile, lengths: Lengths, most: usize) -> Result<Grid, String> {
+    let mut grid = Grid { origin: [0.0; 3], spacing: [1.0; 3], n_points: [1; 3] };
+    let mut told: Vec<(&str, Option<String>)> = Vec::new();
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let Ok(variable) = file.variable(name) else { continue };
+        told.push((name, unit(variable)));
+        let values = netcdf::numbers_of(file, name, most)?;
+        let (origin, spacing) =
+            netcdf::even(&values).map_err(|problem| format!("`{name}` {problem}"))?;
+        (grid.origin[axis], grid.spacing[axis]) = (origin, spacing);
+        grid.n_points[axis] = values.len();
+    }
+    if told.is_empty() {
+        return Err("it lacks the coordinates `x`, `y` and `z`".to_owned());
+    }
+    let silent = told.iter().find(|(_, unit)| unit.is_none());
+    if let (Some((silent, _)), Some((name, Some(unit)))) =
+        (silent, told.iter().find(|(_, unit)| unit.is_some()))
+    {
+        return Err(format!("`{name}` is in {unit}, `{silent}` tells no unit"));
+    }
+    for (name, unit) in told {
+        let axis = ["x", "y", "z"].iter().position(|other| *other == name).unwrap_or(0);
+        let scale = match unit {
+            Some(unit) => length_in(&unit)
+                .ok_or_else(|| format!("`{name}` is in {unit}; lengths in m or mm are read"))?,
+            None => lengths.in_metres(),
+        };
+        grid.origin[axis] *= scale;
+        if grid.n_points[axis] > 1 {
+            grid.spacing[axis] *= scale;
+        }
+    }
+    let n_points = grid.n_points.into_iter().try_fold(1_usize, usize::checked_mul);
+    n_points.filter(|n| *n <= most).ok_or("it holds fewer values than it says")?;
+    Ok(grid)
+}
+
+/// Whether `variable` stands over time first; the axes after it must be those of `grid` with their lengths.
+fn is_over_time(variable: &NcVariable, grid: &Grid) -> Result<bool, String> {
+    let names: Vec<&str> = variable.dimensions.iter().map(|one| one.name.as_str()).collect();
+    let has_time = names.first() == Some(&"time");
+    let rest = if has_time { &names[1..] } else { &names[..] };
+    let mut expected = AXES.iter().filter(|axis| rest.contains(axis));
+    if !rest.iter().all(|name| expected.next() == Some(name)) {
+        return Err(format!(
+            "`{}` stands over {}, not over time, z, y, x",
+            variable.name,
+            names.join(", ")
+        ));
+    }
+    for (name, dimension) in names.iter().zip(&variable.dimensions) {
+        let axis = ["x", "y", "z"].iter().position(|axis| axis == name);
+        if axis.is_some_and(|axis| grid.n_points[axis] as u64 != dimension.size) {
+            return Err(format!("`{name}` does not have as many values as `{}`", variable.name));
+        }
+    }
+    let n_points: u64 =
+        variable.dimensions.iter().skip(usize::from(has_time)).map(|one| one.size).product();
+    if n_points != grid.len() as u64 {
+        return Err(format!("`{}` does not have a value for each point", variable.name));
+    }
+    Ok(has_time)
+}
+
+/// The instants of `file` (s); zero where its fields stand over no time.
+fn times(file: &NcFile, has_time: bool, most: usize) -> Result<Vec<f64>, String> {
+    if !has_time {
+        return Ok(vec![0.0]);
+    }
+    let values = netcdf::numbers_of(file, "time", most)?;
+    let variable = file.variable("time").map_err(|error| error.to_string())?;
+    let scale = match unit(variable) {
+        Some(unit) => time_in(&unit)
+            .ok_or_else(|| format!("`time` is in {unit}; times in s or ms are read"))?,
+        None => 1.0,
+    };
+    Ok(values.into_iter().map(|time| scale * time).collect())
+}
+
+/// What `file` tells of what its fields were taken of.
+fn found(file: &NcFile) -> FoundSetting {
+    let attribute = |name: &str| Some(file.global_attribute(name).ok()?.value.clone());
+    let text = |name: &str| attribute(name)?.as_string();
+    let number = |name: &str| {
+        let value = attribute(name)?.as_f64_vec()?.first().copied()?;
+        value.is_finite().then_some(value)
+    };
+    let first = |name: &str| netcdf::numbers_of(file, name, 1 << 16).ok()?.first().copied();
+    let hub = match (first("hub_x"), first("hub_y"), first("hub_z")) {
+        (Some(x), Some(y), Some(z)) => Some([x, y, z]),
+        _ => None,
+    };
+    let (case, run) = (text("case"), text("run"));
+    FoundSetting {
+        name: match (case, run) {
+            (Some(case), Some(run)) => Some(format!("{case}, {run}")),
+            _ => text("title"),
+        },
+        wind_speed: number("wind_speed_m_s"),
+        turbulence_intensity: number("turbulence_intensity"),
+        diameter: number("rotor_diameter_m"),
+        hub: hub.filter(|hub| hub.iter().all(|value| value.is_finite())),
+    }
+}
