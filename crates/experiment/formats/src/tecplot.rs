@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 const BUFFER: usize = 1 << 18;
 /// Longest line that is taken for one (bytes).
 const LONGEST_LINE: u64 = 1 << 24;
+/// What begins lines that hold nothing that is needed.
+const ASIDE: [&str; 4] = ["DATASETAUXDATA", "VARAUXDATA", "AUXDATA", "TEXT"];
 const FIX: &str = "write Tecplot's text: a line VARIABLES with names in quotes, a line ZONE with I, J and K, and DATAPACKING POINT or BLOCK";
 
 /// A zone.
@@ -165,9 +167,7 @@ impl TecplotReader {
                 self.last_zone = Some(zone.clone());
                 return Ok(Item::Zone(zone));
             }
-            let begins = self.line.trim_ascii()[0];
-            if begins.is_ascii_alphabetic() && !begins.eq_ignore_ascii_case(&b'n') {
-                // Such as DATASETAUXDATA, TEXT: nothing that is needed.
+            if ASIDE.iter().any(|word| self.begins_with(word)) {
                 continue;
             }
             self.numbers.clear();
@@ -216,7 +216,12 @@ impl TecplotReader {
                         return Err(self.refusal(&format!("{key} = {value} is not read")));
                     }
                 }
-                "SOLUTIONTIME" => zone.time = number(value.as_bytes()),
+                "SOLUTIONTIME" => {
+                    let time = number(value.as_bytes()).filter(|time| time.is_finite());
+                    zone.time = Some(time.ok_or_else(|| {
+                        self.refusal(&format!("SOLUTIONTIME = {value} is no finite number"))
+                    })?);
+                }
                 _ => {}
             }
         }

@@ -1,189 +1,223 @@
-//! Sums of particles in cells that overlap, as particles come.
+//! Sums for each bin, of particles as they come.
 
-use super::Binned;
-use super::result::CellSums;
-use basis::records::Grid;
-use thiserror::Error;
+use super::basis_functions::{MOST_TERMS, terms_at};
+use super::binned::{Binned, Convergence, Tally};
+use super::fit::{Fitted, Sums};
+use super::settings::N_STAGES;
+use super::{BinSettings, Particle};
+use basis::records::{Moments, STRESSES};
+use std::ops::Range;
 
-/// Length of the Gaussian weight's standard deviation over the edge of a cell (–): it has fallen to e⁻² at
-/// the faces.
-const DEVIATION: f64 = 0.25;
-
-/// Why there are no cells.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ParticleError {
-    /// A cell or an overlap that cannot be.
-    #[error(
-        "cells of {size} m that overlap by {overlap}: give a size above 0 m and an overlap from 0 to below 1"
-    )]
-    Cells {
-        /// Edge (m).
-        size: f64,
-        /// Share of a cell that the next one shares (–).
-        overlap: f64,
-    },
-    /// Bounds between which there is no cell.
-    #[error(
-        "from {low} m to {high} m along {axis} there is no room for cells; give bounds that grow"
-    )]
-    Bounds {
-        /// `x`, `y` or `z`.
-        axis: &'static str,
-        /// Lower bound (m).
-        low: f64,
-        /// Upper bound (m).
-        high: f64,
-    },
-    /// More cells than can be summed.
-    #[error(
-        "{n_cells} cells take {memory} bytes, of which {most} are allowed; choose larger cells or less overlap"
-    )]
-    TooMany {
-        /// Cells (–).
-        n_cells: f64,
-        /// Memory (bytes).
-        memory: f64,
-        /// Most (bytes).
-        most: u64,
-    },
-}
-
-/// Cells that overlap, as a grid of their middles.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cells {
-    /// Their middles.
-    pub grid: Grid,
-    /// Edge of a cell (m).
-    pub size: f64,
-}
-
-impl Cells {
-    /// Cells with edges of `size` (m), each of which shares `overlap` (–) of its length with the next, with
-    /// middles from the lower to the upper of `bounds` (m) along each axis; where both are one, one cell. At
-    /// most `most` bytes of sums.
-    ///
-    /// # Errors
-    /// [`ParticleError`].
-    pub fn new(
-        bounds: [[f64; 2]; 3],
-        size: f64,
-        overlap: f64,
-        most: u64,
-    ) -> Result<Self, ParticleError> {
-        if !(size > 0.0 && size.is_finite() && (0.0..1.0).contains(&overlap)) {
-            return Err(ParticleError::Cells { size, overlap });
-        }
-        let spacing = size * (1.0 - overlap);
-        let mut grid = Grid { origin: [0.0; 3], spacing: [spacing; 3], n_points: [1; 3] };
-        let mut n_cells = 1.0;
-        for (axis, [low, high]) in bounds.into_iter().enumerate() {
-            if !(low <= high && low.is_finite() && high.is_finite()) {
-                let axis = ["x", "y", "z"][axis];
-                return Err(ParticleError::Bounds { axis, low, high });
-            }
-            let n = ((high - low) / spacing * (1.0 + 1e-12)).floor() + 1.0;
-            n_cells *= n;
-            grid.origin[axis] = low;
-            grid.n_points[axis] = n as usize;
-        }
-        let memory = n_cells * size_of::<CellSums>() as f64;
-        if memory > most as f64 {
-            return Err(ParticleError::TooMany { n_cells, memory, most });
-        }
-        Ok(Self { grid, size })
-    }
-
-    /// Memory that sums take in the cells (bytes).
-    pub fn memory(&self) -> u64 {
-        self.grid.len() as u64 * size_of::<CellSums>() as u64
-    }
-}
-
-/// What became of the particles so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Taken {
-    /// In a cell at least.
-    pub kept: u64,
-    /// In none.
-    pub outside: u64,
-    /// With a position or a velocity that is no number.
-    pub not_finite: u64,
-    /// Refused as outliers.
-    pub outliers: u64,
-}
-
-/// Sums of particles in cells.
+/// Bins that take in particles.
 #[derive(Clone, Debug)]
 pub struct Binner {
-    cells: Cells,
-    sums: Vec<CellSums>,
-    taken: Taken,
+    settings: BinSettings,
+    n: Vec<u32>,
+    sums: Vec<f64>,
+    /// Velocity from which sums are taken, so that nothing cancels (m/s).
+    reference: Option<[f64; 3]>,
+    stages: Vec<Stage>,
+    tally: Tally,
+}
+
+/// Means at an earlier stage.
+#[derive(Clone, Debug)]
+struct Stage {
+    n_taken: u64,
+    mean: [Vec<f32>; 3],
+    error: f64,
 }
 
 impl Binner {
-    /// Nothing taken in yet.
-    pub fn new(cells: Cells) -> Self {
-        Self { sums: vec![CellSums::default(); cells.grid.len()], cells, taken: Taken::default() }
+    /// Empty bins.
+    pub fn new(settings: BinSettings) -> Self {
+        let n_bins = settings.grid.len();
+        Self {
+            n: vec![0; n_bins],
+            sums: vec![0.0; n_bins * settings.stride()],
+            settings,
+            reference: None,
+            stages: Vec::new(),
+            tally: Tally::default(),
+        }
     }
 
-    /// What became of the particles so far.
-    pub fn taken(&self) -> Taken {
-        self.taken
+    /// How particles are binned.
+    pub fn settings(&self) -> &BinSettings {
+        &self.settings
     }
 
-    /// The cells.
-    pub fn cells(&self) -> &Cells {
-        &self.cells
-    }
-
-    /// Counts a particle that was found to be an outlier.
-    pub fn refuse(&mut self) {
-        self.taken.outliers += 1;
-    }
-
-    /// Takes in a particle at `position` (m) with `velocity` (m/s); allocates nothing.
-    pub fn add(&mut self, position: [f64; 3], velocity: [f64; 3]) {
-        if position.iter().chain(&velocity).any(|value| !value.is_finite()) {
-            self.taken.not_finite += 1;
+    /// Takes in `particle`; allocates nothing. One that is not whole is counted and left out, as is one
+    /// outside all bins.
+    pub fn add(&mut self, particle: &Particle) {
+        if !particle.is_whole() {
+            self.tally.n_holes += 1;
             return;
         }
-        let Cells { grid, size } = self.cells;
-        let half = 0.5 * size;
-        let mut ranges = [[0_usize; 2]; 3];
-        for axis in 0..3 {
-            let from = (position[axis] - half - grid.origin[axis]) / grid.spacing[axis];
-            let to = (position[axis] + half - grid.origin[axis]) / grid.spacing[axis];
-            let last = grid.n_points[axis] as f64 - 1.0;
-            let (from, to) = (from.ceil().max(0.0), to.floor().min(last));
-            if from > to {
-                self.taken.outside += 1;
-                return;
-            }
-            ranges[axis] = [from as usize, to as usize];
+        let ranges = [0, 1, 2].map(|axis| self.reached(axis, particle.position[axis]));
+        if ranges.iter().any(Range::is_empty) {
+            self.tally.n_outside += 1;
+            return;
         }
-        let [x, y, z] = ranges;
-        for k in z[0]..=z[1] {
-            for j in y[0]..=y[1] {
-                for i in x[0]..=x[1] {
-                    let middle = grid.position([i, j, k]);
-                    let away = std::array::from_fn(|a| (position[a] - middle[a]) / half);
-                    self.sums[grid.index([i, j, k])].add(weight(away), away, velocity);
+        self.tally.n_taken += 1;
+        let reference = *self.reference.get_or_insert(particle.velocity);
+        let velocity = [0, 1, 2].map(|axis| particle.velocity[axis] - reference[axis]);
+        let [along_x, along_y, along_z] = ranges;
+        for z in along_z {
+            for y in along_y.clone() {
+                for x in along_x.clone() {
+                    self.add_to([x, y, z], particle.position, velocity);
                 }
             }
         }
-        self.taken.kept += 1;
     }
 
-    /// What the cells hold, those with fewer than `least` particles left out.
-    pub fn binned(&self, least: u32) -> Binned {
-        Binned::of(&self.cells, &self.sums, least)
+    /// Counts `n` particles that were left out as outliers.
+    pub fn count_outliers(&mut self, n: u64) {
+        self.tally.n_outliers += n;
     }
-}
 
-/// Weight of a particle that is `away` (half edges) from the middle of a cell.
-fn weight(away: [f64; 3]) -> f64 {
-    let square: f64 = away.iter().map(|part| part * part).sum();
-    // Half an edge over the standard deviation.
-    let scale = 0.5 / DEVIATION;
-    (-0.5 * square * scale * scale).exp()
+    /// Steps along `axis` of the bins that hold `coordinate` (m).
+    fn reached(&self, axis: usize, coordinate: f64) -> Range<usize> {
+        let (grid, half) = (&self.settings.grid, 0.5 * self.settings.size[axis]);
+        let steps = (coordinate - grid.origin[axis]) / grid.spacing[axis];
+        let reach = half / grid.spacing[axis];
+        let n = grid.n_points[axis] as f64;
+        let first = (steps - reach).ceil().clamp(0.0, n);
+        let last = (steps + reach).ceil().clamp(0.0, n);
+        first as usize..last as usize
+    }
+
+    fn add_to(&mut self, place: [usize; 3], position: [f64; 3], velocity: [f64; 3]) {
+        let settings = &self.settings;
+        let (index, deviations) = (settings.grid.index(place), settings.deviations());
+        let middle = settings.grid.position(place);
+        let away = [0, 1, 2].map(|axis| position[axis] - middle[axis]);
+        // Across an axis along which particles are not spread, all are as near.
+        let near = |axis: usize| {
+            let ratio = if settings.axes[axis] { away[axis] / deviations[axis] } else { 0.0 };
+            ratio * ratio
+        };
+        let weight = (-0.5 * (near(0) + near(1) + near(2))).exp();
+        let scaled = [0, 1, 2].map(|axis| 2.0 * away[axis] / settings.size[axis]);
+        let mut terms = [0.0; MOST_TERMS];
+        terms_at(scaled, settings.order, settings.axes, &mut terms);
+        let n_terms = settings.n_terms();
+        let stride = settings.stride();
+        self.n[index] = self.n[index].saturating_add(1);
+        let (squares, rest) =
+            self.sums[index * stride..(index + 1) * stride].split_first_mut().expect("a stride");
+        *squares += weight * weight;
+        let (products, rest) = rest.split_at_mut(n_terms * (n_terms + 1) / 2);
+        let (moments, velocities) = rest.split_at_mut(3 * n_terms);
+        let mut next = products.iter_mut();
+        for row in 0..n_terms {
+            let weighted = weight * terms[row];
+            for (term, product) in terms[..=row].iter().zip(&mut next) {
+                *product += weighted * term;
+            }
+        }
+        for (component, moments) in moments.chunks_exact_mut(n_terms).enumerate() {
+            let weighted = weight * velocity[component];
+            for (moment, term) in moments.iter_mut().zip(&terms) {
+                *moment += weighted * term;
+            }
+        }
+        for (sum, [first, second]) in velocities.iter_mut().zip(STRESSES) {
+            *sum += weight * velocity[first] * velocity[second];
+        }
+    }
+
+    /// Keeps the means of now, for convergence; of more stages than four the latest ones.
+    pub fn keep_stage(&mut self) {
+        if self.stages.len() == N_STAGES {
+            self.stages.remove(0);
+        }
+        let (mean, error) = self.means();
+        self.stages.push(Stage { n_taken: self.tally.n_taken, mean, error });
+    }
+
+    /// The polynomial of bin number `index`.
+    fn fitted(&self, index: usize) -> Option<Fitted> {
+        let stride = self.settings.stride();
+        let bin = &self.sums[index * stride..(index + 1) * stride];
+        Sums::of(bin, self.settings.n_terms()).fitted(self.n[index], &self.settings)
+    }
+
+    /// Means of all bins (m/s), and the root of the mean square of their standard errors (m/s).
+    fn means(&self) -> ([Vec<f32>; 3], f64) {
+        let n_bins = self.n.len();
+        let reference = self.reference.unwrap_or_default();
+        let mut mean = [0, 1, 2].map(|_| vec![f32::NAN; n_bins]);
+        let (mut sum, mut n) = (0.0, 0_usize);
+        for (index, fitted) in (0..n_bins).filter_map(|i| Some((i, self.fitted(i)?))) {
+            for ((mean, own), from) in mean.iter_mut().zip(fitted.mean).zip(reference) {
+                mean[index] = (from + own) as f32;
+            }
+            sum += fitted.error.iter().map(|error| error * error).sum::<f64>();
+            n += 1;
+        }
+        (mean, (sum / (3 * n).max(1) as f64).sqrt())
+    }
+
+    /// What all bins say.
+    pub fn binned(&self) -> Binned {
+        let (settings, n_bins) = (self.settings, self.n.len());
+        let nothing = || vec![f32::NAN; n_bins];
+        let mut found = Binned {
+            grid: settings.grid,
+            size: settings.size,
+            order: vec![None; n_bins],
+            moments: Moments {
+                n_samples: self.n.clone(),
+                mean: std::array::from_fn(|_| nothing()),
+                stress: std::array::from_fn(|_| nothing()),
+            },
+            error: std::array::from_fn(|_| nothing()),
+            gradient: std::array::from_fn(|_| std::array::from_fn(|_| nothing())),
+            convergence: Vec::new(),
+            tally: self.tally,
+        };
+        let reference = self.reference.unwrap_or_default();
+        for index in 0..n_bins {
+            let Some(fitted) = self.fitted(index) else {
+                found.tally.n_empty += u64::from(self.n[index] == 0);
+                found.tally.n_thin += u64::from(self.n[index] > 0);
+                continue;
+            };
+            found.order[index] = Some(fitted.order);
+            for (component, from) in reference.into_iter().enumerate() {
+                found.moments.mean[component][index] = (from + fitted.mean[component]) as f32;
+                found.error[component][index] = fitted.error[component] as f32;
+                for axis in 0..3 {
+                    let slope = fitted.slope[component][axis] / (0.5 * settings.size[axis]);
+                    found.gradient[component][axis][index] = slope as f32;
+                }
+            }
+            for (values, stress) in found.moments.stress.iter_mut().zip(fitted.stress) {
+                values[index] = stress as f32;
+            }
+        }
+        found.convergence = self.convergence(&found);
+        found
+    }
+
+    /// How far the means of earlier stages lie from those of `last`, and how sure they were.
+    fn convergence(&self, last: &Binned) -> Vec<Convergence> {
+        let stage = |stage: &Stage| {
+            let (mut sum, mut n) = (0.0, 0_u64);
+            for (early, late) in stage.mean.iter().zip(&last.moments.mean) {
+                for (early, late) in early.iter().zip(late).filter(|(early, _)| early.is_finite()) {
+                    sum += f64::from(early - late).powi(2);
+                    n += 1;
+                }
+            }
+            let change = (sum / n.max(1) as f64).sqrt();
+            Convergence { n_taken: stage.n_taken, change, error: stage.error }
+        };
+        let mut all: Vec<Convergence> = self.stages.iter().map(stage).collect();
+        let error = self.means().1;
+        all.push(Convergence { n_taken: self.tally.n_taken, change: 0.0, error });
+        all
+    }
 }

@@ -70,9 +70,9 @@ fn neighbours(grid: &Grid, index: usize) -> Vec<[usize; 2]> {
     found
 }
 
-/// The middle one, or the mean of the two middle ones.
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
+/// The middle one of `values`, which it reorders, or the mean of the two middle ones; not empty.
+pub(super) fn median(values: &mut [f64]) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
     let n = values.len();
     if n.is_multiple_of(2) { 0.5 * (values[n / 2 - 1] + values[n / 2]) } else { values[n / 2] }
 }

@@ -39,8 +39,21 @@ pub struct FieldFile {
     path: PathBuf,
     grid: Grid,
     times: Vec<f64>,
+    has_times: bool,
     found: FoundSetting,
+    zeros: Zeros,
+    n_zeros: u64,
     kind: Kind,
+}
+
+/// What it means where all three components are zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Zeros {
+    /// Air that stands still.
+    #[default]
+    Air,
+    /// A hole: programs for particle images write so where they found no velocity.
+    Holes,
 }
 
 enum Kind {
@@ -61,21 +74,31 @@ impl FieldFile {
         let extension = |path: &Path| {
             path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase()
         };
-        let file = if path.is_dir() || extension(path) == "vti" {
+        let (grid, times, found, kind) = if path.is_dir() || extension(path) == "vti" {
             let files = vti::files(path)?;
             let (grid, times) = vti::heads(&files)?;
-            let (path, found) = (path.to_owned(), FoundSetting::default());
-            Self { path, grid, times, found, kind: Kind::Vti(files) }
+            (grid, times, FoundSetting::default(), Kind::Vti(files))
         } else if ["dat", "tec", "plt"].contains(&extension(path).as_str()) {
             let fields = TecplotFields::open(path, lengths)?;
             let (grid, times) = (fields.grid(), fields.times());
-            let (path, found) = (path.to_owned(), FoundSetting::default());
-            Self { path, grid, times, found, kind: Kind::Tecplot(fields) }
+            (grid, times, FoundSetting::default(), Kind::Tecplot(fields))
         } else {
             let (fields, grid, times, found) = NetCdfFields::open(path, lengths)?;
-            Self { path: path.to_owned(), grid, times, found, kind: Kind::NetCdf(fields) }
+            (grid, times, found, Kind::NetCdf(fields))
         };
-        file.checked()
+        let (path, (times, has_times)) = (path.to_owned(), told_or_numbered(times));
+        let zeros = Zeros::default();
+        Self { path, grid, times, has_times, found, zeros, n_zeros: 0, kind }.checked()
+    }
+
+    /// The same with `zeros` for what it means where all components are zero.
+    pub fn with_zeros(self, zeros: Zeros) -> Self {
+        Self { zeros, ..self }
+    }
+
+    /// Vectors that were zero in what was read so far (–).
+    pub fn n_zeros(&self) -> u64 {
+        self.n_zeros
     }
 
     fn checked(self) -> Result<Self, FileError> {
@@ -109,9 +132,14 @@ impl FieldFile {
         &self.grid
     }
 
-    /// The instants (s), which grow.
+    /// The instants (s), which grow; their numbers where the file tells no times.
     pub fn times(&self) -> &[f64] {
         &self.times
+    }
+
+    /// Whether the file tells the times of its instants.
+    pub fn has_times(&self) -> bool {
+        self.has_times
     }
 
     /// What the file tells of what its fields were taken of.
@@ -135,7 +163,24 @@ impl FieldFile {
             Kind::Tecplot(fields) => fields.read(index, &mut field.velocity)?,
         }
         (field.grid, field.time) = (self.grid, self.times[index]);
+        let [u, v, w] = &mut field.velocity;
+        for ((u, v), w) in u.iter_mut().zip(v).zip(w) {
+            if [*u, *v, *w] == [0.0; 3] {
+                self.n_zeros += 1;
+                if self.zeros == Zeros::Holes {
+                    [*u, *v, *w] = [f32::NAN; 3];
+                }
+            }
+        }
         Ok(())
+    }
+}
+
+/// The instants (s), and whether they are told: where one is not, they are numbered.
+fn told_or_numbered(times: Vec<Option<f64>>) -> (Vec<f64>, bool) {
+    match times.iter().copied().collect::<Option<Vec<f64>>>() {
+        Some(told) => (told, true),
+        None => ((0..times.len()).map(|index| index as f64).collect(), false),
     }
 }
 

@@ -32,7 +32,7 @@ impl NetCdfFields {
     pub(super) fn open(
         path: &Path,
         lengths: Lengths,
-    ) -> Result<(Self, Grid, Vec<f64>, FoundSetting), FileError> {
+    ) -> Result<(Self, Grid, Vec<Option<f64>>, FoundSetting), FileError> {
         let unreadable = |error| FileError::system("read", WHAT, path, error);
         let length = atomic::open(path).and_then(|file| file.metadata()).map_err(unreadable)?.len();
         let most = usize::try_from(length).unwrap_or(usize::MAX);
@@ -45,15 +45,17 @@ impl NetCdfFields {
         file: NcFile,
         lengths: Lengths,
         most: usize,
-    ) -> Result<(Self, Grid, Vec<f64>, FoundSetting), String> {
+    ) -> Result<(Self, Grid, Vec<Option<f64>>, FoundSetting), String> {
         let names = components(&file)?;
         let grid = grid(&file, lengths, most)?;
         let n_points = grid.len();
         let mut scales = [1.0; 3];
-        let mut has_time = false;
+        let mut over_time = Vec::new();
+        let mut told = Vec::new();
         for (name, scale) in names.iter().zip(&mut scales) {
             let variable = file.variable(name).map_err(|error| error.to_string())?;
-            has_time = is_over_time(variable, &grid)?;
+            over_time.push(is_over_time(variable, &grid)?);
+            told.push(unit(variable).is_some());
             *scale = match unit(variable) {
                 Some(unit) => speed_in(&unit).ok_or_else(|| {
                     format!("`{name}` is in {unit}; speeds in m/s or mm/s are read")
@@ -61,6 +63,13 @@ impl NetCdfFields {
                 None => 1.0,
             };
         }
+        if over_time != [over_time[0]; 3] {
+            return Err(format!("of {} some stand over time, some do not", names.join(", ")));
+        }
+        if told != [told[0]; 3] {
+            return Err(format!("of {} some tell a unit, some do not", names.join(", ")));
+        }
+        let has_time = over_time[0];
         let times = times(&file, has_time, most)?;
         let n_values = times.len().checked_mul(n_points);
         if n_values.is_none_or(|n| n > most) {
@@ -188,10 +197,10 @@ fn is_over_time(variable: &NcVariable, grid: &Grid) -> Result<bool, String> {
     Ok(has_time)
 }
 
-/// The instants of `file` (s); zero where its fields stand over no time.
-fn times(file: &NcFile, has_time: bool, most: usize) -> Result<Vec<f64>, String> {
+/// The instants of `file` (s); one that is not told where its fields stand over no time.
+fn times(file: &NcFile, has_time: bool, most: usize) -> Result<Vec<Option<f64>>, String> {
     if !has_time {
-        return Ok(vec![0.0]);
+        return Ok(vec![None]);
     }
     let values = netcdf::numbers_of(file, "time", most)?;
     let variable = file.variable("time").map_err(|error| error.to_string())?;
@@ -200,7 +209,7 @@ fn times(file: &NcFile, has_time: bool, most: usize) -> Result<Vec<f64>, String>
             .ok_or_else(|| format!("`time` is in {unit}; times in s or ms are read"))?,
         None => 1.0,
     };
-    Ok(values.into_iter().map(|time| scale * time).collect())
+    Ok(values.into_iter().map(|time| Some(scale * time)).collect())
 }
 
 /// What `file` tells of what its fields were taken of.

@@ -13,7 +13,7 @@ pub(super) struct TecplotFields {
     path: PathBuf,
     lengths: Lengths,
     grid: Grid,
-    times: Vec<f64>,
+    times: Vec<Option<f64>>,
     reader: Option<TecplotReader>,
     /// Zones that were read (–).
     n_read: usize,
@@ -33,7 +33,7 @@ impl TecplotFields {
                 Item::Numbers => return Err(reader.refusal("numbers before a ZONE")),
                 Item::End => break,
             };
-            times.push(zone.time.unwrap_or(times.len() as f64));
+            times.push(zone.time);
             let is_first = grid.is_none();
             let (values, next) = zone_values(&mut reader, &zone, &columns, is_first)?;
             if is_first {
@@ -41,6 +41,9 @@ impl TecplotFields {
             }
             if grid.is_some_and(|grid: Grid| grid.n_points != zone.n_points) {
                 return Err(reader.refusal("a zone of other points than the first"));
+            }
+            if zone.time.is_some() != times[0].is_some() {
+                return Err(reader.refusal("of the zones some have a SOLUTIONTIME, some have none"));
             }
             item = next;
         }
@@ -52,7 +55,7 @@ impl TecplotFields {
         self.grid
     }
 
-    pub(super) fn times(&self) -> Vec<f64> {
+    pub(super) fn times(&self) -> Vec<Option<f64>> {
         self.times.clone()
     }
 

@@ -67,7 +67,23 @@ fn volumes_for_paraview_come_back_as_fields() {
     let mut file = FieldFile::open(&path, Lengths::Metres).unwrap();
     file.read(0, &mut field).unwrap();
     assert_eq!((field.velocity[1][0], field.velocity[2][1]), (2.0, 6.0));
-    assert!(field.velocity[0][1].is_nan());
+    assert!(field.velocity[0][1].is_nan() && !file.has_times());
+    let odd = [
+        (text.replace("Spacing", r#"Direction="0 1 0 1 0 0 0 0 1" Spacing"#), "axes are turned"),
+        (text.replace("<DataArray", r#"<Piece Extent="0 0 0 0 0 0"><DataArray"#), "in pieces"),
+        (
+            text.replace("<DataArray", r#"<DataArray Name="TimeValue">soon</DataArray><DataArray"#),
+            "`TimeValue` is `soon`",
+        ),
+        (text.replace("velocity", "pressure"), "lacks a `DataArray` called `velocity`"),
+        (text.replace("1 2 3", "1 2"), "5 numbers, not 6"),
+    ];
+    for (text, expected) in odd {
+        fs::write(&path, text).unwrap();
+        let read = FieldFile::open(&path, Lengths::Metres).and_then(|mut f| f.read(0, &mut field));
+        let error = read.unwrap_err().to_string();
+        assert!(error.contains(expected) && error.contains("text.vti"), "{error}");
+    }
 }
 
 const HEAD: &str =
@@ -107,6 +123,7 @@ fn what_is_wrong_is_named() {
             "time runs back",
         ),
         (format!("{HEAD}ZONE I=2\n{one}ZONE I=1\n0 0 5 1 2 3\n"), "other points"),
+        (format!("{HEAD}ZONE I=2 SOLUTIONTIME=1\n{one}ZONE I=2\n{one}"), "SOLUTIONTIME"),
         (format!("{HEAD}ZONE I=3\n{one}50 0 5 4 5 6\n"), "not evenly spaced"),
         (format!("{HEAD}{one}"), "before a ZONE"),
         ("VARIABLES = x y u v w\nZONE I=2\n1 1 1 1 1\n2 1 1 1 1\n".to_owned(), "no column `z`"),

@@ -36,17 +36,21 @@ pub(super) fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(files)
 }
 
-/// Points and instants of `files`, which must have the same points; instants without a time are numbered.
-pub(super) fn heads(files: &[PathBuf]) -> Result<(Grid, Vec<f64>), FileError> {
+/// Points and instants of `files`, which must have the same points, and all tell their time or none.
+pub(super) fn heads(files: &[PathBuf]) -> Result<(Grid, Vec<Option<f64>>), FileError> {
     let mut first: Option<Grid> = None;
     let mut times = Vec::with_capacity(files.len());
-    for (index, path) in files.iter().enumerate() {
+    for path in files {
         let (own, time) = head(path)?;
         if own != *first.get_or_insert(own) {
             let problem = "its points are not those of the first file";
             return Err(FileError::content(WHAT, path, problem, "give files of one grid"));
         }
-        times.push(time.unwrap_or(index as f64));
+        times.push(time);
+        if times[0].is_some() != time.is_some() {
+            let problem = "of the files some tell their instant (`TimeValue`), some do not";
+            return Err(FileError::content(WHAT, path, problem, "write it into all of them"));
+        }
     }
     Ok((first.unwrap_or(Grid { origin: [0.0; 3], spacing: [1.0; 3], n_points: [0; 3] }), times))
 }
@@ -130,9 +134,30 @@ fn head_of(head: &str) -> Result<(Grid, Option<f64>), String> {
         }
         grid.origin[axis] += low as f64 * grid.spacing[axis];
     }
-    let time = tag(head, "DataArray", |tag| attribute(tag, "Name") == Some("TimeValue"));
-    let time = time.and_then(|tag| content(head, tag)).and_then(|text| text.trim().parse().ok());
-    Ok((grid, time))
+    const UPRIGHT: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    if attribute(image, "Direction").is_some()
+        && numbers::<f64, 9>(image, "Direction")? != UPRIGHT
+    {
+        return Err("its axes are turned (`Direction`)".to_owned());
+    }
+    let piece = tag(head, "Piece", |tag| attribute(tag, "Extent").is_some());
+    if let Some(piece) = piece
+        && numbers::<i64, 6>(piece, "Extent")? != extent
+    {
+        return Err("it is in pieces".to_owned());
+    }
+    Ok((grid, time_of(head)?))
+}
+
+/// The instant that the `head` of a file tells.
+fn time_of(head: &str) -> Result<Option<f64>, String> {
+    let Some(array) = tag(head, "DataArray", |tag| attribute(tag, "Name") == Some("TimeValue"))
+    else {
+        return Ok(None);
+    };
+    let text = content(head, array).map_or("", str::trim);
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite());
+    time.map(Some).ok_or_else(|| format!("its `TimeValue` is `{text}`, no number in text"))
 }
 
 fn decode(bytes: &[u8]) -> Result<Image, String> {
@@ -188,6 +213,13 @@ fn appended(file: &str, array: &str, rest: &[u8], n_values: usize) -> Result<Vec
         other => return Err(format!("`velocity` is of type {}", other.unwrap_or("none"))),
     };
     let from = mark.checked_add(offset).and_then(|from| from.checked_add(count_bytes));
+    let count = from.and_then(|from| rest.get(from - count_bytes..from));
+    let count = count.ok_or("its numbers are cut short")?;
+    let place = |index: usize| if is_little { index } else { count_bytes - 1 - index };
+    let n_bytes = (0..count_bytes).fold(0_u64, |sum, i| sum | u64::from(count[place(i)]) << (8 * i));
+    if Some(n_bytes) != n_values.checked_mul(value_bytes).map(|n| n as u64) {
+        return Err(format!("`velocity` has {n_bytes} bytes, not those of {n_values} numbers"));
+    }
     let to = from.and_then(|from| from.checked_add(n_values.checked_mul(value_bytes)?));
     let data = from.zip(to).and_then(|(from, to)| rest.get(from..to));
     let data = data.ok_or("its numbers are cut short")?;

@@ -61,7 +61,7 @@ impl Columns {
     ) -> Result<Self, (String, String)> {
         let named: Vec<(String, String)> = named.map(|(name, unit)| parted(name, unit)).collect();
         let mut found: [Option<Placed>; 7] = [None; 7];
-        let mut units: Vec<(&str, Option<f64>)> = Vec::new();
+        let (mut lengths_told, mut speeds_told) = (Vec::new(), Vec::new());
         for ((role, own, names), found) in NAMES.into_iter().zip(&mut found) {
             let place = named.iter().position(|(name, _)| names.contains(&name.as_str()));
             let Some(place) = place else {
@@ -73,13 +73,16 @@ impl Columns {
             let unit = named[place].1.as_str();
             let scale = scale_of(role, unit)
                 .map_err(|problem| (format!("`{own}` is in {unit}; {problem}"), FIX.to_owned()))?;
-            if matches!(role, Role::X | Role::Y | Role::Z) {
-                units.push((own, scale));
+            match role {
+                Role::X | Role::Y | Role::Z => lengths_told.push((own, scale)),
+                Role::U | Role::V | Role::W => speeds_told.push((own, scale)),
+                Role::Time => {}
             }
             *found = Some(Placed { place, scale: scale.unwrap_or(1.0) });
         }
-        mixed(&units)?;
-        let has_bare_lengths = units.iter().all(|(_, unit)| unit.is_none());
+        mixed(&lengths_told, "give all lengths in one unit, m or mm, and name it with each")?;
+        mixed(&speeds_told, "give all speeds in one unit, m/s or mm/s, and name it with each")?;
+        let has_bare_lengths = lengths_told.iter().all(|(_, unit)| unit.is_none());
         let placed = |place: usize| found[place].unwrap_or(Placed { place: 0, scale: 1.0 });
         let mut all: [Placed; 6] = std::array::from_fn(placed);
         if has_bare_lengths {
@@ -121,16 +124,13 @@ impl Columns {
     }
 }
 
-/// That lengths are in one unit.
-fn mixed(units: &[(&str, Option<f64>)]) -> Result<(), (String, String)> {
+/// Refuses columns of which not all are in one unit, or told without one; `fix` says what to do.
+fn mixed(units: &[(&str, Option<f64>)], fix: &str) -> Result<(), (String, String)> {
     let [(first, unit), rest @ ..] = units else { return Ok(()) };
     match rest.iter().find(|(_, other)| other != unit) {
         Some((other, _)) => {
             let problem = format!("`{first}` and `{other}` are in different units");
-            Err((
-                problem,
-                "give all lengths in one unit, m or mm, and name it with each".to_owned(),
-            ))
+            Err((problem, fix.to_owned()))
         }
         None => Ok(()),
     }

@@ -28,12 +28,16 @@ pub struct Particle {
 }
 
 /// What was seen on the way through a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seen {
     /// Particles (–).
     pub n: u64,
     /// How often the time of a particle was less than that of the one before (–).
     pub n_times_back: u64,
+    /// Particles whose time is not a number, where the file tells times (–).
+    pub n_times_missing: u64,
+    /// Least and greatest time (s); none where the file tells none.
+    pub span: Option<[f64; 2]>,
     /// Whether lengths have no unit in the file.
     pub has_bare_lengths: bool,
 }
@@ -125,9 +129,15 @@ impl Counted {
 
     fn particle(&mut self, particle: &Particle) -> Particle {
         self.seen.n += 1;
-        if let Some(time) = particle.time {
-            self.seen.n_times_back += u64::from(time < self.latest);
-            self.latest = time;
+        match particle.time {
+            Some(time) if time.is_finite() => {
+                self.seen.n_times_back += u64::from(time < self.latest);
+                self.latest = time;
+                let [first, last] = self.seen.span.unwrap_or([time, time]);
+                self.seen.span = Some([first.min(time), last.max(time)]);
+            }
+            Some(_) => self.seen.n_times_missing += 1,
+            None => {}
         }
         *particle
     }

@@ -14,7 +14,9 @@ fn read(name: &str, text: &str) -> Result<(Vec<Particle>, Seen), FileError> {
 fn the_same_particles_come_from_csv_and_tecplot() {
     let csv = "time [s],x [mm],y [mm],z [mm],u [m/s],v [m/s],w [m/s],track\n0.5,100,200,300,5,0.1,-0.2,7\n0.6,nan,200,300,5,0.1,-0.2,7\n0.5,100,200,300,5,0.1,-0.2,8\n";
     let (from_csv, seen) = read("tracks.csv", csv).unwrap();
-    assert_eq!(seen, Seen { n: 3, n_times_back: 1, has_bare_lengths: false });
+    let expected =
+        Seen { n: 3, n_times_back: 1, span: Some([0.5, 0.6]), ..Seen::default() };
+    assert_eq!(seen, expected);
     let expected =
         Particle { time: Some(0.5), position: [0.1, 0.2, 0.3], velocity: [5.0, 0.1, -0.2] };
     assert!((from_csv[0].position[2] - 0.3).abs() < 1e-15);
@@ -33,12 +35,16 @@ fn what_is_wrong_is_named_with_its_place() {
         ("tracks.csv", "x,y,z,u,v\n1,2,3,4,5\n", "no column `w`"),
         ("tracks.csv", "x [mm],y [m],z [m],u,v,w\n1,2,3,4,5,6\n", "different units"),
         ("tracks.csv", "x [mm],y,z,u,v,w\n1,2,3,4,5,6\n", "different units"),
+        ("tracks.csv", "x,y,z,u [m/s],v,w\n1,2,3,4,5,6\n", "`u` and `v` are in different units"),
         ("tracks.csv", "x [ft],y [ft],z [ft],u,v,w\n1,2,3,4,5,6\n", "`x` is in ft"),
         ("tracks.csv", "x,y,z,u,v,w\n1,2,3,4,5,6\n1,2,3\n", "line 3"),
         ("tracks.csv", "x,y,z,u,v,w\n1,2,3,4,5,six\n", "`six` in w"),
         ("tracks.dat", "VARIABLES = x y z u v w\nZONE\n1 2 3 4 5\n", "line 3: 5 values"),
         ("tracks.dat", "VARIABLES = x y z u v w\nZONE F=BLOCK\n1 2 3 4 5 6\n", "BLOCK"),
         ("tracks.dat", "1 2 3\n", "VARIABLES"),
+        ("tracks.dat", "VARIABLES = x y z u v w\nZONE\nnone 2 3 4 5 6\n", "`none` is not a number"),
+        ("tracks.dat", "VARIABLES = x y z u v w\nZONE\nbad 2 3 4 5 6\n", "`bad` is not a number"),
+        ("tracks.dat", "VARIABLES = x y z u v w\nZONE SOLUTIONTIME=soon\n1 2 3 4 5 6\n", "SOLUTIONTIME = soon"),
     ];
     for (name, text, expected) in cases {
         let message = read(name, text).unwrap_err().to_string();

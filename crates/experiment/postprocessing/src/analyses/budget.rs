@@ -5,6 +5,7 @@ use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, draw
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
+    ZEROS,
 };
 use crate::wake_fields::{Averaged, conditions, refused};
 use analysis::entrainment::{Budget, MeanFlow, Region, budget};
@@ -19,7 +20,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase"),
     settings: &[
         FIELD, TURBINE, LENGTH, SIDE, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED,
-        HUB, LENGTHS, FIGURES,
+        HUB, LENGTHS, ZEROS, FIGURES,
     ],
     run,
 };

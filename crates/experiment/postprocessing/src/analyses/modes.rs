@@ -3,7 +3,7 @@
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
-    self, AZIMUTHS, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIND_SPEED,
+    self, AZIMUTHS, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIND_SPEED, ZEROS,
 };
 use crate::wake_fields::{Fields, Instants, conditions, refused};
 use analysis::modes::{ModesError, Pod, Snapshots, Spod, SpodSettings, frequency_name, pod, spod};
@@ -23,7 +23,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     about: "Proper orthogonal modes of a plane at instants and spectral ones over frequency, by blocks, with the frequencies that are the helix's and the rotor's named",
     of: Of::Run("Folder of a run, or a file of fields"),
     settings: &[
-        FIELD, TURBINE, BLOCK, OVERLAP, MODES, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS,
+        FIELD, TURBINE, BLOCK, OVERLAP, MODES, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS,
         FIGURES,
     ],
     run,

@@ -4,11 +4,15 @@ use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{self, DIAMETER, HUB, LENGTHS, WIND_SPEED};
 use crate::wake_fields::{conditions, refused};
-use analysis::particles::{Binned, Binner, Cells, MedianTest, Taken, is_beyond, outliers};
-use basis::records::{FieldSetting, Moments, PhaseAverages, PhaseBin};
+use analysis::grids::widened;
+use analysis::particles::{
+    BinSettings, Binned, Binner, MedianTest, Order, Particle, Screen, ScreenSettings, Screened, outliers,
+};
+use basis::records::{FieldSetting, PhaseAverages, PhaseBin};
 use formats::fields::FoundSetting;
 use formats::records::write_phase_averages;
 use formats::tracks::{Seen, each_particle};
+use report::text_table::{Column, TextTable};
 use serde_json::json;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -18,7 +22,9 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     name: "particles",
     about: "Particles with their velocities, as tomographic measurements give them, averaged in cells with Gaussian weights: means, slopes, stresses, counts and standard errors, outliers refused, in a file that the other analyses of fields take",
     of: Of::Run("File of particles: CSV, Tecplot's text (.dat) or NetCDF"),
-    settings: &[CELL, OVERLAP, BOUNDS, LEAST, GATE, OUT, DIAMETER, WIND_SPEED, HUB, LENGTHS],
+    settings: &[
+        CELL, OVERLAP, BOUNDS, ORDER, LEAST, LIMIT, OUT, DIAMETER, WIND_SPEED, HUB, LENGTHS,
+    ],
     run,
 };
 
@@ -36,17 +42,27 @@ const BOUNDS: AnalysisSetting = settings::setting(
     Takes::Text,
     "Least and greatest middles of cells along x, y, z (m); where particles are when left out",
 );
+const ORDER: AnalysisSetting = AnalysisSetting {
+    name: "order",
+    value: "ORDER",
+    takes: Takes::Choice(&[
+        ("constant", "Weighted means alone"),
+        ("linear", "With slopes"),
+        ("quadratic", "Curved: means without the bias of curvature"),
+    ]),
+    about: "Highest order of the polynomial that is fitted in a cell, lower where it has too few particles; linear when left out",
+};
 const LEAST: AnalysisSetting = settings::setting(
     "least",
     "N",
     Takes::Number,
     "Fewest particles of a cell; with fewer it is masked; 10 when left out",
 );
-const GATE: AnalysisSetting = settings::setting(
-    "gate",
-    "DEVIATIONS",
+const LIMIT: AnalysisSetting = settings::setting(
+    "limit",
+    "RATIO",
     Takes::Number,
-    "Standard deviations of its cell beyond which a particle is refused; 4 when left out",
+    "Distance from the median of the particles around, over their median distance from it, beyond which one is refused; 5 when left out",
 );
 const OUT: AnalysisSetting = settings::setting(
     "out",
@@ -56,67 +72,108 @@ const OUT: AnalysisSetting = settings::setting(
 );
 /// Most memory of the cells (bytes).
 const MOST_MEMORY: u64 = 8 << 30;
-/// Fluctuation that is no fault, of the median test and of a gate, over the free stream (–).
+/// Fluctuation that is no fault, of the median tests, over the free stream (–).
 const NOISE: f64 = 0.01;
+
+/// Shares of all particles after which means are kept, to see how they converge (–).
+const STAGES: [f64; 3] = [1.0 / 16.0, 0.25, 0.5];
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let path = request.run();
     let setting = settings::of_fields(request, path, &FoundSetting::default())?;
-    let lengths = settings::lengths(request);
-    let size = settings::positive(request, &CELL, 0.04)?;
-    let overlap = request.number(OVERLAP.name).unwrap_or(0.75);
-    let least = settings::whole(request, &LEAST, 1, 10)? as u32;
-    let factor = settings::positive(request, &GATE, 4.0)?;
-    let bounds = match request.text(BOUNDS.name) {
-        Some(text) => six(text)?,
-        None => extent(path, lengths)?,
-    };
-    let wrong = |error: analysis::particles::ParticleError| {
-        refused(path, error.to_string(), "choose other --cell, --overlap or --bounds")
-    };
-    let cells = Cells::new(bounds, size, overlap, MOST_MEMORY).map_err(wrong)?;
-    // Once to know what is usual in each cell, once without what is not.
-    let mut first = Binner::new(cells);
-    let seen = each_particle(path, lengths, |one| first.add(one.position, one.velocity))?;
-    let usual = first.binned(least);
-    drop(first);
-    let mut second = Binner::new(cells);
+    let bins = bins(request)?;
     let noise = NOISE * setting.wind_speed;
-    each_particle(path, lengths, |one| {
-        if is_beyond(&usual, one.position, one.velocity, factor, noise) {
-            second.refuse();
-        } else {
-            second.add(one.position, one.velocity);
-        }
-    })?;
-    let mut binned = second.binned(least);
+    let limit = settings::positive(request, &LIMIT, ScreenSettings::usual(noise).limit)?;
+    let (screened, seen) = screened(request, &bins, ScreenSettings { limit, ..ScreenSettings::usual(noise) })?;
+    let mut binned = binned(request, bins, &screened, seen.n)?;
     let test = MedianTest { threshold: MedianTest::THRESHOLD, noise };
-    let odd = outliers(&cells.grid, &binned.mean, &test);
+    let odd = outliers(&bins.grid, &binned.moments.mean.each_ref().map(|mean| widened(mean)), &test);
     let n_odd = mask(&mut binned, &odd);
     let mut remarks = vec![format!(
         "{} cells take {:.1} MB while particles are read",
-        cells.grid.len(),
-        cells.memory() as f64 / 1e6
+        bins.grid.len(),
+        bins.memory() as f64 / 1e6
     )];
-    remarks.extend(remarks_of(&seen, &second.taken()));
+    remarks.extend(remarks_of(&seen, &binned));
     if let Some(out) = request.text(OUT.name) {
-        write(Path::new(out), &setting, &binned)?;
+        write(Path::new(out), &setting, &binned, seen.span)?;
         remarks.push(format!("fields written to {out}"));
     }
-    let numbers = Numbers { taken: second.taken(), seen, n_odd };
-    let text = text(&setting, &binned, &numbers);
+    let numbers = Numbers { seen, n_odd };
+    let text = text(&setting, &binned, &numbers, request.width());
     Ok(Answer { text, json: json(&binned, &numbers), remarks })
 }
 
-/// What became of particles and cells.
+/// The cells that `request` asks for.
+fn bins(request: &Request) -> Result<BinSettings, PostprocessingError> {
+    let size = settings::positive(request, &CELL, 0.04)?;
+    let overlap = request.number(OVERLAP.name).unwrap_or(0.75);
+    let bounds = match request.text(BOUNDS.name) {
+        Some(text) => six(text)?,
+        None => extent(request.run(), settings::lengths(request))?,
+    };
+    let order = match request.text(ORDER.name) {
+        Some("constant") => Order::Constant,
+        Some("quadratic") => Order::Quadratic,
+        _ => Order::Linear,
+    };
+    let spacing = [size * (1.0 - overlap); 3];
+    let made = BinSettings::over(bounds, spacing, overlap, order, MOST_MEMORY);
+    let made = made.map_err(|error| {
+        refused(request.run(), error.to_string(), "choose other --cell, --overlap or --bounds")
+    })?;
+    Ok(BinSettings { fewest: settings::whole(request, &LEAST, 1, 10)? as u32, ..made })
+}
+
+/// A first look through the file, by which outliers are told, and what was seen.
+fn screened(
+    request: &Request,
+    bins: &BinSettings,
+    how: ScreenSettings,
+) -> Result<(Screened, Seen), PostprocessingError> {
+    let wrong = |error: analysis::particles::ParticlesError| {
+        refused(request.run(), error.to_string(), "choose another --limit")
+    };
+    let mut screen = Screen::new(&bins.grid, bins.size, how).map_err(wrong)?;
+    let seen = each_particle(request.run(), settings::lengths(request), |one| {
+        screen.look(&Particle { position: one.position, velocity: one.velocity });
+    })?;
+    Ok((screen.screened(), seen))
+}
+
+/// The `n` particles in `bins`, without those that `screened` takes for outliers.
+fn binned(
+    request: &Request,
+    bins: BinSettings,
+    screened: &Screened,
+    n: u64,
+) -> Result<Binned, PostprocessingError> {
+    let mut binner = Binner::new(bins);
+    let mut stages = STAGES.iter().map(|share| (share * n as f64) as u64).peekable();
+    let mut so_far = 0;
+    each_particle(request.run(), settings::lengths(request), |one| {
+        let particle = Particle { position: one.position, velocity: one.velocity };
+        if screened.is_outlier(&particle) {
+            binner.count_outliers(1);
+        } else {
+            binner.add(&particle);
+        }
+        so_far += 1;
+        if stages.next_if_eq(&so_far).is_some() {
+            binner.keep_stage();
+        }
+    })?;
+    Ok(binner.binned())
+}
+
+/// What became of particles and cells, beside what the cells know.
 struct Numbers {
-    taken: Taken,
     seen: Seen,
     n_odd: usize,
 }
 
 /// What must be said of what was seen.
-fn remarks_of(seen: &Seen, taken: &Taken) -> Vec<String> {
+fn remarks_of(seen: &Seen, binned: &Binned) -> Vec<String> {
     let mut remarks = Vec::new();
     if seen.has_bare_lengths {
         remarks.push(
@@ -130,10 +187,10 @@ fn remarks_of(seen: &Seen, taken: &Taken) -> Vec<String> {
             seen.n_times_back
         ));
     }
-    if taken.not_finite > 0 {
+    if binned.tally.n_holes > 0 {
         remarks.push(format!(
             "{} particles have a place or velocity that is no number, and are left out",
-            taken.not_finite
+            binned.tally.n_holes
         ));
     }
     remarks
@@ -179,30 +236,32 @@ fn extent(
 fn mask(binned: &mut Binned, odd: &[bool]) -> usize {
     let mut n = 0;
     for index in (0..odd.len()).filter(|index| odd[*index]) {
-        let means = binned.mean.iter_mut().chain(&mut binned.stress);
-        means.for_each(|values| values[index] = f64::NAN);
+        let moments = &mut binned.moments;
+        let means = moments.mean.iter_mut().chain(&mut moments.stress).chain(&mut binned.error);
+        means.for_each(|values| values[index] = f32::NAN);
+        binned.order[index] = None;
         n += 1;
     }
     n
 }
 
 /// Writes the fields as one bin of phase, which all instants fall into.
-fn write(path: &Path, setting: &FieldSetting, binned: &Binned) -> Result<(), PostprocessingError> {
-    let narrow = |values: &Vec<f64>| values.iter().map(|value| *value as f32).collect();
-    let is_there = |index: usize| binned.mean[0][index].is_finite();
-    let moments = Moments {
-        n_samples: (0..binned.n.len())
-            .map(|index| if is_there(index) { binned.n[index] } else { 0 })
-            .collect(),
-        mean: binned.mean.each_ref().map(narrow),
-        stress: binned.stress.each_ref().map(narrow),
-    };
-    let n_instants = u64::from(binned.n.iter().copied().max().unwrap_or(0));
+fn write(
+    path: &Path,
+    setting: &FieldSetting,
+    binned: &Binned,
+    span: Option<[f64; 2]>,
+) -> Result<(), PostprocessingError> {
+    let mut moments = binned.moments.clone();
+    for (n, order) in moments.n_samples.iter_mut().zip(&binned.order) {
+        *n = if order.is_some() { *n } else { 0 };
+    }
+    let n_instants = u64::from(moments.n_samples.iter().copied().max().unwrap_or(0));
     let head = PhaseAverages {
-        grid: binned.cells.grid,
+        grid: binned.grid,
         rotor_width: TAU,
         helix_width: None,
-        span: [0.0, 0.0],
+        span: span.unwrap_or_default(),
         bins: vec![PhaseBin { rotor: 0.0, helix: None, n_instants, n_visits: 1 }],
         all: moments.clone(),
         each: Vec::new(),
@@ -210,57 +269,76 @@ fn write(path: &Path, setting: &FieldSetting, binned: &Binned) -> Result<(), Pos
     Ok(write_phase_averages(path, setting, &head, |_| moments.clone())?)
 }
 
-/// Mean of the sound ones of `values`.
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, n) = values.filter(|v| v.is_finite()).fold((0.0, 0.0), |(s, n), v| (s + v, n + 1.0));
-    sum / n
+/// Root of the mean square of the sound ones of `values`.
+fn root_mean_square(values: &[f32]) -> f64 {
+    let sound = values.iter().map(|value| f64::from(*value)).filter(|value| value.is_finite());
+    let (sum, n) = sound.fold((0.0, 0.0), |(sum, n), value| (sum + value * value, n + 1.0));
+    (sum / n).sqrt()
 }
 
-fn text(setting: &FieldSetting, binned: &Binned, numbers: &Numbers) -> String {
-    let Numbers { taken, seen, n_odd } = numbers;
-    let [n_x, n_y, n_z] = binned.cells.grid.n_points;
-    let error = mean(binned.error[0].iter().copied()) / setting.wind_speed;
-    format!(
+fn text(setting: &FieldSetting, binned: &Binned, numbers: &Numbers, width: usize) -> String {
+    let (tally, [n_x, n_y, n_z]) = (&binned.tally, binned.grid.n_points);
+    let mut text = format!(
         "{}\n{} particles: {} in cells, {} outside, {} refused as outliers, {} without numbers\n\
-         {n_x} × {n_y} × {n_z} cells of {} m, {} m apart: {} masked for too few particles, {} as outliers by the universal median\n\
-         {:.0} particles a cell on the average, as good as {:.0} of equal weight; standard error of u {:.3} % of the free stream\n",
+         {n_x} × {n_y} × {n_z} cells of {:.4} m, {:.4} m apart: {} empty, {} of too few particles, {} outliers by the universal median\n\
+         {} cells with a curved fit, {} with slopes, {} with a mean alone; {} particles a cell in the middle of all (median)\n",
         conditions(setting),
-        seen.n,
-        taken.kept,
-        taken.outside,
-        taken.outliers,
-        taken.not_finite,
-        binned.cells.size,
-        binned.cells.grid.spacing[0],
-        binned.n_masked,
-        n_odd,
-        mean(binned.n.iter().map(|n| f64::from(*n))),
-        mean(binned.effective.iter().copied()),
-        100.0 * error
-    )
+        numbers.seen.n,
+        tally.n_taken,
+        tally.n_outside,
+        tally.n_outliers,
+        tally.n_holes,
+        binned.size[0],
+        binned.grid.spacing[0],
+        tally.n_empty,
+        tally.n_thin,
+        numbers.n_odd,
+        binned.n_of(Order::Quadratic),
+        binned.n_of(Order::Linear),
+        binned.n_of(Order::Constant),
+        binned.median_samples()
+    );
+    let headings = ["standard error %", "from the last %"].map(Column::number);
+    let mut table = TextTable::new([Column::number("particles")], headings);
+    for stage in &binned.convergence {
+        let share = |value: f64| format!("{:.3}", 100.0 * value / setting.wind_speed);
+        table.row([stage.n_taken.to_string(), share(stage.error), share(stage.change)]);
+    }
+    text += &table.fitted(width);
+    text + "root mean square over cells and components, over the free stream; particles are taken as independent, which those of one track are not\n"
 }
 
 fn json(binned: &Binned, numbers: &Numbers) -> serde_json::Value {
-    let Numbers { taken, seen, n_odd } = numbers;
+    let tally = &binned.tally;
+    let convergence = binned.convergence.iter().map(|stage| {
+        json!({
+            "particles": stage.n_taken,
+            "standard_error_m_s": stage.error,
+            "from_the_last_m_s": stage.change,
+        })
+    });
     json!({
         "particles": {
-            "all": seen.n,
-            "in_cells": taken.kept,
-            "outside": taken.outside,
-            "outliers": taken.outliers,
-            "without_numbers": taken.not_finite,
-            "times_back": seen.n_times_back,
+            "all": numbers.seen.n,
+            "in_cells": tally.n_taken,
+            "outside": tally.n_outside,
+            "outliers": tally.n_outliers,
+            "without_numbers": tally.n_holes,
+            "times_back": numbers.seen.n_times_back,
         },
         "cells": {
-            "n": binned.cells.grid.n_points,
-            "size_m": binned.cells.size,
-            "spacing_m": binned.cells.grid.spacing[0],
-            "masked": binned.n_masked,
-            "outliers": n_odd,
-            "with_slopes": binned.slopes.iter().filter(|slopes| slopes[0][0].is_finite()).count(),
+            "n": binned.grid.n_points,
+            "size_m": binned.size,
+            "spacing_m": binned.grid.spacing,
+            "empty": tally.n_empty,
+            "too_few": tally.n_thin,
+            "outliers": numbers.n_odd,
+            "curved": binned.n_of(Order::Quadratic),
+            "with_slopes": binned.n_of(Order::Linear),
+            "means_alone": binned.n_of(Order::Constant),
         },
-        "particles_per_cell": mean(binned.n.iter().map(|n| f64::from(*n))),
-        "effective_per_cell": mean(binned.effective.iter().copied()),
-        "standard_error_u_m_s": mean(binned.error[0].iter().copied()),
+        "particles_per_cell": binned.median_samples(),
+        "standard_error_m_s": binned.error.each_ref().map(|values| root_mean_square(values)),
+        "convergence": convergence.collect::<Vec<_>>(),
     })
 }

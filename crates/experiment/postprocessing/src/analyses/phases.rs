@@ -5,6 +5,7 @@ use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, draw
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
+    ZEROS,
 };
 use crate::wake_fields::{Averaged, Fields, averages_bins, conditions};
 use analysis::phases::{Decomposition, PhaseAverager, decompose, standard_error};
@@ -23,7 +24,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
         "Folder of a run, or a file of fields (NetCDF, .vti or a folder of them, Tecplot's text)",
     ),
     settings: &[
-        FIELD, TURBINE, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS,
+        FIELD, TURBINE, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS,
         OUT, FIGURES,
     ],
     run,

@@ -7,6 +7,7 @@ use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, draw
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
+    ZEROS,
 };
 use crate::wake_fields::{Averaged, conditions, refused};
 use analysis::grids::widened;
@@ -26,7 +27,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase, of a plane"),
     settings: &[
         FIELD, TURBINE, LEAST, BLADES, PAIR, ROTOR_HZ, BINS, CYCLES, WIDTH, FROM, AZIMUTHS,
-        DIAMETER, WIND_SPEED, HUB, LENGTHS, FIGURES,
+        DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS, FIGURES,
     ],
     run,
 };

@@ -14,6 +14,8 @@ use std::path::Path;
 
 /// Least amplitude of a pitch that makes a helix (rad): what is less is no excitation.
 const LEAST_PITCH: f64 = 2e-3;
+/// Greatest step of rotor azimuth from row to row, on the average (rad): of more the way round is not told.
+const MOST_STEP: f64 = 0.26 * TAU;
 /// Blades whose pitch makes tilt and yaw.
 const N_BLADES: usize = 3;
 
@@ -68,6 +70,17 @@ impl Angles {
         let has_helix = table.channels().any(|one| one.name.to_lowercase().starts_with("helix"));
         let names: &[&str] = if has_helix { &["Azimuth", "Helix"] } else { &["Azimuth"] };
         table.select(names)?;
+        let units: Vec<f64> = table
+            .selected()
+            .map(|column| match (column.unit.as_str(), column.name.ends_with("_rad")) {
+                ("" | "deg" | "°", false) => Ok(1.0_f64.to_radians()),
+                ("" | "rad", _) => Ok(1.0),
+                (other, _) => {
+                    let problem = format!("has `{}` in {other}", column.name);
+                    Err(refused(path, problem, "give azimuths in deg or rad"))
+                }
+            })
+            .collect::<Result<_, _>>()?;
         let mut row = vec![0.0; names.len() + 1];
         let mut columns = vec![Vec::new(); row.len()];
         while table.read(&mut row)? {
@@ -75,17 +88,25 @@ impl Angles {
                 column.push(*value);
             }
         }
-        let radians = |column: &[f64]| {
-            let all: Vec<f64> = column.iter().map(|angle| angle.to_radians()).collect();
-            unwrapped(&all)
-        };
-        let [times, rotor, rest @ ..] = &columns[..] else { return Ok(Self::default()) };
+        let times = columns.remove(0);
         if times.len() < 2 {
             let fix = "give a table that spans all instants of the fields";
             return Err(refused(path, "has fewer than two rows", fix));
         }
-        let helix = rest.first().map_or_else(Vec::new, |column| radians(column));
-        Ok(Self { times: times.clone(), rotor: radians(rotor), helix })
+        let mut angles = columns.iter().zip(&units).map(|(column, unit)| {
+            unwrapped(&column.iter().map(|angle| unit * angle).collect::<Vec<f64>>())
+        });
+        let (rotor, helix) = (angles.next().unwrap_or_default(), angles.next().unwrap_or_default());
+        let turned: f64 = rotor.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+        let step = turned / (rotor.len() - 1) as f64;
+        if step > MOST_STEP {
+            let problem = format!(
+                "has a row each {:.0}° of the rotor, between which its azimuth is not told",
+                step.to_degrees()
+            );
+            return Err(refused(path, problem, "give four rows a revolution at least"));
+        }
+        Ok(Self { times, rotor, helix })
     }
 
     /// Azimuths of rotor and helix at `time` (rad), linear between rows; none beyond them.

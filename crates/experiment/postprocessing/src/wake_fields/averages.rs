@@ -97,6 +97,13 @@ impl Averaged {
                 100.0 * averager.n_holes() as f64 / n_samples
             ));
         }
+        let n_zeros = instants.file.n_zeros();
+        if n_zeros > 0 {
+            remarks.push(format!(
+                "{n_zeros} of {n_samples} velocities are exactly zero ({:.2} %): taken as --zeros says, for air that stands still when left out",
+                100.0 * n_zeros as f64 / n_samples
+            ));
+        }
         remarks.extend(empty_bins(&head));
         let setting = instants.setting;
         Ok(Self { path, setting, head, remarks, rates, moments: Made::Now(Box::new(averager)) })

@@ -9,7 +9,7 @@ pub(crate) use angles::Angles;
 pub(crate) use averages::{Averaged, bins as averages_bins};
 pub(crate) use source::Fields;
 #[cfg(feature = "modes")]
-pub(crate) use source::Instants;
+pub(crate) use source::{Instants, NO_TIMES, TELL_TIMES};
 
 use crate::PostprocessingError;
 use basis::records::FieldSetting;

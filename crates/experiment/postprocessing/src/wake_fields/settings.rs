@@ -4,7 +4,7 @@ use super::refused;
 use crate::PostprocessingError;
 use crate::analyses::{AnalysisSetting, Request, Takes};
 use basis::records::FieldSetting;
-use formats::fields::{FoundSetting, Lengths};
+use formats::fields::{FoundSetting, Lengths, Zeros};
 use std::path::Path;
 
 /// The plane or volume of a run.
@@ -44,6 +44,13 @@ pub(crate) const LENGTHS: AnalysisSetting = AnalysisSetting {
     value: "UNIT",
     takes: Takes::Choice(&[("m", "Metres"), ("mm", "Millimetres")]),
     about: "Unit of lengths that have none in the file; m when left out",
+};
+/// What vectors of zeros are.
+pub(crate) const ZEROS: AnalysisSetting = AnalysisSetting {
+    name: "zeros",
+    value: "MEANING",
+    takes: Takes::Choice(&[("air", "Air that stands still"), ("holes", "Holes, as programs for particle images write them")]),
+    about: "What a velocity of exactly zero means in fields that are not a run's; air when left out, and counted",
 };
 /// Azimuths beside measured fields.
 pub(crate) const AZIMUTHS: AnalysisSetting = setting(
@@ -94,6 +101,14 @@ pub(crate) fn lengths(request: &Request) -> Lengths {
     }
 }
 
+/// What vectors of zeros are, as `request` says.
+pub(crate) fn zeros(request: &Request) -> Zeros {
+    match request.text(ZEROS.name) {
+        Some("holes") => Zeros::Holes,
+        _ => Zeros::Air,
+    }
+}
+
 /// A whole number that `request` asks for under `setting`; `default` where it does not.
 ///
 /// # Errors
@@ -106,11 +121,17 @@ pub(crate) fn whole(
 ) -> Result<usize, PostprocessingError> {
     let Some(text) = request.text(setting.name) else { return Ok(default) };
     let value = text.parse().ok().filter(|value| *value >= least && *value <= 100_000);
+    let (expected, fix) = match least {
+        0 => ("a whole number of 0 or more is expected", "write such as 0 or 3"),
+        1 => ("a whole number of 1 or more is expected", "write such as 12"),
+        _ => ("a whole number of 4 or more is expected", "write such as 128"),
+    };
+    let setting = setting.name;
     value.ok_or_else(|| PostprocessingError::Setting {
-        setting: setting.name,
+        setting,
         given: text.to_owned(),
-        expected: "a whole number, not less than makes sense, is expected",
-        fix: "write such as 12",
+        expected,
+        fix,
     })
 }
 

@@ -49,6 +49,7 @@ impl Fields {
             return Ok(Self::Averages(Box::new(StoredPhaseAverages::open(&file)?)));
         }
         let opened = FieldFile::open(&file, settings::lengths(request))?;
+        let opened = opened.with_zeros(settings::zeros(request));
         let found = match is_run && opened.found().diameter.is_none() {
             // Volumes tell no setting; the planes beside them do.
             true => found_beside(path).unwrap_or_else(|| opened.found().clone()),
@@ -60,7 +61,19 @@ impl Fields {
             None if is_run => Some(Angles::of_run(&run_folder(path), request.text(TURBINE.name))?),
             None => None,
         };
+        let needs_times = angles.is_some() || request.number(FROM.name).is_some();
+        if needs_times && !opened.has_times() && opened.times().len() > 1 {
+            return Err(refused(&file, NO_TIMES, TELL_TIMES));
+        }
         let from = request.number(FROM.name).unwrap_or(f64::NEG_INFINITY);
+        if from.is_nan() {
+            return Err(PostprocessingError::Setting {
+                setting: FROM.name,
+                given: request.text(FROM.name).unwrap_or_default().to_owned(),
+                expected: "a time in seconds is expected",
+                fix: "write such as 20",
+            });
+        }
         let first = opened.times().partition_point(|time| *time < from);
         let places = first..opened.times().len();
         if places.is_empty() {
@@ -151,6 +164,9 @@ fn in_run(request: &Request, path: &Path, averages: bool) -> Result<PathBuf, Pos
     }
 }
 
+/// That a file tells no times, and what to do.
+pub(crate) const NO_TIMES: &str = "does not tell the times of its instants, which are needed";
+pub(crate) const TELL_TIMES: &str = "write them: a variable `time` (NetCDF), SOLUTIONTIME of each zone (Tecplot), field data `TimeValue` in text (.vti)";
 const NO_INSTANTS: &str =
     "make the run again with `output.plane_interval`, or name a plane that it keeps with --field";
 

@@ -1,0 +1,139 @@
+//! The polynomial of a bin, out of its sums.
+
+use super::basis_functions::{MOST_TERMS, linear_term, n_terms};
+use super::{BinSettings, Order};
+use basis::records::STRESSES;
+
+/// Share of a term's own sum that must be left after the terms before it (–): less means that the samples
+/// do not tell the terms apart.
+const APART: f64 = 1e-6;
+
+/// The sums of one bin, as [`BinSettings::stride`] lays them out.
+pub(super) struct Sums<'a> {
+    /// Sum of the squares of the weights.
+    pub(super) squares: f64,
+    /// Lower triangle of the products of terms, row by row.
+    products: &'a [f64],
+    /// Terms times u, v, w, one component after the other.
+    moments: &'a [f64],
+    /// Products of velocities, as [`STRESSES`] orders them.
+    velocities: &'a [f64],
+    n_terms: usize,
+}
+
+/// What a bin says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fitted {
+    pub(super) order: Order,
+    /// At the middle (m/s), from the reference.
+    pub(super) mean: [f64; 3],
+    /// Slope of each component along each axis, in half sizes of the bin (m/s); not a number where it has
+    /// none.
+    pub(super) slope: [[f64; 3]; 3],
+    /// Stresses of what the polynomial leaves (m²/s²), as [`STRESSES`] orders them.
+    pub(super) stress: [f64; 6],
+    /// Standard error of the mean (m/s).
+    pub(super) error: [f64; 3],
+}
+
+impl<'a> Sums<'a> {
+    pub(super) fn of(bin: &'a [f64], n_terms: usize) -> Self {
+        let (products, rest) = bin[1..].split_at(n_terms * (n_terms + 1) / 2);
+        let (moments, velocities) = rest.split_at(3 * n_terms);
+        Self { squares: bin[0], products, moments, velocities, n_terms }
+    }
+
+    /// The polynomial of the highest order for which `n` samples are enough and apart; none where there are
+    /// too few for any.
+    pub(super) fn fitted(&self, n: u32, settings: &BinSettings) -> Option<Fitted> {
+        let allowed = |order: &Order| *order <= settings.order && n >= settings.needed(*order);
+        let orders = Order::DESCENDING.into_iter().filter(allowed);
+        orders.into_iter().find_map(|order| self.of_order(order, settings.axes))
+    }
+
+    fn of_order(&self, order: Order, axes: [bool; 3]) -> Option<Fitted> {
+        let n = n_terms(order, axes);
+        let lower = self.factor(n)?;
+        let weight = self.products[0];
+        let coefficients = [0, 1, 2].map(|component| self.solved(&lower, n, component));
+        // Number of samples of equal weight that are as good.
+        let effective = weight * weight / self.squares;
+        let free = (1.0 - n as f64 / effective).max(f64::EPSILON);
+        let moment = |component: usize, term: usize| self.moments[component * self.n_terms + term];
+        let stress = std::array::from_fn(|place| {
+            let [first, second] = STRESSES[place];
+            let explained: f64 =
+                (0..n).map(|term| coefficients[first][term] * moment(second, term)).sum();
+            let left = (self.velocities[place] - explained) / (weight * free);
+            // Rounding may leave less than nothing of a square.
+            if first == second { left.max(0.0) } else { left }
+        });
+        let spread = first_of_inverse(&lower, n) * self.squares / weight;
+        let slope = coefficients.map(|of| {
+            [0, 1, 2].map(|axis| {
+                let term = linear_term(axis, axes).filter(|_| order >= Order::Linear);
+                term.map_or(f64::NAN, |term| of[term])
+            })
+        });
+        Some(Fitted {
+            order,
+            mean: coefficients.map(|of| of[0]),
+            slope,
+            stress,
+            error: [0, 1, 2].map(|component| (stress[component] * spread).sqrt()),
+        })
+    }
+
+    fn product(&self, row: usize, column: usize) -> f64 {
+        self.products[row * (row + 1) / 2 + column]
+    }
+
+    /// The first `n` rows of the Cholesky factor of the products; none where terms are not apart.
+    fn factor(&self, n: usize) -> Option<[[f64; MOST_TERMS]; MOST_TERMS]> {
+        let mut lower = [[0.0; MOST_TERMS]; MOST_TERMS];
+        for row in 0..n {
+            for column in 0..=row {
+                let before: f64 = (0..column).map(|k| lower[row][k] * lower[column][k]).sum();
+                let left = self.product(row, column) - before;
+                if column < row {
+                    lower[row][column] = left / lower[column][column];
+                } else if left > APART * self.product(row, row) && left.is_finite() {
+                    lower[row][row] = left.sqrt();
+                } else {
+                    return None;
+                }
+            }
+        }
+        Some(lower)
+    }
+
+    /// Coefficients of `component` by the factor `lower` of `n` rows.
+    fn solved(
+        &self,
+        lower: &[[f64; MOST_TERMS]; MOST_TERMS],
+        n: usize,
+        component: usize,
+    ) -> [f64; MOST_TERMS] {
+        let mut found = [0.0; MOST_TERMS];
+        for row in 0..n {
+            let before: f64 = (0..row).map(|k| lower[row][k] * found[k]).sum();
+            found[row] = (self.moments[component * self.n_terms + row] - before) / lower[row][row];
+        }
+        for row in (0..n).rev() {
+            let after: f64 = (row + 1..n).map(|k| lower[k][row] * found[k]).sum();
+            found[row] = (found[row] - after) / lower[row][row];
+        }
+        found
+    }
+}
+
+/// First entry of the inverse of the matrix with the factor `lower` of `n` rows.
+fn first_of_inverse(lower: &[[f64; MOST_TERMS]; MOST_TERMS], n: usize) -> f64 {
+    let mut column = [0.0; MOST_TERMS];
+    for row in 0..n {
+        let unit = f64::from(u8::from(row == 0));
+        let before: f64 = (0..row).map(|k| lower[row][k] * column[k]).sum();
+        column[row] = (unit - before) / lower[row][row];
+    }
+    column[..n].iter().map(|value| value * value).sum()
+}
