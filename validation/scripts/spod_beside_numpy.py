@@ -1,72 +1,109 @@
-"""Spectral proper orthogonal decomposition of a small field in numpy, for `wakemix validate wake-analysis` to stand
-beside.
+"""Spectral modes and modes by energy of a small field with numpy, by other means than wakemix: transforms by a matrix of
+exponentials, modes by singular values of weighted data instead of eigenvalues of correlations, all in one piece.
 
-    python3 -m venv .venv && .venv/bin/pip install numpy==2.4.6
-    .venv/bin/python validation/scripts/spod_beside_numpy.py > validation/data/wake-analysis/spod.json
+    python3 -m venv .venv && .venv/bin/pip install numpy
+    .venv/bin/python validation/scripts/spod_beside_numpy.py > validation/data/modes/spod.json
 
-The field is two travelling waves in noise that is coherent over a few places. The way there is another one than that
-of wakemix: the whole matrix of block transforms of one frequency is written out and its singular values are taken
-(numpy.linalg.svd), where wakemix sums correlations between blocks place by place and takes their eigenvalues; the
-transform is a full complex one (numpy.fft.fft). Definitions: mean over all instants taken off, symmetric Hamming
-window, one-sided densities, blocks that overlap by half: Towne, Schmidt and Colonius (2018), J. Fluid Mech. 847, 821.
+The field is made of multiplications and additions alone, from a linear congruential generator, so that the same numbers come
+out of any program: five first-order series times surfaces, and noise, on 7 x 6 points of a plane across the wind, 160 instants,
+three components, kept in single precision. `wakemix validate wake-analysis` makes it anew and compares.
 """
 
 import json
-import sys
 
 import numpy as np
 
-INSTANTS, PLACES, BLOCK, OVERLAP, INTERVAL, WEIGHT = 320, 12, 64, 32, 0.25, 0.125
+N_Y, N_Z, N_INSTANTS, INTERVAL = 7, 6, 160, 0.5
+SPACING_Y, SPACING_Z = 2.0, 3.0
+N_SERIES, N_BLOCK, OVERLAP, N_MODES, INDEX = 5, 32, 16, 2, 3
+MULTIPLIER, INCREMENT, MODULUS = 6364136223846793005, 1442695040888963407, 1 << 64
+
+
+class Numbers:
+    """Numbers in [-0.5, 0.5)."""
+
+    def __init__(self, seed):
+        self.state = seed
+
+    def next(self):
+        self.state = (self.state * MULTIPLIER + INCREMENT) % MODULUS
+        return float(self.state >> 11) / float(1 << 53) - 0.5
 
 
 def field():
-    """Instants x places, rounded so that both programs read the same numbers."""
-    random = np.random.default_rng(20)
-    t, x = np.meshgrid(np.arange(INSTANTS) * INTERVAL, np.arange(PLACES) / PLACES, indexing="ij")
-    waves = 1.2 * np.cos(2 * np.pi * (0.31 * t - x)) + 0.5 * np.sin(2 * np.pi * (0.9 * t + 2 * x))
-    noise = random.standard_normal((INSTANTS, PLACES + 2))
-    smooth = (noise[:, :-2] + noise[:, 1:-1] + noise[:, 2:]) / 3
-    return np.round(4.0 + waves + 0.4 * smooth, 6)
+    """Velocity [component][instant][point], y fastest."""
+    numbers = Numbers(20)
+    shapes = [[[numbers.next() for _ in range(4)] for _ in range(3)] for _ in range(N_SERIES)]
+    series = []
+    for _ in range(N_SERIES):
+        values, value = [], 0.0
+        for _ in range(N_INSTANTS):
+            value = 0.75 * value + numbers.next()
+            values.append(value)
+        series.append(values)
+    velocity = np.empty((3, N_INSTANTS, N_Z * N_Y), dtype=np.float32)
+    for component in range(3):
+        for instant in range(N_INSTANTS):
+            for point in range(N_Z * N_Y):
+                y, z = float(point % N_Y), float(point // N_Y)
+                value = 0.125 * numbers.next()
+                for number in range(N_SERIES):
+                    a, b, c, d = shapes[number][component]
+                    value += (((a + b * y) + c * z) + d * y * z) * series[number][instant]
+                velocity[component, instant, point] = np.float32(value)
+    return velocity
 
 
-def spod(values):
-    """Frequencies, energies of each (greatest first), and the first mode of each."""
-    fluctuation = values - values.mean(axis=0)
-    window = np.hamming(BLOCK)
-    starts = range(0, INSTANTS - BLOCK + 1, BLOCK - OVERLAP)
-    blocks = np.stack([np.fft.fft(window[:, None] * fluctuation[s : s + BLOCK], axis=0) for s in starts])
-    frequencies, energies, modes = [], [], []
-    for k in range(BLOCK // 2 + 1):
-        sides = 1.0 if k in (0, BLOCK // 2) else 2.0
-        scale = np.sqrt(sides * INTERVAL / np.sum(window**2) * WEIGHT / len(blocks))
-        left, singular, _ = np.linalg.svd(scale * blocks[:, k, :].T, full_matrices=False)
-        frequencies.append(k / (BLOCK * INTERVAL))
-        energies.append(list(singular**2))
-        modes.append(left[:, 0] / np.sqrt(WEIGHT))
-    return frequencies, energies, modes
+def weights():
+    """Shares of the area by the trapezoidal rule, of all components, adding up to one."""
+    along = lambda n, spacing: spacing * np.where((np.arange(n) == 0) | (np.arange(n) == n - 1), 0.5, 1.0)
+    share = np.outer(along(N_Z, SPACING_Z), along(N_Y, SPACING_Y)).ravel()
+    return np.tile(share / share.sum(), 3)
 
 
 def main():
-    values = field()
-    frequencies, energies, modes = spod(values)
-    peak = int(np.argmax([row[0] for row in energies]))
-    json.dump(
-        {
-            "interval": INTERVAL,
-            "block": BLOCK,
-            "overlap": OVERLAP,
-            "weight": WEIGHT,
-            "places": PLACES,
-            "values": values.ravel().tolist(),
-            "frequencies": frequencies,
-            "energies": energies,
-            "peak": peak,
-            "mode": [[float(v.real), float(v.imag)] for v in modes[peak]],
-        },
-        sys.stdout,
+    velocity = field().astype(float)
+    data = np.concatenate([velocity[component].T for component in range(3)])
+    weight = weights()
+    root = np.sqrt(weight)[:, None]
+    data = data - data.mean(axis=1, keepdims=True)
+
+    modes, singular, _ = np.linalg.svd(root * data, full_matrices=False)
+    energies = singular**2 / N_INSTANTS
+    by_energy = (modes / root)[:, :N_MODES]
+
+    window = np.hamming(N_BLOCK)
+    frequencies = np.arange(N_BLOCK // 2 + 1)
+    exponentials = np.exp(-2j * np.pi * np.outer(np.arange(N_BLOCK), frequencies) / N_BLOCK)
+    hop = N_BLOCK - OVERLAP
+    starts = range(0, N_INSTANTS - N_BLOCK + 1, hop)
+    blocks = np.array([(data[:, start : start + N_BLOCK] * window) @ exponentials for start in starts])
+    scale = INTERVAL / (np.sum(window**2) * len(blocks))
+    densities, kept = [], None
+    for index in frequencies:
+        sides = 1.0 if index in (0, N_BLOCK // 2) else 2.0
+        vectors, singular, _ = np.linalg.svd(root * blocks[:, :, index].T, full_matrices=False)
+        densities.append((sides * scale * singular**2).tolist())
+        if index == INDEX:
+            kept = (vectors / root)[:, :N_MODES]
+    pairs = lambda mode: [[float(value.real), float(value.imag)] for value in mode]
+    print(
+        json.dumps(
+            {
+                "made_by": f"validation/scripts/spod_beside_numpy.py, numpy {np.__version__}",
+                "first_values": [float(value) for value in velocity[:, 0, 0]],
+                "last_values": [float(value) for value in velocity[:, -1, -1]],
+                "energies": energies[:10].tolist(),
+                "total": float(np.sum(energies)),
+                "modes_by_energy": by_energy.T.tolist(),
+                "frequency_step": 1.0 / (N_BLOCK * INTERVAL),
+                "n_blocks": len(blocks),
+                "densities": densities,
+                "index": INDEX,
+                "modes": [pairs(kept[:, mode]) for mode in range(N_MODES)],
+            }
+        )
     )
-    sys.stdout.write("\n")
 
 
-if __name__ == "__main__":
-    main()
+main()

@@ -142,8 +142,10 @@ fn fields_of_a_tunnel_go_from_file_to_phases_energy_vortices_and_modes() {
 
     let modes = run("modes", &with_phases.clone().with("block", "200")).unwrap();
     assert!(modes.text.contains("f_e"), "{}", modes.text);
-    let share = number(&modes.json, "/pod_energies_m2_s2/0");
-    assert!(share > 0.0 && modes.json["masked_values"] == 1);
+    let share = number(&modes.json, "/pod/energies_m2_s2/0");
+    assert!(share > 0.0 && modes.json["n_masked"] == 1);
+    let named = modes.json["named_frequencies"].as_array().unwrap();
+    assert!((number(&named[0], "/frequency_hz") - ROTOR_HZ / RATIO).abs() < 1e-3);
     let refused = run("budget", &Request::of(&out)).unwrap_err().to_string();
     assert!(refused.contains("spans no volume"), "{refused}");
 }

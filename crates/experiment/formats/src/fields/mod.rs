@@ -14,6 +14,7 @@ pub(crate) use units::{length_in, speed_in, time_in};
 use crate::FileError;
 use basis::records::{Field, Grid};
 use netcdf::NetCdfFields;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use tecplot_fields::TecplotFields;
 
@@ -163,7 +164,43 @@ impl FieldFile {
             Kind::Tecplot(fields) => fields.read(index, &mut field.velocity)?,
         }
         (field.grid, field.time) = (self.grid, self.times[index]);
-        let [u, v, w] = &mut field.velocity;
+        self.look_for_zeros(&mut field.velocity);
+        Ok(())
+    }
+
+    /// Velocity u, v, w (m/s) at the `instants`, one after the other, at the points that lie `steps` steps
+    /// along the last of x, y, z with more than one point; in the order of the grid.
+    ///
+    /// # Errors
+    /// As [`FieldFile::read`].
+    pub fn read_strip(
+        &mut self,
+        instants: Range<usize>,
+        steps: Range<usize>,
+    ) -> Result<[Vec<f32>; 3], FileError> {
+        let n_points = self.grid.n_points;
+        let slowest = (0..3).rev().find(|axis| n_points[*axis] > 1).unwrap_or(0);
+        if let Kind::NetCdf(fields) = &self.kind {
+            let mut strip = fields.read_strip(&self.path, instants, (slowest, steps))?;
+            self.look_for_zeros(&mut strip);
+            return Ok(strip);
+        }
+        let row = self.grid.len() / n_points[slowest];
+        let points = steps.start * row..steps.end * row;
+        let mut strip = [const { Vec::new() }; 3];
+        let mut field = self.empty();
+        for index in instants {
+            self.read(index, &mut field)?;
+            for (strip, values) in strip.iter_mut().zip(&field.velocity) {
+                strip.extend_from_slice(&values[points.clone()]);
+            }
+        }
+        Ok(strip)
+    }
+
+    /// Counts velocities that are zero, and takes them off where they are holes.
+    fn look_for_zeros(&mut self, velocity: &mut [Vec<f32>; 3]) {
+        let [u, v, w] = velocity;
         for ((u, v), w) in u.iter_mut().zip(v).zip(w) {
             if [*u, *v, *w] == [0.0; 3] {
                 self.n_zeros += 1;
@@ -172,7 +209,6 @@ impl FieldFile {
                 }
             }
         }
-        Ok(())
     }
 }
 

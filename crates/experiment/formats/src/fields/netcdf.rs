@@ -4,6 +4,7 @@ use super::{FoundSetting, Lengths, WHAT, length_in, speed_in, time_in};
 use crate::{FileError, atomic, netcdf};
 use basis::records::Grid;
 use netcdf_reader::{NcFile, NcSliceInfo, NcSliceInfoElem, NcVariable};
+use std::ops::Range;
 use std::path::Path;
 
 const FIX: &str = "give coordinates x, y, z and time, and velocities u, v, w over time, z, y, x; an axis with one point may be left out";
@@ -23,7 +24,7 @@ pub(super) struct NetCdfFields {
     names: [String; 3],
     /// Metres a second of one, of each component.
     scales: [f64; 3],
-    has_time: bool,
+    grid: Grid,
     n_points: usize,
 }
 
@@ -76,7 +77,7 @@ impl NetCdfFields {
             return Err("it holds fewer values than it says".to_owned());
         }
         let found = found(&file);
-        Ok((Self { file, names, scales, has_time, n_points }, grid, times, found))
+        Ok((Self { file, names, scales, grid, n_points }, grid, times, found))
     }
 
     /// On return `velocity` is that of instant number `index`.
@@ -86,8 +87,32 @@ impl NetCdfFields {
         index: usize,
         velocity: &mut [Vec<f32>; 3],
     ) -> Result<(), FileError> {
+        let place = Place { instants: index..index + 1, strip: None, n: self.n_points };
+        self.read_at(path, &place, velocity)
+    }
+
+    /// Velocity at the `instants`, one after the other, at the steps of `strip` along its axis.
+    pub(super) fn read_strip(
+        &self,
+        path: &Path,
+        instants: Range<usize>,
+        strip: (usize, Range<usize>),
+    ) -> Result<[Vec<f32>; 3], FileError> {
+        let row = self.n_points / self.grid.n_points[strip.0];
+        let n = instants.len() * row * strip.1.len();
+        let mut velocity = [const { Vec::new() }; 3];
+        self.read_at(path, &Place { instants, strip: Some(strip), n }, &mut velocity)?;
+        Ok(velocity)
+    }
+
+    fn read_at(
+        &self,
+        path: &Path,
+        place: &Place,
+        velocity: &mut [Vec<f32>; 3],
+    ) -> Result<(), FileError> {
         for ((name, scale), values) in self.names.iter().zip(self.scales).zip(velocity) {
-            let read = self.values(name, index);
+            let read = self.values(name, place);
             let all = read.map_err(|problem| FileError::content(WHAT, path, problem, FIX))?;
             values.clear();
             values.extend(all.into_iter().map(|value| (scale * value) as f32));
@@ -95,23 +120,37 @@ impl NetCdfFields {
         Ok(())
     }
 
-    fn values(&self, name: &str, index: usize) -> Result<Vec<f64>, String> {
+    fn values(&self, name: &str, place: &Place) -> Result<Vec<f64>, String> {
         let variable = self.file.variable(name).map_err(|error| error.to_string())?;
-        let n_axes = variable.shape().len() - usize::from(self.has_time);
-        let whole = NcSliceInfoElem::Slice { start: 0, end: u64::MAX, step: 1 };
-        let mut selections = vec![whole; n_axes];
-        if self.has_time {
-            selections.insert(0, NcSliceInfoElem::Index(index as u64));
-        }
+        let slice = |range: &Range<usize>| NcSliceInfoElem::Slice {
+            start: range.start as u64,
+            end: range.end as u64,
+            step: 1,
+        };
+        let along = |dimension: &str| match &place.strip {
+            _ if dimension == "time" => slice(&place.instants),
+            Some((axis, steps)) if dimension == ["x", "y", "z"][*axis] => slice(steps),
+            _ => NcSliceInfoElem::Slice { start: 0, end: u64::MAX, step: 1 },
+        };
+        let selections = variable.dimensions.iter().map(|one| along(&one.name)).collect();
         // Fill values and packed numbers as the conventions have them.
         let read = self.file.read_variable_slice_unpacked_masked(name, &NcSliceInfo { selections });
         let values = read.map_err(|error| error.to_string())?.into_raw_vec_and_offset().0;
-        if values.len() == self.n_points {
+        if values.len() == place.n {
             Ok(values)
         } else {
-            Err(format!("`{name}` has {} values for {} points", values.len(), self.n_points))
+            Err(format!("`{name}` has {} values where {} are expected", values.len(), place.n))
         }
     }
+}
+
+/// What is read of a variable.
+struct Place {
+    instants: Range<usize>,
+    /// An axis, and steps along it; the whole grid where there is none.
+    strip: Option<(usize, Range<usize>)>,
+    /// Values (–).
+    n: usize,
 }
 
 /// Names of the three components in `file`.

@@ -36,6 +36,10 @@ fn planes_of_a_run_come_back_as_fields_with_their_setting() {
     let mut field = file.empty();
     file.read(2, &mut field).unwrap();
     assert_eq!((field.time, &field.velocity), (2.5, &plane(2.5).velocity));
+    let strip = file.read_strip(1..3, 1..2).unwrap();
+    let row = |time: f64| plane(time).velocity.map(|values| values[3..].to_vec());
+    let expected: [Vec<f32>; 3] = [0, 1, 2].map(|axis| [&row(1.5)[axis][..], &row(2.5)[axis]].concat());
+    assert_eq!(strip, expected);
     let found = file.found();
     assert_eq!((found.diameter, found.wind_speed), (Some(240.0), Some(9.0)));
     assert_eq!(found.hub, Some([0.0, 0.0, 150.0]));
@@ -103,11 +107,27 @@ fn zones_of_points_and_of_blocks_are_instants() {
     assert_eq!((file.times(), file.grid().n_points), (&[1.5, 2.0][..], [2, 2, 1]));
     assert!((file.grid().spacing[1] - 0.02).abs() < 1e-15);
     assert!((file.grid().origin[2] - 0.005).abs() < 1e-15);
+    assert_eq!(file.read_strip(0..2, 1..2).unwrap()[1], [8.0, 1.0, 8.0, 1.0]);
     let mut field = file.empty();
     for index in [1, 0, 1] {
         file.read(index, &mut field).unwrap();
         assert_eq!(field.velocity[0], [1.0, 4.0, 7.0, 1.0], "{index}");
         assert_eq!(field.velocity[2], [3.0, 6.0, 9.0, 1.0], "{index}");
+    }
+}
+
+/// A velocity of zeros counts, and is a hole where it is told to be one.
+#[test]
+fn zeros_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fields.dat");
+    fs::write(&path, format!("{HEAD}ZONE I=2\n0 0 5 0 0 0\n10 0 5 0 5 6\n")).unwrap();
+    for (zeros, is_hole) in [(Zeros::Air, false), (Zeros::Holes, true)] {
+        let mut file = FieldFile::open(&path, Lengths::Metres).unwrap().with_zeros(zeros);
+        let mut field = file.empty();
+        file.read(0, &mut field).unwrap();
+        assert_eq!((file.n_zeros(), field.velocity[0][0].is_nan()), (1, is_hole));
+        assert_eq!(field.velocity[0][1], 0.0);
     }
 }
 

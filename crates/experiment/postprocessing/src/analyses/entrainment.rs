@@ -1,13 +1,13 @@
 //! `entrainment`: flux of mean kinetic energy into a wake, and the power that it leaves for a rotor.
 
-use super::phases::{axes, panel, setting_json};
+use super::phases::setting_json;
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
     ZEROS,
 };
-use crate::wake_fields::{Averaged, conditions};
+use crate::wake_fields::{Averaged, axes, conditions, panel};
 use analysis::entrainment::{
     Edge, FluxPoint, available_power, flux_along, flux_through_tube, integral, sign_flip, wake_edge,
 };
@@ -332,7 +332,10 @@ fn flux_map(found: &Averaged, parts: &Decomposition, caption: &str) -> MapFigure
         ),
         along: axes(grid),
         unit: "U³".to_owned(),
-        panels: panels.iter().filter_map(|(name, v)| panel(found, name, &field(v))).collect(),
+        panels: panels
+            .iter()
+            .filter_map(|(name, v)| panel(grid, &found.setting, *name, &field(v)))
+            .collect(),
     }
 }
 

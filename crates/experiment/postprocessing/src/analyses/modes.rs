@@ -1,266 +1,249 @@
-//! `modes`: proper orthogonal modes of a plane's instants, and its spectral modes over frequency.
+//! `modes`: what moves together in a wake, by energy and by energy at each frequency.
+
+mod figures;
+mod found;
+mod source;
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
-    self, AZIMUTHS, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIND_SPEED, ZEROS,
+    self, AZIMUTHS, DIAMETER, EXCITATION_HZ, FIELD, FROM, HUB, LENGTHS, ROTOR_HZ, TURBINE,
+    WIND_SPEED, ZEROS,
 };
-use crate::wake_fields::{Fields, Instants, conditions, refused};
-use analysis::modes::{ModesError, Pod, Snapshots, Spod, SpodSettings, frequency_name, pod, spod};
-use basis::Sense;
-use basis::records::Field;
-use formats::FileError;
-use formats::fields::FieldFile;
+use crate::wake_fields::{Fields, Instants, NO_TIMES, TELL_TIMES, refused};
+use found::{Found, Question};
 use report::text_table::{Column, TextTable};
-use report::{DensityFigure, DensityRow, Signals, SpectrumLine};
 use serde_json::json;
-use std::cell::RefCell;
-use std::ops::Range;
+use source::Source;
 
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
     name: "modes",
-    about: "Proper orthogonal modes of a plane at instants and spectral ones over frequency, by blocks, with the frequencies that are the helix's and the rotor's named",
-    of: Of::Run("Folder of a run, or a file of fields"),
+    about: "What moves together in a wake: modes by energy (POD, method of snapshots) and by energy at each frequency (SPOD, Towne, Schmidt and Colonius 2018), those of the helix and the rotor named",
+    of: Of::Run(
+        "Folder of a run that kept planes at instants, or a file of fields (NetCDF, .vti or a folder of them, Tecplot's text)",
+    ),
     settings: &[
-        FIELD, TURBINE, BLOCK, OVERLAP, MODES, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS,
+        FIELD,
+        TURBINE,
+        COMPONENT,
+        BLOCK,
+        OVERLAP,
+        MODES,
+        EXCITATION_HZ,
+        ROTOR_HZ,
+        MEMORY,
+        FROM,
+        AZIMUTHS,
+        DIAMETER,
+        WIND_SPEED,
+        HUB,
+        LENGTHS,
+        ZEROS,
         FIGURES,
     ],
     run,
 };
 
+const COMPONENT: AnalysisSetting = AnalysisSetting {
+    name: "component",
+    value: "COMPONENT",
+    takes: Takes::Choice(&[
+        ("u", "Downwind"),
+        ("v", "To the left looking downwind"),
+        ("w", "Upward"),
+        ("all", "All three"),
+    ]),
+    about: "Component of the velocity that counts; all three when left out",
+};
 const BLOCK: AnalysisSetting = settings::setting(
     "block",
     "N",
     Takes::Number,
-    "Instants of a block; a quarter of all when left out",
+    "Instants of a block; whole periods of the helix in about a third of the record when left out",
 );
 const OVERLAP: AnalysisSetting = settings::setting(
     "overlap",
+    "SHARE",
+    Takes::Number,
+    "Share of a block that the next one has, too; 0.5 when left out",
+);
+const MODES: AnalysisSetting = settings::setting(
+    "modes",
     "N",
     Takes::Number,
-    "Instants that blocks share; half a block when left out",
+    "Modes whose shapes are kept; 3 when left out",
 );
-const MODES: AnalysisSetting =
-    settings::setting("modes", "N", Takes::Number, "Modes that are listed; 10 when left out");
-/// By how much instants may lie away from even spacing (intervals).
-const UNEVEN: f64 = 0.01;
-/// Peaks of the spectrum that are listed (–).
-const N_PEAKS: usize = 8;
-
-/// Instants as modes are made of: all components of a point one after another.
-struct Read {
-    inner: RefCell<(FieldFile, Field)>,
-    places: Range<usize>,
-    n_points: usize,
-}
-
-impl Snapshots for Read {
-    type Error = FileError;
-
-    fn n_instants(&self) -> usize {
-        self.places.len()
-    }
-
-    fn n_values(&self) -> usize {
-        3 * self.n_points
-    }
-
-    fn read(&self, range: Range<usize>, values: &mut Vec<f64>) -> Result<(), FileError> {
-        values.clear();
-        let (file, field) = &mut *self.inner.borrow_mut();
-        for index in self.places.clone() {
-            file.read(index, field)?;
-            values.extend(range.clone().map(|place| {
-                f64::from(field.velocity[place / self.n_points][place % self.n_points])
-            }));
-        }
-        Ok(())
-    }
-}
-
-/// What was found.
-struct Found {
-    conditions: String,
-    n_instants: usize,
-    span: [f64; 2],
-    rates: Option<(f64, Option<(f64, Sense)>)>,
-    pod: Pod,
-    spod: Spod,
-    step: f64,
-    n_listed: usize,
-}
+const MEMORY: AnalysisSetting = settings::setting(
+    "memory",
+    "MB",
+    Takes::Number,
+    "Memory of a strip of points (MB), one row of points at least; 256 when left out",
+);
+/// Frequencies that the table lists beside those with a name (–).
+const N_LISTED: usize = 5;
+/// Modes whose energy the table shows (–).
+const N_SHOWN: usize = 3;
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let instants = Fields::instants(request)?;
-    let interval = interval(&instants)?;
-    let times = instants.times();
-    let span = [times[0], times[times.len() - 1]];
-    let n = times.len();
-    let rates = instants.angles.as_ref().and_then(|angles| angles.rates(span));
     let path = instants.file.path().to_owned();
-    let conditions = conditions(&instants.setting);
-    // Energies per area: the mean over all points.
-    let weight = 1.0 / instants.file.grid().len() as f64;
-    let n_points = instants.file.grid().len();
-    let field = instants.file.empty();
-    let Instants { file, places, .. } = instants;
-    let read = Read { inner: RefCell::new((file, field)), places, n_points };
-    let n_block = settings::whole(request, &BLOCK, 4, (n / 4).max(4))?;
-    let n_overlap = settings::whole(request, &OVERLAP, 0, n_block / 2)?;
-    let n_listed = settings::whole(request, &MODES, 1, 10)?;
-    let wrong = |error: ModesError<FileError>| match error {
-        ModesError::Read(error) => PostprocessingError::File(error),
-        error => refused(
-            &path,
-            error.to_string(),
-            "ask for other --block or --overlap, or keep more instants",
-        ),
-    };
-    let pod = pod(&read, weight, 2).map_err(wrong)?;
-    let settings = SpodSettings { interval, n_block, n_overlap, n_modes: 1, at: Vec::new() };
-    let spod = spod(&read, weight, &settings).map_err(wrong)?;
-    let step = 1.0 / (interval * n_block as f64);
-    let found = Found { conditions, n_instants: n, span, rates, pod, spod, step, n_listed };
-    let mut remarks = Vec::new();
-    if found.pod.n_masked > 0 {
-        remarks.push(format!(
-            "{} of {} values have holes at some instant, and play no part",
-            found.pod.n_masked,
-            3 * n_points
-        ));
+    if !instants.file.has_times() {
+        return Err(refused(&path, NO_TIMES, TELL_TIMES));
     }
-    remarks.extend(drawn(request, &[signals(&found)])?);
+    let question = question(request, &instants)?;
+    let Instants { file, setting, places, .. } = instants;
+    let mut source = Source { file, places };
+    let found = Found::of(&mut source, setting, &question).map_err(|trouble| trouble.at(&path))?;
+    let mut remarks = Vec::from_iter(drawn(request, &[figures::signals(&found)])?);
+    if found.spod.n_masked > 0 {
+        let (n, all) = (found.spod.n_masked, found.grid.len());
+        remarks.push(format!("{n} of {all} points have a hole at some instant and are left out"));
+    }
     Ok(Answer { text: text(&found, request.width()), json: json(&found), remarks })
 }
 
-/// Time between instants, which must be even (s).
-fn interval(instants: &Instants) -> Result<f64, PostprocessingError> {
+/// What `request` asks for.
+fn question(request: &Request, instants: &Instants) -> Result<Question, PostprocessingError> {
     let times = instants.times();
-    let path = instants.file.path();
-    if times.len() < 8 {
-        let problem = format!("has {} instants, too few for modes", times.len());
-        return Err(refused(path, problem, "keep 8 instants at least"));
-    }
-    let interval = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
-    let off = |(index, time): (usize, &f64)| {
-        (time - times[0] - index as f64 * interval).abs() > UNEVEN * interval
+    let span = [times[0], times[times.len() - 1]];
+    let rates = instants.angles.as_ref().and_then(|angles| angles.rates(span));
+    let component = request.text(COMPONENT.name).unwrap_or("all");
+    let given = |setting: &AnalysisSetting| {
+        let is_given = request.text(setting.name).is_some();
+        is_given.then(|| settings::positive(request, setting, 1.0)).transpose()
     };
-    match times.iter().enumerate().find(|pair| off(*pair)) {
-        Some((index, time)) => {
-            let problem = format!("has uneven instants: number {index} is at {time} s");
-            Err(refused(path, problem, "keep instants at even intervals"))
-        }
-        None => Ok(interval),
-    }
-}
-
-/// Places of the peaks of the first mode's energy, the strongest first.
-fn peaks(found: &Found) -> Vec<usize> {
-    let energy = |place: usize| found.spod.energies[place][0];
-    let last = found.spod.energies.len() - 1;
-    let is_peak = |place: &usize| {
-        let above = *place == last || energy(*place) > energy(place + 1);
-        energy(*place) > energy(place - 1) && above
-    };
-    let mut peaks: Vec<usize> = (1..=last).filter(is_peak).collect();
-    peaks.sort_by(|a, b| energy(*b).total_cmp(&energy(*a)));
-    peaks.truncate(N_PEAKS);
-    peaks
-}
-
-/// What the frequency at `place` of the spectrum is.
-fn name(found: &Found, place: usize) -> String {
-    let helix = found.rates.and_then(|(_, helix)| helix).map(|(rate, _)| rate);
-    let rotor = found.rates.map(|(rotor, _)| rotor);
-    let frequency = found.spod.frequencies[place];
-    frequency_name(frequency, helix, rotor, 0.75 * found.step).unwrap_or_default()
-}
-
-fn text(found: &Found, width: usize) -> String {
-    let mut text = format!(
-        "{}\n{} instants, {:.1} to {:.1} s; {} blocks\n",
-        found.conditions, found.n_instants, found.span[0], found.span[1], found.spod.n_blocks
-    );
-    let total: f64 = found.pod.energies.iter().sum();
-    let mut table = TextTable::new(
-        [Column::number("mode")],
-        ["energy m²/s²", "share %", "all so far %"].map(Column::number),
-    );
-    let mut sum = 0.0;
-    for (mode, energy) in found.pod.energies.iter().enumerate().take(found.n_listed) {
-        sum += energy;
-        table.row([
-            (mode + 1).to_string(),
-            format!("{energy:.5}"),
-            format!("{:.2}", 100.0 * energy / total),
-            format!("{:.2}", 100.0 * sum / total),
-        ]);
-    }
-    text += &table.fitted(width);
-    let headings = ["first mode m²/s²/Hz", "its share %"].map(Column::number);
-    let keys = [Column::number("frequency Hz"), Column::words("which is")];
-    let mut table = TextTable::new(keys, headings);
-    for place in peaks(found) {
-        let energies = &found.spod.energies[place];
-        table.row([
-            format!("{:.4}", found.spod.frequencies[place]),
-            name(found, place),
-            format!("{:.5}", energies[0]),
-            format!("{:.1}", 100.0 * energies[0] / energies.iter().sum::<f64>()),
-        ]);
-    }
-    text += &table.fitted(width);
-    text + "energies: of all three components, the mean over the points; f_e: excitation, f_r: rotor\n"
-}
-
-fn json(found: &Found) -> serde_json::Value {
-    let names: Vec<serde_json::Value> = peaks(found)
-        .into_iter()
-        .map(|place| {
-            json!({ "frequency_hz": found.spod.frequencies[place], "is": name(found, place) })
-        })
-        .collect();
-    json!({
-        "conditions": found.conditions,
-        "n_instants": found.n_instants,
-        "span_s": found.span,
-        "n_blocks": found.spod.n_blocks,
-        "masked_values": found.pod.n_masked,
-        "pod_energies_m2_s2": found.pod.energies,
-        "pod_coefficients_m_s": found.pod.coefficients,
-        "frequencies_hz": found.spod.frequencies,
-        "spod_energies_m2_s2_hz": found.spod.energies,
-        "peaks": names,
+    let is_asked = request.text(BLOCK.name).is_some();
+    Ok(Question {
+        components: ["u", "v", "w"].map(|name| component == "all" || component == name),
+        n_block: is_asked.then(|| settings::whole(request, &BLOCK, 4, 4)).transpose()?,
+        overlap: request.number(OVERLAP.name).unwrap_or(0.5),
+        n_modes: settings::whole(request, &MODES, 1, 3)?,
+        memory: (settings::whole(request, &MEMORY, 1, 256)? as u64) << 20,
+        excitation: given(&EXCITATION_HZ)?
+            .or(rates.and_then(|(_, helix)| helix).map(|(rate, _)| rate)),
+        rotor: given(&ROTOR_HZ)?.or(rates.map(|(rotor, _)| rotor)),
     })
 }
 
-fn signals(found: &Found) -> Signals {
-    let line = |rank: usize| SpectrumLine {
-        name: format!("mode {}", rank + 1),
-        colour: rank + 1,
-        frequency_step: found.step,
-        values: found.spod.energies.iter().map(|energies| energies[rank].max(1e-30)).collect(),
-    };
-    let n_lines = found.spod.n_blocks.min(3);
-    let row = DensityRow {
-        label: "energy ((m/s)²/Hz)".to_owned(),
-        lines: (0..n_lines).map(line).collect(),
-    };
-    let marks = peaks(found).into_iter().take(4);
-    let marks = marks.map(|place| (found.spod.frequencies[place], name(found, place)));
-    let figure = DensityFigure {
-        name: "modes-over-frequency".to_owned(),
-        title: "Spectral modes".to_owned(),
-        caption: format!(
-            "Energy of the strongest modes at each frequency, of {} blocks. {}; {} instants.",
-            found.spod.n_blocks, found.conditions, found.n_instants
-        ),
-        lowest_frequency: None,
-        highest_frequency: found.spod.frequencies[found.spod.frequencies.len() - 1],
-        marks: marks.filter(|(_, name)| !name.is_empty()).collect(),
-        band: None,
-        rows: vec![row],
-    };
-    Signals { title: "Modes".to_owned(), densities: vec![figure], ..Signals::default() }
+/// Numbers of the frequencies that are listed, ascending: those with a name, and the strongest.
+fn listed(answer: &Found) -> Vec<usize> {
+    let n = answer.spod.densities.len();
+    let mut order: Vec<usize> = (1..n).collect();
+    order.sort_by(|a, b| answer.spod.density(*b).total_cmp(&answer.spod.density(*a)));
+    let mut listed: Vec<usize> = order.into_iter().take(N_LISTED).collect();
+    listed.extend((1..n).filter(|index| answer.name_of(*index).is_some()));
+    listed.sort_unstable();
+    listed.dedup();
+    listed
+}
+
+/// What stands below the tables.
+const CONVENTIONS: &str = "energy: mean over the area of |u'|²; over frequency one-sided, a step wide; share: of all modes at the frequency, and of all energy; POD frequency: strongest line of the mode's coefficient, with its share of the mode's energy\n";
+
+fn text(answer: &Found, width: usize) -> String {
+    let spod = &answer.spod;
+    let [low, high] = spod.interval_95;
+    let mut text = format!(
+        "{}\n{}; a step of {:.4} Hz; a density lies with 95 % between {low:.2} and {high:.2} of its value; strips of at most {:.0} MB\n",
+        answer.conditions,
+        answer.samples(),
+        spod.frequency_step,
+        answer.memory as f64 / f64::from(1 << 20)
+    );
+    let mut columns = vec![Column::number("energy m²/s²"), Column::number("of all %")];
+    columns.extend((1..=N_SHOWN).map(|mode| Column::number(format!("mode {mode} %"))));
+    columns.push(Column::words("name"));
+    let mut table = TextTable::new([Column::number("frequency Hz")], columns);
+    for index in listed(answer) {
+        let all = spod.density(index);
+        let energy = all * spod.frequency_step;
+        let mut cells = vec![
+            format!("{:.4}", spod.frequency(index)),
+            format!("{energy:.5}"),
+            format!("{:.2}", 100.0 * energy / spod.total()),
+        ];
+        let share = |mode: usize| spod.densities[index].get(mode).map(|part| 100.0 * part / all);
+        cells.extend(
+            (0..N_SHOWN).map(|m| share(m).map_or("–".into(), |share| format!("{share:.1}"))),
+        );
+        cells.push(answer.name_of(index).unwrap_or_default());
+        table.row(cells);
+    }
+    text += &table.fitted(width);
+    text += &by_energy(answer, width);
+    text + CONVENTIONS
+}
+
+/// The table of the modes over all frequencies.
+fn by_energy(answer: &Found, width: usize) -> String {
+    let headings = ["energy m²/s²", "of all %", "frequency Hz", "line %"];
+    let mut columns: Vec<Column> = headings.into_iter().map(Column::number).collect();
+    columns.push(Column::words("name"));
+    let mut table = TextTable::new([Column::number("POD mode")], columns);
+    for (mode, line) in answer.pod_lines.iter().enumerate() {
+        let energy = answer.pod.energies[mode];
+        let [frequency, share] = line
+            .map_or(["–".to_owned(), "–".to_owned()], |[frequency, share]| {
+                [format!("{frequency:.4}"), format!("{:.1}", 100.0 * share)]
+            });
+        table.row([
+            format!("{}", mode + 1),
+            format!("{energy:.5}"),
+            format!("{:.2}", 100.0 * energy / answer.pod.total),
+            frequency,
+            share,
+            answer.pod_name(mode).unwrap_or_default(),
+        ]);
+    }
+    table.fitted(width)
+}
+
+fn json(answer: &Found) -> serde_json::Value {
+    let (spod, pod) = (&answer.spod, &answer.pod);
+    let frequencies: Vec<f64> = (0..spod.densities.len()).map(|i| spod.frequency(i)).collect();
+    let names: Vec<_> = (0..spod.densities.len()).map(|index| answer.name_of(index)).collect();
+    let pod_modes = answer.pod_lines.iter().enumerate().map(|(mode, line)| {
+        json!({
+            "energy_m2_s2": pod.energies[mode],
+            "frequency_hz": line.map(|line| line[0]),
+            "line_share": line.map(|line| line[1]),
+            "name": answer.pod_name(mode),
+            "coefficients_m_s": pod.coefficients[mode],
+        })
+    });
+    let pairs = ["u", "v", "w"].into_iter().zip(answer.components);
+    let components: Vec<&str> = pairs.filter(|(_, is)| *is).map(|(name, _)| name).collect();
+    let named = answer.names.all.iter();
+    let named = named.map(|one| json!({ "name": one.name, "frequency_hz": one.frequency }));
+    json!({
+        "conditions": answer.conditions,
+        "components": components,
+        "n_points": answer.grid.len(),
+        "n_masked": spod.n_masked,
+        "n_instants": answer.n_instants,
+        "from_s": answer.span[0],
+        "to_s": answer.span[1],
+        "strip_bytes": answer.memory,
+        "wind_speed_m_s": answer.setting.wind_speed,
+        "diameter_m": answer.setting.diameter,
+        "named_frequencies": named.collect::<Vec<_>>(),
+        "spod": {
+            "n_blocks": spod.n_blocks,
+            "block": spod.n_block,
+            "hop": spod.hop,
+            "window": "hamming",
+            "frequency_step_hz": spod.frequency_step,
+            "interval_95": spod.interval_95,
+            "frequencies_hz": frequencies,
+            "names": names,
+            "densities_m2_s2_hz": spod.densities,
+            "total_m2_s2": spod.total(),
+        },
+        "pod": {
+            "total_m2_s2": pod.total,
+            "energies_m2_s2": pod.energies,
+            "modes": pod_modes.collect::<Vec<_>>(),
+        },
+    })
 }

@@ -7,7 +7,7 @@ use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
     ZEROS,
 };
-use crate::wake_fields::{Averaged, Fields, averages_bins, conditions};
+use crate::wake_fields::{Averaged, Fields, averages_bins, axes, conditions, panel};
 use analysis::phases::{Decomposition, PhaseAverager, decompose, standard_error};
 use basis::Sense;
 use basis::records::Grid;
@@ -232,42 +232,13 @@ pub(super) fn setting_json(found: &Averaged) -> serde_json::Value {
     })
 }
 
-/// A map of `values`, over the axes that the grid of a plane spans, in diameters from the hub; none of
-/// another grid. Holes are shown as zero.
-pub(super) fn panel(found: &Averaged, title: &str, values: &[f64]) -> Option<MapPanel> {
-    let grid = found.grid();
-    let [first, second]: [usize; 2] = grid.spanned().try_into().ok()?;
-    let along = |axis: usize| {
-        let from = found.setting.hub[axis];
-        let place = |step| (grid.coordinate(axis, step) - from) / found.setting.diameter;
-        (0..grid.n_points[axis]).map(place).collect()
-    };
-    let shown = values.iter().map(|value| if value.is_finite() { *value } else { 0.0 });
-    Some(MapPanel {
-        title: title.to_owned(),
-        places: [along(first), along(second)],
-        values: shown.collect(),
-        ..MapPanel::default()
-    })
-}
-
-/// Labels of the axes of a plane.
-pub(super) fn axes(grid: &Grid) -> [String; 2] {
-    let names: Vec<usize> = grid.spanned();
-    let label = |place: usize| {
-        let axis = names.get(place).copied().unwrap_or(place);
-        format!("{}/D", ["x", "y", "z"][axis])
-    };
-    [label(0), label(1)]
-}
-
 fn signals(found: &Averaged, parts: &Decomposition) -> Signals {
     let scale = found.setting.wind_speed.powi(2);
     let over = |values: &[f64]| -> Vec<f64> { values.iter().map(|value| value / scale).collect() };
     let panels =
         [("all", &parts.total[0]), ("periodic", &parts.periodic[0]), ("random", &parts.random[0])];
     let panels: Vec<MapPanel> =
-        panels.iter().filter_map(|(title, values)| panel(found, title, &over(values))).collect();
+        panels.iter().filter_map(|(title, values)| panel(found.grid(), &found.setting, *title, &over(values))).collect();
     let map = MapFigure {
         name: "phases-stress-uu".to_owned(),
         title: "Fluctuations along the wind".to_owned(),

@@ -6,8 +6,8 @@ use super::phases::setting_json;
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
-    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
-    ZEROS,
+    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, ROTOR_HZ, TURBINE, WIDTH,
+    WIND_SPEED, ZEROS,
 };
 use crate::wake_fields::{Averaged, conditions, refused};
 use analysis::grids::widened;
@@ -49,12 +49,6 @@ const PAIR: AnalysisSetting = settings::setting(
     "N",
     Takes::Number,
     "Which of the pairs of a revolution counts, from 1, with --blades; 1 when left out",
-);
-const ROTOR_HZ: AnalysisSetting = settings::setting(
-    "rotor-hz",
-    "HZ",
-    Takes::Number,
-    "Rotor frequency (Hz), for averages by phase that were made before",
 );
 /// Nearest that two vortices of one sense may be, and how far one may be from where it is expected (rotor
 /// diameters).

@@ -2,11 +2,13 @@
 
 mod angles;
 mod averages;
+mod maps;
 pub(crate) mod settings;
 mod source;
 
 pub(crate) use angles::Angles;
 pub(crate) use averages::{Averaged, bins as averages_bins};
+pub(crate) use maps::{axes, panel};
 pub(crate) use source::Fields;
 #[cfg(feature = "modes")]
 pub(crate) use source::{Instants, NO_TIMES, TELL_TIMES};

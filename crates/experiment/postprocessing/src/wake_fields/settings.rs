@@ -80,6 +80,21 @@ pub(crate) const WIDTH: AnalysisSetting = setting(
     Takes::Number,
     "Width of a window of helix azimuth (deg); 40 when left out",
 );
+/// Frequency of the rotor.
+pub(crate) const ROTOR_HZ: AnalysisSetting = setting(
+    "rotor-hz",
+    "HZ",
+    Takes::Number,
+    "Rotor frequency (Hz), where neither a run's series nor --azimuths tell it",
+);
+/// Frequency of the helix.
+#[cfg(feature = "modes")]
+pub(crate) const EXCITATION_HZ: AnalysisSetting = setting(
+    "excitation-hz",
+    "HZ",
+    Takes::Number,
+    "Frequency of the helix (Hz), where neither a run's series nor --azimuths tell it",
+);
 /// Start of what counts.
 pub(crate) const FROM: AnalysisSetting =
     setting("from", "S", Takes::Number, "Time from which instants count (s); all when left out");

@@ -2,8 +2,7 @@
 
 use super::{Found, section};
 use crate::PostprocessingError;
-use crate::analyses::phases::{axes, panel};
-use crate::wake_fields::conditions;
+use crate::wake_fields::{axes, conditions, panel};
 use analysis::vortices::{Leapfrog, SineFit, Vortex};
 use report::{CurveAt, CurveFigure, CurvePanel, MapFigure, Signals};
 
@@ -18,7 +17,7 @@ pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
         let vorticity: Vec<f64> =
             section(averaged, index)?.vorticity().iter().map(|value| value * scale).collect();
         let title = format!("rotor {:.0}°", averaged.head.bins[index].rotor.to_degrees());
-        let Some(mut panel) = panel(averaged, &title, &vorticity) else { continue };
+        let Some(mut panel) = panel(averaged.grid(), setting, title, &vorticity) else { continue };
         let place = |vortex: &Vortex| {
             [0, 1].map(|a| (vortex.position[a] - setting.hub[spanned[a]]) / setting.diameter)
         };
