@@ -3,6 +3,7 @@
 pub mod entrainment;
 pub mod fatigue;
 pub mod grids;
+pub mod isosurface;
 pub mod lateral;
 pub mod line;
 #[cfg(feature = "modes")]

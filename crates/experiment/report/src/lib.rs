@@ -19,8 +19,8 @@ pub use figures::synchronisation::{
     Along, CentreLine, CurveAt, CurveEnd, CurveFigure, CurvePanel, CurvePoint, DeficitFigure,
     DeficitLine, DeficitPanel, DensityFigure, DensityRow, DiscFigure, DiscPanel, DiscPath,
     DiscPoint, MapFigure, MapPanel, OffsetFigure, OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow,
-    Signals, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, Synchronisation,
-    TrackFigure, TrackLine, TrackRow,
+    Signals, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, SurfaceFigure,
+    SurfacePanel, Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 pub use precursor::{CoherenceLine, DriftRow, HubWind, LevelRow, PrecursorRecords, TimeHeightMap};
 use std::fs::{self, File};

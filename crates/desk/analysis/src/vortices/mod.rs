@@ -3,6 +3,7 @@
 //! Source of what is asked: van der Hoek, Van den Abbeele, Simao Ferreira and van Wingerden (2024), §3.4.
 
 mod criteria;
+mod cubic;
 mod fit;
 mod leapfrog;
 mod peaks;
@@ -11,8 +12,9 @@ mod sine;
 mod track;
 
 pub use criteria::{Gradient, gradients, lambda_2, q_criterion, vorticity};
+pub use cubic::{CubicFit, cubic_fit};
 pub use fit::{PEAK_OVER_LENGTH, Vortex, fit_vortex};
-pub use leapfrog::{Leapfrog, Pairs, leapfrogs};
+pub use leapfrog::{Blades, Leapfrog, Pairs, blades_of, leapfrogs};
 pub use peaks::{Search, vortices};
 pub use section::Section;
 pub use sine::{SineFit, sine_fit};

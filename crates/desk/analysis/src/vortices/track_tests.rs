@@ -39,12 +39,24 @@ fn each_pair_leapfrogs_where_it_does() {
     let tracks = follow(&frames, &tracking);
     let born: Vec<&Track> = tracks.iter().filter(|track| track.is_born).collect();
     assert_eq!(born.len(), 20);
-    let found = leapfrogs(&tracks, Pairs::OfBlades { n_blades: 2, first: 0 });
+    let blades = Blades { n: 2, per_revolution: 20, line: 0.0 };
+    let pairs = |first| Pairs::Of { blades, first };
+    let found = leapfrogs(&tracks, pairs(0));
     assert!(found.len() >= 7, "{}", found.len());
     for (pair, leapfrog) in found.iter().enumerate() {
         assert!((leapfrog.place - place(pair)).abs() < 2e-3, "{leapfrog:?}");
         assert_eq!(leapfrog.ids[1], leapfrog.ids[0] + 1);
     }
+    // The second of a pair never passes the first of the next one.
+    assert!(leapfrogs(&tracks, pairs(1)).is_empty());
+    let of_blades = blades_of(&tracks, &blades);
+    assert!(of_blades.iter().all(|(id, blade)| id % 2 == *blade), "{of_blades:?}");
+    // Without one vortex its pair is gone, and all others are found as before.
+    let mut fewer = tracks.clone();
+    fewer.retain(|track| track.id != found[2].ids[1]);
+    let left = leapfrogs(&fewer, pairs(0));
+    let others = found.iter().enumerate().filter(|(pair, _)| *pair != 2).map(|(_, one)| *one);
+    assert_eq!(left, others.collect::<Vec<_>>());
 }
 
 /// A vortex that is missing from a frame keeps its number; one beyond the gate does not.
@@ -95,4 +107,25 @@ fn a_sine_comes_back_with_an_interval_that_holds_it() {
     assert!((found.half_widths[1] / (expected * 2.0_f64.sqrt()) - 1.0).abs() < 1e-3);
     assert!(sine_fit(&angles[..3], &exact[..3]).is_err());
     assert!(sine_fit(&[0.0; 6], &[1.0; 6]).is_err());
+}
+
+#[test]
+fn a_cubic_comes_back_with_an_interval_that_holds_it() {
+    let places: Vec<f64> = (0..40).map(|i| 0.5 + 0.07 * f64::from(i)).collect();
+    let cubic = |x: f64| 9.0 - 4.0 * x + 0.8 * x * x - 0.05 * x.powi(3);
+    let exact: Vec<f64> = places.iter().map(|x| cubic(*x)).collect();
+    let found = cubic_fit(&places, &exact).unwrap();
+    for x in [0.5, 1.3, 3.2] {
+        let (value, half_width) = found.at(x);
+        assert!((value - cubic(x)).abs() < 1e-10 && half_width < 1e-9, "{value} {half_width}");
+    }
+    let noisy: Vec<f64> =
+        exact.iter().enumerate().map(|(i, v)| v + if i % 2 == 0 { 0.1 } else { -0.1 }).collect();
+    let found = cubic_fit(&places, &noisy).unwrap();
+    // The mean of what four of 40 numbers take: t s √(4/40).
+    let mean = places.iter().map(|x| found.at(*x).1.powi(2)).sum::<f64>() / 40.0;
+    let expected = 2.0281 * 0.1 * (40.0_f64 / 36.0).sqrt() * (4.0_f64 / 40.0).sqrt();
+    assert!((mean.sqrt() / expected - 1.0).abs() < 0.01, "{} {expected}", mean.sqrt());
+    assert!(cubic_fit(&places[..4], &exact[..4]).is_err());
+    assert!(cubic_fit(&[1.0; 8], &[2.0; 8]).is_err());
 }

@@ -151,6 +151,19 @@ impl Averaged {
         }
     }
 
+    /// Bin number `index` in words: its azimuths.
+    pub(crate) fn name_of_bin(&self, index: usize) -> String {
+        let bin = &self.head.bins[index];
+        if self.head.bins.len() == 1 {
+            return "all instants".to_owned();
+        }
+        let rotor = format!("rotor {:.0}°", bin.rotor.to_degrees());
+        match bin.helix {
+            Some(helix) => format!("{rotor}, helix {:.0}°", helix.to_degrees()),
+            None => rotor,
+        }
+    }
+
     /// Samples behind them in words.
     pub(crate) fn samples(&self) -> String {
         let counts = || self.head.bins.iter().map(|bin| bin.n_instants);

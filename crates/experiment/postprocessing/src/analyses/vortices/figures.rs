@@ -1,23 +1,23 @@
 //! Figures of vortices: where they are phase by phase, and where they leapfrog.
 
-use super::{Found, section};
+use super::Found;
 use crate::PostprocessingError;
 use crate::wake_fields::{axes, conditions, panel};
-use analysis::vortices::{Leapfrog, SineFit, Vortex};
+use analysis::vortices::{Leapfrog, SineFit, Track, Vortex, cubic_fit};
 use report::{CurveAt, CurveFigure, CurvePanel, MapFigure, Signals};
 
 /// The figures of what was `found`.
 pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
     let (averaged, setting) = (&found.averaged, &found.averaged.setting);
     let n = found.frames.len();
-    let spanned = averaged.grid().spanned();
+    let spanned = found.cut.grid.spanned();
     let mut panels = Vec::new();
     for index in (0..n).step_by(n.div_ceil(3).max(1)) {
         let scale = setting.diameter / setting.wind_speed;
         let vorticity: Vec<f64> =
-            section(averaged, index)?.vorticity().iter().map(|value| value * scale).collect();
-        let title = format!("rotor {:.0}°", averaged.head.bins[index].rotor.to_degrees());
-        let Some(mut panel) = panel(averaged.grid(), setting, title, &vorticity) else { continue };
+            found.section(index)?.vorticity().iter().map(|value| value * scale).collect();
+        let title = averaged.name_of_bin(index);
+        let Some(mut panel) = panel(&found.cut.grid, setting, title, &vorticity) else { continue };
         let place = |vortex: &Vortex| {
             [0, 1].map(|a| (vortex.position[a] - setting.hub[spanned[a]]) / setting.diameter)
         };
@@ -32,11 +32,12 @@ pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
             conditions(setting),
             averaged.samples()
         ),
-        along: axes(averaged.grid()),
+        along: axes(&found.cut.grid),
         unit: "U/D".to_owned(),
         panels,
     };
-    let curves = found.fit.map(|fit| leapfrog_figure(found, &fit)).into_iter().collect();
+    let leapfrogs = found.fit.map(|fit| leapfrog_figure(found, &fit));
+    let curves = leapfrogs.into_iter().chain(strength_figure(found)).collect();
     Ok(Signals { title: "Vortices".to_owned(), maps: vec![map], curves, ..Signals::default() })
 }
 
@@ -73,4 +74,54 @@ fn leapfrog_figure(found: &Found, fit: &SineFit) -> CurveFigure {
             mark: None,
         }],
     }
+}
+
+/// Vorticity in the middle of vortices over the distance, blade by blade where they are told, with a cubic
+/// through it; none where too few were followed.
+fn strength_figure(found: &Found) -> Option<CurveFigure> {
+    let setting = &found.averaged.setting;
+    let n_blades = found.blades.iter().map(|(_, blade)| blade + 1).max();
+    let panel = |blade: Option<usize>| {
+        let is_one = |track: &&Track| match blade {
+            Some(blade) => found.blades.contains(&(track.id, blade)),
+            None => track.is_born,
+        };
+        let sightings = found.tracks.iter().filter(is_one).flat_map(|track| &track.sightings);
+        let points: Vec<[f64; 2]> = sightings
+            .map(|one| {
+                let place = (one.vortex.position[0] - setting.hub[0]) / setting.diameter;
+                let peak = one.vortex.peak_vorticity().abs();
+                [place, peak * setting.diameter / setting.wind_speed]
+            })
+            .collect();
+        let (places, values): (Vec<f64>, Vec<f64>) = points.iter().map(|[x, y]| (*x, *y)).unzip();
+        let fit = cubic_fit(&places, &values).ok()?;
+        let [low, high] = places
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)]);
+        let at = |step: u32| {
+            let at = low + (high - low) * f64::from(step) / 60.0;
+            let (mean, half) = fit.at(at);
+            CurveAt { at, mean, band_95: [mean - half, mean + half] }
+        };
+        let title = blade.map_or(String::new(), |blade| format!("blade {} in turn", blade + 1));
+        let curve = (0..=60).map(at).collect();
+        Some(CurvePanel { title, points, curve, mark: None })
+    };
+    let panels: Vec<CurvePanel> = match n_blades {
+        Some(n) => (0..n).filter_map(|blade| panel(Some(blade))).collect(),
+        None => panel(None).into_iter().collect(),
+    };
+    (!panels.is_empty()).then(|| CurveFigure {
+        name: "vortices-strength-over-distance".to_owned(),
+        title: "How strong vortices are".to_owned(),
+        caption: format!(
+            "Vorticity in the middle of each vortex, bin by bin, and a cubic with its interval of 95 %. {}; {}.",
+            conditions(setting),
+            found.averaged.samples()
+        ),
+        along: "x/D".to_owned(),
+        label: "vorticity (U/D)".to_owned(),
+        panels,
+    })
 }
