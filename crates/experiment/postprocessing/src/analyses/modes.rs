@@ -105,8 +105,7 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
 
 /// What `request` asks for.
 fn question(request: &Request, instants: &Instants) -> Result<Question, PostprocessingError> {
-    let times = instants.times();
-    let span = [times[0], times[times.len() - 1]];
+    let span = instants.span();
     let rates = instants.angles.as_ref().and_then(|angles| angles.rates(span));
     let component = request.text(COMPONENT.name).unwrap_or("all");
     let given = |setting: &AnalysisSetting| {

@@ -1,29 +1,33 @@
 //! `particles`: measured particles brought onto a grid, as fields that the other analyses take.
 
+mod phases;
+
 use super::{Analysis, AnalysisSetting, Answer, Of, Request, Takes};
 use crate::PostprocessingError;
-use crate::wake_fields::settings::{self, DIAMETER, HUB, LENGTHS, WIND_SPEED};
+use crate::wake_fields::settings::{
+    self, AZIMUTHS, BINS, CYCLES, DIAMETER, HUB, LENGTHS, WIDTH, WIND_SPEED,
+};
 use crate::wake_fields::{conditions, refused};
 use analysis::grids::widened;
 use analysis::particles::{
     BinSettings, Binned, Binner, MedianTest, Order, Particle, Screen, ScreenSettings, Screened, outliers,
 };
-use basis::records::{FieldSetting, PhaseAverages, PhaseBin};
+use basis::records::FieldSetting;
 use formats::fields::FoundSetting;
-use formats::records::write_phase_averages;
 use formats::tracks::{Seen, each_particle};
+use phases::{By, Phases};
 use report::text_table::{Column, TextTable};
 use serde_json::json;
-use std::f64::consts::TAU;
 use std::path::Path;
 
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
     name: "particles",
-    about: "Particles with their velocities, as tomographic measurements give them, averaged in cells with Gaussian weights: means, slopes, stresses, counts and standard errors, outliers refused, in a file that the other analyses of fields take",
+    about: "Particles with their velocities, as tomographic measurements give them, averaged in cells with Gaussian weights: means, slopes, stresses, counts and standard errors, outliers refused, all at once and by phase of rotor and helix, in a file that the other analyses of fields take",
     of: Of::Run("File of particles: CSV, Tecplot's text (.dat) or NetCDF"),
     settings: &[
-        CELL, OVERLAP, BOUNDS, ORDER, LEAST, LIMIT, OUT, DIAMETER, WIND_SPEED, HUB, LENGTHS,
+        CELL, OVERLAP, BOUNDS, ORDER, LEAST, LIMIT, AZIMUTHS, BINS, CYCLES, WIDTH, OUT, DIAMETER,
+        WIND_SPEED, HUB, LENGTHS,
     ],
     run,
 };
@@ -86,20 +90,20 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let limit = settings::positive(request, &LIMIT, ScreenSettings::usual(noise).limit)?;
     let (screened, seen) = screened(request, &bins, ScreenSettings { limit, ..ScreenSettings::usual(noise) })?;
     let mut binned = binned(request, bins, &screened, seen.n)?;
-    let test = MedianTest { threshold: MedianTest::THRESHOLD, noise };
-    let odd = outliers(&bins.grid, &binned.moments.mean.each_ref().map(|mean| widened(mean)), &test);
-    let n_odd = mask(&mut binned, &odd);
+    let n_odd = mask(&mut binned, noise);
     let mut remarks = vec![format!(
         "{} cells take {:.1} MB while particles are read",
         bins.grid.len(),
         bins.memory() as f64 / 1e6
     )];
     remarks.extend(remarks_of(&seen, &binned));
+    let phases = Phases::of(request, &seen)?;
     if let Some(out) = request.text(OUT.name) {
-        write(Path::new(out), &setting, &binned, seen.span)?;
+        let by = By { request, bins, screened: &screened, noise };
+        remarks.extend(phases::write(Path::new(out), &setting, &binned, &phases, &by)?);
         remarks.push(format!("fields written to {out}"));
     }
-    let numbers = Numbers { seen, n_odd };
+    let numbers = Numbers { seen, n_odd, phases };
     let text = text(&setting, &binned, &numbers, request.width());
     Ok(Answer { text, json: json(&binned, &numbers), remarks })
 }
@@ -170,6 +174,7 @@ fn binned(
 struct Numbers {
     seen: Seen,
     n_odd: usize,
+    phases: Phases,
 }
 
 /// What must be said of what was seen.
@@ -232,8 +237,12 @@ fn extent(
     Err(refused(path, "holds no particle", "give a file of particles"))
 }
 
-/// Takes the velocity of each cell that is `odd`; gives their number.
-fn mask(binned: &mut Binned, odd: &[bool]) -> usize {
+/// Takes the velocity of each cell that is an outlier among those around it, beyond `noise` (m/s); gives
+/// their number.
+fn mask(binned: &mut Binned, noise: f64) -> usize {
+    let test = MedianTest { threshold: MedianTest::THRESHOLD, noise };
+    let means = binned.moments.mean.each_ref().map(|mean| widened(mean));
+    let odd = outliers(&binned.grid, &means, &test);
     let mut n = 0;
     for index in (0..odd.len()).filter(|index| odd[*index]) {
         let moments = &mut binned.moments;
@@ -243,30 +252,6 @@ fn mask(binned: &mut Binned, odd: &[bool]) -> usize {
         n += 1;
     }
     n
-}
-
-/// Writes the fields as one bin of phase, which all instants fall into.
-fn write(
-    path: &Path,
-    setting: &FieldSetting,
-    binned: &Binned,
-    span: Option<[f64; 2]>,
-) -> Result<(), PostprocessingError> {
-    let mut moments = binned.moments.clone();
-    for (n, order) in moments.n_samples.iter_mut().zip(&binned.order) {
-        *n = if order.is_some() { *n } else { 0 };
-    }
-    let n_instants = u64::from(moments.n_samples.iter().copied().max().unwrap_or(0));
-    let head = PhaseAverages {
-        grid: binned.grid,
-        rotor_width: TAU,
-        helix_width: None,
-        span: span.unwrap_or_default(),
-        bins: vec![PhaseBin { rotor: 0.0, helix: None, n_instants, n_visits: 1 }],
-        all: moments.clone(),
-        each: Vec::new(),
-    };
-    Ok(write_phase_averages(path, setting, &head, |_| moments.clone())?)
 }
 
 /// Root of the mean square of the sound ones of `values`.
@@ -305,6 +290,7 @@ fn text(setting: &FieldSetting, binned: &Binned, numbers: &Numbers, width: usize
         table.row([stage.n_taken.to_string(), share(stage.error), share(stage.change)]);
     }
     text += &table.fitted(width);
+    text += &numbers.phases.in_words();
     text + "root mean square over cells and components, over the free stream; particles are taken as independent, which those of one track are not\n"
 }
 
@@ -337,6 +323,7 @@ fn json(binned: &Binned, numbers: &Numbers) -> serde_json::Value {
             "with_slopes": binned.n_of(Order::Linear),
             "means_alone": binned.n_of(Order::Constant),
         },
+        "phases": numbers.phases.json(),
         "particles_per_cell": binned.median_samples(),
         "standard_error_m_s": binned.error.each_ref().map(|values| root_mean_square(values)),
         "convergence": convergence.collect::<Vec<_>>(),

@@ -96,7 +96,8 @@ fn widths(request: &Request, found: &Averaged) -> Result<Vec<WidthRow>, Postproc
     let mut averagers = Vec::new();
     for factor in WIDTHS {
         let width_deg = (factor * width.to_degrees()).min(360.0);
-        let bins = averages_bins(request, &instants, width_deg)?.0;
+        let (angles, span) = (instants.angles.as_ref(), instants.span());
+        let bins = averages_bins(request, &found.path, angles, span, width_deg)?.0;
         averagers.push((width_deg, PhaseAverager::new(some, bins)));
     }
     instants.each(|field, (rotor, helix)| {

@@ -2,7 +2,7 @@
 
 use super::settings::{self, BINS, CYCLES, WIDTH};
 use super::source::Instants;
-use super::{Fields, refused};
+use super::{Angles, Fields, refused};
 use crate::PostprocessingError;
 use crate::analyses::Request;
 use analysis::phases::{Bins, Decomposer, Decomposition, PhaseAverager, PhaseError};
@@ -25,7 +25,7 @@ pub(crate) struct Averaged {
     /// What must be said of them.
     pub(crate) remarks: Vec<String>,
     /// Rotor and excitation frequency (Hz), where they are known.
-    pub(crate) rates: Option<(f64, Option<(f64, Sense)>)>,
+    pub(crate) rates: Rates,
     moments: Made,
 }
 
@@ -55,11 +55,9 @@ impl Averaged {
 
     fn made(request: &Request, mut instants: Instants) -> Result<Self, PostprocessingError> {
         let path = instants.file.path().to_owned();
-        let (bins, rates, mut remarks) = bins(
-            request,
-            &instants,
-            settings::positive(request, &WIDTH, Bins::WIDTH.to_degrees())?,
-        )?;
+        let width_deg = settings::positive(request, &WIDTH, Bins::WIDTH.to_degrees())?;
+        let (angles, span) = (instants.angles.as_ref(), instants.span());
+        let (bins, rates, mut remarks) = bins(request, &path, angles, span, width_deg)?;
         let grid = *instants.file.grid();
         let memory = PhaseAverager::memory(grid.len() as u64, &bins);
         if memory > MOST_MEMORY {
@@ -198,26 +196,27 @@ fn empty_bins(head: &PhaseAverages) -> Vec<String> {
 }
 
 /// Frequencies of rotor and, with its sense, helix (Hz).
-type Rates = Option<(f64, Option<(f64, Sense)>)>;
+pub(crate) type Rates = Option<(f64, Option<(f64, Sense)>)>;
 
-/// The bins that `request` asks for with windows of `width_deg`, the frequencies, and what must be said.
+/// The bins that `request` asks for with windows of `width_deg`, at the `angles` of the file at `path`
+/// between `span` (s); the frequencies; and what must be said.
 pub(crate) fn bins(
     request: &Request,
-    instants: &Instants,
+    path: &Path,
+    angles: Option<&Angles>,
+    span: [f64; 2],
     width_deg: f64,
 ) -> Result<(Bins, Rates, Vec<String>), PostprocessingError> {
     let wrong = |error: PhaseError| {
         let fix = "ask for other --bins, --cycles or --width";
-        refused(instants.file.path(), error.to_string(), fix)
+        refused(path, error.to_string(), fix)
     };
     let n_bins = settings::whole(request, &BINS, 1, Bins::N_AZIMUTHS)?;
-    let times = instants.times();
-    let span = [times[0], times[times.len() - 1]];
-    let rates = instants.angles.as_ref().and_then(|angles| angles.rates(span));
-    if instants.angles.is_none() {
+    let Some(angles) = angles else {
         let remark = "no azimuths are told (--azimuths): all instants are in one bin, and periodic parts are not told from random ones";
-        return Ok((Bins::of_rotor(1).map_err(wrong)?, rates, vec![remark.to_owned()]));
-    }
+        return Ok((Bins::of_rotor(1).map_err(wrong)?, None, vec![remark.to_owned()]));
+    };
+    let rates = angles.rates(span);
     let n_cycles = settings::whole(request, &CYCLES, 0, Bins::N_CYCLES)?;
     let bins = match rates {
         Some((rotor, Some((helix, sense)))) if n_cycles > 0 => {

@@ -105,6 +105,12 @@ impl Instants {
         &self.file.times()[self.places.clone()]
     }
 
+    /// First and last instant that count (s).
+    pub(crate) fn span(&self) -> [f64; 2] {
+        let times = self.times();
+        [times[0], times[times.len() - 1]]
+    }
+
     /// Hands `take` each instant that counts with its azimuths; zeros where they are not told.
     ///
     /// # Errors
