@@ -1,7 +1,7 @@
 //! Surfaces on which a field has one value.
 
 use basis::records::Grid;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// The six tetrahedra of a cell about its diagonal; bit 0 of a corner is a step along x, bit 1 along y, bit 2
 /// along z.
@@ -36,7 +36,7 @@ impl Isosurface {
 /// Source: Doi and Koide (1991), IEICE Transactions E74, 214.
 pub fn isosurface(grid: &Grid, field: &[f64], level: f64) -> Isosurface {
     let mut surface = Isosurface::default();
-    let mut known: HashMap<[usize; 2], u32> = HashMap::new();
+    let mut known: BTreeMap<[usize; 2], u32> = BTreeMap::new();
     let cells = grid.n_points.map(|n| n.saturating_sub(1));
     for z in 0..cells[2] {
         for y in 0..cells[1] {
@@ -64,7 +64,7 @@ fn cut(
     level: f64,
     corners: [usize; 4],
     surface: &mut Isosurface,
-    known: &mut HashMap<[usize; 2], u32>,
+    known: &mut BTreeMap<[usize; 2], u32>,
 ) {
     let (within, without): (Vec<usize>, Vec<usize>) =
         corners.into_iter().partition(|index| field[*index] >= level);
@@ -130,7 +130,7 @@ mod tests {
     /// Volume by the divergence theorem, area, and how often edges belong to other than two triangles.
     fn measured(surface: &Isosurface) -> (f64, f64, usize) {
         let (mut volume, mut area) = (0.0, 0.0);
-        let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
+        let mut edges: BTreeMap<[u32; 2], i32> = BTreeMap::new();
         for corners in &surface.triangles {
             let [p, q, r] = corners.map(|corner| surface.points[corner as usize]);
             let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

@@ -199,3 +199,91 @@ fn particles_become_fields_that_other_analyses_take() {
     let power = number(&energy.json, "/available_power/5/f_ap");
     assert!((power / expected - 1.0).abs() < 0.01, "{power} {expected}");
 }
+
+/// Particles of a wave with the rotor's azimuth come back bin by bin.
+#[test]
+fn particles_are_averaged_by_phase() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let mut tracks = "time [s],x [mm],y [mm],z [mm],u [m/s],v [m/s],w [m/s]\n".to_owned();
+    let mut azimuths = "time_s,Azimuth_deg\n".to_owned();
+    let mut state = 3_u64;
+    let mut even = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for step in 0..600 {
+        let time = f64::from(step) * 0.0103;
+        let turns = ROTOR_HZ * time;
+        writeln!(azimuths, "{time},{}", 360.0 * turns.fract()).unwrap();
+        for _ in 0..40 {
+            let [x, y, z] = [0, 1, 2].map(|_| 80.0 * (even() - 0.5));
+            let u = 4.0 + (TAU * turns).cos() + 0.1 * (even() - 0.5);
+            writeln!(tracks, "{time},{x},{y},{z},{u},0,0").unwrap();
+        }
+    }
+    fs::write(path("tracks.csv"), &tracks).unwrap();
+    fs::write(path("azimuths.csv"), azimuths).unwrap();
+    let text = |name: &str| path(name).to_str().unwrap().to_owned();
+    let request = Request::of(path("tracks.csv")).with("wind-speed", "5").with("diameter", "0.08");
+    let request = request.with("hub", "0,0,0").with("bounds", "-0.02,0.02,-0.02,0.02,-0.02,0.02");
+    let by_phase = request.clone().with("azimuths", &text("azimuths.csv"));
+    let found = run("particles", &by_phase.with("out", &text("fields.nc"))).unwrap();
+    let bins = found.json["phases"].as_array().unwrap();
+    assert_eq!(bins.len(), 12);
+    let n: f64 = bins.iter().map(|bin| number(bin, "/n_instants")).sum();
+    assert_eq!(n, 600.0);
+    let parts = run("phases", &Request::of(path("fields.nc"))).unwrap();
+    // Of a wave of 1 m/s bins of 30° keep sin 15° / 15°: 0.9886.
+    let row = &parts.json["fluctuations_over_free_stream"][0];
+    let periodic = number(row, "/periodic");
+    assert!((periodic / (0.9886 * 0.5_f64.sqrt() / 5.0) - 1.0).abs() < 0.02, "{periodic}");
+    // Of time that is not told azimuths say nothing.
+    let bare = tracks.replace("time [s]", "track");
+    fs::write(path("bare.csv"), bare).unwrap();
+    let request = Request { folders: vec![path("bare.csv")], ..request };
+    let error = run("particles", &request.with("azimuths", &text("azimuths.csv"))).unwrap_err();
+    assert!(error.to_string().contains("does not tell the times"), "{error}");
+}
+
+#[test]
+fn azimuths_and_times_that_tell_nothing_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let text = |name: &str| path(name).to_str().unwrap().to_owned();
+    let zone = |time: &str| format!("ZONE I=2 J=2{time}\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n1 1 0 1 0 0\n");
+    let head = "VARIABLES = x y z u v w\n";
+    fs::write(path("bare.dat"), format!("{head}{}{}", zone(""), zone(""))).unwrap();
+    let timed = [" SOLUTIONTIME=0", " SOLUTIONTIME=0.5"].map(|time| zone(time));
+    fs::write(path("timed.dat"), format!("{head}{}", timed.concat())).unwrap();
+    fs::write(path("sparse.csv"), "time_s,Azimuth_deg\n0,0\n1,170\n2,340\n").unwrap();
+    fs::write(path("turns.csv"), "time_s,Azimuth [grad]\n0,0\n1,1\n").unwrap();
+    fs::write(path("short.csv"), "time_s,Azimuth_rad\n0,0\n0.2,1\n").unwrap();
+    let cases = [
+        ("bare.dat", "short.csv", "does not tell the times"),
+        ("timed.dat", "sparse.csv", "a row each 170°"),
+        ("timed.dat", "turns.csv", "in grad"),
+        ("timed.dat", "short.csv", "instant at 0.5 s, beyond the azimuths"),
+    ];
+    for (fields, azimuths, expected) in cases {
+        let request = Request::of(path(fields)).with("wind-speed", "5").with("diameter", "0.58");
+        let request = request.with("hub", "0,0,0").with("azimuths", &text(azimuths));
+        let error = run("phases", &request).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
+fn what_has_no_modes_names_the_file_and_the_fix() {
+    let folder = tempfile::tempdir().unwrap();
+    let (fields, azimuths) = tunnel(folder.path());
+    let request = Request::of(&fields).with("azimuths", azimuths.to_str().unwrap());
+    let refused = run("modes", &request.clone().with("from", "2.02")).unwrap_err();
+    let help = miette::Diagnostic::help(&refused).map(|help| help.to_string()).unwrap_or_default();
+    let message = refused.to_string();
+    assert!(message.contains("tunnel.nc") && message.contains("are too few"), "{message}");
+    assert!(help.contains("output.plane_interval"), "{help}");
+    let high = run("modes", &request.with("excitation-hz", "-1")).unwrap_err().to_string();
+    assert!(high.contains("above 0"), "{high}");
+}

@@ -235,6 +235,14 @@ impl RunFolder {
         self.path.join("planes")
     }
 
+    /// The files of planes, by name.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn plane_files(&self) -> Result<Vec<PathBuf>, FileError> {
+        study::entries(&self.planes_path())
+    }
+
     /// Folder of the volumes.
     pub fn volumes_path(&self) -> PathBuf {
         self.path.join("volumes")

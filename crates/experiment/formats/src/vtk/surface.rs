@@ -1,14 +1,14 @@
 //! Surfaces as VTK polydata (`.vtp`) for ParaView.
 
 use crate::FileError;
-use crate::atomic::AtomicFile;
+use crate::atomic::{self, AtomicFile};
 use std::io::{self, Write};
 use std::path::Path;
 
 const WHAT: &str = "a surface (VTK)";
 
 /// Writes the triangles whose corners are among `points` (m) to `path`, with `values`, each a name and a
-/// number for each point, and the instant `time` (s), where it has one, as ParaView's time.
+/// number for each point, and the instant `time` (s), where it has one, as ParaView's time. Its folder is made where there is none.
 ///
 /// # Errors
 /// [`FileError::System`].
@@ -19,6 +19,7 @@ pub fn write_surface(
     values: &[(&str, &[f64])],
     time: Option<f64>,
 ) -> Result<(), FileError> {
+    atomic::create_folder(path.parent().unwrap_or(Path::new("")))?;
     let mut file = AtomicFile::create(path, WHAT)?;
     write_to(&mut file, points, triangles, values, time)
         .map_err(|source| FileError::system("write", WHAT, path, source))?;

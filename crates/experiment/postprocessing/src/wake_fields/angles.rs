@@ -58,7 +58,9 @@ impl Angles {
         let pitch: Result<Vec<&[f64]>, String> =
             (1..=N_BLADES).map(|blade| column(&BLD_PITCH.of_blade(blade).name)).collect();
         let helix = pitch.map_or_else(|_| Vec::new(), |pitch| of_pitch(rotor, &pitch));
-        Ok(Self { times: times.to_vec(), rotor: unwrapped(rotor), helix })
+        let rotor = unwrapped(rotor);
+        dense(&path, &rotor, "make the run again with a shorter output.interval")?;
+        Ok(Self { times: times.to_vec(), rotor, helix })
     }
 
     /// Those in the table at `path`: time, `Azimuth_deg` and, where there is one, `Helix_deg`.
@@ -97,15 +99,7 @@ impl Angles {
             unwrapped(&column.iter().map(|angle| unit * angle).collect::<Vec<f64>>())
         });
         let (rotor, helix) = (angles.next().unwrap_or_default(), angles.next().unwrap_or_default());
-        let turned: f64 = rotor.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-        let step = turned / (rotor.len() - 1) as f64;
-        if step > MOST_STEP {
-            let problem = format!(
-                "has a row each {:.0}° of the rotor, between which its azimuth is not told",
-                step.to_degrees()
-            );
-            return Err(refused(path, problem, "give four rows a revolution at least"));
-        }
+        dense(path, &rotor, "give four rows a revolution at least")?;
         Ok(Self { times, rotor, helix })
     }
 
@@ -141,6 +135,18 @@ impl Angles {
         });
         (rotor > 0.0 && rotor.is_finite()).then_some((rotor, helix))
     }
+}
+
+/// That the rows of the table at `path` are so near that `rotor` (rad, not wrapped) is told between them.
+fn dense(path: &Path, rotor: &[f64], fix: &str) -> Result<(), PostprocessingError> {
+    let turned: f64 = rotor.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+    let step = turned / (rotor.len().max(2) - 1) as f64;
+    if step <= MOST_STEP {
+        return Ok(());
+    }
+    let step = step.to_degrees();
+    let problem = format!("has a row each {step:.0}° of the rotor, between which its azimuth is not told");
+    Err(refused(path, problem, fix))
 }
 
 /// Azimuth of the helix that `pitch` of the blades makes at the azimuths `rotor` (rad), not wrapped; empty

@@ -4,9 +4,10 @@ use super::settings::{self, AZIMUTHS, FIELD, FROM, TURBINE};
 use super::{Angles, refused};
 use crate::PostprocessingError;
 use crate::analyses::Request;
+use crate::phase::query::folder_of;
 use basis::records::{Field, FieldSetting};
 use formats::fields::FieldFile;
-use formats::records::{RunFolder, StoredPhaseAverages, is_phase_averages};
+use formats::records::{StoredPhaseAverages, is_phase_averages};
 use std::path::{Path, PathBuf};
 
 /// Planes that are looked for first, in this order.
@@ -58,7 +59,7 @@ impl Fields {
         let setting = settings::of_fields(request, &file, &found)?;
         let angles = match request.text(AZIMUTHS.name) {
             Some(table) => Some(Angles::of_table(Path::new(table))?),
-            None if is_run => Some(Angles::of_run(&run_folder(path), request.text(TURBINE.name))?),
+            None if is_run => Some(Angles::of_run(&folder_of(path), request.text(TURBINE.name))?),
             None => None,
         };
         let needs_times = angles.is_some() || request.number(FROM.name).is_some();
@@ -136,15 +137,9 @@ impl Instants {
     }
 }
 
-/// The folder of the run at `path`.
-fn run_folder(path: &Path) -> RunFolder {
-    let parent = path.parent().unwrap_or(Path::new(""));
-    RunFolder::new(parent, &path.file_name().unwrap_or_default().to_string_lossy())
-}
-
 /// The file or folder of the run at `path` that `request` means.
 fn in_run(request: &Request, path: &Path, averages: bool) -> Result<PathBuf, PostprocessingError> {
-    let folder = run_folder(path);
+    let folder = folder_of(path);
     if let Some(name) = request.text(FIELD.name) {
         let kept = folder.phase_averages_path(name);
         if averages && kept.is_file() {
@@ -178,10 +173,7 @@ const NO_INSTANTS: &str =
 
 /// What a plane in the run at `path` tells of what it was taken of.
 fn found_beside(path: &Path) -> Option<formats::fields::FoundSetting> {
-    let planes = run_folder(path).planes_path();
-    let entries = std::fs::read_dir(planes).ok()?;
-    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    files.sort();
+    let files = folder_of(path).plane_files().ok()?;
     let open = |file: &PathBuf| FieldFile::open(file, formats::fields::Lengths::Metres).ok();
     files.iter().filter(|file| file.extension().is_some_and(|e| e == "nc")).find_map(|file| {
         let found = open(file)?.found().clone();

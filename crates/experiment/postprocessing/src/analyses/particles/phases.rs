@@ -185,7 +185,8 @@ pub(super) fn write(
     })?;
     let group = group.into_inner();
     if let Some(error) = group.failed {
-        return Err(error.into());
+        let problem = format!("holds a part of the bins of phase alone: {error}");
+        return Err(refused(path, problem, "remove it, and make it again"));
     }
     let n_passes = of_phase.len().div_ceil(n_each);
     Ok(vec![format!(

@@ -8,7 +8,6 @@ use analysis::grids::widened;
 use analysis::isosurface::{Isosurface, isosurface};
 use analysis::vortices::{gradients, q_criterion, vorticity};
 use basis::records::Grid;
-use formats::FileError;
 use formats::vtk::write_surface;
 use report::{SurfaceFigure, SurfacePanel};
 use std::path::Path;
@@ -55,10 +54,6 @@ pub(super) fn made(
         return Ok((None, None));
     }
     let level = level(request, found)?;
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder)
-            .map_err(|error| FileError::system("create", "the folder", folder, error))?;
-    }
     let n = found.frames.len();
     let (mut panels, mut n_triangles) = (Vec::new(), 0);
     for index in 0..n {
