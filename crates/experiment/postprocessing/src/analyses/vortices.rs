@@ -26,7 +26,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     about: "Vortices in a plane averaged by phase, or in the one along the wind through the hub of a volume: places, circulations and cores by a fit, followed from phase to phase, their strength over distance, where one passes the one before it over the phase of the helix, and the hub vortex in a plane across the wind; isosurfaces of Q of a volume: figures 9 and 13 to 15 of van der Hoek et al. (2024)",
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase"),
     settings: &[
-        FIELD, TURBINE, LEAST, BLADES, PAIR, SURFACES, LEVEL, ROTOR_HZ, BINS, CYCLES, WIDTH, FROM, AZIMUTHS,
+        FIELD, TURBINE, LEAST, BLADES, PAIR, SURFACES, CRITERION, LEVEL, ROTOR_HZ, BINS, CYCLES, WIDTH, FROM, AZIMUTHS,
         DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS, FIGURES,
     ],
     run,
@@ -54,13 +54,22 @@ const SURFACES: AnalysisSetting = settings::setting(
     "surfaces",
     "FOLDER",
     Takes::Text,
-    "Folder to write the isosurface of Q of each bin of a volume into, for ParaView: q-000.vtp and so on; none when left out",
+    "Folder to write an isosurface of each bin of a volume into, for ParaView: q-000.vtp and so on; none when left out",
 );
+const CRITERION: AnalysisSetting = AnalysisSetting {
+    name: "criterion",
+    value: "CRITERION",
+    takes: Takes::Choice(&[
+        ("q", "Q: turning outweighs straining"),
+        ("lambda2", "Minus the middle eigenvalue of the squares of strain and turning"),
+    ]),
+    about: "What the isosurfaces are of; Q when left out",
+};
 const LEVEL: AnalysisSetting = settings::setting(
     "level",
     "(U/D)2",
     Takes::Number,
-    "Q of the isosurfaces, times squared diameter over squared free stream; a twentieth of the greatest when left out",
+    "Value on the isosurfaces, times squared diameter over squared free stream; a twentieth of the greatest when left out",
 );
 /// Nearest that two vortices of one sense may be, and how far one may be from where it is expected (rotor
 /// diameters).
