@@ -16,7 +16,7 @@ use analysis::vortices::{
     Blades, Leapfrog, Pairs, Search, Section, SineFit, Track, Tracking, Vortex, blades_of, follow,
     leapfrogs, sine_fit, vortices,
 };
-use basis::angle::wrap_to_turn;
+use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use cut::Cut;
 use std::f64::consts::TAU;
 
@@ -94,7 +94,8 @@ struct Found {
     tracks: Vec<Track>,
     /// The blade of each track that was born in the plane, where blades are told.
     blades: Vec<(usize, usize)>,
-    leapfrogs: Vec<(f64, Leapfrog)>,
+    /// Those with the azimuth of the helix (rad), where there is a helix.
+    leapfrogs: Vec<(Option<f64>, Leapfrog)>,
     fit: Option<SineFit>,
 }
 
@@ -253,14 +254,14 @@ fn follow_all(
     for leapfrog in leapfrogs(&found.tracks, pairs) {
         let bin = &found.averaged.head.bins[leapfrog.step as usize % n];
         // The helix goes on between bins, by as much as from this one to the next.
-        let next = &found.averaged.head.bins[(leapfrog.step as usize + 1) % n];
-        let azimuth = bin.helix.zip(next.helix).map_or(bin.rotor, |(a, b)| {
-            a + leapfrog.step.fract() * basis::angle::wrap_to_half_turn(b - a)
+        let azimuth = bin.helix.zip(next.helix).map(|(a, b)| {
+            wrap_to_turn(a + leapfrog.step.fract() * wrap_to_half_turn(b - a))
         });
-        found.leapfrogs.push((wrap_to_turn(azimuth), leapfrog));
+        found.leapfrogs.push((azimuth, leapfrog));
     }
+    let over_helix = found.leapfrogs.iter().filter_map(|(a, one)| Some(((*a)?, one.place)));
     let (angles, places): (Vec<f64>, Vec<f64>) =
-        found.leapfrogs.iter().map(|(angle, one)| (*angle, one.place - setting.hub[0])).unzip();
+        over_helix.map(|(angle, place)| (angle, place - setting.hub[0])).unzip();
     // Too few, or all at one azimuth: no sine.
     found.fit = sine_fit(&angles, &places).ok();
     Ok(())

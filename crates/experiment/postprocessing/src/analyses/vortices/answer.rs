@@ -59,8 +59,10 @@ pub(super) fn text(found: &Found, width: usize) -> String {
     }
     if !found.leapfrogs.is_empty() {
         let n = found.leapfrogs.len() as f64;
-        let mean = found.leapfrogs.iter().map(|(_, one)| over(one.place)).sum::<f64>() / n;
-        text += &format!("{n} leapfrogs, at {mean:.3} D on the average\n");
+        let places = || found.leapfrogs.iter().map(|(_, one)| over(one.place));
+        let mean = places().sum::<f64>() / n;
+        let deviation = (places().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
+        text += &format!("{n} leapfrogs, at {mean:.3} ± {deviation:.3} D (standard deviation)\n");
     }
     if let Some(fit) = &found.fit {
         let [mean, amplitude, phase] = fit.half_widths;
@@ -124,14 +126,15 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
         let sightings = track.sightings.iter().map(|one| {
             json!({ "bin": one.step % found.frames.len(), "step": one.step, "vortex": vortex(&one.vortex) })
         });
-        json!({ "id": track.id, "born": track.is_born, "sightings": sightings.collect::<Vec<_>>() })
+        let blade = found.blades.iter().find(|(id, _)| *id == track.id).map(|(_, blade)| blade + 1);
+        json!({ "id": track.id, "born": track.is_born, "blade": blade, "sightings": sightings.collect::<Vec<_>>() })
     });
     let leapfrogs = found.leapfrogs.iter().map(|(azimuth, one)| {
         json!({
             "tracks": one.ids,
             "x_m": one.place,
             "step": one.step,
-            "helix_azimuth_deg": azimuth.to_degrees(),
+            "helix_azimuth_deg": azimuth.map(f64::to_degrees),
         })
     });
     let fit = found.fit.map(|fit| {

@@ -53,8 +53,8 @@ fn leapfrog_figure(found: &Found, fit: &SineFit) -> CurveFigure {
             band_95: [(mean - half) / setting.diameter, (mean + half) / setting.diameter],
         }
     };
-    let point = |(azimuth, one): &(f64, Leapfrog)| {
-        [azimuth.to_degrees(), (one.place - setting.hub[0]) / setting.diameter]
+    let point = |(azimuth, one): &(Option<f64>, Leapfrog)| {
+        Some([(*azimuth)?.to_degrees(), (one.place - setting.hub[0]) / setting.diameter])
     };
     CurveFigure {
         name: "leapfrogging-over-helix-azimuth".to_owned(),
@@ -69,7 +69,7 @@ fn leapfrog_figure(found: &Found, fit: &SineFit) -> CurveFigure {
         label: "x/D".to_owned(),
         panels: vec![CurvePanel {
             title: String::new(),
-            points: found.leapfrogs.iter().map(point).collect(),
+            points: found.leapfrogs.iter().filter_map(point).collect(),
             curve: (0..=360).step_by(5).map(at).collect(),
             mark: None,
         }],
