@@ -3,7 +3,7 @@
 use super::{FoundSetting, Lengths, WHAT, length_in, speed_in, time_in};
 use crate::{FileError, atomic, netcdf};
 use basis::records::Grid;
-use netcdf_reader::{NcFile, NcSliceInfo, NcSliceInfoElem, NcVariable};
+use netcdf_reader::{NcFile, NcSliceInfo, NcSliceInfoElem, NcType, NcVariable};
 use std::ops::Range;
 use std::path::Path;
 
@@ -24,6 +24,8 @@ pub(super) struct NetCdfFields {
     names: [String; 3],
     /// Metres a second of one, of each component.
     scales: [f64; 3],
+    /// Whether the numbers of all components are in single precision, as they stand.
+    is_plain: bool,
     grid: Grid,
     n_points: usize,
 }
@@ -64,6 +66,8 @@ impl NetCdfFields {
                 None => 1.0,
             };
         }
+        let is_plain = scales == [1.0; 3]
+            && names.iter().all(|name| file.variable(name).is_ok_and(is_plain));
         if over_time != [over_time[0]; 3] {
             return Err(format!("of {} some stand over time, some do not", names.join(", ")));
         }
@@ -77,7 +81,8 @@ impl NetCdfFields {
             return Err("it holds fewer values than it says".to_owned());
         }
         let found = found(&file);
-        Ok((Self { file, names, scales, grid, n_points }, grid, times, found))
+        let fields = Self { file, names, scales, is_plain, grid, n_points };
+        Ok((fields, grid, times, found))
     }
 
     /// On return `velocity` is that of instant number `index`.
@@ -112,15 +117,18 @@ impl NetCdfFields {
         velocity: &mut [Vec<f32>; 3],
     ) -> Result<(), FileError> {
         for ((name, scale), values) in self.names.iter().zip(self.scales).zip(velocity) {
-            let read = self.values(name, place);
-            let all = read.map_err(|problem| FileError::content(WHAT, path, problem, FIX))?;
-            values.clear();
-            values.extend(all.into_iter().map(|value| (scale * value) as f32));
+            let read = self.values(name, scale, place);
+            *values = read.map_err(|problem| FileError::content(WHAT, path, problem, FIX))?;
+            if values.len() != place.n {
+                let problem =
+                    format!("`{name}` has {} values where {} are expected", values.len(), place.n);
+                return Err(FileError::content(WHAT, path, problem, FIX));
+            }
         }
         Ok(())
     }
 
-    fn values(&self, name: &str, place: &Place) -> Result<Vec<f64>, String> {
+    fn values(&self, name: &str, scale: f64, place: &Place) -> Result<Vec<f32>, String> {
         let variable = self.file.variable(name).map_err(|error| error.to_string())?;
         let slice = |range: &Range<usize>| NcSliceInfoElem::Slice {
             start: range.start as u64,
@@ -133,14 +141,15 @@ impl NetCdfFields {
             _ => NcSliceInfoElem::Slice { start: 0, end: u64::MAX, step: 1 },
         };
         let selections = variable.dimensions.iter().map(|one| along(&one.name)).collect();
-        // Fill values and packed numbers as the conventions have them.
-        let read = self.file.read_variable_slice_unpacked_masked(name, &NcSliceInfo { selections });
-        let values = read.map_err(|error| error.to_string())?.into_raw_vec_and_offset().0;
-        if values.len() == place.n {
-            Ok(values)
-        } else {
-            Err(format!("`{name}` has {} values where {} are expected", values.len(), place.n))
+        let slice = NcSliceInfo { selections };
+        if self.is_plain {
+            let read = self.file.read_variable_slice::<f32>(name, &slice);
+            return Ok(read.map_err(|error| error.to_string())?.into_raw_vec_and_offset().0);
         }
+        // Fill values and packed numbers as the conventions have them.
+        let read = self.file.read_variable_slice_unpacked_masked(name, &slice);
+        let values = read.map_err(|error| error.to_string())?.into_raw_vec_and_offset().0;
+        Ok(values.into_iter().map(|value| (scale * value) as f32).collect())
     }
 }
 
@@ -162,6 +171,23 @@ fn components(file: &NcFile) -> Result<[String; 3], String> {
         Some(name) => Err(format!("it lacks `{name}`")),
         None => Ok(set.map(str::to_owned)),
     }
+}
+
+/// Whether the numbers of `variable` are in single precision and mean what they say.
+fn is_plain(variable: &NcVariable) -> bool {
+    const CHANGES: [&str; 8] = [
+        "_FillValue",
+        "missing_value",
+        "valid_range",
+        "valid_min",
+        "valid_max",
+        "scale_factor",
+        "add_offset",
+        "_Unsigned",
+    ];
+    let changes = |name: &str| CHANGES.contains(&name);
+    *variable.dtype() == NcType::Float
+        && !variable.attributes.iter().any(|attribute| changes(&attribute.name))
 }
 
 /// The unit of `variable`, where it tells one.
