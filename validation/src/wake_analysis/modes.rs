@@ -127,7 +127,12 @@ pub(super) fn rows() -> Vec<Row> {
         row("spectral modes: largest 1 − |product| with the script's", worst(modes), 1e-6, AtMost),
         row("largest relative difference of an energy", energies, 1e-6, AtMost),
         row("relative difference of the energy in all", total, 1e-6, AtMost),
-        row("modes by energy: largest 1 − |product| with the script's", worst(shapes), 1e-6, AtMost),
+        row(
+            "modes by energy: largest 1 − |product| with the script's",
+            worst(shapes),
+            1e-6,
+            AtMost,
+        ),
     ]
 }
 

@@ -22,9 +22,8 @@ pub struct Isosurface {
 impl Isosurface {
     /// Another field of the same grid at the corners, straight between its points.
     pub fn values(&self, field: &[f64]) -> Vec<f64> {
-        let value = |([a, b], share): &([usize; 2], f64)| {
-            field[*a] + share * (field[*b] - field[*a])
-        };
+        let value =
+            |([a, b], share): &([usize; 2], f64)| field[*a] + share * (field[*b] - field[*a]);
         self.between.iter().map(value).collect()
     }
 }

@@ -252,7 +252,9 @@ fn azimuths_and_times_that_tell_nothing_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let text = |name: &str| path(name).to_str().unwrap().to_owned();
-    let zone = |time: &str| format!("ZONE I=2 J=2{time}\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n1 1 0 1 0 0\n");
+    let zone = |time: &str| {
+        format!("ZONE I=2 J=2{time}\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n1 1 0 1 0 0\n")
+    };
     let head = "VARIABLES = x y z u v w\n";
     fs::write(path("bare.dat"), format!("{head}{}{}", zone(""), zone(""))).unwrap();
     let timed = [" SOLUTIONTIME=0", " SOLUTIONTIME=0.5"].map(|time| zone(time));

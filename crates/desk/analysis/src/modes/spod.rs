@@ -210,7 +210,9 @@ fn modes_at<S: Snapshots>(
         }
         Ok(())
     })?;
-    for (mode, largest) in all.iter_mut().flat_map(|one| &mut one.modes).zip(largest.iter().flatten()) {
+    for (mode, largest) in
+        all.iter_mut().flat_map(|one| &mut one.modes).zip(largest.iter().flatten())
+    {
         let turn = largest.conj() / largest.norm();
         for value in mode.iter_mut().flatten() {
             let turned = Complex64::new(f64::from(value[0]), f64::from(value[1])) * turn;

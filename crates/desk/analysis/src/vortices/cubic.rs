@@ -27,9 +27,8 @@ impl CubicFit {
     pub fn at(&self, place: f64) -> (f64, f64) {
         let row = powers((place - self.middle) / self.half);
         let value = row.iter().zip(self.coefficients).map(|(a, b)| a * b).sum();
-        let share: f64 = (0..4)
-            .map(|i| (0..4).map(|j| row[i] * self.inverse[i][j] * row[j]).sum::<f64>())
-            .sum();
+        let share: f64 =
+            (0..4).map(|i| (0..4).map(|j| row[i] * self.inverse[i][j] * row[j]).sum::<f64>()).sum();
         (value, self.spread * share.max(0.0).sqrt())
     }
 }

@@ -106,7 +106,8 @@ fn numbers(born: &[&Track], blades: &Blades) -> Vec<Option<i64>> {
     let period = blades.per_revolution as f64 / blades.n.max(1) as f64;
     let came: Vec<Option<f64>> = born.iter().map(|track| came_at(track, blades.line)).collect();
     let angles = came.iter().flatten().map(|step| TAU * step / period);
-    let (sine, cosine) = angles.fold((0.0, 0.0), |(s, c), angle| (s + angle.sin(), c + angle.cos()));
+    let (sine, cosine) =
+        angles.fold((0.0, 0.0), |(s, c), angle| (s + angle.sin(), c + angle.cos()));
     let offset = f64::atan2(sine, cosine).rem_euclid(TAU) / TAU;
     let number = |step: f64| (step / period - offset).round() as i64;
     came.into_iter().map(|step| step.map(number)).collect()

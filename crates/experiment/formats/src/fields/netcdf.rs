@@ -66,8 +66,8 @@ impl NetCdfFields {
                 None => 1.0,
             };
         }
-        let is_plain = scales == [1.0; 3]
-            && names.iter().all(|name| file.variable(name).is_ok_and(is_plain));
+        let is_plain =
+            scales == [1.0; 3] && names.iter().all(|name| file.variable(name).is_ok_and(is_plain));
         if over_time != [over_time[0]; 3] {
             return Err(format!("of {} some stand over time, some do not", names.join(", ")));
         }

@@ -38,7 +38,8 @@ fn planes_of_a_run_come_back_as_fields_with_their_setting() {
     assert_eq!((field.time, &field.velocity), (2.5, &plane(2.5).velocity));
     let strip = file.read_strip(1..3, 1..2).unwrap();
     let row = |time: f64| plane(time).velocity.map(|values| values[3..].to_vec());
-    let expected: [Vec<f32>; 3] = [0, 1, 2].map(|axis| [&row(1.5)[axis][..], &row(2.5)[axis]].concat());
+    let expected: [Vec<f32>; 3] =
+        [0, 1, 2].map(|axis| [&row(1.5)[axis][..], &row(2.5)[axis]].concat());
     assert_eq!(strip, expected);
     let found = file.found();
     assert_eq!((found.diameter, found.wind_speed), (Some(240.0), Some(9.0)));

@@ -135,8 +135,7 @@ fn head_of(head: &str) -> Result<(Grid, Option<f64>), String> {
         grid.origin[axis] += low as f64 * grid.spacing[axis];
     }
     const UPRIGHT: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-    if attribute(image, "Direction").is_some()
-        && numbers::<f64, 9>(image, "Direction")? != UPRIGHT
+    if attribute(image, "Direction").is_some() && numbers::<f64, 9>(image, "Direction")? != UPRIGHT
     {
         return Err("its axes are turned (`Direction`)".to_owned());
     }
@@ -216,7 +215,8 @@ fn appended(file: &str, array: &str, rest: &[u8], n_values: usize) -> Result<Vec
     let count = from.and_then(|from| rest.get(from - count_bytes..from));
     let count = count.ok_or("its numbers are cut short")?;
     let place = |index: usize| if is_little { index } else { count_bytes - 1 - index };
-    let n_bytes = (0..count_bytes).fold(0_u64, |sum, i| sum | u64::from(count[place(i)]) << (8 * i));
+    let n_bytes =
+        (0..count_bytes).fold(0_u64, |sum, i| sum | u64::from(count[place(i)]) << (8 * i));
     if Some(n_bytes) != n_values.checked_mul(value_bytes).map(|n| n as u64) {
         return Err(format!("`velocity` has {n_bytes} bytes, not those of {n_values} numbers"));
     }

@@ -14,8 +14,7 @@ fn read(name: &str, text: &str) -> Result<(Vec<Particle>, Seen), FileError> {
 fn the_same_particles_come_from_csv_and_tecplot() {
     let csv = "time [s],x [mm],y [mm],z [mm],u [m/s],v [m/s],w [m/s],track\n0.5,100,200,300,5,0.1,-0.2,7\n0.6,nan,200,300,5,0.1,-0.2,7\n0.5,100,200,300,5,0.1,-0.2,8\n";
     let (from_csv, seen) = read("tracks.csv", csv).unwrap();
-    let expected =
-        Seen { n: 3, n_times_back: 1, span: Some([0.5, 0.6]), ..Seen::default() };
+    let expected = Seen { n: 3, n_times_back: 1, span: Some([0.5, 0.6]), ..Seen::default() };
     assert_eq!(seen, expected);
     let expected =
         Particle { time: Some(0.5), position: [0.1, 0.2, 0.3], velocity: [5.0, 0.1, -0.2] };
@@ -44,7 +43,11 @@ fn what_is_wrong_is_named_with_its_place() {
         ("tracks.dat", "1 2 3\n", "VARIABLES"),
         ("tracks.dat", "VARIABLES = x y z u v w\nZONE\nnone 2 3 4 5 6\n", "`none` is not a number"),
         ("tracks.dat", "VARIABLES = x y z u v w\nZONE\nbad 2 3 4 5 6\n", "`bad` is not a number"),
-        ("tracks.dat", "VARIABLES = x y z u v w\nZONE SOLUTIONTIME=soon\n1 2 3 4 5 6\n", "SOLUTIONTIME = soon"),
+        (
+            "tracks.dat",
+            "VARIABLES = x y z u v w\nZONE SOLUTIONTIME=soon\n1 2 3 4 5 6\n",
+            "SOLUTIONTIME = soon",
+        ),
     ];
     for (name, text, expected) in cases {
         let message = read(name, text).unwrap_err().to_string();

@@ -102,7 +102,9 @@ mod tests {
         let place = bytes.windows(mark.len()).position(|window| window == mark).unwrap();
         let head = std::str::from_utf8(&bytes[..place]).unwrap();
         assert!(head.contains(r#"NumberOfPoints="4""#) && head.contains(r#"NumberOfPolys="2""#));
-        assert!(head.contains(r#"Name="Points" NumberOfComponents="3" format="appended" offset="24""#));
+        assert!(
+            head.contains(r#"Name="Points" NumberOfComponents="3" format="appended" offset="24""#)
+        );
         let data = &bytes[place + mark.len()..];
         assert_eq!(data[..8], 16_u64.to_le_bytes());
         assert_eq!(data[24..32], 48_u64.to_le_bytes());

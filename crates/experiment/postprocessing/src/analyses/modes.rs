@@ -68,12 +68,8 @@ const OVERLAP: AnalysisSetting = settings::setting(
     Takes::Number,
     "Share of a block that the next one has, too; 0.5 when left out",
 );
-const MODES: AnalysisSetting = settings::setting(
-    "modes",
-    "N",
-    Takes::Number,
-    "Modes whose shapes are kept; 3 when left out",
-);
+const MODES: AnalysisSetting =
+    settings::setting("modes", "N", Takes::Number, "Modes whose shapes are kept; 3 when left out");
 const MEMORY: AnalysisSetting = settings::setting(
     "memory",
     "MB",

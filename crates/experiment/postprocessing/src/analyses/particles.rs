@@ -10,7 +10,8 @@ use crate::wake_fields::settings::{
 use crate::wake_fields::{conditions, refused};
 use analysis::grids::widened;
 use analysis::particles::{
-    BinSettings, Binned, Binner, MedianTest, Order, Particle, Screen, ScreenSettings, Screened, outliers,
+    BinSettings, Binned, Binner, MedianTest, Order, Particle, Screen, ScreenSettings, Screened,
+    outliers,
 };
 use basis::records::FieldSetting;
 use formats::fields::FoundSetting;
@@ -88,7 +89,8 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let bins = bins(request)?;
     let noise = NOISE * setting.wind_speed;
     let limit = settings::positive(request, &LIMIT, ScreenSettings::usual(noise).limit)?;
-    let (screened, seen) = screened(request, &bins, ScreenSettings { limit, ..ScreenSettings::usual(noise) })?;
+    let (screened, seen) =
+        screened(request, &bins, ScreenSettings { limit, ..ScreenSettings::usual(noise) })?;
     let mut binned = binned(request, bins, &screened, seen.n)?;
     let n_odd = mask(&mut binned, noise);
     let mut remarks = vec![format!(

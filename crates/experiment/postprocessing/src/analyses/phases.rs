@@ -24,8 +24,8 @@ pub(super) const ANALYSIS: Analysis = Analysis {
         "Folder of a run, or a file of fields (NetCDF, .vti or a folder of them, Tecplot's text)",
     ),
     settings: &[
-        FIELD, TURBINE, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS,
-        OUT, FIGURES,
+        FIELD, TURBINE, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS,
+        ZEROS, OUT, FIGURES,
     ],
     run,
 };
@@ -238,8 +238,10 @@ fn signals(found: &Averaged, parts: &Decomposition) -> Signals {
     let over = |values: &[f64]| -> Vec<f64> { values.iter().map(|value| value / scale).collect() };
     let panels =
         [("all", &parts.total[0]), ("periodic", &parts.periodic[0]), ("random", &parts.random[0])];
-    let panels: Vec<MapPanel> =
-        panels.iter().filter_map(|(title, values)| panel(found.grid(), &found.setting, *title, &over(values))).collect();
+    let panels: Vec<MapPanel> = panels
+        .iter()
+        .filter_map(|(title, values)| panel(found.grid(), &found.setting, *title, &over(values)))
+        .collect();
     let map = MapFigure {
         name: "phases-stress-uu".to_owned(),
         title: "Fluctuations along the wind".to_owned(),

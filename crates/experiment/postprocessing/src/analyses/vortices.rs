@@ -7,11 +7,11 @@ mod surfaces;
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
+use crate::wake_fields::Averaged;
 use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, ROTOR_HZ, TURBINE, WIDTH,
     WIND_SPEED, ZEROS,
 };
-use crate::wake_fields::{Averaged, refused};
 use analysis::vortices::{
     Blades, Leapfrog, Pairs, Search, Section, SineFit, Track, Tracking, Vortex, blades_of, follow,
     leapfrogs, sine_fit, vortices,
@@ -26,8 +26,8 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     about: "Vortices in a plane averaged by phase, or in the one along the wind through the hub of a volume: places, circulations and cores by a fit, followed from phase to phase, their strength over distance, where one passes the one before it over the phase of the helix, and the hub vortex in a plane across the wind; isosurfaces of Q of a volume: figures 9 and 13 to 15 of van der Hoek et al. (2024)",
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase"),
     settings: &[
-        FIELD, TURBINE, LEAST, BLADES, PAIR, SURFACES, CRITERION, LEVEL, ROTOR_HZ, BINS, CYCLES, WIDTH, FROM, AZIMUTHS,
-        DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS, FIGURES,
+        FIELD, TURBINE, LEAST, BLADES, PAIR, SURFACES, CRITERION, LEVEL, ROTOR_HZ, BINS, CYCLES,
+        WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS, FIGURES,
     ],
     run,
 };
@@ -252,11 +252,13 @@ fn follow_all(
     }
     let n = found.frames.len();
     for leapfrog in leapfrogs(&found.tracks, pairs) {
-        let bin = &found.averaged.head.bins[leapfrog.step as usize % n];
+        let [bin, next] =
+            [0, 1].map(|ahead| &found.averaged.head.bins[(leapfrog.step as usize + ahead) % n]);
         // The helix goes on between bins, by as much as from this one to the next.
-        let azimuth = bin.helix.zip(next.helix).map(|(a, b)| {
-            wrap_to_turn(a + leapfrog.step.fract() * wrap_to_half_turn(b - a))
-        });
+        let azimuth = bin
+            .helix
+            .zip(next.helix)
+            .map(|(a, b)| wrap_to_turn(a + leapfrog.step.fract() * wrap_to_half_turn(b - a)));
         found.leapfrogs.push((azimuth, leapfrog));
     }
     let over_helix = found.leapfrogs.iter().filter_map(|(a, one)| Some(((*a)?, one.place)));

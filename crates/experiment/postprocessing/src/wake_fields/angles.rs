@@ -145,7 +145,8 @@ fn dense(path: &Path, rotor: &[f64], fix: &str) -> Result<(), PostprocessingErro
         return Ok(());
     }
     let step = step.to_degrees();
-    let problem = format!("has a row each {step:.0}° of the rotor, between which its azimuth is not told");
+    let problem =
+        format!("has a row each {step:.0}° of the rotor, between which its azimuth is not told");
     Err(refused(path, problem, fix))
 }
 

@@ -49,7 +49,10 @@ pub(crate) const LENGTHS: AnalysisSetting = AnalysisSetting {
 pub(crate) const ZEROS: AnalysisSetting = AnalysisSetting {
     name: "zeros",
     value: "MEANING",
-    takes: Takes::Choice(&[("air", "Air that stands still"), ("holes", "Holes, as programs for particle images write them")]),
+    takes: Takes::Choice(&[
+        ("air", "Air that stands still"),
+        ("holes", "Holes, as programs for particle images write them"),
+    ]),
     about: "What a velocity of exactly zero means in fields that are not a run's; air when left out, and counted",
 };
 /// Azimuths beside measured fields.

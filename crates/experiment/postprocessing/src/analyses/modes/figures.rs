@@ -80,18 +80,18 @@ fn by_energy(answer: &Found, component: usize) -> Option<MapFigure> {
             let values: Vec<f64> = mode[component].iter().map(|value| f64::from(*value)).collect();
             let share = 100.0 * answer.pod.energies[index] / answer.pod.total;
             let name = answer.pod_name(index).map_or(String::new(), |name| format!(", {name}"));
-            panel(&answer.grid, &answer.setting, format!("mode {}: {share:.1} %{name}", index + 1), &values)
+            panel(
+                &answer.grid,
+                &answer.setting,
+                format!("mode {}: {share:.1} %{name}", index + 1),
+                &values,
+            )
         });
     let title = format!("{} of the modes with most energy", NAMES[component]);
     figure(answer, "modes-pod", title, panels.collect())
 }
 
-fn figure(
-    answer: &Found,
-    name: &str,
-    title: String,
-    panels: Vec<MapPanel>,
-) -> Option<MapFigure> {
+fn figure(answer: &Found, name: &str, title: String, panels: Vec<MapPanel>) -> Option<MapFigure> {
     (!panels.is_empty()).then(|| MapFigure {
         name: name.to_owned(),
         title,

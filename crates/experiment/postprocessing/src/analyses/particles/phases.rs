@@ -52,7 +52,11 @@ impl Phases {
         let path = request.run();
         if seen.span.is_none() || seen.n_times_missing > 0 {
             let problem = "does not tell the times of all particles, by which azimuths are found";
-            return Err(refused(path, problem, "add a column `time`, or SOLUTIONTIME to each zone"));
+            return Err(refused(
+                path,
+                problem,
+                "add a column `time`, or SOLUTIONTIME to each zone",
+            ));
         }
         let angles = Angles::of_table(Path::new(table))?;
         let width_deg = settings::positive(request, &WIDTH, Bins::WIDTH.to_degrees())?;

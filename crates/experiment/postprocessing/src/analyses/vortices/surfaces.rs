@@ -76,7 +76,11 @@ pub(super) fn made(
     let is_volume = found.averaged.grid().spanned().len() == 3;
     if !is_volume && folder.is_some() {
         let fix = "name a volume, such as `--field volumes` of a run with output.volume_interval";
-        return Err(refused(&found.averaged.path, "spans no volume, of which surfaces are made", fix));
+        return Err(refused(
+            &found.averaged.path,
+            "spans no volume, of which surfaces are made",
+            fix,
+        ));
     }
     if !is_volume || folder.is_none() && request.text(FIGURES.name).is_none() {
         return Ok((None, None));

@@ -75,10 +75,8 @@ impl View {
         let [across, up] = ends.map(|[low, high]| high - low);
         let scale = (width / across).min(height / up);
         let middle = ends.map(|[low, high]| 0.5 * (low + high));
-        let origin = [
-            left + 0.5 * width - scale * middle[0],
-            top + 0.5 * height + scale * middle[1],
-        ];
+        let origin =
+            [left + 0.5 * width - scale * middle[0], top + 0.5 * height + scale * middle[1]];
         Self { axes, scale, origin }
     }
 
@@ -226,7 +224,8 @@ mod tests {
                 .collect();
             SurfacePanel { title: String::new(), points, triangles }
         };
-        let count = |picture: &Picture| picture.indices.iter().filter(|index| **index < 255).count();
+        let count =
+            |picture: &Picture| picture.indices.iter().filter(|index| **index < 255).count();
         let near = lit(&panel(sheet(-0.9, 0.5).to_vec()), &view, area);
         // The small sheet straight behind the larger one along the view.
         let behind: Vec<[f64; 3]> = sheet(-0.9, 0.3)
