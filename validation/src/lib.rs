@@ -30,6 +30,7 @@ pub mod helix;
 pub mod identification;
 pub mod inflow;
 mod least_squares;
+pub mod lidar_loop;
 mod list;
 pub mod meandering;
 pub mod memory;

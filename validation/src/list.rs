@@ -326,6 +326,15 @@ pub const VALIDATIONS: &[Validation] = &[
         recorded: include_str!("../recorded/identification.toml"),
     },
     Validation {
+        name: "lidar-loop",
+        about: "a model of a free wake's answer to its helix, a controller for it, and the loop that a lidar closes, beside a published study",
+        cost: Cost::Minutes(8),
+        run: crate::lidar_loop::lidar_loop,
+        pictures: None,
+        page: "control-design",
+        recorded: include_str!("../recorded/lidar-loop.toml"),
+    },
+    Validation {
         name: "synthesis",
         about: "H-infinity controllers of ten plants beside SLICOT's, and beside what no controller can do better",
         cost: Cost::UnderAMinute,

@@ -25,10 +25,11 @@ struct Lines {
 
 impl Observer for Lines {
     fn advanced(&mut self, progress: &study::Progress) {
-        let share = 10 * progress.step / progress.n_steps.max(1);
-        let line = format!("{} {share}0 %", progress.run);
+        // Of all runs together: several go on at a time, and their turns would be a line each.
+        let line = format!("{:.0}0 %", (10.0 * progress.share_of_all).floor());
         if line != self.last {
-            tell!("{line}, {:.0} s left in all", progress.time_left);
+            let (run, left) = (progress.run, progress.time_left);
+            tell!("{line} of {} runs, now {run}, {left:.0} s left", progress.n_runs);
             self.last = line;
         }
     }

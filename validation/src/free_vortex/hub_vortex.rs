@@ -30,16 +30,20 @@ const PASSING: f64 = 60.0;
 /// Time that is looked at (s), two periods of the slowest helix: the same for all, so that the lines of a
 /// record's own spectrum do not follow the frequency that was set.
 const RECORD: f64 = 252.0;
-/// Filters by which the hub vortex is found, the source's and the one that bears shear and noise: what they
-/// look for, and how a row names it.
-const FILTERS: [(&str, &str); 2] = [("fast region", ""), ("fitted jet", " by a fitted jet")];
+/// Filters by which the hub vortex is found, the source's, the one that bears shear and noise, and that of the
+/// whole wake: what they look for, and how a row names it.
+const FILTERS: [(&str, &str); 3] = [
+    ("fast region", ""),
+    ("fitted jet", " by a fitted jet"),
+    ("centroid", " by the wind's centroid over the disc"),
+];
 
 /// A helix, and the circle of the hub vortex behind it by each of the [`FILTERS`].
 struct Draw {
     /// Amplitude (deg) and Strouhal number (–).
     amplitude: f64,
     strouhal: f64,
-    circles: [Circle; 2],
+    circles: [Circle; 3],
 }
 
 /// Mean place (m, from the rotor's axis: to the left looking downwind, and up), radius (m) and frequency
@@ -153,7 +157,7 @@ fn drawn(number: usize, random: &mut Random) -> Result<Draw, String> {
 }
 
 /// The circles that the hub vortex runs on in `scans` after `spin_up` (s), by each of the [`FILTERS`].
-fn circles(scans: &StoredScans, spin_up: f64) -> Result<[Circle; 2], String> {
+fn circles(scans: &StoredScans, spin_up: f64) -> Result<[Circle; 3], String> {
     let frame = scans.helix.ok_or("its turbine pitched no helix")?;
     let [first, .., last] = scans.times[..] else {
         return Err("there are no two scans".to_owned());
@@ -173,6 +177,7 @@ fn circles(scans: &StoredScans, spin_up: f64) -> Result<[Circle; 2], String> {
     Ok([
         of(HubVortexSettings::of_source(frame, radius, interval))?,
         of(HubVortexSettings::robust(frame, radius, interval))?,
+        of(HubVortexSettings::centroid(frame, radius, interval))?,
     ])
 }
 

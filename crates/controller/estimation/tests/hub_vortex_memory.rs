@@ -58,6 +58,7 @@ fn an_instant_takes_no_memory() {
     for settings in [
         HubVortexSettings::of_source(frame, 63.0, 0.1),
         HubVortexSettings::robust(frame, 63.0, 0.1),
+        HubVortexSettings::centroid(frame, 63.0, 0.1),
     ] {
         let mut filter = HubVortexFilter::new(settings, 81).expect("such a filter can be");
         let mut reading = vec![0.0; Scan::n_values(81)];

@@ -21,17 +21,20 @@ pub enum VortexFilter {
     Published,
     /// Weighted, its delay made good.
     Robust,
+    /// In its place the centroid of the wind over the disc, its delay made good.
+    Centroid,
 }
 
 impl VortexFilter {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Published, Self::Robust];
+    /// All.
+    pub const ALL: [Self; 3] = [Self::Published, Self::Robust, Self::Centroid];
 
     /// Its name on the command line and in a case.
     pub fn name(self) -> &'static str {
         match self {
             Self::Published => "published",
             Self::Robust => "robust",
+            Self::Centroid => "centroid",
         }
     }
 }
@@ -45,7 +48,7 @@ pub struct HubVortexQuestion {
     pub turbine: Option<String>,
     /// Name of the lidar; the turbine's first when absent.
     pub lidar: Option<String>,
-    /// Filters; both when empty.
+    /// Filters; all when empty.
     pub filters: Vec<VortexFilter>,
     /// Frequency of the helix (Hz); that which the turbine pitched when absent.
     pub frequency: Option<f64>,
@@ -198,9 +201,11 @@ fn settings(
 ) -> HubVortexSettings {
     let radius = 0.5 * sampled.stored.rotor_diameter;
     let usual = match filter {
-        VortexFilter::Published => HubVortexSettings::of_source(frame, radius, sampled.interval),
-        VortexFilter::Robust => HubVortexSettings::robust(frame, radius, sampled.interval),
+        VortexFilter::Published => HubVortexSettings::of_source,
+        VortexFilter::Robust => HubVortexSettings::robust,
+        VortexFilter::Centroid => HubVortexSettings::centroid,
     };
+    let usual = usual(frame, radius, sampled.interval);
     let cut_off = question.cut_off.unwrap_or(usual.cut_off);
     HubVortexSettings { cut_off, centre: sampled.centre, ..usual }
 }

@@ -125,7 +125,7 @@ fn a_jet_of_known_place_is_found_again_drawn_and_told() {
     // What was lost has stayed lost.
     assert!((answer.missing - lost).abs() < 1e-12, "{} {lost}", answer.missing);
     assert!((answer.interval - INTERVAL).abs() < 1e-9 && answer.times.len() == 1500);
-    let [published, robust] = &answer.tracks[..] else { panic!("two filters") };
+    let [published, robust, centroid] = &answer.tracks[..] else { panic!("three filters") };
     // The robust filter is within a few per cent of the circle, with its delay made good.
     let [left, up] = robust.numbers.centre;
     assert!((left - MIDDLE[0]).hypot(up - MIDDLE[1]) < 0.05 * CIRCLE, "{:?}", robust.numbers);
@@ -136,6 +136,11 @@ fn a_jet_of_known_place_is_found_again_drawn_and_told() {
     let late = frame.rate * 25.0 * INTERVAL;
     assert!((published.numbers.radius[0] / CIRCLE - 1.0).abs() < 0.2, "{:?}", published.numbers);
     assert!(off(published, &frame, late) < 0.2 * CIRCLE, "{:?}", published.numbers);
+    // The centroid turns as the jet does, on a circle of its own: compare the directions.
+    let [tilt, yaw] = frame.open_helix(CIRCLE, PHASE);
+    let [own_tilt, own_yaw] = centroid.numbers.helix;
+    let turn = own_yaw.atan2(own_tilt) - yaw.atan2(tilt);
+    assert!(basis::angle::wrap_to_half_turn(turn).abs() < 0.05, "{:?}", centroid.numbers);
 
     // In the other sense nothing stands still.
     let sense = Some(Sense::Clockwise);

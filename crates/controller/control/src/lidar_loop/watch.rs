@@ -54,11 +54,12 @@ impl Watch {
         frame: HelixFrame,
     ) -> Result<Self, ControlError> {
         let (radius, interval) = (site.rotor.rotor_radius(), values.number("vortex_interval"));
-        let settings = if values.word("vortex_filter") == "published" {
-            HubVortexSettings::of_source(frame, radius, interval)
-        } else {
-            HubVortexSettings::robust(frame, radius, interval)
+        let settings = match values.word("vortex_filter") {
+            "published" => HubVortexSettings::of_source,
+            "centroid" => HubVortexSettings::centroid,
+            _ => HubVortexSettings::robust,
         };
+        let settings = settings(frame, radius, interval);
         let centre = match values.numbers("vortex_centre") {
             [left, up] => Some([*left, *up]),
             _ => None,

@@ -62,6 +62,15 @@ impl HubVortexSettings {
         Self { search, compensates: true, ..source }
     }
 
+    /// One of the whole wake over the disc of a rotor of `radius` (m): linear in the helix, its delay made
+    /// good.
+    pub fn centroid(frame: HelixFrame, radius: f64, interval: f64) -> Self {
+        let source = Self::of_source(frame, radius, interval);
+        // A point on the disc's rim counts whatever its last digits are.
+        let search = Search { method: Method::Centroid, radius: 1.001 * radius, ..source.search };
+        Self { search, compensates: true, ..source }
+    }
+
     /// Nothing where they can be.
     fn check(&self) -> Result<(), EstimationError> {
         let refuse =

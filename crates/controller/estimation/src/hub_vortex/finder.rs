@@ -28,6 +28,12 @@ pub enum Method {
         /// Standard deviation that it is looked for with (m); it may have 0.4 to 1.75 of that.
         width: f64,
     },
+    /// Centroid of the wind over the points, less that of the points: what moves it is the fast side of the
+    /// whole wake, hub vortex and all. Of a wake that a helix displaces it goes with the amplitude where the
+    /// place of a jet does not: beyond some degrees wind from outside passes near the axis on one side. It is
+    /// a measure of the displacement, smaller than that itself, and wind that varies over the disc by
+    /// itself (shear, eddies) moves it too. Speeds are taken for the cosine of an axial wind.
+    Centroid,
 }
 
 /// Points that are looked at, and how.
@@ -97,6 +103,7 @@ impl Finder {
         let found = match self.search.method {
             Method::FastRegion { threshold } => self.fast_region(threshold),
             Method::Jet { width } => self.jet(width),
+            Method::Centroid => self.centroid(),
         };
         found.map(|found| Found { confidence: coverage * found.confidence, ..found })
     }
@@ -104,7 +111,7 @@ impl Finder {
     /// On return the points are those of `scan` that count and have a speed; gives how many count.
     fn gather(&mut self, scan: &Scan) -> usize {
         let Search { method, radius, distances: [nearest, furthest] } = self.search;
-        let is_axial = matches!(method, Method::Jet { .. });
+        let is_axial = !matches!(method, Method::FastRegion { .. });
         self.points.clear();
         let mut n_there = 0;
         let places = scan.downwind().iter().zip(scan.left()).zip(scan.up());
@@ -139,6 +146,25 @@ impl Finder {
         (n > 0.0).then(|| Found {
             place: place.map(|sum| sum / n),
             time: time / n,
+            confidence: 1.0,
+        })
+    }
+
+    fn centroid(&self) -> Option<Found> {
+        let n = self.points.len() as f64;
+        let mean = |of: fn(&Point) -> f64| self.points.iter().map(of).sum::<f64>() / n;
+        let middle = [mean(|point| point.place[0]), mean(|point| point.place[1])];
+        let (speed, time) = (mean(|point| point.speed), mean(|point| point.time));
+        // Less the points' own middle: what is lost on one side is no displacement.
+        let mut place = [0.0; 2];
+        for point in &self.points {
+            for axis in 0..2 {
+                place[axis] += (point.speed - speed) * (point.place[axis] - middle[axis]);
+            }
+        }
+        (speed > 0.0).then(|| Found {
+            place: place.map(|sum| sum / (n * speed)),
+            time,
             confidence: 1.0,
         })
     }

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!  scan ──> find ──place──> low-pass ──> less its mean ──> helix frame ──> tilt and yaw, constant
-//!           (fast region     (FIR)        (whole periods)   (turned to the     in a helix
-//!            or jet)                                    time of the place)
+//!          (fast region,    (FIR)        (whole periods)   (turned to the     in a helix
+//!           jet or centroid)                              time of the place)
 //! ```
 //!
 //! [`HubVortexFilter`] takes scan after scan in a control loop, [`follow`] a whole record, with the same

@@ -91,6 +91,10 @@ impl Wake {
         HubVortexSettings::robust(self.frame(), RADIUS, INTERVAL)
     }
 
+    fn centroid(&self) -> HubVortexSettings {
+        HubVortexSettings::centroid(self.frame(), RADIUS, INTERVAL)
+    }
+
     fn of_source(&self) -> HubVortexSettings {
         HubVortexSettings::of_source(self.frame(), RADIUS, INTERVAL)
     }
@@ -193,6 +197,37 @@ fn the_fast_region_of_the_source_follows_the_jet() {
         let (_, of_angle) = mean_errors(&wake, &late);
         assert!((of_angle - (RATE * 2.5).to_degrees()).abs() < 3.0, "{of_angle}°");
     }
+}
+
+/// Tilt and yaw of the last sample (m).
+fn last(found: &[(f64, HubVortex)]) -> [f64; 2] {
+    found.last().expect("samples").1.helix
+}
+
+#[test]
+fn the_centroid_turns_with_the_jet_and_goes_with_its_circle() {
+    for sense in [Sense::CounterClockwise, Sense::Clockwise] {
+        let of = |radius| {
+            let wake = Wake { sense, radius, shear: 2.5, ..PLAIN };
+            last(&wake.follow(wake.centroid(), 120.0))
+        };
+        let (narrow, wide) = (of(4.0), of(12.0));
+        let ratio = wide[0].hypot(wide[1]) / narrow[0].hypot(narrow[1]);
+        assert!((ratio / 3.0 - 1.0).abs() < 0.03, "{ratio}");
+        let expected = Wake { sense, ..PLAIN }.frame().open_helix(1.0, PLAIN.phase);
+        let turn = wide[1].atan2(wide[0]) - expected[1].atan2(expected[0]);
+        assert!(basis::angle::wrap_to_half_turn(turn).abs() < 0.03, "{turn}");
+    }
+}
+
+/// What is lost has a middle of its own: it takes none of the place, but leaves a noise.
+#[test]
+fn drop_outs_move_the_centroid_little() {
+    let whole = last(&PLAIN.follow(PLAIN.centroid(), 120.0));
+    let wake = Wake { dropout: 0.3, ..PLAIN };
+    let found = last(&wake.follow(wake.centroid(), 120.0));
+    let apart = (found[0] - whole[0]).hypot(found[1] - whole[1]);
+    assert!(apart < 0.2 * whole[0].hypot(whole[1]), "{apart} m of {whole:?}");
 }
 
 #[test]

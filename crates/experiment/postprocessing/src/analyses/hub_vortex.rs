@@ -39,8 +39,9 @@ pub(super) const ANALYSIS: Analysis = Analysis {
             takes: Takes::Choice(&[
                 ("published", "As in the paper: fast region, delay left in"),
                 ("robust", "Weighted, with the filter's delay made good"),
+                ("centroid", "In its place the centroid of the wind over the disc"),
             ]),
-            about: "How the hub vortex is found; both ways when left out",
+            about: "How the hub vortex is found; all ways when left out",
         },
         setting(
             "frequency",
